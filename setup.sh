@@ -11,7 +11,8 @@ usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
   test     build, then run the tests (all but the slow ones)
   slow     build, then run the slow tests
   build    build only: the programs are in build/bin
-  package  build, then make the Debian package build/softfall_VERSION-REVISION_ARCHITECTURE.deb and check it with lintian
+  package  build, then make the Debian packages build/softfall_VERSION-REVISION_ARCHITECTURE.deb and
+           build/python3-softfall_VERSION-REVISION_all.deb and check them with lintian
 
     --force        demo: run the drop again even if its results are up to date
   --label LABEL  test: only the tests with this label: unit, pipeline or verify, or several joined by |
@@ -103,17 +104,20 @@ demo() {
     echo "  $dir/model.h5           the model of softfall-pre"
     echo "  $dir/results.h5         the results of softfall-solve"
     echo "  $report         the lines above"
+    echo "  $dir/view.html          the drop to turn, cut and play: open it in a browser"
     echo "The files are in $PWD. Next: docs/guide.md explains how to read the results and change the case."
 }
 
-# The package of this Debian release. Its files are as old as the last commit.
+# The packages of this Debian release. Their files are as old as the last commit.
 make_package() {
-    rm -f build/softfall_*.deb
+    rm -f build/softfall_*.deb build/python3-softfall_*.deb
     SOURCE_DATE_EPOCH=$(git log -1 --format=%ct 2>/dev/null) || SOURCE_DATE_EPOCH=$(date +%s)
     export SOURCE_DATE_EPOCH
-    (cd build && cpack -G DEB >cpack.log 2>&1) || fail "cpack failed: $(tail -n 5 build/cpack.log)"
-    lintian --allow-root --fail-on error build/softfall_*.deb || fail "lintian finds errors in the package: see above"
-    echo "The package is made; to install it, as root: apt-get install $(echo ./build/softfall_*.deb)"
+    (cd build && cpack -G DEB >cpack.log 2>&1 && cpack -G DEB --config CPackPython.cmake >>cpack.log 2>&1) ||
+        fail "cpack failed: $(tail -n 5 build/cpack.log)"
+    lintian --allow-root --fail-on error build/softfall_*.deb build/python3-softfall_*.deb ||
+        fail "lintian finds errors in the packages: see above"
+    echo "The packages are made; to install them, as root: apt-get install $(echo ./build/softfall_*.deb ./build/python3-softfall_*.deb)"
 }
 
 # nproc would take OMP_NUM_THREADS for the number of processors.
@@ -154,13 +158,13 @@ demo)
     ;;
 test)
     # Where no test may be skipped, Snakemake is needed too.
-    install_packages build run show test ${SF_NO_SKIP:+cluster}
+    install_packages build run show python test ${SF_NO_SKIP:+cluster}
     build
     # One test per core and one thread per test; tests of threading set their own number.
     OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(processors)"
     ;;
 slow)
-    install_packages build run show test slow cluster slurm
+    install_packages build run show python test slow cluster slurm
     build
     run_tests --label-regex slow --parallel "$(processors)" # those that use every core run alone
     ;;

@@ -5,7 +5,7 @@
 #include "base/program.h"
 #include "model/model_io.h"
 #include "machine.h"
-#include "report/json.h"
+#include "report/row.h"
 #include "pre/build.h"
 #include "pre/mesh/gmsh_session.h"
 #include "solver/step.h"

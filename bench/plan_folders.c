@@ -6,7 +6,7 @@
 #include "base/program.h"
 #include "base/units.h"
 #include "io/folder.h"
-#include "study/sweep/drops.h"
+#include "study/sweep/campaign.h"
 #include "study/sweep/plan.h"
 
 #include <errno.h>

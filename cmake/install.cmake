@@ -40,28 +40,37 @@ if(TARGET softfall-gui)
     install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 endif()
 
-# Manual pages and bash completions, made from the programs' --help.
+# Manual pages and bash completions, made from the programs' --help. Scripts go with the Python package.
 find_program(SOFTFALL_HELP2MAN help2man)
 set(from_help "")
-foreach(program ${programs})
+foreach(program ${programs} ${SOFTFALL_PYTHON_PROGRAMS})
+    set(file ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/${program})
+    set(component COMPONENT Unspecified)
+    if(program IN_LIST SOFTFALL_PYTHON_PROGRAMS)
+        set(component COMPONENT python)
+    endif()
     set(completion ${CMAKE_BINARY_DIR}/completions/${program})
     add_custom_command(OUTPUT ${completion}
         COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/completions
-        COMMAND ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh $<TARGET_FILE:${program}> >${completion}
-        DEPENDS ${program} ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
+        COMMAND ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${file} >${completion}
+        DEPENDS ${file} ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
     list(APPEND from_help ${completion})
     if(SOFTFALL_HELP2MAN)
         set(made ${CMAKE_BINARY_DIR}/manual/${program}.made)
         add_custom_command(OUTPUT ${made}
-            COMMAND ${CMAKE_SOURCE_DIR}/tools/manual_page.sh $<TARGET_FILE:${program}> ${CMAKE_BINARY_DIR}/manual/man1 ${programs}
+            COMMAND ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${file} ${CMAKE_BINARY_DIR}/manual/man1 ${programs}
             COMMAND ${CMAKE_COMMAND} -E touch ${made}
-            DEPENDS ${program} ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
+            DEPENDS ${file} ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
         list(APPEND from_help ${made})
     endif()
-    install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+    install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions ${component} OPTIONAL)
 endforeach()
 if(SOFTFALL_HELP2MAN)
-    install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
+    install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL
+            PATTERN softfall-serve.1.gz EXCLUDE PATTERN softfall-protocol.1.gz EXCLUDE)
+    foreach(program ${SOFTFALL_PYTHON_PROGRAMS})
+        install(FILES ${CMAKE_BINARY_DIR}/manual/man1/${program}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT python OPTIONAL)
+    endforeach()
 else()
     message(STATUS "No manual pages: help2man is missing (packages.txt, section package)")
 endif()

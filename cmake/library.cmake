@@ -18,7 +18,7 @@ function(softfall_shared target name export)
 endfunction()
 
 softfall_shared(softfall_api softfall softfall
-    SOURCES src/api/api_drop.c src/api/api_figures.c
+    SOURCES src/api/api_drop.c src/api/api_record.c
     PRIVATE softfall_solver softfall_post)
 softfall_shared(softfall_api_build softfall-build build
     SOURCES src/api/api_case.c

@@ -2,7 +2,7 @@
 # Language level, warnings, optimisation and sanitizers, carried by the interface target softfall_options.
 option(SOFTFALL_TESTS "Build the tests" ON)
 option(SOFTFALL_NATIVE "Compile for the processor of this machine alone" OFF)
-option(SOFTFALL_THREADS_ALWAYS "Share small loops among threads too (base/threads.h), for analyses" OFF)
+option(SOFTFALL_THREADS_ALWAYS "Share small loops among threads too (base/lanes.h), for analyses" OFF)
 option(SOFTFALL_WERROR "Treat warnings as errors" OFF)
 set(SOFTFALL_SANITIZE "" CACHE STRING "Comma list for -fsanitize=, e.g. address,undefined")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The Debian package: `./setup.sh package`, or `cpack` in the build folder after `cmake --build`. Its shared libraries are
+# The Debian packages softfall and python3-softfall: `./setup.sh package`, or `cpack` in the build folder after `cmake --build`. Its shared libraries are
 # found by dpkg-shlibdeps; the programs that softfall starts are those of packages.txt.
 set(SOFTFALL_MAINTAINER "softfall maintainers <maintainers@softfall.invalid>" CACHE STRING "Maintainer of the package")
 
@@ -74,4 +74,35 @@ file(WRITE ${debian_dir}/doc/changelog.Debian
     " -- ${SOFTFALL_MAINTAINER}  ${debian_date}\n")
 execute_process(COMMAND gzip -9nf ${debian_dir}/doc/changelog.Debian)
 set(CPACK_INSTALLED_DIRECTORIES ${debian_dir}/doc /usr/share/doc/softfall)
+set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};softfall;Unspecified;/")
 include(CPack)
+
+# python3-softfall, of the component python: the same settings but for these. Python compiles its modules when it is installed.
+softfall_relation(python python_needs)
+foreach(name postinst prerm)
+    set(program py3compile)
+    if(name STREQUAL prerm)
+        set(program py3clean)
+    endif()
+    file(WRITE ${debian_dir}/python/${name} "#!/bin/sh\nset -e\n! command -v ${program} >/dev/null || ${program} -p python3-softfall\n")
+    file(CHMOD ${debian_dir}/python/${name} FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+endforeach()
+file(COPY ${debian_dir}/doc/changelog.Debian.gz ${CMAKE_SOURCE_DIR}/packaging/copyright DESTINATION ${debian_dir}/python/doc)
+file(WRITE ${CMAKE_BINARY_DIR}/CPackPython.cmake "include(${CMAKE_BINARY_DIR}/CPackConfig.cmake)
+set(CPACK_PACKAGE_NAME python3-softfall)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY \"drop tests of rigid missiles on foam pads (Python 3)\")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+    \"This package runs the programs of softfall from Python: cases, drops with
+figures, histories, frames and plots, sweeps, fits, HIC and CFC filters. It has
+a drop as a function for optimisers, and softfall-serve, which serves drops
+over HTTP by the protocol of UM-Bridge.\")
+set(CPACK_DEBIAN_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS \"python3, softfall (= ${PROJECT_VERSION}-${debian_revision}), ${python_needs}\")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS python3-pandas)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS OFF)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA \"${debian_dir}/python/postinst;${debian_dir}/python/prerm\")
+set(CPACK_INSTALLED_DIRECTORIES \"${debian_dir}/python/doc;/usr/share/doc/python3-softfall\")
+set(CPACK_INSTALL_CMAKE_PROJECTS \"${CMAKE_BINARY_DIR};softfall;python;/\")
+")

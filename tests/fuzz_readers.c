@@ -2,7 +2,7 @@
 #include "fuzz_readers.h"
 #include "material/laws.h"
 
-#include "study/manifest.h"
+#include "study/batch.h"
 #include "study/cfh/points.h"
 #include "material/curve.h"
 #include "study/fit/compression/compression_config.h"

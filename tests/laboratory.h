@@ -12,6 +12,8 @@
 enum { LAB_MODELS = 3, LAB_MEASURED = 3, LAB_DROPS = 5, LAB_KINDS = 3 };
 
 typedef struct laboratory {
+    bool locks; /* SF_LOCK is set: foams lock up at a strain of their own, and every model has it as an
+                   unknown */
     point_card start;
     sf_fit_input input[LAB_MODELS]; /* one for each model, of the same drops */
     sf_columns surrogate[LAB_DROPS], real[LAB_DROPS];
@@ -26,7 +28,8 @@ void laboratory_measure(laboratory *lab, gsl_rng *random);
 typedef struct laboratory_tally {
     int foams, failed, reached;
     int inside[LAB_DROPS][LAB_KINDS];
-    double width[LAB_DROPS][LAB_KINDS];    /* sum of ln(high / low) */
+    int open[LAB_DROPS][LAB_KINDS];        /* intervals without an upper end */
+    double width[LAB_DROPS][LAB_KINDS];    /* sum of ln(high / low) of the others */
     double miss[LAB_DROPS][LAB_KINDS];     /* sum of |ln(median / truth)| */
     double bias[LAB_DROPS][LAB_KINDS];     /* sum of ln(median / truth) */
     double weight[LAB_MODELS];             /* sum */

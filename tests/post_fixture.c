@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "io/h5.h"
 #include "io/provenance.h"
-#include "post/figures/injury.h"
+#include "post/figures/signal.h"
 #include "post/results/results.h"
 #include <math.h>
 #include <stdio.h>

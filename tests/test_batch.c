@@ -3,8 +3,7 @@
 #include "check.h"
 #include "program_fixture.h"
 
-#include "study/engine.h"
-#include "study/manifest.h"
+#include "study/batch.h"
 #include "study/runner.h"
 #include "io/folder.h"
 #include "io/process.h"

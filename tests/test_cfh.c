@@ -3,7 +3,7 @@
 #include "model_fixture.h"
 
 #include "study/cfh/cfh_report.h"
-#include "study/cfh/search.h"
+#include "study/cfh/points.h"
 #include "study/cfh/series.h"
 #include <math.h>
 #include <setjmp.h>

@@ -5,7 +5,7 @@
 #include "model_fixture.h"
 
 #include "case/case.h"
-#include "study/cfh/spread_report.h"
+#include "study/cfh/cfh_report.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <omp.h>
@@ -269,6 +269,28 @@ static void response_errors_give_the_interval(void **state) {
     sf_cfh_draws_free(&draws);
 }
 
+/* A single pad and drop scatter about the whole interval, which does not hold them. */
+static void a_single_drop_scatters_about_the_whole(void **state) {
+    (void)state;
+    const double scatter = 0.1;
+    sf_cfh_pad pad = test_pad();
+    sf_cfh_draws draws = make_draws(FEW, 0);
+    double h = direct_height(&pad, &draws.draw[0].law),
+           expected = 2 * 1.96 * scatter / slope_of_hic(&pad, &draws.draw[0].law, h);
+    pad.mesh_error = 0;
+    sf_cfh_spread s = build(&pad, &draws, &draws.draw[0].law, limit);
+    evaluate(&s);
+    sf_cfh_interval whole = *sf_cfh_spread_whole(&s, SF_CFH_FIRST);
+    for (int k = 0; k < s.grid; k++)
+        s.scatter[SF_CFH_HIC][k] = scatter;
+    evaluate(&s);
+    const sf_cfh_interval *single = &s.part[SF_CFH_PARTS][SF_CFH_FIRST];
+    assert_memory_equal(sf_cfh_spread_whole(&s, SF_CFH_FIRST), &whole, sizeof whole);
+    assert_close(log(single->high / single->low), expected, 0.1 * expected);
+    sf_cfh_spread_free(&s);
+    sf_cfh_draws_free(&draws);
+}
+
 /* Errors of size zero give the bits of draws that state none. */
 static void no_response_errors_change_no_bit(void **state) {
     (void)state;
@@ -501,6 +523,7 @@ int main(void) {
         cmocka_unit_test(the_interval_is_that_of_direct_drops),
         cmocka_unit_test(without_a_spread_of_the_foam_the_other_errors_are_left),
         cmocka_unit_test(response_errors_give_the_interval),
+        cmocka_unit_test(a_single_drop_scatters_about_the_whole),
         cmocka_unit_test(no_response_errors_change_no_bit),
         cmocka_unit_test(few_checks_widen_the_interval),
         cmocka_unit_test(the_trend_of_the_checks_corrects_the_heights),

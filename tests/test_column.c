@@ -3,7 +3,7 @@
  * softfall-post does it. */
 #include "extreme.h"
 #include "foam_fixture.h"
-#include "post/figures/injury.h"
+#include "post/figures/signal.h"
 #include "study/column.h"
 
 #include "base/units.h"

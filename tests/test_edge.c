@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The changes of a_max and HIC with speed and thickness that softfall-post estimates from one drop, against
- * drops with 1 % more and less of each (post/figures/edge.h). */
+ * drops with 1 % more and less of each (post/figures/figures.c). */
 #include "program_fixture.h"
 
 #include <math.h>
@@ -12,18 +12,23 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define LOCKED " --set 'material.densification={rule=\"H2\"; start=0.76; limit=%g; exponent=1.0;}'"
+#define LOCKED " --set 'material.densification={rule=\"H2\"; start=0.76; limit=%g; exponent=%.1f;}'"
 
-static void drop(const program_place *p, double speed, double thickness, double limit) {
+static void drop_on(const program_place *p, int spacing, double speed, double thickness, double limit,
+                    double exponent) {
     char lock[120] = "";
     if (limit > 0)
-        snprintf(lock, sizeof lock, LOCKED, limit);
+        snprintf(lock, sizeof lock, LOCKED, limit, exponent);
     program_succeed(p, "pre",
                     "good.cfg -o m.h5 --force %s --set missile.velocity='\"%.6f m/s\"' --set "
                     "geometry.parameters.thickness=%.6f%s",
-                    program_coarse(20), speed, thickness, lock);
+                    program_coarse(spacing), speed, thickness, lock);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
     program_succeed(p, "post", "r.h5 -o out --force");
+}
+
+static void drop(const program_place *p, double speed, double thickness, double limit) {
+    drop_on(p, 20, speed, thickness, limit, 1);
 }
 
 static double figure(const program_place *p, const char *key) {
@@ -81,10 +86,34 @@ static void an_edge_is_not_overlooked(void **state) {
     }
 }
 
+/* Lock-up strains 0.0025 less and more, of foams that lock up in the drop: a mesh that shows how deep. */
+static void a_later_lock_up_is_estimated(void **state) {
+    const program_place *p = *state;
+    static const double lock[][2] = {{0.83, 1}, {0.83, 1.5}, {0.84, 2}}; /* pole, exponent */
+    static const char *const figures[2][2] = {{"a_max_g", "a_max_change_by_lock_up"},
+                                              {"hic", "hic_change_by_lock_up"}};
+    for (size_t c = 0; c < sizeof lock / sizeof *lock; c++) {
+        double value[2][2], limit = lock[c][0], exponent = lock[c][1];
+        for (int side = 0; side < 2; side++) {
+            drop_on(p, 10, 5.2, 50, limit + (side ? 0.0025 : -0.0025), exponent);
+            for (int k = 0; k < 2; k++)
+                value[side][k] = figure(p, figures[k][0]);
+        }
+        drop_on(p, 10, 5.2, 50, limit, exponent);
+        for (int k = 0; k < 2; k++) {
+            double estimate = figure(p, figures[k][1]), true_change = log(value[1][k] / value[0][k]);
+            print_message("locked at %g, exponent %g, %s: %.4f, estimated %.4f\n", limit, exponent,
+                          figures[k][1], true_change, estimate);
+            assert_true(fabs(estimate / true_change - 1) < 1.0 / 3);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(estimates_agree_with_simulations),
         cmocka_unit_test(an_edge_is_not_overlooked),
+        cmocka_unit_test(a_later_lock_up_is_estimated),
     };
     return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
 }

@@ -8,7 +8,7 @@
 #include "study/fit/space_mapping.h"
 #include "foam_fixture.h"
 #include "io/folder.h"
-#include "post/figures/injury.h"
+#include "post/figures/signal.h"
 #include "post_check.h"
 #include "program_fixture.h"
 
@@ -268,6 +268,26 @@ static void mapping_finds_the_minimum_of_the_simulation(void **state) {
     sf_mapping_free(&r);
 }
 
+/* A response without a datum that may not exceed a value: the minimum is there, and no free one. */
+static void a_bound_holds_the_minimum(void **state) {
+    (void)state;
+    static const double sd[3] = {0.01, 0.02, INFINITY}, bound_sd[3] = {INFINITY, INFINITY, 0.001};
+    for (int k = 0; k < 2; k++) {
+        toy t = {.linear = true};
+        const double measured[3] = {0.8, 0.3, k == 0 ? 0.1 : 1}; /* 2 / 3 without a bound */
+        sf_mapping_problem p = toy_problem(&t, measured);
+        sf_mapping_result r;
+        sf_error err = SF_ERROR_INIT;
+        p.sd = sd;
+        p.bound_sd = bound_sd;
+        assert_int_equal(sf_mapping_solve(&p, &r, &err), SF_OK);
+        assert_int_equal(r.converged, k == 1);
+        assert_true(fabs(r.y[2] - (k == 0 ? 0.1 : 2. / 3)) < 0.03);
+        assert_true(k == 1 ? !r.reason : strstr(r.reason, "bound") != NULL);
+        sf_mapping_free(&r);
+    }
+}
+
 /* The surrogate leads far beyond where the simulation bends: first steps are rejected, one by a failure. */
 static sf_status bent_surrogate(void *context, const double *u, double *y, sf_error *err) {
     (void)context;
@@ -401,7 +421,8 @@ static void bad_input_gets_one_sentence(void **state) {
          "fit.cfg:2: curve is missing"},
         {MATERIAL "curve_form = \"gas\"; forms = ( { curve = \"gas\"; } );\n" DROPS("a_max_g = 60.0;"),
          "give either forms or curve_form"},
-        {MATERIAL "forms = ( { curve = \"gas\"; } ); posterior = false;\n" DROPS("a_max_g = 60.0;"),
+        {MATERIAL "forms = ( { curve = \"gas\"; }, { curve = \"rusch\"; } ); posterior = false;\n" DROPS(
+             "a_max_g = 60.0;"),
          "posterior must be true"},
         {MATERIAL "forms = ( { curve = \"gas\"; rate = \"fast\"; } );\n" DROPS("a_max_g = 60.0;"),
          "must be one of none, factor, maxwell, both"},
@@ -643,8 +664,7 @@ static void no_foam_is_one_that_a_case_refuses(void **state) {
                        "material = \"start.cfg\"; unknown = ( { name = \"SHAPE\"; }, { name = \"p0\"; } );\n"
                        "drops = ( { name = \"a\"; case = \"case.cfg\"; a_max_g = 60.0; HIC = 150.0; } );\n");
     program_result fit = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
-    assert_int_equal(fit.code, 5); /* eight drops are not enough here */
-    assert_non_null(strstr(fit.err, "1 of 1 fits did not converge: the files are written"));
+    assert_int_equal(fit.code, 0);
     program_result draws =
         program_shell(&place, "grep -l 'SHAPE = 0\\.0[0-4]' out/material.cfg out/posterior/*.cfg");
     assert_string_equal(draws.out, "");
@@ -689,6 +709,26 @@ static void assert_response_errors(const program_place *place) {
 }
 
 /* Coarse drops with a hidden foam are identified: the responses are met, the second run simulates nothing. */
+/* No foam of this thickness has 15 g: the peak is least at some stress, where the columns still expect less. */
+static void what_no_foam_has_does_not_converge(void **state) {
+    (void)state;
+    program_place place;
+    program_set_up(&place);
+    put_case(&place);
+    program_write_text(&place, "fit.cfg",
+                       "material = \"start.cfg\"; curve_form = \"table\"; posterior = false;\n"
+                       "unknown = ( { name = \"stress_scale\"; prior_sd = 2.0; } );\n"
+                       "drops = ( { name = \"a\"; case = \"case.cfg\"; a_max_g = 15.0; } );\n");
+    program_result fit = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
+    assert_int_equal(fit.code, 5);
+    assert_non_null(strstr(fit.err, "the simulations confirm no step that the columns propose"));
+    assert_non_null(strstr(fit.err, "1 of 1 fits did not converge: the files are written"));
+    program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
+    assert_non_null(strstr(json.data, "\"converged\": false"));
+    free(json.data);
+    program_tear_down(&place);
+}
+
 static void hidden_foam_is_found(void **state) {
     (void)state;
     static const char *const speed[2] = {"4.5 m/s", "6.2 m/s"};
@@ -1026,6 +1066,7 @@ int main(void) {
         cmocka_unit_test(column_figures_are_those_of_the_reading),
         cmocka_unit_test(mapping_of_a_linear_problem_is_bayes),
         cmocka_unit_test(mapping_finds_the_minimum_of_the_simulation),
+        cmocka_unit_test(a_bound_holds_the_minimum),
         cmocka_unit_test(mapping_survives_rejected_and_failed_steps),
         cmocka_unit_test(mapping_passes_on_a_failed_simulation),
         cmocka_unit_test(bad_input_gets_one_sentence),
@@ -1034,6 +1075,7 @@ int main(void) {
         cmocka_unit_test(measured_curves_are_read_and_filtered),
         cmocka_unit_test(medians_follow_the_modulus_of_the_start),
         cmocka_unit_test(no_foam_is_one_that_a_case_refuses),
+        cmocka_unit_test(what_no_foam_has_does_not_converge),
         cmocka_unit_test(hidden_foam_is_found),
         cmocka_unit_test(the_mount_of_the_accelerometer_is_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),

@@ -37,8 +37,7 @@ static void failures_are_marked_and_the_rest_goes_on(void **state) {
     put_cases(&place);
     program_write_text(&place, "fit.cfg", MATERIAL MEASURED PREDICTED "forms = ( " SOFT ", " GOOD " );\n");
     program_result run = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
-    assert_int_equal(run.code, 5);
-    assert_non_null(strstr(run.err, "1 of 2 fits did not converge"));
+    assert_int_equal(run.code, 0);
     assert_non_null(strstr(run.out, "model 1 of 2 FAILED"));
     assert_non_null(strstr(run.err, "has no weight: "));
     program_bytes json = program_read_file(program_path(&place, "out/fit.json"));

@@ -6,7 +6,7 @@
 #include "model/good_run.h"
 #include "model/model.h"
 #include "post/figures/figures.h"
-#include "post/figures/record.h"
+#include "post/figures/compare.h"
 #include "study/fit/form/form.h"
 #include <setjmp.h>
 #include <stdarg.h>

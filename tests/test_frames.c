@@ -8,7 +8,7 @@
 #include "model_fixture.h"
 
 #include "model/model_io.h"
-#include "io/seal.h"
+#include "io/replace.h"
 #include "post/results/results.h"
 #include "solver/run/run.h"
 #include <hdf5.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-gui on a display of its own (Xvfb), by its script and by clicks and keys (xdotool). Without these
  * two programs the tests are skipped. SF_PICTURES=FOLDER: the pictures of docs/window.md are written there,
- * by import (ImageMagick). */
+ * by ffmpeg. */
 #include "check.h"
 #include "program_fixture.h"
 
@@ -36,7 +36,7 @@ static const char tools[] =
     "# the button at the bottom of the tree\n"
     "click_run() { find_window && xdotool mousemove $((X + 338)) $((Y + HEIGHT - 38)) sleep 0.3 click 1; }\n"
     "press_key() { find_window && xdotool mousemove $((X + 800)) $((Y + 400)) sleep 0.3 key $1; }\n"
-    "shoot() { test -z \"$SF_PICTURES\" || { sleep 2; import -window root \"$SF_PICTURES/$1.png\"; }; }\n"
+    "shoot() { test -z \"$SF_PICTURES\" || { sleep 2; ffmpeg -y -loglevel error -f x11grab -video_size 1300x980 -i $DISPLAY -frames:v 1 \"$SF_PICTURES/$1.png\"; }; }\n"
     "# programs of softfall that work in this folder\n"
     "left() { for p in /proc/[0-9]*; do test \"$(readlink $p/cwd)\" = \"$PWD\" && grep -l '^softfall' $p/comm; done "
     "2>/dev/null; true; }\n"
@@ -117,8 +117,8 @@ static void assert_figures(const program_place *p, const char *shown, const char
              line_of(p, path, "\"a_max_g\": "));
     snprintf(hic, sizeof hic, "%.*s, window", (int)strcspn(line_of(p, path, "\"hic\": "), ","),
              line_of(p, path, "\"hic\": "));
-    assert_memory_equal(line_of(p, shown, "4Results/2a_max = "), a_max, strlen(a_max));
-    assert_memory_equal(line_of(p, shown, "4Results/3HIC = "), hic, strlen(hic));
+    assert_memory_equal(line_of(p, shown, "1Drop/71a_max = "), a_max, strlen(a_max));
+    assert_memory_equal(line_of(p, shown, "1Drop/72HIC = "), hic, strlen(hic));
 }
 
 static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
@@ -128,7 +128,7 @@ static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
         p, "run.script",
         "status\nset geometry.parameters.thickness=60\npress mesh\nwait meshed 300\nprint 3Checks/00nodes\n"
         "set missile.velocity=4 m/s\nwait ready\nactivity\n# the click\nwait done 300\nstatus\nframes\n"
-        "print 4Results/2a_max\nprint 4Results/3HIC\nprint 4Results/1verdict\n"
+        "print 1Drop/71a_max\nprint 1Drop/72HIC\nprint 1Drop/70verdict\n"
         "set geometry.parameters.thickness=50\nset geometry.parameters.thickness=60\nactivity\n"
         "press report\npress paraview\npress save\nwait saved 300\nquit\n");
     do_shell(
@@ -137,7 +137,7 @@ static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
         "cp fake/paraview fake/xdg-open; PATH=$PWD/fake:$PATH; "
         "find case.cfg geo foam home -type f | sort | xargs md5sum >before; "
         "{ has run.txt 'activity = ready' && shoot window-start && click_run && "
-        "has run.txt 4Results/1verdict && shoot window-results; } & gui run; wait; "
+        "has run.txt 1Drop/70verdict && shoot window-results; } & gui run; wait; "
         "find case.cfg geo foam home -type f | grep -v '/\\.fltk/' | sort | xargs md5sum >after; diff before after");
     compute(p, "line", "case.cfg", "--set geometry.parameters.thickness=60 --set missile.velocity='4 m/s'");
     assert_figures(p, "run.txt", "line");
@@ -147,6 +147,7 @@ static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
     assert_string_equal(line_of(p, "run.txt", "activity = done"), "");
     /* the two buttons have opened the products of that run */
     assert_int_equal(program_shell(p, "grep -q 'xdg-open .*/report/report.html' opened && "
+                                      "grep -q 'xdg-open .*/report/view.html' opened && "
                                       "grep -q 'paraview .*/report/pad' opened")
                          .code,
                      0);
@@ -161,8 +162,8 @@ static void stop_in_the_middle_can_be_resumed(void **state) {
     program_write_text(
         p, "stop.script",
         "set solver.step_limit=2 us\npress run\nwait 2 frames while running 300\npress stop\nwait stopped 300\n"
-        "status\nprint 1Drop/82run folder\npress run\nwait done 600\nprint 4Results/2a_max\n"
-        "print 4Results/3HIC\nquit\n");
+        "status\nprint 1Drop/82run folder\npress run\nwait done 600\nprint 1Drop/71a_max\n"
+        "print 1Drop/72HIC\nquit\n");
     do_shell(
         p, "{ has stop.txt '82run folder' && f=$(sed -n 's/^1Drop.82run folder = //p' stop.txt) && "
            "test -s $f/results.h5 && test -s $f/results.h5.restart && : >stopped.there; } & gui stop; wait; "

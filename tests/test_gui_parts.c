@@ -5,12 +5,9 @@
 #include "program_fixture.h"
 
 #include "case/values.h"
-#include "gui/cache.h"
-#include "gui/outcome.h"
-#include "gui/fields.h"
-#include "gui/shape.h"
 #include "gui/activity.h"
-#include "gui/children.h"
+#include "gui/pictures.h"
+#include "gui/fields.h"
 #include "io/process.h"
 #include <errno.h>
 #include <setjmp.h>

@@ -2,7 +2,7 @@
 /* What an HDF5 file of a stranger may hold beside damage: claims of any size, links and data that lead to
  * other files, compressed bombs, texts that are arrays. None is followed, none is allocated. */
 #include "io/h5.h"
-#include "io/seal.h"
+#include "io/replace.h"
 #include "program_fixture.h"
 
 #include <hdf5.h>

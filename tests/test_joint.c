@@ -2,7 +2,7 @@
 /* Compression tests and cushion curves as data of softfall-fit drop: a synthetic foam, whose test is that of
  * the solver's law and whose cushion curve is that of a block, from each, from both, and with drops;
  * refusals. */
-#include "study/cfh/posterior.h"
+#include "study/cfh/spread.h"
 #include "study/fit/drop/average.h"
 #include "study/fit/drop/fit_input.h"
 #include "material/point.h"
@@ -258,7 +258,7 @@ static void begin(const program_place *place, bool joint, bench *b) {
                            .y = b->y,
                            .row = {b->in.joint.rows}};
     for (int d = 0; d < DROPS; d++) {
-        b->fit.row[d + 1] = b->fit.row[d] + SF_FIT_SAMPLES;
+        b->fit.row[d + 1] = b->fit.row[d] + SF_FIT_SAMPLES + 1;
         b->fit.speed[d] = -1;
         b->fit.columns[d] = hemisphere(d, 1, 1);
         b->real[d] = hemisphere(d, 1.1, 0.97);
@@ -569,7 +569,7 @@ static void a_model_has_the_filter_of_the_measured_curve(void **state) {
     (void)state;
     enum { SAMPLES = 80 };
     static const double classes[] = {0, 1000, 60};
-    double time[SAMPLES], y[3][SF_FIT_SAMPLES + SAMPLES], peak[3] = {0}, sum[3] = {0}, u[UNKNOWNS];
+    double time[SAMPLES], y[3][SF_FIT_SAMPLES + SAMPLES + 1], peak[3] = {0}, sum[3] = {0}, u[UNKNOWNS];
     program_place place;
     bench b;
     program_set_up(&place);

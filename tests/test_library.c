@@ -4,6 +4,7 @@
 
 #include "model_fixture.h"
 #include "softfall/softfall.h"
+#include <fcntl.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
@@ -87,6 +89,14 @@ static void warnings_go_to_the_sink_and_errors_to_the_caller(void **state) {
     softfall_drop_free(NULL);
 }
 
+static double figure(const softfall_figures *figures, const char *key) {
+    softfall_error error;
+    double value = 0;
+    if (softfall_figure(figures, key, &value, &error) != SOFTFALL_OK)
+        fail_msg("%s", error.text);
+    return value;
+}
+
 static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     const place *p = *state;
     softfall_error error;
@@ -102,7 +112,7 @@ static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     softfall_figures_list(theirs, &same);
     assert_true(count > 40 && same == count);
     for (int k = 0; k < count; k++) {
-        double a = softfall_figure(ours, list[k].name), b = softfall_figure(theirs, list[k].name);
+        double a = figure(ours, list[k].name), b = figure(theirs, list[k].name);
         bool of_peak = strcmp(list[k].name, "local_collapse") == 0 ||
                        strcmp(list[k].name, "energy_beyond_data") == 0 ||
                        strcmp(list[k].name, "below_anvil_mm") == 0;
@@ -113,19 +123,79 @@ static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     }
     program_succeed(&p->folder, "post", "results.h5 -o out"); /* in the units of summary.json */
     for (int k = 0; k < count; k++) {
-        double a = softfall_figure(theirs, list[k].name),
+        double a = figure(theirs, list[k].name),
                b = program_file_number(&p->folder, "out/summary.json", list[k].name);
         if (isfinite(a) && isfinite(b) && !(fabs(a - b) <= 1e-8 * fabs(b)))
             fail_msg("%s is %.12g in the library and %.12g in summary.json", list[k].name, a, b);
     }
-    assert_true(softfall_figure(ours, "hic") > 0 && softfall_figure(ours, "a_max_g") > 0);
-    assert_true(softfall_figure(ours, "rebounded") == 1);
-    assert_true(isnan(softfall_figure(ours, "nodes")));
+    assert_true(figure(ours, "hic") > 0 && figure(ours, "a_max_g") > 0);
+    assert_true(figure(ours, "rebounded") == 1);
+    double value = 1;
+    assert_int_equal(softfall_figure(ours, "nodes", &value, &error), SOFTFALL_INPUT);
+    assert_true(value == 1 && strstr(error.text, "there is no figure \"nodes\""));
     assert_int_equal(softfall_drop_figures(p->drop, 100, &none, &error), SOFTFALL_INPUT);
     assert_null(none);
     softfall_figures_free(ours);
     softfall_figures_free(theirs);
     softfall_figures_free(NULL);
+}
+
+/* A half sine of 100 g over 20 ms at 10 kHz: the long window takes the part above 3/5 of its mean. */
+static void curves_of_the_host_are_evaluated_and_filtered(void **state) {
+    (void)state;
+    enum { COUNT = 201 };
+    softfall_error error;
+    double time[COUNT], value[COUNT], filtered[COUNT], hic, t1, t2, short_hic;
+    for (int i = 0; i < COUNT; i++) {
+        time[i] = 1e-4 * i;
+        value[i] = 100 * sin(M_PI * i / (COUNT - 1));
+    }
+    assert_int_equal(softfall_hic(time, value, COUNT, INFINITY, &hic, &t1, &t2, &error), SOFTFALL_OK);
+    /* Closed form: 0.4146 T a^2.5 with (t2 - t1) = 0.6 T, about. */
+    assert_true(fabs(hic / (0.02 * pow(100, 2.5)) - 0.4146) < 1e-3 && fabs(t1 + t2 - 0.02) < 1e-6);
+    assert_int_equal(softfall_hic(time, value, COUNT, 5e-3, &short_hic, NULL, NULL, &error), SOFTFALL_OK);
+    assert_true(short_hic < hic);
+    assert_int_equal(softfall_cfc(time, value, COUNT, 60, filtered, &error), SOFTFALL_OK);
+    assert_true(filtered[100] < 100 && filtered[100] > 90);
+    assert_int_equal(softfall_cfc(time, value, COUNT, 100, filtered, &error), SOFTFALL_INPUT);
+    assert_int_equal(softfall_cfc(time, value, 1, 60, filtered, &error), SOFTFALL_INPUT);
+    assert_int_equal(softfall_hic(time, value, COUNT, 0, &hic, NULL, NULL, &error), SOFTFALL_INPUT);
+    time[7] = time[6];
+    assert_int_equal(softfall_hic(time, value, COUNT, 1, &hic, NULL, NULL, &error), SOFTFALL_INPUT);
+    assert_true(isnan(hic) && strlen(error.text) > 10);
+}
+
+/* The record of a half sine has the figures of its curve; one that is cut in the pulse is not to be used. */
+static void a_measured_record_is_read_and_judged(void **state) {
+    (void)state;
+    static const char *const options[] = {"filter=none", "zero"}, *const wrong[] = {"fillter=600"};
+    softfall_record *record;
+    softfall_error error;
+    double hic, peak;
+    const double *time, *value;
+    char path[] = "/tmp/softfall-record-XXXXXX";
+    for (int cut = 0; cut < 2; cut++) {
+        int handle = cut ? open(path, O_WRONLY | O_TRUNC) : mkstemp(path);
+        FILE *file = fdopen(handle, "w");
+        fputs("time [s],acceleration [g]\n", file);
+        for (int i = -100; i < (cut ? 120 : 400); i++)
+            fprintf(file, "%.6f,%.9g\n", 1e-4 * i, i > 0 && i < 200 ? 100 * sin(M_PI * i / 200) : 0.);
+        fclose(file);
+        assert_int_equal(softfall_record_read(path, options, 2, &record, &error), SOFTFALL_OK);
+        assert_int_equal(softfall_record_grade(record), cut ? 2 : 0);
+        assert_non_null(strstr(softfall_record_verdict(record), cut ? "cut in the pulse" : "valid"));
+        assert_int_equal(softfall_record_curve(record, &time, &value), cut ? 220 : 500);
+        assert_int_equal(softfall_record_figure(record, "hic", &hic, &error), SOFTFALL_OK);
+        assert_int_equal(softfall_record_figure(record, "a_max_g", &peak, &error), SOFTFALL_OK);
+        if (!cut) /* closed form as above */
+            assert_true(fabs(hic / (0.02 * pow(100, 2.5)) - 0.4146) < 1e-3 && fabs(peak - 100) < 1e-9);
+        assert_int_equal(softfall_record_figure(record, "hicc", &hic, &error), SOFTFALL_INPUT);
+        softfall_record_free(record);
+    }
+    assert_int_equal(softfall_record_read(path, wrong, 1, &record, &error), SOFTFALL_INPUT);
+    assert_true(record == NULL && strstr(error.text, "no option \"fillter\""));
+    unlink(path);
+    assert_int_equal(softfall_record_read(path, NULL, 0, &record, &error), SOFTFALL_INPUT);
 }
 
 /* Steps taken one by one, from a model that was written and read, are those of the run. */
@@ -216,6 +286,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(warnings_go_to_the_sink_and_errors_to_the_caller),
         cmocka_unit_test(the_programs_compute_the_same_figures_bit_for_bit),
+        cmocka_unit_test(curves_of_the_host_are_evaluated_and_filtered),
+        cmocka_unit_test(a_measured_record_is_read_and_judged),
         cmocka_unit_test(a_drop_can_be_stepped_observed_and_stopped),
         cmocka_unit_test(an_observer_can_stop_a_run),
         cmocka_unit_test(fields_are_those_of_the_frames),

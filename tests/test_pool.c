@@ -54,13 +54,13 @@ static void failures_come_back(void **state) {
     (void)state;
     sf_error result[COUNT], err = SF_ERROR_INIT;
     board *b = common();
-    assert_int_equal(sf_process_pool(COUNT, 3, count_and_fail, b, result, &err), SF_OK);
+    assert_int_equal(sf_process_pool(COUNT, 3, count_and_fail, NULL, b, result, &err), SF_OK);
     assert_true(b->begun == COUNT && b->most > 1 && b->most <= 3);
     for (int k = 0; k < COUNT; k++)
         assert_int_equal(result[k].status, k == 3 ? SF_ERR_NUMERIC : k == 5 ? SF_ERR_LIBRARY : SF_OK);
     assert_string_equal(result[3].text, "the drop 3 collapsed");
     assert_non_null(strstr(result[5].text, "signal 9"));
-    assert_int_equal(sf_process_pool(0, 3, count_and_fail, b, result, &err), SF_OK);
+    assert_int_equal(sf_process_pool(0, 3, count_and_fail, NULL, b, result, &err), SF_OK);
     munmap(b, sizeof *b);
 }
 
@@ -83,7 +83,7 @@ static pid_t begin_campaign(board *b) {
         sf_error result[COUNT], err = SF_ERROR_INIT;
         int interrupted = 0;
         sf_process_handle_signals();
-        sf_process_pool(COUNT, 2, run_long, b, result, &err);
+        sf_process_pool(COUNT, 2, run_long, NULL, b, result, &err);
         for (int k = 0; k < COUNT; k++)
             interrupted += result[k].status == SF_INTERRUPTED;
         _exit(interrupted);

@@ -127,7 +127,7 @@ static void children_are_waited_for_whatever_was_inherited(void **state) {
     signal(SIGCHLD, SIG_IGN);
     assert_int_equal(shell("exit 7", NULL, NULL), 7);
     signal(SIGCHLD, SIG_IGN);
-    assert_int_equal(sf_process_pool(3, 2, end_by_signal, NULL, result, &err), SF_OK);
+    assert_int_equal(sf_process_pool(3, 2, end_by_signal, NULL, NULL, result, &err), SF_OK);
     assert_int_equal(result[0].status, SF_OK);
     assert_int_equal(result[1].status, SF_ERR_LIBRARY);
     assert_string_equal(result[1].text, SF_PROCESS_KILLED " 9");

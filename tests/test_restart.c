@@ -9,7 +9,7 @@
 #include "io/h5.h"
 #include "model/model_io.h"
 #include "io/provenance.h"
-#include "io/seal.h"
+#include "io/replace.h"
 #include "material/foam_card.h"
 #include "post/results/results.h"
 #include <hdf5.h>

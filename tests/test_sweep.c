@@ -6,9 +6,7 @@
 
 #include "study/sweep/analysis.h"
 #include "study/sweep/campaign.h"
-#include "study/sweep/cost.h"
-#include "study/sweep/drops.h"
-#include "study/sweep/sweep_plot.h"
+#include "study/sweep/sweep_report.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +33,7 @@ typedef struct formula {
     int64_t other;    /* from this row on; 0: none */
     int64_t dies_at;  /* the process ends after that many; 0: not */
     int64_t edits_at; /* the inputs change after that many; 0: not */
-    int64_t stale;    /* this row is no longer what its geometry's files give; -1: none */
+    int64_t stale;    /* this row is no longer what its geometry's files give; -1: none, 0: not asked */
 } formula;
 
 static uint64_t present_inputs;
@@ -69,6 +67,7 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
         double *place = sf_runs_place(runs, row[k]), x = sf_plan_value(runs->plan, 0, row[k]);
         place[sf_runs_figure("a_max_g")] = 100 * sqrt(x) + sf_plan_value(runs->plan, 1, row[k]) / 3;
         place[sf_runs_figure("hic")] = 900 + 100 * x / 3;
+        place[sf_runs_figure("hic_scatter")] = 0.01;
         char folder[32];
         snprintf(folder, sizeof folder, "drop-%lld", (long long)row[k] % 6);
         sf_runs_done(runs, row[k], SF_GRADE_VALID, folder, NULL, err);
@@ -84,17 +83,22 @@ static bool is_current(void *context, const sf_runs *runs, int64_t row) {
 static const char *const GRID = "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 10; },"
                                 "{ key = \"a.y\"; uncertain = true; values = (1, 2, 3, 4, 5, 6); }";
 
+/* Runs the campaign by the formula, in pieces of seven rows; sf_runs_free in any case. */
+static sf_status run_campaign(const sf_sweep_campaign *c, formula *f, sf_runs *runs, sf_error *err) {
+    const sf_sweep_engine engine = {evaluate, f, 7, f->stale ? is_current : NULL};
+    *err = (sf_error)SF_ERROR_INIT;
+    f->calls = 0;
+    if (sf_runs_create(c->plan, runs, err) == SF_OK)
+        sf_sweep_campaign_run(c, &engine, runs, err);
+    return err->status;
+}
+
 static sf_status campaign(const program_place *p, const sf_plan *plan, formula *f, bool retry,
                           uint64_t inputs, sf_runs *runs, sf_error *err) {
-    const sf_sweep_engine engine = {evaluate, f, 7, NULL};
     const sf_sweep_campaign c = {
         .plan = plan, .folder = p->folder, .inputs = inputs, .look = look_at_inputs, .retry = retry};
     present_inputs = inputs;
-    *err = (sf_error)SF_ERROR_INIT;
-    f->calls = 0;
-    if (sf_runs_create(plan, runs, err) == SF_OK)
-        sf_sweep_campaign_run(&c, &engine, runs, err);
-    return err->status;
+    return run_campaign(&c, f, runs, err);
 }
 
 static int64_t rows_done(const program_place *p, const sf_plan *plan, formula *f, bool retry,
@@ -107,11 +111,38 @@ static int64_t rows_done(const program_place *p, const sf_plan *plan, formula *f
     return f->calls;
 }
 
+/* A plan of which nothing is done. */
+static void begin_plan(const program_place *p, const char *factors, sf_plan *plan) {
+    sweep_read_plan(p, factors, plan);
+    program_shell(p, "rm -f runs.csv sweep.key");
+}
+
 /* A campaign of GRID that is finished. */
 static void finish_grid(const program_place *p, sf_plan *plan, formula *f) {
-    sweep_read_plan(p, GRID, plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
+    begin_plan(p, GRID, plan);
     rows_done(p, plan, f, false, 1);
+}
+
+/* The rows of a plan by the formula, of which row `fails` fails (-1: none), and what is computed of them. */
+typedef struct evaluated {
+    sf_plan plan;
+    sf_runs runs;
+    sf_analysis a;
+} evaluated;
+
+static void evaluate_plan(const program_place *p, const char *factors, int64_t fails, evaluated *e) {
+    formula f = {.fails = fails};
+    sf_error err;
+    begin_plan(p, factors, &e->plan);
+    if (campaign(p, &e->plan, &f, false, 1, &e->runs, &err) != SF_OK ||
+        sf_analysis_make(&e->runs, &e->a, &err) != SF_OK)
+        fail_msg("%s", err.text);
+}
+
+static void free_evaluated(evaluated *e) {
+    sf_analysis_free(&e->a);
+    sf_runs_free(&e->runs);
+    sf_plan_free(&e->plan);
 }
 
 static void an_interrupted_campaign_goes_on_with_the_same_table(void **state) {
@@ -120,8 +151,7 @@ static void an_interrupted_campaign_goes_on_with_the_same_table(void **state) {
     sf_runs runs;
     sf_error err;
     formula f = {.fails = 3};
-    sweep_read_plan(p, GRID, &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
+    begin_plan(p, GRID, &plan);
     assert_int_equal(rows_done(p, &plan, &f, false, 1), 60);
     program_bytes whole = program_read_file(program_path(p, "runs.csv"));
     program_shell(p, "rm -f runs.csv sweep.key");
@@ -179,23 +209,19 @@ static void an_old_report_does_not_stand_beside_another_table(void **state) {
         {"runs.csv", 2, false, false, 60}, {"sweep.key", 2, false, false, 60}, {"", 2, true, false, 1}};
     sf_plan plan, other;
     formula f = {.fails = -1};
-    const sf_sweep_engine engine = {evaluate, &f, 7, NULL};
     finish_grid(p, &plan, &f);
     sweep_read_plan(p, "{ key = \"a.x\"; values = [1, 2]; }, { key = \"a.y\"; values = [1]; }", &other);
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
         sf_runs runs;
-        sf_error err = SF_ERROR_INIT;
+        sf_error err;
         const sf_sweep_campaign c = {.plan = steps[k].other ? &other : &plan,
                                      .folder = p->folder,
                                      .inputs = steps[k].inputs,
                                      .report = report,
                                      .force = steps[k].other};
-        f.calls = 0;
         f.stop_at = steps[k].other ? 1 : 0;
         program_shell(p, "touch report.html sweep.json; rm -f ./%s", steps[k].removed);
-        assert_int_equal(sf_runs_create(c.plan, &runs, &err), SF_OK);
-        assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err),
-                         steps[k].other ? SF_INTERRUPTED : SF_OK);
+        assert_int_equal(run_campaign(&c, &f, &runs, &err), steps[k].other ? SF_INTERRUPTED : SF_OK);
         assert_int_equal(f.calls, steps[k].calls);
         for (int r = 0; r < 2; r++)
             assert_int_equal(access(program_path(p, report[r]), F_OK) == 0, steps[k].stays);
@@ -215,7 +241,6 @@ static void results_that_were_removed_are_made_again(void **state) {
     } steps[] = {{"0 1 2 3 4 5", SF_OK, 0}, {"0 1 2 3 4", SF_OK, 10}, {"", SF_ERR_INPUT, 0}};
     sf_plan plan;
     formula f = {.fails = -1};
-    const sf_sweep_engine engine = {evaluate, &f, 7, NULL};
     char drops[600];
     snprintf(drops, sizeof drops, "%s/drops", p->folder);
     finish_grid(p, &plan, &f);
@@ -223,13 +248,11 @@ static void results_that_were_removed_are_made_again(void **state) {
         const sf_sweep_campaign c = {.plan = &plan, .folder = p->folder, .inputs = 1, .drops = drops};
         sf_runs runs;
         sf_error err = SF_ERROR_INIT;
-        f.calls = 0;
         program_shell(
             p,
             "rm -rf drops; for d in %s; do mkdir -p drops/drop-$d; touch drops/drop-$d/results.h5; done; mkdir -p drops",
             steps[k].made);
-        assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
-        assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err), steps[k].status);
+        assert_int_equal(run_campaign(&c, &f, &runs, &err), steps[k].status);
         assert_true(!err.text[0] || strstr(err.text, "drops has the results of none of them"));
         assert_int_equal(f.calls, steps[k].calls);
         sf_runs_free(&runs);
@@ -247,10 +270,8 @@ static void a_campaign_that_ends_early_after_a_change_leaves_no_row_and_no_repor
         sf_runs runs;
         sf_error err = SF_ERROR_INIT;
         formula f = {.fails = -1};
-        const sf_sweep_engine engine = {evaluate, &f, 7, NULL};
-        sweep_read_plan(
-            p, "{ key = \"geometry.x\"; values = [1, 2, 3]; }, { key = \"a.y\"; values = [1, 2]; }", &plan);
-        program_shell(p, "rm -f runs.csv sweep.key");
+        begin_plan(p, "{ key = \"geometry.x\"; values = [1, 2, 3]; }, { key = \"a.y\"; values = [1, 2]; }",
+                   &plan);
         rows_done(p, &plan, &f, false, 1);
         const sf_sweep_campaign c = {.plan = &plan,
                                      .folder = p->folder,
@@ -260,9 +281,7 @@ static void a_campaign_that_ends_early_after_a_change_leaves_no_row_and_no_repor
         f = (formula){.fails = -1, .changed = k == 0, .stop_at = k == 0 ? 1 : 0};
         present_inputs = k == 1 ? 99 : 1;
         program_shell(p, "touch report.html");
-        assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
-        assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err),
-                         k == 0 ? SF_INTERRUPTED : SF_ERR_IO);
+        assert_int_equal(run_campaign(&c, &f, &runs, &err), k == 0 ? SF_INTERRUPTED : SF_ERR_IO);
         assert_int_equal(sf_runs_count(&runs, SF_SWEEP_OPEN), 6);
         assert_int_equal(access(program_path(p, "report.html"), F_OK), -1);
         assert_int_equal(program_shell(p, "grep -c ',open,' runs.csv").out[0], '6');
@@ -293,11 +312,10 @@ static void failed_runs_of_a_geometry_without_a_finished_one_are_looked_at_again
     const program_place *p = *state;
     sf_plan plan;
     formula f = {.fails = 1};
-    sweep_read_plan(p,
-                    "{ key = \"geometry.parameters.thickness\"; values = [40, 50, 60]; },"
-                    "{ key = \"a.y\"; values = [1]; }",
-                    &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
+    begin_plan(p,
+               "{ key = \"geometry.parameters.thickness\"; values = [40, 50, 60]; },"
+               "{ key = \"a.y\"; values = [1]; }",
+               &plan);
     assert_int_equal(rows_done(p, &plan, &f, false, 1), 3);
     assert_int_equal(rows_done(p, &plan, &f, false, 1), 1);
     f.fails = -1;
@@ -315,8 +333,7 @@ static void inputs_that_change_while_it_runs_leave_no_row(void **state) {
         sf_runs runs;
         sf_error err;
         formula f = {.fails = 3, .edits_at = 25, .stop_at = stop_at};
-        sweep_read_plan(p, GRID, &plan);
-        program_shell(p, "rm -f runs.csv sweep.key");
+        begin_plan(p, GRID, &plan);
         assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), stop_at ? SF_INTERRUPTED : SF_ERR_IO);
         if (!stop_at)
             assert_non_null(strstr(err.text, "the inputs of the campaign changed while it ran"));
@@ -344,13 +361,11 @@ static void a_geometry_that_changes_while_it_runs_leaves_no_row(void **state) {
                     &plan);
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
         formula f = {.fails = 11, .stale = steps[k].stale};
-        const sf_sweep_engine engine = {evaluate, &f, 7, is_current};
         const sf_sweep_campaign c = {.plan = &plan, .folder = p->folder, .inputs = 1, .report = report};
         sf_runs runs;
         sf_error err = SF_ERROR_INIT;
         program_shell(p, "rm -f runs.csv sweep.key; touch report.html");
-        assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
-        assert_int_equal(sf_sweep_campaign_run(&c, &engine, &runs, &err), steps[k].status);
+        assert_int_equal(run_campaign(&c, &f, &runs, &err), steps[k].status);
         assert_true(!err.text[0] || strstr(err.text, "includes or merges, or its result, changed while"));
         assert_int_equal(sf_runs_count(&runs, SF_SWEEP_OPEN), err.text[0] ? 60 : 0);
         assert_int_not_equal(access(program_path(p, "report.html"), F_OK), 0);
@@ -449,11 +464,10 @@ static void a_killed_look_leaves_no_row_by_whose_folder_nothing_would_show(void 
     const program_place *p = *state;
     sf_plan plan;
     formula f = {.fails = -1};
-    sweep_read_plan(p,
-                    "{ key = \"geometry.x\"; values = [1, 2]; },"
-                    "{ key = \"a.y\"; values = [1, 2, 3, 4, 5, 6, 7]; }",
-                    &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
+    begin_plan(p,
+               "{ key = \"geometry.x\"; values = [1, 2]; },"
+               "{ key = \"a.y\"; values = [1, 2, 3, 4, 5, 6, 7]; }",
+               &plan);
     assert_int_equal(rows_done(p, &plan, &f, false, 1), 14);
     run_in_child(p, &plan, (formula){.fails = -1, .changed = true, .dies_at = 1}, 1, 0);
     assert_string_equal(program_shell(p, "grep ',open,' runs.csv | cut -d, -f1 | paste -sd' '").out,
@@ -477,11 +491,10 @@ static void each_geometry_is_looked_at(void **state) {
     const program_place *p = *state;
     sf_plan plan;
     formula f = {.fails = -1};
-    sweep_read_plan(p,
-                    "{ key = \"geometry.parameters.thickness\"; from = 40.0; to = 60.0; count = 90; },"
-                    "{ key = \"a.y\"; values = [1, 2]; }",
-                    &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
+    begin_plan(p,
+               "{ key = \"geometry.parameters.thickness\"; from = 40.0; to = 60.0; count = 90; },"
+               "{ key = \"a.y\"; values = [1, 2]; }",
+               &plan);
     assert_int_equal(rows_done(p, &plan, &f, false, 1), 180);
     f.other = 178;
     assert_true(rows_done(p, &plan, &f, false, 1) >= 180);
@@ -509,58 +522,40 @@ static void the_folder_of_another_plan_is_refused(void **state) {
 
 /* Counts: below at x <= 3 (hic 1000 at 3), all of y alike. */
 static void the_probability_is_over_what_is_uncertain(void **state) {
-    const program_place *p = *state;
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
-    sf_error err;
-    formula f = {.fails = 3};
-    sweep_read_plan(p, GRID, &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
-    assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
-    assert_int_equal(sf_analysis_make(&runs, &a, &err), SF_OK);
-    assert_int_equal(a.probability.cells, 10);
+    evaluated done;
+    const sf_analysis *a = &done.a;
+    evaluate_plan(*state, GRID, 3, &done);
+    assert_int_equal(a->probability.cells, 10);
     for (int k = 0; k < 10; k++) {
-        const sf_probability *hic = &a.probability.cell[a.probability.cells + k];
+        const sf_probability *hic = &a->probability.cell[a->probability.cells + k];
         double x = 1 + 3 * k / 9.0;
         assert_int_equal(hic->unknown, k == 0);
         assert_int_equal(hic->below, x < 3 - 1e-9 ? 6 - (k == 0) : 0);
         assert_int_equal(hic->above, x < 3 - 1e-9 ? 0 : 6);
+        assert_int_equal(hic->within, k >= 5 && k <= 7 ? 6 : 0); /* from 981 to 1020 */
     }
-    sf_analysis_free(&a);
-    sf_runs_free(&runs);
-    f.fails = -1; /* whole, so that means are over the same rows: a_max moves by 100 with x, by 5/3 with y */
-    assert_int_equal(campaign(p, &plan, &f, true, 1, &runs, &err), SF_OK);
-    assert_int_equal(sf_analysis_make(&runs, &a, &err), SF_OK);
-    assert_relative(a.effect[0][0].last - a.effect[0][0].first, 100, 1e-8);
-    assert_relative(a.effect[0][1].high - a.effect[0][1].low, 5.0 / 3, 1e-6);
-    assert_true(a.surface[1].fit.q2 > 0.999999); /* hic is linear */
-    sf_analysis_free(&a);
-    sf_runs_free(&runs);
-    sf_plan_free(&plan);
+    free_evaluated(&done);
+    /* whole, so that means are over the same rows: a_max moves by 100 with x, by 5/3 with y */
+    evaluate_plan(*state, GRID, -1, &done);
+    assert_relative(a->effect[0][0].last - a->effect[0][0].first, 100, 1e-8);
+    assert_relative(a->effect[0][1].high - a->effect[0][1].low, 5.0 / 3, 1e-6);
+    assert_true(a->surface[1].fit.q2 > 0.999999); /* hic is linear */
+    free_evaluated(&done);
 }
 
 /* Of 40,000 rows every second one would be of the same level of the factor that changes fastest. */
 static void a_surface_of_very_many_rows_has_every_level(void **state) {
-    const program_place *p = *state;
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
-    sf_error err;
-    formula f = {.fails = -1};
-    sweep_read_plan(
-        p, "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 20000; }, { key = \"a.y\"; values = [1, 2]; }",
-        &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
-    assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
-    assert_int_equal(sf_analysis_make(&runs, &a, &err), SF_OK);
-    assert_string_equal(a.surface[1].fit.problem, "");
-    assert_int_equal(a.surface[1].rows, SF_SURFACE_ROWS);
-    assert_int_equal(a.surface[1].of, 40000);
-    assert_true(a.surface[1].fit.q2 > 0.999999); /* hic is linear */
-    sf_analysis_free(&a);
-    sf_runs_free(&runs);
-    sf_plan_free(&plan);
+    evaluated done;
+    evaluate_plan(
+        *state,
+        "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 20000; }, { key = \"a.y\"; values = [1, 2]; }", -1,
+        &done);
+    const sf_sweep_surface *surface = &done.a.surface[1];
+    assert_string_equal(surface->fit.problem, "");
+    assert_int_equal(surface->rows, SF_SURFACE_ROWS);
+    assert_int_equal(surface->of, 40000);
+    assert_true(surface->fit.q2 > 0.999999); /* hic is linear */
+    free_evaluated(&done);
 }
 
 static const char *const SAMPLED_DRAWS = "{ sample = \"latin_hypercube\"; count = 40; of = ("
@@ -568,40 +563,20 @@ static const char *const SAMPLED_DRAWS = "{ sample = \"latin_hypercube\"; count 
                                          "{ key = \"a.y\"; values = [1, 2]; },"
                                          "{ key = \"material\"; posterior = \"ten\"; } ); }";
 
-static void evaluate_plan(const program_place *p, const char *factors, sf_plan *plan, sf_runs *runs,
-                          sf_analysis *a) {
-    formula f = {.fails = -1};
-    sf_error err;
-    sweep_read_plan(p, factors, plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
-    if (campaign(p, plan, &f, false, 1, runs, &err) != SF_OK || sf_analysis_make(runs, a, &err) != SF_OK)
-        fail_msg("%s", err.text);
-}
-
-static void free_evaluated(sf_plan *plan, sf_runs *runs, sf_analysis *a) {
-    sf_analysis_free(a);
-    sf_runs_free(runs);
-    sf_plan_free(plan);
-}
-
-/* Ten draws in 40 rows, over the folder of the test before: the means of four runs each are mostly scatter of
- * the other factors. */
 /* Twenty rows, each of other numbers: no mean of one row is an effect. a_max = 100 sqrt(x) + y / 3 has 100
  * from x and 3 from y between 0 and 9, the surface is off by 1 or so; z does nothing. */
 static void numbers_that_are_sampled_have_the_effect_of_the_surface(void **state) {
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
+    evaluated done;
     evaluate_plan(
         *state,
         "{ sample = \"latin_hypercube\"; count = 20; of = ( { key = \"a.x\"; low = 1.0; high = 4.0; },"
         "{ key = \"a.y\"; low = 0.0; high = 9.0; }, { key = \"a.z\"; low = 0.0; high = 1.0; } ); }",
-        &plan, &runs, &a);
-    assert_true(a.surface[0].fit.q2 > 0.99);
-    const sf_effect *e = a.effect[0];
+        -1, &done);
+    assert_true(done.a.surface[0].fit.q2 > 0.99);
+    const sf_effect *e = done.a.effect[0];
     const double expected[3] = {100 * (sqrt(4) - sqrt(1)), 3, 0};
     for (int k = 0; k < 3; k++) {
-        const double *value = plan.factor[k].value;
+        const double *value = done.plan.factor[k].value;
         double range = k == 0 ? 3 : k == 1 ? 9 : 1, least = INFINITY, greatest = -INFINITY;
         for (int row = 0; row < 20; row++) {
             least = value[row] < least ? value[row] : least;
@@ -610,67 +585,54 @@ static void numbers_that_are_sampled_have_the_effect_of_the_surface(void **state
         assert_close(e[k].last - e[k].first, expected[k] * (greatest - least) / range, 4);
         assert_true(e[k].low <= e[k].first && e[k].high >= e[k].last);
     }
-    free_evaluated(&plan, &runs, &a);
+    free_evaluated(&done);
 }
 
 /* A run of x = 1 fails: without it the mean of its y would be that of greater x, 22 more than that of the
  * other y. */
 static void main_effects_are_over_combinations_that_are_whole(void **state) {
-    const program_place *p = *state;
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
-    sf_error err;
-    formula f = {.fails = 3};
-    sweep_read_plan(p, GRID, &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
-    assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_OK);
-    assert_int_equal(sf_analysis_make(&runs, &a, &err), SF_OK);
-    const sf_effect *x = &a.effect[0][0], *y = &a.effect[0][1];
+    evaluated done;
+    evaluate_plan(*state, GRID, 3, &done);
+    const sf_effect *x = &done.a.effect[0][0], *y = &done.a.effect[0][1];
     assert_int_equal(x->used, 5);
     assert_int_equal(x->of, 6);
     assert_int_equal(y->used, 9);
     assert_int_equal(y->of, 10);
     assert_relative(x->last - x->first, 100, 1e-8);
     assert_relative(y->high - y->low, 5.0 / 3, 1e-6);
-    sf_analysis_free(&a);
-    sf_runs_free(&runs);
-    sf_plan_free(&plan);
+    free_evaluated(&done);
 }
 
 static void draws_that_are_sampled_with_others_have_no_main_effect(void **state) {
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
+    evaluated done;
     sweep_make_posterior(*state);
-    evaluate_plan(*state, SAMPLED_DRAWS, &plan, &runs, &a);
-    assert_true(isnan(a.effect[0][2].low) && isnan(a.effect[0][2].high));
-    assert_true(a.effect[0][0].high > a.effect[0][0].low);
-    assert_true(sf_effect_is_scatter(&plan, 2));
-    plan.block[plan.block_of[2]].rows = SF_EFFECT_RUNS * plan.factor[2].count; /* so many have a mean */
-    assert_false(sf_effect_is_scatter(&plan, 2));
-    plan.block[plan.block_of[2]].rows = 40;
-    free_evaluated(&plan, &runs, &a);
+    evaluate_plan(*state, SAMPLED_DRAWS, -1, &done);
+    assert_true(isnan(done.a.effect[0][2].low) && isnan(done.a.effect[0][2].high));
+    assert_true(done.a.effect[0][0].high > done.a.effect[0][0].low);
+    assert_true(sf_effect_is_scatter(&done.plan, 2));
+    done.plan.block[done.plan.block_of[2]].rows =
+        SF_EFFECT_RUNS * done.plan.factor[2].count; /* so many have a mean */
+    assert_false(sf_effect_is_scatter(&done.plan, 2));
+    done.plan.block[done.plan.block_of[2]].rows = 40;
+    free_evaluated(&done);
     evaluate_plan(*state, "{ key = \"a.x\"; values = [1, 2]; }, { key = \"material\"; posterior = \"ten\"; }",
-                  &plan, &runs, &a); /* crossed: a_max moves by 9/3 with the index of the draw */
-    assert_relative(a.effect[0][1].high - a.effect[0][1].low, 0.9 * 3, 1e-6);
-    free_evaluated(&plan, &runs, &a);
+                  -1, &done); /* crossed: a_max moves by 9/3 with the index of the draw */
+    assert_relative(done.a.effect[0][1].high - done.a.effect[0][1].low, 0.9 * 3, 1e-6);
+    free_evaluated(&done);
 }
 
 /* Ten draws in 40 rows are ten foams. */
 static void draws_that_are_sampled_count_once_in_the_interval(void **state) {
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
+    evaluated done;
     sweep_make_posterior(*state);
-    evaluate_plan(*state, SAMPLED_DRAWS, &plan, &runs, &a);
-    assert_int_equal(a.probability.cells, 1);
-    sf_probability ten = a.probability.cell[1];
+    evaluate_plan(*state, SAMPLED_DRAWS, -1, &done);
+    assert_int_equal(done.a.probability.cells, 1);
+    sf_probability ten = done.a.probability.cell[1];
     assert_int_equal(ten.below + ten.above, 40);
     sf_probability_judge(&ten, 10);
-    assert_close(a.probability.cell[1].low, ten.low, 1e-12);
-    assert_close(a.probability.cell[1].high, ten.high, 1e-12);
-    free_evaluated(&plan, &runs, &a);
+    assert_close(done.a.probability.cell[1].low, ten.low, 1e-12);
+    assert_close(done.a.probability.cell[1].high, ten.high, 1e-12);
+    free_evaluated(&done);
 }
 
 /* What an estimate counts: rows of other inputs and, on request, those that failed. */
@@ -702,26 +664,24 @@ static void an_estimate_counts_the_rows_that_are_done_again(void **state) {
 
 /* Six rows of three words. */
 static void a_word_that_a_zip_repeats_is_one_level(void **state) {
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
+    evaluated done;
     char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
     evaluate_plan(*state,
                   "{ zip = ( { key = \"a.x\"; values = [1, 1, 1, 4, 4, 4]; },"
                   "{ key = \"pad.base\"; values = [\"glued\", \"glued\", \"smooth\", \"smooth\", \"glued\","
                   " \"resting\"]; } ); }",
-                  &plan, &runs, &a);
+                  -1, &done);
     static const int level[] = {0, 0, 1, 1, 0, 2};
-    assert_int_equal(plan.rows, 6);
-    assert_int_equal(plan.factor[1].count, 3);
+    assert_int_equal(done.plan.rows, 6);
+    assert_int_equal(done.plan.factor[1].count, 3);
     for (int64_t row = 0; row < 6; row++)
-        assert_int_equal((int)sf_plan_value(&plan, 1, row), level[row]);
-    sf_plan_overrides(&plan, 5, text);
+        assert_int_equal((int)sf_plan_value(&done.plan, 1, row), level[row]);
+    sf_plan_overrides(&done.plan, 5, text);
     assert_string_equal(text[1], "pad.base=\"resting\"");
     /* of a_max: glued 100, 100, 200; smooth 100 + 1/3, 200 + 1/3; resting 200 + 2/3 */
-    assert_relative(a.effect[0][1].low, 400.0 / 3, 1e-8);
-    assert_relative(a.effect[0][1].high, 200 + 2.0 / 3, 1e-8);
-    free_evaluated(&plan, &runs, &a);
+    assert_relative(done.a.effect[0][1].low, 400.0 / 3, 1e-8);
+    assert_relative(done.a.effect[0][1].high, 200 + 2.0 / 3, 1e-8);
+    free_evaluated(&done);
 }
 
 /* Scripts and pictures of a campaign, beside runs.csv. */
@@ -743,13 +703,11 @@ static void draw(const program_place *p, const sf_analysis *a) {
 /* Of one run there is no effect, and a figure may be of no run: gnuplot ends where all of a panel is NaN. */
 static void panels_without_data_are_left_out(void **state) {
     const program_place *p = *state;
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
-    evaluate_plan(p, "{ key = \"a.x\"; values = [1]; }, { key = \"a.y\"; values = [1]; }", &plan, &runs, &a);
-    draw(p, &a);
+    evaluated done;
+    evaluate_plan(p, "{ key = \"a.x\"; values = [1]; }, { key = \"a.y\"; values = [1]; }", -1, &done);
+    draw(p, &done.a);
     assert_int_equal(program_shell(p, "test -s drawn/factors.png && test ! -e drawn/effects.gp").code, 0);
-    free_evaluated(&plan, &runs, &a);
+    free_evaluated(&done);
     static const char *const chosen[] = {"", "{ key = \"a.z\"; values = [1, 2]; },"}; /* intervals, a map */
     for (int k = 0; k < 2; k++) {
         char factors[512];
@@ -758,52 +716,48 @@ static void panels_without_data_are_left_out(void **state) {
             "{ key = \"a.x\"; values = [1, 2, 3]; }, %s { key = \"a.y\"; uncertain = true; values = [1, 2]; } );"
             "figures = ( { key = \"peak_stress_kPa\"; limit = 9.0; }, { key = \"hic\"; limit = 1000.0; }",
             chosen[k]);
-        evaluate_plan(p, factors, &plan, &runs, &a);
-        draw(p, &a);
+        evaluate_plan(p, factors, -1, &done);
+        draw(p, &done.a);
         assert_int_equal(program_shell(p,
                                        "test -s drawn/factors.png && test -s drawn/effects.png && "
                                        "test -s drawn/probability.png && ! grep peak_stress drawn/effects.gp")
                              .code,
                          0);
-        free_evaluated(&plan, &runs, &a);
+        free_evaluated(&done);
     }
 }
 
 /* Every 14th of 40,000 rows would be of the first level of the factor that changes fastest. */
 static void the_points_of_a_picture_are_of_every_level(void **state) {
     const program_place *p = *state;
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
+    evaluated done;
     evaluate_plan(
-        p, "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 20000; }, { key = \"a.y\"; values = [1, 2]; }",
-        &plan, &runs, &a);
-    draw(p, &a);
+        p, "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 20000; }, { key = \"a.y\"; values = [1, 2]; }", -1,
+        &done);
+    draw(p, &done.a);
     /* The second panel is the first figure against a.y. */
     int of_one = atoi(program_shell(p, "sed -n '/^$d1_/,/^EOD/p' drawn/factors.gp | grep -c '^1,'").out),
         of_two = atoi(program_shell(p, "sed -n '/^$d1_/,/^EOD/p' drawn/factors.gp | grep -c '^2,'").out);
     if (of_one + of_two < 2900 || of_one + of_two > 3100 || abs(of_one - of_two) > 300)
         fail_msg("%d and %d points", of_one, of_two);
-    free_evaluated(&plan, &runs, &a);
+    free_evaluated(&done);
 }
 
 /* A factor of one number is as good as one of the case. */
 static void a_factor_of_one_value_is_not_in_the_surface(void **state) {
-    sf_plan plan;
-    sf_runs runs;
-    sf_analysis a;
+    evaluated done;
     char term[100];
     evaluate_plan(*state,
                   "{ key = \"a.z\"; from = 1.0; to = 4.0; count = 10; }, { key = \"a.y\"; values = [5]; },"
                   "{ key = \"a.x\"; values = [1, 2, 3]; }",
-                  &plan, &runs, &a);
-    const sf_quadratic *fit = &a.surface[1].fit;
+                  -1, &done);
+    const sf_quadratic *fit = &done.a.surface[1].fit;
     assert_string_equal(fit->problem, "");
     assert_int_equal(fit->d, 2);
     assert_true(fit->q2 > 0.999999); /* hic is linear */
-    sf_analysis_term(&a, fit, 2, term, sizeof term);
+    sf_analysis_term(&done.a, fit, 2, term, sizeof term);
     assert_string_equal(term, "a.x");
-    free_evaluated(&plan, &runs, &a);
+    free_evaluated(&done);
 }
 
 static void a_disk_that_is_too_small_is_refused(void **state) {
@@ -841,12 +795,11 @@ static void a_hundred_thousand_runs_take_less_than_a_minute_and_a_gigabyte(void 
     sf_error err;
     formula f = {.fails = 77, .stop_at = 50000};
     struct rusage usage;
-    sweep_read_plan(p,
-                    "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 100; },"
-                    "{ sample = \"sobol\"; count = 1000; of = ( { key = \"a.y\"; low = 0.0; high = 9.0; },"
-                    "{ key = \"a.z\"; low = \"1 mm\"; high = \"2 mm\"; } ); }",
-                    &plan);
-    program_shell(p, "rm -f runs.csv sweep.key");
+    begin_plan(p,
+               "{ key = \"a.x\"; from = 1.0; to = 4.0; count = 100; },"
+               "{ sample = \"sobol\"; count = 1000; of = ( { key = \"a.y\"; low = 0.0; high = 9.0; },"
+               "{ key = \"a.z\"; low = \"1 mm\"; high = \"2 mm\"; } ); }",
+               &plan);
     assert_int_equal(plan.rows, 100000);
     assert_int_equal(campaign(p, &plan, &f, false, 1, &runs, &err), SF_INTERRUPTED);
     sf_runs_free(&runs);

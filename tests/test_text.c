@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Texts and numbers as a user writes them (base/text.h), and every character in a JSON text. */
+#include "base/hash.h"
 #include "base/text.h"
-#include "report/json.h"
+#include "report/row.h"
 
 #include "program_fixture.h"
 #include <math.h>
@@ -19,6 +20,25 @@ static void a_cut_text_is_as_long_as_it_may_be_and_whole(void **state) {
     (void)state;
     for (int size = 0; size < (int)(sizeof lengths / sizeof lengths[0]); size++)
         assert_int_equal(sf_utf8_cut(text, size), lengths[size]);
+}
+
+/* Doubles of few digits have zeros in all but their highest 16 bits. A hash over words moves their difference
+ * upwards only, so that 16 bits are all that tells them apart, and a second number may cancel the first. That
+ * of an identity changes about half of the lowest 32 bits as well. */
+static void numbers_of_few_digits_change_all_bits_of_an_identity(void **state) {
+    (void)state;
+    int changed = 0, pairs = 0;
+    for (double mass = 1; mass < 9; mass += 0.5)
+        for (double other = 1; other < mass; other += 0.5, pairs++) {
+            uint64_t damage = sf_hash(SF_HASH_START, &mass, 8) ^ sf_hash(SF_HASH_START, &other, 8);
+            uint64_t identity =
+                sf_hash_identity(SF_HASH_START, &mass, 8) ^ sf_hash_identity(SF_HASH_START, &other, 8);
+            uint64_t next = sf_hash_identity(sf_hash_identity(SF_HASH_START, &mass, 8), "", 1) ^
+                            sf_hash_identity(sf_hash_identity(SF_HASH_START, &other, 8), "", 1);
+            assert_true(damage << 16 == 0 && identity != 0);
+            changed += __builtin_popcountll(next & 0xffffffff);
+        }
+    assert_in_range(changed, 14 * pairs, 18 * pairs);
 }
 
 static void numbers_are_taken_whole_or_not_at_all(void **state) {
@@ -41,6 +61,24 @@ static void numbers_are_taken_whole_or_not_at_all(void **state) {
             (rows[k].whole && whole != (int)rows[k].value))
             fail_msg("\"%s\" is taken for %d", rows[k].text, whole);
     }
+}
+
+static void words_and_lines_are_taken_whole(void **state) {
+    (void)state;
+    static const char *const words[] = {"low", "lower", "high", "hig", "", "low|lower"};
+    static const int places[] = {0, 1, 2, -1, -1, -1};
+    char text[] = "name one\nnames two\nname three", *rest = text;
+    int length = 0;
+    for (size_t k = 0; k < sizeof words / sizeof words[0]; k++)
+        assert_int_equal(sf_word_find("low|lower|high", words[k]), places[k]);
+    for (int k = 0; k < 5; k++) {
+        const char *word = sf_word_at("low|lower|high", k, &length), *expected = words[k < 2 ? k : 2];
+        assert_true((size_t)length == strlen(expected) && strncmp(word, expected, strlen(expected)) == 0);
+    }
+    assert_string_equal(sf_line_take(&rest, "name", ' '), "one");
+    assert_null(sf_line_take(&rest, "name", ' '));
+    assert_string_equal(sf_line_take(&rest, "name", ' '), "three");
+    assert_null(sf_line_take(&rest, "name", ' '));
 }
 
 /* Python reads back each character, and for a byte that is no UTF-8 the mark of one. */
@@ -69,7 +107,9 @@ static void json_keeps_every_character(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cut_text_is_as_long_as_it_may_be_and_whole),
+        cmocka_unit_test(numbers_of_few_digits_change_all_bits_of_an_identity),
         cmocka_unit_test(numbers_are_taken_whole_or_not_at_all),
+        cmocka_unit_test(words_and_lines_are_taken_whole),
         cmocka_unit_test(json_keeps_every_character),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

@@ -4,7 +4,6 @@
 
 #include "base/mat3.h"
 #include "solver/missile.h"
-#include "base/rigid.h"
 
 #include <math.h>
 #include <setjmp.h>

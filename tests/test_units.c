@@ -162,8 +162,13 @@ static void every_name_of_the_table_is_a_unit(void **state) {
     static const struct {
         const char *kind;
         sf_quantity quantity;
-    } kinds[] = {{"length", SF_LENGTH},         {"mass", SF_MASS},         {"time", SF_TIME},
-                 {"force", SF_FORCE},           {"pressure", SF_PRESSURE}, {"voltage", SF_VOLTAGE},
+    } kinds[] = {{"length", SF_LENGTH},
+                 {"mass", SF_MASS},
+                 {"time", SF_TIME},
+                 {"force", SF_FORCE},
+                 {"pressure", SF_PRESSURE},
+                 {"voltage", SF_VOLTAGE},
+                 {"temperature", SF_TEMPERATURE},
                  {"angle", SF_ANGULAR_VELOCITY}};
     char *table = NULL, *rest, kind[16] = "";
     size_t size = 0;

@@ -18,6 +18,11 @@ cd "$folder"
 "$bin/softfall-solve" l.h5 -o lr.h5 -t 1 --no-checkpoint >/dev/null 2>&1
 "$bin/softfall-pre" -o rest.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set pad.base=resting examples/compression/case.cfg >/dev/null
 "$bin/softfall-pre" -o skin.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set pad.self_contact=on examples/compression/case.cfg >/dev/null
+"$bin/softfall-pre" -o support.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set 'pad.fixed=[]' \
+    --set 'geometry.support_file="../../geo/slab.geo"' --set 'geometry.support_parameters={side=80.0; element_size=40.0;}' \
+    --set 'membrane.faces=["top"]' --set membrane.E='1 MPa' --set membrane.thickness='1 mm' --set membrane.density='1000 kg/m3' \
+    examples/compression/case.cfg >/dev/null
+cp support.h5 "$corpus/model/support.h5"
 cp m.h5 "$corpus/model/cube.h5"
 cp skin.h5 "$corpus/model/skin.h5"
 cp l.h5 "$corpus/model/layers.h5"

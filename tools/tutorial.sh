@@ -23,5 +23,6 @@ place=${SF_TUTORIAL_DIR:-out/tutorial}
 rm -rf "$place"
 mkdir -p "$place/home"
 unset SF_BIN_DIR
-PATH=$bin:$PATH XDG_CACHE_HOME=$(realpath "$place/home") OMP_WAIT_POLICY=passive \
+# Python is that of the system, which has numpy and h5py.
+PATH=$bin:/usr/bin:$PATH PYTHONPATH=$bin/../lib/python3/dist-packages XDG_CACHE_HOME=$(realpath "$place/home") OMP_WAIT_POLICY=passive \
     exec python3 tools/tutorial_page.py docs/tutorial.md "$place" "$@"

@@ -7,7 +7,6 @@
 #include "study.h"
 
 #include "base/mat3.h"
-#include "base/rigid.h"
 #include "solver/run/run.h"
 #include "solver/step.h"
 

@@ -85,7 +85,7 @@ static void check_run(sf_study *study, const char *folder, const char *const *mo
         sf_study_check(study, worst, -INFINITY, bound, "%s", what);
 }
 
-/* The full pad at 5 mm: only large models share their small loops among threads (base/threads.h). */
+/* The full pad at 5 mm: only large models share their small loops among threads (base/lanes.h). */
 static void check_large_model(sf_study *study, const char *folder) {
     static const char *const overrides[] = {"solver.end_time=\"1.5 ms\"", NULL};
     char path[2][600];
@@ -247,7 +247,7 @@ int main(int argc, char **argv) {
         &study,
         "\nBuilds with and without optimisation agree because `-ffp-contract=off` prevents the compiler "
         "from fusing multiplications and additions, and no compiler option reorders sums. The Debug "
-        "build also runs its small loops on several threads (base/threads.h). `tools/verification.sh "
+        "build also runs its small loops on several threads (base/lanes.h). `tools/verification.sh "
         "sensitivity` compares the quarter and the full model at 5 mm.\n");
     unlink(first);
     rmdir(folder);

@@ -29,7 +29,7 @@ int main(int argc, char **argv) {
     softfall_figures *figures = NULL;
     const softfall_sink sink = {tell, NULL};
     const softfall_drop_options options = {.threads = 2};
-    double deepest = 0;
+    double deepest = 0, a_max = 0, hic = 0;
     if (argc < 2) {
         fprintf(stderr, "usage: drop CASE [GROUP.KEY=VALUE]...\n");
         return SOFTFALL_INPUT;
@@ -38,11 +38,11 @@ int main(int argc, char **argv) {
         softfall_model_build(c, &sink, &model, &error) ||
         softfall_drop_create(model, &options, &drop, &error) ||
         softfall_drop_run(drop, observe, &deepest, NULL, &error) ||
-        softfall_drop_figures(drop, 1000, &figures, &error))
+        softfall_drop_figures(drop, 1000, &figures, &error) ||
+        softfall_figure(figures, "a_max_g", &a_max, &error) || softfall_figure(figures, "hic", &hic, &error))
         fprintf(stderr, "drop: %s\n", error.text);
     else
-        printf("a_max %.9g g\nHIC %.9g\nindentation %.9g mm\n", softfall_figure(figures, "a_max_g"),
-               softfall_figure(figures, "hic"), 1e3 * deepest);
+        printf("a_max %.9g g\nHIC %.9g\nindentation %.9g mm\n", a_max, hic, 1e3 * deepest);
     softfall_figures_free(figures);
     softfall_drop_free(drop);
     softfall_model_free(model);

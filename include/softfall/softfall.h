@@ -81,6 +81,9 @@ SOFTFALL_API softfall_status softfall_case_read(const char *path, const char *co
                                                 const softfall_sink *sink, softfall_case **out,
                                                 softfall_error *error);
 SOFTFALL_API void softfall_case_free(softfall_case *c);
+/* The values of the case: a line for each key with its name, value as --set takes it, value in SI units, and
+ * "given" or "default", between blanks; owned by the case. */
+SOFTFALL_API const char *softfall_case_parameters(const softfall_case *c);
 
 /* Meshes the geometry of the case and builds the model. A case can be built once; afterwards it can only be
  * freed. */
@@ -187,8 +190,46 @@ SOFTFALL_API void softfall_figures_free(softfall_figures *figures);
 
 /* The list of figures [count]: name (the key) and description; the unit stands in the key. */
 SOFTFALL_API const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count);
-/* NaN also if there is no such figure. */
-SOFTFALL_API double softfall_figure(const softfall_figures *figures, const char *key);
+/* Sets `value`, NaN if the run does not define the figure. SOFTFALL_INPUT: there is no such figure. */
+SOFTFALL_API softfall_status softfall_figure(const softfall_figures *figures, const char *key, double *value,
+                                             softfall_error *error);
+
+/* ---- Curves of your own ---- */
+
+/* Curves [count] are piecewise linear over `time`, in s, ascending. */
+
+/* Head injury criterion of a deceleration in g, with windows of at most `window` s (INFINITY: no limit), and
+ * the window where it is reached, in s: NaN if the curve never decelerates. `t1` and `t2` may be NULL. */
+SOFTFALL_API softfall_status softfall_hic(const double *time, const double *deceleration, int64_t count,
+                                          double window, double *hic, double *t1, double *t2,
+                                          softfall_error *error);
+/* Values of the curve filtered with a channel frequency class, at the same times, as softfall-post filters a
+ * measured curve: at its own rate if that is uniform. `filtered` [count] belongs to the caller. */
+SOFTFALL_API softfall_status softfall_cfc(const double *time, const double *value, int64_t count,
+                                          double filter, double *filtered, softfall_error *error);
+
+/* A measured record of one impact in a file of a laboratory, read, filtered and judged as softfall-post does
+ * with
+ * --reference. `options` [count]: "filter=600" or "filter=none" (default 1000), "column=HEADING",
+ * "columns=x,y,z", "heading=TEXT", "scale=0.1 mV/(m/s2)", "rate=20 kHz", "impact=2", "invert", "zero". `out`
+ * is owned by the caller. */
+typedef struct softfall_record softfall_record;
+SOFTFALL_API softfall_status softfall_record_read(const char *path, const char *const *options, int count,
+                                                  softfall_record **out, softfall_error *error);
+SOFTFALL_API void softfall_record_free(softfall_record *record);
+/* The filtered curve: time in s on the clock of the file, deceleration in g; returns the number of points.
+ * The arrays are the record's. */
+SOFTFALL_API int64_t softfall_record_curve(const softfall_record *record, const double **time,
+                                           const double **deceleration);
+/* 0: valid, 1: valid with remarks, 2: not to be used; and that with the findings, in words. */
+SOFTFALL_API int softfall_record_grade(const softfall_record *record);
+SOFTFALL_API const char *softfall_record_verdict(const softfall_record *record);
+/* Returns how the file was read, in words. */
+SOFTFALL_API const char *softfall_record_interpretation(const softfall_record *record);
+/* Sets `value`: a_max_g, a_max_time_ms, hic, hic_t1_ms, hic_t2_ms, hic15, hic36, gadd, clip_3ms_g,
+ * clip_3ms_cumulative_g as in summary.json. SOFTFALL_INPUT: another key. */
+SOFTFALL_API softfall_status softfall_record_figure(const softfall_record *record, const char *key,
+                                                    double *value, softfall_error *error);
 
 #ifdef __cplusplus
 }

@@ -42,6 +42,10 @@ void softfall_case_free(softfall_case *c) {
     free(c);
 }
 
+const char *softfall_case_parameters(const softfall_case *c) {
+    return c->data.parameters;
+}
+
 /* The provenance in the model's file. */
 static void keep_texts(softfall_case *c, const sf_build_report *report, softfall_model *m, sf_error *err) {
     m->case_text = strdup(c->data.text);

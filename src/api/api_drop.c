@@ -1,19 +1,57 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "api/api_drop.h"
+/* libsoftfall: drops, their results and figures, models in files. */
+#include "api/api.h"
+#include "build_info.h"
+#include "model/columns.h"
+#include "model/flight.h"
+#include "model/model_io.h"
+#include "post/figures/figures.h"
+#include "solver/operators.h"
+#include "solver/run/frame.h"
+#include "solver/run/recorder.h"
+#include "solver/run/run.h"
+#include "solver/state.h"
+#include "solver/step.h"
 
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/api.h"
-#include "build_info.h"
-#include "model/model_io.h"
-#include "solver/run/frame.h"
-#include "solver/run/run.h"
-#include "solver/step.h"
+/* A drop behind its handle. */
 
-/* Drops: created, and advanced in time. */
+struct softfall_drop {
+    sf_model model; /* arrays borrowed from the caller's model */
+    sf_operators operators;
+    sf_state state;
+    sf_recorder recorder;
+    int threads; /* 0: as OpenMP would */
+    softfall_ending ending;
+    sf_error failure; /* of a step */
+    softfall_quantity column[SF_HISTORY_COUNT], field[SF_FRAME_FIELDS];
+};
+
+/* Sets the number of threads of the drop and returns the number before. */
+static int enter(const softfall_drop *drop) {
+    int before = omp_get_max_threads();
+    if (drop->threads > 0)
+        omp_set_num_threads(drop->threads);
+    return before;
+}
+
+/* Fills the lists of columns and fields. */
+static void list_quantities(softfall_drop *d) {
+    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
+        const sf_history_column *column = sf_history_column_get(k);
+        d->column[k] = (softfall_quantity){column->name, column->units, column->description, 1};
+    }
+    for (int k = 0; k < SF_FRAME_FIELDS; k++) {
+        const sf_frame_field_info *f = sf_frame_field_get((sf_frame_field)k);
+        d->field[k] = (softfall_quantity){f->name, f->units, f->description, f->components};
+    }
+}
+
+/* ---- drops: created, and advanced in time ---- */
 
 static const softfall_drop_options by_default;
 
@@ -40,9 +78,14 @@ softfall_status softfall_drop_create(const softfall_model *model, const softfall
     if (o->end_time > 0)
         d->model.run.end_time = o->end_time;
     sf_recorder_begin(&d->recorder);
-    softfall_drop_list(d);
-    int before = softfall_drop_enter(d);
-    if (sf_model_check(&d->model, &err) == SF_OK &&
+    list_quantities(d);
+    int before = enter(d);
+    if (d->model.run.drops > 1)
+        SF_FAIL(
+            &err, SF_ERR_INPUT,
+            "the model is a series of %g drops; the library solves single ones: softfall-solve has series",
+            d->model.run.drops);
+    if (err.status == SF_OK && sf_model_check(&d->model, &err) == SF_OK &&
         sf_operators_build(&d->model, &d->operators, &err) == SF_OK)
         sf_state_create(&d->model, &d->state, &err);
     omp_set_num_threads(before);
@@ -69,7 +112,7 @@ static void step(softfall_drop *d) {
         sf_recorder_add(&d->recorder, &d->model, &d->state, &d->failure) != SF_OK)
         return;
     if (sf_ending_on_anvil(&d->model, &d->state))
-        sf_ending_fail_on_anvil(&d->state, &d->failure);
+        sf_ending_fail_on_anvil(&d->model, &d->state, &d->failure);
     else
         d->ending = sf_ending_rebounded(&d->model, &d->state)  ? SOFTFALL_REBOUND
                     : sf_ending_finished(&d->model, &d->state) ? SOFTFALL_FINISHED
@@ -78,7 +121,7 @@ static void step(softfall_drop *d) {
 
 softfall_status softfall_drop_step(softfall_drop *d, softfall_ending *ending, softfall_error *error) {
     if (d->ending == SOFTFALL_RUNNING && d->failure.status == SF_OK) {
-        int before = softfall_drop_enter(d);
+        int before = enter(d);
         step(d);
         omp_set_num_threads(before);
     }
@@ -100,18 +143,7 @@ softfall_status softfall_drop_run(softfall_drop *d, int (*observe)(void *user, c
     return status;
 }
 
-/* Results of a drop: its last step, its history, the fields over its nodes. */
-
-void softfall_drop_list(softfall_drop *d) {
-    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
-        const sf_history_column *column = sf_history_column_get(k);
-        d->column[k] = (softfall_quantity){column->name, column->units, column->description, 1};
-    }
-    for (int k = 0; k < SF_FRAME_FIELDS; k++) {
-        const sf_frame_field_info *f = sf_frame_field_get((sf_frame_field)k);
-        d->field[k] = (softfall_quantity){f->name, f->units, f->description, f->components};
-    }
-}
+/* ---- results of a drop: its last step, its history, the fields over its nodes ---- */
 
 int64_t softfall_drop_steps(const softfall_drop *d) {
     return d->recorder.history.rows;
@@ -162,13 +194,13 @@ static sf_status take_field(const softfall_drop *d, const char *name, double *va
 softfall_status softfall_drop_field(const softfall_drop *d, const char *name, double *values, int64_t size,
                                     softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
-    int before = softfall_drop_enter(d);
+    int before = enter(d);
     take_field(d, name, values, size, &err);
     omp_set_num_threads(before);
     return softfall_return(&err, error);
 }
 
-/* Models: reading, writing and their properties. */
+/* ---- models: reading, writing and their properties ---- */
 
 const char *softfall_version(void) {
     return SF_VERSION;
@@ -245,4 +277,157 @@ softfall_model_info softfall_model_describe(const softfall_model *model) {
 
 const double *softfall_model_positions(const softfall_model *m) {
     return m->model.position;
+}
+
+/* ---- figures ---- */
+
+#define ONE(...) +1
+struct softfall_figures {
+    int count;
+    softfall_quantity figure[SF_FIGURES(ONE)];
+    double value[SF_FIGURES(ONE)];
+};
+
+static sf_status check_filter(double filter, sf_error *err) {
+    if (filter == 60 || filter == 180 || filter == 600 || filter == 1000)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT, "filter: %g; the channel frequency classes are 60, 180, 600 and 1000",
+                   filter);
+}
+
+/* True if the library offers the figure: a number of sf_figures. */
+static bool is_offered(const sf_figure *figure) {
+    return !figure->fact && figure->row.type != SF_ROW_TEXT;
+}
+
+static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    sf_figures f = {0};
+    SF_TRY(check_filter(filter, err));
+    SF_TRY(sf_figures_compute(results, filter, &f, err));
+    softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
+    for (size_t k = 0; made && k < count; k++)
+        if (is_offered(&list[k])) {
+            made->figure[made->count] = (softfall_quantity){list[k].row.key, "", list[k].row.meaning, 1};
+            made->value[made->count++] = sf_row_number(&list[k].row, &f);
+        }
+    sf_figures_free(&f);
+    return err->status;
+}
+
+/* The drop as its results file would show it; the arrays stay the drop's. */
+static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
+    const sf_model *m = &d->model;
+    double lock_begin, lock_up = sf_model_lock_up(m, &lock_begin);
+    *r = (sf_results){.node_count = m->node_count,
+                      .position = m->position,
+                      .volume = m->volume,
+                      .symmetry_factor = m->symmetry_factor,
+                      .thickness = m->thickness,
+                      .informed_strain = sf_model_informed_strain(m),
+                      .expected_mesh_error = m->expected_mesh_error > 0 ? m->expected_mesh_error : NAN,
+                      .slit_fraction = m->slit_fraction,
+                      .anvil_depth = m->anvil.depth,
+                      .density = sf_model_density(m),
+                      .given_back = sf_model_whole(m) * d->state.given_back,
+                      .air = m->air,
+                      .speed_scatter = m->run.speed_scatter,
+                      .thickness_tolerance = m->run.thickness_tolerance,
+                      .lock_up = lock_up,
+                      .lock_begin = lock_begin,
+                      .impact_x = m->missile.impact_known ? m->missile.impact[0] : NAN,
+                      .impact_y = m->missile.impact_known ? m->missile.impact[1] : NAN,
+                      .missile_mass = m->missile.mass,
+                      .missile_speed = m->missile.speed,
+                      .gravity_along = sf_missile_free_fall(m),
+                      .kinematic = m->run.kinematic != 0,
+                      .driven = sf_missile_is_driven(m),
+                      .history = d->recorder.history};
+    sf_flight_gravity(&m->missile, r->gravity);
+    if (r->history.rows < 3)
+        return SF_FAIL(err, SF_ERR_INPUT, "the drop has %lld steps: figures need 3 at least",
+                       (long long)r->history.rows);
+    return SF_OK;
+}
+
+softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, softfall_figures **out,
+                                      softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_results r;
+    *out = NULL;
+    if (view(drop, &r, &err) == SF_OK)
+        compute(&r, filter, out, &err);
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_results_figures(const char *path, double filter, softfall_figures **out,
+                                         softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_results r = {0};
+    *out = NULL;
+    if (sf_results_open(path, &r, &err) == SF_OK)
+        compute(&r, filter, out, &err);
+    sf_results_close(&r);
+    return softfall_return(&err, error);
+}
+
+void softfall_figures_free(softfall_figures *figures) {
+    free(figures);
+}
+
+const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count) {
+    *count = figures->count;
+    return figures->figure;
+}
+
+softfall_status softfall_figure(const softfall_figures *figures, const char *key, double *value,
+                                softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    int k = 0;
+    while (k < figures->count && strcmp(figures->figure[k].name, key) != 0)
+        k++;
+    if (k < figures->count)
+        *value = figures->value[k];
+    else
+        SF_FAIL(&err, SF_ERR_INPUT, "there is no figure \"%.80s\"; softfall_figures_list has their keys",
+                key);
+    return softfall_return(&err, error);
+}
+
+/* Curves of the host. The arrays are read only. */
+
+static sf_series borrow(const double *time, const double *value, int64_t count) {
+    return (sf_series){.count = count, .time = (double *)time, .value = (double *)value};
+}
+
+softfall_status softfall_hic(const double *time, const double *deceleration, int64_t count, double window,
+                             double *hic, double *t1, double *t2, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    const sf_series curve = borrow(time, deceleration, count);
+    sf_hic found = {0};
+    if (!(window > 0))
+        SF_FAIL(&err, SF_ERR_INPUT, "window: %g s is not above 0", window);
+    else if (sf_series_check(&curve, "the deceleration", &err) == SF_OK)
+        sf_hic_evaluate(&curve, window, &found, &err);
+    *hic = err.status == SF_OK ? found.value : NAN;
+    if (t1)
+        *t1 = found.t1;
+    if (t2)
+        *t2 = found.t2;
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_cfc(const double *time, const double *value, int64_t count, double filter,
+                             double *filtered, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    const sf_series curve = borrow(time, value, count);
+    sf_series made = {0};
+    if (check_filter(filter, &err) == SF_OK &&
+        sf_series_check(&curve, "the curve to filter", &err) == SF_OK &&
+        sf_signal_filter(&curve, filter, &made, &err) == SF_OK)
+        for (int64_t i = 0; i < count; i++)
+            filtered[i] = sf_series_at(&made, time[i]);
+    sf_series_free(&made);
+    return softfall_return(&err, error);
 }

@@ -10,6 +10,16 @@
 
 enum { SF_LANES = 16 };
 
+/* Below these sizes a loop runs on one thread: waking a thread takes about 50 us on a virtual machine. They
+ * apply to loops with little work per node, and to loops over rows or contact points. A build with
+ * SOFTFALL_THREADS_ALWAYS uses threads in every loop, so that analyses and tests with small models cover
+ * them. */
+#ifdef SF_THREADS_ALWAYS
+enum { SF_FEW_NODES = 0, SF_FEW_POINTS = 0 };
+#else
+enum { SF_FEW_NODES = 50000, SF_FEW_POINTS = 3000 };
+#endif
+
 /* A kernel is compiled for three levels of the processor, with all functions of its file that it calls; the
  * program selects the best level at its start. The levels differ in the width of the vectors only: nothing is
  * fused or reordered, so that all give the same bits. Arguments and results of kernels are pointers and

@@ -53,6 +53,30 @@ bool sf_whole_is(const char *text, long low, long high, int *value) {
     return true;
 }
 
+int sf_word_find(const char *list, const char *word) {
+    size_t length = strlen(word);
+    int place = 0;
+    for (const char *at = list; at; at = strchr(at, '|'), place++) {
+        at += *at == '|';
+        if (length > 0 && strcspn(at, "|") == length && strncmp(at, word, length) == 0)
+            return place;
+    }
+    return -1;
+}
+
+const char *sf_word_at(const char *list, int place, int *length) {
+    for (; place > 0 && strchr(list, '|'); place--)
+        list = strchr(list, '|') + 1;
+    *length = (int)strcspn(list, "|");
+    return list;
+}
+
+char *sf_line_take(char **rest, const char *name, char separator) {
+    char *line = *rest ? strsep(rest, "\n") : NULL;
+    size_t length = strlen(name);
+    return line && strncmp(line, name, length) == 0 && line[length] == separator ? line + length + 1 : NULL;
+}
+
 int sf_utf8_length(const unsigned char *s) {
     static const struct {
         unsigned char first_low, first_high, second_low, second_high;

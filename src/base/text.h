@@ -3,7 +3,7 @@
 #define SF_BASE_TEXT_H
 #include <stdbool.h>
 
-/* Numbers in texts of the user: decimal ones alone. */
+/* Numbers, words and lines of texts. Numbers of the user are decimal ones alone. */
 
 /* The number at `text`, [+-] digits [. digits] [e [+-] digits] with at least one digit, and what follows it;
  * NULL if there is none (hexadecimal). "nan" and "inf", and numbers that are too large, give a value that is
@@ -15,6 +15,16 @@ bool sf_decimal_is(const char *text, double *value);
 
 /* True if the whole text is one whole number from `low` to `high`. */
 bool sf_whole_is(const char *text, long low, long high, int *value);
+
+/* Place of the word in the list "one|two|three"; -1 if it is not there. */
+int sf_word_find(const char *list, const char *word);
+
+/* The word at the place (the last one if there are fewer) and its length. */
+const char *sf_word_at(const char *list, int place, int *length);
+
+/* Takes the next line from `rest`: what follows `name` and the separator in it; NULL if it begins otherwise.
+ */
+char *sf_line_take(char **rest, const char *name, char separator);
 
 /* Length of the well-formed UTF-8 sequence at `s`, 0 if there is none (RFC 3629). */
 int sf_utf8_length(const unsigned char *s);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The case file: libconfig syntax, every dimensional value a string with its unit ("4.6 kg"), read with
- * base/units.h. Groups geometry, pad, material, missile, kernel, solver, output; docs/case.md lists the keys.
+ * base/units.h. docs/case.md lists groups and keys.
  */
 #ifndef SF_CASE_CASE_H
 #define SF_CASE_CASE_H
@@ -15,7 +15,8 @@ enum {
     SF_CASE_MAX_GROUPS = 16,
     SF_CASE_MAX_PARAMETERS = 64,
     SF_CASE_MAX_TIMES = 256,
-    SF_CASE_MAX_LAYERS = 32
+    SF_CASE_MAX_LAYERS = 32,
+    SF_GEOMETRIES = 3 /* of pad, missile and support */
 };
 
 /* A variable of a .geo file set by the case; plain numbers, in the geometry's own length unit. */
@@ -63,6 +64,8 @@ typedef struct sf_case {
     bool symmetry_given;
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
+    double temperature;                    /* K, of the pad; 0: not given */
+    bool temperature_acts;                 /* a material has curves at several temperatures */
     int self_contact;                      /* SF_SELF_CONTACT_* */
     bool stabilised;                       /* kernel.stabilisation is given */
     double self_friction;                  /* -, Coulomb coefficient of the pad against itself */
@@ -97,6 +100,14 @@ typedef struct sf_case {
     sf_run_options run;
     int frame_time_count;                 /* further frames, beside run.frame_interval */
     double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */
+    char about[3][SF_CASE_NAME_SIZE]; /* sample, laboratory, conditions: words for the report; "": not given */
+
+    sf_geo_source support;                 /* path NULL: there is none */
+    char support_group[SF_CASE_NAME_SIZE]; /* physical surface group of the rigid supports */
+    double support_friction;               /* -, Coulomb coefficient of the pad against them */
+    int membrane_count;                    /* surface groups with a cover without cells */
+    char membrane_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    sf_membrane_card membrane_card;
 } sf_case;
 
 /* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in

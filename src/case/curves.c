@@ -191,33 +191,44 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     return status;
 }
 
-/* One { rate = "..."; file = "..."; } of material.curves. */
-static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, sf_error *err) {
+/* The quantity in which the curves of a list differ. */
+typedef struct curve_order {
+    const char *key, *example, *unit;
+    sf_quantity quantity;
+} curve_order;
+static const curve_order RATES = {"rate", "0.0017 1/s", "s-1", SF_RATE},
+                         TEMPERATURES = {"temperature", "5 degC", "K", SF_TEMPERATURE};
+
+/* One { rate = "..."; file = "..."; } of material.curves, or with a temperature. */
+static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, const curve_order *order,
+                            sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_law_curves *card = sf_material_curves(reader->material);
     const config_setting_t *rate =
-        config_setting_is_group(entry) ? config_setting_get_member(entry, "rate") : NULL;
+        config_setting_is_group(entry) ? config_setting_get_member(entry, order->key) : NULL;
     const config_setting_t *file =
         config_setting_is_group(entry) ? config_setting_get_member(entry, "file") : NULL;
     if (!rate || !file || config_setting_length(entry) != 2)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %s.curves: each entry must be { rate = \"0.0017 1/s\"; file = \"name.csv\"; }",
-                       sf_case_where(reader, entry, where), reader->material_group);
+        return SF_FAIL(
+            err, SF_ERR_INPUT, "%s: %s.curves: each entry must be { %s = \"%s\"; file = \"name.csv\"; }",
+            sf_case_where(reader, entry, where), reader->material_group, order->key, order->example);
     const char *text = config_setting_get_string(rate);
     sf_error inner = SF_ERROR_INIT;
     double value = 0.0;
     if (!text)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: the rate must be a text such as \"0.0017 1/s\"",
-                       sf_case_where(reader, rate, where), reader->material_group);
-    if (sf_units_parse(reader->units, text, SF_RATE, &value, &inner) != SF_OK)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: the %s must be a text such as \"%s\"",
+                       sf_case_where(reader, rate, where), reader->material_group, order->key,
+                       order->example);
+    if (sf_units_parse(reader->units, text, order->quantity, &value, &inner) != SF_OK)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %s", sf_case_where(reader, rate, where),
                        reader->material_group, inner.text);
     double last = card->curve_count > 0 ? card->curve_rate[card->curve_count - 1] : 0.0;
     if (!(value > last))
         return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %s.curves: the rate %g s-1 is not above %g s-1 before it; rates must be "
+                       "%s: %s.curves: the %s %g %s is not above %g %s before it; %ss must be "
                        "positive and ascend",
-                       sf_case_where(reader, rate, where), reader->material_group, value, last);
+                       sf_case_where(reader, rate, where), reader->material_group, order->key, value,
+                       order->unit, last, order->unit, order->key);
     return read_file(reader, file, value, err);
 }
 
@@ -240,6 +251,77 @@ static sf_status check_order(const sf_case_reader *reader, const config_setting_
         sf_case_where(reader, file[1], where), reader->material_group, fall.strain, 1e-3 * fall.slow,
         card->curve_rate[k - 1], config_setting_get_string(file[0]), 1e-3 * fall.fast, card->curve_rate[k],
         config_setting_get_string(file[1]));
+}
+
+/* Stress of curve k at a strain within it. */
+static double stress_at(const sf_law_curves *c, int64_t k, double strain) {
+    int64_t i = c->curve_ptr[k] + 1;
+    while (i + 1 < c->curve_ptr[k + 1] && c->curve_strain[i] < strain)
+        i++;
+    double x = (strain - c->curve_strain[i - 1]) / (c->curve_strain[i] - c->curve_strain[i - 1]);
+    return c->curve_stress[i - 1] + fmin(1, x) * (c->curve_stress[i] - c->curve_stress[i - 1]);
+}
+
+static int compare(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The curve at part x of the way from curve k to the next, by the logarithm of the stress at the strains of
+ * both, up to the end of the shorter one. */
+static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_case_curve *out, sf_error *err) {
+    int64_t first = c->curve_ptr[k], count = c->curve_ptr[k + 2] - first;
+    double end = fmin(c->curve_strain[c->curve_ptr[k + 1] - 1], c->curve_strain[c->curve_ptr[k + 2] - 1]);
+    double *strain = sf_alloc(err, (unsigned long)count, sizeof *strain, "curve"),
+           *stress = sf_alloc(err, (unsigned long)count, sizeof *stress, "curve");
+    *out = (sf_case_curve){.strain = strain, .stress = stress};
+    if (err->status != SF_OK)
+        return err->status;
+    memcpy(strain, &c->curve_strain[first], (size_t)count * sizeof *strain);
+    qsort(strain, (size_t)count, sizeof *strain, compare);
+    for (int64_t i = 0; i < count && strain[i] <= end; i++) {
+        if (out->count > 0 && strain[i] - strain[out->count - 1] < 1e-9)
+            continue;
+        double at = strain[i], low = stress_at(c, k, at), high = stress_at(c, k + 1, at);
+        strain[out->count] = at;
+        stress[out->count++] = low > 0 && high > 0 ? exp((1 - x) * log(low) + x * log(high)) : 0;
+    }
+    return SF_OK;
+}
+
+/* Leaves the curve at the pad's temperature, of those at several, whose temperatures stand in place of rates.
+ */
+static sf_status take_temperature(sf_case_reader *reader, const config_setting_t *setting, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    sf_law_curves *card = sf_material_curves(reader->material);
+    const double *t = card->curve_rate, at = reader->out->temperature;
+    int64_t last = card->curve_count - 1, k = 0;
+    sf_case_curve curve = {0};
+    if (last < 1 || at == 0)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: curves at temperatures need %s",
+                       sf_case_where(reader, setting, where), reader->material_group,
+                       at == 0 ? "pad.temperature, such as \"23 degC\", in the case" : "two of them or more");
+    if (at < t[0] || at > t[last])
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: %s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
+            "extrapolation",
+            sf_case_where(reader, setting, where), reader->material_group, at - 273.15, t[0] - 273.15,
+            t[last] - 273.15);
+    while (k < last - 1 && at > t[k + 1])
+        k++;
+    if (interpolate(card, k, (at - t[k]) / (t[k + 1] - t[k]), &curve, err) == SF_OK) {
+        sf_sink_tell(
+            reader->sink, SF_NOTE,
+            "%s: the curve at %g degC lies between those at %g and %g degC; E, unloading, memory and rate are "
+            "the same at any temperature",
+            reader->material_group, at - 273.15, t[k] - 273.15, t[k + 1] - 273.15);
+        sf_law_curves_free(card);
+        add_curve(card, 0, &curve, err);
+        reader->out->temperature_acts = true;
+    }
+    sf_case_curve_free(&curve);
+    return err->status;
 }
 
 static void describe(const sf_law_curves *card, char *detail, size_t size) {
@@ -266,10 +348,15 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
             return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %d curves; at most %d are read",
                            sf_case_where(reader, setting, where), reader->material_group,
                            config_setting_length(setting), MOST_CURVES);
+        const config_setting_t *head = config_setting_get_elem(setting, 0);
+        bool thermal = config_setting_is_group(head) && config_setting_get_member(head, "temperature");
+        const curve_order *order = thermal ? &TEMPERATURES : &RATES;
         for (int i = 0; i < config_setting_length(setting); i++)
-            if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), err) != SF_OK ||
-                check_order(reader, setting, i, err) != SF_OK)
+            if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), order, err) != SF_OK ||
+                (!thermal && check_order(reader, setting, i, err) != SF_OK))
                 return err->status;
+        if (thermal)
+            SF_TRY(take_temperature(reader, setting, err));
     }
     describe(sf_material_curves(reader->material), detail, size);
     return SF_OK;

@@ -28,6 +28,10 @@ static const sf_key keys[] = {
      "values for the DefineConstant parameters of `file`, in its own units"},
     {"geometry", "missile_parameters", SF_KEY_PARAMETERS, "", AT(missile),
      "the same for `missile_file`"},
+    {"geometry", "support_file", SF_KEY_PATH, "", AT(support.path),
+     "geometry of rigid fixed bodies of any shape that the pad may touch, in the coordinates of `file`; absent: there are none"},
+    {"geometry", "support_parameters", SF_KEY_PARAMETERS, "", AT(support),
+     "the same for `support_file`"},
     {"geometry", "time_limit", SF_KEY_QUANTITY, "\"600 s\"", AT(mesh_time_limit),
      "processor time that gmsh may take for each geometry", .quantity = SF_TIME, .low = 1.0, .high = 1e7, .idle = true},
     /* pad */
@@ -67,6 +71,9 @@ static const sf_key keys[] = {
     {"pad", "thickness_tolerance", SF_KEY_QUANTITY, "\"1 mm\"", AT(run.thickness_tolerance),
      "standard deviation of the thickness from pad to pad: it makes `a_max_scatter` and `hic_scatter` of the report, and changes no drop",
      .quantity = SF_LENGTH, .high = 1.0},
+    {"pad", "temperature", SF_KEY_QUANTITY, "", AT(temperature),
+     "of the pad, at which the law takes its curves among those of several temperatures (`material.curves`)",
+     .quantity = SF_TEMPERATURE, .low = 100.0, .high = 600.0},
     /* material: the law; its parameters follow (solver/material) */
     {"material", "law", SF_KEY_LAW, "", AT(material.law), "material law; its parameters follow"},
     /* missile */
@@ -108,6 +115,23 @@ static const sf_key keys[] = {
     {"missile", "angular_velocity", SF_KEY_QUANTITIES, "", AT(angular_velocity),
      "of a free missile when it first touches the pad, in the pose of its geometry, about x, y and z; absent: none",
      .quantity = SF_ANGULAR_VELOCITY, .low = -1e3, .high = 1e3, .count_offset = offsetof(sf_case, angular_velocity_count), .lengths = {3}},
+    /* support */
+    {"support", "group", SF_KEY_NAME, "\"support\"", AT(support_group),
+     "physical surface of the rigid bodies of `geometry.support_file` that the pad touches; it may have several parts"},
+    {"support", "friction", SF_KEY_NUMBER, "0.5", AT(support_friction),
+     "Coulomb coefficient of the pad against them; the default is an assumption, as that of `pad.friction`", .high = 10.0},
+    /* membrane */
+    {"membrane", "faces", SF_KEY_NAMES, "[]", AT(membrane_group),
+     "physical surfaces of the pad that a thin elastic cover without cells lies on, glued to them; `E`, `thickness` and `density` go with it",
+     .count_offset = offsetof(sf_case, membrane_count)},
+    {"membrane", "E", SF_KEY_QUANTITY, "", AT(membrane_card.modulus),
+     "Young's modulus of the cover", .quantity = SF_PRESSURE, POSITIVE, .high = 1e12},
+    {"membrane", "nu", SF_KEY_NUMBER, "0.4", AT(membrane_card.poisson), "Poisson's ratio of it", .high = 0.5},
+    {"membrane", "thickness", SF_KEY_QUANTITY, "", AT(membrane_card.thickness),
+     "of it: it resists tension and shear, not bending", .quantity = SF_LENGTH, POSITIVE, .high = 1.0},
+    {"membrane", "density", SF_KEY_QUANTITY, "", AT(membrane_card.density), "of it", .quantity = SF_DENSITY, .high = 1e5},
+    {"membrane", "fabric", SF_KEY_BOOL, "false", AT(membrane_card.fabric),
+     "the cover folds: it carries no compression"},
     /* kernel */
     {"kernel", "support_ratio", SF_KEY_NUMBER, "1.4", AT(support_ratio),
      "kernel radius over spacing, R/h; 2 or more makes the constraint matrix nearly singular",
@@ -127,6 +151,12 @@ static const sf_key keys[] = {
      "the run stops at this relative energy error, or when contact or stabilisation has given the pad this part of the impact energy", .low = 1e-9, .high = 1.0},
     {"solver", "stop_after_rebound", SF_KEY_BOOL, "true", AT(run.stop_after_rebound),
      "end when the missile has left the pad upwards"},
+    /* series */
+    {"series", "drops", SF_KEY_NUMBER, "1.0", AT(run.drops),
+     "number of drops on the same pad, one after the other; each has a results file of its own", .low = 1.0, .high = 20.0},
+    {"series", "interval", SF_KEY_QUANTITY, "", AT(run.interval),
+     "from one drop to the next, in which the pad recovers (`material.memory`); required with `drops` above 1",
+     .quantity = SF_TIME, .low = 0.1, .high = 1e7},
     /* output */
     {"output", "acceleration", SF_KEY_CHOICE, "\"accelerometer\"", AT(kinematic),
      "acceleration of the curves, of a_max and HIC: the specific force that an accelerometer in the missile reads (0 in free fall), or the kinematic one (-1 g in free fall)",
@@ -137,6 +167,10 @@ static const sf_key keys[] = {
      "times of further frames", .quantity = SF_TIME, .count_offset = offsetof(sf_case, frame_time_count)},
     {"output", "fields", SF_KEY_FIELDS, ALL_FIELDS, AT(run.output_fields),
      "fields of a frame (default: all)", .words = FIELD_WORDS},
+    /* report: words for report.html and summary.json */
+    {"report", "sample", SF_KEY_NAME, "", AT(about[0]), "what is tested, in words: batch, age, supplier", .idle = true},
+    {"report", "laboratory", SF_KEY_NAME, "", AT(about[1]), "who tests it, and where", .idle = true},
+    {"report", "conditions", SF_KEY_NAME, "", AT(about[2]), "temperature, humidity, storage before the test; they are not used", .idle = true},
 };
 /* clang-format on */
 

@@ -255,7 +255,7 @@ static void complete(const sf_case_reader *reader, sf_case *c) {
     sf_mat3_apply(turn, c->angular_velocity);
     sf_mat3_apply(turn, c->centre);
     sf_sym3_turn(turn, c->inertia);
-    c->pad.unit = c->missile.unit = c->length_unit;
+    c->pad.unit = c->missile.unit = c->support.unit = c->length_unit;
     if (c->motion_count > 0)
         card->gravity = 0.0;
     c->position_given = sf_case_is_given(reader, "missile", "position");
@@ -464,6 +464,7 @@ void sf_case_free(sf_case *c) {
     free(c->geometry_files);
     free(c->pad.path);
     free(c->missile.path);
+    free(c->support.path);
     sf_material_free(&c->material);
     for (int k = 0; c->layer && k < c->layer_count; k++)
         sf_material_free(&c->layer[k]);

@@ -123,6 +123,24 @@ sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err) {
     return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), text);
 }
 
+/* All of a membrane's keys, or none. */
+static sf_status check_membrane(const sf_case_reader *reader, sf_error *err) {
+    static const char *const keys[] = {"E", "thickness", "density", "nu", "fabric"};
+    enum { NEEDED = 3, KEYS = 5 };
+    char where[SF_CASE_WHERE_SIZE], path[64];
+    bool there = reader->out->membrane_count > 0;
+    for (int k = 0; k < KEYS; k++) {
+        bool given = sf_case_is_given(reader, "membrane", keys[k]);
+        snprintf(path, sizeof path, "membrane.%s", keys[k]);
+        if (there && !given && k < NEEDED)
+            return sf_case_missing_key(reader, sf_case_find_key(&reader->keys, "membrane", keys[k]), err);
+        if (!there && given)
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has no meaning without membrane.faces",
+                           sf_case_where_is(reader, path, where), path);
+    }
+    return SF_OK;
+}
+
 static const double FLATTEST = 0.0871557; /* cosine of 85 degrees */
 
 static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
@@ -338,10 +356,11 @@ static sf_status check_resting(const sf_case_reader *reader, sf_error *err) {
 static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
-    if (c->fixed_count + c->sliding_count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding",
-                       sf_case_where_is(reader, "pad.fixed", where));
+    if (c->fixed_count + c->sliding_count == 0 && !c->support.path)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding, or a support (geometry.support_file)",
+            sf_case_where_is(reader, "pad.fixed", where));
     if (sf_case_is_given(reader, "pad", "base") && c->fixed_count == 0)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.base: pad.fixed names no surface that it could apply to",
                        sf_case_where_is(reader, "pad.base", where));
@@ -373,8 +392,14 @@ sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
             err, SF_ERR_INPUT,
             "%s: geometry.missile_parameters are given but no geometry.missile_file that they belong to",
             sf_case_where_is(reader, "geometry.missile_parameters", where));
-    if (check_base(reader, err) != SF_OK || check_direction(reader, err) != SF_OK ||
-        check_freedom(reader, err) != SF_OK)
+    static const char *const of_support[] = {"geometry.support_parameters", "support.group",
+                                             "support.friction"};
+    for (int k = 0; k < 3 && !c->support.path; k++)
+        if (config_lookup(&reader->config, of_support[k]))
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has no meaning without geometry.support_file",
+                           sf_case_where_is(reader, of_support[k], where), of_support[k]);
+    if (check_membrane(reader, err) != SF_OK || check_base(reader, err) != SF_OK ||
+        check_direction(reader, err) != SF_OK || check_freedom(reader, err) != SF_OK)
         return err->status;
     return check_motion(reader, err);
 }
@@ -396,12 +421,47 @@ static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
                    c->run.step_limit, gain, 50 * gain / c->missile_card.speed, 100 * c->run.energy_limit);
 }
 
+/* A series of drops; a single one leaves no trace. */
+static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    sf_run_options *run = &reader->out->run;
+    bool series = run->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
+    const char *wrong =
+        run->drops != floor(run->drops) ? "the number of drops is a whole number"
+        : series && !has_interval       ? "a series needs series.interval, such as \"90 s\""
+        : !series && has_interval       ? "an interval belongs to a series: give series.drops, from 2 on"
+        : series && reader->out->motion_count > 0
+            ? "a prescribed motion is no series of drops: put its cycles into missile.motion"
+        : series && !run->stop_after_rebound
+            ? "a series needs solver.stop_after_rebound: each drop ends when the missile has left"
+            : NULL;
+    if (wrong)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: series.drops = %g: %s",
+                       sf_case_where_is(reader, "series.drops", where), run->drops, wrong);
+    if (!series)
+        run->drops = 0;
+    return SF_OK;
+}
+
+/* A temperature that changes nothing would look as if it did. */
+static sf_status check_temperature(const sf_case_reader *reader, sf_error *err) {
+    char where[SF_CASE_WHERE_SIZE];
+    const sf_case *c = reader->out;
+    if (c->temperature == 0 || c->temperature_acts)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s: pad.temperature is given, but the material has no curves at several temperatures: "
+                   "material.curves = ( { temperature = \"5 degC\"; file = \"cold.csv\"; }, ... )",
+                   sf_case_where_is(reader, "pad.temperature", where));
+}
+
 /* Rules on the complete case. */
 sf_status sf_case_check_complete(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     if (check_times(reader, err) != SF_OK || check_reach(reader, err) != SF_OK ||
-        check_speed(reader, err) != SF_OK)
+        check_speed(reader, err) != SF_OK || check_series(reader, err) != SF_OK ||
+        check_temperature(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
         sf_sink_tell(reader->sink, SF_WARNING,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/value.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -160,6 +161,10 @@ static sf_status copy_name(sf_case_reader *reader, const sf_key *key, const conf
                        type_phrase(setting));
     if (*text == '\0')
         return FAIL_AT(reader, key, setting, err, "the name is empty");
+    for (const char *c = text; *c; c++)
+        if (iscntrl((unsigned char)*c))
+            return FAIL_AT(reader, key, setting, err,
+                           "the name holds a line end or another control character");
     if (strlen(text) >= SF_CASE_NAME_SIZE)
         return FAIL_AT(reader, key, setting, err, "the name is longer than %d characters",
                        SF_CASE_NAME_SIZE - 1);

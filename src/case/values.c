@@ -73,7 +73,7 @@ static void print_kind(FILE *file, const sf_key *key) {
         [SF_KEY_PARAMETERS] = "group of numbers",
         [SF_KEY_CURVE] = "file",
         [SF_KEY_MOTION] = "file",
-        [SF_KEY_CURVES] = "list of { rate; file; }",
+        [SF_KEY_CURVES] = "list of { rate or temperature; file; }",
     };
     if (key->kind == SF_KEY_LAW) {
         for (int k = 0; sf_law_get(k); k++)

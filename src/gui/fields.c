@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "case/values.h"
 #include "io/plain_file.h"
 
@@ -91,11 +92,11 @@ static sf_status read_depth(const char *path, sf_geo_names *names, int depth, sf
 /* The files that the text includes, where they are there; gmsh tells of those that are not. */
 static void read_included(const char *path, const char *text, sf_geo_names *names, int depth) {
     token last = {OTHER, text, 0};
-    const char *slash = strrchr(path, '/');
+    int above = (int)(sf_path_name(path) - path);
     for (token t = next(&text); t.kind != END; t = next(&text)) {
         char included[PATH_MAX];
         sf_error none = SF_ERROR_INIT;
-        int folder = slash && t.kind == STRING && t.text[0] != '/' ? (int)(slash - path) + 1 : 0;
+        int folder = t.kind == STRING && t.text[0] != '/' ? above : 0;
         if (is(&last, "Include") && t.kind == STRING && depth < DEEPEST &&
             snprintf(included, sizeof included, "%.*s%.*s", folder, path, (int)t.length, t.text) <
                 (int)sizeof included)
@@ -107,8 +108,7 @@ static void read_included(const char *path, const char *text, sf_geo_names *name
 static sf_status read_depth(const char *path, sf_geo_names *names, int depth, sf_error *err) {
     char *text = NULL;
     size_t size = 0;
-    if (sf_plain_read(path, "geometry", LARGEST, &text, &size, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plain_read(path, "geometry", LARGEST, &text, &size, err));
     sf_geo_names_scan(text, names);
     read_included(path, text, names, depth);
     free(text);
@@ -269,23 +269,6 @@ void sf_fields_take_defaults(sf_fields *fields) {
 
 /* ---- the tree ---- */
 
-static int find_word(const char *words, const char *word) {
-    int place = 0;
-    for (const char *at = words; *at; place++) {
-        size_t length = strcspn(at, "|");
-        if (strlen(word) == length && strncmp(at, word, length) == 0)
-            return place;
-        at += length + (at[length] == '|');
-    }
-    return 0;
-}
-
-static void name_word(const char *words, int place, char *out, size_t size) {
-    for (; place > 0 && strchr(words, '|'); place--)
-        words = strchr(words, '|') + 1;
-    snprintf(out, size, "%.*s", (int)strcspn(words, "|"), words);
-}
-
 static void show(const sf_field *f) {
     const char *dot = strchr(f->key, '.');
     char group[SF_FIELD_KEY_SIZE];
@@ -301,7 +284,7 @@ static void show(const sf_field *f) {
     const sf_entry entry = {.name = f->name,
                             .kind = f->kind,
                             .text = f->now,
-                            .number = f->kind == SF_ENTRY_WORD ? find_word(f->words, f->now)
+                            .number = f->kind == SF_ENTRY_WORD ? fmax(sf_word_find(f->words, f->now), 0)
                                                                : strcmp(f->now, "true") == 0,
                             .words = f->words,
                             .help = f->help,
@@ -318,13 +301,15 @@ void sf_fields_show(const sf_fields *fields) {
 /* The value as the tree has it now. */
 static bool read(const sf_field *f, char *text, size_t size) {
     double value = 0;
+    int length;
     if (f->kind == SF_ENTRY_TEXT || f->kind == SF_ENTRY_FILE)
         return sf_window_text(f->name, text, size);
     if (!sf_window_number(f->name, &value))
         return false;
-    if (f->kind == SF_ENTRY_WORD)
-        name_word(f->words, (int)lround(value), text, size);
-    else if (f->kind == SF_ENTRY_FLAG)
+    if (f->kind == SF_ENTRY_WORD) {
+        const char *word = sf_word_at(f->words, (int)lround(value), &length);
+        snprintf(text, size, "%.*s", length, word);
+    } else if (f->kind == SF_ENTRY_FLAG)
         snprintf(text, size, "%s", value != 0 ? "true" : "false");
     else
         snprintf(text, size, "%.12g", value);
@@ -455,8 +440,7 @@ void sf_fields_mark(sf_fields *fields, const char *sentence) {
 }
 
 static void lock_unknown(void *user, const char *name) {
-    static const char *const ours[] = {"ONELAB", "0Modules/", "Gmsh/",    "1Drop/",
-                                       "2Case/", "3Checks/",  "4Results/"};
+    static const char *const ours[] = {"ONELAB", "0Modules/", "Gmsh/", "1Drop/", "2Case/", "3Checks/"};
     const sf_fields *fields = user;
     for (size_t k = 0; k < sizeof ours / sizeof ours[0]; k++)
         if (strncmp(name, ours[k], strlen(ours[k])) == 0)

@@ -1,13 +1,341 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/pictures.h"
 
+#include "base/units.h"
 #include "gui/gmsh/window.h"
-#include "gui/outcome.h"
+#include "io/h5.h"
 #include "io/plain_file.h"
+#include "model/cells.h"
 #include "model/model_io.h"
+#include "post/figures/figures.h"
 #include "post/figures/verdict.h"
+#include "pre/model_report.h"
+
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* ---- shape of a drop ---- */
+
+static sf_status find_skin(const sf_cells *c, sf_shape *s, sf_error *err) {
+    sf_skin_faces skin;
+    if (sf_skin_faces_find(c, &skin, err) == SF_OK)
+        s->pad.position =
+            sf_alloc(err, 3 * (unsigned long)skin.node_count, sizeof(double), "the pad's picture");
+    for (int64_t k = 0; k < 3 * skin.node_count && s->pad.position; k++)
+        s->pad.position[k] = c->position[3 * skin.node[k / 3] + k % 3] / s->unit;
+    s->pad.node_count = skin.node_count;
+    s->pad.face_count = skin.face_count;
+    s->pad.face = (int32_t *)skin.face;
+    s->pad_node = skin.node;
+    return err->status;
+}
+
+/* The missile's triangles at t = 0, and the exact sphere that contact takes for them. */
+typedef struct missile_surface {
+    int64_t triangles;
+    const double *position;
+    const int32_t *triangle;
+    double radius; /* m; 0 or NaN: the triangles are the missile */
+    const double *centre;
+} missile_surface;
+
+/* The point `i` and `j` parts of `parts` from the first corner of a triangle to the others, on the sphere if
+ * there is one. */
+static void place_point(const missile_surface *m, int64_t triangle, int parts, int i, int j, double out[3]) {
+    const int share[3] = {parts - i - j, i, j};
+    double length = 0;
+    for (int d = 0; d < 3; d++) {
+        out[d] = 0;
+        for (int c = 0; c < 3; c++)
+            out[d] += share[c] * m->position[3 * (int64_t)m->triangle[3 * triangle + c] + d] / parts;
+        length += m->radius > 0 ? (out[d] - m->centre[d]) * (out[d] - m->centre[d]) : 0;
+    }
+    for (int d = 0; d < 3 && length > 0; d++)
+        out[d] = m->centre[d] + m->radius / sqrt(length) * (out[d] - m->centre[d]);
+}
+
+/* Each triangle of a sphere becomes `parts` x `parts` smaller ones: the foam would be seen through coarse
+ * ones. */
+static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *err) {
+    int parts = m->radius > 0 ? 4 : 1;
+    int64_t pieces = m->triangles * parts * parts;
+    s->missile.position = sf_alloc(err, 9 * (unsigned long)pieces, sizeof(double), "the missile's picture");
+    s->missile_position = sf_alloc(err, 9 * (unsigned long)pieces, sizeof(double), "the missile's picture");
+    s->missile.face =
+        sf_alloc(err, 4 * (unsigned long)pieces, sizeof *s->missile.face, "the missile's picture");
+    if (err->status != SF_OK)
+        return err->status;
+    double *to = s->missile_position;
+    for (int64_t t = 0; t < m->triangles; t++)
+        for (int i = 0; i < parts; i++)
+            for (int j = 0; i + j < parts; j++)
+                for (int turned = 0; turned < (i + j + 1 < parts ? 2 : 1); turned++, to += 9) {
+                    place_point(m, t, parts, i + 1, j, to);
+                    place_point(m, t, parts, i + turned, j + 1, to + 3);
+                    place_point(m, t, parts, i, j + turned, to + 6);
+                }
+    s->missile.node_count = 3 * pieces;
+    s->missile.face_count = pieces;
+    for (int64_t k = 0; k < 9 * pieces; k++)
+        s->missile.position[k] = s->missile_position[k] / s->unit;
+    for (int64_t k = 0; k < 4 * pieces; k++)
+        s->missile.face[k] = k % 4 == 3 ? -1 : (int32_t)(3 * (k / 4) + k % 4);
+    return SF_OK;
+}
+
+/* The faces that belong to one cell only, in the length unit `unit`. Release with sf_shape_free. */
+static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
+    const sf_cells cells = {m->node_count, m->cell_count, m->position,
+                             m->cell_type,  m->cell_ptr,   m->cell_node};
+    *s = (sf_shape){.unit = unit};
+    const missile_surface missile = {m->surface_triangle_count, m->surface_position, m->surface_triangle,
+                                     m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0,
+                                     m->missile.sphere_centre};
+    if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
+        sf_shape_free(s);
+    return err->status;
+}
+
+sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_error *err) {
+    const sf_cells cells = {r->node_count, r->cell_count, r->position,
+                             r->cell_type,  r->cell_ptr,   r->cell_node};
+    *s = (sf_shape){.unit = unit};
+    const missile_surface missile = {r->surface_triangle_count, r->surface_position, r->surface_triangle,
+                                     r->sphere_radius, r->sphere_centre};
+    if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
+        sf_shape_free(s);
+    return err->status;
+}
+
+void sf_shape_free(sf_shape *s) {
+    free(s->pad.position);
+    free(s->pad.face);
+    free(s->pad_node);
+    free(s->missile.position);
+    free(s->missile.face);
+    free(s->missile_position);
+    *s = (sf_shape){0};
+}
+
+static void gather(const sf_shape *s, const sf_frame *fields, sf_shape_frame *out) {
+    const double *u = fields->field[SF_FRAME_DISPLACEMENT], *mises = fields->field[SF_FRAME_VON_MISES];
+    for (int64_t k = 0; k < s->pad.node_count; k++) {
+        for (int d = 0; d < 3 && u; d++)
+            out->pad[3 * k + d] = u[3 * s->pad_node[k] + d] / s->unit;
+        if (mises)
+            out->stress[k] = 1e-3 * mises[s->pad_node[k]];
+    }
+}
+
+static void free_shape_frame(sf_shape_frame *f) {
+    free(f->pad);
+    free(f->stress);
+    free(f->missile);
+    *f = (sf_shape_frame){0};
+}
+
+static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const sf_frame_head *head,
+                                  sf_shape_frame *out, sf_error *err) {
+    sf_frame fields = {{0}};
+    *out = (sf_shape_frame){0};
+    SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err));
+    out->pad = sf_alloc(err, 3 * (unsigned long)s->pad.node_count, sizeof(double), "a frame");
+    out->missile = sf_alloc(err, 3 * (unsigned long)s->missile.node_count, sizeof(double), "a frame");
+    if (fields.field[SF_FRAME_VON_MISES])
+        out->stress = sf_alloc(err, (unsigned long)s->pad.node_count, sizeof(double), "a frame");
+    if (err->status == SF_OK)
+        gather(s, &fields, out);
+    for (int64_t k = 0; k < s->missile.node_count && err->status == SF_OK; k++) {
+        double place[3];
+        sf_results_place(r, head, &s->missile_position[3 * k], place);
+        for (int d = 0; d < 3; d++)
+            out->missile[3 * k + d] = (place[d] - s->missile_position[3 * k + d]) / s->unit;
+    }
+    sf_frame_free(&fields);
+    if (err->status != SF_OK)
+        free_shape_frame(out);
+    return err->status;
+}
+
+/* ---- figures and checks in the tree ---- */
+
+/* Keys of the report of softfall-pre (pre/model_report.c) that the tree shows, in its order. */
+static const char *const keys[SF_CHECK_ENTRIES] = {
+    "nodes",      "cells",      "missile", "drop_height", "impact_point", "spacing_under_missile",
+    "mesh_error", "first_step", "memory",  "run_time",
+};
+
+sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err) {
+    sf_h5 *file = NULL;
+    char *text = NULL;
+    out->count = 0;
+    if (sf_h5_open(model, &file, err) == SF_OK)
+        sf_h5_read_text(file, "/provenance/report", &text, err);
+    for (int k = 0; text && k < SF_CHECK_ENTRIES; k++) {
+        sf_check_entry *e = &out->entry[out->count];
+        char name[SF_CHECK_NAME - 16];
+        if (!sf_model_report_find(text, keys[k], name, sizeof name, e->value, sizeof e->value))
+            continue; /* a prescribed motion has no drop height */
+        snprintf(e->name, sizeof e->name, "3Checks/%02d%s", k, name);
+        out->count++;
+    }
+    free(text);
+    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
+    sf_h5_close(&file, &ignored);
+    return err->status;
+}
+
+void sf_checks_show(const sf_check_entries *checks) {
+    for (int k = 0; k < checks->count; k++) {
+        const sf_check_entry *e = &checks->entry[k];
+        sf_window_put(
+            &(sf_entry){.name = e->name, .kind = SF_ENTRY_SHOWN, .text = e->value, .help = e->value});
+    }
+}
+
+void sf_checks_clear(const sf_check_entries *checks) {
+    for (int k = 0; k < checks->count; k++)
+        sf_window_remove(checks->entry[k].name);
+}
+
+void sf_checks_sentence(const char *text, char *out, size_t size) {
+    const char *last = NULL, *line = text;
+    *out = '\0';
+    while (line && *line) {
+        const char *end = strchr(line, '\n');
+        if (*line != '\n' && strncmp(line, "softfall-", 9) == 0)
+            last = line;
+        line = end ? end + 1 : NULL;
+    }
+    const char *colon = last ? strstr(last, ": ") : NULL;
+    if (colon)
+        snprintf(out, size, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
+}
+
+void sf_checks_progress(const char *text, char *out, size_t size) {
+    const char *last = NULL, *line = text;
+    size_t used = 0;
+    while (line && *line) {
+        const char *end = strchr(line, '\n');
+        if (strncmp(line, "t ", 2) == 0)
+            last = line;
+        line = end ? end + 1 : NULL;
+    }
+    for (; last && *last && *last != '\n' && used + 1 < size; last++)
+        if (*last != ' ' || (used > 0 && out[used - 1] != ' '))
+            out[used++] = *last;
+    out[used] = '\0';
+}
+
+static const char GOOD[] = "LightGreen", FAIR[] = "Khaki", BAD[] = "LightCoral";
+
+/* Below the buttons, at all times: a tree that grows would move what the user is about to click. */
+static const char *const names[] = {"1Drop/70verdict",
+                                    "1Drop/71a_max",
+                                    "1Drop/72HIC",
+                                    "1Drop/73rebound",
+                                    "1Drop/74largest indentation",
+                                    "1Drop/75largest local strain"};
+enum { VERDICT, A_MAX, HIC, REBOUND, INDENTATION, STRAIN, ENTRIES };
+enum { FILTER = 1000 }; /* CFC of curve and figures */
+
+static void put(int which, const char *text, const char *colour) {
+    sf_window_put(&(sf_entry){
+        .name = names[which], .kind = SF_ENTRY_SHOWN, .text = text, .help = text, .colour = colour});
+}
+
+/* Puts a dash into each row. */
+static void clear_outcome(void) {
+    for (int k = 0; k < ENTRIES; k++)
+        put(k, "–", NULL);
+}
+
+static const char *limit_colour(const sf_limit *limit) {
+    return !limit->judged ? NULL : limit->passed ? GOOD : BAD;
+}
+
+/* The digits are those that summary.json has, and more than a reader needs. */
+static void show_limits(const sf_figures *f, const sf_verdict *v) {
+    char text[160];
+    if (v->limit_count < SF_LIMITS)
+        return;
+    snprintf(text, sizeof text, "%.9g g (limit %g g: %s)", f->injury.a_max_g, v->limits[0].bound,
+             sf_limit_phrase(&v->limits[0]));
+    put(A_MAX, text, limit_colour(&v->limits[0]));
+    snprintf(text, sizeof text, "%.9g, window %.2f to %.2f ms (limit %g: %s)", f->injury.hic.value,
+             1e3 * f->injury.hic.t1, 1e3 * f->injury.hic.t2, v->limits[1].bound,
+             sf_limit_phrase(&v->limits[1]));
+    put(HIC, text, limit_colour(&v->limits[1]));
+}
+
+static void show_motion(const sf_figures *f) {
+    char text[160];
+    if (f->rebounded)
+        snprintf(text, sizeof text, "%.9g m/s at %.2f ms", f->v_rebound, 1e3 * f->rebound_time);
+    else
+        snprintf(text, sizeof text, "not reached");
+    if (!f->driven)
+        put(REBOUND, text, NULL);
+    snprintf(text, sizeof text, "%.4g mm", 1e3 * f->max_indentation);
+    put(INDENTATION, text, NULL);
+    snprintf(text, sizeof text, "%.4g", f->max_local_strain);
+    put(STRAIN, text, NULL);
+}
+
+/* Puts them into the rows below the buttons, coloured by pass and fail; returns the sentence of the verdict in
+ * `line`. A run that has not ended or never touched has what is known. */
+static sf_status show_outcome(const sf_results *r, char *line, size_t size, sf_error *err) {
+    sf_figures f = {0};
+    sf_verdict verdict;
+    const sf_limits limits = SF_DEFAULT_LIMITS;
+    clear_outcome();
+    if (sf_figures_compute(r, FILTER, &f, err) == SF_OK) {
+        sf_verdict_compute(r, &f, &limits, &verdict);
+        sf_verdict_line(&verdict, line, size);
+        put(VERDICT, line,
+            verdict.grade == SF_GRADE_VALID     ? GOOD
+            : verdict.grade == SF_GRADE_REMARKS ? FAIR
+                                                : BAD);
+        if (f.touched) {
+            show_limits(&f, &verdict);
+            show_motion(&f);
+        }
+    }
+    sf_figures_free(&f);
+    return err->status;
+}
+
+static void plot(const char *title, int64_t count, const double *time, const double *value, double scale) {
+    double *x = malloc(2 * (size_t)count * sizeof *x + 1), *y = x ? x + count : NULL;
+    for (int64_t k = 0; x && k < count; k++) {
+        x[k] = 1e3 * time[k];
+        y[k] = value[k] / scale;
+    }
+    if (x)
+        sf_view_plot(title, "t [ms]", count, x, y);
+    free(x);
+}
+
+/* The curve of the figures so far, filtered as they are; the raw one, and its title says so, of a run that
+ * has no figures yet. */
+static void plot_outcome(const sf_results *r) {
+    const sf_history *h = &r->history;
+    sf_figures f = {0};
+    sf_error none = SF_ERROR_INIT;
+    char title[64];
+    if (sf_figures_compute(r, FILTER, &f, &none) == SF_OK) {
+        snprintf(title, sizeof title, "%s%sacceleration, CFC %d [g]", f.turns ? "resultant " : "",
+                 f.kinematic ? "kinematic " : "", FILTER);
+        plot(title, f.filtered.count, f.filtered.time, f.filtered.value, 1);
+    } else {
+        plot("raw, along the direction [g]", h->rows, h->time, h->acceleration, SF_STANDARD_GRAVITY);
+    }
+    sf_figures_free(&f);
+}
+
+/* ---- frames ---- */
 
 static const char FRAME[] = "1Drop/83frame";
 
@@ -39,7 +367,8 @@ static void show_missile(sf_pictures *p, const sf_case *c, const sf_pictures_pla
     free(move);
 }
 
-void sf_pictures_forget(sf_pictures *p) {
+/* Removes the results from the window, and releases their shape. */
+static void forget(sf_pictures *p) {
     sf_shape_free(&p->shape);
     p->seen = (sf_watch_stamp){0};
     p->frames = 0;
@@ -48,7 +377,7 @@ void sf_pictures_forget(sf_pictures *p) {
     sf_view_remove(SF_PICTURE_MISSILE);
     sf_view_remove(SF_PICTURE_CURVE);
     sf_window_remove(FRAME);
-    sf_outcome_clear();
+    clear_outcome();
 }
 
 /* Shows the geometries with the parameters of the tree. gmsh shows one model only: the missile is a picture.
@@ -56,7 +385,7 @@ void sf_pictures_forget(sf_pictures *p) {
 sf_status sf_pictures_show_geometry(sf_pictures *p, const sf_case *c, const sf_pictures_place *place,
                                     sf_fields *fields, sf_error *err) {
     sf_triangles missile = {0};
-    sf_pictures_forget(p);
+    forget(p);
     sf_geometry_clear();
     if (c->missile.path && sf_geometry_read_surface(c->missile.path, &missile, err) != SF_OK)
         return err->status;
@@ -95,9 +424,9 @@ void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit
     sf_error err = SF_ERROR_INIT;
     sf_model m = {0};
     double *zero = NULL;
-    sf_pictures_forget(p);
+    forget(p);
     if (sf_model_read(path, &m, NULL, &err) == SF_OK &&
-        sf_shape_of_model(&m, length_unit, &p->shape, &err) == SF_OK && begin_pictures(p, &err) == SF_OK) {
+        shape_of_model(&m, length_unit, &p->shape, &err) == SF_OK && begin_pictures(p, &err) == SF_OK) {
         int64_t most = p->shape.pad.node_count + p->shape.missile.node_count;
         zero = sf_alloc(&err, 3 * (unsigned long)most, sizeof *zero, "a picture");
     }
@@ -123,11 +452,11 @@ static void add_frames(sf_pictures *p, const sf_results *r, sf_error *err) {
     for (; p->frames < r->frame_count && err->status == SF_OK; p->frames++) {
         const sf_frame_head *head = &r->frames[p->frames];
         sf_shape_frame f;
-        if (sf_shape_read_frame(&p->shape, r, head, &f, err) != SF_OK)
+        if (read_shape_frame(&p->shape, r, head, &f, err) != SF_OK)
             return;
         sf_view_add(SF_PICTURE_PAD, p->frames, 1e3 * head->time, &p->shape.pad, f.pad, f.stress);
         sf_view_add(SF_PICTURE_MISSILE, p->frames, 1e3 * head->time, &p->shape.missile, f.missile, NULL);
-        sf_shape_frame_free(&f);
+        free_shape_frame(&f);
     }
 }
 
@@ -151,9 +480,9 @@ void sf_pictures_show_results(sf_pictures *p, const char *path, double length_un
     add_frames(p, &r, &err);
     if (p->frames > 0)
         show_frame(p, whole && err.status == SF_OK ? find_peak(&r) : p->frames - 1);
-    sf_outcome_plot(&r);
+    plot_outcome(&r);
     if (whole && err.status == SF_OK)
-        sf_outcome_show(&r, line, sizeof line, &err);
+        show_outcome(&r, line, sizeof line, &err);
     if (err.status == SF_OK)
         p->seen = now;
     sf_results_close(&r);

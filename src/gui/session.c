@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/session.h"
 
-#include "gui/cache.h"
-#include "gui/children.h"
+#include "gui/activity.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
+#include "io/process.h"
 #include "io/replace.h"
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder",
@@ -41,7 +40,7 @@ static void show_buttons(void) {
         {"1Drop/1Mesh", "mesh", "mesh the geometry and check the model (softfall-pre)"},
         {"1Drop/2Run", "run", "simulate the drop; one that was stopped goes on"},
         {"1Drop/3Stop", "stop", "end the run after the present step; Run goes on from there"},
-        {"1Drop/4Report", "report", "open report.html"},
+        {"1Drop/4Report", "report", "open report.html and view.html"},
         {"1Drop/5ParaView", "paraview", "open the frames in ParaView"},
         {"1Drop/6Save case", "save",
          "write the case with its geometry and material into a new folder of its own"},
@@ -49,6 +48,7 @@ static void show_buttons(void) {
     for (size_t k = 0; k < sizeof button / sizeof button[0]; k++)
         sf_window_put(&(sf_entry){
             .name = button[k][0], .kind = SF_ENTRY_BUTTON, .text = button[k][1], .help = button[k][2]});
+    sf_window_close_branch("0Modules"); /* its list of pictures would grow above the buttons */
 }
 
 /* The case's folder tells more than its own name. */
@@ -106,8 +106,10 @@ static sf_status read_case(sf_session *s, sf_error *err) {
         s->case_file = fresh;
         if (add_geometry(fresh.pad.path, "geometry.parameters", &fresh.pad, before, &s->fields, err) ==
                 SF_OK &&
-            fresh.missile.path)
-            add_geometry(fresh.missile.path, "geometry.missile_parameters", &fresh.missile, before,
+            (!fresh.missile.path || add_geometry(fresh.missile.path, "geometry.missile_parameters",
+                                                 &fresh.missile, before, &s->fields, err) == SF_OK) &&
+            fresh.support.path)
+            add_geometry(fresh.support.path, "geometry.support_parameters", &fresh.support, before,
                          &s->fields, err);
     }
     if (err->status != SF_OK)
@@ -256,7 +258,7 @@ static void show_results(sf_session *s, bool whole) {
 /* Removes the results of an earlier run from the folder, so that they do not stand beside those of the new
  * run. */
 static void remove_results(sf_session *s) {
-    static const char *const products[] = {"report.html", "pad.xdmf"};
+    static const char *const products[] = {"report.html", "view.html", "pad.xdmf"};
     char path[SF_RUN_PATH_SIZE + 64];
     sf_folder_remove_file(s->at.figures);
     sf_folder_remove_file(s->at.results);
@@ -331,7 +333,7 @@ static void show_finished(sf_session *s) {
     s->activity = SF_DONE;
     show_folder(s);
     show_results(s, true);
-    tell(s, false, "done earlier with the same values: see Results");
+    tell(s, false, "done earlier with the same values");
 }
 
 /* ---- the end of a program ---- */
@@ -351,7 +353,7 @@ static void tell_done(sf_session *s) {
         tell(s, false, "saved: softfall-pre and softfall-gui take the case.cfg of that folder");
         break;
     case SF_DONE:
-        tell(s, false, "done: see Results");
+        tell(s, false, "done");
         break;
     default:
         break;
@@ -437,18 +439,12 @@ static void tell_progress(sf_session *s) {
     free(log);
 }
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 void sf_session_refresh(sf_session *s) {
     static const double INTERVAL = 0.25; /* s */
     int code;
-    if (now() < s->next_look)
+    if (sf_process_now() < s->next_look)
         return;
-    s->next_look = now() + INTERVAL;
+    s->next_look = sf_process_now() + INTERVAL;
     if (s->activity == SF_RUNNING) {
         tell_progress(s);
         show_results(s, false);
@@ -497,7 +493,11 @@ static void leave(sf_session *s, const char *program, const char *argument) {
 
 static void open_report(sf_session *s) {
     char path[SF_RUN_PATH_SIZE + 64];
-    if (find_product(s, "report.html", path, sizeof path))
+    if (!find_product(s, "report.html", path, sizeof path))
+        return;
+    leave(s, "xdg-open", path);
+    snprintf(path, sizeof path, "%s/report/view.html", s->at.path);
+    if (is_there(path)) /* a large model may have none */
         leave(s, "xdg-open", path);
 }
 

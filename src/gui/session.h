@@ -8,8 +8,6 @@
 #include "gui/gmsh/window.h"
 #include "gui/pictures.h"
 #include "gui/activity.h"
-#include "gui/outcome.h"
-#include "gui/children.h"
 #include "io/process.h"
 
 typedef struct sf_session {

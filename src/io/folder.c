@@ -187,7 +187,8 @@ int64_t sf_folder_count(const char *path, const char *prefix) {
     return count;
 }
 
-uint64_t sf_folder_bytes(const char *path) {
+/* Bytes of the files in the folder. */
+static uint64_t folder_bytes(const char *path) {
     int handle = sf_folder_open(path);
     DIR *list = handle >= 0 ? list_folder(handle) : NULL;
     struct dirent *entry;
@@ -262,7 +263,7 @@ void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count
     if (!name_file(folder, kind, key, path) || sf_folder_own(folder, &none) != SF_OK)
         return;
     char *all = join(count, part, &size);
-    if (all && sf_folder_bytes(folder) + size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
+    if (all && folder_bytes(folder) + size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
         head h = {.key = key, .size = size, .hash = sf_hash(SF_HASH_START, all, size)};
         memcpy(h.magic, MAGIC, sizeof MAGIC);
         fwrite(&h, sizeof h, 1, file.file);

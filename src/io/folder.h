@@ -39,9 +39,6 @@ void sf_folder_leave(const char *path);
 /* The number of names in the folder that begin with `prefix`; 0 if it cannot be read. */
 int64_t sf_folder_count(const char *path, const char *prefix);
 
-/* Bytes of the files in the folder. */
-uint64_t sf_folder_bytes(const char *path);
-
 /* One file of this name, in a folder with the mark or that of a campaign (sweep.key): removed if it is a
  * plain file. */
 void sf_folder_remove_file(const char *path);

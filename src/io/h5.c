@@ -2,7 +2,7 @@
 #include "io/h5.h"
 
 #include "io/plain_file.h"
-#include "io/seal.h"
+#include "io/replace.h"
 #include <errno.h>
 #include <hdf5.h>
 #include <limits.h>
@@ -23,17 +23,10 @@ struct sf_h5 {
 };
 
 static hid_t native_type(sf_h5_type type) {
-    switch (type) {
-    case SF_H5_F64:
-        return H5T_NATIVE_DOUBLE;
-    case SF_H5_I32:
-        return H5T_NATIVE_INT32;
-    case SF_H5_I64:
-        return H5T_NATIVE_INT64;
-    case SF_H5_U8:
-        return H5T_NATIVE_UINT8;
-    }
-    return H5T_NATIVE_DOUBLE;
+    return type == SF_H5_I32   ? H5T_NATIVE_INT32
+           : type == SF_H5_I64 ? H5T_NATIVE_INT64
+           : type == SF_H5_U8  ? H5T_NATIVE_UINT8
+                               : H5T_NATIVE_DOUBLE;
 }
 
 static size_t type_size(sf_h5_type type) {
@@ -50,10 +43,7 @@ static sf_status wrap(hid_t id, const char *path, bool alone, sf_h5 **file, sf_e
         H5Fclose(id);
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory opening %s", path);
     }
-    made->id = id;
-    made->path = copy;
-    made->alone = alone;
-    made->checked = checked;
+    *made = (sf_h5){id, copy, alone, checked};
     *file = made;
     return SF_OK;
 }
@@ -510,8 +500,7 @@ static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h
     if (found != expected)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
                        expected == H5T_FLOAT ? "floating-point" : "integer");
-    if (check_shape(file, path, set, size, rank, dims, &count, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_shape(file, path, set, size, rank, dims, &count, err));
     *data = sf_alloc(err, count, type_size(type), path);
     if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0) {
         SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", file->path, path);
@@ -525,8 +514,7 @@ sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int r
                      void **data, sf_error *err) {
     hid_t set = -1;
     *data = NULL;
-    if (open_dataset(file, path, &set, err) != SF_OK)
-        return err->status;
+    SF_TRY(open_dataset(file, path, &set, err));
     read_items(file, path, set, type, rank, dims, data, err);
     H5Dclose(set);
     return err->status;
@@ -534,8 +522,7 @@ sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int r
 
 sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err) {
     void *data = NULL;
-    if (sf_h5_read(file, path, SF_H5_F64, 0, NULL, &data, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read(file, path, SF_H5_F64, 0, NULL, &data, err));
     *value = *(double *)data;
     free(data);
     return SF_OK;
@@ -553,8 +540,7 @@ static char *text_buffer(hid_t type, hid_t space, uint64_t limit) {
 sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_error *err) {
     *text = NULL;
     hid_t set = -1;
-    if (open_dataset(file, path, &set, err) != SF_OK)
-        return err->status;
+    SF_TRY(open_dataset(file, path, &set, err));
     hid_t type = H5Dget_type(set), space = H5Dget_space(set);
     char *buffer = text_buffer(type, space, size_of_file(set));
     if (!buffer || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0) {
@@ -594,8 +580,7 @@ static sf_status open_attribute(const sf_h5 *file, const char *object, const cha
 sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char *name, char *text,
                               size_t size, sf_error *err) {
     hid_t id = -1;
-    if (open_attribute(file, object, name, &id, err) != SF_OK)
-        return err->status;
+    SF_TRY(open_attribute(file, object, name, &id, err));
     hid_t type = H5Aget_type(id), space = H5Aget_space(id);
     char *buffer = text_buffer(type, space, SF_H5_ATTRIBUTE_SIZE);
     if (!buffer || H5Aread(id, type, buffer) < 0)
@@ -630,8 +615,7 @@ sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *n
 sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const char *name, int64_t *value,
                                   sf_error *err) {
     hid_t id = -1;
-    if (open_attribute(file, object, name, &id, err) != SF_OK)
-        return err->status;
+    SF_TRY(open_attribute(file, object, name, &id, err));
     hid_t space = H5Aget_space(id);
     if (H5Sget_simple_extent_npoints(space) != 1 || H5Aread(id, H5T_NATIVE_INT64, value) < 0)
         SF_FAIL(err, SF_ERR_IO, "%s: attribute %s of %s is not one integer", file->path, name, object);

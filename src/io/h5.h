@@ -94,7 +94,7 @@ sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const c
  * row) at a time. */
 sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *err);
 /* Makes `path` stand for the object of the same path in another file, named relative to the folder of this
- * one: a sealed file (io/seal.h) of the folder of its run, or nothing reads it. */
+ * one: a sealed file (io/replace.h) of the folder of its run, or nothing reads it. */
 sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error *err);
 
 /* "1.10.8", static storage. */

@@ -158,8 +158,7 @@ static sf_status pass(const char *path, const char *what, int *handle, struct st
     *handle = -1;
     if (stat(path, info) != 0)
         return fail_reading(path, what, SF_ERR_INPUT, err);
-    if (refuse_kind(path, what, info, err) != SF_OK)
-        return err->status;
+    SF_TRY(refuse_kind(path, what, info, err));
     int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
     if (file < 0)
         return fail_reading(path, what, SF_ERR_INPUT, err);
@@ -176,8 +175,7 @@ static sf_status pass(const char *path, const char *what, int *handle, struct st
 
 sf_status sf_plain_open(const char *path, const char *what, int *handle, uint64_t *size, sf_error *err) {
     struct stat info;
-    if (pass(path, what, handle, &info, err) != SF_OK)
-        return err->status;
+    SF_TRY(pass(path, what, handle, &info, err));
     if (enter(path, &info, NULL, err) != SF_OK) {
         close(*handle);
         *handle = -1;
@@ -264,8 +262,7 @@ static sf_status read_all(reading *r, const struct stat *before, sf_error *err) 
 static sf_status take(reading *r, sf_error *err) {
     struct stat info;
     r->hash = SF_HASH_START;
-    if (pass(r->path, r->what, &r->file, &info, err) != SF_OK)
-        return err->status;
+    SF_TRY(pass(r->path, r->what, &r->file, &info, err));
     read_all(r, &info, err);
     close(r->file);
     if (err->status != SF_OK || !r->keep) {
@@ -279,8 +276,7 @@ sf_status sf_plain_read(const char *path, const char *what, uint64_t largest, ch
                         sf_error *err) {
     reading r = {.path = path, .what = what, .largest = largest, .keep = true};
     *text = NULL;
-    if (take(&r, err) != SF_OK)
-        return err->status;
+    SF_TRY(take(&r, err));
     r.text[r.length] = '\0';
     *text = r.text;
     if (size)

@@ -235,13 +235,8 @@ static sf_status await_job(job *jobs, int count, sf_error *result, int *index, s
     return child > 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "a process of a batch is lost: %s", strerror(errno));
 }
 
-sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
-                          sf_error *err) {
-    return sf_process_pool_watched(count, jobs, work, NULL, context, result, err);
-}
-
-sf_status sf_process_pool_watched(int count, int jobs, sf_process_work work, sf_process_watch watcher,
-                                  void *context, sf_error *result, sf_error *err) {
+sf_status sf_process_pool(int count, int jobs, sf_process_work work, sf_process_watch watcher, void *context,
+                          sf_error *result, sf_error *err) {
     job at[SF_PROCESS_JOBS] = {{0}};
     int next = 0, busy = 0, ended = 0;
     notice_children();
@@ -353,4 +348,10 @@ void sf_child_end(sf_child *child, double patience) {
     kill(-child->process, SIGKILL);
     waitpid(child->process, NULL, 0);
     child->process = 0;
+}
+
+double sf_process_now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }

@@ -52,21 +52,17 @@ enum { SF_PROCESS_JOBS = 64 }; /* side by side, at most */
 /* Work that sf_process_pool has done in a process of its own. */
 typedef sf_status (*sf_process_work)(void *context, int index, sf_error *err);
 
+/* Called in this process each time that a copy has ended; `ended` of `count` have so far. */
+typedef void (*sf_process_watch)(void *context, int index, int ended, const sf_error *result);
+
 /* Calls `work` for every index below `count`, `jobs` at a time (at most SF_PROCESS_JOBS), each in a copy
  * of this process that ends with the call: its changes of the memory are lost, its failure comes back in
  * result[index] (the source line apart); a copy that a signal ended gives SF_ERR_LIBRARY with
  * SF_PROCESS_KILLED. Signals are passed on to the copies and by these to their stoppable programs; after a
  * signal no more is begun (SF_INTERRUPTED). A copy ends when this process does. The call waits for all of
  * them. `err`: a copy cannot be made. */
-sf_status sf_process_pool(int count, int jobs, sf_process_work work, void *context, sf_error *result,
-                          sf_error *err);
-
-/* Called in this process each time that a copy has ended; `ended` of `count` have so far. */
-typedef void (*sf_process_watch)(void *context, int index, int ended, const sf_error *result);
-
-/* The same, with a watch (NULL: none). */
-sf_status sf_process_pool_watched(int count, int jobs, sf_process_work work, sf_process_watch watch,
-                                  void *context, sf_error *result, sf_error *err);
+sf_status sf_process_pool(int count, int jobs, sf_process_work work, sf_process_watch watch, void *context,
+                          sf_error *result, sf_error *err);
 
 /* A program that runs beside this one and is asked from time to time: it and what it starts are a process
  * group of their own, and it gets SIGTERM when this process ends, in whatever way. */
@@ -91,4 +87,8 @@ bool sf_child_poll(sf_child *child, int *exit_code);
 void sf_child_ask_to_end(const sf_child *child);
 /* Ends them: asks, and after `patience` seconds ends them by force. Returns when they are gone. */
 void sf_child_end(sf_child *child, double patience);
+
+/* Seconds on a clock that only goes forward. */
+double sf_process_now(void);
+
 #endif

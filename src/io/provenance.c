@@ -8,8 +8,7 @@
 #include <time.h>
 
 sf_status sf_provenance_mark(sf_h5 *file, const char *format, sf_error *err) {
-    if (sf_h5_set_attribute(file, "/", "format", format, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_set_attribute(file, "/", "format", format, err));
     return sf_h5_set_attribute_i64(file, "/", "format_version", SF_FORMAT_VERSION, err);
 }
 
@@ -55,8 +54,7 @@ sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *f
         return SF_FAIL(err, SF_ERR_IO, "%s is an HDF5 file, but not a %s file", path, format);
     if (strcmp(found, format) != 0)
         return SF_FAIL(err, SF_ERR_IO, "%s is a %s file, expected a %s file", path, found, format);
-    if (sf_h5_get_attribute_i64(file, "/", "format_version", &version, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_get_attribute_i64(file, "/", "format_version", &version, err));
     if (version != SF_FORMAT_VERSION)
         return SF_FAIL(err, SF_ERR_IO, "%s has format version %lld; this program reads version %d", path,
                        (long long)version, SF_FORMAT_VERSION);
@@ -67,12 +65,10 @@ sf_status sf_provenance_copy(const sf_h5 *from, sf_h5 *to, sf_error *err) {
     int64_t count = sf_h5_group_size(from, "/provenance");
     for (int64_t k = 0; k < count; k++) {
         char name[128], source[160], target[176], *text = NULL;
-        if (sf_h5_group_member(from, "/provenance", k, name, sizeof name, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_h5_group_member(from, "/provenance", k, name, sizeof name, err));
         snprintf(source, sizeof source, "/provenance/%s", name);
         snprintf(target, sizeof target, "/provenance/model/%s", name);
-        if (sf_h5_read_text(from, source, &text, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_h5_read_text(from, source, &text, err));
         sf_h5_info info = {target, "1", "of the model"};
         sf_status status = sf_h5_write_text(to, &info, text, err);
         free(text);

@@ -488,8 +488,7 @@ static sf_status read_number(csv *file, const char *name, const char *text, doub
     if (!sf_table_number(text, value))
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number%s", file->path, file->line, name,
                        text, *text ? " (a number such as 12.5 is expected)" : " (the cell is empty)");
-    if (check_mark(file, name, text, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_mark(file, name, text, err));
     if (!isfinite(*value))
         return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not finite", file->path, file->line, name,
                        text);
@@ -555,8 +554,7 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
     sf_table_split(line, file->separator, false, &cells);
     if (is_blank_row(&cells))
         return SF_OK;
-    if (check_count(file, count_cells(file, &cells), err) != SF_OK)
-        return err->status;
+    SF_TRY(check_count(file, count_cells(file, &cells), err));
     for (int k = 0; k < SF_TABLE_PARTS; k++)
         if (file->heading.part[k] >= 0 && file->layout->part[k] && cells.count > file->heading.part[k] &&
             !is_part(cells.cell[file->heading.part[k]], file->layout->part[k]))
@@ -644,8 +642,7 @@ static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, 
     while ((line = next_content(file))) {
         if (file->table->count > 0 && ends_table(file, line))
             break;
-        if (read_point(file, line, err) != SF_OK)
-            return err->status;
+        SF_TRY(read_point(file, line, err));
     }
     int footer = line ? file->line : 0;
     if (file->comma && !file->decimal)

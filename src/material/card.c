@@ -152,16 +152,16 @@ sf_status sf_material_check(const sf_material *m, int64_t index, sf_error *err) 
 }
 
 uint64_t sf_material_hash(uint64_t hash, const sf_material *m) {
-    hash = sf_hash(hash, m->name, strlen(m->name));
-    hash = sf_hash(hash, m->law->name, strlen(m->law->name));
+    hash = sf_hash_identity(hash, m->name, strlen(m->name));
+    hash = sf_hash_identity(hash, m->law->name, strlen(m->law->name));
     for (int k = 0; k < m->law->parameter_count; k++)
         if (m->law->parameter[k].kind <= SF_PARAMETER_CHOICE) /* 8 bytes each */
-            hash = sf_hash(hash, (const char *)m->card + m->law->parameter[k].offset, 8);
+            hash = sf_hash_identity(hash, (const char *)m->card + m->law->parameter[k].offset, 8);
     const sf_law_curves *c = sf_material_curves(m);
     if (!c || c->curve_count == 0)
         return hash;
-    hash = sf_hash(hash, c->curve_rate, (size_t)c->curve_count * sizeof *c->curve_rate);
-    hash = sf_hash(hash, c->curve_ptr, (size_t)(c->curve_count + 1) * sizeof *c->curve_ptr);
-    hash = sf_hash(hash, c->curve_strain, (size_t)c->curve_points * sizeof *c->curve_strain);
-    return sf_hash(hash, c->curve_stress, (size_t)c->curve_points * sizeof *c->curve_stress);
+    hash = sf_hash_identity(hash, c->curve_rate, (size_t)c->curve_count * sizeof *c->curve_rate);
+    hash = sf_hash_identity(hash, c->curve_ptr, (size_t)(c->curve_count + 1) * sizeof *c->curve_ptr);
+    hash = sf_hash_identity(hash, c->curve_strain, (size_t)c->curve_points * sizeof *c->curve_strain);
+    return sf_hash_identity(hash, c->curve_stress, (size_t)c->curve_points * sizeof *c->curve_stress);
 }

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "base/error.h"
+#include "base/lanes.h"
 #include "base/units.h"
 
 /* sf_law: a material law, as one constant entry of the table in material/laws.h (which says how to add
@@ -125,6 +126,8 @@ typedef struct sf_law {
     /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. Stress, energies, and
      * the stiffness bounds for the time step. */
     void (*update)(const void *numbers, double dt, struct sf_law_batch *batch);
+    /* Advances the history [SF_LAW_HISTORY] of points over a pause (s) at rest. */
+    void (*rest)(const void *numbers, double pause, double (*history)[SF_LANES]);
     /* J m-3, energy of loading in uniaxial compression to `strain`; beyond the data that at their end. */
     double (*energy)(const void *numbers, double strain);
     /* Advances a point under uniaxial compression with the lateral stretches held at 1 to `strain` over dt

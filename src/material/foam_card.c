@@ -19,8 +19,21 @@ bool sf_foam_has_informed(const void *card) {
     return ((const sf_foam_shared *)card)->informed_strain > 0;
 }
 
+bool sf_foam_has_memory(const void *card) {
+    return sf_memory_acts(&((const sf_foam_shared *)card)->memory);
+}
+bool sf_foam_has_recovery(const void *card) {
+    return ((const sf_foam_shared *)card)->memory.recovery > 0;
+}
+
 sf_status sf_foam_check_shared(const void *card, sf_error *err) {
     const sf_foam_shared *foam = card;
+    if (sf_foam_has_memory(card) && foam->hysteresis_hu == 1)
+        return SF_FAIL(
+            err, SF_ERR_MODEL,
+            "memory.reload is %g and memory.recovery %g, but HU is 1: without hysteresis there is no "
+            "softening to remember; give HU, SHAPE and ALPHA of the unloading",
+            foam->memory.reload, foam->memory.recovery);
     if (foam->hysteresis_alpha == 1 || foam->hysteresis_shape >= SF_UNLOADING_LEAST_SHAPE)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_MODEL,
@@ -31,7 +44,7 @@ sf_status sf_foam_check_shared(const void *card, sf_error *err) {
 sf_status sf_foam_check_shared_keys(const sf_foam_shared *foam, const sf_given *given, const char **place,
                                     sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
-    *place = "material.SHAPE";
+    *place = foam->hysteresis_hu == 1 ? "material.memory" : "material.SHAPE";
     if (sf_foam_check_shared(foam, &inner) != SF_OK)
         return SF_FAIL(err, SF_ERR_INPUT, "material.%s", inner.text);
     *place = "material.ED";

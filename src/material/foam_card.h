@@ -2,6 +2,7 @@
 #ifndef SF_MATERIAL_FOAM_CARD_H
 #define SF_MATERIAL_FOAM_CARD_H
 #include "material/card.h"
+#include "material/memory.h"
 
 /* The card of the low-density foam (docs/theory.md, section "Foam"); material/low_density_foam.c
  * declares key, bounds and default of each member. And what the cards of all foam laws begin with
@@ -24,7 +25,8 @@ enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
     double rate_factor;      /* -, by which stress of loading grows with each decade of rate; 0: none */     \
     double rate_reference;   /* s-1, rate up to which it does not */                                         \
     double rate_filter_time; /* s, time constant of the strain rate */                                       \
-    double informed_strain;  /* -, up to here the data of the material inform the law; 0 = data_end */
+    sf_memory memory;                                                                                        \
+    double informed_strain; /* -, up to here the data of the material inform the law; 0 = data_end */
 typedef struct sf_foam_shared {
     SF_FOAM_SHARED
 } sf_foam_shared;
@@ -64,6 +66,8 @@ bool sf_foam_has_maxwell(const void *card);
 bool sf_foam_has_kelvin(const void *card);
 bool sf_foam_has_rate_factor(const void *card);
 bool sf_foam_has_informed(const void *card);
+bool sf_foam_has_memory(const void *card);
+bool sf_foam_has_recovery(const void *card);
 
 /* Checks the bounds that SHAPE and ALPHA have together; SF_ERR_MODEL. */
 sf_status sf_foam_check_shared(const void *card, sf_error *err);
@@ -101,6 +105,22 @@ sf_status sf_foam_check_shared_keys(const sf_foam_shared *card, const sf_given *
     {"material", "eta", SF_PARAMETER_QUANTITY, "\"0 Pa s\"", SF_FOAM_AT(kelvin_viscosity), \
      "Kelvin viscosity; bounds the time step", .quantity = SF_VISCOSITY, .high = 1e9, \
      SF_FOAM_IN("Pa s", 1), .acts = sf_foam_has_kelvin}
+#define SF_FOAM_MEMORY_NUMBER(key, fallback, member, meaning, most, has) \
+    {"material.memory", key, SF_PARAMETER_NUMBER, fallback, SF_FOAM_AT(memory.member), meaning, .high = most, .acts = has}
+#define SF_FOAM_MEMORIES \
+    SF_FOAM_MEMORY_NUMBER("reload", "0.0", reload, \
+     "part of what unloading takes from the stress that a second loading, up to the largest energy so far, has again; " \
+     "0 = it follows unloading", 1.0, sf_foam_has_memory), \
+    SF_FOAM_MEMORY_NUMBER("drift", "0.0", drift, \
+     "fall of `reload` from loading to loading: reload / (1 + drift (n - 1)) in the n-th second loading", 10.0, \
+     sf_foam_has_memory), \
+    SF_FOAM_MEMORY_NUMBER("recovery", "0.0", recovery, \
+     "part of the softening that each decade of time at rest takes back, between drops", 1.0, sf_foam_has_recovery), \
+    {"material.memory", "recovery_start", SF_PARAMETER_QUANTITY, "\"1 s\"", SF_FOAM_AT(memory.start), \
+     "time at rest from which its decades count: log10(1 + t / recovery_start)", .quantity = SF_TIME, .low = 1e-3, \
+     .high = 1e6, SF_FOAM_IN("s", 1), .acts = sf_foam_has_recovery}, \
+    SF_FOAM_MEMORY_NUMBER("permanent", "0.0", permanent, "part of the softening that never recovers", 1.0, \
+     sf_foam_has_recovery)
 #define SF_FOAM_RATE_FACTOR(reference) \
     {"material", "rate_factor", SF_PARAMETER_NUMBER, "0.0", SF_FOAM_AT(rate_factor), \
      "part by which the stress of loading grows with each decade of the strain rate above `rate_reference`", \

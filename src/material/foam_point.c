@@ -22,6 +22,7 @@ sf_foam_options sf_foam_options_build(const sf_foam_shared *card) {
         .rate_factor = card->rate_factor,
         .rate_reference = card->rate_reference,
         .filter_time = card->rate_filter_time,
+        .memory = card->memory,
     };
     sf_unloading_build(card->hysteresis_hu, card->hysteresis_shape, card->hysteresis_alpha, &o.unloading);
     return o;
@@ -201,8 +202,12 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
     if (kind->ahead && dt > 0)
         look_ahead(kind, dt, b, rate_of_e, &law);
     memcpy(b->energy, law.energy, sizeof b->energy);
-    sf_unloading_lanes(&foam->unloading, b->energy, b->history[SF_FOAM_PEAK], b->factor, softening, b->stored,
-                       b->lost);
+    if (sf_memory_acts(&foam->memory))
+        sf_memory_lanes(&foam->memory, &foam->unloading, b->energy, b->history[SF_FOAM_PEAK],
+                        b->history + SF_FOAM_MEMORY, b->factor, softening, b->stored, b->lost);
+    else
+        sf_unloading_lanes(&foam->unloading, b->energy, b->history[SF_FOAM_PEAK], b->factor, softening,
+                           b->stored, b->lost);
     for (int i = 0; i < 3; i++)
 #pragma omp simd
         for (int l = 0; l < SF_LANES; l++)
@@ -325,9 +330,28 @@ SF_KERNEL void sf_foam_point_update(const sf_foam_options *foam, const sf_foam_k
         damping_stress(dt, eta, a, b);
 }
 
+void sf_foam_point_rest(const sf_foam_options *foam, double pause, double history[SF_LAW_HISTORY][SF_LANES]) {
+    double left = exp(-foam->maxwell_rate * pause);
+    for (int l = 0; l < SF_LANES; l++) {
+        sf_memory_point point;
+        for (int k = 0; k < 4; k++)
+            ((double *)&point)[k] = history[SF_FOAM_MEMORY + k][l];
+        sf_memory_rest(&foam->memory, pause, &point);
+        history[SF_FOAM_MEMORY + 3][l] = point.recovered;
+        for (int k = 0; k < 6; k++) {
+            history[SF_FOAM_MAXWELL + k][l] *= left;
+            history[SF_FOAM_OVERSTRESS + k][l] = 0;
+        }
+        history[SF_FOAM_RATE][l] *= exp(-pause / foam->filter_time);
+    }
+}
+
 double sf_foam_axial_factor(const sf_foam_options *foam, double energy, sf_uniaxial *point) {
     double *peak = &point->history[SF_FOAM_PEAK];
     const sf_unloading *u = &foam->unloading;
+    if (sf_memory_acts(&foam->memory))
+        return sf_memory_advance(&foam->memory, u, energy, peak,
+                                 (sf_memory_point *)&point->history[SF_FOAM_MEMORY]);
     if (energy < *peak)
         return sf_unloading_factor(u->hu, u->shape, u->alpha, energy / *peak);
     *peak = energy;

@@ -6,6 +6,7 @@
 #include "base/lanes.h"
 #include "material/foam_card.h"
 #include "material/laws.h"
+#include "material/memory.h"
 #include "material/unloading.h"
 
 /* The common part of the foam laws at a material point: a law gives the loading energy W of the principal
@@ -23,7 +24,8 @@
     double kelvin;                      /* Pa s, eta */                                                      \
     double rate_factor, rate_reference; /* -, s-1 */                                                         \
     double filter_time;                 /* s */                                                              \
-    sf_unloading unloading;
+    sf_unloading unloading;                                                                                  \
+    sf_memory memory;
 typedef struct sf_foam_options {
     SF_FOAM_OPTIONS
 } sf_foam_options;
@@ -36,6 +38,7 @@ enum {
     SF_FOAM_RATE = 1,       /* s-1, filtered rate of compression */
     SF_FOAM_MAXWELL = 2,    /* [6] Pa, second Piola-Kirchhoff stress of the Maxwell branch */
     SF_FOAM_OVERSTRESS = 8, /* [6] Pa, that of the rate factor or of the curves of several rates */
+    SF_FOAM_MEMORY = 14,    /* [4] sf_memory_point */
 };
 
 /* The loading law at a batch. */
@@ -74,6 +77,10 @@ typedef struct sf_foam_kind {
 /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
 void sf_foam_point_update(const sf_foam_options *options, const sf_foam_kind *kind, double dt,
                           sf_law_batch *batch);
+
+/* sf_law.rest: memory, and what viscous stresses a rest of `pause` (s) leaves. */
+void sf_foam_point_rest(const sf_foam_options *options, double pause,
+                        double history[SF_LAW_HISTORY][SF_LANES]);
 
 /* For an overstress: advances the filtered rate, of the most compressed direction (theory eq. 22). */
 void sf_foam_point_filter(const sf_foam_options *options, double dt, sf_law_batch *batch,

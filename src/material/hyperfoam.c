@@ -50,6 +50,7 @@ static const sf_parameter parameters[] = {
     {"material", "stable_to", SF_PARAMETER_NUMBER, "0.9", AT(stable_to),
      "strain up to which the terms must be stable (Drucker), in compression, tension and shear", .low = 0.01, .high = 0.99},
     SF_FOAM_PARAMETERS,
+    SF_FOAM_MEMORIES,
     SF_FOAM_RATE_FACTOR("strain rate of the terms"),
     SF_FOAM_RATE_FILTER("in `rate_factor`", sf_foam_has_rate_factor),
     SF_FOAM_INFORMED,
@@ -173,6 +174,7 @@ static const sf_history_variable history[] = {
     {"rate", "s-1", SF_FOAM_RATE, 1, sf_foam_has_rate_factor},
     {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
     {"overstress", "Pa", SF_FOAM_OVERSTRESS, 6, sf_foam_has_rate_factor},
+    {"memory", "SI", SF_FOAM_MEMORY, 4, sf_foam_has_memory},
 };
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {
@@ -190,6 +192,10 @@ static void update(const void *numbers, double dt, sf_law_batch *batch) {
 static sf_hyperfoam_point confined(const sf_hyperfoam *foam, double strain) {
     const double stretch[3] = {1 - fmin(strain, 1 - 1e-6), 1, 1};
     return sf_hyperfoam_evaluate(foam, stretch);
+}
+
+static void rest(const void *numbers, double pause, double (*kept)[SF_LANES]) {
+    sf_foam_point_rest(&((const sf_hyperfoam *)numbers)->options, pause, kept);
 }
 
 static double energy(const void *numbers, double strain) {
@@ -230,6 +236,7 @@ const sf_law sf_hyperfoam_law = {
     .build = build,
     .release = free,
     .update = update,
+    .rest = rest,
     .energy = energy,
     .uniaxial = uniaxial,
 };

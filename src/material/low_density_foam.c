@@ -256,8 +256,10 @@ static const sf_parameter parameters[] = {
     {"material", "curve", SF_PARAMETER_CURVE, "", AT(curves),
      "compression curve, a CSV file (see below); relative to the file that names it"},
     {"material", "curves", SF_PARAMETER_CURVES, "", AT(curves),
-     "instead of `curve`: curves at several strain rates, ascending: ( { rate = \"0.0017 1/s\"; file = \"slow.csv\"; }, ... )"},
+     "instead of `curve`: curves at several strain rates, ascending: ( { rate = \"0.0017 1/s\"; file = \"slow.csv\"; }, ... ), or at several " \
+     "temperatures, with `temperature` in place of `rate`, between which `pad.temperature` lies"},
     SF_FOAM_PARAMETERS,
+    SF_FOAM_MEMORIES,
     {"material", "tension_cutoff", SF_PARAMETER_QUANTITY, "\"none\"", AT(tension_cutoff),
      "largest tensile nominal stress, or \"none\"", .quantity = SF_PRESSURE, SF_FOAM_POSITIVE, .high = 1e12,
      .words = "none", .word_value = NO_CUTOFF, SF_FOAM_IN("kPa", 1e3), .acts = has_cutoff},
@@ -390,6 +392,7 @@ static const sf_history_variable history[] = {
     {"rate", "s-1", SF_FOAM_RATE, 1, has_rates},
     {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
     {"overstress", "Pa", SF_FOAM_OVERSTRESS, 6, has_rates},
+    {"memory", "SI", SF_FOAM_MEMORY, 4, sf_foam_has_memory},
 };
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {
@@ -409,6 +412,10 @@ static void release(void *numbers) {
 
 static void update(const void *numbers, double dt, sf_law_batch *batch) {
     sf_foam_update(numbers, dt, batch);
+}
+
+static void rest(const void *numbers, double pause, double (*kept)[SF_LANES]) {
+    sf_foam_point_rest(&((const sf_foam *)numbers)->options, pause, kept);
 }
 
 static double energy(const void *numbers, double strain) {
@@ -445,6 +452,7 @@ const sf_law sf_low_density_foam = {
     .build = build,
     .release = release,
     .update = update,
+    .rest = rest,
     .energy = energy,
     .uniaxial = uniaxial,
 };

@@ -2,7 +2,6 @@
 #include "model/flight.h"
 
 #include "base/mat3.h"
-#include "base/rigid.h"
 #include <math.h>
 
 static const double LARGEST_TURN =

@@ -2,10 +2,13 @@
 #include "model/model.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mat3.h"
+#include "material/low_density_foam.h"
+#include "material/foam_card.h"
 
 #define ARRAY(member, type, rows, extra, columns, path, units, text)                                         \
     {                                                                                                        \
@@ -74,6 +77,27 @@ static const sf_model_field fields[] = {
     {offsetof(sf_model, skin_triangle), I32, offsetof(sf_model, skin_count), 0, 3, "/skin/triangle", "1",
      "their nodes, outwards", true, false},
     LATER_SCALAR(skin_friction, F64, "/skin/friction", "1", "Coulomb coefficient between them"),
+    LATER_SCALAR(skin_alone, I64, "/skin/alone", "1", "1: they touch the support only"),
+    LATER_SCALAR(support_node_count, I64, "/support/node_count", "1", "nodes of the rigid support's surface"),
+    LATER_SCALAR(support_triangle_count, I64, "/support/triangle_count", "1",
+                 "triangles of it, 0: there is none"),
+    {offsetof(sf_model, support_position), F64, offsetof(sf_model, support_node_count), 0, 3,
+     "/support/position", "m", "their positions", true, false},
+    {offsetof(sf_model, support_triangle), I32, offsetof(sf_model, support_triangle_count), 0, 3,
+     "/support/triangle", "1", "outward triangles", true, false},
+    LATER_SCALAR(support_friction, F64, "/support/friction", "1", "Coulomb coefficient against the pad"),
+    LATER_SCALAR(support_travel, F64, "/support/travel", "m",
+                 "of the missile along its direction until it touches the support, 0: never"),
+    LATER_SCALAR(membrane_count, I64, "/membrane/count", "1", "triangles of the membrane, 0: there is none"),
+    {offsetof(sf_model, membrane_triangle), I32, offsetof(sf_model, membrane_count), 0, 3,
+     "/membrane/triangle", "1", "their nodes", true, false},
+    OPTIONAL_ARRAY(membrane_share, F64, membrane_count, "/membrane/share", "1",
+                   "part of the thickness: 0.5 of the triangles on both diagonals of a quadrangle"),
+    LATER_SCALAR(membrane.modulus, F64, "/membrane/modulus", "Pa", "Young's modulus"),
+    LATER_SCALAR(membrane.poisson, F64, "/membrane/poisson", "1", "Poisson's ratio"),
+    LATER_SCALAR(membrane.thickness, F64, "/membrane/thickness", "m", "thickness"),
+    LATER_SCALAR(membrane.density, F64, "/membrane/density", "kg m-3", "density"),
+    LATER_SCALAR(membrane.fabric, I64, "/membrane/fabric", "1", "1: no compression"),
     OPTIONAL_SCALAR(anvil.depth, F64, "/anvil/depth", "m",
                     "of the anvil below the undeformed pad's top, 0: there is none"),
     OPTIONAL_SCALAR(anvil.friction, F64, "/anvil/friction", "1", "Coulomb coefficient against a resting pad"),
@@ -152,6 +176,8 @@ static const sf_model_field fields[] = {
                  "standard deviation of the missile's speed over it"),
     LATER_SCALAR(run.thickness_tolerance, F64, "/run/thickness_tolerance", "m",
                  "standard deviation of the pad's thickness"),
+    LATER_SCALAR(run.drops, F64, "/run/drops", "1", "drops of a series on one pad; 0: a single drop"),
+    LATER_SCALAR(run.interval, F64, "/run/interval", "s", "from one drop of a series to the next"),
     SCALAR(run.stabilisation, F64, "/run/stabilisation", "1", "stabilisation coefficient"),
     SCALAR(run.energy_limit, F64, "/run/energy_limit", "1", "energy error that stops the run"),
     SCALAR(run.frame_interval, F64, "/run/frame_interval", "s", "time between frames"),
@@ -168,6 +194,15 @@ const sf_model_field *sf_model_fields(size_t *count) {
 
 double sf_model_whole(const sf_model *model) {
     return (double)model->symmetry_factor;
+}
+
+void sf_model_series_file(const char *results, int64_t drop, char *path, size_t size) {
+    size_t length = strlen(results);
+    const char *end = length > 3 && strcmp(results + length - 3, ".h5") == 0 ? ".h5" : "";
+    if (drop > 1)
+        snprintf(path, size, "%.*s-%lld%s", (int)(length - strlen(end)), results, (long long)drop, end);
+    else
+        snprintf(path, size, "%s", results);
 }
 
 bool sf_missile_is_driven(const sf_model *model) {
@@ -200,6 +235,20 @@ double sf_model_informed_strain(const sf_model *model) {
     for (int64_t k = 0; k < model->material_count; k++)
         least = fmin(least, sf_material_informed(&model->material[k]));
     return least;
+}
+
+double sf_model_lock_up(const sf_model *model, double *begin) {
+    static const double BENDS = 0.95; /* of the pole, of a table that reaches farther */
+    *begin = NAN;
+    /* by name: the two shared libraries each have the laws at addresses of their own */
+    if (model->material_count != 1 || strcmp(model->material[0].law->name, sf_low_density_foam.name) != 0)
+        return NAN;
+    const sf_foam_card *card = sf_foam_card_of(&model->material[0]);
+    double pole = card->densification_limit, start = card->densification_start;
+    if (!(pole < 1))
+        return NAN;
+    *begin = fmin(BENDS * pole, start > 0 ? start : card->curve_strain[card->curve_points - 1]);
+    return pole;
 }
 
 double sf_model_density(const sf_model *model) {

@@ -69,8 +69,20 @@ typedef struct sf_anvil_card {
     double friction; /* -, Coulomb coefficient against a resting pad */
 } sf_anvil_card;
 
+/* Deepest place, of the spacing, from which a node begins to touch a face from outside. */
+#define SF_CONTACT_ENTRY 0.01
+
 /* Least stabilisation of foam that folds: with less it does so from node to node. */
 #define SF_FOLD_STABILISATION 0.3
+
+/* A thin elastic cover without cells. */
+typedef struct sf_membrane_card {
+    double modulus;   /* Pa, Young's */
+    double poisson;   /* - */
+    double thickness; /* m */
+    double density;   /* kg m-3 */
+    int64_t fabric;   /* 1: it carries no compression */
+} sf_membrane_card;
 
 typedef struct sf_run_options {
     double end_time;            /* s */
@@ -84,6 +96,8 @@ typedef struct sf_run_options {
     int64_t kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
     double speed_scatter;       /* -, standard deviation of the missile's speed over it, for figures only */
     double thickness_tolerance; /* m, standard deviation of the pad's thickness, for figures only */
+    double drops;               /* -, of a series on one pad, a whole number; 0: a single drop */
+    double interval;            /* s, from one drop of a series to the next */
 } sf_run_options;
 
 typedef struct sf_model {
@@ -148,6 +162,23 @@ typedef struct sf_model {
     int64_t skin_count;
     int32_t *skin_triangle; /* [skin_count][3] nodes */
     double skin_friction;   /* -, Coulomb coefficient between them */
+    int64_t skin_alone;     /* 1: they touch the support only */
+
+    /* Rigid fixed bodies that the skin may touch; triangles turned outwards. Nodes at sharp edges are there
+     * once for each side. */
+    int64_t support_node_count;
+    int64_t support_triangle_count; /* 0: there are none */
+    double *support_position;       /* [support_node_count][3] m */
+    int32_t *support_triangle;      /* [support_triangle_count][3] */
+    double support_friction;        /* -, Coulomb coefficient of the pad against them */
+    double support_travel; /* m, of the missile along its direction until it touches them; 0: it never does */
+
+    /* The membrane on faces of the pad; its mass is among those of the nodes. A quadrangle is there by both
+     * of its diagonals. */
+    int64_t membrane_count;
+    int32_t *membrane_triangle; /* [membrane_count][3] nodes */
+    double *membrane_share; /* [membrane_count] -, of the thickness: 1, or 0.5 where two triangles overlap */
+    sf_membrane_card membrane;
 
     /* The missile's surface in the pose of first contact, `gap` away along its direction; triangles turned
      * outwards. */
@@ -177,6 +208,10 @@ typedef struct sf_model {
     sf_anvil_card anvil;
     sf_run_options run;
 } sf_model;
+
+/* The results file of a drop of a series, from 1: that of the first is `results`, the second of "a.h5" is
+ * "a-2.h5". */
+void sf_model_series_file(const char *results, int64_t drop, char *path, size_t size);
 
 /* Modelled parts that make the whole pad and missile: what a force, an energy, a mass or an area of the
  * modelled part is multiplied by for that of the whole, and divided by for the way back. A power of two:
@@ -218,6 +253,9 @@ static inline const sf_material *sf_model_material(const sf_model *model, int64_
 /* Least, over the materials, of the strain up to which their data inform (sf_material_informed); INFINITY:
  * they do not say. */
 double sf_model_informed_strain(const sf_model *model);
+/* Strain at which the pad's only foam locks up, the pole of its stress below 1, and from which this pole
+ * bends its stress; NaN: there is none. */
+double sf_model_lock_up(const sf_model *model, double *begin);
 /* Mean density of the undeformed pad, kg m-3. */
 double sf_model_density(const sf_model *model);
 

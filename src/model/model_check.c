@@ -142,6 +142,14 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"missile sphere cap cosine", m->missile.sphere_cap_cosine, -1 - 1e-9, 1 + 1e-9},
         {"anvil depth (m)", m->anvil.depth, 0, 1e3},
         {"skin friction", m->skin_friction, 0, 10},
+        {"skin alone", (double)m->skin_alone, 0, 1},
+        {"membrane modulus (Pa)", m->membrane.modulus, m->membrane_count > 0 ? 1e-9 : 0, 1e12},
+        {"membrane Poisson's ratio", m->membrane.poisson, 0, 0.5},
+        {"membrane thickness (m)", m->membrane.thickness, m->membrane_count > 0 ? 1e-12 : 0, 1},
+        {"membrane density (kg/m3)", m->membrane.density, 0, 1e5},
+        {"fabric membrane", (double)m->membrane.fabric, 0, 1},
+        {"support friction", m->support_friction, 0, 10},
+        {"missile's way to the support (m)", m->support_travel, 0, 1e6},
         {"anvil friction", m->anvil.friction, 0, 10},
         {"symmetry factor", (double)m->symmetry_factor, 1, 4},
         {"pad thickness (m)", m->thickness, 1e-6, 1e3},
@@ -153,6 +161,8 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"step limit (s)", m->run.step_limit, 1e-12, 1e3},
         {"stabilisation coefficient", m->run.stabilisation, 0, 10},
         {"energy limit", m->run.energy_limit, 1e-9, 1e9},
+        {"drops of a series", m->run.drops, 0, 20},
+        {"interval of a series (s)", m->run.interval, 0, 1e7},
         {"frame interval (s)", m->run.frame_interval, 1e-9, 1e3},
         {"number of frames", m->run.end_time / m->run.frame_interval, 0, SF_MOST_FRAMES},
     };
@@ -198,16 +208,25 @@ static sf_status check_mesh(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status check_skin(const sf_model *m, sf_error *err) {
-    for (int64_t k = 0; k < 3 * m->skin_count; k++) {
-        const int32_t *node = &m->skin_triangle[k - k % 3];
-        if (m->skin_triangle[k] < 0 || m->skin_triangle[k] >= m->node_count || node[0] == node[1] ||
-            node[1] == node[2] || node[2] == node[0])
-            return SF_FAIL(
-                err, SF_ERR_MODEL,
-                "triangle %lld of the pad's skin has the nodes %d, %d, %d: three of 0 to %lld are needed",
-                (long long)k / 3, node[0], node[1], node[2], (long long)m->node_count - 1);
+/* Triangles of three different nodes of the cloud. */
+static sf_status check_triangles(const char *name, const sf_model *m, int64_t count, const int32_t *triangle,
+                                 sf_error *err) {
+    for (int64_t k = 0; k < 3 * count; k++) {
+        const int32_t *node = &triangle[k - k % 3];
+        if (triangle[k] < 0 || triangle[k] >= m->node_count || node[0] == node[1] || node[1] == node[2] ||
+            node[2] == node[0])
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "triangle %lld of the %s has the nodes %d, %d, %d: three of 0 to %lld are needed",
+                           (long long)k / 3, name, node[0], node[1], node[2], (long long)m->node_count - 1);
     }
+    return SF_OK;
+}
+
+static sf_status check_support(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < 3 * m->support_triangle_count; k++)
+        if (m->support_triangle[k] < 0 || m->support_triangle[k] >= m->support_node_count)
+            return SF_FAIL(err, SF_ERR_MODEL, "support triangle %lld refers to node %d, of 0 to %lld",
+                           (long long)k / 3, m->support_triangle[k], (long long)m->support_node_count - 1);
     return SF_OK;
 }
 
@@ -312,7 +331,10 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld nodes", (long long)m->node_count);
     if (m->contact_count < 1 || m->surface_triangle_count < 1)
         return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
-    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK || check_skin(m, err) != SF_OK)
+    if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
+        check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
+        check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
+        check_support(m, err) != SF_OK)
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
         return err->status;
@@ -346,14 +368,17 @@ static uint64_t hash_of(const sf_model *model) {
         static const char zero[8];
         if (field[k].later && memcmp(member, zero, item_size(field[k].type)) == 0)
             continue;
+        if (field[k].later) /* one of those that are left out must not pass for another */
+            hash = sf_hash_identity(hash, &k, sizeof k);
         if (field[k].rows_offset == SIZE_MAX) {
-            hash = sf_hash(hash, member, item_size(field[k].type));
+            hash = sf_hash_identity(hash, member, item_size(field[k].type));
             continue;
         }
         const void *data = *(void *const *)member;
         int64_t rows = *(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra;
         if (data)
-            hash = sf_hash(hash, data, (size_t)rows * (size_t)field[k].columns * item_size(field[k].type));
+            hash = sf_hash_identity(hash, data,
+                                    (size_t)rows * (size_t)field[k].columns * item_size(field[k].type));
     }
     for (int64_t k = 0; k < model->material_count; k++)
         hash = sf_material_hash(hash, &model->material[k]);

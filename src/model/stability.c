@@ -32,3 +32,44 @@ sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err
     free(share);
     return SF_OK;
 }
+
+/* Lengths of the gradients of a triangle's shape functions, m-1: the opposite side over twice the area, which
+ * is returned, m2. */
+static double gradients(const sf_model *m, const int32_t node[3], double length[3]) {
+    double side[3][3], normal[3];
+    for (int k = 0; k < 3; k++)
+        for (int r = 0; r < 3; r++)
+            side[k][r] = m->position[3 * (int64_t)node[(k + 2) % 3] + r] -
+                         m->position[3 * (int64_t)node[(k + 1) % 3] + r];
+    sf_cross3(side[0], side[1], normal);
+    double twice = sqrt(sf_dot3(normal, normal));
+    for (int k = 0; k < 3; k++)
+        length[k] = sqrt(sf_dot3(side[k], side[k])) / twice;
+    return 0.5 * twice;
+}
+
+sf_status sf_stability_membrane(const sf_model *m, double *load, sf_error *err) {
+    const sf_membrane_card *card = &m->membrane;
+    double plane = card->modulus * card->thickness / (1 - card->poisson * card->poisson);
+    double *stiff = sf_alloc(err, (unsigned long)m->node_count, sizeof *stiff, "membrane");
+    double *column = sf_alloc(err, (unsigned long)m->node_count, sizeof *column, "membrane");
+    *load = 0;
+    for (int64_t t = 0; err->status == SF_OK && t < m->membrane_count; t++) {
+        const int32_t *node = &m->membrane_triangle[3 * t];
+        double length[3], area = m->membrane_share[t] * gradients(m, node, length);
+        for (int k = 0; k < 3; k++)
+            stiff[node[k]] += plane * area * length[k] * (length[0] + length[1] + length[2]);
+    }
+    for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
+        for (int64_t e = m->phi_ptr[i]; e < m->phi_ptr[i + 1] && stiff[i] > 0; e++)
+            column[m->phi_node[e]] += fabs(m->phi_value[e]);
+    for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++) {
+        double row = 0;
+        for (int64_t e = m->phi_ptr[i]; e < m->phi_ptr[i + 1] && stiff[i] > 0; e++)
+            row += fabs(m->phi_value[e]) * column[m->phi_node[e]] / m->mass[m->phi_node[e]];
+        *load = fmax(*load, row * stiff[i]);
+    }
+    free(column);
+    free(stiff);
+    return err->status;
+}

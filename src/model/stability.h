@@ -28,4 +28,15 @@ static inline double sf_stability_step(double c, double a, double eta) {
     return 4 / sf_stability_slowness(c, a, eta);
 }
 
+/* The bound (s-2) on the square of the membrane's highest frequency at rest, with the masses of the cloud.
+ * The largest eigenvalue of Phi M^-1 Phi^T K is at most max_p r_p s_p: r_p is the sum of row p of |Phi| M^-1
+ * |Phi^T|, s_p that of the norms of the blocks of K, as diag(r) and diag(s) exceed the two matrices. */
+sf_status sf_stability_membrane(const sf_model *model, double *load, sf_error *err);
+
+/* The stable step (s) of foam and membrane together, `step` being that of the foam, `load` the bound above.
+ * The foam has c a dt^2 + 2 c eta dt <= 4 up to `step`: at a part x of it no more than 4 x. */
+static inline double sf_stability_with_membrane(double load, double step) {
+    return load > 0 ? 2 * step / (1 + sqrt(1 + load * step * step)) : step;
+}
+
 #endif

@@ -13,7 +13,9 @@
 #include "pre/cloud/domains.h"
 #include "pre/drop_check.h"
 #include "pre/foam_path.h"
+#include "pre/membrane.h"
 #include "pre/missile_body.h"
+#include "pre/rigid_support.h"
 #include "pre/cloud/dual.h"
 #include "pre/cloud/layers.h"
 #include "pre/impact.h"
@@ -230,7 +232,8 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
         goto done;
     sf_cloud_hash(mesh, report->mesh_hash);
     if (alloc_cloud(m, layers->first[layers->count], contact_area, err) != SF_OK ||
-        build_contact(c, mesh, &dual, layers, *contact_area, err) != SF_OK)
+        build_contact(c, mesh, &dual, layers, *contact_area, err) != SF_OK ||
+        sf_membrane_take(c, mesh, &dual, layers, m, err) != SF_OK)
         goto done;
     if (layers->count > 1) {
         if (build_layers(c, mesh, layers, m, report, err) != SF_OK ||
@@ -244,6 +247,7 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
         m->slit_fraction = (double)report->hidden_count / (double)mesh->node_count;
     }
     take_mesh(mesh, m, report);
+    sf_membrane_weigh(m);
 done:
     sf_dual_free(&dual);
     return err->status;
@@ -485,6 +489,7 @@ static sf_status place(const sf_case *c, sf_build_report *report, sf_surface *su
                        sf_error *err) {
     sf_base_place_anvil(c, &report->hold, m);
     SF_TRY(build_missile(c, surface, m, err));
+    SF_TRY(sf_support_find_travel(m, err));
     return sf_foam_path_measure(m, &report->between, err);
 }
 
@@ -525,7 +530,7 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     c->motion_count = 0;
     m->run = c->run;
     m->run.kinematic = c->kinematic;
-    if (m->skin_count > 0 && !c->stabilised)
+    if (m->skin_count > 0 && !m->skin_alone && !c->stabilised)
         m->run.stabilisation = SF_FOLD_STABILISATION;
     return check_depth(m, err);
 }
@@ -597,9 +602,14 @@ static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double c
 static sf_status measure_step(const sf_model *m, int64_t *critical, sf_build_report *report, sf_error *err) {
     double constant = 0;
     report->slowdown = 1;
-    if (first_step(m, &report->first_step, critical, &constant, err) != SF_OK || sf_missile_is_driven(m))
+    double load;
+    if (first_step(m, &report->first_step, critical, &constant, err) != SF_OK ||
+        sf_stability_membrane(m, &load, err) != SF_OK)
         return err->status;
-    return estimate_slowdown(m, *critical, constant, report->first_step, &report->slowdown, err);
+    if (!sf_missile_is_driven(m))
+        estimate_slowdown(m, *critical, constant, report->first_step, &report->slowdown, err);
+    report->first_step = sf_stability_with_membrane(load, report->first_step);
+    return err->status;
 }
 
 static void estimate_mesh_error(sf_model *m, sf_build_report *report) {
@@ -625,16 +635,16 @@ static sf_status check_first_step(const sf_model *m, double first, int64_t criti
 /* Faces of a slit that touch each other do not pass through each other. */
 static sf_status find_skin(const sf_case *c, sf_model *m, sf_build_report *report, sf_error *err) {
     SF_TRY(sf_skin_find(c, m, report->unheld, err));
-    if (m->skin_count > 0)
+    if (m->skin_count > 0 && !m->skin_alone)
         m->slit_fraction = 0;
-    else
+    else if (m->support_triangle_count == 0)
         m->air = 0; /* nothing closes */
     return SF_OK;
 }
 
 /* Faces of a pad without contact with itself pass through each other. */
 static void tell_slits(const sf_model *m, const sf_build_report *r, const sf_sink *sink) {
-    if (r->hidden_count > 0 && m->skin_count == 0)
+    if (r->hidden_count > 0 && (m->skin_count == 0 || m->skin_alone))
         sf_sink_tell(
             sink, SF_WARNING,
             "the pad has a slit, hole or gap narrower than the supports: nodes %.3g mm apart at (%.4g, %.4g, "
@@ -665,8 +675,8 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && (sf_layers_loosen(c, m), true) &&
-        place(c, report, surface, m, err) == SF_OK && find_skin(c, m, report, err) == SF_OK &&
-        take_cards(c, m, err) == SF_OK) {
+        sf_support_take(c, mesh->support, m, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
+        find_skin(c, m, report, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
             sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&

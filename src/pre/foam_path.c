@@ -4,6 +4,7 @@
 #include "base/mat3.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/free_faces.h"
+#include "pre/rigid_support.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +12,9 @@
 enum { MOST_RAYS = 200, MOST_HITS = 256 };
 static const double FACING = 0.1; /* least cosine between the missile's direction and a face it touches */
 static const double ZONE = 0.5;   /* of the length under the first touch */
-static const double SAME = 1e-6;  /* of the extent: one place; the same thickness */
+static const double FACETS =
+    0.02; /* of the thickness: those of pad and support on a curved face overlap by less */
+static const double SAME = 1e-6; /* of the extent: one place; the same thickness */
 
 typedef enum node_mark { MARK_TOUCHED = 1, MARK_HELD = 2 } node_mark;
 
@@ -115,8 +118,11 @@ static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8
         h.held = all_marked(mark, &pad->list[i], MARK_HELD);
         hits[count++] = h;
     }
+    double support = sf_support_distance(m, from, m->missile.direction),
+           last = support + FACETS * m->thickness;
     qsort(hits, (size_t)count, sizeof *hits, by_place);
-    for (int k = 0; k < count && !held; k++) { /* at an edge two triangles meet: the second changes nothing */
+    /* At an edge two triangles meet: the second changes nothing. */
+    for (int k = 0; k < count && !held && hits[k].at < last; k++) {
         if (inside && hits[k].leaves) {
             end = hits[k].at;
             sum += end - begin;
@@ -129,8 +135,9 @@ static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8
     for (int64_t i = 0; i < m->node_count; i++)
         top = fmax(top, m->position[3 * i + 2]);
     double fall = -m->missile.direction[2], floor = top - m->anvil.depth,
-           below = m->anvil.depth > 0 && !held ? fmax(0, (from[2] - floor) / fall - end) : 0;
-    return (path){sum, m->anvil.depth > 0 ? end - sum + below : 0};
+           anvil = m->anvil.depth > 0 ? (from[2] - floor) / fall : INFINITY, ground = fmin(anvil, support),
+           below = isfinite(ground) && !held ? fmax(0, ground - end) : 0;
+    return (path){sum, isfinite(ground) ? end - sum + below : 0};
 }
 
 /* ---- the zone ---- */

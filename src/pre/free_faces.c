@@ -7,68 +7,27 @@
 
 #include "base/grid.h"
 #include "base/mat3.h"
-#include "pre/mesh/mesh.h"
+#include "model/cells.h"
 #include "pre/mesh/missile_shape.h"
 
 /* ---- the pad's surface ---- */
 
-/* A face of a cell: its nodes as they stand in the cell, and ascending. */
-typedef struct face {
-    int32_t node[4], sorted[4]; /* [3] is -1 of a triangle, in `sorted` [0] */
-} face;
-
-static int by_nodes(const void *a, const void *b) {
-    return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
-}
-
-static void sort4(int32_t v[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int k = i; k > 0 && v[k] < v[k - 1]; k--) {
-            int32_t swap = v[k];
-            v[k] = v[k - 1];
-            v[k - 1] = swap;
-        }
-}
-
-static int64_t list_faces(const sf_model *m, face *list) {
-    int64_t count = 0;
-    for (int64_t c = 0; c < m->cell_count; c++) {
-        const sf_cell_topology *cell = sf_cell_topology_of(m->cell_type[c]);
-        for (int f = 0; f < cell->faces; f++) {
-            face *out = &list[count++];
-            for (int k = 0; k < 4; k++)
-                out->node[k] = k < cell->face_size[f] ? m->cell_node[m->cell_ptr[c] + cell->face[f][k]] : -1;
-            memcpy(out->sorted, out->node, sizeof out->sorted);
-            sort4(out->sorted);
-        }
-    }
-    qsort(list, (size_t)count, sizeof *list, by_nodes);
-    return count;
-}
-
 sf_status sf_skin_triangles(const sf_model *m, int64_t *triangles, int32_t **out, sf_error *err) {
-    int64_t most = 0;
+    const sf_cells cells = {m->node_count, m->cell_count, m->position,
+                            m->cell_type,  m->cell_ptr,   m->cell_node};
+    sf_skin_faces skin;
     *triangles = 0;
-    for (int64_t c = 0; c < m->cell_count; c++)
-        most += sf_cell_topology_of(m->cell_type[c])->faces;
-    face *list = sf_alloc(err, (unsigned long)most, sizeof *list, "faces of the pad");
-    int64_t count = list ? list_faces(m, list) : 0, single = 0;
-    for (int64_t i = 0; i < count; i++) { /* two cells share an inner face */
-        bool paired = i + 1 < count && by_nodes(&list[i], &list[i + 1]) == 0;
-        if (!paired)
-            list[single++] = list[i];
-        i += paired;
-    }
-    int32_t *node = *out = sf_alloc(err, 6 * (unsigned long)single, sizeof *node, "surface of the pad");
-    for (int64_t i = 0; node && i < single; i++) {
-        const int32_t *n = list[i].node;
-        memcpy(&node[3 * (*triangles)++], n, 3 * sizeof *n);
-        if (n[3] >= 0) {
-            const int32_t half[3] = {n[0], n[2], n[3]};
-            memcpy(&node[3 * (*triangles)++], half, sizeof half);
+    sf_skin_faces_find(&cells, &skin, err);
+    int32_t *node = *out =
+        sf_alloc(err, 6 * (unsigned long)skin.face_count, sizeof *node, "surface of the pad");
+    for (int64_t i = 0; err->status == SF_OK && i < skin.face_count; i++)
+        for (int half = 0; half < (skin.face[i][3] < 0 ? 1 : 2); half++) {
+            const int corner[3] = {0, 1 + half, 2 + half};
+            for (int k = 0; k < 3; k++)
+                node[3 * *triangles + k] = (int32_t)skin.node[skin.face[i][corner[k]]];
+            (*triangles)++;
         }
-    }
-    free(list);
+    sf_skin_faces_free(&skin);
     return err->status;
 }
 
@@ -212,7 +171,22 @@ static bool meets_face(const sf_model *m, const faces *f, int64_t i, double leng
     return false;
 }
 
-/* *first: a face that can touch another one, or the anvil; -1: none can. */
+/* True if the ray from face i, of this length (m) in the pad's box, ends at a symmetry plane within half the
+ * thickness: beyond it the face's mirror image comes as far. */
+static bool meets_image(const sf_model *m, const shape *s, double length) {
+    double place;
+    for (int axis = 0; axis < 2; axis++) {
+        double n = s->normal[axis];
+        if (!sf_symmetry_plane(m, axis, &place) || fabs(n) < 1e-9)
+            continue;
+        double at = (place - s->centroid[axis]) / n;
+        if (at > 0 && at <= length * (1 + 1e-9) && 2 * at < m->thickness)
+            return true;
+    }
+    return false;
+}
+
+/* *first: a face that can touch another one, its image, or the anvil; -1: none can. */
 static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first, sf_error *err) {
     static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
     int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
@@ -223,7 +197,8 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
         double length = length_in_box(f, i, m->thickness), height = s->centroid[2] - anvil;
         bool over = m->anvil.depth > 0 && s->normal[2] < DOWN && height > LEAST * m->thickness;
         if ((over && -height / s->normal[2] < m->thickness) ||
-            (length > LEAST * m->thickness && meets_face(m, f, i, length, near)))
+            (length > LEAST * m->thickness &&
+             (meets_image(m, s, length) || meets_face(m, f, i, length, near))))
             *first = i;
     }
     free(near);
@@ -240,12 +215,15 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
         first = 0;
     else if (f.count > 0)
         find_touching(m, &f, &first, err);
-    if (first >= 0 && c->self_contact == SF_SELF_CONTACT_OFF)
+    bool off = c->self_contact == SF_SELF_CONTACT_OFF,
+         itself = !off && (first >= 0 || c->self_contact == SF_SELF_CONTACT_ON);
+    if (first >= 0 && off)
         memcpy(unheld, f.shape[first].centroid, sizeof f.shape[first].centroid);
-    else if (err->status == SF_OK && f.count > 0 && (first >= 0 || c->self_contact == SF_SELF_CONTACT_ON)) {
+    if (err->status == SF_OK && f.count > 0 && (itself || m->support_triangle_count > 0)) {
         m->skin_count = f.count;
         m->skin_triangle = f.node;
         m->skin_friction = c->self_friction;
+        m->skin_alone = !itself;
         f.node = NULL;
     }
     faces_free(&f);

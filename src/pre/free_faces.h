@@ -13,8 +13,9 @@ sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **nod
 
 /* Sets the model's skin by pad.self_contact: "off" none; "on" the surface but for faces that are tied to
  * another layer or held along their normal; "auto" the same if the foam can touch itself or the anvil, that
- * is, if a ray from a face outwards meets another face of it, or the anvil, within the pad's thickness, or
- * layers are loose. `unheld` (m): the middle of such a face of a pad without skin; NaN: there is none. Needs
+ * is, if a ray from a face outwards meets another face of it, its mirror image, or the anvil, within the
+ * pad's thickness, or layers are loose. With a rigid support it is there in any case, `skin_alone` if it
+ * touches that only. `unheld` (m): the middle of such a face of a pad without skin; NaN: there is none. Needs
  * cells, constraints, ties, thickness and the anvil's depth. */
 sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_error *err);
 

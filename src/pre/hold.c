@@ -359,7 +359,7 @@ sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
 }
 
 sf_status sf_hold_check(const sf_hold *hold, const sf_model *m, sf_error *err) {
-    if (!hold->lifts)
+    if (!hold->lifts || m->support_triangle_count > 0)
         return SF_OK;
     const double *x = hold->lifted_middle;
     if (m->material_count > 1 && hold->rows[2] > 0 && !hold->lifted_whole)
@@ -388,14 +388,15 @@ sf_status sf_hold_check(const sf_hold *hold, const sf_model *m, sf_error *err) {
 }
 
 void sf_hold_warn(const sf_hold *hold, const sf_model *m, const sf_sink *sink) {
-    if (hold->underside < SF_HOLD_MOST)
+    if (hold->underside < SF_HOLD_MOST && m->support_triangle_count == 0)
         sf_sink_tell(
             sink, SF_WARNING,
             "pad.fixed, pad.sliding: %.3g %% of the nodes of the pad's underside (z = %.4g mm) are held along z: "
             "the rest hangs free",
             100 * hold->underside, 1e3 * hold->underside_low);
     for (int c = 0; c < 2; c++)
-        if (hold->slides[c] && m->missile.direction[c] != 0 && !(m->anvil.friction > 0))
+        if (hold->slides[c] && m->missile.direction[c] != 0 && !(m->anvil.friction > 0) &&
+            !(m->support_friction > 0))
             sf_sink_tell(
                 sink, SF_WARNING,
                 "nothing holds the pad along %c, where missile.direction has the component %g: it will slide "

@@ -40,7 +40,8 @@ typedef struct sf_hold {
 /* Needs positions and constraints of the model. */
 sf_status sf_hold_find(const sf_model *model, sf_hold *hold, sf_error *err);
 
-/* SF_ERR_INPUT if the pad or a layer can be moved vertically or tilted without being deformed. */
+/* SF_ERR_INPUT if the pad or a layer can be moved vertically or tilted without being deformed; a pad on a
+ * rigid support may. */
 sf_status sf_hold_check(const sf_hold *hold, const sf_model *model, sf_error *err);
 /* Tells `sink` of an underside that is mostly free, and of a missile that pushes the pad along a free motion.
  */

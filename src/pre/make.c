@@ -24,7 +24,7 @@ static void turn_points(const double turn[9], int64_t count, double *position) {
 }
 
 /* Turns the pad's face upwards. */
-static void turn_up(const double up[3], sf_mesh *mesh, sf_surface *surface) {
+static void turn_up(const double up[3], sf_mesh *mesh, sf_surface *surface, sf_surface *support) {
     double turn[9];
     if (up[2] == 1)
         return;
@@ -33,10 +33,12 @@ static void turn_up(const double up[3], sf_mesh *mesh, sf_surface *surface) {
     turn_points(turn, surface->node_count, surface->position);
     turn_points(turn, surface->hull_node_count, surface->hull_position);
     turn_points(turn, 1, surface->origin);
+    turn_points(turn, support->node_count, support->position);
 }
 
-/* Pad mesh and missile surface, from one geometry or two. */
-static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
+/* Pad mesh, missile surface and support surface, each from a geometry of its own; that of the missile may be
+ * the pad's, the support may be absent. */
+static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_surface *support,
                                char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
     sf_gmsh *session = NULL;
     if (sf_gmsh_begin(&session, err) == SF_OK) {
@@ -48,8 +50,11 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
     if (err->status == SF_OK && c->freedom == SF_MISSILE_FREE)
         sf_gmsh_read_hull(session, c->surface_group, c->length_unit, surface, err);
+    if (err->status == SF_OK && c->support.path && sf_gmsh_load(session, &c->support, err) == SF_OK)
+        sf_gmsh_read_surface(session, c->support_group, c->length_unit, support, err);
     if (err->status == SF_OK)
-        turn_up(c->up, mesh, surface);
+        turn_up(c->up, mesh, surface, support);
+    mesh->support = c->support.path ? support : NULL;
     free(c->geometry_files);
     c->geometry_files = NULL;
     if (err->status == SF_OK && !(c->geometry_files = strdup(sf_gmsh_files(session))))
@@ -63,9 +68,9 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
 sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
                         char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
     sf_mesh mesh = {0};
-    sf_surface surface = {0};
+    sf_surface surface = {0}, support = {0};
     memset(model, 0, sizeof *model);
-    if (read_geometry(c, &mesh, &surface, libraries, sink, err) == SF_OK &&
+    if (read_geometry(c, &mesh, &surface, &support, libraries, sink, err) == SF_OK &&
         sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
         if (sf_hold_check(&report->hold, model, err) == SF_OK && report->contact_held)
             SF_FAIL(err, SF_ERR_INPUT,
@@ -75,6 +80,7 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
             sf_model_free(model);
     }
     sf_surface_free(&surface);
+    sf_surface_free(&support);
     sf_mesh_free(&mesh);
     return err->status;
 }

@@ -232,7 +232,11 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
     if (m->rest_count > 0)
         append(out, ", %lld rest on the anvil", (long long)m->rest_count);
     if (m->skin_count > 0)
-        append(out, ", %lld faces may touch each other or the anvil", (long long)m->skin_count);
+        append(out, ", %lld faces may touch %s%s", (long long)m->skin_count,
+               m->skin_alone ? "" : "each other or the anvil",
+               m->support_triangle_count == 0 ? ""
+               : m->skin_alone                ? "the support"
+                                              : ", and the support");
     add_masses(out, m, r);
     add_mesh_error(out, m, &r->zone);
     add_cost(out, m, r);

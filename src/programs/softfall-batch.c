@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-batch MANIFEST [--group GROUP]: what an engine starts for each group of a batch. */
-#include "build_info.h"
-#include "study/manifest.h"
+#include "study/batch.h"
 #include "study/runner.h"
 #include "base/program.h"
 #include "base/units.h"
 #include "io/process.h"
 #include "io/replace.h"
 
-#include <argp.h>
 #include <errno.h>
 #include <limits.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -20,30 +19,18 @@ typedef struct options {
     int threads;
 } options;
 
-static error_t parse(int key, char *arg, struct argp_state *state) {
-    options *o = state->input;
-    sf_error err = SF_ERROR_INIT;
-    switch (key) {
-    case 'g':
-        o->group = arg;
-        return 0;
-    case 't':
-        if (sf_program_read_threads(arg, &o->threads, &err) != SF_OK)
-            argp_error(state, "%s", err.text);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->manifest)
-            argp_error(state, "one manifest at a time: \"%s\" is one too many", arg);
-        o->manifest = arg;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->manifest)
-            argp_error(state,
-                       "give the manifest of a batch, DIR/runs/" SF_MANIFEST_FOLDER "/" SF_MANIFEST_NAME);
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
+static const sf_option known[] = {
+    {"group", 'g', "GROUP", "simulate the drops of this group that are not there",
+     .member = offsetof(options, group)},
+    {"threads", 't', "N", "drops side by side, one thread each (default 1)",
+     .member = offsetof(options, threads), .read = sf_program_read_threads},
+    {0},
+};
+
+static const char *find_fault(const sf_command *command) {
+    const options *o = command->list[0].values;
+    return o->manifest ? NULL
+                       : "give the manifest of a batch, DIR/runs/" SF_MANIFEST_FOLDER "/" SF_MANIFEST_NAME;
 }
 
 /* The runs of a group: [*first, *last). */
@@ -91,8 +78,7 @@ static sf_status finish_group(const char *outcome, int count, const sf_manifest_
 
 static sf_status run_group(const options *o, const sf_manifest *m, const char *outcome, sf_error *err) {
     int first, last;
-    if (find_group(m, o, &first, &last, err) != SF_OK)
-        return err->status;
+    SF_TRY(find_group(m, o, &first, &last, err));
     int count = last - first;
     const sf_manifest_run *run = &m->run[first];
     sf_runner runner = {.folder = m->runs, .threads = o->threads, .log = stdout};
@@ -119,8 +105,7 @@ static sf_status list_runs(const sf_manifest *m, sf_error *err) {
     for (int k = 0; k < m->count; k++) {
         sf_runner_state state = SF_DROP_OPEN;
         sf_error failure = SF_ERROR_INIT;
-        if (sf_runner_find_status(&runner, &m->run[k].drop, &state, &failure, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_runner_find_status(&runner, &m->run[k].drop, &state, &failure, err));
         number[state]++;
         printf("%016llx\t%s\t%s\t%s\t%s\n", (unsigned long long)m->run[k].key, m->run[k].group,
                sf_runner_state_name(state), m->run[k].drop.label, failure.text);
@@ -149,27 +134,24 @@ static sf_status run(const options *o, sf_error *err) {
 }
 
 int main(int argc, char **argv) {
-    static const struct argp_option known[] = {
-        {"group", 'g', "GROUP", 0, "simulate the drops of this group that are not there", 0},
-        {"threads", 't', "N", 0, "drops side by side, one thread each (default 1)", 0},
-        {0},
-    };
-    static const struct argp parser = {
-        .options = known,
-        .parser = parse,
-        .args_doc = "MANIFEST",
-        .doc = "Lists the drops of a batch with their state, or simulates a group of them: what an engine "
-               "(Snakemake) starts. Finished drops are not simulated again."};
     options o = {.threads = 1};
     sf_error err = SF_ERROR_INIT;
-    argp_program_version = "softfall-batch " SF_VERSION " (" SF_GIT_REVISION ")";
+    const sf_command line = {
+        .program = "softfall-batch",
+        .operands = "MANIFEST",
+        .meaning =
+            "Lists the drops of a batch with their state, or simulates a group of them: what an engine "
+            "(Snakemake) starts. Finished drops are not simulated again.",
+        .second = "one manifest at a time: \"%s\" is one too many",
+        .operand = offsetof(options, manifest),
+        .fault = find_fault,
+        .is_usage = true,
+        .list = {{known, &o}}};
     sf_process_handle_signals();
-    if (sf_program_begin(argv, &err) == SF_OK) {
-        argp_parse(&parser, argc, argv, 0, NULL, &o);
-        if (sf_units_hold(&err) == SF_OK) {
-            run(&o, &err);
-            sf_units_let_go();
-        }
+    if (sf_program_begin(argv, &err) == SF_OK && sf_command_parse(&line, argc, argv, &err) == SF_OK &&
+        sf_units_hold(&err) == SF_OK) {
+        run(&o, &err);
+        sf_units_let_go();
     }
     return sf_error_report(&err, "softfall-batch");
 }

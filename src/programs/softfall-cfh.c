@@ -1,24 +1,166 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-cfh CASE -o DIR: critical fall height of a pad, from drops that it simulates. */
+#include "base/text.h"
+#include "base/units.h"
 #include "case/case.h"
-#include "study/cfh/cfh_options.h"
-#include "study/cfh/cfh_plot.h"
+#include "post/figures/verdict.h"
+#include "study/batch.h"
+#include "study/cfh/cfh_report.h"
+#include "study/cfh/points.h"
 #include "study/cfh/series.h"
-#include "study/cfh/spread_report.h"
+#include "study/cfh/spread.h"
 #include "study/setup.h"
 
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <omp.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- options ---- */
+
+static const double LOWEST_HEIGHT = 0.01, GREATEST_HEIGHT = 100; /* m */
+static const double DEFAULT_MAX_HEIGHT = 10;                     /* m */
+enum { DEFAULT_CHECKS = 5 };
+
+/* Texts are borrowed from argv. Heights as given: of free fall, or on the rig. */
+typedef struct options {
+    const char *material;  /* NULL: the case's own */
+    const char *rig_path;  /* NULL: free fall */
+    const char *posterior; /* folder of draws, NULL: none */
+    int checks;            /* draws to simulate */
+    int override_count;    /* at most SF_RUNNER_OVERRIDES - 1: one is used for the speed */
+    const char *overrides[SF_RUNNER_OVERRIDES];
+    double limit[SF_CFH_CRITERIA]; /* g, - */
+    double height;                 /* m, 0: not given */
+    double max_height;             /* m */
+    int list_count;
+    double list[SF_CFH_MAX_POINTS]; /* m, ascending */
+    bool max_given, checks_given;
+} options;
+
+static sf_status read_override(const char *option, const char *text, void *values, sf_error *err) {
+    static const char speed[] = "missile.velocity";
+    options *o = values;
+    if (strncmp(text + strspn(text, " \t"), speed, strlen(speed)) == 0)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "%s %s: the drop height decides the speed; --height gives the first one", option,
+                       text);
+    if (o->override_count == SF_RUNNER_OVERRIDES - 1)
+        return SF_FAIL(err, SF_ERR_INPUT, "at most %d %s options", SF_RUNNER_OVERRIDES - 1, option);
+    o->overrides[o->override_count++] = text;
+    return SF_OK;
+}
+
+static sf_status parse_height(const sf_units *units, const char *option, const char *text, double *height,
+                              sf_error *err) {
+    sf_error reason = SF_ERROR_INIT;
+    if (sf_units_parse(units, text, SF_LENGTH, height, &reason) != SF_OK)
+        return SF_FAIL(err, reason.status, "%s: %.900s", option, reason.text);
+    if (!(*height >= LOWEST_HEIGHT && *height <= GREATEST_HEIGHT))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: a drop height of %s is not between 1 cm and %g m", option,
+                       text, GREATEST_HEIGHT);
+    return SF_OK;
+}
+
+static sf_status read_height(const char *option, const char *text, void *height, sf_error *err) {
+    sf_units *units = NULL;
+    if (sf_units_open(&units, err) == SF_OK)
+        parse_height(units, option, text, height, err);
+    sf_units_close(&units);
+    return err->status;
+}
+
+static sf_status parse_list(const sf_units *units, const char *option, char *list, options *o,
+                            sf_error *err) {
+    const char *item;
+    while (err->status == SF_OK && (item = strsep(&list, ",")) != NULL) {
+        if (o->list_count == SF_CFH_MAX_POINTS)
+            return SF_FAIL(err, SF_ERR_INPUT, "%s: at most %d heights", option, SF_CFH_MAX_POINTS);
+        parse_height(units, option, item + strspn(item, " \t"), &o->list[o->list_count++], err);
+    }
+    if (err->status == SF_OK && o->list_count < SF_CFH_MIN_POINTS)
+        SF_FAIL(err, SF_ERR_INPUT, "%s: %d heights, at least %d are needed", option, o->list_count,
+                SF_CFH_MIN_POINTS);
+    gsl_sort(o->list, 1, (size_t)o->list_count);
+    for (int k = 1; k < o->list_count; k++)
+        if (o->list[k] < o->list[k - 1] * (1 + 1e-6))
+            SF_FAIL(err, SF_ERR_INPUT, "%s: %g m stands twice in the list", option, o->list[k]);
+    return err->status;
+}
+
+static sf_status read_heights(const char *option, const char *text, void *values, sf_error *err) {
+    options *o = values;
+    sf_units *units = NULL;
+    char *copy = strdup(text);
+    o->list_count = 0;
+    if (!copy)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %s", option);
+    else if (sf_units_open(&units, err) == SF_OK)
+        parse_list(units, option, copy, o, err);
+    sf_units_close(&units);
+    free(copy);
+    return err->status;
+}
+
+static sf_status read_checks(const char *option, const char *text, void *checks, sf_error *err) {
+    if (!sf_whole_is(text, 0, SF_CFH_CHECKS, checks))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a number from 0 to %d", option, text, SF_CFH_CHECKS);
+    return SF_OK;
+}
+
+/* Refuses options that contradict each other. */
+static sf_status check_options(const options *o, sf_error *err) {
+    if (o->checks_given && !o->posterior)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "--check-drops %d: there are no draws to simulate without --posterior", o->checks);
+    if (o->list_count && (o->height > 0 || o->max_given))
+        return SF_FAIL(err, SF_ERR_INPUT, "--heights is the whole list: %s does not go with it",
+                       o->height > 0 ? "--height" : "--max-height");
+    if (o->height > o->max_height)
+        return SF_FAIL(err, SF_ERR_INPUT, "--height of %g m is above the greatest height of %g m", o->height,
+                       o->max_height);
+    return SF_OK;
+}
+
+#define AT(member) offsetof(options, member)
+static const sf_option known[] = {
+    {"set", 0, "GROUP.KEY=VALUE", "override a key of the case, as softfall-pre does", .read = read_override,
+     .group = 1},
+    {"material", 0, "FILE", "another foam: replaces the case's group material", .member = AT(material),
+     .group = 1},
+    {"limit-g", 0, "G", "limit of a_max in g (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) ")",
+     .member = AT(limit[SF_CFH_A_MAX]), .read = sf_program_read_limit, .group = 2},
+    {"limit-hic", 0, "HIC", "limit of HIC (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_HIC) ")",
+     .member = AT(limit[SF_CFH_HIC]), .read = sf_program_read_limit, .group = 2},
+    {"height", 0, "LENGTH", "first drop height, e.g. \"1.5 m\" (default: that of the case's velocity)",
+     .member = AT(height), .read = read_height, .group = 3},
+    {"max-height", 0, "LENGTH", "go no higher (default \"10 m\")", .member = AT(max_height),
+     .read = read_height, .group = 3, .noted = AT(max_given)},
+    {"heights", 0, "LIST", "these heights instead of a search: \"0.5 m,1 m,1.5 m,2 m\"", .read = read_heights,
+     .group = 3},
+    {"rig", 0, "CSV",
+     "heights are those of a rig with friction: v^2 = 2 g_eff h, with g_eff fitted to the columns h_m "
+     "(or height_m) and v_test_m_s (or speed_m_s)",
+     .member = AT(rig_path), .group = 3},
+    {"posterior", 0, "FOLDER",
+     "draws of the foam, draw-001.cfg ..., as softfall-fit drop writes them: gives the interval of the height",
+     .member = AT(posterior), .group = 4},
+    {"check-drops", 0, "N", "simulate N of the draws to check the columns that stand for them (default 5)",
+     .member = AT(checks), .read = read_checks, .group = 4, .noted = AT(checks_given)},
+    {0},
+};
+
+/* ---- the case ---- */
 
 enum { MAX_DROPS = 8 };
 
 /* The figures of the drop before the first simulation. */
 typedef struct setting {
-    sf_cfh_options options;
-    double speed; /* m s-1, of the case */
-    double mass;  /* kg */
+    options options; /* first: the values of the command line */
+    double speed;    /* m s-1, of the case */
+    double mass;     /* kg */
     sf_cfh_foams foams;
     char *text, *parameters; /* of the case; owned */
     sf_material material;    /* with --posterior: the case's own; owned, as its law and the draws */
@@ -39,7 +181,7 @@ static void list_foams(const sf_case *c, sf_cfh_foams *out) {
 
 /* The case's own material and the draws. */
 static sf_status read_posterior(const char *case_path, sf_case *c, setting *out, sf_error *err) {
-    const sf_cfh_options *o = &out->options;
+    const options *o = &out->options;
     if (c->layer_count > 0)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "--posterior: its draws are of one material, the pad of %s has layers (materials.%s)",
@@ -53,7 +195,7 @@ static sf_status read_posterior(const char *case_path, sf_case *c, setting *out,
 }
 
 static sf_status read_setting(const sf_study *study, setting *out, sf_error *err) {
-    const sf_cfh_options *o = &out->options;
+    const options *o = &out->options;
     sf_case c;
     char *material = NULL;
     const char *list[SF_RUNNER_OVERRIDES + 1];
@@ -84,7 +226,7 @@ static sf_status read_setting(const sf_study *study, setting *out, sf_error *err
 }
 
 /* The options' heights, those of the rig if there is one, as heights of free fall. */
-static sf_cfh_plan make_plan(const sf_cfh_options *o, const sf_cfh_rig *rig, const setting *s) {
+static sf_cfh_plan make_plan(const options *o, const sf_cfh_rig *rig, const setting *s) {
     double unit = 1 / sf_cfh_rig_height(rig, 1);
     sf_cfh_plan plan = {.max_height = o->max_height * unit,
                         .max_drops = MAX_DROPS,
@@ -101,11 +243,12 @@ static sf_cfh_plan make_plan(const sf_cfh_options *o, const sf_cfh_rig *rig, con
 static sf_status write_output(sf_study *study, const sf_cfh_report *report, sf_error *err) {
     char warning[512] = "", draws[SF_CFH_NOTE_SIZE] = "";
     sf_staging *output = &study->output;
-    if (sf_cfh_write_csv(output, report, err) != SF_OK || sf_cfh_write_draws(output, report, err) != SF_OK ||
-        sf_cfh_write_json(output, report, err) != SF_OK ||
-        sf_cfh_plot(output, report, warning, sizeof warning, err) != SF_OK ||
-        sf_cfh_write_page(output, report, err) != SF_OK || sf_staging_commit(output, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_cfh_write_csv(output, report, err));
+    SF_TRY(sf_cfh_write_draws(output, report, err));
+    SF_TRY(sf_cfh_write_json(output, report, err));
+    SF_TRY(sf_cfh_plot(output, report, warning, sizeof warning, err));
+    SF_TRY(sf_cfh_write_page(output, report, err));
+    SF_TRY(sf_staging_commit(output, err));
     sf_cfh_print(stdout, report);
     sf_study_close(study,
                    *warning ? "report.html, cfh.json, cfh.csv" : "report.html, cfh.json, cfh.csv, cfh.png",
@@ -128,7 +271,7 @@ static sf_status write_output(sf_study *study, const sf_cfh_report *report, sf_e
 /* The interval: columns of every draw, checks of some, random errors. */
 static sf_status find_interval(sf_study *study, const setting *s, const sf_cfh_series *series,
                                sf_cfh_report *report, sf_cfh_spread *spread, sf_error *err) {
-    const sf_cfh_options *o = &s->options;
+    const options *o = &s->options;
     sf_error problem = SF_ERROR_INIT;
     if (!o->posterior)
         return SF_OK;
@@ -150,16 +293,15 @@ static sf_status find_interval(sf_study *study, const setting *s, const sf_cfh_s
         return err->status;
     }
     sf_cfh_spread_choose(spread, o->checks, 1e-3 * report->plan->unit);
-    if (sf_cfh_simulate_checks(series, &s->draws, &study->runner, spread, err) != SF_OK ||
-        sf_cfh_spread_evaluate(spread, report->rig, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_cfh_simulate_checks(series, &s->draws, &study->runner, spread, err));
+    SF_TRY(sf_cfh_spread_evaluate(spread, report->rig, err));
     report->spread = spread;
     return SF_OK;
 }
 
 static sf_status simulate(sf_study *study, const setting *s, sf_cfh_report *report, sf_cfh_points *points,
                           sf_cfh_result *result, sf_cfh_spread *spread, sf_error *err) {
-    const sf_cfh_options *o = &s->options;
+    const options *o = &s->options;
     sf_study_run_apart(study);
     sf_runner_drop base = {
         .case_path = study->input, .material = o->material, .override_count = o->override_count};
@@ -171,8 +313,7 @@ static sf_status simulate(sf_study *study, const setting *s, sf_cfh_report *repo
            o->list_count ? o->list_count : MAX_DROPS, study->runs,
            report->rig->pairs ? "on the rig" : "of free fall");
     fflush(stdout);
-    if (sf_cfh_simulate(&series, &study->runner, points, &report->ending, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_cfh_simulate(&series, &study->runner, points, &report->ending, err));
     sf_cfh_evaluate(points, report->plan->limit, result);
     return find_interval(study, s, &series, report, spread, err);
 }
@@ -183,12 +324,12 @@ static const char *const output_names[] = {"cfh.csv", "cfh_band.csv", "cfh_draws
 
 static sf_status run(sf_study *study, void *own, sf_error *err) {
     setting *s = own;
-    sf_cfh_options *o = &s->options;
+    options *o = &s->options;
     sf_cfh_rig rig = sf_cfh_free_fall();
     sf_cfh_points points = {0};
     sf_cfh_result result;
     sf_cfh_spread spread = {0};
-    SF_TRY(sf_cfh_options_finish(o, err));
+    SF_TRY(check_options(o, err));
     SF_TRY(sf_study_check(study, output_names, err));
     if ((o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) ||
         read_setting(study, s, err) != SF_OK)
@@ -217,10 +358,6 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     return err->status;
 }
 
-static void take_option(int key, const char *text, void *own, sf_error *err) {
-    sf_cfh_options_take(&((setting *)own)->options, key, text, err);
-}
-
 static const sf_study_program program = {
     .name = "softfall-cfh",
     .argument = "CASE",
@@ -230,13 +367,14 @@ static const sf_study_program program = {
            "interruption run the same "
            "command again to resume. The height is indicative, not a certification.",
     .drops = true,
-    .options = sf_cfh_option_list,
-    .take = take_option,
+    .options = known,
     .run = run,
 };
 
 int main(int argc, char **argv) {
-    setting s = {.options = sf_cfh_options_begin()};
+    setting s = {.options = {.limit = {SF_DEFAULT_LIMIT_G, SF_DEFAULT_LIMIT_HIC},
+                             .max_height = DEFAULT_MAX_HEIGHT,
+                             .checks = DEFAULT_CHECKS}};
     int code = sf_study_main(argc, argv, &program, &s);
     free(s.text);
     free(s.parameters);

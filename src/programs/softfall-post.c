@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-post RESULTS -o DIR: injury figures, curves, pictures and ParaView files from a results.h5. */
-#include "build_info.h"
 #include "base/text.h"
 #include "base/program.h"
 #include "io/provenance.h"
-#include "post/figures/layer_figures.h"
+#include "post/figures/strain_field.h"
 #include "post/figures/compare.h"
+#include "post/view/browser.h"
 #include "post/view/csv.h"
 #include "post/figures/figures.h"
 #include "io/staging.h"
@@ -18,40 +18,11 @@
 #include "post/figures/verdict.h"
 #include "post/view/xdmf.h"
 
-#include <argp.h>
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum {
-    KEY_FORCE = 256,
-    KEY_FILTER,
-    KEY_MOUNT,
-    KEY_COUPLING,
-    KEY_REFERENCE,
-    KEY_STRICT,
-    KEY_FULL,
-    KEY_FILM,
-    KEY_LIMIT_G,
-    KEY_LIMIT_HIC,
-    KEY_TUNED, /* the next ones need --reference */
-    KEY_WINDOW = KEY_TUNED,
-    KEY_REGIONS,
-    KEY_SHIFT,
-    KEY_REFERENCE_FILTER,
-    KEY_REFERENCE_COLUMN,
-    KEY_REFERENCE_COLUMNS,
-    KEY_REFERENCE_HEADING,
-    KEY_REFERENCE_SCALE,
-    KEY_REFERENCE_RATE,
-    KEY_REFERENCE_INVERT,
-    KEY_REFERENCE_ZERO,
-    KEY_FROM,
-    KEY_TO,
-    KEY_IMPACT,
-    KEY_LAST = KEY_IMPACT
-};
 
 typedef struct options {
     const char *results_path;
@@ -59,6 +30,7 @@ typedef struct options {
     bool force;
     bool full;        /* doubles for ParaView */
     const char *film; /* name of the file; NULL: none is asked for */
+    double view;      /* MB that view.html may have; 0: none */
     bool strict;      /* the exit status shows the verdict */
     sf_limits limits;
     double cfc;
@@ -67,7 +39,6 @@ typedef struct options {
     bool tuned;     /* an option that needs --reference was given */
     sf_compare_options compare;
     sf_region *regions;
-    sf_error err;
 } options;
 
 /* All resources of the program, released together. */
@@ -77,214 +48,157 @@ typedef struct job {
     sf_verdict verdict;
     sf_comparison comparison;
     sf_staging output;
-    const char *names[19];        /* of every file that may be written */
+    const char *names[20];        /* of every file that may be written */
     char data[SF_XDMF_NAME_SIZE]; /* of the data of pad.xdmf */
     char *command_line;
     sf_xdmf xdmf;
-    char plot_warning[512], state_warning[512];
+    char plot_warning[512], state_warning[512], view_warning[512];
 } job;
 
-static sf_status parse_filter(const char *option, const char *text, double *cfc, sf_error *err) {
+/* ---- the command line ---- */
+
+static sf_status read_filter(const char *option, const char *text, void *cfc, sf_error *err) {
     static const double classes[] = {60, 180, 600, 1000};
     bool number = sf_decimal_is(text, cfc);
     for (size_t k = 0; k < sizeof classes / sizeof classes[0]; k++)
-        if (number && *cfc == classes[k])
+        if (number && *(double *)cfc == classes[k])
             return SF_OK;
     return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the channel frequency classes are 60, 180, 600 and 1000%s",
                    option, text, strcmp(option, "--filter") == 0 ? "" : " (none: not filtered)");
 }
 
-static sf_status parse_ms(const char *option, const char *text, double *time, sf_error *err) {
-    bool number = sf_decimal_is(text, time);
-    *time *= 1e-3;
-    if (!number || !isfinite(*time))
+static sf_status read_reference_filter(const char *option, const char *text, void *cfc, sf_error *err) {
+    *(double *)cfc = 0;
+    return strcmp(text, "none") == 0 ? SF_OK : read_filter(option, text, cfc, err);
+}
+
+static sf_status read_ms(const char *option, const char *text, void *time, sf_error *err) {
+    double ms = NAN;
+    if (!sf_decimal_is(text, &ms))
         return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a time in ms", option, text);
+    *(double *)time = ms * 1e-3;
     return SF_OK;
 }
 
-static sf_status parse_impact(const char *text, int *impact, sf_error *err) {
+static sf_status read_impact(const char *option, const char *text, void *impact, sf_error *err) {
     double value = 0;
     if (!sf_decimal_is(text, &value) || value != floor(value) || value < 1 || value > SF_RECORD_IMPACTS)
-        return SF_FAIL(err, SF_ERR_INPUT, "--impact %s: the number of an impact is expected, from 1 to %d",
+        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the number of an impact is expected, from 1 to %d", option,
                        text, SF_RECORD_IMPACTS);
-    *impact = (int)value;
+    *(int *)impact = (int)value;
     return SF_OK;
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state) {
-    options *o = state->input;
-    o->tuned = o->tuned || (key >= KEY_TUNED && key <= KEY_LAST);
-    switch (key) {
-    case 'o':
-        o->directory = text;
-        break;
-    case KEY_FORCE:
-        o->force = true;
-        break;
-    case KEY_FULL:
-        o->full = true;
-        break;
-    case KEY_FILM:
-        sf_paraview_check_film(text, &o->film, &o->err);
-        break;
-    case KEY_STRICT:
-        o->strict = true;
-        break;
-    case KEY_LIMIT_G:
-        sf_program_read_limit("--limit-g", text, &o->limits.a_max_g, &o->err);
-        break;
-    case KEY_LIMIT_HIC:
-        sf_program_read_limit("--limit-hic", text, &o->limits.hic, &o->err);
-        break;
-    case KEY_FILTER:
-        parse_filter("--filter", text, &o->cfc, &o->err);
-        break;
-    case KEY_MOUNT:
-        sf_signal_parse_mount(text, &o->chain, &o->err);
-        break;
-    case KEY_COUPLING:
-        sf_signal_parse_coupling(text, &o->chain, &o->err);
-        break;
-    case KEY_REFERENCE:
-        o->compare.reference.path = text;
-        o->comparing = true;
-        break;
-    case KEY_REFERENCE_FILTER:
-        o->compare.reference.cfc = 0;
-        if (strcmp(text, "none") != 0)
-            parse_filter("--reference-filter", text, &o->compare.reference.cfc, &o->err);
-        break;
-    case KEY_REFERENCE_COLUMN:
-        o->compare.reference.column = text;
-        break;
-    case KEY_REFERENCE_COLUMNS:
-        o->compare.reference.columns = text;
-        break;
-    case KEY_REFERENCE_HEADING:
-        o->compare.reference.heading = text;
-        break;
-    case KEY_REFERENCE_SCALE:
-        sf_reference_parse_sensitivity(text, &o->compare.reference.sensitivity, &o->err);
-        break;
-    case KEY_REFERENCE_RATE:
-        sf_reference_parse_rate(text, &o->compare.reference.rate, &o->err);
-        break;
-    case KEY_REFERENCE_INVERT:
-        o->compare.reference.invert = true;
-        break;
-    case KEY_FROM:
-        parse_ms("--from", text, &o->compare.reference.from, &o->err);
-        break;
-    case KEY_TO:
-        parse_ms("--to", text, &o->compare.reference.to, &o->err);
-        break;
-    case KEY_IMPACT:
-        parse_impact(text, &o->compare.reference.impact, &o->err);
-        break;
-    case KEY_REFERENCE_ZERO:
-        o->compare.reference.zero = true;
-        break;
-    case KEY_WINDOW:
-        sf_region_parse(text, &o->compare.window, &o->err);
-        break;
-    case KEY_REGIONS:
-        free(o->regions);
-        sf_regions_parse(text, &o->regions, &o->compare.region_count, &o->err);
-        break;
-    case KEY_SHIFT:
-        parse_ms("--shift", text, &o->compare.shift, &o->err);
-        break;
-    case ARGP_KEY_ARG:
-        if (o->results_path)
-            argp_error(state, "one results file is expected, found \"%s\" as well", text);
-        o->results_path = text;
-        break;
-    case ARGP_KEY_END:
-        if (!o->results_path || !o->directory)
-            argp_error(state, "give a results file, and the output directory with -o");
-        break;
-    default:
-        return ARGP_ERR_UNKNOWN;
+static sf_status read_view(const char *option, const char *text, void *view, sf_error *err) {
+    double *size = view;
+    if (!sf_decimal_is(text, size) || !(*size >= 0 && *size <= SF_BROWSER_MOST_MB))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: a size from 0 to %d MB is expected", option, text,
+                       SF_BROWSER_MOST_MB);
+    return SF_OK;
+}
+
+static sf_status read_regions(const char *option, const char *text, void *values, sf_error *err) {
+    options *o = values;
+    (void)option;
+    free(o->regions);
+    o->regions = NULL;
+    return sf_regions_parse(text, &o->regions, &o->compare.region_count, err);
+}
+
+/* A reader that calls a function of the library, whose sentences need no name of the option. */
+#define READER(name, parse)                                                                                  \
+    static sf_status name(const char *option, const char *text, void *member, sf_error *err) {               \
+        (void)option;                                                                                        \
+        return parse(text, member, err);                                                                     \
     }
-    return 0;
+READER(read_film, sf_paraview_check_film)
+READER(read_mount, sf_signal_parse_mount)
+READER(read_coupling, sf_signal_parse_coupling)
+READER(read_sensitivity, sf_reference_parse_sensitivity)
+READER(read_rate, sf_reference_parse_rate)
+READER(read_region, sf_region_parse)
+
+#define AT(member) offsetof(options, member)
+#define TUNES .group = 1, .noted = AT(tuned) /* in the group of --reference, which it needs */
+
+static const sf_option list[] = {
+    {"output", 'o', "DIR", "write everything there (required)", .member = AT(directory)},
+    {"force", 0, NULL, "replace the output of an earlier run in DIR", .member = AT(force)},
+    {"full", 0, NULL,
+     "data of pad.xdmf as doubles, as in results.h5 (default: as floats, a third of the bytes)",
+     .member = AT(full)},
+    {"film", 0, "mp4|gif",
+     "a film of the drop too, pad.mp4 or pad.gif, and pad.png, the picture at the peak, which report.html then "
+     "shows; by pvbatch (ParaView) and ffmpeg",
+     .member = AT(film), .read = read_film, .is_optional = true},
+    {"view", 0, "MB",
+     "size that view.html may have (default 5; 0: do not write it); a larger model shows fewer frames, or its surface only",
+     .member = AT(view), .read = read_view},
+    {"filter", 0, "CFC", "channel frequency class: 60, 180, 600 or 1000 (default)", .member = AT(cfc),
+     .read = read_filter},
+    {"mount", 0, "F, DAMPING",
+     "pass the model's acceleration through the mount of an accelerometer, a second-order system, before the filter: "
+     "\"f = 420 Hz, damping = 0.05\" (default: rigid)",
+     .member = AT(chain), .read = read_mount},
+    {"coupling", 0, "TIME",
+     "pass it through the high pass of a piezo chain with this time constant, such as \"0.2 s\" (default: none)",
+     .member = AT(chain), .read = read_coupling},
+    {"strict", 0, NULL,
+     "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"; it says nothing about limits that "
+     "are exceeded",
+     .member = AT(strict)},
+    {"limit-g", 0, "G", "limit of a_max in g (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) ")",
+     .member = AT(limits.a_max_g), .read = sf_program_read_limit},
+    {"limit-hic", 0, "HIC", "limit of HIC (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_HIC) ")",
+     .member = AT(limits.hic), .read = sf_program_read_limit},
+    {"reference", 0, "CSV",
+     "compare with a measured curve: columns such as time_ms and acceleration_g, or \"Time (ms)\" and "
+     "\"Acceleration (m/s2)\"; separators , ; tab or blanks",
+     .member = AT(compare.reference.path), .group = 1, .noted = AT(comparing)},
+    {"reference-filter", 0, "CFC",
+     "filter of the measured curve: none if the file is filtered already (default: that of --filter)",
+     .member = AT(compare.reference.cfc), .read = read_reference_filter, TUNES},
+    {"reference-column", 0, "NAME", "heading of its acceleration, if several columns could be",
+     .member = AT(compare.reference.column), TUNES},
+    {"reference-columns", 0, "X,Y,Z",
+     "headings of two or three axes: their resultant, each filtered, is the acceleration",
+     .member = AT(compare.reference.columns), TUNES},
+    {"reference-scale", 0, "SENSITIVITY",
+     "its column is in volts: sensitivity of the accelerometer, such as \"0.102 mV/(m/s2)\" or \"10 mV/g\"",
+     .member = AT(compare.reference.sensitivity), .read = read_sensitivity, TUNES},
+    {"reference-rate", 0, "RATE",
+     "it has no time, but a sample in each row, perhaps numbered: the sampling rate, such as \"20 kHz\"",
+     .member = AT(compare.reference.rate), .read = read_rate, TUNES},
+    {"reference-heading", 0, "TEXT", "heading of a file without one, such as \"Time (ms), Acceleration (g)\"",
+     .member = AT(compare.reference.heading), TUNES},
+    {"reference-invert", 0, NULL,
+     "its channel is inverted: positive must mean that the missile is slowed down",
+     .member = AT(compare.reference.invert), TUNES},
+    {"from", 0, "MS", "use the measured curve from there on, in ms of its time",
+     .member = AT(compare.reference.from), .read = read_ms, TUNES},
+    {"to", 0, "MS", "use it up to there", .member = AT(compare.reference.to), .read = read_ms, TUNES},
+    {"impact", 0, "N", "use impact N of a record that has several", .member = AT(compare.reference.impact),
+     .read = read_impact, TUNES},
+    {"reference-zero", 0, NULL, "take the median before contact, an offset of the channel, away from it",
+     .member = AT(compare.reference.zero), TUNES},
+    {"window", 0, "A,B",
+     "compare over A to B ms of the measured time (default: its HIC window); within the data",
+     .member = AT(compare.window), .read = read_region, TUNES},
+    {"regions", 0, "A-B,C-D,...", "compare over these regions too, in ms of the measured time",
+     .read = read_regions, TUNES},
+    {"shift", 0, "MS", "model time = measured time + MS (default: align the contacts)",
+     .member = AT(compare.shift), .read = read_ms, TUNES},
+    {0},
+};
+
+static const char *find_fault(const sf_command *command) {
+    const options *o = command->list[0].values;
+    return o->results_path && o->directory ? NULL : "give a results file, and the output directory with -o";
 }
 
-static void print_version(FILE *stream, struct argp_state *state) {
-    (void)state;
-    fputs("softfall-post " SF_VERSION " (" SF_GIT_REVISION ")\n", stream);
-}
-
-static sf_status parse_command(int argc, char **argv, options *o) {
-    static const struct argp_option known[] = {
-        {"output", 'o', "DIR", 0, "write everything there (required)", 0},
-        {"force", KEY_FORCE, NULL, 0, "replace the output of an earlier run in DIR", 0},
-        {"full", KEY_FULL, NULL, 0,
-         "data of pad.xdmf as doubles, as in results.h5 (default: as floats, a third of the bytes)", 0},
-        {"film", KEY_FILM, "mp4|gif", OPTION_ARG_OPTIONAL,
-         "a film of the drop too, pad.mp4 or pad.gif, and pad.png, the picture at the peak, which report.html then "
-         "shows; by pvbatch (ParaView) and ffmpeg",
-         0},
-        {"filter", KEY_FILTER, "CFC", 0, "channel frequency class: 60, 180, 600 or 1000 (default)", 0},
-        {"mount", KEY_MOUNT, "F, DAMPING", 0,
-         "pass the model's acceleration through the mount of an accelerometer, a second-order system, before the filter: "
-         "\"f = 420 Hz, damping = 0.05\" (default: rigid)",
-         0},
-        {"coupling", KEY_COUPLING, "TIME", 0,
-         "pass it through the high pass of a piezo chain with this time constant, such as \"0.2 s\" (default: none)",
-         0},
-        {"strict", KEY_STRICT, NULL, 0,
-         "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"; it says nothing about limits that "
-         "are exceeded",
-         0},
-        {"limit-g", KEY_LIMIT_G, "G", 0,
-         "limit of a_max in g (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) ")", 0},
-        {"limit-hic", KEY_LIMIT_HIC, "HIC", 0,
-         "limit of HIC (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_HIC) ")", 0},
-        {"reference", KEY_REFERENCE, "CSV", 0,
-         "compare with a measured curve: columns such as time_ms and acceleration_g, or \"Time (ms)\" and "
-         "\"Acceleration (m/s2)\"; separators , ; tab or blanks",
-         1},
-        {"reference-filter", KEY_REFERENCE_FILTER, "CFC", 0,
-         "filter of the measured curve: none if the file is filtered already (default: that of --filter)", 1},
-        {"reference-column", KEY_REFERENCE_COLUMN, "NAME", 0,
-         "heading of its acceleration, if several columns could be", 1},
-        {"reference-columns", KEY_REFERENCE_COLUMNS, "X,Y,Z", 0,
-         "headings of two or three axes: their resultant, each filtered, is the acceleration", 1},
-        {"reference-scale", KEY_REFERENCE_SCALE, "SENSITIVITY", 0,
-         "its column is in volts: sensitivity of the accelerometer, such as \"0.102 mV/(m/s2)\" or \"10 mV/g\"",
-         1},
-        {"reference-rate", KEY_REFERENCE_RATE, "RATE", 0,
-         "it has no time, but a sample in each row, perhaps numbered: the sampling rate, such as \"20 kHz\"",
-         1},
-        {"reference-heading", KEY_REFERENCE_HEADING, "TEXT", 0,
-         "heading of a file without one, such as \"Time (ms), Acceleration (g)\"", 1},
-        {"reference-invert", KEY_REFERENCE_INVERT, NULL, 0,
-         "its channel is inverted: positive must mean that the missile is slowed down", 1},
-        {"from", KEY_FROM, "MS", 0, "use the measured curve from there on, in ms of its time", 1},
-        {"to", KEY_TO, "MS", 0, "use it up to there", 1},
-        {"impact", KEY_IMPACT, "N", 0, "use impact N of a record that has several", 1},
-        {"reference-zero", KEY_REFERENCE_ZERO, NULL, 0,
-         "take the median before contact, an offset of the channel, away from it", 1},
-        {"window", KEY_WINDOW, "A,B", 0,
-         "compare over A to B ms of the measured time (default: its HIC window); within the data", 1},
-        {"regions", KEY_REGIONS, "A-B,C-D,...", 0,
-         "compare over these regions too, in ms of the measured time", 1},
-        {"shift", KEY_SHIFT, "MS", 0, "model time = measured time + MS (default: align the contacts)", 1},
-        {0},
-    };
-    const struct argp parser = {
-        .options = known,
-        .parser = parse_option,
-        .args_doc = "RESULTS.h5 -o DIR\ncompare RESULTS RESULTS ... -o DIR",
-        .doc =
-            "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, summary.json, "
-            "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
-            "motion compression.csv and .png instead of the acceleration. Open the drop in ParaView with paraview "
-            "--script=pad_paraview.py, in that directory. The "
-            "figures are indicative, not a certification.",
-    };
-    argp_program_version_hook = print_version;
+static sf_status parse_command(int argc, char **argv, options *o, sf_error *err) {
     *o = (options){.cfc = 1000,
+                   .view = 5,
                    .limits = SF_DEFAULT_LIMITS,
                    .compare = {.reference = {.cfc = NAN,
                                              .from = -INFINITY,
@@ -294,21 +208,34 @@ static sf_status parse_command(int argc, char **argv, options *o) {
                                              .invert_option = "--reference-invert",
                                              .heading_option = "--reference-heading"},
                                .shift = NAN,
-                               .window = {NAN, NAN}},
-                   .err = SF_ERROR_INIT};
-    if (argp_parse(&parser, argc, argv, 0, NULL, o) != 0)
-        return SF_FAIL(&o->err, SF_ERR_INPUT, "the command line cannot be read");
+                               .window = {NAN, NAN}}};
+    const sf_command command = {
+        .program = "softfall-post",
+        .operands = "RESULTS.h5 -o DIR\ncompare RESULTS RESULTS ... -o DIR\nseries RESULTS -o DIR",
+        .meaning =
+            "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, view.html, summary.json, "
+            "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
+            "motion compression.csv and .png instead of the acceleration. Open the drop in ParaView with paraview "
+            "--script=pad_paraview.py, in that directory. The "
+            "figures are indicative, not a certification.",
+        .second = "one results file is expected, found \"%s\" as well",
+        .operand = AT(results_path),
+        .fault = find_fault,
+        .list = {{list, o}}};
+    sf_command_parse(&command, argc, argv, err);
     o->compare.regions = o->regions;
     if (!(o->compare.reference.from < o->compare.reference.to))
-        SF_FAIL(&o->err, SF_ERR_INPUT, "--from %g and --to %g: the part of the measured curve has no length",
+        SF_FAIL(err, SF_ERR_INPUT, "--from %g and --to %g: the part of the measured curve has no length",
                 1e3 * o->compare.reference.from, 1e3 * o->compare.reference.to);
     if (isnan(o->compare.reference.cfc))
         o->compare.reference.cfc = o->cfc;
     if (o->tuned && !o->comparing)
-        return SF_FAIL(&o->err, SF_ERR_INPUT,
+        return SF_FAIL(err, SF_ERR_INPUT,
                        "--window, --regions, --shift and --reference-... need --reference");
-    return o->err.status;
+    return err->status;
 }
+
+/* ---- the output ---- */
 
 /* Every file that this program may write. The data of pad.xdmf are moved before it, and earlier ones (pad.h5
  * of earlier versions) removed after it. Without a name of the data yet, pad.xdmf stands for them. */
@@ -328,6 +255,7 @@ static void name_output(job *j) {
                                  "acceleration.csv",
                                  "acceleration.gp",
                                  "acceleration.png",
+                                 "view.html",
                                  "report.html",
                                  "summary.json",
                                  "pad.h5",
@@ -361,9 +289,10 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
     const sf_summary summary = {
         o->results_path, o->compare.reference.path, &j->results, &j->figures, comparison, &j->verdict};
     const sf_report report = {&summary, j->command_line};
-    if (sf_report_write(&j->output, &report, err) != SF_OK ||
-        sf_summary_write(&j->output, &summary, err) != SF_OK || sf_staging_commit(&j->output, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_browser_write(&j->output, &report, &j->xdmf, o->view, j->view_warning, sizeof j->view_warning, err));
+    SF_TRY(sf_report_write(&j->output, &report, err));
+    SF_TRY(sf_summary_write(&j->output, &summary, err));
+    SF_TRY(sf_staging_commit(&j->output, err));
     sf_xdmf_remove_old(o->directory, j->data);
     sf_summary_print(stdout, &summary);
     return SF_OK;
@@ -384,6 +313,8 @@ static void print_warnings(const job *j) {
         fprintf(stderr, "softfall-post: warning: %s\n", j->plot_warning);
     if (j->state_warning[0])
         fprintf(stderr, "softfall-post: warning: %s\n", j->state_warning);
+    if (j->view_warning[0])
+        fprintf(stderr, "softfall-post: warning: %s\n", j->view_warning);
 }
 
 static void print_files(const job *j) {
@@ -391,6 +322,7 @@ static void print_files(const job *j) {
         const char *name, *meaning;
     } files[] = {
         {"report.html", "a page to read or print, usually two sides of A4"},
+        {"view.html", "the drop to turn, cut and play in a browser"},
         {"summary.json", "the figures"},
         {"acceleration.png", "the curves and the HIC window"},
         {"acceleration.csv", "the filtered curve of a_max and HIC, from 5 ms before contact"},
@@ -432,8 +364,7 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     if (o->comparing && sf_compare_run(&compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
         return err->status;
     sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);
-    if (write_output(o, j, err) != SF_OK)
-        return err->status;
+    SF_TRY(write_output(o, j, err));
     print_files(j);
     print_warnings(j);
     return SF_OK;
@@ -443,16 +374,14 @@ static sf_status run(const options *o, job *j, sf_error *err) {
 static const int strict_codes[] = {[SF_GRADE_VALID] = 0, [SF_GRADE_REMARKS] = 8, [SF_GRADE_DO_NOT_USE] = 9};
 
 int main(int argc, char **argv) {
-    if (argc > 1 && strcmp(argv[1], "compare") == 0)
+    if (argc > 1 && (strcmp(argv[1], "compare") == 0 || strcmp(argv[1], "series") == 0))
         return sf_overlay_main(argc, argv);
     options o;
     job j = {0};
     sf_error err = SF_ERROR_INIT;
     if (sf_program_begin(argv, &err) != SF_OK)
         return sf_error_report(&err, "softfall-post");
-    if (parse_command(argc, argv, &o) != SF_OK) {
-        err = o.err;
-    } else {
+    if (parse_command(argc, argv, &o, &err) == SF_OK) {
         j.command_line = sf_command_line(argc, argv);
         run(&o, &j, &err);
     }

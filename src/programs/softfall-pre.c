@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-pre: CASE -> model.h5. */
-#include "build_info.h"
 #include "base/program.h"
 #include "model/model_io.h"
 #include "io/replace.h"
@@ -8,54 +7,34 @@
 #include "pre/make.h"
 #include "pre/model_report.h"
 
-#include <argp.h>
 #include <omp.h>
+#include <stddef.h>
 #include <stdlib.h>
 
-enum { MAX_OVERRIDES = 64, KEY_SET = 1, KEY_KEYS = 2, KEY_SHARE = 3 };
-
 typedef struct options {
-    const char *case_path;
-    const char *output;
-    const char *store;
-    bool force;
-    bool keys;
-    int overrides;
-    const char *override[MAX_OVERRIDES];
+    const char *case_path, *output, *store;
+    bool force, keys;
+    sf_option_texts overrides;
 } options;
 
-static error_t parse(int key, char *arg, struct argp_state *state) {
-    options *o = state->input;
-    switch (key) {
-    case 'o':
-        o->output = arg;
-        return 0;
-    case 'f':
-        o->force = true;
-        return 0;
-    case KEY_KEYS:
-        o->keys = true;
-        return 0;
-    case KEY_SHARE:
-        o->store = arg;
-        return 0;
-    case KEY_SET:
-        if (o->overrides == MAX_OVERRIDES)
-            argp_error(state, "at most %d --set options", MAX_OVERRIDES);
-        o->override[o->overrides++] = arg;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->case_path)
-            argp_error(state, "one case at a time: \"%s\" is one too many", arg);
-        o->case_path = arg;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->keys && (!o->case_path || !o->output))
-            argp_error(state, "usage: softfall-pre CASE -o model.h5");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
+static const sf_option list[] = {
+    {"output", 'o', "MODEL", "model file to write (HDF5)", .member = offsetof(options, output)},
+    {"set", 0, "GROUP.KEY=VALUE",
+     "override a key of the case, e.g. missile.velocity=\"5.2 m/s\", or replace a group by a file, e.g. "
+     "material=@other_foam.cfg",
+     .member = offsetof(options, overrides), .read = sf_program_read_texts},
+    {"force", 'f', NULL, "replace an existing model file", .member = offsetof(options, force)},
+    {"share", 0, "DIR",
+     "take the mesh and the smoothing domains from this folder if an earlier drop of the same geometry and "
+     "kernel left them there, and leave them there",
+     .member = offsetof(options, store)},
+    {"keys", 0, NULL, "list every key of a case file and end", .member = offsetof(options, keys)},
+    {0},
+};
+
+static const char *find_fault(const sf_command *command) {
+    const options *o = command->list[0].values;
+    return o->keys || (o->case_path && o->output) ? NULL : "usage: softfall-pre CASE -o model.h5";
 }
 
 static sf_status build(const options *o, const char *command, sf_error *err) {
@@ -69,7 +48,7 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
     SF_TRY(sf_replace_check(o->output, err));
     if (!o->force && sf_replace_exists(o->output))
         return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it", o->output);
-    if (sf_case_read(o->case_path, o->overrides, o->override, &sink, &c, err) != SF_OK)
+    if (sf_case_read(o->case_path, o->overrides.count, o->overrides.text, &sink, &c, err) != SF_OK)
         goto done;
     c.store = o->store;
     if (sf_replace_check(o->output, err) != SF_OK || /* not one of what the case names */
@@ -98,30 +77,18 @@ done:
 }
 
 int main(int argc, char **argv) {
-    static const struct argp_option list[] = {
-        {"output", 'o', "MODEL", 0, "model file to write (HDF5)", 0},
-        {"set", KEY_SET, "GROUP.KEY=VALUE", 0,
-         "override a key of the case, e.g. missile.velocity=\"5.2 m/s\", or replace a group by a file, e.g. "
-         "material=@other_foam.cfg",
-         0},
-        {"force", 'f', 0, 0, "replace an existing model file", 0},
-        {"share", KEY_SHARE, "DIR", 0,
-         "take the mesh and the smoothing domains from this folder if an earlier drop of the same geometry and "
-         "kernel left them there, and leave them there",
-         0},
-        {"keys", KEY_KEYS, 0, 0, "list every key of a case file and end", 0},
-        {0},
-    };
-    argp_program_version = "softfall-pre " SF_VERSION " (" SF_GIT_REVISION ")";
-    static const struct argp argp = {.options = list,
-                                     .parser = parse,
-                                     .args_doc = "CASE",
-                                     .doc = "Builds the model of a drop from a case file and its geometry."};
     options o = {0};
     sf_error err = SF_ERROR_INIT;
-    if (sf_program_begin(argv, &err) != SF_OK)
+    const sf_command line = {.program = "softfall-pre",
+                             .operands = "CASE",
+                             .meaning = "Builds the model of a drop from a case file and its geometry.",
+                             .second = "one case at a time: \"%s\" is one too many",
+                             .operand = offsetof(options, case_path),
+                             .fault = find_fault,
+                             .is_usage = true,
+                             .list = {{list, &o}}};
+    if (sf_program_begin(argv, &err) != SF_OK || sf_command_parse(&line, argc, argv, &err) != SF_OK)
         return sf_error_report(&err, "softfall-pre");
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
     if (o.keys) {
         sf_case_print_keys(stdout);
         return sf_error_report(&err, "softfall-pre");

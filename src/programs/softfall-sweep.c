@@ -3,19 +3,18 @@
 #include "base/program.h"
 #include "base/units.h"
 #include "io/process.h"
-#include "study/engine.h"
-#include "study/manifest.h"
+#include "study/batch.h"
 #include "study/setup.h"
-#include "study/sweep/cost.h"
-#include "study/sweep/drops.h"
-#include "study/sweep/sweep_plot.h"
+#include "study/sweep/adaptive.h"
+#include "study/sweep/campaign.h"
 #include "study/sweep/sweep_report.h"
 
 #include <malloc.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { KEY_DRY = 256, TABLE_ROWS = 10 };
+enum { TABLE_ROWS = 10 };
 /* Bytes. Larger blocks are not of the heap, where what is kept of each of very many rows would lie between
  * them: with 100,000 rows it grew to many times what was in use. */
 enum { LARGE_BLOCK = 16384 };
@@ -30,12 +29,6 @@ typedef struct job {
     char names[24][32];  /* of the pictures */
     const char *list[24 + 3];
 } job;
-
-static void take_option(int key, const char *text, void *own, sf_error *err) {
-    job *j = own;
-    (void)text, (void)err;
-    *(key == KEY_DRY ? &j->dry : &j->yes) = true;
-}
 
 /* Pictures with their scripts; runs.csv and sweep.key go their own way. */
 static void name_output(job *j) {
@@ -55,12 +48,11 @@ static void name_output(job *j) {
 static sf_status write_report(sf_study *study, job *j, sf_error *err) {
     char warning[320];
     const sf_sweep_report report = {&j->plan, &j->runs, &j->analysis, study->command};
-    if (sf_analysis_make(&j->runs, &j->analysis, err) != SF_OK ||
-        sf_sweep_plot(&study->output, &j->analysis, study->runs, warning, sizeof warning, err) != SF_OK ||
-        sf_sweep_write_page(&study->output, &report, err) != SF_OK ||
-        sf_sweep_write_json(&study->output, &report, err) != SF_OK ||
-        sf_staging_commit(&study->output, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_analysis_make(&j->runs, &j->analysis, err));
+    SF_TRY(sf_sweep_plot(&study->output, &j->analysis, study->runs, warning, sizeof warning, err));
+    SF_TRY(sf_sweep_write_page(&study->output, &report, err));
+    SF_TRY(sf_sweep_write_json(&study->output, &report, err));
+    SF_TRY(sf_staging_commit(&study->output, err));
     sf_sweep_print(stdout, &report);
     sf_study_close(study, "report.html, runs.csv, sweep.json", warning);
     return SF_OK;
@@ -69,9 +61,8 @@ static sf_status write_report(sf_study *study, job *j, sf_error *err) {
 /* Before anything is made. A table of this plan is replaced without --force. */
 static sf_status check(sf_study *study, job *j, sf_error *err) {
     bool known = false;
-    if (sf_plan_read(study->input, j->yes, &j->plan, err) != SF_OK ||
-        sf_sweep_check_inputs(&j->plan, &j->campaign.inputs, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plan_read(study->input, j->yes, &j->plan, err));
+    SF_TRY(sf_sweep_check_inputs(&j->plan, &j->campaign.inputs, err));
     j->campaign.plan = &j->plan;
     j->campaign.look = sf_sweep_check_inputs;
     j->campaign.folder = study->directory;
@@ -92,12 +83,16 @@ static sf_status estimate(const sf_study *study, job *j, sf_error *err) {
     sf_error small = SF_ERROR_INIT;
     const bool elsewhere = study->engine.profile != NULL;
     int64_t open = 0;
-    if (sf_runs_create(&j->plan, &j->runs, err) != SF_OK ||
-        sf_sweep_campaign_status(&j->campaign, &j->runs, &open, err) != SF_OK ||
-        sf_sweep_cost_estimate(&j->runs, open, study->runs, &cost, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_runs_create(&j->plan, &j->runs, err));
+    SF_TRY(sf_sweep_campaign_status(&j->campaign, &j->runs, &open, err));
+    SF_TRY(sf_sweep_cost_estimate(&j->runs, open, study->runs, &cost, err));
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);
     sf_sweep_cost_print(stdout, &cost, elsewhere ? 0 : study->jobs);
+    if (sf_plan_is_adaptive(&j->plan))
+        printf(
+            "  (at most: %lld rows are simulated first, then those without which the others are not predicted as "
+            "accurately as the plan asks)\n",
+            (long long)sf_sweep_adaptive_design(&j->plan));
     fflush(stdout);
     j->drop_seconds = cost.seconds;
     int abreast = !elsewhere ? study->jobs : open < SF_MANIFEST_GROUPS ? (int)open : SF_MANIFEST_GROUPS;
@@ -119,18 +114,33 @@ static void choose_jobs(sf_study *study) {
         study->threads = study->jobs;
 }
 
+/* Runs all rows, or those that a plan with wishes for its accuracy needs. */
+static sf_status run_rows(sf_study *study, job *j, const sf_sweep_engine *engine, sf_error *err) {
+    if (!sf_plan_is_adaptive(&j->plan))
+        return sf_sweep_campaign_run(&j->campaign, engine, &j->runs, err);
+    sf_sweep_adaptive *adaptive = sf_sweep_adaptive_new(&j->plan, study->runs, study->jobs, stdout, err);
+    if (!adaptive)
+        return err->status;
+    const sf_sweep_chooser chooser = sf_sweep_adaptive_chooser(adaptive);
+    j->campaign.chooser = &chooser;
+    sf_sweep_campaign_run(&j->campaign, engine, &j->runs, err);
+    j->campaign.chooser = NULL;
+    sf_sweep_adaptive_free(adaptive);
+    return err->status;
+}
+
 static sf_status run_campaign(sf_study *study, job *j, sf_error *err) {
     choose_jobs(study);
     SF_TRY(sf_engine_check(&study->engine, err));
     if (check(study, j, err) != SF_OK || estimate(study, j, err) != SF_OK || j->dry)
         return err->status;
     sf_runs_free(&j->runs);
-    if (sf_study_begin(study, j->list, err) != SF_OK || sf_runs_create(&j->plan, &j->runs, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_study_begin(study, j->list, err));
+    SF_TRY(sf_runs_create(&j->plan, &j->runs, err));
     study->runner.engine.drop_seconds = j->drop_seconds;
     const sf_sweep_engine engine = sf_sweep_drops(&study->runner, study->jobs);
     j->campaign.log = stdout;
-    SF_TRY(sf_sweep_campaign_run(&j->campaign, &engine, &j->runs, err));
+    SF_TRY(run_rows(study, j, &engine, err));
     return write_report(study, j, err);
 }
 
@@ -141,11 +151,12 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     return err->status;
 }
 
-static const struct argp_option options[] = {
-    {"dry-run", KEY_DRY, NULL, 0, "print the table and what it will take, and end", 1},
-    {"yes", 'y', NULL, 0,
+static const sf_option options[] = {
+    {"dry-run", 0, NULL, "print the table and what it will take, and end", .member = offsetof(job, dry),
+     .group = 1},
+    {"yes", 'y', NULL,
      "take a plan of more than a million runs, and begin although the estimate says that the disk is too small",
-     1},
+     .member = offsetof(job, yes), .group = 1},
     {0}};
 
 static const sf_study_program program = {
@@ -157,7 +168,6 @@ static const sf_study_program program = {
         "indicative, not a certification.",
     .drops = true,
     .options = options,
-    .take = take_option,
     .run = run};
 
 int main(int argc, char **argv) {

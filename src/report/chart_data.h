@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of a chart. Internal to src/report: chart_data.c collects them, chart_script.c
- * writes them, chart_picture.c draws. */
+/* The parts of a chart. Internal to src/report: chart_data.c collects and draws them, chart_script.c
+ * writes them as commands of gnuplot. */
 #ifndef SF_REPORT_CHART_DATA_H
 #define SF_REPORT_CHART_DATA_H
 

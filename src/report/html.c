@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const char style[] =
-    "@page{size:A4;margin:9mm 12mm 7mm 12mm}"
+    "@page{size:A4;margin:8mm 12mm 6mm 12mm}"
     "*{box-sizing:border-box}"
     "html{background:#e9ecef}"
     "body{margin:0;color:#1b2430;font:7.8pt/1.32 'Helvetica Neue',Arial,'Liberation Sans','DejaVu Sans',sans-serif;"
@@ -53,7 +53,8 @@ static const char style[] =
     "figcaption{font-size:7pt;line-height:1.25;color:#5a6675;margin-top:.4mm}"
     "figure.missing{padding:2mm 3mm;background:#fff6e0}"
     "footer{margin-top:1.2mm;padding-top:.5mm;border-top:.2mm solid #8797a8;font-size:6.8pt;color:#5a6675}"
-    "@media print{html{background:#fff}main{width:auto;margin:0;padding:0;box-shadow:none}}";
+    "@media print{html{background:#fff}main{width:auto;margin:0;padding:0;box-shadow:none;zoom:.87}"
+    "figure svg{max-height:50mm}}";
 
 /* The character, or what stands for it in XML. */
 static void put_character(FILE *page, const unsigned char *s, int length) {
@@ -206,16 +207,16 @@ void sf_html_figure(FILE *page, const char *svg, const char *format, ...) {
     fputs("</figcaption></figure>\n", page);
 }
 
-static void put_base64(FILE *out, const unsigned char *data, size_t size) {
+void sf_html_base64(FILE *out, const unsigned char *data, size_t size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (size_t k = 0; k < size; k += 3) {
         size_t left = size - k;
         unsigned three = (unsigned)data[k] << 16 | (left > 1 ? (unsigned)data[k + 1] << 8 : 0) |
                          (left > 2 ? (unsigned)data[k + 2] : 0);
-        fputc(digits[three >> 18], out);
-        fputc(digits[three >> 12 & 63], out);
-        fputc(left > 1 ? digits[three >> 6 & 63] : '=', out);
-        fputc(left > 2 ? digits[three & 63] : '=', out);
+        putc_unlocked(digits[three >> 18], out);
+        putc_unlocked(digits[three >> 12 & 63], out);
+        putc_unlocked(left > 1 ? digits[three >> 6 & 63] : '=', out);
+        putc_unlocked(left > 2 ? digits[three & 63] : '=', out);
     }
 }
 
@@ -236,7 +237,7 @@ static char *png_element(const unsigned char *data, size_t size) {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %u %u\"><image width=\"%u\" "
             "height=\"%u\" href=\"data:image/png;base64,",
             width, height, width, height);
-    put_base64(out, data, size);
+    sf_html_base64(out, data, size);
     fputs("\"/></svg>\n", out);
     if (fclose(out) == 0)
         return element;

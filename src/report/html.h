@@ -49,6 +49,9 @@ void sf_html_block_end(FILE *page);
 void sf_html_figure(FILE *page, const char *svg, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* The bytes in base64, as an URL or a script takes them. */
+void sf_html_base64(FILE *out, const unsigned char *data, size_t size);
+
 /* The PNG of a file of the staging directory as an SVG element that holds it, for sf_html_figure. From
  * malloc, owned by the caller; NULL if there is none. */
 char *sf_html_png(const sf_staging *output, const char *name);

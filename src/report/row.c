@@ -1,9 +1,97 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/row.h"
 
+#include "base/text.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- JSON ---- */
+
+static void put_text(FILE *file, const char *text) {
+    fputc('"', file);
+    for (const unsigned char *s = (const unsigned char *)text; *s;) {
+        int length = sf_utf8_length(s);
+        if (length == 0) {
+            fputs("\\ufffd", file);
+            length = 1;
+        } else if (*s == '"' || *s == '\\') {
+            fprintf(file, "\\%c", *s);
+        } else if (*s < 0x20 || *s == 0x7f || *s == '<') {
+            fprintf(file, "\\u%04x", *s);
+        } else {
+            fwrite(s, 1, (size_t)length, file);
+        }
+        s += length;
+    }
+    fputc('"', file);
+}
+
+static void begin(sf_json *json, const char *key) {
+    if (json->depth > 0)
+        fprintf(json->file, "%s\n%*s", json->empty ? "" : ",", 2 * json->depth, "");
+    json->empty = false;
+    if (key) {
+        put_text(json->file, key);
+        fputs(": ", json->file);
+    }
+}
+
+void sf_json_open(sf_json *json, const char *key, char bracket) {
+    begin(json, key);
+    fputc(bracket, json->file);
+    json->depth++;
+    json->empty = true;
+}
+
+void sf_json_close(sf_json *json, char bracket) {
+    json->depth--;
+    if (!json->empty)
+        fprintf(json->file, "\n%*s", 2 * json->depth, "");
+    fputc(bracket, json->file);
+    if (json->depth == 0)
+        fputc('\n', json->file);
+    json->empty = false;
+}
+
+void sf_json_number(sf_json *json, const char *key, double value) {
+    begin(json, key);
+    if (isfinite(value))
+        fprintf(json->file, "%.9g", value);
+    else
+        fputs("null", json->file);
+}
+
+void sf_json_integer(sf_json *json, const char *key, int64_t value) {
+    begin(json, key);
+    if (value >= 0)
+        fprintf(json->file, "%lld", (long long)value);
+    else
+        fputs("null", json->file);
+}
+
+void sf_json_bool(sf_json *json, const char *key, bool value) {
+    begin(json, key);
+    fputs(value ? "true" : "false", json->file);
+}
+
+void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size) {
+    begin(json, key);
+    fputc('"', json->file);
+    sf_html_base64(json->file, data, size);
+    fputc('"', json->file);
+}
+
+void sf_json_text(sf_json *json, const char *key, const char *text) {
+    begin(json, key);
+    if (text)
+        put_text(json->file, text);
+    else
+        fputs("null", json->file);
+}
+
+/* ---- rows ---- */
 
 sf_value sf_value_real(double value) {
     return (sf_value){.kind = SF_VALUE_REAL, .real = value};
@@ -130,73 +218,12 @@ void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records
     sf_json_close(json, ']');
 }
 
-/* ---- CSV ---- */
-
-/* A text in quotes where it holds a character of the format. */
-static void put_csv_text(FILE *file, const char *text) {
-    if (!strpbrk(text, ",\"\n\r")) {
-        fputs(text, file);
-        return;
-    }
-    fputc('"', file);
-    for (; *text; text++) {
-        if (*text == '"')
-            fputc('"', file);
-        fputc(*text, file);
-    }
-    fputc('"', file);
-}
-
-static void put_csv_cell(FILE *file, const sf_row *row, const void *record) {
-    sf_value value = sf_row_value(row, record);
-    if (!is_defined(value))
-        return;
-    if (value.kind == SF_VALUE_REAL)
-        fprintf(file, "%.9g", value.real * factor_of(row));
-    else if (value.kind == SF_VALUE_INTEGER)
-        fprintf(file, "%lld", (long long)value.integer);
-    else if (value.kind == SF_VALUE_FLAG)
-        fputc(value.flag ? '1' : '0', file);
-    else
-        put_csv_text(file, value.text);
-}
-
-void sf_rows_csv(FILE *file, sf_rows rows, sf_records records) {
-    for (int64_t k = -1; k < records.count; k++) {
-        bool first = true;
-        for (size_t c = 0; c < rows.count; c++) {
-            if (!rows.row[c].key)
-                continue;
-            if (!first)
-                fputc(',', file);
-            first = false;
-            if (k < 0)
-                fputs(rows.row[c].key, file);
-            else
-                put_csv_cell(file, &rows.row[c], record_at(records, k));
-        }
-        fputc('\n', file);
-    }
-}
-
 /* ---- HTML ---- */
 
-void sf_row_html_cell(sf_html_table *table, const sf_row *row, const void *record) {
+static void put_html_cell(sf_html_table *table, const sf_row *row, const void *record) {
     char text[512];
     const char *dash = sf_row_value(row, record).kind == SF_VALUE_TEXT ? "" : "–";
     sf_html_cell(table, "%s", sf_row_shown(row, record, dash, text, sizeof text));
-}
-
-void sf_rows_html_facts(sf_html_table *table, sf_rows rows, const void *record) {
-    for (size_t k = 0; k < rows.count; k++) {
-        const sf_row *row = &rows.row[k];
-        char text[512];
-        if (!row->name || !sf_row_is_defined(row, record))
-            continue;
-        sf_row_shown(row, record, "–", text, sizeof text);
-        sf_html_hint(table, row->meaning);
-        sf_html_fact(table, row->name, "%s%s%s", text, row->unit ? " " : "", row->unit ? row->unit : "");
-    }
 }
 
 /* "name (unit)", as tables head a column. */
@@ -238,7 +265,7 @@ void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records r
         sf_html_row(&table);
         for (size_t c = 0; c < rows.count; c++)
             if (rows.row[c].name)
-                sf_row_html_cell(&table, &rows.row[c], record_at(records, k));
+                put_html_cell(&table, &rows.row[c], record_at(records, k));
     }
     sf_html_table_end(&table);
     free(headings);
@@ -253,11 +280,6 @@ void sf_row_text(FILE *out, const sf_row *row, const void *record) {
     sf_row_shown(row, record, "-", text, sizeof text);
     bool unit = row->unit && sf_row_is_defined(row, record);
     fprintf(out, "  %-24s %12s%s%s\n", row->name, text, unit ? " " : "", unit ? row->unit : "");
-}
-
-void sf_rows_text(FILE *out, sf_rows rows, const void *record) {
-    for (size_t k = 0; k < rows.count; k++)
-        sf_row_text(out, &rows.row[k], record);
 }
 
 /* Returns the value of a text table, or with `record` NULL the heading. */

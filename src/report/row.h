@@ -1,18 +1,35 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a report. A declaration states once how a value is called, its unit, its format and its meaning;
- * one writer each makes JSON, CSV, HTML and text of it. A record is any struct of the program; a declaration
+ * one writer each makes JSON, HTML and text of it. A record is any struct of the program; a declaration
  * points to a member of it, or has a function that computes the value. A value that a run does not define (a
- * number that is not finite, a negative count, an empty text) becomes null in JSON, an empty cell in CSV and
- * a dash for readers. */
+ * number that is not finite, a negative count, an empty text) becomes null in JSON and a dash for
+ * readers. */
 #ifndef SF_REPORT_ROW_H
 #define SF_REPORT_ROW_H
 
 #include "report/html.h"
-#include "report/json.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+
+/* Writes strictly valid JSON (RFC 8259): a number that is not finite becomes null, texts are escaped and
+ * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. No text holds a '<', so
+ * that the whole may stand in a script element of a page. */
+typedef struct sf_json {
+    FILE *file;
+    int depth;
+    bool empty; /* nothing yet in the innermost object or array */
+} sf_json;
+
+void sf_json_open(sf_json *json, const char *key, char bracket); /* bracket: '{' or '[' */
+void sf_json_close(sf_json *json, char bracket);                 /* '}' or ']' */
+void sf_json_number(sf_json *json, const char *key, double value);
+/* A negative integer becomes null: all of ours are counts. */
+void sf_json_integer(sf_json *json, const char *key, int64_t value);
+void sf_json_bool(sf_json *json, const char *key, bool value);
+void sf_json_text(sf_json *json, const char *key, const char *text); /* NULL: null */
+void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size);
 
 typedef enum sf_row_type {
     SF_ROW_NUMBER,  /* double */
@@ -34,7 +51,7 @@ typedef struct sf_value {
 
 /* A declaration; static storage. */
 typedef struct sf_row {
-    const char *key;     /* in JSON and CSV, with the unit as its ending; NULL: not written there */
+    const char *key;     /* in JSON, with the unit as its ending; NULL: not written there */
     const char *name;    /* for readers; NULL: not shown to them */
     const char *unit;    /* behind the shown value; NULL: none */
     const char *format;  /* of a shown number, with one conversion of a double; NULL: "%.4g" */
@@ -81,18 +98,12 @@ void sf_row_json(sf_json *json, const sf_row *row, const void *record);
 void sf_rows_json(sf_json *json, sf_rows rows, const void *record);
 void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records records);
 
-/* CSV: the heading and a line for each record, numbers with nine digits. */
-void sf_rows_csv(FILE *file, sf_rows rows, sf_records records);
-
-/* HTML: a cell; a table of facts "name | value unit"; a table with a column for each declaration that has a
- * name, and a row for each record. `kind` as for sf_html_table_begin. */
-void sf_row_html_cell(sf_html_table *table, const sf_row *row, const void *record);
-void sf_rows_html_facts(sf_html_table *table, sf_rows rows, const void *record);
+/* HTML: a table with a column for each declaration that has a name, and a row for each record. `kind` as for
+ * sf_html_table_begin. */
 void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records);
 
-/* Text: a line "  name   value unit" for each declaration that has a name. */
+/* Text: a line "  name   value unit"; none without a name. */
 void sf_row_text(FILE *out, const sf_row *row, const void *record);
-void sf_rows_text(FILE *out, sf_rows rows, const void *record);
 /* Text: a heading and a line for each record, columns as wide as their widest cell. */
 void sf_rows_text_table(FILE *out, sf_rows rows, sf_records records);
 

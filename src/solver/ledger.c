@@ -79,7 +79,9 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const sf_wrench *outside, d
     double back = s->rubbed_back, momentum[3] = {0}, angular[3] = {0}, fastest = 0;
     s->smallest_jacobian = INFINITY;
     double shortest = INFINITY;
-    l->stored = l->hysteresis = l->kinetic_pad = 0;
+    l->stored = s->membrane.energy;
+    l->kinetic_pad = 0;
+    l->hysteresis = -l->before;
     for (int64_t k = 0; k < s->chunk_count; k++) {
         const sf_partial *p = &s->partial[k];
         l->stored += p->stored;

@@ -4,7 +4,6 @@
 #include "model/flight.h"
 #include "model/model.h"
 #include "base/mat3.h"
-#include "base/rigid.h"
 #include <string.h>
 
 double sf_missile_free_fall(const sf_model *m) {

@@ -7,7 +7,7 @@
  * pulled by gravity and braked by the pad. A driven missile (sf_missile_is_driven, model/model.h) follows its
  * prescribed motion along it: it has zero mobility (infinite mass). A missile that turns
  * (sf_missile_turns, docs/adr/0018) has six: its centre of mass moves in space, and it rotates about it
- * (base/rigid.h).
+ * (base/mat3.h).
  *
  * Forces, masses, energies and momenta are those of the modelled part, 1/2 or 1/4 of the missile under
  * symmetry; sf_model_whole is the factor to the whole. Points and vectors are in the geometry's frame. A

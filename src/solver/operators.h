@@ -11,6 +11,7 @@
 #include "solver/contact/skin.h"
 #include "material/laws.h"
 #include "solver/field/halo.h"
+#include "solver/field/membrane.h"
 
 typedef struct sf_operators {
     int64_t law_count;
@@ -26,6 +27,7 @@ typedef struct sf_operators {
     sf_contact_gram gram;
     sf_anvil anvil;
     sf_skin skin;
+    sf_membrane membrane;
     sf_missile_surface surface;
 } sf_operators;
 

@@ -30,6 +30,7 @@ static const sf_state_array arrays[] = {
     KEPT(pair_work, 'n', 1),
     KEPT(viscous_work, 'n', 1),
     KEPT(compressed, 'l', 1),
+    KEPT(lost_before, 'l', 1),
     KEPT(mode, 'n', 1),
     SCRATCH(directional, 'n', 6 * sizeof(float)),
     KEPT(contact_position, 'c', 3),
@@ -51,6 +52,9 @@ static const sf_state_array arrays[] = {
     SCRATCH(self_normal, 's', 3 * sizeof(double)),
     SCRATCH(self_close, 's', sizeof(int32_t)),
     SCRATCH(self_near, 's', sizeof(int32_t)),
+    SCRATCH(membrane.position, 'm', 3 * sizeof(double)),
+    SCRATCH(membrane.force, 'm', 3 * sizeof(double)),
+    SCRATCH(membrane.row, 't', SF_MEMBRANE_ROW * sizeof(double)),
     SCRATCH(contact_active, 'c', sizeof(int32_t)),
     SCRATCH(contact_near, 'c', sizeof(int32_t)),
     SCRATCH(partial, 'k', sizeof(sf_partial)),
@@ -81,7 +85,11 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
     case 'l':
         return model->material_count > 1 ? model->node_count : 0;
     case 's': /* at most all of them */
-        return model->skin_count > 0 ? model->node_count : 0;
+        return model->skin_count > 0 ? model->node_count + model->support_node_count : 0;
+    case 'm': /* at most all of them */
+        return model->membrane_count > 0 ? model->node_count : 0;
+    case 't':
+        return model->membrane_count;
     case 'h':
         return blocks * history_rows(model);
     case 'c':
@@ -146,6 +154,7 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
     for (int64_t k = 0; k < model->rest_count; k++) /* settled */
         s->contact_force[3 * (model->contact_count + k) + 2] = model->rest_load[k];
     s->tightness = 1;
+    s->drop = 1;
     sf_missile_begin(model, &s->missile);
     if (!sf_missile_is_driven(model))
         start_free(model, s);

@@ -8,6 +8,7 @@
 #include "io/h5_members.h"
 #include "material/laws.h"
 #include "model/model.h"
+#include "solver/field/membrane.h"
 #include "solver/missile.h"
 
 /* Wall time of the phases of a step, for the benchmark. */
@@ -77,6 +78,7 @@ typedef struct sf_partial {
     X(double, kinetic_pad, , "J", "kinetic energy of the pad")                                                         \
     X(double, stored, , "J", "recoverable energy of the foam")                                                         \
     X(double, hysteresis, , "J", "lost by the unloading rule")                                                         \
+    X(double, before, , "J", "lost by the unloading rule in earlier drops on this pad: not in `hysteresis`")           \
     X(double, viscous, , "J", "viscous work")                                                                          \
     X(double, stabilisation, , "J", "work of the stabilisation")                                                       \
     X(double, contact, , "J", "lost in normal contact")                                                                \
@@ -97,6 +99,8 @@ typedef struct sf_partial {
 
 /* All others. */
 #define SF_STATE_NUMBERS(X)                                                                                            \
+    X(int64_t, drop, , "1", "number of the drop on this pad, from 1")                                                  \
+    X(double, pause, , "s", "rest of the pad before it; 0: it is new")                                                 \
     X(int64_t, step, , "1", "number of the step")                                                                      \
     X(double, time, , "s", "now")                                                                                      \
     X(double, dt, , "s", "from time to the next")                                                                      \
@@ -158,6 +162,8 @@ typedef struct sf_state {
 
     double *compressed; /* [n] -, largest compression to date; only a pad of layers has it */
 
+    double *lost_before; /* [n] J m-3, by the unloading rule in earlier drops; likewise */
+
     /* Power iteration (time_step.h). */
     double *mode;       /* [n] its vector */
     float *directional; /* [n][6] Pa, tangent by direction (law.h), when sf_time_step_due */
@@ -182,7 +188,7 @@ typedef struct sf_state {
     double *self_motion;     /* [skin][3] m, its last step */
     double *self_step;       /* [skin][3] m, its next step without these forces */
     double *self_force;      /* [skin][3] N, on the node, of the last step */
-    double *self_partner;    /* [skin] facet that it touches; -1: none, -2: the anvil */
+    double *self_partner;    /* [skin] facet that it touches; -1: none, -2 - k: plane k (contact/skin.h) */
     double *self_weight;     /* [skin][3] of the facet's nodes */
     double *self_push;       /* [n][3] m s-2, acceleration by these forces; zero between steps */
     int32_t *self_candidate; /* [skin][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
@@ -192,6 +198,8 @@ typedef struct sf_state {
     int64_t self_close_count, self_near_count;
     double self_room;        /* m, until the lists are made anew */
     double self_penetration; /* m, deepest now */
+
+    sf_membrane_state membrane;
 
     double contact_room; /* m, rest of the skin: approach of points and missile until the list is made anew */
     double fastest;      /* m s-1, of the coefficients at the half step */
@@ -207,7 +215,7 @@ typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
     char rows; /* n nodes, l nodes of a pad of layers, h rows of history of all blocks of lanes, c contact
-                  points, k chunks */
+                  points, s nodes of the skin, m and t nodes and triangles of the membrane, k chunks */
     int bytes; /* of a row; doubles if it has a name */
 } sf_state_array;
 

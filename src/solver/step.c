@@ -3,7 +3,7 @@
 
 #include "base/lanes.h"
 #include "base/mat3.h"
-#include "base/threads.h"
+#include "base/lanes.h"
 #include "solver/contact/contact.h"
 #include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
@@ -227,6 +227,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     }
     if (check_domains(m, s, err) != SF_OK)
         return err->status;
+    sf_membrane_force(m, &op->membrane, s->d, &s->membrane, s->force); /* f += phi^T f of the membrane */
     sf_time_step_choose(m, op, s);
     sf_lap(s->watch, SF_PHASE_TIME_STEP);
     double dt_v = 0.5 * (s->dt_old + s->dt);
@@ -237,7 +238,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
     sf_constraint_project(&op->constraint, &held);
     sf_wrench below = {{0}, {0}};
-    sf_self_contact_outside(&op->skin, s, &below);
+    sf_self_contact_outside(&op->skin, s, false, &below);
     s->penetration = fmax(s->penetration, s->self_penetration);
     for (int r = 0; r < 3; r++)
         s->base_reaction[r] = held.base[r] + s->anvil_force[r] + below.force[r];
@@ -250,7 +251,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     s->ledger.weight = sf_anvil_work(&op->anvil, s->d);
     sf_wrench outside = wrench_of_constraints(s, &held);
     add_anvil(m, op, s, &outside);
-    sf_self_contact_outside(&op->skin, s, &outside);
+    sf_self_contact_outside(&op->skin, s, true, &outside);
     sf_ledger_close(m, s, &outside, dt_v);
     sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/time_step.h"
 
+#include "model/stability.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -313,6 +315,7 @@ void sf_time_step_choose(const sf_model *m, const sf_operators *op, sf_state *s)
     } else { /* a bound that falls says nothing about the rest of the pad */
         s->ceiling = s->bound_step = fmin(s->bound_step, s->ceiling);
     }
-    double dt = fmin(m->run.step_safety * s->bound_step, m->run.step_limit);
+    double step = sf_stability_with_membrane(s->membrane.load, s->bound_step),
+           dt = fmin(m->run.step_safety * step, m->run.step_limit);
     s->dt = s->step == 0 ? dt : fmin(dt, GROWTH * s->dt_old);
 }

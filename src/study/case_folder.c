@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include "io/tree.h"
+#include "io/staging.h"
 #include "pre/mesh/mesher.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ typedef struct folder {
     const sf_case_folder_request *request;
     sf_case c;
     uint64_t hash; /* of the case */
-    sf_meshed mesh[2];
+    sf_meshed mesh[SF_GEOMETRIES];
     sf_case_parts parts;
     int count, capacity;
     folder_file *file; /* [count] */
@@ -39,7 +39,7 @@ typedef struct folder {
 } folder;
 
 static const sf_geo_source *geometry(const sf_case *c, int k) {
-    return k == 0 ? &c->pad : &c->missile;
+    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support;
 }
 
 /* ---- places ---- */
@@ -132,9 +132,11 @@ static void free_reading(reading *r) {
 }
 
 static sf_status list_reading(const folder *f, const char *path, reading *r, sf_error *err) {
-    size_t most = f->mesh[0].broker.count + f->mesh[1].broker.count;
+    size_t most = 0;
+    for (int k = 0; k < SF_GEOMETRIES; k++)
+        most += f->mesh[k].broker.count;
     r->file = sf_alloc(err, most, sizeof *r->file, "the files of a geometry");
-    for (int k = 0; k < 2 && err->status == SF_OK; k++) {
+    for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++) {
         const sf_geo_source *source = geometry(&f->c, k);
         const sf_broker *read = &f->mesh[k].broker;
         char *own = source->path ? sf_path_whole(NULL, source->path, err) : NULL;
@@ -319,8 +321,7 @@ static sf_status write_readme(folder *f, sf_error *err) {
 /* Collects every file: first their names, then their texts. */
 static sf_status collect(folder *f, sf_error *err) {
     const sf_case_folder_request *q = f->request;
-    if (sf_case_parts_read(q->case_path, &f->parts, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_case_parts_read(q->case_path, &f->parts, err));
     for (int k = 0; k < q->override_count; k++)
         SF_TRY(sf_case_parts_set(&f->parts, q->overrides[k], err));
     if (!(f->parts.part[0].name = strdup(CASE_NAME)))
@@ -348,9 +349,9 @@ static sf_status write_files(folder *f, sf_error *err) {
     return err->status;
 }
 
-static sf_status mesh_each(const sf_case *c, sf_meshed mesh[2], sf_error *err) {
+static sf_status mesh_each(const sf_case *c, sf_meshed mesh[SF_GEOMETRIES], sf_error *err) {
     const sf_mesher_limits limits = {c->mesh_time_limit, NULL};
-    for (int k = 0; k < 2 && err->status == SF_OK; k++)
+    for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         if (geometry(c, k)->path)
             sf_mesher_run(geometry(c, k), &limits, &mesh[k], err);
     return err->status;
@@ -371,17 +372,17 @@ static sf_status check_reading(const folder *f, const sf_broker *read, const cha
 }
 
 static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) {
-    sf_meshed mesh[2] = {0};
+    sf_meshed mesh[SF_GEOMETRIES] = {0};
     char *root = sf_path_whole(NULL, f->tree.aside, err);
     if (root)
         mesh_each(c, mesh, err);
-    for (int k = 0; k < 2 && err->status == SF_OK; k++)
+    for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         if (check_reading(f, &mesh[k].broker, root, err) == SF_OK &&
             (mesh[k].size != f->mesh[k].size ||
              (mesh[k].size > 0 && memcmp(mesh[k].stream, f->mesh[k].stream, mesh[k].size) != 0)))
             SF_FAIL(err, SF_ERR_INPUT, "%s has no folder of its own: in another folder %s gives another mesh",
                     f->request->case_path, geometry(&f->c, k)->path);
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&mesh[k]);
     free(root);
     return err->status;
@@ -414,7 +415,7 @@ static void release(folder *f) {
         free(f->file[k].text);
     }
     free(f->file);
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&f->mesh[k]);
     sf_case_parts_free(&f->parts);
     sf_case_free(&f->c);
@@ -425,8 +426,13 @@ sf_status sf_case_folder_make(const sf_case_folder_request *q, const sf_sink *si
     if (sf_tree_begin(q->folder, &f.tree, err) == SF_OK &&
         sf_case_read(q->case_path, q->override_count, q->overrides, sink, &f.c, err) == SF_OK) {
         f.hash = sf_campaign_case_hash(&f.c);
-        if (mesh_each(&f.c, f.mesh, err) == SF_OK && collect(&f, err) == SF_OK &&
-            write_files(&f, err) == SF_OK && check(&f, err) == SF_OK)
+        if (f.c.run.drops > 1)
+            SF_FAIL(
+                err, SF_ERR_INPUT,
+                "%s: series.drops = %g: studies run single drops; leave the series out, and run it by softfall-solve",
+                q->case_path, f.c.run.drops);
+        else if (mesh_each(&f.c, f.mesh, err) == SF_OK && collect(&f, err) == SF_OK &&
+                 write_files(&f, err) == SF_OK && check(&f, err) == SF_OK)
             sf_tree_commit(&f.tree, err);
     }
     release(&f);

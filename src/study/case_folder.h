@@ -15,9 +15,9 @@ typedef struct sf_case_folder_request {
     const char *origin;           /* of the case, for the README: "the example eva50-v4.5"; NULL: its path */
 } sf_case_folder_request;
 
-/* Makes the folder, as a whole or not at all (io/tree.h). The texts of the case stay as they are but for the
- * overrides and the names of files; gmsh runs on each geometry twice, here and in the new folder, to learn
- * what it reads and that its mesh is the same. Warnings about the case go to `sink`.
+/* Makes the folder, as a whole or not at all (io/staging.h). The texts of the case stay as they are but for
+ * the overrides and the names of files; gmsh runs on each geometry twice, here and in the new folder, to
+ * learn what it reads and that its mesh is the same. Warnings about the case go to `sink`.
  *
  * SF_ERR_INPUT: sf_case_read or gmsh refuses the case; `folder` exists and is not an empty folder; a geometry
  * gives another mesh in the new folder, or reads files there that are not in it. SF_ERR_IO: the folder cannot

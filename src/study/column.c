@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/units.h"
-#include "post/figures/injury.h"
+#include "post/figures/signal.h"
 
 /* ---- columns below the missile ---- */
 
@@ -174,8 +174,7 @@ static sf_status put_point(const flight *f, int64_t *room, sf_series *curve, sf_
     if (curve->count == *room) {
         sf_series more;
         int64_t n = curve->count;
-        if (sf_series_create(2 * n, &more, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_series_create(2 * n, &more, err));
         memcpy(more.time, curve->time, (size_t)n * sizeof *more.time);
         memcpy(more.value, curve->value, (size_t)n * sizeof *more.value);
         sf_series_free(curve);
@@ -193,8 +192,7 @@ sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law,
     flight f = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP}, before;
     int64_t room = 512;
     *rebound = *contact = NAN;
-    if (sf_series_create(room, curve, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create(room, curve, err));
     curve->count = 0;
     while (put_point(&f, &room, curve, err) == SF_OK && !has_left(&f) && f.time < LONGEST) {
         if (f.speed < 0)
@@ -239,8 +237,7 @@ static double cubic_at(const sf_series *c, int64_t i, double time) {
 static sf_status sample(const sf_series *curve, sf_series *uniform, sf_error *err) {
     int64_t before = (int64_t)(FREE_FLIGHT * SAMPLING), i = 0,
             count = before + 1 + (int64_t)(curve->time[curve->count - 1] * SAMPLING);
-    if (sf_series_create(count, uniform, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create(count, uniform, err));
     for (int64_t k = 0; k < count; k++) {
         double time = uniform->time[k] = (double)(k - before) / SAMPLING;
         while (i < curve->count - 2 && curve->time[i + 1] < time)
@@ -260,9 +257,7 @@ static sf_status filter(const sf_series *curve, sf_series *filtered, sf_error *e
 
 /* Top of the parabola through the largest sample and its neighbours. */
 static double peak_of(const sf_series *c) {
-    int64_t k = 0;
-    for (int64_t i = 1; i < c->count; i++)
-        k = c->value[i] > c->value[k] ? i : k;
+    int64_t k = sf_series_peak(c);
     if (k == 0 || k == c->count - 1)
         return c->value[k];
     double bend = c->value[k - 1] - 2 * c->value[k] + c->value[k + 1],
@@ -309,9 +304,7 @@ typedef struct pulse {
 static bool is_single(pulse *p) {
     const double *a = p->a->value;
     int64_t n = p->a->count;
-    p->peak = 0;
-    for (int64_t k = 1; k < n; k++)
-        p->peak = a[k] > a[p->peak] ? k : p->peak;
+    p->peak = sf_series_peak(p->a);
     for (p->first = p->peak;
          p->first > 0 && a[p->first - 1] <= a[p->first] && a[p->first] > FOOT * a[p->peak];)
         p->first--;

@@ -2,7 +2,6 @@
 #ifndef SF_STUDY_COLUMN_H
 #define SF_STUDY_COLUMN_H
 #include "material/laws.h"
-#include "post/figures/injury.h"
 #include "post/figures/signal.h"
 #include "post/results/results.h"
 
@@ -51,7 +50,7 @@ sf_status sf_columns_read(const sf_series *filtered, sf_columns_figures *figures
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law,
                              sf_columns_figures *figures, sf_series *filtered, sf_error *err);
 
-/* HIC of a single pulse, a hundred times as fast as the search of post/figures/injury.h, for surrogates. */
+/* HIC of a single pulse, a hundred times as fast as the search of post/figures/signal.h, for surrogates. */
 
 /* Computes HIC of a curve that rises to one peak and falls: both ends of the window have the same
  * deceleration, so that the maximum over one level is found instead of that over two instants. The part

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/config.h"
 
+#include "base/text.h"
 #include "io/plain_file.h"
 #include <math.h>
 #include <stdarg.h>
@@ -45,20 +46,6 @@ void sf_config_close(sf_config *config) {
     *config = (sf_config){0};
 }
 
-/* Index of the name in "one|two|three"; -1 if it is not there. */
-static int find_word(const char *name, const char *words) {
-    size_t length = strlen(name);
-    int index = 0;
-    if (strchr(name, '|'))
-        return -1;
-    for (const char *at = words; at; at = strchr(at, '|'), index++) {
-        at += *at == '|';
-        if (strncmp(at, name, length) == 0 && (at[length] == '|' || at[length] == '\0'))
-            return index;
-    }
-    return -1;
-}
-
 /* "one, two, three" */
 static void list_words(const char *words, char *out, size_t size) {
     size_t used = 0;
@@ -79,7 +66,7 @@ sf_status sf_config_names(const sf_config *config, const config_setting_t *group
     for (int k = 0; k < config_setting_length(group); k++) {
         const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
         size_t used = strlen(others);
-        if (find_word(config_setting_name(item), names) >= 0)
+        if (sf_word_find(names, config_setting_name(item)) >= 0)
             continue;
         if (unknown++ == 0)
             first = item;
@@ -179,7 +166,7 @@ sf_status sf_config_choice(const sf_config *config, const config_setting_t *grou
     char list[256];
     if (sf_config_text(config, group, name, false, &text, err) != SF_OK || !text)
         return err->status;
-    int index = find_word(text, words);
+    int index = sf_word_find(words, text);
     list_words(words, list, sizeof list);
     if (index < 0)
         return sf_config_refuse(config, config_setting_get_member(group, name), err,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/material_file.h"
 
+#include "base/text.h"
 #include "case/case.h"
 #include "io/replace.h"
 #include <limits.h>
@@ -68,10 +69,9 @@ static void put_curves(FILE *file, const char *name, const sf_law_curves *curves
 }
 
 static void put_choice(FILE *file, const sf_parameter *p, int64_t index) {
-    const char *word = p->words;
-    while (index-- > 0 && strchr(word, '|'))
-        word = strchr(word, '|') + 1;
-    fprintf(file, "%s = \"%.*s\";", p->key, (int)strcspn(word, "|"), word);
+    int length;
+    const char *word = sf_word_at(p->words, (int)index, &length);
+    fprintf(file, "%s = \"%.*s\";", p->key, length, word);
 }
 
 static void put_value(FILE *file, const sf_parameter *p, double value) {
@@ -132,8 +132,7 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
     sf_replacement out;
     const sf_law_curves *curves = sf_material_curves(material);
     for (int64_t k = 0; curves && k < curves->curve_count; k++)
-        if (write_curve(folder, name, curves, k, text, err) != SF_OK)
-            return err->status;
+        SF_TRY(write_curve(folder, name, curves, k, text, err));
     snprintf(file_name, sizeof file_name, "%s.cfg", name);
     FILE *file = open_file(folder, file_name, &out, err);
     if (!file)
@@ -155,8 +154,7 @@ sf_status sf_material_write_checked(const char *folder, const char *name, const 
                                     const sf_material_text *text, sf_error *err) {
     char path[PATH_SIZE];
     sf_error inner = SF_ERROR_INIT;
-    if (sf_material_write(folder, name, material, text, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_material_write(folder, name, material, text, err));
     snprintf(path, sizeof path, "%s/%s.cfg", folder, name);
     if (sf_case_check_material(path, &inner) == SF_OK)
         return SF_OK;

@@ -1,19 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/run_folder.h"
 
-#include <assert.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/file.h>
-#include <time.h>
-#include <unistd.h>
-
 #include "base/hash.h"
+#include "base/text.h"
+#include "build_info.h"
 #include "case/case.h"
 #include "io/folder.h"
 #include "io/h5.h"
@@ -23,7 +13,143 @@
 #include "post/results/results.h"
 #include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesher.h"
-#include "study/record.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+/* ---- figures of a finished drop ---- */
+
+#define HEAD "softfall-drop-figures 1 " SF_VERSION " " SF_GIT_REVISION
+enum { END_SIZE = 21 }; /* "end 0123456789abcdef\n" */
+
+/* ---- writing ---- */
+
+static bool put_results(FILE *out, const char *results) {
+    struct stat info;
+    if (stat(results, &info) != 0)
+        return false;
+    fprintf(out, "results %" PRId64 " %" PRId64 " %ld\n", (int64_t)info.st_size, (int64_t)info.st_mtim.tv_sec,
+            info.st_mtim.tv_nsec);
+    return true;
+}
+
+static void put_figures(FILE *out, const sf_results *r, const sf_figures *f) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    for (size_t k = 0; k < count; k++)
+        if (list[k].row.type != SF_ROW_TEXT)
+            fprintf(out, "%s %a\n", list[k].row.key, sf_figure_number(&list[k], r, f));
+}
+
+/* Not synchronised with the disk: the end says whether it is whole. */
+static void keep(const char *path, const char *text, size_t length) {
+    sf_error none = SF_ERROR_INIT;
+    sf_folder_remove_file(path);
+    FILE *file = sf_replace_create(path, &none);
+    if (!file)
+        return;
+    fwrite(text, 1, length, file);
+    fprintf(file, "end %016" PRIx64 "\n", sf_hash_bytes(SF_HASH_START, text, length));
+    fclose(file);
+}
+
+void sf_run_record_write(const char *path, const char *results, const sf_results *r, const sf_figures *f,
+                         sf_grade grade, const char *verdict, const char *geometry) {
+    char *text = NULL;
+    size_t length = 0;
+    FILE *out = open_memstream(&text, &length);
+    if (!out)
+        return;
+    fprintf(out, "%s\n", HEAD);
+    bool there = put_results(out, results) && !strchr(verdict, '\n') && !strchr(r->status, '\n');
+    fprintf(out, "grade %d\nverdict %s\nstatus %s\n", (int)grade, verdict, r->status);
+    put_figures(out, r, f);
+    fprintf(out, "geometry\n%s", geometry);
+    if (fclose(out) == 0 && there)
+        keep(path, text, length);
+    free(text);
+}
+
+/* ---- reading ---- */
+
+/* Takes the last line away. */
+static bool is_whole(char *text, size_t length) {
+    uint64_t hash = 0;
+    if (length < END_SIZE || sscanf(text + length - END_SIZE, "end %16" SCNx64, &hash) != 1)
+        return false;
+    length -= END_SIZE;
+    text[length] = '\0';
+    return hash == sf_hash_bytes(SF_HASH_START, text, length);
+}
+
+static bool is_of(const char *line, const char *results) {
+    struct stat info;
+    int64_t size = 0, second = 0;
+    long nanosecond = 0;
+    return line && stat(results, &info) == 0 &&
+           sscanf(line, "%" SCNd64 " %" SCNd64 " %ld", &size, &second, &nanosecond) == 3 &&
+           size == info.st_size && second == info.st_mtim.tv_sec && nanosecond == info.st_mtim.tv_nsec;
+}
+
+static bool take_figures(char **rest, sf_run_record *out) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    sf_error none = SF_ERROR_INIT;
+    out->figure = sf_alloc(&none, count, sizeof *out->figure, "figures");
+    for (size_t k = 0; out->figure && k < count; k++) {
+        char *end = NULL;
+        const char *value = list[k].row.type == SF_ROW_TEXT ? NULL : sf_line_take(rest, list[k].row.key, ' ');
+        if (list[k].row.type != SF_ROW_TEXT && !value)
+            return false;
+        out->figure[k] = value ? strtod(value, &end) : NAN;
+        if (value && (end == value || *end))
+            return false;
+    }
+    return out->figure != NULL;
+}
+
+static bool take(char *rest, const char *results, sf_run_record *out) {
+    const char *head = strsep(&rest, "\n"), *of = sf_line_take(&rest, "results", ' '),
+               *grade = sf_line_take(&rest, "grade", ' ');
+    out->verdict = sf_line_take(&rest, "verdict", ' ');
+    out->status = sf_line_take(&rest, "status", ' ');
+    if (strcmp(head, HEAD) != 0 || !is_of(of, results) || !grade || !out->verdict || !out->status ||
+        !take_figures(&rest, out))
+        return false;
+    const char *geometry = rest ? strsep(&rest, "\n") : NULL;
+    out->grade = (sf_grade)atoi(grade);
+    out->geometry = rest;
+    return geometry && strcmp(geometry, "geometry") == 0 && rest && out->grade <= SF_GRADE_DO_NOT_USE;
+}
+
+bool sf_run_record_read(const char *path, const char *results, sf_run_record *out) {
+    sf_error none = SF_ERROR_INIT;
+    size_t length = 0;
+    *out = (sf_run_record){0};
+    return sf_replace_exists(path) &&
+           sf_plain_read(path, NULL, SF_PLAIN_TEXT, &out->text, &length, &none) == SF_OK &&
+           is_whole(out->text, length) && take(out->text, results, out);
+}
+
+void sf_run_record_free(sf_run_record *record) {
+    free(record->figure);
+    free(record->text);
+    *record = (sf_run_record){0};
+}
+
+/* ---- the folder of a drop ---- */
 
 static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     uint64_t content = 0;
@@ -54,8 +180,7 @@ static sf_status find_programs(programs *p, sf_error *err) {
 
 static sf_status hash_programs(uint64_t *hash, sf_error *err) {
     static programs known;
-    if (find_programs(&known, err) != SF_OK)
-        return err->status;
+    SF_TRY(find_programs(&known, err));
     for (int k = 0; k < 3 && err->status == SF_OK; k++)
         hash_file(hash, known.path[k], err);
     return err->status;
@@ -75,7 +200,8 @@ uint64_t sf_campaign_case_hash(const sf_case *c) {
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
     *hash = sf_campaign_case_hash(c);
     if (hash_file(hash, c->pad.path, err) != SF_OK ||
-        (c->missile.path && hash_file(hash, c->missile.path, err) != SF_OK))
+        (c->missile.path && hash_file(hash, c->missile.path, err) != SF_OK) ||
+        (c->support.path && hash_file(hash, c->support.path, err) != SF_OK))
         return err->status;
     return hash_programs(hash, err);
 }
@@ -90,29 +216,20 @@ char *sf_campaign_geometry_list(const char *path, const char *text) {
     return files;
 }
 
-bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
-                                  bool unlisted) {
-    char *files = sf_campaign_geometry_list(path, text);
-    bool same = files ? sf_geometry_files_are_same(folder, files) : unlisted;
-    free(files);
-    return same;
-}
-
 enum { MAX_ARGUMENTS = 64 };
 
 /* The folder of a file; "" of none. */
 static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err) {
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    const char *folder = !path ? "" : !slash ? "." : path;
-    int length = slash ? (int)(slash - path) + (slash == path) : (int)strlen(folder);
-    if (snprintf(out, PATH_MAX, "%.*s", length, folder) >= PATH_MAX)
+    size_t length = path ? sf_path_folder_length(path) : 0;
+    const char *folder = length > 0 ? path : path ? "." : "";
+    if (snprintf(out, PATH_MAX, "%.*s", length > 0 ? (int)length : 1, folder) >= PATH_MAX)
         return SF_FAIL(err, SF_ERR_INPUT, "the name of the geometry is too long: %.100s...", path);
     return SF_OK;
 }
 
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *at) {
     at->key = key;
-    at->pad_folder[0] = at->missile_folder[0] = '\0';
+    at->pad_folder[0] = at->missile_folder[0] = at->support_folder[0] = '\0';
     snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
     snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
     snprintf(at->results, sizeof at->results, "%s/results.h5", at->path);
@@ -126,24 +243,29 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
                              const char *const *overrides, sf_run_folder *at, sf_error *err) {
     sf_case c;
     uint64_t key = 0;
-    if (sf_case_read(case_path, count, overrides, NULL, &c, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_case_read(case_path, count, overrides, NULL, &c, err));
     sf_campaign_key(&c, &key, err);
     sf_run_folder_name_key(parent, label, key, at);
-    if (err->status == SF_OK && name_folder(c.pad.path, at->pad_folder, err) == SF_OK)
-        name_folder(c.missile.path, at->missile_folder, err);
+    if (err->status == SF_OK && name_folder(c.pad.path, at->pad_folder, err) == SF_OK &&
+        name_folder(c.missile.path, at->missile_folder, err) == SF_OK)
+        name_folder(c.support.path, at->support_folder, err);
     sf_case_free(&c);
     return err->status;
 }
 
+/* True if every file that the geometries read, by the list at `text` of the HDF5 file `path`
+ * (docs/formats.md, geometry_files), has the content that it had; `unlisted` if there is no such list. */
 static bool is_geometry_same(const sf_run_folder *at, const char *path, const char *text, bool unlisted) {
-    const char *const folder[2] = {at->pad_folder, at->missile_folder};
-    return sf_campaign_geometry_is_same(folder, path, text, unlisted);
+    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
+    char *files = sf_campaign_geometry_list(path, text);
+    bool same = files ? sf_geometry_files_are_same(folder, files) : unlisted;
+    free(files);
+    return same;
 }
 
 /* By the record of its figures: only of a drop that ran to its end. */
 static bool is_recorded(const sf_run_folder *at) {
-    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
     sf_run_record record;
     bool recorded = sf_run_record_read(at->figures, at->results, &record) &&
                     sf_geometry_files_are_same(folder, record.geometry);
@@ -176,7 +298,7 @@ static void keep_failure(const sf_run_folder *at, const char *files, const sf_er
 }
 
 bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
-    const char *const folder[2] = {at->pad_folder, at->missile_folder};
+    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
     sf_error none = SF_ERROR_INIT;
     char *text = NULL;
     if (access(at->failed, R_OK) != 0 ||
@@ -287,10 +409,9 @@ static sf_status simulate(const sf_run_folder *at, const char *case_path, int co
     snprintf(thread_text, sizeof thread_text, "%d", threads);
     const char *run[] = {solve, at->model, "-o", at->results, "--force", "-t", thread_text, NULL};
     const char *restart[] = {solve, "--restart", at->results, at->model, "-t", thread_text, NULL};
-    if (sf_process_find("softfall-pre", pre, sizeof pre, err) != SF_OK ||
-        sf_process_find("softfall-solve", solve, sizeof solve, err) != SF_OK ||
-        wait_for_orphan(at, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_process_find("softfall-pre", pre, sizeof pre, err));
+    SF_TRY(sf_process_find("softfall-solve", solve, sizeof solve, err));
+    SF_TRY(wait_for_orphan(at, err));
     if (!sf_run_folder_is_finished(at) && !resume(run, restart, at, err) &&
         wait_for_orphan(at, err) == SF_OK &&
         !sf_run_folder_is_finished(at)) { /* it may have begun meanwhile */
@@ -316,8 +437,7 @@ static sf_status simulate(const sf_run_folder *at, const char *case_path, int co
 sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err) {
     int lock = -1;
-    if (sf_folder_own(at->path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_folder_own(at->path, err));
     if (sf_folder_wait_lock(at->path, &lock))
         simulate(at, case_path, count, overrides, threads, err);
     else

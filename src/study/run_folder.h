@@ -1,18 +1,42 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The key of a drop, its folder, and the figures of a finished drop. */
 #ifndef SF_STUDY_RUN_FOLDER_H
 #define SF_STUDY_RUN_FOLDER_H
+
+#include "base/error.h"
+#include "case/case.h"
+#include "post/figures/verdict.h"
 #include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/error.h"
-#include "case/case.h"
+/* Figures of a finished drop, cached beside its results in a small text, figures.txt. It is read in place
+ * of results.h5 as long as that is the file that it was made of (size and time); without it, or with one
+ * of another version, damaged or half written, results.h5 is read and it is written anew. */
+typedef struct sf_run_record {
+    sf_grade grade;
+    const char *verdict;  /* sf_verdict_line */
+    const char *status;   /* /summary/status */
+    const char *geometry; /* the list of what the geometries read (pre/mesh/mesh_store.h) */
+    double *figure;       /* [of sf_figure_list] sf_figure_number; owned */
+    char *text;           /* that the strings are parts of; owned */
+} sf_run_record;
+
+/* True if the record at `path` is whole, of this version, and made of the file `results` as it is now.
+ * Release with sf_run_record_free, also if it is false. */
+bool sf_run_record_read(const char *path, const char *results, sf_run_record *record);
+void sf_run_record_free(sf_run_record *record);
+
+/* Writes the record at `path`, of the open results of the file `results`. It is only a shorter way: where it
+ * cannot be written, nothing is said. */
+void sf_run_record_write(const char *path, const char *results, const sf_results *r, const sf_figures *f,
+                         sf_grade grade, const char *verdict, const char *geometry);
 
 /* The key of a drop: equal for equal inputs. */
 
 /* A hash of the values of every key of the case, the points of its curves and motion, its geometry files and
  * the programs that simulate it; the names of files do not count. What a geometry includes or merges is known
- * only after it was read: sf_campaign_geometry_is_same. */
+ * only after it was read: sf_run_folder_is_finished. */
 sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 
 /* Why two geometry files of one text in two folders are refused. */
@@ -23,13 +47,8 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 /* The part of it that is of the case alone, without geometry files and programs. */
 uint64_t sf_campaign_case_hash(const sf_case *c);
 
-/* True if every file that the geometries read, by the list at `text` of the HDF5 file `path`
- * (docs/formats.md, geometry_files), has the content that it had. `folder`: that of the pad's and the
- * missile's geometry, where paths in the list begin; "" without a geometry of the missile. `unlisted`: the
- * answer if there is no such file or list. */
-bool sf_campaign_geometry_is_same(const char *const folder[2], const char *path, const char *text,
-                                  bool unlisted);
-/* Returns that list, from malloc; NULL if there is none. */
+/* Returns the list of the files that the geometries read, at `text` of the HDF5 file `path` (docs/formats.md,
+ * geometry_files), from malloc; NULL if there is none. */
 char *sf_campaign_geometry_list(const char *path, const char *text);
 
 /* The folder of one drop: it holds the log, the model and the checkpoint while the drop is not finished, and
@@ -45,7 +64,8 @@ typedef struct sf_run_folder {
     char path[PATH_MAX];
     char model[SF_RUN_PATH_SIZE], results[SF_RUN_PATH_SIZE], checkpoint[SF_RUN_PATH_SIZE],
         log[SF_RUN_PATH_SIZE], failed[SF_RUN_PATH_SIZE], figures[SF_RUN_PATH_SIZE];
-    char pad_folder[PATH_MAX], missile_folder[PATH_MAX]; /* of the geometries; "": no geometry of a missile */
+    /* Folders of the geometries; "": there is none. */
+    char pad_folder[PATH_MAX], missile_folder[PATH_MAX], support_folder[PATH_MAX];
 } sf_run_folder;
 
 /* The names, "parent/label-<key of the case with its overrides>" and the names of its files; nothing is
@@ -53,7 +73,7 @@ typedef struct sf_run_folder {
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *folder, sf_error *err);
 
-/* Only the names, of a key that is known: pad_folder and missile_folder are left "". */
+/* Only the names, of a key that is known: the folders of the geometries are left "". */
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *folder);
 
 /* True if the folder holds a drop that ran to its end, and every file that its geometry read is as it was
@@ -84,4 +104,5 @@ sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_p
 
 /* Records SF_INTERRUPTED. */
 sf_status sf_run_folder_interrupted(sf_error *err);
+
 #endif

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/runner.h"
 
-#include "study/engine.h"
-#include "study/manifest.h"
-#include "study/record.h"
+#include "study/batch.h"
 #include "study/run_folder.h"
 #include "base/hash.h"
 #include "base/units.h"
@@ -15,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 enum { MATERIAL_SIZE = PATH_MAX + 64 };
 
@@ -99,13 +96,12 @@ static void write_record(const sf_run_folder *at, const sf_results *r, const sf_
     free(geometry);
 }
 
-/* `keep`: writes the record of the figures, too. */
-static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_result *out, sf_error *err) {
+/* Writes the record of the figures, too. */
+static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
     const char *path = at->results;
     sf_results r;
     sf_figures f = {0};
-    if (sf_results_open(path, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_results_open(path, &r, err));
     if (sf_figures_compute(&r, 1000, &f, err) == SF_OK && !f.touched)
         SF_FAIL(err, SF_ERR_INPUT, "the missile of %s never touched the pad", path);
     if (err->status == SF_OK) {
@@ -122,8 +118,7 @@ static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_resul
                                   .steps = r.steps,
                                   .curve = f.filtered};
         judge(&r, &f, out);
-        if (keep)
-            write_record(at, &r, &f, out);
+        write_record(at, &r, &f, out);
         f.filtered = (sf_series){0};
         if (take_layers(&r, &f, out, err) == SF_OK && take_figures(&r, &f, out, err) == SF_OK)
             result_path(path, out, err);
@@ -131,6 +126,11 @@ static sf_status read_result(const sf_run_folder *at, bool keep, sf_runner_resul
     sf_figures_free(&f);
     sf_results_close(&r);
     return err->status;
+}
+
+double sf_runner_figure(const sf_runner_result *result, const char *key) {
+    size_t count;
+    return result->figure ? result->figure[sf_figure_find(key) - sf_figure_list(&count)] : NAN;
 }
 
 static double figure_of(const sf_run_record *record, const char *key) {
@@ -184,8 +184,7 @@ static sf_status locate(const sf_runner *runner, const sf_runner_drop *drop, loc
 sf_status sf_runner_find_status(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_state *state,
                                 sf_error *failure, sf_error *err) {
     located l;
-    if (locate(runner, drop, &l, err) != SF_OK)
-        return err->status;
+    SF_TRY(locate(runner, drop, &l, err));
     *state = sf_run_folder_is_finished(&l.at)           ? SF_DROP_DONE
              : sf_run_folder_is_running(&l.at)          ? SF_DROP_RUNNING
              : sf_run_folder_has_failed(&l.at, failure) ? SF_DROP_FAILED
@@ -203,13 +202,6 @@ sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uin
     if (locate(runner, drop, &l, err) == SF_OK)
         *key = l.at.key;
     return err->status;
-}
-
-sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
-                         sf_error *err) {
-    located l;
-    memset(result, 0, sizeof *result);
-    return locate(runner, drop, &l, err) == SF_OK ? read_result(&l.at, false, result, err) : err->status;
 }
 
 /* ---- batches ---- */
@@ -231,12 +223,6 @@ typedef struct batch {
     int pending_count, threads /* of each */, failed, ended;
     double start, told; /* s */
 } batch;
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Damaged results of unchanged size and time have a record all the same: it goes, and the drop is simulated
  * again. */
@@ -260,6 +246,8 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
     r->key = l.at.key;
     r->geometry = sf_hash_bytes(SF_HASH_START, l.at.pad_folder, strlen(l.at.pad_folder) + 1);
     r->geometry = sf_hash_bytes(r->geometry, l.at.missile_folder, strlen(l.at.missile_folder) + 1);
+    if (*l.at.support_folder)
+        r->geometry = sf_hash_bytes(r->geometry, l.at.support_folder, strlen(l.at.support_folder) + 1);
     r->reused = sf_run_folder_is_finished(&l.at) && (runner->figures_only || is_readable(&l.at));
     if (r->reused)
         sf_run_folder_clean(&l.at);
@@ -273,7 +261,7 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
 static void record(const sf_run_folder *at) {
     sf_error none = SF_ERROR_INIT;
     sf_runner_result result;
-    if (read_result(at, true, &result, &none) == SF_OK)
+    if (read_result(at, &result, &none) == SF_OK)
         sf_runner_result_free(&result);
 }
 
@@ -281,8 +269,7 @@ static sf_status simulate(void *context, int index, sf_error *err) {
     const batch *b = context;
     const sf_runner_drop *drop = &b->drop[b->pending[index]];
     located l;
-    if (locate(b->runner, drop, &l, err) != SF_OK)
-        return err->status;
+    SF_TRY(locate(b->runner, drop, &l, err));
     if (l.at.key != b->request[b->pending[index]].key)
         return SF_FAIL(err, SF_ERR_IO, "a file that %s leads to " SF_RUNNER_CHANGED "; repeat the command",
                        drop->case_path);
@@ -373,7 +360,7 @@ static int count_abreast(const sf_runner *runner, int pending) {
 
 /* The time that is left at the pace so far. */
 static void tell_pace(const batch *b, int ended) {
-    double spent = now() - b->start, left = spent / ended * (b->pending_count - ended);
+    double spent = sf_process_now() - b->start, left = spent / ended * (b->pending_count - ended);
     fprintf(b->runner->log, "  %d of %d drops, %d failed, %.3g drops per hour, %d h %02d min to go\n", ended,
             b->pending_count, b->failed, 3600 * ended / spent, (int)(left / 3600), (int)fmod(left / 60, 60));
     fflush(b->runner->log);
@@ -383,7 +370,7 @@ static void tell_pace(const batch *b, int ended) {
 static void tell_progress(void *context, int index, int ended, const sf_error *result) {
     enum { EVERY = 10 };
     batch *b = context;
-    double time = now();
+    double time = sf_process_now();
     (void)index;
     b->failed += result->status != SF_OK;
     if (!b->runner->log || time < b->told + EVERY || ended == b->pending_count)
@@ -396,11 +383,10 @@ static void tell_progress(void *context, int index, int ended, const sf_error *r
 static sf_status simulate_here(batch *b, sf_error *failure, sf_error *err) {
     int threads = b->runner->threads, abreast = count_abreast(b->runner, b->pending_count);
     b->threads = threads > abreast ? threads / abreast : 1;
-    b->start = b->told = now();
+    b->start = b->told = sf_process_now();
     if (b->pending_count == 1)
         simulate(b, 0, failure);
-    else if (sf_process_pool_watched(b->pending_count, abreast, simulate, tell_progress, b, failure, err) ==
-             SF_OK)
+    else if (sf_process_pool(b->pending_count, abreast, simulate, tell_progress, b, failure, err) == SF_OK)
         name_killed(b, failure);
     return err->status;
 }
@@ -494,7 +480,7 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
             fflush(runner->log);
         }
         elsewhere watched = {b, &m, path};
-        b->start = now();
+        b->start = sf_process_now();
         stat(log, &before);
         if (sf_engine_run(&runner->engine, runner->threads, path, runner->log ? tell_groups : NULL, &watched,
                           &code, err) == SF_OK) {
@@ -510,8 +496,7 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
 static sf_status simulate_pending(batch *b, sf_error *failure, sf_error *err) {
     if (b->pending_count == 0)
         return SF_OK;
-    if (sf_folder_own(b->runner->folder, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_folder_own(b->runner->folder, err));
     sf_error *own = sf_alloc(err, (unsigned long)b->pending_count, sizeof *own, "failures");
     for (int k = 0; own && k < b->pending_count; k++)
         own[k] = (sf_error)SF_ERROR_INIT;
@@ -530,7 +515,7 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
     sf_run_folder at;
     sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
     if (!(runner->figures_only && read_recorded(&at, result, err)))
-        read_result(&at, true, result, err);
+        read_result(&at, result, err);
     if (err->status != SF_OK)
         return err->status;
     result->reused = r->reused;

@@ -7,7 +7,7 @@
 #ifndef SF_CAMPAIGN_RUNNER_H
 #define SF_CAMPAIGN_RUNNER_H
 
-#include "study/drop.h"
+#include "study/batch.h"
 #include "base/error.h"
 #include "post/figures/signal.h"
 #include "post/figures/verdict.h"
@@ -48,6 +48,9 @@ typedef struct sf_runner_result {
     bool reused;
 } sf_runner_result;
 
+/* A number of the list of figures; NaN: the run does not define it. */
+double sf_runner_figure(const sf_runner_result *result, const char *key);
+
 /* True if a campaign itself sets this key ("output.fields"), over the value of the drop. */
 bool sf_runner_sets_key(const char *key);
 
@@ -73,12 +76,9 @@ sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop 
 void sf_runner_result_free(sf_runner_result *result);
 
 /* The same as sf_runner_run_each, but no results are read: for many drops. Counts neither simulated nor
- * reused. sf_runner_read then reads those of one drop. */
+ * reused. */
 sf_status sf_runner_simulate_each(sf_runner *runner, int count, const sf_runner_drop *drop, sf_error *failure,
                                   sf_error *err);
-/* The results of a finished drop; SF_ERR_IO if there are none. */
-sf_status sf_runner_read(const sf_runner *runner, const sf_runner_drop *drop, sf_runner_result *result,
-                         sf_error *err);
 
 /* The key of the drop's inputs: its folder is runner->folder/label-<key, 16 hexadecimal digits>. */
 sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uint64_t *key, sf_error *err);

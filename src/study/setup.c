@@ -1,127 +1,84 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/setup.h"
 
-#include "base/program.h"
-#include "build_info.h"
+#include "base/text.h"
 #include "io/folder.h"
 #include "io/process.h"
 #include "io/provenance.h"
-#include "study/engine.h"
+#include "study/batch.h"
 #include <gsl/gsl_errno.h>
 #include <omp.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_ENGINE = 0x7001, KEY_PROFILE, KEY_RETRY, KEY_PER_JOB, LAST_GROUP = 9, OPTIONS = 40 };
+enum { LAST_GROUP = 9 };
 
-static const struct argp_option common[] = {
-    {"output", 'o', "DIR", 0, "write everything there (required); drops stay in DIR/runs", 0},
-    {"force", 'f', NULL, 0,
-     "replace the files of an earlier command in DIR; drops that are finished are used again", 0},
+static sf_status read_per_job(const char *option, const char *text, void *per_job, sf_error *err) {
+    if (!sf_whole_is(text, 1, 100000, per_job))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a number from 1 to 100000", option, text);
+    return SF_OK;
+}
+
+static sf_status read_jobs(const char *option, const char *text, void *jobs, sf_error *err) {
+    if (!sf_whole_is(text, 1, SF_PROCESS_JOBS, jobs))
+        return SF_FAIL(err, SF_ERR_INPUT, "%s takes a number from 1 to %d, not \"%s\"", option,
+                       SF_PROCESS_JOBS, text);
+    return SF_OK;
+}
+
+static const sf_option common[] = {
+    {"output", 'o', "DIR", "write everything there (required); drops stay in DIR/runs",
+     .member = offsetof(sf_study, directory)},
+    {"force", 'f', NULL,
+     "replace the files of an earlier command in DIR; drops that are finished are used again",
+     .member = offsetof(sf_study, force)},
     {0},
 };
 
-static const struct argp_option batches[] = {
-    {"threads", 't', "N", 0, "threads of all drops together (default: every processor, or OMP_NUM_THREADS)",
-     LAST_GROUP},
-    {"jobs", 'j', "N", 0,
+static const sf_option batches[] = {
+    {"threads", 't', "N", "threads of all drops together (default: every processor, or OMP_NUM_THREADS)",
+     .member = offsetof(sf_study, threads), .read = sf_program_read_threads, .group = LAST_GROUP},
+    {"jobs", 'j', "N",
      "drops side by side, 64 at most, each with at least one thread (default: as many as threads); the same "
      "results",
-     LAST_GROUP},
-    {"engine", KEY_ENGINE, "NAME", 0, "what runs the drops: local (default) or snakemake", LAST_GROUP},
-    {"profile", KEY_PROFILE, "PROFILE", 0,
-     "with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall", LAST_GROUP},
-    {"per-job", KEY_PER_JOB, "N", 0,
+     .member = offsetof(sf_study, jobs), .read = read_jobs, .group = LAST_GROUP},
+    {"engine", 0, "NAME", "what runs the drops: local (default) or snakemake",
+     .member = offsetof(sf_study, engine.name), .group = LAST_GROUP},
+    {"profile", 0, "PROFILE",
+     "with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall",
+     .member = offsetof(sf_study, engine.profile), .group = LAST_GROUP},
+    {"per-job", 0, "N",
      "with --engine snakemake: drops of a job (default 1; of softfall-sweep as many as take three minutes, "
      "within bounds)",
-     LAST_GROUP},
-    {"retry", KEY_RETRY, NULL, 0, "simulate drops again that failed earlier", LAST_GROUP},
+     .member = offsetof(sf_study, engine.per_job), .read = read_per_job, .group = LAST_GROUP},
+    {"retry", 0, NULL, "simulate drops again that failed earlier", .member = offsetof(sf_study, engine.retry),
+     .group = LAST_GROUP},
     {0},
 };
 
-typedef struct parser {
-    const sf_study_program *program;
-    sf_study *study;
-    void *own;
-    sf_error *err;
-} parser;
-
-static void read_per_job(const char *text, int *per_job, sf_error *err) {
-    char *end = NULL;
-    *per_job = (int)strtol(text, &end, 10);
-    if (end == text || *end || *per_job < 1 || *per_job > 100000)
-        SF_FAIL(err, SF_ERR_INPUT, "--per-job %s: not a number from 1 to 100000", text);
+static const char *find_fault(const sf_command *command) {
+    static char text[128];
+    const sf_study *s = command->list[0].values;
+    snprintf(text, sizeof text, "give %.*s, and the output directory with -o",
+             (int)strcspn(command->operands, " "), command->operands);
+    return s->input && s->directory ? NULL : text;
 }
 
-static void read_jobs(const char *text, int *jobs, sf_error *err) {
-    sf_error ignored = SF_ERROR_INIT;
-    if (sf_program_read_threads(text, jobs, &ignored) != SF_OK || *jobs > SF_PROCESS_JOBS)
-        SF_FAIL(err, SF_ERR_INPUT, "--jobs takes a number from 1 to %d, not \"%s\"", SF_PROCESS_JOBS, text);
-}
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-    parser *p = state->input;
-    sf_study *s = p->study;
-    switch (key) {
-    case 'o':
-        s->directory = text;
-        return 0;
-    case 'f':
-        s->force = true;
-        return 0;
-    case 't':
-        sf_program_read_threads(text, &s->threads, p->err);
-        return 0;
-    case 'j':
-        read_jobs(text, &s->jobs, p->err);
-        return 0;
-    case KEY_ENGINE:
-        s->engine.name = text;
-        return 0;
-    case KEY_PROFILE:
-        s->engine.profile = text;
-        return 0;
-    case KEY_PER_JOB:
-        read_per_job(text, &s->engine.per_job, p->err);
-        return 0;
-    case KEY_RETRY:
-        s->engine.retry = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (s->input)
-            argp_error(state, "one %s at a time: \"%s\" is one too many", p->program->argument, text);
-        s->input = text;
-        return 0;
-    case ARGP_KEY_END:
-        if (!s->input || !s->directory)
-            argp_error(state, "give %s, and the output directory with -o", p->program->argument);
-        return 0;
-    default:
-        if (key >= ARGP_KEY_NO_ARGS || key == ARGP_KEY_ARG)
-            return ARGP_ERR_UNKNOWN;
-        p->program->take(key, text, p->own, p->err);
-        return 0;
-    }
-}
-
-static void append(struct argp_option *list, int *count, const struct argp_option *more) {
-    while (more && (more->name || more->key) && *count < OPTIONS - 1)
-        list[(*count)++] = *more++;
-}
-
-static sf_status parse_command(int argc, char **argv, parser *p, sf_error *err) {
-    struct argp_option list[OPTIONS] = {0};
-    char words[64];
-    int count = 0;
-    append(list, &count, common);
-    append(list, &count, p->program->options);
-    if (p->program->drops)
-        append(list, &count, batches);
-    snprintf(words, sizeof words, "%s -o DIR", p->program->argument);
-    const struct argp known = {.options = list, .parser = parse, .args_doc = words, .doc = p->program->doc};
-    if (argp_parse(&known, argc, argv, 0, NULL, p) != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "the command line cannot be read");
-    return err->status;
+static sf_status parse_command(int argc, char **argv, const sf_study_program *program, sf_study *study,
+                               void *own, sf_error *err) {
+    char operands[64], second[96];
+    snprintf(operands, sizeof operands, "%s -o DIR", program->argument);
+    snprintf(second, sizeof second, "one %s at a time: \"%%s\" is one too many", program->argument);
+    const sf_command command = {
+        .program = program->name,
+        .operands = operands,
+        .meaning = program->doc,
+        .second = second,
+        .operand = offsetof(sf_study, input),
+        .fault = find_fault,
+        .list = {{common, study}, {program->options, own}, {program->drops ? batches : NULL, study}}};
+    return sf_command_parse(&command, argc, argv, err);
 }
 
 /* "softfall-fit drop" of a program and its word. */
@@ -141,14 +98,11 @@ static char *command_of(int argc, char **argv, const sf_study_program *program, 
 }
 
 int sf_study_main(int argc, char **argv, const sf_study_program *program, void *own) {
-    static char version[128], name[64];
+    static char name[64];
     sf_error err = SF_ERROR_INIT;
     sf_study study = {.lock = -1, .sink = sf_program_sink(program->name)};
-    parser p = {program, &study, own, &err};
     gsl_set_error_handler_off(); /* statuses are looked at */
     sf_process_handle_signals();
-    snprintf(version, sizeof version, "%s " SF_VERSION " (" SF_GIT_REVISION ")", program->name);
-    argp_program_version = version;
     study.command = command_of(argc, argv, program, &err);
     if (err.status == SF_OK && !program->word)
         sf_program_begin(argv, &err);
@@ -156,7 +110,7 @@ int sf_study_main(int argc, char **argv, const sf_study_program *program, void *
         name_command(program, name, sizeof name);
         argv[0] = name;
     }
-    if (err.status == SF_OK && parse_command(argc, argv, &p, &err) == SF_OK)
+    if (err.status == SF_OK && parse_command(argc, argv, program, &study, own, &err) == SF_OK)
         program->run(&study, own, &err);
     sf_staging_end(&study.output);
     free(study.command);

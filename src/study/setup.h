@@ -5,9 +5,9 @@
 #ifndef SF_STUDY_SETUP_H
 #define SF_STUDY_SETUP_H
 
+#include "base/program.h"
 #include "io/staging.h"
 #include "study/runner.h"
-#include <argp.h>
 #include <limits.h>
 
 typedef struct sf_study {
@@ -26,14 +26,12 @@ typedef struct sf_study {
 
 /* A program of studies; static storage. */
 typedef struct sf_study_program {
-    const char *name;     /* "softfall-fit", in messages */
-    const char *word;     /* its word of the command line, "drop"; NULL: it has none */
-    const char *argument; /* of the command line, "FIT.cfg" */
-    const char *doc;      /* of --help, as in struct argp */
-    bool drops;           /* it runs drops: --threads, --jobs, --engine and what belongs to them */
-    const struct argp_option *options; /* further ones, each with a key; ends with {0}; NULL: none */
-    /* Takes one of `options`; `own` is that of sf_study_main. A wrong value is a failure in `err`. */
-    void (*take)(int key, const char *text, void *own, sf_error *err);
+    const char *name;         /* "softfall-fit", in messages */
+    const char *word;         /* its word of the command line, "drop"; NULL: it has none */
+    const char *argument;     /* of the command line, "FIT.cfg" */
+    const char *doc;          /* of --help, as in struct argp */
+    bool drops;               /* it runs drops: --threads, --jobs, --engine and what belongs to them */
+    const sf_option *options; /* further ones, of the values `own` of sf_study_main; NULL: none */
     sf_status (*run)(sf_study *study, void *own, sf_error *err);
 } sf_study_program;
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# clean_system.sh PACKAGE.deb: as root in a clean Debian (tools/check_package.sh starts it there): installs the package,
-# uses it as a user without rights, removes it, and looks for what is left.
+# clean_system.sh PACKAGE.deb: as root in a clean Debian (tools/check_package.sh starts it there): installs the package and
+# python3-softfall beside it, uses them as a user without rights, removes them, and looks for what is left.
 set -euo pipefail
-package=$PWD/$1
+package=$PWD/$1 python=$(echo "$PWD"/python3-softfall_*.deb)
 stage=$PWD
 mkdir -p out
 export DEBIAN_FRONTEND=noninteractive
@@ -40,8 +40,8 @@ install -d -o drop -g drop /home/drop/empty
 installed_packages >out/packages-before
 said "clean system with the tools of this test"
 
-quietly apt-get install -y --no-install-recommends "$package"
-dpkg-query -L softfall | sort >out/files
+quietly apt-get install -y --no-install-recommends "$package" "$python"
+dpkg-query -L softfall python3-softfall | sed '/^$/d' | sort -u >out/files
 said "installed: $(dpkg-query -W -f '${Version}, ${Installed-Size} kB' softfall), with $(installed_packages | comm -13 out/packages-before - | wc -l) packages"
 ! grep -vE '^/(\.|usr($|/))' out/files || fail "it has files outside /usr"
 for name in $(sed -n 's|^/usr/bin/||p' out/files); do
@@ -68,12 +68,42 @@ done
 grep -q '"grade": "valid' /home/drop/empty/out/summary.json || fail "the demo is not valid: $(cat out/demo.txt)"
 said "demo: $(grep -m1 "^ *a_max " out/demo.txt)"
 
+# The same drop from Python: the run is another one, the figures are the same; then softfall-serve, which a client asks.
+cat >/tmp/drop.py <<'TEXT'
+import json, sys
+import softfall
+drop = softfall.Case(sys.argv[1]).run(threads=2)
+drop.plot().figure.savefig("plot.png")
+theirs = json.load(open("out/summary.json"))
+different = [key for key in drop.figures if theirs[key] is not None and drop.figures[key] != theirs[key]]
+assert set(different) <= {"wall_s", "threads"} and drop.report().exists(), different
+print(softfall.version(), drop.verdict, drop.figures["hic"])
+TEXT
+as_user env MPLBACKEND=agg python3 -W ignore /tmp/drop.py "$case" >out/python.txt 2>&1 || fail "Python: $(tail -n 5 out/python.txt)"
+cat >/tmp/serve <<'TEXT'
+softfall-serve "$1" --input="missile.velocity [m/s]" --output=hic --port=0 >serve.txt 2>serve.log &
+program=$!
+for second in $(seq 60); do
+    sleep 1
+    ! [ -s serve.txt ] || break
+done
+python3 - "$(sed 's/.* at //' serve.txt)/Evaluate" <<'ASK'
+import sys, urllib.request
+print(urllib.request.urlopen(sys.argv[1], b'{"name": "drop", "input": [[4.5]]}', timeout=600).read().decode())
+ASK
+kill -TERM $program
+wait $program
+TEXT
+as_user sh /tmp/serve "$case" >>out/python.txt 2>&1 || fail "softfall-serve: $(tail -n 5 out/python.txt /home/drop/empty/serve.log)"
+grep -q '{"output"' out/python.txt || fail "softfall-serve answers: $(tail -n 1 out/python.txt)"
+said "Python: $(xargs <out/python.txt)"
+
 # The window, on a display of its own: it runs the same case to the same figures, and ends when told to.
 cat >/tmp/drop.script <<'TEXT'
 wait ready 120
 press run
 wait done 900
-print 4Results/2a_max
+print 1Drop/71a_max
 TEXT
 cat >/tmp/look <<'TEXT'
 softfall-gui "$1" --script /tmp/drop.script >figures.txt &
@@ -95,14 +125,14 @@ as_user xvfb-run -a -s "-screen 0 1280x900x24" sh /tmp/look "$case" >out/window.
 cp /home/drop/empty/window.png out/
 [ "$(stat -c %s out/window.png)" -gt 5000 ] || fail "the window is empty: out/window.png"
 a_max=$(sed -n 's/^ *"a_max_g": \([^,]*\),*$/\1/p' /home/drop/empty/out/summary.json | head -n 1)
-grep -q "^4Results/2a_max = $a_max g" /home/drop/empty/figures.txt ||
+grep -q "^1Drop/71a_max = $a_max g" /home/drop/empty/figures.txt ||
     fail "a_max of the window: $(cat /home/drop/empty/figures.txt); of the command line: $a_max"
 as_user softfall-pre /usr/share/softfall/examples/compression/case.cfg -o example.h5 >>out/demo.txt # from where it is
 [ -z "$(find /usr/share/softfall -newer out/files -print -quit)" ] || fail "something was written into /usr/share/softfall"
 said "window: $(cat /home/drop/empty/figures.txt), as on the command line"
 
 # Removed, nothing of it is left; nor are the packages that it brought.
-quietly apt-get purge -y softfall
+quietly apt-get purge -y softfall python3-softfall
 while read -r path; do
     [ -d "$path" ] && dpkg-query -S "$path" >/dev/null 2>&1 && continue
     [ ! -e "$path" ] && [ ! -L "$path" ] || fail "$path is left after the removal"

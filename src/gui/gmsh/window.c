@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/gmsh/window.h"
 
+#include "io/plain_file.h"
+#include "report/row.h"
+
 #include <gmshc.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/plain_file.h"
-#include "report/json.h"
+/* ---- window ---- */
 
 /* The first error among gmsh's lines since gmshLoggerStart, which this ends. */
 static sf_status take_error(const char *path, sf_error *err) {
@@ -29,8 +32,7 @@ static sf_status take_error(const char *path, sf_error *err) {
 
 sf_status sf_geometry_show(const char *path, sf_error *err) {
     int ierr = 0, failed = 0;
-    if (sf_plain_check(path, "geometry", err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plain_check(path, "geometry", err));
     gmshLoggerStart(&ierr);
     gmshOpen(path, &failed);
     take_error(path, err);
@@ -88,8 +90,7 @@ static sf_status take_triangles(sf_triangles *out, sf_error *err) {
 sf_status sf_geometry_read_surface(const char *path, sf_triangles *surface, sf_error *err) {
     int ierr = 0;
     *surface = (sf_triangles){0};
-    if (sf_geometry_show(path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_geometry_show(path, err));
     gmshModelMeshGenerate(2, &ierr);
     if (ierr == 0)
         take_triangles(surface, err);
@@ -104,7 +105,8 @@ void sf_geometry_clear(void) {
 
 #define ACTION "ONELAB/Action"
 
-void sf_window_option(const char *name, double value) {
+/* An option of gmsh. */
+static void set_gmsh_option(const char *name, double value) {
     int ierr = 0;
     gmshOptionSetNumber(name, value, &ierr);
 }
@@ -133,30 +135,33 @@ static void write_nothing(void) {
                                       "General.ExpertMode",
                                       "Mesh.SaveAll"};
     for (size_t k = 0; k < sizeof off / sizeof off[0]; k++)
-        sf_window_option(off[k], 0);
-    sf_window_option("Solver.AutoCheck", 1);
+        set_gmsh_option(off[k], 0);
+    set_gmsh_option("Solver.AutoCheck", 1);
 }
 
 /* The side view, z upwards: a quarter turn about x. */
 static void look_from_the_side(void) {
-    sf_window_option("General.Trackball", 1);
-    sf_window_option("General.TrackballQuaternion0", 0.70710678);
-    sf_window_option("General.TrackballQuaternion1", 0);
-    sf_window_option("General.TrackballQuaternion2", 0);
-    sf_window_option("General.TrackballQuaternion3", 0.70710678);
-    sf_window_option("General.Orthographic", 1);
+    set_gmsh_option("General.Trackball", 1);
+    set_gmsh_option("General.TrackballQuaternion0", 0.70710678);
+    set_gmsh_option("General.TrackballQuaternion1", 0);
+    set_gmsh_option("General.TrackballQuaternion2", 0);
+    set_gmsh_option("General.TrackballQuaternion3", 0.70710678);
+    set_gmsh_option("General.Orthographic", 1);
 }
 
 sf_status sf_window_start(sf_error *err) {
+    int ierr = 0;
     if (initialize() != 0)
         return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot be started");
     write_nothing();
     look_from_the_side();
-    sf_window_option("General.Terminal", 0);
-    sf_window_option("General.MenuWidth", 420);
-    sf_window_option("General.GraphicsWidth", 1240);
-    sf_window_option("General.GraphicsHeight", 900);
-    sf_window_option("Geometry.PointSize", 0);
+    set_gmsh_option("General.Terminal", 0);
+    set_gmsh_option("General.MenuWidth", 420);
+    set_gmsh_option("General.GraphicsWidth", 1240);
+    set_gmsh_option("General.GraphicsHeight", 900);
+    set_gmsh_option("Geometry.PointSize", 0);
+    gmshOptionSetString("General.GraphicsFontEngine", "StringTexture",
+                        &ierr); /* the other one drops blanks */
     return SF_OK;
 }
 
@@ -202,12 +207,9 @@ void sf_window_refresh(void) {
     gmshGraphicsDraw(&ierr);
 }
 
-void sf_window_branch(const char *name, bool open) {
+void sf_window_close_branch(const char *name) {
     int ierr = 0;
-    if (open)
-        gmshFltkOpenTreeItem(name, &ierr);
-    else
-        gmshFltkCloseTreeItem(name, &ierr);
+    gmshFltkCloseTreeItem(name, &ierr);
 }
 
 /* ---- entries ---- */
@@ -235,7 +237,7 @@ bool sf_window_number(const char *name, double *number) {
     return ierr == 0 && count > 0;
 }
 
-void sf_window_set_text(const char *name, const char *text) {
+static void set_entry(const char *name, const char *text) {
     char *copy = strdup(text);
     void *const list = &copy; /* char ** in gmsh 4.8, const char *const * in 4.13 */
     int ierr = 0;
@@ -253,7 +255,7 @@ bool sf_window_take_action(char *action, size_t size) {
     sf_window_text(ACTION, action, size);
     if (!*action)
         return false;
-    sf_window_set_text(ACTION, "");
+    set_entry(ACTION, "");
     return true;
 }
 
@@ -388,13 +390,214 @@ void sf_window_fit(const double low[3], const double high[3], double left, doubl
            whole = fmax(right - left, top - low[2]), scale = own / whole;
     const char *const scales[] = {"General.ScaleX", "General.ScaleY", "General.ScaleZ"};
     for (int k = 0; k < 3 && scale > 0; k++)
-        sf_window_option(scales[k], fmin(scale, 1));
-    sf_window_option("General.TranslationX", 0.5 * (low[0] + high[0] - left - right));
-    sf_window_option("General.TranslationY", 0.5 * (high[2] - top));
+        set_gmsh_option(scales[k], fmin(scale, 1));
+    set_gmsh_option("General.TranslationX", 0.5 * (low[0] + high[0] - left - right));
+    set_gmsh_option("General.TranslationY", 0.5 * (high[2] - top));
 }
 
 sf_status sf_window_write_picture(const char *path, sf_error *err) {
     int ierr = 0;
     gmshWrite(path, &ierr);
     return ierr == 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "gmsh cannot write the picture %s", path);
+}
+
+/* ---- views ---- */
+
+/* The views of gmsh have fixed tags: a body has one of displacements and one of the values that colour it. */
+enum { MOVES = 101, VALUES = 201 };
+/* gmsh's numbers of kinds of elements, of views, of ranges and of colours. */
+enum {
+    TRIANGLE = 2,
+    QUADRANGLE = 3,
+    DISPLACEMENT = 5,
+    GRAPH = 4,
+    TOP_RIGHT = 3,
+    OWN_RANGE = 2,
+    GREY = 9,
+    LOGARITHMIC = 2
+};
+
+/* A model of gmsh that is not shown holds the mesh of a body. It stays when its picture goes, until the
+ * geometry is read anew: gmsh's window may still point to what it held. */
+static char models[SF_PICTURES][48];
+static double largest_value; /* of the pad, in all frames so far */
+
+static void name_model(sf_picture which) {
+    static int serial;
+    snprintf(models[which], sizeof models[which], "softfall %s %d",
+             which == SF_PICTURE_PAD ? "pad" : "missile", ++serial);
+}
+
+static bool has_view(int tag) {
+    int ierr = 0, *tags = NULL;
+    size_t count = 0;
+    bool found = false;
+    gmshViewGetTags(&tags, &count, &ierr);
+    for (size_t k = 0; k < count; k++)
+        found = found || tags[k] == tag;
+    gmshFree(tags);
+    return found;
+}
+
+static void set_option(int tag, const char *option, double value) {
+    char name[64];
+    int ierr = 0, index = has_view(tag) ? gmshViewGetIndex(tag, &ierr) : -1;
+    if (ierr != 0 || index < 0)
+        return;
+    snprintf(name, sizeof name, "View[%d].%s", index, option);
+    set_gmsh_option(name, value);
+}
+
+static void set_text(int tag, const char *option, const char *value) {
+    char name[64];
+    int ierr = 0, index = gmshViewGetIndex(tag, &ierr);
+    snprintf(name, sizeof name, "View[%d].%s", index, option);
+    if (ierr == 0 && index >= 0)
+        gmshOptionSetString(name, value, &ierr);
+}
+
+static void remove_view(int tag) {
+    int ierr = 0;
+    if (has_view(tag))
+        gmshViewRemove(tag, &ierr);
+}
+
+/* The faces of so many corners as elements of the model's one entity. */
+static sf_status add_faces(const sf_body *b, int corners, size_t *first, sf_error *err) {
+    size_t count = 0;
+    int ierr = 0;
+    size_t *tag = sf_alloc(err, (unsigned long)b->face_count, sizeof *tag, "a picture"),
+           *node = sf_alloc(err, (unsigned long)b->face_count, 4 * sizeof *node, "a picture");
+    for (int64_t k = 0; k < b->face_count && err->status == SF_OK; k++) {
+        if ((b->face[4 * k + 3] < 0 ? 3 : 4) != corners)
+            continue;
+        for (int c = 0; c < corners; c++)
+            node[count * (size_t)corners + (size_t)c] = (size_t)b->face[4 * k + c] + 1;
+        tag[count++] = (*first)++;
+    }
+    if (count > 0 && err->status == SF_OK)
+        gmshModelMeshAddElementsByType(1, corners == 3 ? TRIANGLE : QUADRANGLE, tag, count, node,
+                                       count * (size_t)corners, &ierr);
+    free(tag);
+    free(node);
+    return err->status;
+}
+
+static sf_status add_mesh(const sf_body *b, sf_error *err) {
+    int ierr = 0;
+    size_t first = 1;
+    size_t *tag = sf_alloc(err, (unsigned long)b->node_count, sizeof *tag, "a picture");
+    for (int64_t k = 0; k < b->node_count && tag; k++)
+        tag[k] = (size_t)k + 1;
+    gmshModelAddDiscreteEntity(2, 1, NULL, 0, &ierr);
+    if (tag)
+        gmshModelMeshAddNodes(2, 1, tag, (size_t)b->node_count, b->position, 3 * (size_t)b->node_count, NULL,
+                              0, &ierr);
+    free(tag);
+    if (err->status == SF_OK && add_faces(b, 3, &first, err) == SF_OK)
+        add_faces(b, 4, &first, err);
+    return err->status;
+}
+
+void sf_view_remove(sf_picture which) {
+    set_option(MOVES + (int)which, "ExternalView", -1);
+    remove_view(MOVES + (int)which);
+    remove_view(VALUES + (int)which);
+}
+
+/* gmsh forgets the options of a view with it. */
+static void dress(sf_picture which, double largest) {
+    int ierr = 0, moves = MOVES + (int)which, values = VALUES + (int)which;
+    bool grey = which == SF_PICTURE_MISSILE;
+    set_option(moves, "VectorType", DISPLACEMENT);
+    set_option(moves, "DisplacementFactor", 1);
+    set_option(moves, "ExternalView", grey ? -1 : gmshViewGetIndex(values, &ierr));
+    set_option(moves, "ShowScale", !grey);
+    set_option(moves, "Light", 1);
+    set_option(moves, "ShowElement", !grey);
+    set_option(moves, "ShowTime", grey ? 0 : 1);
+    if (!grey) {
+        set_option(moves, "ScaleType", LOGARITHMIC);
+        set_option(moves, "RangeType", OWN_RANGE);
+        set_option(moves, "CustomMin", largest / 300);
+        set_option(moves, "CustomMax", largest);
+        set_option(moves, "SaturateValues", 1);
+        set_option(values, "Visible", 0);
+        return;
+    }
+    set_option(moves, "ColormapNumber", GREY);
+    set_option(moves, "RangeType", OWN_RANGE); /* so wide that every value has the colour of its middle */
+    set_option(moves, "CustomMin", -1e12);
+    set_option(moves, "CustomMax", 1e12);
+}
+
+sf_status sf_view_begin(sf_picture which, const char *title, const sf_body *body, sf_error *err) {
+    char *shown = NULL;
+    int ierr = 0;
+    sf_view_remove(which);
+    name_model(which);
+    gmshModelGetCurrent(&shown, &ierr);
+    gmshModelAdd(models[which], &ierr);
+    add_mesh(body, err);
+    if (shown)
+        gmshModelSetCurrent(shown, &ierr);
+    gmshFree(shown);
+    if (which == SF_PICTURE_PAD)
+        gmshViewAdd("von Mises stress [kPa]", VALUES + (int)which, &ierr);
+    gmshViewAdd(title, MOVES + (int)which, &ierr);
+    largest_value = 0;
+    dress(which, 1);
+    return err->status;
+}
+
+void sf_view_add(sf_picture which, int frame, double time, const sf_body *body, const double *displacement,
+                 const double *value) {
+    sf_error err = SF_ERROR_INIT;
+    int ierr = 0;
+    size_t count = (size_t)body->node_count;
+    size_t *tag = sf_alloc(&err, count, sizeof *tag, "a picture");
+    for (size_t k = 0; k < count && tag; k++)
+        tag[k] = k + 1;
+    if (tag && value)
+        gmshViewAddHomogeneousModelData(VALUES + (int)which, frame, models[which], "NodeData", tag, count,
+                                        (double *)value, count, time, 1, 0, &ierr);
+    if (tag)
+        gmshViewAddHomogeneousModelData(MOVES + (int)which, frame, models[which], "NodeData", tag, count,
+                                        (double *)displacement, 3 * count, time, 3, 0, &ierr);
+    for (size_t k = 0; k < count && value; k++)
+        largest_value = fmax(largest_value, value[k]);
+    free(tag);
+    dress(which, largest_value > 0 ? largest_value : 1);
+}
+
+void sf_view_show_frame(int frame) {
+    for (int which = 0; which < SF_PICTURE_CURVE; which++) {
+        if (has_view(VALUES + which))
+            set_option(VALUES + which, "TimeStep", frame);
+        if (has_view(MOVES + which))
+            set_option(MOVES + which, "TimeStep", frame);
+    }
+}
+
+void sf_view_plot(const char *title, const char *x_label, int64_t count, const double *x, const double *y) {
+    enum { TAG = MOVES + SF_PICTURE_CURVE };
+    int ierr = 0;
+    double *data = malloc(4 * (size_t)count * sizeof *data + 1);
+    remove_view(TAG);
+    for (int64_t k = 0; data && k < count; k++)
+        memcpy(&data[4 * k], (double[]){x[k], 0, 0, y[k]}, 4 * sizeof *data);
+    if (data && count > 1) {
+        gmshViewAdd(title, TAG, &ierr);
+        gmshViewAddListData(TAG, "SP", (int)count, data, 4 * (size_t)count, &ierr);
+        set_option(TAG, "Type", GRAPH);
+        set_option(TAG, "AutoPosition", TOP_RIGHT);
+        set_text(TAG, "AxesLabelX", x_label);
+        set_option(TAG, "Axes", 3);
+        set_option(TAG, "PointSize", 1);
+        set_option(TAG, "LineWidth", 2);
+        set_option(TAG, "ShowScale", 1);
+        set_option(TAG, "NbIso", 5);
+        set_option(TAG, "IntervalsType", 2);
+    }
+    free(data);
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef SF_GUI_GMSH_WINDOW_H
 #define SF_GUI_GMSH_WINDOW_H
+
+#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#include "base/error.h"
 
 /* A user's own geometry in gmsh's window, as in gmsh itself: its language may do there what it may do in
  * gmsh. A run never uses what is made here: softfall-pre reads the file anew, confined. */
@@ -69,8 +69,8 @@ bool sf_window_take_action(char *action, size_t size);
 void sf_window_say(const char *text);
 /* Shows the entries and the picture as they now are. */
 void sf_window_refresh(void);
-/* Opens or closes a branch. */
-void sf_window_branch(const char *name, bool open);
+/* Closes a branch of the tree. */
+void sf_window_close_branch(const char *name);
 
 /* Makes the entry, or replaces it with its value. */
 void sf_window_put(const sf_entry *entry);
@@ -78,7 +78,6 @@ void sf_window_remove(const char *name);
 /* Values as they stand in the tree; false: there is no such entry. */
 bool sf_window_text(const char *name, char *text, size_t size);
 bool sf_window_number(const char *name, double *number);
-void sf_window_set_text(const char *name, const char *text);
 void sf_window_set_number(const char *name, double number);
 /* Colours an entry that a geometry has made; NULL: no colour. */
 void sf_window_colour_number(const char *name, const char *colour);
@@ -87,11 +86,40 @@ void sf_window_lock_number(const char *name);
 /* Calls `visit` with the name of each number of the tree. */
 void sf_window_visit_numbers(void (*visit)(void *user, const char *name), void *user);
 
-/* An option of gmsh. */
-void sf_window_option(const char *name, double value);
 /* Moves and scales the picture from the model's box (side view, x and z) so that a larger box of height and
  * width fits. */
 void sf_window_fit(const double low[3], const double high[3], double left, double right, double top);
 /* The picture (without the tree) as a PNG file. */
 sf_status sf_window_write_picture(const char *path, sf_error *err);
+
+/* Bodies of triangles and quadrangles that move from frame to frame, and curves, shown beside the
+ * geometry. */
+
+/* A body: its nodes and faces. */
+typedef struct sf_body {
+    int64_t node_count;
+    double *position; /* [node_count][3], in the geometry's length unit */
+    int64_t face_count;
+    int32_t *face; /* [face_count][4], -1 in the fourth place of a triangle */
+} sf_body;
+
+/* The pictures. Each has its fixed place: one that is made again replaces the one before. */
+typedef enum sf_picture {
+    SF_PICTURE_MISSILE, /* grey */
+    SF_PICTURE_PAD,     /* coloured by a value */
+    SF_PICTURE_CURVE,   /* a graph */
+    SF_PICTURES
+} sf_picture;
+
+/* Makes a body the picture `which` (not the graph), without frames. */
+sf_status sf_view_begin(sf_picture which, const char *title, const sf_body *body, sf_error *err);
+/* The next frame: displacement [node_count][3] in the geometry's unit, value [node_count] (NULL: none). */
+void sf_view_add(sf_picture which, int frame, double time, const sf_body *body, const double *displacement,
+                 const double *value);
+/* Shows a frame of all bodies. */
+void sf_view_show_frame(int frame);
+/* A graph of y over x. */
+void sf_view_plot(const char *title, const char *x_label, int64_t count, const double *x, const double *y);
+void sf_view_remove(sf_picture which);
+
 #endif

@@ -78,10 +78,7 @@ static double last_rise(const sf_series *curve, int64_t peak, double level, doub
 
 sf_status sf_contact_instant(const sf_series *curve, const char *name, double zero, double *instant,
                              sf_error *err) {
-    int64_t peak = 0;
-    for (int64_t i = 1; i < curve->count; i++)
-        if (curve->value[i] > curve->value[peak])
-            peak = i;
+    int64_t peak = sf_series_peak(curve);
     double a_max = curve->value[peak] - zero, low = 0, high = 0;
     if (!(a_max > 0))
         return SF_FAIL(err, SF_ERR_INPUT,
@@ -97,13 +94,6 @@ sf_status sf_contact_instant(const sf_series *curve, const char *name, double ze
             name, curve->value[0], a_max);
     *instant = t_low - (low - zero) * (t_high - t_low) / (high - low);
     return SF_OK;
-}
-
-static double peak_of(const sf_series *curve) {
-    double peak = curve->value[0];
-    for (int64_t i = 1; i < curve->count; i++)
-        peak = fmax(peak, curve->value[i]);
-    return peak;
 }
 
 static const double SLACK = 1e-5; /* s, of ends: one sample of a filtered curve */
@@ -144,8 +134,7 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
                          double shift, sf_region region, double interval, sf_fit *fit, sf_error *err) {
     *fit =
         (sf_fit){.region = region, .first = NAN, .last = NAN, .interval = interval, .r2 = NAN, .rmse_g = NAN};
-    if (check_region(measured, model, left, shift, region, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_region(measured, model, left, shift, region, err));
     double sum = 0, squares = 0, residual = 0, origin = 0, slack = 1e-9;
     double intervals = floor((region.end - region.begin) / interval + slack);
     if (!(intervals < MOST_SAMPLES))
@@ -190,9 +179,8 @@ static sf_status fit_all(const sf_compare_options *options, const sf_series *mod
         sf_region region = k < 0 ? window : options->regions[k];
         for (int j = 0; j < 2; j++) {
             sf_fit *fit = &c->fits[c->fit_count++];
-            if (sf_compare_fit(&c->measured, model, options->left, options->flight, c->shift, region,
-                               intervals[j], fit, err) != SF_OK)
-                return err->status;
+            SF_TRY(sf_compare_fit(&c->measured, model, options->left, options->flight, c->shift, region,
+                                  intervals[j], fit, err));
             fit->is_window = k < 0;
             snprintf(fit->span, sizeof fit->span, "%.3f to %.3f%s", region.begin * 1e3, region.end * 1e3,
                      k < 0 ? " window" : "");
@@ -230,8 +218,7 @@ sf_rows sf_fit_rows(void) {
 /* Reads the measured curve as it is compared. */
 static sf_status read_measured(const sf_compare_options *options, sf_comparison *c, sf_error *err) {
     sf_reference reference;
-    if (sf_reference_read(&options->reference, &reference, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_reference_read(&options->reference, &reference, err));
     c->measured = reference.curve;
     c->raw = reference.raw;
     c->cfc = options->reference.cfc;
@@ -263,7 +250,7 @@ sf_status sf_compare_run(const sf_compare_options *options, const sf_series *mod
             goto done;
         c->shift = model_contact - measured_contact;
     }
-    c->peak_error = peak_of(model) / c->injury.a_max_g - 1;
+    c->peak_error = model->value[sf_series_peak(model)] / c->injury.a_max_g - 1;
     fit_all(options, model, c, err);
 done:
     if (err->status != SF_OK)

@@ -3,9 +3,8 @@
 
 #include "base/mat3.h"
 #include "base/units.h"
-#include "post/figures/edge.h"
-#include "post/results/results_check.h"
 #include "post/figures/strain_field.h"
+#include "post/results/results.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <math.h>
@@ -77,8 +76,7 @@ static sf_status filter_resultant(const sf_results *r, const double *const chann
                                   sf_error *err) {
     const sf_history *h = &r->history;
     sf_series raw = {0};
-    if (sf_series_create(h->rows, &raw, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create(h->rows, &raw, err));
     memcpy(raw.time, h->time, (size_t)h->rows * sizeof *raw.time);
     for (int c = 0; c < 3 && err->status == SF_OK; c++) {
         sf_series one = {0};
@@ -133,8 +131,7 @@ static sf_status compute_resultant(const sf_results *r, sf_figures *f, sf_error 
 
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
-    if (sf_series_create(h->rows, &f->raw, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create(h->rows, &f->raw, err));
     memcpy(f->raw.time, h->time, (size_t)h->rows * sizeof *f->raw.time);
     for (int64_t i = 0; i < h->rows; i++)
         f->raw.value[i] = sf_figures_reading(r, i);
@@ -152,9 +149,7 @@ static sf_status find_peak(const sf_results *r, const double *const channel[3], 
     const double first[3] = {channel[0][0], channel[1][0], channel[2][0]};
     sf_series curve = {0};
     if (filter_resultant(r, channel, known ? first : none, none, 1, f, &curve, err) == SF_OK) {
-        int64_t row = 0;
-        for (int64_t i = 1; i < curve.count; i++)
-            row = curve.value[i] > curve.value[row] ? i : row;
+        int64_t row = sf_series_peak(&curve);
         *peak = curve.value[row];
         *time = curve.time[row];
     }
@@ -177,11 +172,7 @@ static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *
 
 /* Rows around the raw peak, without a gap, above half of it. */
 static int64_t count_peak_rows(const sf_series *raw) {
-    int64_t peak = 0;
-    for (int64_t i = 1; i < raw->count; i++)
-        if (raw->value[i] > raw->value[peak])
-            peak = i;
-    int64_t first = peak, last = peak;
+    int64_t peak = sf_series_peak(raw), first = peak, last = peak;
     while (first > 0 && raw->value[first - 1] > 0.5 * raw->value[peak])
         first--;
     while (last < raw->count - 1 && raw->value[last + 1] > 0.5 * raw->value[peak])
@@ -289,8 +280,7 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
 static sf_status add_depth(const sf_results *r, const sf_frame_head *head, double plane, double *depth,
                            sf_error *err) {
     sf_frame frame;
-    if (sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT, &frame, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT, &frame, err));
     const double *u = frame.field[SF_FRAME_DISPLACEMENT];
     for (int64_t i = 0; u && i < r->node_count; i++)
         *depth = fmax(*depth, plane - (r->position[3 * i + 2] + u[3 * i + 2]));
@@ -353,18 +343,132 @@ static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
     f->steps = r->has_summary ? r->steps : r->history.rows - 1;
 }
 
-static void take_edge(const sf_results *results, sf_figures *f) {
-    sf_edge edge;
-    sf_edge_estimate(results, &edge);
-    f->a_max_by_speed = edge.a_max_by_speed;
-    f->a_max_by_thickness = edge.a_max_by_thickness;
-    f->a_max_by_stress = edge.a_max_by_stress;
-    f->hic_by_speed = edge.hic_by_speed;
-    f->hic_by_thickness = edge.hic_by_thickness;
-    f->hic_by_stress = edge.hic_by_stress;
-    f->a_max_scatter = edge.a_max_scatter;
-    f->hic_scatter = edge.hic_scatter;
+/* ---- the edge ---- */
+
+/* The edge on which a figure may stand: how a_max and HIC change with the speed, the pad's thickness and the
+ * foam's stress, estimated from the run's own force over indentation (docs/theory.md, section 12).
+ *
+ * Near the turn F = C h^(p - n) d^n, with the thickness h, the indentation d, the contact area ~ d^p and the
+ * energy E = F d / (n + 1), so that with e = (dF/dd) E / F^2 = n / (n + 1)
+ *
+ *     d ln a_max = 2 e d ln v,  (p - (1 + p) e) d ln h,  (1 - e) d ln C;
+ *     d ln HIC = 1.5 d ln a_max, and d ln v in addition.
+ *
+ * A lock-up strain eps_D later by 0.005 shifts the locked part of the stress, from eps_s on, by that times
+ * w = ((eps - eps_s) / (eps_D - eps_s))^2 (which is the law's own change for the exponent 1). With eps = d /
+ * h the force loses h 0.005 (w F' - q int F' dw), where q is 0 below a flat missile; then d ln a_max = dF / F
+ * - (dF/dd) dE / F^2 with the energy dE that the force no longer takes. The impulse of the locked part is
+ * that of the speed with which it begins, so that only its duration changes, and HIC with it.
+ *
+ * The slope is that of the steepest of five secants before the turn, the first where the missile slows down
+ * from a half to a quarter of its speed: later ones are bent by the rate of a smooth foam, but see a lock-up.
+ * It lags behind the slope at the turn: e is 1.24 times that of the secant, calibrated to seven drops. While
+ * a foam locks up the estimate is an upper one: up to three times the change beyond the lock-up, where the
+ * force no longer grows as steeply (tests/test_edge.c).
+ */
+
+/* Secants of the force, by the speed where they begin and end over that at contact. */
+static const double secants[][2] = {{0.5, 0.25}, {0.35, 0.2}, {0.25, 0.12}, {0.2, 0.08}, {0.15, 0.04}};
+static const double LAG = 1.24; /* of e over that of the steepest */
+static const double PERCENT = 0.01;
+static const double LATER = 0.005; /* of the lock-up strain */
+static const double SHARPER = 0.8; /* of the mean's change over the peak's, as the top grows sharper */
+static const double ROUND = 0.5;   /* q over p: the middle of a pad is compressed more evenly than columns */
+
+/* The first row from `first` on in which the missile has slowed down to this speed; -1: none. */
+static int64_t row_of_speed(const sf_history *h, int64_t first, double speed) {
+    for (int64_t i = first; i < h->rows; i++)
+        if (h->velocity[i] <= speed)
+            return i;
+    return -1;
 }
+
+static int64_t row_of_indentation(const sf_history *h, int64_t first, double indentation) {
+    for (int64_t i = first; i < h->rows; i++)
+        if (h->indentation[i] >= indentation)
+            return i;
+    return -1;
+}
+
+/* The steepest secant: (dF/dd) / F, m-1; NaN: there is none. */
+static double steepest(const sf_history *h, int64_t first) {
+    double growth = NAN;
+    for (size_t k = 0; k < sizeof secants / sizeof *secants; k++) {
+        int64_t from = row_of_speed(h, first, secants[k][0] * h->velocity[first]),
+                to = row_of_speed(h, first, secants[k][1] * h->velocity[first]);
+        if (from < 0 || to <= from || !(h->contact_force[from] > 0) ||
+            !(h->indentation[to] > h->indentation[from]))
+            continue;
+        growth = fmax(growth, log(h->contact_force[to] / h->contact_force[from]) /
+                                  (h->indentation[to] - h->indentation[from]));
+    }
+    return growth;
+}
+
+/* Part of the peak's change that HIC has: by the duration of the force above that of row `from`, over the
+ * window of HIC. */
+static double share_of_hic(const sf_history *h, int64_t from, double largest, double window) {
+    double begin = h->contact_force[from], duration = 0, impulse = 0;
+    for (int64_t i = from + 1; i < h->rows && h->contact_force[i] > begin; i++) {
+        duration += h->time[i] - h->time[i - 1];
+        impulse += h->contact_force[i] * (h->time[i] - h->time[i - 1]);
+    }
+    double mean = impulse / duration;
+    return duration > 0
+               ? 1.5 * SHARPER * duration / window * (mean - begin) / (largest - begin) * largest / mean
+               : 0;
+}
+
+/* The changes by a later lock-up: `slope` (m-1) is (dF/dd) / F at the turn, `q` as above. */
+static void estimate_lock_up(const sf_results *r, int64_t first, int64_t deepest, double slope, double q,
+                             sf_figures *f) {
+    const sf_history *h = &r->history;
+    double room = r->lock_up - r->lock_begin, shift = LATER * r->thickness, bend = 0, energy = 0, w = 0,
+           largest = h->contact_force[sf_history_row_of_largest(h, h->contact_force)];
+    int64_t begin = row_of_indentation(h, first, r->lock_begin * r->thickness);
+    f->a_max_by_lock_up = f->hic_by_lock_up = isfinite(room) ? 0 : NAN;
+    if (begin < 0 || !(room > 0))
+        return;
+    for (int64_t i = begin + 1; i <= deepest; i++) {
+        double x = fmin(1, (h->indentation[i] / r->thickness - r->lock_begin) / room),
+               gain = fmax(0, h->contact_force[i] - h->contact_force[i - 1]);
+        w = x * x;
+        bend += x < 1 ? gain * 2 * x / (room * r->thickness) : 0; /* of the integral of F' dw */
+        energy -= shift * (w * gain - q * bend * (h->indentation[i] - h->indentation[i - 1]));
+    }
+    f->a_max_by_lock_up = -shift * (w * slope - q * bend / largest) - slope * energy / largest;
+    f->hic_by_lock_up = f->a_max_by_lock_up * share_of_hic(h, begin, largest, f->injury.hic.t2 - f->injury.hic.t1);
+}
+
+/* The run has rebounded. Sets nothing of a driven or free missile, or where the force tells nothing. */
+static void estimate_edge(const sf_results *r, sf_figures *f) {
+    const sf_history *h = &r->history;
+    if (r->driven || r->turns)
+        return;
+    int64_t first = 0;
+    while (first + 1 < h->rows && !(h->contact_nodes[first + 1] > 0))
+        first++;
+    int64_t deepest = sf_history_row_of_largest(h, h->indentation),
+            half = row_of_indentation(h, first, 0.5 * h->indentation[deepest]);
+    double growth = steepest(h, first);
+    if (half < 0 || isnan(growth) || !(h->contact_area[half] > 0))
+        return;
+    double force = h->contact_force[sf_history_row_of_largest(h, h->contact_force)],
+           e = LAG * growth * h->energy_kinetic_missile[first] / force,
+           p = fmin(1, fmax(0, log(h->contact_area[deepest] / h->contact_area[half]) / log(2)));
+    f->a_max_by_speed = PERCENT * 2 * e;
+    f->a_max_by_thickness = PERCENT * (p - (1 + p) * e);
+    f->a_max_by_stress = PERCENT * (1 - e);
+    f->hic_by_speed = 1.5 * f->a_max_by_speed + PERCENT;
+    f->hic_by_thickness = 1.5 * f->a_max_by_thickness;
+    f->hic_by_stress = 1.5 * f->a_max_by_stress;
+    estimate_lock_up(r, first, deepest, LAG * growth, ROUND * p, f);
+    double speed = r->speed_scatter / PERCENT, thickness = r->thickness_tolerance / r->thickness / PERCENT;
+    f->a_max_scatter = hypot(f->a_max_by_speed * speed, f->a_max_by_thickness * thickness);
+    f->hic_scatter = hypot(f->hic_by_speed * speed, f->hic_by_thickness * thickness);
+}
+
+/* ---- all figures ---- */
 
 /* Names the acceleration that the curves show, and what it has passed. */
 static void name_acceleration(sf_figures *f) {
@@ -400,6 +504,7 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
     f->momentum_error_space = sf_history_largest(h, h->momentum_error_space);
     f->angular_momentum_error = sf_history_largest(h, h->angular_momentum_error);
     f->constraint_residual = sf_history_largest(h, h->constraint_residual);
+    f->base_force = sf_history_largest(h, h->base_reaction);
     if (!f->touched)
         goto done;
     compute_energies(results, f);
@@ -418,7 +523,7 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
     f->raw_peak_rows = count_peak_rows(&f->raw);
     compute_rebound(results, f);
     if (f->rebounded)
-        take_edge(results, f);
+        estimate_edge(results, f);
 done:
     if (err->status != SF_OK)
         sf_figures_free(f);

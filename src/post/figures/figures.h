@@ -7,8 +7,8 @@
 #ifndef SF_POST_FIGURES_H
 #define SF_POST_FIGURES_H
 
-#include "post/figures/injury.h"
-#include "post/figures/layer_figures.h"
+#include "post/figures/signal.h"
+#include "post/figures/strain_field.h"
 #include "post/results/results.h"
 #include "report/row.h"
 #include <stddef.h>
@@ -47,10 +47,14 @@
     X(NUMBER, a_max_by_thickness, "a_max_change_by_thickness", 1, "the same for 1 % more thickness of the pad", \
       .name = "a_max, 1 % thicker", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, a_max_by_stress, "a_max_change_by_stress", 1, "the same for 1 % more stress of the foam") \
+    X(NUMBER, a_max_by_lock_up, "a_max_change_by_lock_up", 1, "the same for a lock-up strain later by 0.005: of a foam whose stress has a pole below 1, alone in its pad", \
+      .name = "a_max, lock-up later by 0.005", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, hic_by_speed, "hic_change_by_speed", 1, "estimated relative change of HIC for 1 % more speed", \
       .name = "HIC, 1 % more speed", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, hic_by_thickness, "hic_change_by_thickness", 1, "the same for 1 % more thickness of the pad") \
     X(NUMBER, hic_by_stress, "hic_change_by_stress", 1, "the same for 1 % more stress of the foam") \
+    X(NUMBER, hic_by_lock_up, "hic_change_by_lock_up", 1, "the same for a lock-up strain later by 0.005", \
+      .name = "HIC, lock-up later by 0.005", .shown = 100, .unit = "%", .format = "%+.2f") \
     X(NUMBER, a_max_scatter, "a_max_scatter", 1, "estimated standard deviation of a_max from drop to drop, over it: by `missile.speed_scatter` and `pad.thickness_tolerance`", \
       .name = "a_max, scatter of drops", .shown = 100, .unit = "%", .format = "%.2f") \
     X(NUMBER, hic_scatter, "hic_scatter", 1, "the same of HIC", \
@@ -100,6 +104,7 @@
     X(NUMBER, contact_energy_fraction, "contact_energy_fraction", 1, "energy lost in contact at that time, of that energy", \
       .name = "contact energy", .unit = "% of the internal energy", .format = "%.3f", .shown = 100) \
     X(NUMBER, negative_dissipation, "negative_dissipation", 1, "most that hysteresis, viscosity, friction or stabilisation had given back at any time beyond what it had taken, in the whole or summed over the single nodes that gave, of that energy") \
+    X(NUMBER, base_force, "base_force_N", 1, "largest force, along z, that base, anvil and support transmit: base_reaction as a force plate reads it") \
     X(NUMBER, area, "section_mm2", 1e6, "mean cross-section: volume of the whole pad at rest / its height") \
     X(NUMBER, peak_force, "peak_force_N", 1, "largest contact force (prescribed motion, like the next four)", \
       .name = "largest force", .unit = "N", .format = "%.2f") \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/figures/injury.h"
+#include "post/figures/signal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -240,8 +240,7 @@ sf_status sf_hic_evaluate(const sf_series *acceleration_g, double window, sf_hic
     search s = {.window = window, .t1 = NAN, .t2 = NAN};
     if (!(window > 0))
         return SF_FAIL(err, SF_ERR_INPUT, "a HIC window of %g s is not positive", window);
-    if (sf_series_check(acceleration_g, "the acceleration curve", err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_check(acceleration_g, "the acceleration curve", err));
     if (grid_build(&s, acceleration_g, err) != SF_OK || levels_build(&s, err) != SF_OK)
         goto done;
     search_start(&s);
@@ -326,22 +325,16 @@ double sf_injury_clip(const sf_series *curve, double duration, int contiguous) {
 }
 
 sf_status sf_injury_evaluate_peak(const sf_series *curve, sf_injury *injury, sf_error *err) {
-    *injury = (sf_injury){.a_max_g = curve->value[0], .a_max_time = curve->time[0]};
-    for (int64_t i = 1; i < curve->count; i++) {
-        if (curve->value[i] > injury->a_max_g) {
-            injury->a_max_g = curve->value[i];
-            injury->a_max_time = curve->time[i];
-        }
-    }
+    int64_t peak = sf_series_peak(curve);
+    *injury = (sf_injury){.a_max_g = curve->value[peak], .a_max_time = curve->time[peak]};
     return sf_hic_evaluate(curve, INFINITY, &injury->hic, err);
 }
 
 sf_status sf_injury_evaluate(const sf_series *curve, sf_injury *injury, sf_error *err) {
     const double clip_duration = 3e-3;
-    if (sf_injury_evaluate_peak(curve, injury, err) != SF_OK ||
-        sf_hic_evaluate(curve, 15e-3, &injury->hic15, err) != SF_OK ||
-        sf_hic_evaluate(curve, 36e-3, &injury->hic36, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_injury_evaluate_peak(curve, injury, err));
+    SF_TRY(sf_hic_evaluate(curve, 15e-3, &injury->hic15, err));
+    SF_TRY(sf_hic_evaluate(curve, 36e-3, &injury->hic36, err));
     injury->gadd = sf_injury_gadd(curve);
     injury->clip_contiguous_g = sf_injury_clip(curve, clip_duration, 1);
     injury->clip_cumulative_g = sf_injury_clip(curve, clip_duration, 0);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/figures/record.h"
+#include "post/figures/compare.h"
 
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,14 +19,9 @@ typedef struct record {
     bool begins, ends;  /* the record holds both feet of the pulse */
 } record;
 
-static int by_value(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median_of(const double *value, int64_t count, double *work) {
     memcpy(work, value, (size_t)count * sizeof *work);
-    qsort(work, (size_t)count, sizeof *work, by_value);
+    gsl_sort(work, 1, (size_t)count);
     return 0.5 * (work[(count - 1) / 2] + work[count / 2]);
 }
 
@@ -170,10 +166,7 @@ static double noise_value(const record *r) {
 }
 
 static double highest(const sf_series *s) {
-    double most = s->value[0];
-    for (int64_t i = 1; i < s->count; i++)
-        most = fmax(most, s->value[i]);
-    return most;
+    return s->value[sf_series_peak(s)];
 }
 
 static double ringing_value(const record *r) {
@@ -210,8 +203,7 @@ sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double o
                           sf_record_verdict *verdict, sf_error *err) {
     record r;
     *verdict = (sf_record_verdict){0};
-    if (record_open(raw, curve, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(record_open(raw, curve, &r, err));
     for (int k = 0; k < SF_RECORD_CHECKS; k++) {
         sf_check *row = &verdict->rows[k];
         *row = rules[k];
@@ -235,8 +227,7 @@ sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double o
 sf_status sf_record_offset(const sf_series *raw, const sf_series *axis, double *offset, sf_error *err) {
     record r;
     *offset = NAN;
-    if (record_open(raw, raw, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(record_open(raw, raw, &r, err));
     *offset = base_before(&r, axis);
     record_free(&r);
     return SF_OK;
@@ -248,8 +239,7 @@ sf_status sf_record_find_impacts(const sf_series *raw, sf_record_impact impact[S
     static const double APART = 5e-3; /* s */
     record r;
     *count = 0;
-    if (record_open(raw, raw, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(record_open(raw, raw, &r, err));
     bool inside = false;
     double left = raw->time[0], lowest = 0;
     for (int64_t i = 0; i < raw->count; i++)

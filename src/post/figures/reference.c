@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/figures/reference.h"
+#include "post/figures/compare.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -305,7 +305,7 @@ static double largest_gap(const sf_series *s) {
 }
 
 static sf_status check_sampling(const record *r, const sf_series *raw, sf_error *err) {
-    static const double SHARE = 0.1; /* of the intervals: a gap alone is judged by post/figures/record.h */
+    static const double SHARE = 0.1; /* of the intervals: a gap alone is judged by post/figures/compare.h */
     const sf_reference_options *o = r->options;
     double most = 1 / (SAMPLES_PER_CLASS * o->cfc);
     int64_t coarse = 0;
@@ -322,33 +322,9 @@ static sf_status check_sampling(const record *r, const sf_series *raw, sf_error 
     return SF_OK;
 }
 
-/* The samples on their own uniform clock, if written times that are rounded are all that speaks against it.
- */
-static bool take_uniform(const sf_series *raw, sf_series *uniform, sf_error *err) {
-    static const double OFF = 0.05; /* of a step: a time that is rounded */
-    double step = (raw->time[raw->count - 1] - raw->time[0]) / (double)(raw->count - 1);
-    for (int64_t i = 0; i < raw->count; i++)
-        if (fabs(raw->time[i] - raw->time[0] - (double)i * step) > OFF * step)
-            return false;
-    if (sf_series_create(raw->count, uniform, err) != SF_OK)
-        return true;
-    for (int64_t i = 0; i < raw->count; i++)
-        uniform->time[i] = raw->time[0] + (double)i * step;
-    memcpy(uniform->value, raw->value, (size_t)raw->count * sizeof(double));
-    return true;
-}
-
-/* At the record's own rate: interpolation between samples would be a filter of its own. */
 static sf_status filter(double cfc, const sf_series *raw, sf_series *curve, sf_error *err) {
-    sf_series uniform = {0};
-    if (!(cfc > 0))
-        return make_resultant(raw, 1, curve, err); /* as it is */
-    if (!take_uniform(raw, &uniform, err))
-        sf_signal_resample(raw, sf_signal_rate(raw), &uniform, err);
-    if (err->status == SF_OK)
-        sf_signal_filter_cfc(&uniform, cfc, curve, err);
-    sf_series_free(&uniform);
-    return err->status;
+    return cfc > 0 ? sf_signal_filter(raw, cfc, curve, err)
+                   : make_resultant(raw, 1, curve, err); /* as it is */
 }
 
 static sf_status filter_axes(const record *r, sf_reference *reference, sf_error *err) {

@@ -41,6 +41,14 @@ sf_status sf_series_check(const sf_series *series, const char *name, sf_error *e
     return SF_OK;
 }
 
+int64_t sf_series_peak(const sf_series *series) {
+    int64_t peak = 0;
+    for (int64_t i = 1; i < series->count; i++)
+        if (series->value[i] > series->value[peak])
+            peak = i;
+    return peak;
+}
+
 double sf_series_at(const sf_series *series, double time) {
     int64_t low = 0, high = series->count - 1;
     if (time <= series->time[0])
@@ -69,8 +77,7 @@ double sf_signal_rate(const sf_series *series) {
 sf_status sf_signal_lead_in(const sf_series *series, double lead, double level, sf_series *out,
                             sf_error *err) {
     double jump = 1e-3 * fmin(lead, series->time[1] - series->time[0]);
-    if (sf_series_create(series->count + 2, out, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create(series->count + 2, out, err));
     out->time[0] = series->time[0] - lead;
     out->time[1] = series->time[0] - jump;
     out->value[0] = out->value[1] = level;
@@ -100,8 +107,7 @@ static double mean_between(const sf_series *series, double begin, double end, in
 
 sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *uniform, sf_error *err) {
     *uniform = (sf_series){0};
-    if (sf_series_check(series, "the curve to resample", err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_check(series, "the curve to resample", err));
     double start = series->time[0];
     double span = series->time[series->count - 1] - start;
     double intervals = floor(span * rate * (1 + 1e-12) + 1e-9);
@@ -109,8 +115,7 @@ sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *un
         return SF_FAIL(err, SF_ERR_INPUT,
                        "a curve of %.3g s cannot be sampled at %.3g Hz: 2 to %g samples are possible", span,
                        rate, MOST_SAMPLES);
-    if (sf_series_create((int64_t)intervals + 1, uniform, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_create((int64_t)intervals + 1, uniform, err));
     int64_t segment = 0, last = uniform->count - 1;
     while (segment < series->count - 2 && series->time[segment + 1] <= start + 0.5 / rate)
         segment++;
@@ -183,9 +188,8 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     *filtered = (sf_series){0};
     double step = 0;
     double *work = NULL;
-    if (sf_series_check(uniform, "the curve to filter", err) != SF_OK ||
-        check_uniform(uniform, &step, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_series_check(uniform, "the curve to filter", err));
+    SF_TRY(check_uniform(uniform, &step, err));
     double pole = 2 * M_PI * cfc * 2.0775;
     if (!(cfc > 0) || pole * step / 2 > 0.45 * M_PI)
         return SF_FAIL(
@@ -207,6 +211,32 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     memcpy(filtered->value, work + pad, (size_t)uniform->count * sizeof(double));
 done:
     free(work);
+    return err->status;
+}
+
+/* The samples on their own uniform clock, if written times that are rounded are all that speaks against it.
+ */
+static bool take_uniform(const sf_series *raw, sf_series *uniform, sf_error *err) {
+    static const double OFF = 0.05; /* of a step: a time that is rounded */
+    double step = (raw->time[raw->count - 1] - raw->time[0]) / (double)(raw->count - 1);
+    for (int64_t i = 0; i < raw->count; i++)
+        if (fabs(raw->time[i] - raw->time[0] - (double)i * step) > OFF * step)
+            return false;
+    if (sf_series_create(raw->count, uniform, err) != SF_OK)
+        return true;
+    for (int64_t i = 0; i < raw->count; i++)
+        uniform->time[i] = raw->time[0] + (double)i * step;
+    memcpy(uniform->value, raw->value, (size_t)raw->count * sizeof(double));
+    return true;
+}
+
+sf_status sf_signal_filter(const sf_series *raw, double cfc, sf_series *filtered, sf_error *err) {
+    sf_series uniform = {0};
+    if (!take_uniform(raw, &uniform, err))
+        sf_signal_resample(raw, sf_signal_rate(raw), &uniform, err);
+    if (err->status == SF_OK)
+        sf_signal_filter_cfc(&uniform, cfc, filtered, err);
+    sf_series_free(&uniform);
     return err->status;
 }
 

@@ -1,9 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/strain_field.h"
 
+#include "post/results/results.h"
+
+#include <gsl/gsl_sort.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- strain over the pad ---- */
 
 static const double SLIP = 1e-6; /* of the thickness: none */
 
@@ -54,15 +60,20 @@ static bool is_one_place(const sf_results *r, int64_t a, int64_t b) {
     return memcmp(&r->position[3 * a], &r->position[3 * b], 3 * sizeof *r->position) == 0;
 }
 
+/* [node_count] the nodes, those at one place one after another; owned by the caller, NULL on failure. */
+static int64_t *order_by_place(const sf_results *r, sf_error *err) {
+    int64_t *order = sf_alloc(err, (unsigned long)r->node_count, sizeof *order, "nodes by place");
+    for (int64_t i = 0; order && i < r->node_count; i++)
+        order[i] = i;
+    if (order)
+        qsort_r(order, (size_t)r->node_count, sizeof *order, by_place, r->position);
+    return order;
+}
+
 /* [node_count] the next node at the same place, in a ring; owned by the caller. */
 static int64_t *ring_copies(const sf_results *r, sf_error *err) {
-    unsigned long count = (unsigned long)r->node_count;
-    int64_t *order = sf_alloc(err, count, sizeof *order, "nodes by place"),
-            *next = sf_alloc(err, count, sizeof *next, "nodes by place");
-    for (int64_t i = 0; err->status == SF_OK && i < r->node_count; i++)
-        order[i] = i;
-    if (err->status == SF_OK)
-        qsort_r(order, count, sizeof *order, by_place, r->position);
+    int64_t *order = order_by_place(r, err),
+            *next = sf_alloc(err, (unsigned long)r->node_count, sizeof *next, "nodes by place");
     for (int64_t k = 0, first = 0; err->status == SF_OK && k < r->node_count; k++) {
         bool last = k + 1 == r->node_count || !is_one_place(r, order[k], order[k + 1]);
         next[order[k]] = last ? order[first] : order[k + 1];
@@ -72,24 +83,24 @@ static int64_t *ring_copies(const sf_results *r, sf_error *err) {
     return next;
 }
 
-/* Nodes at one place have moved together: they are tied, or would be. */
-static bool is_together(const sf_results *r, const double *displacement, int64_t a, int64_t b) {
+/* Squared distance (m2) that two nodes at one place have moved apart. */
+static double square_apart(const double *displacement, int64_t a, int64_t b) {
     double square = 0;
     for (int c = 0; c < 3; c++)
         square += pow(displacement[3 * a + c] - displacement[3 * b + c], 2);
-    return square <= pow(SLIP * r->thickness, 2);
+    return square;
+}
+
+/* Nodes at one place have moved together: they are tied, or would be. */
+static bool is_together(const sf_results *r, const double *displacement, int64_t a, int64_t b) {
+    return square_apart(displacement, a, b) <= pow(SLIP * r->thickness, 2);
 }
 
 /* ---- collapse ---- */
 
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Returns the upper median: at least half of the values are less than or equal to it. */
 static double median(double *value, int64_t count) {
-    qsort(value, (size_t)count, sizeof *value, ascending);
+    gsl_sort(value, 1, (size_t)count);
     return value[count / 2];
 }
 
@@ -165,4 +176,119 @@ double sf_strain_field_energy_beyond(const sf_results *r, const double *compress
         beyond += compression[i] > strain ? energy : 0;
     }
     return all > 0 ? beyond / all : 0;
+}
+
+/* ---- layers ---- */
+
+static const double LARGE_SLIP = 0.02; /* of the thickness */
+
+static const sf_row list[] = {{.key = "name",
+                               .name = "layer",
+                               SF_ROW_OF(STRING, sf_layer_figures, name),
+                               .meaning = "of the layer in the case"},
+#define ENTRY(member, row_key, row_factor, ...)                                                              \
+    {.key = row_key,                                                                                         \
+     .factor = row_factor,                                                                                   \
+     SF_ROW_OF(NUMBER, sf_layer_figures, member),                                                            \
+     .meaning = __VA_ARGS__},
+                              SF_LAYER_FIGURES(ENTRY)
+#undef ENTRY
+};
+
+sf_rows sf_layer_figure_rows(void) {
+    return SF_ROWS(list);
+}
+
+/* Takes the sums of the solver by layer until the last frame. */
+static void take_sums(const sf_results *r, sf_layer_figures *f) {
+    for (int k = 0; k < r->layer_count; k++) {
+        const sf_layer_sums *sums = &r->layer_sums[k];
+        f[k].max_local_strain = sums->compression;
+        f[k].stored_energy = sums->stored;
+        f[k].hysteresis_energy = sums->hysteresis;
+        f[k].viscous_energy = sums->viscous;
+        f[k].absorbed_energy = f[k].stored_energy + f[k].hysteresis_energy + f[k].viscous_energy;
+    }
+}
+
+/* Adds the energies of the curves at the peak. */
+static void add_peak(const sf_results *r, const double *compression, const double *energy_density,
+                     sf_layer_figures *f) {
+    double all = 0;
+    for (int k = 0; k < r->layer_count; k++)
+        f[k].energy_share = f[k].energy_beyond_data = 0;
+    for (int64_t i = 0; i < r->node_count; i++) {
+        sf_layer_figures *own = &f[r->node_layer[i]];
+        double energy = r->volume[i] * energy_density[i];
+        own->energy_share += energy;
+        own->energy_beyond_data += compression[i] > own->informed_strain ? energy : 0;
+        all += energy;
+    }
+    for (int k = 0; k < r->layer_count; k++) {
+        f[k].energy_beyond_data = f[k].energy_share > 0 ? f[k].energy_beyond_data / f[k].energy_share : 0;
+        f[k].energy_share = all > 0 ? f[k].energy_share / all : 0;
+    }
+}
+
+sf_layer_figures *sf_layer_figures_compute(const sf_results *r, const double *compression,
+                                           const double *energy_density, sf_error *err) {
+    sf_layer_figures *f = r->layer_count > 0 ? sf_alloc(err, (unsigned long)r->layer_count, sizeof *f,
+                                                        "the figures of the layers")
+                                             : NULL;
+    if (!f)
+        return NULL;
+    for (int k = 0; k < r->layer_count; k++) {
+        for (size_t q = 0; q < sizeof list / sizeof list[0]; q++)
+            if (list[q].type == SF_ROW_NUMBER)
+                *(double *)((char *)&f[k] + list[q].offset) = NAN;
+        f[k].name = r->layer_name[k];
+        f[k].density = r->layer_density[k];
+        f[k].informed_strain = r->layer_informed[k];
+        f[k].volume = 0;
+    }
+    for (int64_t i = 0; i < r->node_count; i++)
+        f[r->node_layer[i]].volume += sf_results_whole(r) * r->volume[i];
+    if (r->layer_sums)
+        take_sums(r, f);
+    if (compression && energy_density)
+        add_peak(r, compression, energy_density, f);
+    return f;
+}
+
+/* Returns the largest distance (m) between nodes that were at one place, and one of them in `at`. */
+static double largest_slip(const sf_results *r, const double *displacement, const int64_t *order,
+                           int64_t *at) {
+    double most = 0;
+    for (int64_t k = 1; k < r->node_count; k++) {
+        if (!is_one_place(r, order[k], order[k - 1]))
+            continue;
+        double square = square_apart(displacement, order[k], order[k - 1]);
+        if (square > most) {
+            most = square;
+            *at = order[k];
+        }
+    }
+    return sqrt(most);
+}
+
+sf_status sf_layers_note_slip(sf_results *r, sf_error *err) {
+    sf_frame peak;
+    sf_error problem = SF_ERROR_INIT;
+    if (r->layer_count == 0 || !r->has_peak ||
+        sf_frame_read_fields(r, &r->peak, SF_FIELD_DISPLACEMENT, &peak, &problem) != SF_OK)
+        return SF_OK; /* the figures say what is damaged */
+    int64_t *order = order_by_place(r, err), at = 0;
+    double slip = order && peak.field[SF_FRAME_DISPLACEMENT]
+                      ? largest_slip(r, peak.field[SF_FRAME_DISPLACEMENT], order, &at)
+                      : 0;
+    const double *x = &r->position[3 * at];
+    if (slip > LARGE_SLIP * r->thickness)
+        sf_results_note(
+            r,
+            "layers slide on each other by up to %.3g mm, at (%.4g, %.4g, %.4g) mm: their ties hold "
+            "along the undeformed normal, which is right for small slips",
+            1e3 * slip, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+    free(order);
+    sf_frame_free(&peak);
+    return err->status;
 }

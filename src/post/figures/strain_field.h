@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures of the strain over the pad at the peak, from the fields of /peak. */
-#ifndef SF_POST_STRAIN_FIELD_H
-#define SF_POST_STRAIN_FIELD_H
+#ifndef SF_POST_FIGURES_STRAIN_FIELD_H
+#define SF_POST_FIGURES_STRAIN_FIELD_H
 
 #include "post/results/results.h"
+#include "report/row.h"
 
 /* Largest excess of a node's compression (1 - smallest principal stretch) over the median of its neighbours,
  * the nodes that share a cell with it, counted once per cell. Where the strain is smooth it is small, below a
@@ -21,5 +22,46 @@ sf_status sf_strain_field_collapse(const sf_results *results, const double *comp
  * energy_density: [node_count] J m-3. */
 double sf_strain_field_energy_beyond(const sf_results *results, const double *compression,
                                      const double *energy_density, double strain);
+
+/* Figures of each layer of a pad of several materials. */
+
+/* X(member, key in summary.json, factor from SI to the unit in the key, meaning and, of a row that is
+ * printed, its name, unit and format). */
+/* clang-format off */
+#define SF_LAYER_FIGURES(X)                                                                                            \
+    X(volume, "volume_cm3", 1e6, "of the undeformed layer, whole pad", .name = "volume", .unit = "cm³", .format = "%.1f") \
+    X(density, "density_kg_m3", 1, "of the undeformed material", .name = "density", .unit = "kg/m³", .format = "%.1f") \
+    X(max_local_strain, "max_local_strain", 1, "largest compression (1 - smallest principal stretch) of the run",      \
+      .name = "largest strain", .format = "%.3f")                                                                      \
+    X(absorbed_energy, "absorbed_energy_J", 1, "stored, lost and viscous energy in the last frame, whole pad",         \
+      .name = "absorbed", .unit = "J", .format = "%.3f")                                                               \
+    X(stored_energy, "stored_energy_J", 1, "of it, recoverable")                                                       \
+    X(hysteresis_energy, "hysteresis_energy_J", 1, "of it, lost by the unloading rule")                                \
+    X(viscous_energy, "viscous_energy_J", 1, "of it, viscous work", .name = "of it viscous", .unit = "J", .format = "%.3f") \
+    X(energy_share, "energy_share", 1, "of the energy of the foams' curves at /peak",                                  \
+      .name = "share at the peak", .unit = "%", .format = "%.1f", .shown = 100)                                        \
+    X(energy_beyond_data, "energy_beyond_data", 1, "share of the layer's own such energy in nodes compressed beyond its `informed_strain`", \
+      .name = "beyond its data", .unit = "%", .format = "%.1f", .shown = 100)                                          \
+    X(informed_strain, "informed_strain", 1, "strain up to which the data of its material inform its curve")
+/* clang-format on */
+
+#define SF_LAYER_MEMBER(member, ...) double member;
+typedef struct sf_layer_figures {
+    const char *name;                 /* of the results */
+    SF_LAYER_FIGURES(SF_LAYER_MEMBER) /* SI; NaN: the file does not say */
+} sf_layer_figures;
+#undef SF_LAYER_MEMBER
+
+/* The rows of an sf_layer_figures, its name first; static storage. */
+sf_rows sf_layer_figure_rows(void);
+
+/* [results->layer_count] owned by the caller (free); NULL without layers or on failure. compression and
+ * energy_density: [node_count] of /peak, or NULL. */
+sf_layer_figures *sf_layer_figures_compute(const sf_results *results, const double *compression,
+                                           const double *energy_density, sf_error *err);
+
+/* Notes by how much layers slide on each other at the peak, if that is more than 2 % of the thickness: their
+ * ties hold along the undeformed normal, which is right for small slips. */
+sf_status sf_layers_note_slip(sf_results *results, sf_error *err);
 
 #endif

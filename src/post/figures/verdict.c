@@ -3,7 +3,7 @@
 
 #include "base/units.h"
 #include "base/text.h"
-#include "post/results/results_check.h"
+#include "post/results/results.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -32,33 +32,8 @@ static double ended_in_contact_value(const sf_results *r, const sf_figures *f) {
     return fmax(left, 1e-6); /* still in contact: never 0 */
 }
 
-static double energy_error_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return f->energy_error;
-}
-
-static double stabilisation_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return f->stabilisation_energy_fraction;
-}
-
-static double contact_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return f->contact_energy_fraction;
-}
-
-static double dissipation_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return f->negative_dissipation;
-}
-
 static bool has_step_artefact(const sf_figures *f) {
     return f->raw_peak_rows > 0 && f->raw_peak_rows < 3;
-}
-
-static double step_artefact_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return f->driven || !f->touched ? NAN : has_step_artefact(f);
 }
 
 static double filter_value(const sf_results *r, const sf_figures *f) {
@@ -68,45 +43,6 @@ static double filter_value(const sf_results *r, const sf_figures *f) {
     return f->injury_raw.a_max_g / f->injury.a_max_g - 1;
 }
 
-static double coarse_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return isnan(f->local_strain_excess) ? NAN : fmax(0, -f->local_strain_excess);
-}
-
-static double local_collapse_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return f->local_collapse;
-}
-
-static double mesh_value(const sf_results *r, const sf_figures *f) {
-    (void)f;
-    return r->expected_mesh_error;
-}
-
-static double slit_value(const sf_results *r, const sf_figures *f) {
-    (void)f;
-    return r->slit_fraction;
-}
-
-static double informed_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return f->energy_beyond_data;
-}
-
-static double edge_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return fmax(fabs(f->a_max_by_speed), fabs(f->a_max_by_thickness));
-}
-
-static double anvil_value(const sf_results *r, const sf_figures *f) {
-    (void)r;
-    return f->max_mean_strain;
-}
-
-static double below_anvil_value(const sf_results *r, const sf_figures *f) {
-    return f->below_anvil / r->thickness;
-}
-
 static double notes_value(const sf_results *r, const sf_figures *f) {
     (void)f;
     int count = 0;
@@ -114,6 +50,27 @@ static double notes_value(const sf_results *r, const sf_figures *f) {
         count += !r->note_of_ending[k];
     return count;
 }
+
+/* Checks whose value is a member of the results or the figures, or a short expression of them. */
+#define SHORT_VALUE(name, expression)                                                                        \
+    static double name##_value(const sf_results *r, const sf_figures *f) {                                   \
+        (void)r, (void)f;                                                                                    \
+        return expression;                                                                                   \
+    }
+SHORT_VALUE(energy_error, f->energy_error)
+SHORT_VALUE(stabilisation, f->stabilisation_energy_fraction)
+SHORT_VALUE(contact, f->contact_energy_fraction)
+SHORT_VALUE(dissipation, f->negative_dissipation)
+SHORT_VALUE(step_artefact, f->driven || !f->touched ? NAN : has_step_artefact(f))
+SHORT_VALUE(coarse, isnan(f->local_strain_excess) ? NAN : fmax(0, -f->local_strain_excess))
+SHORT_VALUE(local_collapse, f->local_collapse)
+SHORT_VALUE(mesh, r->expected_mesh_error)
+SHORT_VALUE(slit, r->slit_fraction)
+SHORT_VALUE(informed, f->energy_beyond_data)
+SHORT_VALUE(edge, fmax(fabs(f->a_max_by_speed), fabs(f->a_max_by_thickness)))
+SHORT_VALUE(anvil, f->max_mean_strain)
+SHORT_VALUE(below_anvil, f->below_anvil / r->thickness)
+#undef SHORT_VALUE
 
 typedef double (*value_of)(const sf_results *results, const sf_figures *figures);
 #define VALUE(name, ...) name##_value,

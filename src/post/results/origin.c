@@ -43,12 +43,17 @@ static void copy(char *to, size_t size, const char *begin, const char *end) {
     snprintf(to, size, "%.*s", (int)(end - begin), begin);
 }
 
+/* The same of a value: a quoted text without its quotes and escapes. */
 static void copy_value(char *to, size_t size, const char *begin, const char *end) {
-    if (end - begin >= 2 && *begin == '"' && end[-1] == '"') {
-        begin++;
-        end--;
+    bool quoted = end - begin >= 2 && *begin == '"' && end[-1] == '"';
+    copy(to, size, begin + quoted, end - quoted);
+    char *write = to;
+    for (const char *read = to; quoted && *read; read++) {
+        read += *read == '\\' && read[1];
+        *write++ = *read;
     }
-    copy(to, size, begin, end);
+    if (quoted)
+        *write = '\0';
 }
 
 bool sf_origin_next(const char **text, sf_origin_key *key) {
@@ -76,6 +81,14 @@ bool sf_origin_find(const char *parameters, const char *name, sf_origin_key *key
         if (strcmp(key->name, name) == 0)
             return true;
     return false;
+}
+
+const char *const sf_origin_report_keys[SF_ORIGIN_REPORT_KEYS] = {"sample", "laboratory", "conditions"};
+
+bool sf_origin_find_report(const char *parameters, const char *name, sf_origin_key *key) {
+    char full[64];
+    snprintf(full, sizeof full, "report.%s", name);
+    return sf_origin_find(parameters, full, key) && key->given;
 }
 
 static void put_comment(FILE *out, const char *begin, const char *end) {

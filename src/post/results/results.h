@@ -6,13 +6,13 @@
  * parts left out: history rows that are not complete or not finite, and frames without their scalars. In a
  * file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
  * errors. */
-#ifndef SF_POST_RESULTS_H
-#define SF_POST_RESULTS_H
+#ifndef SF_POST_RESULTS_RESULTS_H
+#define SF_POST_RESULTS_RESULTS_H
 
-#include "base/mat3.h"
 #include "base/error.h"
-#include "model/columns.h"
+#include "base/mat3.h"
 #include "io/h5.h"
+#include "model/columns.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -59,6 +59,7 @@ typedef struct sf_results {
     double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; NaN: not estimated */
     double air;                 /* m, gaps on the way of the thickness, which close first; NaN: not stored */
     double speed_scatter, thickness_tolerance; /* -, m: standard deviations; NaN: not stored */
+    double lock_up, lock_begin; /* -, see sf_model_lock_up; NaN: none, or the file does not say */
     double slit_fraction;    /* of the nodes: those at a slit, hole or gap narrower than their supports; NaN:
                                 the file does not say */
     double informed_strain;  /* -, up to which data inform the material (of layers the least); NaN: the file
@@ -135,5 +136,11 @@ double sf_results_cross_section(const sf_results *results);
 
 /* True if the missile ever touched the pad. */
 bool sf_results_touched(const sf_results *results);
+
+/* True for the statuses finished, rebound and interrupted. */
+bool sf_results_ended_well(const sf_results *results);
+
+/* Adds a sentence to the notes; further ones are dropped when they are full. */
+void sf_results_note(sf_results *results, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #endif

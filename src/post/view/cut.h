@@ -3,15 +3,8 @@
 #define SF_POST_VIEW_CUT_H
 #include <stdbool.h>
 
+#include "model/cells.h"
 #include "post/results/results.h"
-
-/* The cells of the background mesh, as tetrahedra and by their faces; positions in a cell's vertex list. */
-
-/* Tetrahedra that fill a cell of this type (SF_CELL_*), static storage; returns how many. */
-int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]);
-
-/* Faces in order around them, -1 in the fourth place of a triangle; returns how many. */
-int sf_cell_faces(int type, const int (**faces)[4]);
 
 /* The places of the symmetry planes of a model and of the missile's axis, by which pictures and sections
  * of the pad are laid out. */

@@ -3,6 +3,7 @@
 
 #include "build_info.h"
 #include "base/program.h"
+#include "model/model.h"
 #include "report/chart.h"
 #include "report/html.h"
 #include "io/provenance.h"
@@ -21,6 +22,8 @@ enum { MOST_RUNS = 12, CURVE_POINTS = 2000 };
 typedef struct overlay_run {
     const char *name;    /* as given */
     char path[PATH_MAX]; /* of its results.h5 */
+    int64_t drop;        /* of a series, from 1 */
+    double pause;        /* s, of the pad before it */
     bool open;           /* the members below are to be released */
     sf_results results;
     sf_figures figures;
@@ -30,13 +33,17 @@ typedef struct overlay_run {
 typedef struct overlay {
     const char *directory;
     bool force;
+    bool series;
+    int mean[2];                     /* first and last drop of the mean; 0: from the second on */
+    char files[MOST_RUNS][PATH_MAX]; /* names of a series' drops */
     int count;
     overlay_run run[MOST_RUNS];
     sf_staging output;
     char *command;
 } overlay;
 
-static const char *const names[] = {"compare.csv", "compare.gp", "compare.png", "report.html", NULL};
+static const char *const names[] = {"compare.csv", "compare.gp", "compare.png",
+                                    "report.html", "series.csv", NULL};
 static const char *const colours[MOST_RUNS] = {"#08519c", "#cb181d", "#238b45", "#6a51a3",
                                                "#d94801", "#17becf", "#8c6d31", "#525252",
                                                "#e7298a", "#66c2a4", "#fdae6b", "#9e9ac8"};
@@ -69,8 +76,12 @@ static error_t parse(int key, char *text, struct argp_state *state) {
             argp_error(state, "at most %d runs in one picture: \"%s\" is one too many", MOST_RUNS, text);
         o->run[o->count++].name = text;
         return 0;
+    case 'm':
+        if (sscanf(text, "%d-%d", &o->mean[0], &o->mean[1]) != 2 || o->mean[0] < 1 || o->mean[1] < o->mean[0])
+            argp_error(state, "--mean %s: the first and the last drop are expected, such as 2-3", text);
+        return 0;
     case ARGP_KEY_END:
-        if (o->count < 2 || !o->directory)
+        if (o->count < (o->series ? 1 : 2) || !o->directory)
             argp_error(state, "give two runs or more, and the output directory with -o");
         return 0;
     default:
@@ -101,6 +112,136 @@ static sf_status read_run(overlay_run *r, sf_error *err) {
                                          : "the missile never touched the pad");
     sf_verdict_compute(&r->results, &r->figures, &limits, &r->verdict);
     return SF_OK;
+}
+
+/* ---- series ---- */
+
+/* A whole number of the summary; 0: the file does not say. */
+static sf_status read_count(const sf_h5 *file, const char *path, int64_t *value, sf_error *err) {
+    int64_t *data = NULL;
+    *value = 0;
+    if (sf_h5_exists(file, path) && sf_h5_read(file, path, SF_H5_I64, 0, NULL, (void **)&data, err) == SF_OK)
+        *value = *data;
+    free(data);
+    return err->status;
+}
+
+/* The files of a series whose first is given alone. */
+static sf_status name_drops(overlay *o, sf_error *err) {
+    int64_t drops = 0;
+    SF_TRY(read_count(o->run[0].results.file, "/summary/drops", &drops, err));
+    if (drops < 2 || drops > MOST_RUNS)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s is no series of 2 to %d drops (series.drops); name the files of drops that were run one by one",
+            o->run[0].path, MOST_RUNS);
+    for (o->count = 1; o->count < drops; o->count++) {
+        sf_model_series_file(o->run[0].path, o->count + 1, o->files[o->count], PATH_MAX);
+        o->run[o->count].name = o->files[o->count];
+    }
+    return SF_OK;
+}
+
+/* Each file must be the drop after the one before. */
+static sf_status read_drop(overlay_run *r, int64_t number, sf_error *err) {
+    if (number > 1 && read_run(r, err) != SF_OK)
+        return err->status;
+    SF_TRY(read_count(r->results.file, "/summary/drop", &r->drop, err));
+    r->drop = r->drop > 0 ? r->drop : 1;
+    if (r->drop != number)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s is drop %lld on its pad, not drop %lld of this series", r->path,
+                       (long long)r->drop, (long long)number);
+    return number > 1 ? sf_h5_read_scalar(r->results.file, "/summary/pause", &r->pause, err) : SF_OK;
+}
+
+static sf_status read_series(overlay *o, sf_error *err) {
+    SF_TRY(read_run(&o->run[0], err));
+    if (o->count == 1)
+        SF_TRY(name_drops(o, err));
+    for (int k = 0; k < o->count; k++)
+        SF_TRY(read_drop(&o->run[k], k + 1, err));
+    if (o->mean[0] == 0) {
+        o->mean[0] = 2;
+        o->mean[1] = o->count;
+    }
+    return o->mean[1] <= o->count ? SF_OK
+                                  : SF_FAIL(err, SF_ERR_INPUT, "--mean %d-%d: the series has %d drops",
+                                            o->mean[0], o->mean[1], o->count);
+}
+
+static const char *const of_series[] = {"a_max_g", "hic", "v_rebound_m_s", "max_indentation_mm",
+                                        "max_local_strain"};
+enum { OF_SERIES = sizeof of_series / sizeof *of_series };
+
+static double series_number(const overlay *o, int k, int figure) {
+    return sf_figure_number(sf_figure_find(of_series[figure]), &o->run[k].results, &o->run[k].figures);
+}
+
+static double series_mean(const overlay *o, int figure) {
+    double sum = 0;
+    for (int k = o->mean[0] - 1; k < o->mean[1]; k++)
+        sum += series_number(o, k, figure);
+    return sum / (o->mean[1] - o->mean[0] + 1);
+}
+
+/* A row for each drop and one of the mean; growth is that over the first drop. */
+static sf_status write_series(const overlay *o, sf_error *err) {
+    FILE *csv = sf_staging_open(&o->output, "series.csv", err);
+    if (!csv)
+        return err->status;
+    fputs("drop,pause_s", csv);
+    for (int f = 0; f < OF_SERIES; f++)
+        fprintf(csv, ",%s,%s_growth", of_series[f], of_series[f]);
+    fputs(",grade\n", csv);
+    for (int k = 0; k <= o->count; k++) {
+        bool mean = k == o->count;
+        if (mean)
+            fprintf(csv, "mean %d-%d,", o->mean[0], o->mean[1]);
+        else
+            fprintf(csv, "%d,%.9g", k + 1, o->run[k].pause);
+        for (int f = 0; f < OF_SERIES; f++) {
+            double value = mean ? series_mean(o, f) : series_number(o, k, f);
+            fprintf(csv, ",%.9g,%.6g", value, value / series_number(o, 0, f) - 1);
+        }
+        fprintf(csv, ",%s\n", mean ? "" : sf_verdict_phrase(o->run[k].verdict.grade));
+    }
+    return sf_staging_close(csv, "series.csv", err);
+}
+
+static void put_series(FILE *page, const overlay *o) {
+    sf_html_heading(page, "Drops of the series");
+    sf_html_table t = sf_html_table_begin(page, "dense", NULL);
+    sf_html_row(&t);
+    sf_html_cell(&t, "drop");
+    sf_html_cell(&t, "a_max (g)");
+    sf_html_cell(&t, "over the first");
+    sf_html_cell(&t, "HIC");
+    sf_html_cell(&t, "over the first");
+    for (int k = 0; k <= o->count; k++) {
+        sf_html_row(&t);
+        if (k == o->count)
+            sf_html_cell(&t, "mean of %d to %d", o->mean[0], o->mean[1]);
+        else
+            sf_html_cell(&t, "%d", k + 1);
+        for (int f = 0; f < 2; f++) {
+            double value = k == o->count ? series_mean(o, f) : series_number(o, k, f);
+            sf_html_cell(&t, "%.5g", value);
+            sf_html_cell(&t, "%+.1f %%", 100 * (value / series_number(o, 0, f) - 1));
+        }
+    }
+    sf_html_table_end(&t);
+    sf_html_note(
+        page,
+        "series.csv has them too. What a material remembers is as good as its data: see material.memory.");
+}
+
+static void print_series(const overlay *o) {
+    for (int k = 0; k < o->count; k++)
+        printf("drop %d: a_max %.1f g (%+.1f %%), HIC %.0f (%+.1f %%)\n", k + 1, series_number(o, k, 0),
+               100 * (series_number(o, k, 0) / series_number(o, 0, 0) - 1), series_number(o, k, 1),
+               100 * (series_number(o, k, 1) / series_number(o, 0, 1) - 1));
+    printf("mean of drops %d to %d: a_max %.1f g, HIC %.0f\n", o->mean[0], o->mean[1], series_mean(o, 0),
+           series_mean(o, 1));
 }
 
 /* ---- output ---- */
@@ -225,6 +366,8 @@ static sf_status write_page(const overlay *o, sf_error *err) {
     sf_html_figure(page, svg, "%s.",
                    svg ? "Deceleration from first contact on, filtered with CFC 1000" : warning);
     free(svg);
+    if (o->series)
+        put_series(page, o);
     sf_html_heading(page, "Figures");
     put_table(page, o);
     sf_html_note(page, "compare.csv has every figure of summary.json.");
@@ -238,12 +381,17 @@ static sf_status run(overlay *o, sf_error *err) {
     char warning[320] = "";
     if (sf_staging_check(o->directory, names, o->force, err) != SF_OK)
         return err->status;
-    for (int k = 0; k < o->count; k++)
+    for (int k = 0; k < o->count && !o->series; k++)
         SF_TRY(read_run(&o->run[k], err));
+    if (o->series)
+        SF_TRY(read_series(o, err));
     if (sf_staging_begin(o->directory, names, o->force, &o->output, err) != SF_OK ||
-        write_csv(o, err) != SF_OK || write_picture(o, warning, sizeof warning, err) != SF_OK ||
-        write_page(o, err) != SF_OK || sf_staging_commit(&o->output, err) != SF_OK)
+        write_csv(o, err) != SF_OK || (o->series && write_series(o, err) != SF_OK) ||
+        write_picture(o, warning, sizeof warning, err) != SF_OK || write_page(o, err) != SF_OK ||
+        sf_staging_commit(&o->output, err) != SF_OK)
         return err->status;
+    if (o->series)
+        print_series(o);
     printf("Written: %s/report.html, compare.csv%s\n", o->directory,
            *warning ? "" : ", compare.png (compare.gp)");
     fflush(stdout);
@@ -267,17 +415,22 @@ int sf_overlay_main(int argc, char **argv) {
     static const struct argp_option known[] = {
         {"output", 'o', "DIR", 0, "write everything there (required)", 0},
         {"force", 'f', NULL, 0, "replace an earlier comparison in DIR", 0},
+        {"mean", 'm', "A-B", 0,
+         "of a series: the drops whose mean counts (default: from the second to the last)", 0},
         {0}};
-    static const struct argp parser = {.options = known,
-                                       .parser = parse,
-                                       .args_doc = "RESULTS RESULTS ... -o DIR",
-                                       .doc = "Overlays runs: files results.h5, or folders that hold one."};
-    static char name[] = "softfall-post compare";
+    static const struct argp parser = {
+        .options = known,
+        .parser = parse,
+        .args_doc = "RESULTS RESULTS ... -o DIR",
+        .doc = "Overlays runs: files results.h5, or folders that hold one. `series`: "
+               "the drops on one pad, of which the first file names them all."};
+    static char name[] = "softfall-post compare", name_of_series[] = "softfall-post series";
     sf_error err = SF_ERROR_INIT;
     overlay *o = sf_alloc(&err, 1, sizeof *o, "the runs");
     if (o && sf_program_begin(argv, &err) == SF_OK) {
         o->command = sf_command_line(argc, argv);
-        argv[1] = name;
+        o->series = strcmp(argv[1], "series") == 0;
+        argv[1] = o->series ? name_of_series : name;
         if (argp_parse(&parser, argc - 1, argv + 1, 0, NULL, o) != 0)
             SF_FAIL(&err, SF_ERR_INPUT, "the command line cannot be read");
         else if (!o->command)

@@ -73,12 +73,12 @@ static void put_facts(FILE *f, const sf_results *r, const sf_xdmf *made) {
 
 /* ---- the file ---- */
 
-static sf_status read_template(char **text, sf_error *err) {
+sf_status sf_template_read(const char *name, const char *mark, char **text, sf_error *err) {
     char path[PATH_MAX];
-    if (sf_process_find_shared(STATE, path, sizeof path, err) != SF_OK ||
+    if (sf_process_find_shared(name, path, sizeof path, err) != SF_OK ||
         sf_plain_read(path, NULL, SF_PLAIN_TEXT, text, NULL, err) != SF_OK)
         return err->status;
-    if (strstr(*text, FACTS))
+    if (strstr(*text, mark))
         return SF_OK;
     free(*text);
     *text = NULL;
@@ -92,7 +92,7 @@ sf_status sf_paraview_write(const sf_staging *output, const sf_results *r, const
     *warning = '\0';
     if (made->frames == 0)
         return SF_OK;
-    if (read_template(&text, &problem) != SF_OK) {
+    if (sf_template_read(STATE, FACTS, &text, &problem) != SF_OK) {
         snprintf(warning, size, "there is no %s: %s", STATE, problem.text);
         return SF_OK;
     }

@@ -6,6 +6,10 @@
 
 #include "post/view/xdmf.h"
 
+/* The text of a file that comes with softfall in share/softfall, from malloc, owned by the caller. SF_ERR_IO:
+ * it is missing, or does not hold `mark`, where the facts of a drop go. */
+sf_status sf_template_read(const char *name, const char *mark, char **text, sf_error *err);
+
 /* After pad.xdmf, if that has frames. `warning` (size bytes) says that the template is missing or another
  * one, and there is no state; or that the planes of a half or quarter model cannot be told, and the state
  * shows the modelled part only. Else it is "". */

@@ -7,7 +7,10 @@
 
 /* In units of the element, of which its width has WIDTH: a tenth of a millimetre and a bit on the page. */
 enum { WIDTH = 1000, BANDS = 16, GAP = 24, TITLE = 22, SCALE = 46, SCALE_WIDTH = 420, BAR = 9, FONT = 15 };
-static const double DECADES = 2.5; /* of the logarithmic scale */
+const double sf_picture_decades = 2.5;
+const unsigned char sf_picture_colours[SF_PICTURE_COLOURS][3] = {
+    {238, 240, 236}, {176, 208, 228}, {84, 150, 200}, {62, 165, 140},
+    {236, 212, 84},  {240, 138, 52},  {196, 36, 40},  {96, 0, 30}};
 
 /* The range of the scale, and where the panels lie. */
 typedef struct layout {
@@ -21,10 +24,9 @@ typedef struct layout {
 } layout;
 
 static void put_colour(FILE *svg, double at) {
-    static const unsigned char stop[][3] = {{238, 240, 236}, {176, 208, 228}, {84, 150, 200}, {62, 165, 140},
-                                            {236, 212, 84},  {240, 138, 52},  {196, 36, 40},  {96, 0, 30}};
-    double place = at * (sizeof stop / sizeof stop[0] - 1);
-    int k = (int)fmin(place, sizeof stop / sizeof stop[0] - 2.0);
+    const unsigned char(*stop)[3] = sf_picture_colours;
+    double place = at * (SF_PICTURE_COLOURS - 1);
+    int k = (int)fmin(place, SF_PICTURE_COLOURS - 2.0);
     fputc('#', svg);
     for (int c = 0; c < 3; c++)
         fprintf(svg, "%02x", (unsigned)lround(stop[k][c] + (place - k) * (stop[k + 1][c] - stop[k][c])));
@@ -223,7 +225,7 @@ static void lay_out(layout *l, const sf_picture *pictures, int count) {
     l->z[1] =
         fmin(top, cut->z[1] + (isfinite(l->style->half_width) ? 0.35 : 0.75) * thickness) + 0.02 * thickness;
     l->high = find_largest(cut, pictures, count, l->style->field);
-    l->low = l->style->logarithmic ? l->high / pow(10, DECADES) : 0;
+    l->low = l->style->logarithmic ? l->high / pow(10, sf_picture_decades) : 0;
     l->width = (WIDTH - (count - 1) * GAP) / (double)count;
     l->size = l->width / (l->x[1] - l->x[0]);
     l->height = (l->z[1] - l->z[0]) * l->size;

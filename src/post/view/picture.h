@@ -6,6 +6,11 @@
 
 #include "post/view/cut.h"
 
+/* The colours of the scale, red, green and blue, from its low to its high end; those between are linear. */
+enum { SF_PICTURE_COLOURS = 8 };
+extern const unsigned char sf_picture_colours[SF_PICTURE_COLOURS][3];
+extern const double sf_picture_decades; /* of the logarithmic scale */
+
 /* One instant. */
 typedef struct sf_picture {
     const char *title;

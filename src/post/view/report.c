@@ -104,19 +104,23 @@ typedef struct page {
     char *case_text, *parameters; /* of the model; owned */
 } page;
 
-static const char *kind_of(sf_grade grade) {
+const char *sf_report_kind(sf_grade grade) {
     static const char *const kinds[] = {"good", "fair", "bad"};
     return kinds[grade];
 }
 
 /* ---- the top ---- */
 
+const char *sf_report_findings(const sf_verdict *verdict, char *line, size_t size) {
+    sf_verdict_line(verdict, line, size);
+    const char *findings = strstr(line, ": ");
+    return findings ? findings + 2 : "Every check of the run is within its bounds";
+}
+
 static void put_verdict_line(const page *p) {
     char line[SF_VERDICT_LINE_SIZE];
-    sf_verdict_line(p->verdict, line, sizeof line);
-    const char *findings = strstr(line, ": ");
-    sf_html_banner(p->file, kind_of(p->verdict->grade), sf_verdict_phrase(p->verdict->grade), "%s. %s",
-                   findings ? findings + 2 : "Every check of the run is within its bounds", caution);
+    sf_html_banner(p->file, sf_report_kind(p->verdict->grade), sf_verdict_phrase(p->verdict->grade), "%s. %s",
+                   sf_report_findings(p->verdict, line, sizeof line), caution);
 }
 
 static void put_limit_tile(const page *p, const sf_limit *limit) {
@@ -215,6 +219,21 @@ static void put_pad(const page *p) {
     sf_html_table_end(&table);
 }
 
+/* Words of the case about the test. */
+static void put_test(const page *p) {
+    sf_origin_key key;
+    int count = 0;
+    for (int k = 0; k < SF_ORIGIN_REPORT_KEYS; k++)
+        count += sf_origin_find_report(p->parameters, sf_origin_report_keys[k], &key);
+    if (count == 0)
+        return;
+    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    for (int k = 0; k < SF_ORIGIN_REPORT_KEYS; k++)
+        if (sf_origin_find_report(p->parameters, sf_origin_report_keys[k], &key))
+            sf_html_fact(&table, sf_origin_report_keys[k], "%s", key.value);
+    sf_html_table_end(&table);
+}
+
 static void put_bodies(const page *p) {
     sf_html_columns_begin(p->file, "");
     sf_html_block_begin(p->file);
@@ -256,12 +275,22 @@ static void put_scene(const page *p, const sf_staging *output) {
     free(scene);
 }
 
+/* The page that came before this one; a report that is moved alone has a link to nothing. */
+static void put_link(const page *p, const sf_staging *output) {
+    if (sf_staging_has(output, "view.html"))
+        fputs(
+            "<p class=\"note\">All frames, to turn and to cut in a browser: <a href=\"view.html\">view.html</a>, "
+            "beside this page.</p>\n",
+            p->file);
+}
+
 static void put_pictures(const page *p, const sf_staging *output) {
     const sf_report_pictures *q = p->pictures;
     sf_html_block_begin(p->file);
     sf_html_heading(p->file, "The pad at the peak");
     sf_html_figure(p->file, q->pad, "%s", q->pad_text);
     put_scene(p, output);
+    put_link(p, output);
     sf_html_block_end(p->file);
     sf_html_block_begin(p->file);
     sf_html_heading(p->file, "Mid-section");
@@ -382,7 +411,7 @@ static void put_comparison(const page *p) {
         c->shift * 1e3, c->shift_given ? "as given" : "contact of both curves");
     char line[SF_VERDICT_LINE_SIZE];
     sf_record_line(&c->record, line, sizeof line);
-    sf_html_banner(p->file, kind_of(c->record.grade),
+    sf_html_banner(p->file, sf_report_kind(c->record.grade),
                    c->record.grade == SF_GRADE_DO_NOT_USE ? "comparison not usable" : "record", "%s.", line);
     sf_rows_html_table(p->file, "dense", sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
     sf_html_block_end(p->file);
@@ -498,15 +527,18 @@ static void put_layers(const page *p) {
 
 /* ---- the page ---- */
 
-static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
-    const sf_results *r = p->results;
-    char title[160];
-    char *subtitle = sf_origin_title(p->case_text);
+void sf_report_title(const sf_results *r, char *title, size_t size) {
     if (r->driven)
-        snprintf(title, sizeof title, "Compression of a foam specimen of %.4g mm", r->thickness * 1e3);
+        snprintf(title, size, "Compression of a foam specimen of %.4g mm", r->thickness * 1e3);
     else
-        snprintf(title, sizeof title, "Drop of %.4g kg at %.4g m/s on a foam pad of %.4g mm", r->missile_mass,
+        snprintf(title, size, "Drop of %.4g kg at %.4g m/s on a foam pad of %.4g mm", r->missile_mass,
                  r->missile_speed, r->thickness * 1e3);
+}
+
+static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
+    char title[SF_REPORT_TITLE_SIZE];
+    char *subtitle = sf_origin_title(p->case_text);
+    sf_report_title(p->results, title, sizeof title);
     p->file = sf_html_begin(output, title, subtitle && *subtitle ? subtitle : NULL, err);
     free(subtitle);
     return err->status;
@@ -518,12 +550,13 @@ static sf_status write_page(page *p, const sf_staging *output, sf_error *err) {
         return err->status;
     put_verdict_line(p);
     put_tiles(p);
+    put_test(p);
     put_bodies(p);
     put_layers(p);
     put_pictures(p, output);
     put_comparison(p);
-    put_verdict(p);
     put_provenance(p);
+    put_verdict(p);
     sf_origin_put_material(p->file, p->case_text, p->parameters);
     put_figures(p);
     put_command(p);

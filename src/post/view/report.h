@@ -12,6 +12,13 @@ void sf_origin_put_material(FILE *page, const char *case_text, const char *param
 /* A row with the value of a key, without the brackets of the case's syntax; none if the key is absent. */
 void sf_origin_put_key(sf_html_table *table, const char *parameters, const char *name, const char *title);
 
+/* The pages of a drop share its title, the findings (why the verdict is not "valid"; `line` has
+ * SF_VERDICT_LINE_SIZE bytes) and the kind of sf_html_banner. */
+enum { SF_REPORT_TITLE_SIZE = 160 };
+void sf_report_title(const sf_results *results, char *title, size_t size);
+const char *sf_report_findings(const sf_verdict *verdict, char *line, size_t size);
+const char *sf_report_kind(sf_grade grade);
+
 /* report.html: one page to hand on, self-contained, usually two sides of A4: verdict, what was dropped on
  * what, the deformed pad at the peak, the mid-section at three instants, curves, figures, material, mesh and
  * where it all comes from. A picture that cannot be made is replaced by the reason. */

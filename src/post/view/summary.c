@@ -2,8 +2,10 @@
 #include "post/view/summary.h"
 
 #include "build_info.h"
+#include "post/results/origin.h"
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char caution[] = "indicative, not a certification";
@@ -95,6 +97,18 @@ static void put_verdict(sf_json *json, const sf_verdict *v) {
     sf_json_close(json, '}');
 }
 
+/* Words of the case about the test; null: not given. */
+static void put_test(sf_json *json, const sf_results *r) {
+    sf_origin_key key;
+    char *parameters = sf_origin_text(r, "/provenance/model/parameters");
+    for (int k = 0; k < SF_ORIGIN_REPORT_KEYS; k++) {
+        const char *name = sf_origin_report_keys[k];
+        sf_json_text(json, name,
+                     parameters && sf_origin_find_report(parameters, name, &key) ? key.value : NULL);
+    }
+    free(parameters);
+}
+
 static void put_comparison(sf_json *json, const char *path, const sf_comparison *c) {
     sf_json_open(json, "reference", '{');
     sf_json_text(json, "file", path);
@@ -117,6 +131,7 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
     sf_json_text(&json, "program", "softfall-post " SF_VERSION);
     sf_json_text(&json, "results", s->results_path);
     sf_json_text(&json, "caution", caution);
+    put_test(&json, s->results);
     put_verdict(&json, s->verdict);
     char acceleration[256];
     snprintf(acceleration, sizeof acceleration, "%s%s", s->figures->acceleration, s->figures->passed);

@@ -14,7 +14,7 @@
 #include "io/provenance.h"
 #include "io/replace.h"
 #include "post/figures/figures.h"
-#include "post/results/results_check.h"
+#include "post/results/results.h"
 
 const sf_missile_array sf_missile_arrays[SF_MISSILE_ARRAYS] = {
     [SF_MISSILE_SPEED] = {"speed_m_s", "m s-1", "speed of the missile along its direction of motion", 1},

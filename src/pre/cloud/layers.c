@@ -56,8 +56,7 @@ static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layer
     return err->status;
 }
 
-/* The node of a layer at a node of the whole mesh, which it has. */
-static int32_t copy_of(const sf_layers *l, int32_t node, int layer) {
+int32_t sf_layers_copy(const sf_layers *l, int32_t node, int layer) {
     int64_t k = l->copy_ptr[node];
     while (l->copy[k] < l->first[layer])
         k++;
@@ -135,8 +134,8 @@ static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_
     }
     pairs->touch[a][b] = pairs->touch[b][a] = 1;
     for (int k = face->node[0] < 0; k < 4; k++)
-        l->tie[l->tie_count++] =
-            (sf_layer_tie){copy_of(l, face->node[k], low), copy_of(l, face->node[k], high), mask};
+        l->tie[l->tie_count++] = (sf_layer_tie){sf_layers_copy(l, face->node[k], low),
+                                                sf_layers_copy(l, face->node[k], high), mask};
     return SF_OK;
 }
 
@@ -241,7 +240,8 @@ sf_status sf_layers_part(const sf_mesh *mesh, const sf_layers *l, int layer, sf_
             continue;
         part->cell_type[cell] = mesh->cell_type[k];
         for (int64_t v = mesh->cell_ptr[k]; v < mesh->cell_ptr[k + 1]; v++)
-            part->cell_node[used++] = (int32_t)(copy_of(l, mesh->cell_node[v], layer) - l->first[layer]);
+            part->cell_node[used++] =
+                (int32_t)(sf_layers_copy(l, mesh->cell_node[v], layer) - l->first[layer]);
         part->cell_ptr[++cell] = used;
     }
     if (err->status != SF_OK)
@@ -275,7 +275,7 @@ static sf_status mark_copies(const sf_mesh *mesh, const sf_dual *dual, const sf_
         for (int k = 0; k < face->size; k++)
             inside = inside && member[face->node[k]];
         for (int k = 0; inside && k < face->size; k++)
-            mark[copy_of(l, face->node[k], layer_of(mesh, face->cell))] = 1;
+            mark[sf_layers_copy(l, face->node[k], layer_of(mesh, face->cell))] = 1;
     }
     for (int64_t k = 0; member && k < set->count; k++) {
         int64_t first = l->copy_ptr[set->node[k]], last = l->copy_ptr[set->node[k] + 1], marked = 0;
@@ -324,7 +324,7 @@ sf_status sf_layers_split(sf_mesh *mesh, const sf_dual *dual, const sf_layers *l
         memcpy(&position[3 * i], &mesh->position[3 * (int64_t)l->origin[i]], 3 * sizeof *position);
     for (int64_t k = 0; k < mesh->cell_count; k++)
         for (int64_t v = mesh->cell_ptr[k]; v < mesh->cell_ptr[k + 1]; v++)
-            mesh->cell_node[v] = copy_of(l, mesh->cell_node[v], layer_of(mesh, k));
+            mesh->cell_node[v] = sf_layers_copy(l, mesh->cell_node[v], layer_of(mesh, k));
     free(mesh->position);
     mesh->position = position;
     mesh->node_count = n;

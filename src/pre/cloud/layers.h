@@ -35,6 +35,9 @@ sf_status sf_layers_build(const sf_case *c, const sf_mesh *mesh, const sf_dual *
                           sf_error *err);
 void sf_layers_free(sf_layers *layers);
 
+/* The node of a layer at a node of the whole mesh, which it has. */
+int32_t sf_layers_copy(const sf_layers *layers, int32_t node, int layer);
+
 /* The cells and nodes of a layer with numbers of their own; sets are left out. On failure `*part` is empty.
  */
 sf_status sf_layers_part(const sf_mesh *mesh, const sf_layers *layers, int layer, sf_mesh *part,

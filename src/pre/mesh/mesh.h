@@ -33,19 +33,6 @@ typedef struct sf_node_set {
     int64_t left_out; /* faces with nodes that no cell of the pad uses; not counted above */
 } sf_node_set;
 
-typedef struct sf_mesh {
-    int64_t node_count;
-    double *position; /* [node_count][3] m */
-    int64_t cell_count;
-    uint8_t *cell_type;  /* [cell_count] SF_CELL_* */
-    int64_t *cell_ptr;   /* [cell_count + 1] */
-    int32_t *cell_node;  /* [..] VTK vertex order, positive volume */
-    uint8_t *cell_layer; /* [cell_count] place of its volume group among those asked for; NULL: one group */
-    int set_count;
-    sf_node_set *set;     /* [set_count] every physical surface group whose nodes belong to the pad */
-    int64_t orphan_count; /* nodes of the geometry that no cell of any volume uses (counted, not kept) */
-} sf_mesh;
-
 typedef struct sf_surface {
     int64_t node_count;
     double *position; /* [node_count][3] m */
@@ -61,6 +48,20 @@ typedef struct sf_surface {
 
     double origin[3]; /* m, where the first node of the surface was as read: it may be moved since */
 } sf_surface;
+
+typedef struct sf_mesh {
+    int64_t node_count;
+    double *position; /* [node_count][3] m */
+    int64_t cell_count;
+    uint8_t *cell_type;  /* [cell_count] SF_CELL_* */
+    int64_t *cell_ptr;   /* [cell_count + 1] */
+    int32_t *cell_node;  /* [..] VTK vertex order, positive volume */
+    uint8_t *cell_layer; /* [cell_count] place of its volume group among those asked for; NULL: one group */
+    int set_count;
+    sf_node_set *set;     /* [set_count] every physical surface group whose nodes belong to the pad */
+    int64_t orphan_count; /* nodes of the geometry that no cell of any volume uses (counted, not kept) */
+    sf_surface *support;  /* of the rigid bodies that the pad may touch; NULL: none; borrowed */
+} sf_mesh;
 
 void sf_mesh_free(sf_mesh *mesh);
 void sf_surface_free(sf_surface *surface);

@@ -94,10 +94,11 @@ static sf_status walk(orienter *o, int64_t seed, int64_t *count, sf_error *err) 
                 continue;
             if (o->part[next]) {
                 const double *x = vertex(o->surface, t, e);
-                return SF_FAIL(err, SF_ERR_INPUT,
-                               "the missile's surface is one-sided, like a Moebius strip, near (%.4g, %.4g, "
-                               "%.4g) m of its geometry: it has no outside for the pad to touch",
-                               x[0], x[1], x[2]);
+                return SF_FAIL(
+                    err, SF_ERR_INPUT,
+                    "the surface of the missile or support is one-sided, like a Moebius strip, near (%.4g, %.4g, "
+                    "%.4g) m of its geometry: it has no outside for the pad to touch",
+                    x[0], x[1], x[2]);
             }
             o->part[next] = 1;
             o->flip[next] = flip;
@@ -158,7 +159,7 @@ static sf_status check_facing(const sf_surface *s, const double direction[3], sf
                    direction[0], direction[1], direction[2]);
 }
 
-sf_status sf_surface_orient(sf_surface *surface, const double direction[3], sf_error *err) {
+sf_status sf_surface_turn(sf_surface *surface, const double direction[3], sf_error *err) {
     size_t n = (size_t)surface->triangle_count;
     orienter o = {.surface = surface,
                   .beyond = sf_alloc(err, 3 * n, sizeof *o.beyond, "missile edges"),
@@ -175,7 +176,12 @@ sf_status sf_surface_orient(sf_surface *surface, const double direction[3], sf_e
     free(o.part);
     free(o.flip);
     free(o.member);
-    return err->status == SF_OK ? check_facing(surface, direction, err) : err->status;
+    return err->status;
+}
+
+sf_status sf_surface_orient(sf_surface *surface, const double direction[3], sf_error *err) {
+    SF_TRY(sf_surface_turn(surface, direction, err));
+    return check_facing(surface, direction, err);
 }
 
 /* The outer surface of the missile's cells, whatever part of it is the group that touches the pad. */

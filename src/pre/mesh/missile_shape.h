@@ -8,9 +8,10 @@
 /* Turns the missile's surface towards the pad: contact sees only what its normals face. */
 
 /* Parts (triangles joined by edges) without cells behind them are turned as one: a closed part outwards, an
- * open one so that its area faces along `direction`, the missile's motion. Parts with cells behind them stay
- * as they are. SF_ERR_INPUT: a part is one-sided (a Moebius strip), or no triangle faces along `direction`.
- */
+ * open one so that its area faces along `direction`, as the missile's motion. Parts with cells behind them
+ * stay as they are. SF_ERR_INPUT: a part is one-sided (a Moebius strip). */
+sf_status sf_surface_turn(sf_surface *surface, const double direction[3], sf_error *err);
+/* The same, and refuses a surface that nowhere faces along `direction`. */
 sf_status sf_surface_orient(sf_surface *surface, const double direction[3], sf_error *err);
 
 /* The missile's surface: is it a sphere cap, and where does it first touch the pad? */

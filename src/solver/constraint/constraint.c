@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint/constraint.h"
 
-#include "base/threads.h"
+#include "base/lanes.h"
 
 #include <math.h>
 #include <stdlib.h>

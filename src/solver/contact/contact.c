@@ -2,7 +2,7 @@
 #include "solver/contact/contact.h"
 
 #include "base/mat3.h"
-#include "base/threads.h"
+#include "base/lanes.h"
 #include <string.h>
 
 enum { MAX_SWEEPS = 500 };

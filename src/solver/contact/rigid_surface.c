@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "base/triangle.h"
 
 /* Behind the rim of an open surface a point counts as inside only straight behind it: the part of its ray
  * across the rim's normal may be this much of the part along it, as on the rim of a quarter missile, whose
@@ -187,45 +188,6 @@ static bool sphere_gap(const sf_missile_surface *s, const double x[3], double *g
     return true;
 }
 
-/* Nearest point of a triangle (Ericson 2005, section 5.1.5). `feature`: 0-2 vertex, 3-5 edge, 6 face. */
-static void nearest_point(const double *a, const double *b, const double *c, const double x[3], double out[3],
-                          int *feature) {
-    double ab[3], ac[3], ap[3], bp[3], cp[3], s = 0, t = 0;
-    subtract(b, a, ab);
-    subtract(c, a, ac);
-    subtract(x, a, ap);
-    subtract(x, b, bp);
-    subtract(x, c, cp);
-    double d1 = sf_dot3(ab, ap), d2 = sf_dot3(ac, ap), d3 = sf_dot3(ab, bp), d4 = sf_dot3(ac, bp),
-           d5 = sf_dot3(ab, cp), d6 = sf_dot3(ac, cp);
-    double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    if (d1 <= 0 && d2 <= 0) {
-        *feature = 0;
-    } else if (d3 >= 0 && d4 <= d3) {
-        *feature = 1;
-        s = 1;
-    } else if (d6 >= 0 && d5 <= d6) {
-        *feature = 2;
-        t = 1;
-    } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        *feature = 3;
-        s = d1 / (d1 - d3);
-    } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        *feature = 4;
-        t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        s = 1 - t;
-    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        *feature = 5;
-        t = d2 / (d2 - d6);
-    } else {
-        *feature = 6;
-        s = vb / (va + vb + vc);
-        t = vc / (va + vb + vc);
-    }
-    for (int k = 0; k < 3; k++)
-        out[k] = a[k] + s * ab[k] + t * ac[k];
-}
-
 static const double *feature_normal(const sf_missile_surface *s, int64_t triangle, int feature) {
     if (feature == 6)
         return &s->normal[3 * triangle];
@@ -253,7 +215,7 @@ static bool triangles_gap(const sf_missile_surface *s, const double x[3], double
         double point[3], r[3];
         int feature;
         int64_t t = s->member[k];
-        nearest_point(vertex(s, t, 0), vertex(s, t, 1), vertex(s, t, 2), x, point, &feature);
+        sf_triangle_nearest(vertex(s, t, 0), vertex(s, t, 1), vertex(s, t, 2), x, point, &feature);
         subtract(x, point, r);
         if (sf_dot3(r, r) >= best)
             continue;

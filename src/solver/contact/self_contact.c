@@ -7,11 +7,13 @@
 
 #include "base/grid.h"
 #include "base/mat3.h"
-#include "base/threads.h"
+#include "base/lanes.h"
+#include "base/triangle.h"
 
-enum { CANDIDATES = SF_SELF_CANDIDATES, NOTHING = -1, ANVIL = -2, MAX_SWEEPS = 60 };
+/* Partners of a node: a facet, or one of these. */
+enum { NOTHING = -1, FIRST_PLANE = -2 }; /* plane k: FIRST_PLANE - k */
+enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 60 };
 static const double NEAR = 1.2;     /* spacings: reach of the candidates */
-static const double ENTRY = 0.01;   /* of the spacing: no deeper does a node begin to touch */
 static const double DEEPEST = 0.5;  /* of the spacing: no deeper does it go on */
 static const double RETURN = 0.1;   /* m s-1: no faster is a depth taken back */
 static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
@@ -42,7 +44,7 @@ static void move_nodes(const sf_model *m, const sf_skin *skin, sf_state *s, doub
             }
         }
         for (int r = 0; r < 3; r++) {
-            s->self_position[3 * p + r] = m->position[3 * (int64_t)skin->node[p] + r] + now[r];
+            s->self_position[3 * p + r] = skin->rest[3 * p + r] + now[r];
             s->self_motion[3 * p + r] = s->dt_old * last[r];
             s->self_step[3 * p + r] = s->dt * (last[r] + change[r]);
         }
@@ -59,9 +61,16 @@ static void facet_normal(const sf_skin *skin, const sf_state *s, int64_t f, doub
     sf_cross3(side[0], side[1], normal);
 }
 
-/* Can the node come down to the anvil? Not if it is held, or rests on it already. */
-static bool can_fall(const sf_skin *skin, int64_t p) {
-    return !skin->rests[p] && !(skin->held[p] & SF_FIX_Z);
+/* True if plane k may stop the node: not if it is held there, or rests on the anvil already. */
+static bool is_stopped(const sf_skin *skin, int64_t p, int k) {
+    return skin->plane[k].side != 0 && !sf_skin_is_rigid(skin, p) &&
+           !((skin->held[p] >> skin->plane[k].axis) & 1) && !(k == SF_SKIN_ANVIL && skin->rests[p]);
+}
+
+/* Height (m) of the node over plane k. */
+static double height_over(const sf_skin *skin, const sf_state *s, int64_t p, int k) {
+    const sf_skin_plane *plane = &skin->plane[k];
+    return plane->side * (s->self_position[3 * p + plane->axis] - plane->place);
 }
 
 /* ---- candidates ---- */
@@ -104,21 +113,122 @@ static bool is_candidate(const sf_skin *skin, const neighbourhood *n, int64_t p,
     return sf_dot3(&skin->normal[3 * p], &skin->facet_normal[3 * f]) < FACING;
 }
 
+/* The facets of pad and support as they lie now, each with its grid. */
+typedef struct facets {
+    double *centre, *radius; /* [facet_count] m, of a ball round each */
+    sf_grid pad, support;
+    int64_t first_rigid; /* the support's first facet */
+    int32_t *found;      /* [facet_count] room */
+} facets;
+
+static void facets_free(facets *f) {
+    sf_grid_free(&f->pad);
+    sf_grid_free(&f->support);
+    free(f->centre);
+    free(f->radius);
+    free(f->found);
+}
+
+static void surround(const sf_skin *skin, const sf_state *s, int64_t f, double centre[3], double *radius) {
+    double corner[3][3], square = 0;
+    for (int k = 0; k < 3; k++)
+        memcpy(corner[k], &s->self_position[3 * (int64_t)skin->facet[3 * f + k]], sizeof corner[k]);
+    for (int r = 0; r < 3; r++)
+        centre[r] = (corner[0][r] + corner[1][r] + corner[2][r]) / 3;
+    for (int k = 0; k < 3; k++) {
+        for (int r = 0; r < 3; r++)
+            corner[k][r] -= centre[r];
+        square = fmax(square, sf_dot3(corner[k], corner[k]));
+    }
+    *radius = sqrt(square);
+}
+
+static sf_status facets_find(const sf_skin *skin, const sf_state *s, facets *f, sf_error *err) {
+    unsigned long count = (unsigned long)skin->facet_count;
+    *f = (facets){.centre = sf_alloc(err, 3 * count, sizeof *f->centre, "candidates of contact"),
+                  .radius = sf_alloc(err, count, sizeof *f->radius, "candidates of contact"),
+                  .found = sf_alloc(err, count, sizeof *f->found, "candidates of contact")};
+    for (int64_t k = 0; err->status == SF_OK && k < skin->facet_count; k++) {
+        surround(skin, s, k, &f->centre[3 * k], &f->radius[k]);
+        f->first_rigid += !sf_skin_is_rigid(skin, skin->facet[3 * k]);
+    }
+    int64_t rigid = skin->facet_count - f->first_rigid;
+    if (err->status == SF_OK)
+        sf_grid_build(&f->pad, f->first_rigid, f->centre, f->radius, err);
+    if (err->status == SF_OK && rigid > 0)
+        sf_grid_build(&f->support, rigid, &f->centre[3 * f->first_rigid], &f->radius[f->first_rigid], err);
+    return err->status;
+}
+
+/* The nearest of facets, by distance (m). */
+typedef struct nearest {
+    int count, room;
+    int32_t facet[CANDIDATES];
+    double distance[CANDIDATES];
+    double left_out; /* m, distance of the nearest that has no place */
+} nearest;
+
+static void insert(nearest *n, int32_t facet, double distance) {
+    int k = n->count < n->room ? n->count++ : n->room;
+    if (k == n->room)
+        n->left_out = fmin(n->left_out, fmax(distance, n->distance[k - 1]));
+    if (k == n->room && distance >= n->distance[--k])
+        return;
+    for (; k > 0 && n->distance[k - 1] > distance; k--) {
+        n->distance[k] = n->distance[k - 1];
+        n->facet[k] = n->facet[k - 1];
+    }
+    n->distance[k] = distance;
+    n->facet[k] = facet;
+}
+
+/* Adds the facets across the gap between pad and support, those of a grid whose first is `first`, that node p
+ * can reach; what has no place makes the lists due earlier. */
+static int add_across(const sf_skin *skin, sf_state *s, int64_t p, double reach, const facets *f,
+                      const sf_grid *grid, int64_t first, int count) {
+    const double *x = &s->self_position[3 * p];
+    nearest n = {.room = CANDIDATES - count, .left_out = INFINITY};
+    int64_t found = sf_grid_query(grid, x, reach, skin->facet_count, f->found);
+    for (int64_t k = 0; k < found; k++) {
+        const int32_t *node = &skin->facet[3 * (first + f->found[k])];
+        double point[3], square = 0;
+        int feature;
+        sf_triangle_nearest(&s->self_position[3 * (int64_t)node[0]], &s->self_position[3 * (int64_t)node[1]],
+                            &s->self_position[3 * (int64_t)node[2]], x, point, &feature);
+        for (int r = 0; r < 3; r++)
+            square += (x[r] - point[r]) * (x[r] - point[r]);
+        if (square < reach * reach)
+            insert(&n, (int32_t)first + f->found[k], sqrt(square));
+    }
+    memcpy(&s->self_candidate[CANDIDATES * p + count], n.facet, (size_t)n.count * sizeof *n.facet);
+    s->self_room = fmin(s->self_room, n.left_out);
+    return count + n.count;
+}
+
 /* Keeps the candidates of node p: facets in reach but for those of its own neighbourhood; and lists the nodes
- * that have some, or can reach the anvil, with the nodes of their facets, as 1 in `used`. */
-static void choose_candidates(const sf_skin *skin, sf_state *s, int64_t p, double reach, int64_t found,
-                              const int32_t *near, neighbourhood *n, uint8_t *used) {
-    int32_t *own = &s->self_candidate[CANDIDATES * p];
-    int count = 0;
-    find_neighbourhood(skin, p, n);
-    for (int64_t k = 0; k < found && count < CANDIDATES; k++)
+ * that have some, or can reach a plane, with the nodes of their facets, as 1 in `used`. */
+static void choose_candidates(const sf_skin *skin, sf_state *s, int64_t p, double reach, const facets *f,
+                              neighbourhood *n, uint8_t *used) {
+    enum { MOST = 256, OF_PAD = CANDIDATES / 2 };
+    int32_t *own = &s->self_candidate[CANDIDATES * p], near[MOST];
+    bool across = skin->moving < skin->count, rigid = sf_skin_is_rigid(skin, p), stopped = false;
+    int count = 0, most = across ? OF_PAD : CANDIDATES;
+    int64_t found =
+        skin->alone || rigid ? 0 : sf_grid_query(&f->pad, &s->self_position[3 * p], reach, MOST, near);
+    if (found > 0)
+        find_neighbourhood(skin, p, n);
+    for (int64_t k = 0; k < found && k < MOST && count < most; k++)
         if (is_candidate(skin, n, p, near[k]))
             own[count++] = near[k];
+    if (across && !skin->passive[p])
+        count = rigid ? add_across(skin, s, p, reach, f, &f->pad, 0, count)
+                      : add_across(skin, s, p, reach, f, &f->support, f->first_rigid, count);
     for (int k = 0; k < count; k++)
         for (int a = 0; a < 3; a++)
             used[skin->facet[3 * (int64_t)own[k] + a]] = 1;
-    bool falls = can_fall(skin, p) && s->self_position[3 * p + 2] - skin->anvil < reach;
-    used[p] |= count > 0 || falls;
+    for (int k = 0; k < SF_SKIN_PLANES; k++)
+        stopped = stopped || (is_stopped(skin, p, k) && height_over(skin, s, p, k) < reach);
+    used[p] |= count > 0 || stopped;
     for (int k = count; k < CANDIDATES; k++)
         own[k] = NOTHING;
 }
@@ -139,40 +249,17 @@ static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
 }
 
 static sf_status list_candidates(const sf_skin *skin, sf_state *s, sf_error *err) {
-    enum { MOST = 256 };
-    double reach = NEAR * skin->spacing;
-    unsigned long facets = (unsigned long)skin->facet_count;
-    double *centre = sf_alloc(err, 3 * facets, sizeof *centre, "candidates of contact"),
-           *radius = sf_alloc(err, facets, sizeof *radius, "candidates of contact");
+    facets f;
     uint8_t *used = sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact");
     neighbourhood n = {sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact"),
                        sf_alloc(err, (unsigned long)skin->count, sizeof *n.list, "candidates of contact"), 0};
-    sf_grid grid = {0};
-    for (int64_t f = 0; err->status == SF_OK && f < skin->facet_count; f++) {
-        double corner[3][3], square = 0;
-        for (int k = 0; k < 3; k++)
-            memcpy(corner[k], &s->self_position[3 * (int64_t)skin->facet[3 * f + k]], sizeof corner[k]);
-        for (int r = 0; r < 3; r++)
-            centre[3 * f + r] = (corner[0][r] + corner[1][r] + corner[2][r]) / 3;
-        for (int k = 0; k < 3; k++) {
-            for (int r = 0; r < 3; r++)
-                corner[k][r] -= centre[3 * f + r];
-            square = fmax(square, sf_dot3(corner[k], corner[k]));
-        }
-        radius[f] = sqrt(square);
-    }
-    if (err->status == SF_OK && sf_grid_build(&grid, skin->facet_count, centre, radius, err) == SF_OK) {
-        for (int64_t p = 0; p < skin->count; p++) {
-            int32_t near[MOST];
-            int64_t found = sf_grid_query(&grid, &s->self_position[3 * p], reach, MOST, near);
-            choose_candidates(skin, s, p, reach, found < MOST ? found : MOST, near, &n, used);
-        }
+    double reach = s->self_room = NEAR * skin->spacing;
+    if (facets_find(skin, s, &f, err) == SF_OK) {
+        for (int64_t p = 0; p < skin->count; p++)
+            choose_candidates(skin, s, p, reach, &f, &n, used);
         list_nodes(skin, s, used);
-        s->self_room = reach;
     }
-    sf_grid_free(&grid);
-    free(centre);
-    free(radius);
+    facets_free(&f);
     free(used);
     free(n.is_near);
     free(n.list);
@@ -207,8 +294,8 @@ static void find_normals(const sf_skin *skin, sf_state *s) {
 
 /* A node and what it touches. */
 typedef struct touch {
-    int64_t node, facet; /* facet: ANVIL for the plane */
-    double weight[3];    /* of the facet's nodes; zeros for the plane */
+    int64_t node, facet; /* facet: FIRST_PLANE - k for plane k */
+    double weight[3];    /* of the facet's nodes; zeros for a plane */
     double normal[3];    /* outward from the facet */
     double gap;          /* m, now; of a depth the part that the step takes back */
 } touch;
@@ -243,14 +330,15 @@ static void drop_traces(double weight[3]) {
 
 /* The pair of node and facet, if the node lies before or behind the facet and its own surface looks against
  * it. The normal is the mean of both surfaces: smooth over the facets, and the same seen from either side,
- * where facets that are tilted against each other would interlock. The gap is along it, so that the forces on
- * node and facet lie on one line. */
+ * where facets that are tilted against each other would interlock; of a rigid facet it is that of the
+ * support. The gap is along it, so that the forces on node and facet lie on one line. */
 static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, touch *out) {
     const int32_t *n = &skin->facet[3 * f];
     const double *x = &s->self_position[3 * p], *a = &s->self_position[3 * (int64_t)n[0]];
     double own[3], arm[3], point[3];
     facet_normal(skin, s, f, own);
     double area = sqrt(sf_dot3(own, own));
+    bool rigid = sf_skin_is_rigid(skin, n[0]);
     *out = (touch){.node = p, .facet = f};
     if (!(area > 0) || sf_dot3(&s->self_normal[3 * p], own) >= OPPOSED * area)
         return false;
@@ -260,7 +348,7 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
             return false;
     for (int r = 0; r < 3; r++) {
         arm[r] = x[r] - a[r];
-        out->normal[r] = -s->self_normal[3 * p + r];
+        out->normal[r] = rigid ? 0 : -s->self_normal[3 * p + r];
         for (int k = 0; k < 3; k++)
             out->normal[r] += out->weight[k] * s->self_normal[3 * (int64_t)n[k] + r];
     }
@@ -296,12 +384,12 @@ static bool goes_on(const sf_skin *skin, int64_t last, int64_t f) {
 }
 
 /* The partner that node p touches at the end of the step: of those that it may touch, the nearest. */
-static bool find_partner(const sf_model *m, const sf_skin *skin, const sf_state *s, int64_t p, touch *out) {
+static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touch *out) {
     const int32_t *own = &s->self_candidate[CANDIDATES * p];
-    double spacing = m->spacing[skin->node[p]], best = INFINITY, back = -RETURN * s->dt, ahead[3];
+    double spacing = skin->size[p], best = INFINITY, back = -RETURN * s->dt, ahead[3];
     for (int k = 0; k < CANDIDATES && own[k] != NOTHING; k++) {
         touch q;
-        double deepest = goes_on(skin, (int64_t)s->self_partner[p], own[k]) ? DEEPEST : ENTRY;
+        double deepest = goes_on(skin, (int64_t)s->self_partner[p], own[k]) ? DEEPEST : SF_CONTACT_ENTRY;
         if (!meet_facet(skin, s, p, own[k], &q) || q.gap < -deepest * spacing || fabs(q.gap) >= best)
             continue;
         relative(skin, &q, s->self_step, ahead);
@@ -310,9 +398,15 @@ static bool find_partner(const sf_model *m, const sf_skin *skin, const sf_state 
         best = fabs(q.gap);
         *out = q;
     }
-    double height = s->self_position[3 * p + 2] - skin->anvil;
-    if (can_fall(skin, p) && height + s->self_step[3 * p + 2] < 0 && fabs(height) < best) {
-        *out = (touch){.node = p, .facet = ANVIL, .normal = {0, 0, 1}, .gap = height};
+    for (int k = 0; k < SF_SKIN_PLANES; k++) {
+        if (!is_stopped(skin, p, k))
+            continue;
+        const sf_skin_plane *plane = &skin->plane[k];
+        double height = height_over(skin, s, p, k);
+        if (height + plane->side * s->self_step[3 * p + plane->axis] >= 0 || fabs(height) >= best)
+            continue;
+        *out = (touch){.node = p, .facet = FIRST_PLANE - k, .gap = height};
+        out->normal[plane->axis] = plane->side;
         best = fabs(height);
     }
     return best < INFINITY;
@@ -366,11 +460,20 @@ typedef struct solve {
     double shift;      /* s2, dt times the distance of the half steps */
 } solve;
 
+/* The mirror image moves along a symmetry plane as the pad does. */
+static double friction_of(const sf_model *m, const sf_skin *skin, const touch *pair) {
+    if (pair->facet < FIRST_PLANE - SF_SKIN_ANVIL)
+        return 0;
+    bool on_support = sf_skin_is_rigid(skin, pair->node) ||
+                      (pair->facet >= 0 && sf_skin_is_rigid(skin, skin->facet[3 * pair->facet]));
+    return on_support ? m->support_friction : m->skin_friction;
+}
+
 /* One Gauss-Seidel update of the force on a pair's node; returns the size of its change. */
 static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w, int64_t a) {
     const touch *pair = &w->pair[a];
     double *q = &s->self_force[3 * pair->node], moved[3], next[3], change[3], largest = 0;
-    double mobility = w->shift * w->mobility[a], friction = m->skin_friction;
+    double mobility = w->shift * w->mobility[a], friction = friction_of(m, skin, pair);
     gather(skin, pair, s->self_push, moved);
     for (int r = 0; r < 3; r++)
         moved[r] = w->step[a][r] + w->shift * moved[r];
@@ -416,19 +519,22 @@ static void book(const sf_model *m, const sf_skin *skin, sf_state *s, const touc
     double motion[3];
     relative(skin, pair, s->self_motion, motion);
     double lost = -0.5 * sf_dot3(force, motion),
-           normal = m->skin_friction > 0 ? -0.5 * sf_dot3(force, pair->normal) * sf_dot3(motion, pair->normal)
-                                         : lost;
+           normal = friction_of(m, skin, pair) > 0
+                        ? -0.5 * sf_dot3(force, pair->normal) * sf_dot3(motion, pair->normal)
+                        : lost;
     s->ledger.contact += normal;
     s->ledger.friction += lost - normal;
-    if (pair->facet == ANVIL)
+    if (pair->facet == FIRST_PLANE - SF_SKIN_ANVIL)
         s->ledger.anvil += lost;
 }
 
 /* The pair of node p in the last step; its normal is that of the present. */
 static touch last_pair(const sf_skin *skin, const sf_state *s, int64_t p) {
-    touch q = {.node = p, .facet = (int64_t)s->self_partner[p], .normal = {0, 0, 1}};
+    touch q = {.node = p, .facet = (int64_t)s->self_partner[p]};
     memcpy(q.weight, &s->self_weight[3 * p], sizeof q.weight);
-    if (q.facet >= 0) {
+    if (q.facet < 0) {
+        q.normal[skin->plane[FIRST_PLANE - q.facet].axis] = 1;
+    } else {
         facet_normal(skin, s, q.facet, q.normal);
         double size = sqrt(sf_dot3(q.normal, q.normal));
         for (int r = 0; r < 3; r++)
@@ -449,12 +555,12 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         }
         touch *found = &w->pair[w->count];
         double old = sqrt(sf_dot3(q, q));
-        if (!find_partner(m, skin, s, p, found)) {
+        if (!find_partner(skin, s, p, found)) {
             s->self_partner[p] = NOTHING;
             memset(q, 0, 3 * sizeof *q);
             continue;
         }
-        if (s->self_partner[p] != (double)found->facet && m->skin_friction == 0)
+        if (s->self_partner[p] != (double)found->facet && friction_of(m, skin, found) == 0)
             for (int r = 0; r < 3; r++)
                 q[r] = old * found->normal[r];
         s->self_partner[p] = (double)found->facet;
@@ -522,10 +628,19 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
     return err->status;
 }
 
-void sf_self_contact_outside(const sf_skin *skin, const sf_state *s, sf_wrench *outside) {
+void sf_self_contact_outside(const sf_skin *skin, const sf_state *s, bool symmetry, sf_wrench *outside) {
     for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
-        int64_t p = s->self_close[k];
-        if (s->self_partner[p] == ANVIL)
-            sf_wrench_add(outside, &s->self_position[3 * p], &s->self_force[3 * p]);
+        int64_t p = s->self_close[k], facet = (int64_t)s->self_partner[p];
+        const double *q = &s->self_force[3 * p];
+        bool symmetric = facet < FIRST_PLANE - SF_SKIN_ANVIL;
+        if (facet != NOTHING && sf_skin_is_rigid(skin, p)) /* on the facet's nodes */
+            for (int c = 0; c < 3; c++) {
+                double weight = s->self_weight[3 * p + c];
+                const double back[3] = {-weight * q[0], -weight * q[1], -weight * q[2]};
+                sf_wrench_add(outside, &s->self_position[3 * (int64_t)skin->facet[3 * facet + c]], back);
+            }
+        else if (facet < 0 ? facet != NOTHING && (symmetry || !symmetric)
+                           : sf_skin_is_rigid(skin, skin->facet[3 * facet]))
+            sf_wrench_add(outside, &s->self_position[3 * p], q);
     }
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact of the pad's skin with itself and with the plane of the anvil: every node of the skin against the
- * faces of the skin before it, by multipliers as the missile's contact has them (contact.h; theory, section
- * "Contact of the pad with itself"). Without these forces the gap of node and face at the next time would be
- * g; the forces q on the node, and -q shared among the face's nodes, are those for which no gap is negative,
- * none pulls, and Coulomb's law holds. They act at one place in one direction, so that momentum and angular
- * momentum hold. A node touches a face only if it comes from outside: one that lies deeper behind a face than
- * it may, as behind the other side of a thin wall, does not see it. */
+/* Contact of the pad's skin with itself, its mirror image, the plane of the anvil and the rigid support:
+ * every node of the skin against the faces of the skin before it, by multipliers as the missile's contact has
+ * them (contact.h; theory, section "Contact of the pad with itself"). Without these forces the gap of node
+ * and face at the next time would be g; the forces q on the node, and -q shared among the face's nodes, are
+ * those for which no gap is negative, none pulls, and Coulomb's law holds. They act at one place in one
+ * direction, so that momentum and angular momentum hold. A node touches a face only if it comes from outside:
+ * one that lies deeper behind a face than it may, as behind the other side of a thin wall, does not see it.
+ */
 #ifndef SF_SOLVER_CONTACT_SELF_CONTACT_H
 #define SF_SOLVER_CONTACT_SELF_CONTACT_H
 
@@ -17,7 +18,7 @@
 sf_status sf_self_contact_solve(const sf_model *model, const sf_operators *operators, sf_state *state,
                                 sf_error *err);
 
-/* Adds the anvil's forces on the skin. */
-void sf_self_contact_outside(const sf_skin *skin, const sf_state *state, sf_wrench *outside);
+/* Adds the forces of anvil and support on the skin, and those of the symmetry planes with `symmetry`. */
+void sf_self_contact_outside(const sf_skin *skin, const sf_state *state, bool symmetry, sf_wrench *outside);
 
 #endif

@@ -3,24 +3,44 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mat3.h"
 
 static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
-    int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "skin of the pad");
-    skin->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *skin->node, "skin of the pad");
-    skin->facet = sf_alloc(err, 3 * (unsigned long)m->skin_count, sizeof *skin->facet, "skin of the pad");
-    skin->facet_count = m->skin_count;
+    unsigned long nodes = (unsigned long)(m->node_count + m->support_node_count);
+    int32_t *place = sf_alloc(err, nodes, sizeof *place, "skin of the pad");
+    skin->facet_count = m->skin_count + m->support_triangle_count;
+    skin->node = sf_alloc(err, nodes, sizeof *skin->node, "skin of the pad");
+    skin->facet = sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof *skin->facet, "skin of the pad");
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->skin_count; k++)
         place[m->skin_triangle[k]] = 1;
     for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
         if (place[i]) {
-            place[i] = (int32_t)skin->count;
-            skin->node[skin->count++] = (int32_t)i;
+            place[i] = (int32_t)skin->moving;
+            skin->node[skin->moving++] = (int32_t)i;
         }
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->skin_count; k++)
         skin->facet[k] = place[m->skin_triangle[k]];
+    for (int64_t k = 0; err->status == SF_OK && k < 3 * m->support_triangle_count; k++)
+        skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
+    skin->count = skin->moving + m->support_node_count;
     free(place);
+    return err->status;
+}
+
+static sf_status place_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
+    skin->rest = sf_alloc(err, 3 * (unsigned long)skin->count, sizeof *skin->rest, "skin of the pad");
+    skin->size = sf_alloc(err, (unsigned long)skin->count, sizeof *skin->size, "skin of the pad");
+    for (int64_t p = 0; err->status == SF_OK && p < skin->moving; p++) {
+        memcpy(&skin->rest[3 * p], &m->position[3 * (int64_t)skin->node[p]], 3 * sizeof *skin->rest);
+        skin->size[p] = m->spacing[skin->node[p]];
+        skin->spacing = fmin(skin->spacing, skin->size[p]);
+    }
+    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->count; p++) {
+        memcpy(&skin->rest[3 * p], &m->support_position[3 * (p - skin->moving)], 3 * sizeof *skin->rest);
+        skin->size[p] = skin->spacing;
+    }
     return err->status;
 }
 
@@ -40,7 +60,7 @@ static sf_status list_rings(sf_skin *skin, sf_error *err) {
 }
 
 /* Normals at rest; those of a node are weighted by the areas. */
-static sf_status find_normals(const sf_model *m, sf_skin *skin, sf_error *err) {
+static sf_status find_normals(sf_skin *skin, sf_error *err) {
     skin->normal = sf_alloc(err, 3 * (unsigned long)skin->count, sizeof(double), "skin of the pad");
     skin->facet_normal =
         sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof(double), "skin of the pad");
@@ -48,7 +68,7 @@ static sf_status find_normals(const sf_model *m, sf_skin *skin, sf_error *err) {
         const double *x[3];
         double side[2][3], *normal = &skin->facet_normal[3 * f];
         for (int k = 0; k < 3; k++)
-            x[k] = &m->position[3 * (int64_t)skin->node[skin->facet[3 * f + k]]];
+            x[k] = &skin->rest[3 * (int64_t)skin->facet[3 * f + k]];
         for (int r = 0; r < 3; r++) {
             side[0][r] = x[1][r] - x[0][r];
             side[1][r] = x[2][r] - x[0][r];
@@ -65,47 +85,114 @@ static sf_status find_normals(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
+    static const double ON_PLANE = 1e-6; /* of the thickness */
     uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
-    double top = -INFINITY;
     skin->held = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
     skin->rests = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
     for (int64_t k = 0; err->status == SF_OK && k < m->fixed_count; k++)
         mark[m->fixed_node[k]] = m->fixed_mask[k];
     for (int64_t k = 0; err->status == SF_OK && k < m->rest_count; k++)
         mark[m->rest_node[k]] |= 8;
-    for (int64_t p = 0; err->status == SF_OK && p < skin->count; p++) {
+    for (int64_t p = 0; err->status == SF_OK && p < skin->moving; p++) {
         skin->held[p] = mark[skin->node[p]] & 7;
         skin->rests[p] = mark[skin->node[p]] >> 3;
     }
-    for (int64_t i = 0; i < m->node_count; i++)
-        top = fmax(top, m->position[3 * i + 2]);
-    skin->anvil = m->anvil.depth > 0 ? top - m->anvil.depth : -INFINITY;
+    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->count; p++)
+        for (int axis = 0; axis < 2; axis++) {
+            double place;
+            if (sf_symmetry_plane(m, axis, &place) &&
+                fabs(skin->rest[3 * p + axis] - place) < ON_PLANE * m->thickness)
+                skin->held[p] |= (uint8_t)(1 << axis);
+        }
     free(mark);
     return err->status;
 }
 
-sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
-    *skin = (sf_skin){.spacing = INFINITY};
-    if (m->skin_count == 0)
-        return SF_OK;
-    if (number_nodes(m, skin, err) != SF_OK || list_rings(skin, err) != SF_OK ||
-        find_normals(m, skin, err) != SF_OK || mark_held(m, skin, err) != SF_OK ||
-        sf_contact_rows_of_nodes(m, skin->count, skin->node, &skin->rows, err) != SF_OK) {
-        sf_skin_free(skin);
-        return err->status;
+static void find_planes(const sf_model *m, sf_skin *skin) {
+    double top = -INFINITY, low[2] = {INFINITY, INFINITY}, place;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        top = fmax(top, m->position[3 * i + 2]);
+        for (int axis = 0; axis < 2; axis++)
+            low[axis] = fmin(low[axis], m->position[3 * i + axis]);
     }
-    for (int64_t p = 0; p < skin->count; p++) {
+    if (m->anvil.depth > 0)
+        skin->plane[SF_SKIN_ANVIL] = (sf_skin_plane){2, top - m->anvil.depth, 1};
+    for (int axis = 0; axis < 2; axis++)
+        if (sf_symmetry_plane(m, axis, &place))
+            skin->plane[SF_SKIN_SYMMETRY_X + axis] =
+                (sf_skin_plane){axis, place, low[axis] < place - 0.5 * skin->spacing ? -1 : 1};
+}
+
+/* True if the pad's nodes may miss the support near its node p: at an edge, where the facets round it are no
+ * closed ring, and where its radius of curvature is less than two spacings. */
+static bool is_narrow(const sf_skin *skin, int64_t p) {
+    static const double RADIUS = 2;
+    double turn = 0, length = 0, cross[3];
+    int32_t other[64];
+    int others = 0, facets = (int)(skin->ring_ptr[p + 1] - skin->ring_ptr[p]);
+    for (int64_t e = skin->ring_ptr[p]; e < skin->ring_ptr[p + 1]; e++) {
+        const int32_t *n = &skin->facet[3 * (int64_t)skin->ring[e]];
+        sf_cross3(&skin->normal[3 * p], &skin->facet_normal[3 * (int64_t)skin->ring[e]], cross);
+        turn = fmax(turn, asin(fmin(1, sqrt(sf_dot3(cross, cross)))));
+        for (int k = 0; k < 3; k++) {
+            int known = 0;
+            double side[3];
+            for (int r = 0; r < 3; r++)
+                side[r] = skin->rest[3 * (int64_t)n[k] + r] - skin->rest[3 * p + r];
+            length = fmax(length, sqrt(sf_dot3(side, side)));
+            while (known < others && other[known] != n[k])
+                known++;
+            if (n[k] != p && known == others && others < 64)
+                other[others++] = n[k];
+        }
+    }
+    return others != facets || 2 * RADIUS * turn * skin->spacing > length;
+}
+
+static sf_status mark_passive(sf_skin *skin, sf_error *err) {
+    skin->passive = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
+    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->count; p++)
+        skin->passive[p] = skin->held[p] != 0 || !is_narrow(skin, p);
+    return err->status;
+}
+
+/* The rows of the pad's nodes; those of the support are empty. */
+static sf_status build_rows(const sf_model *m, sf_skin *skin, sf_error *err) {
+    SF_TRY(sf_contact_rows_of_nodes(m, skin->moving, skin->node, &skin->rows, err));
+    int64_t *ptr = realloc(skin->rows.ptr, ((size_t)skin->count + 1) * sizeof *ptr);
+    if (!ptr)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the skin of the pad");
+    skin->rows.ptr = ptr;
+    for (int64_t p = skin->moving; p < skin->count; p++)
+        ptr[p + 1] = ptr[p];
+    for (int64_t p = 0; p < skin->moving; p++) {
         double sum = 0;
-        for (int64_t k = skin->rows.ptr[p]; k < skin->rows.ptr[p + 1]; k++)
+        for (int64_t k = ptr[p]; k < ptr[p + 1]; k++)
             sum += fabs(skin->rows.value[k]);
         skin->spread = fmax(skin->spread, sum);
-        skin->spacing = fmin(skin->spacing, m->spacing[skin->node[p]]);
     }
     return SF_OK;
 }
 
+sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
+    *skin = (sf_skin){.spacing = INFINITY, .alone = m->skin_alone};
+    if (m->skin_count == 0)
+        return SF_OK;
+    if (number_nodes(m, skin, err) != SF_OK || place_nodes(m, skin, err) != SF_OK ||
+        list_rings(skin, err) != SF_OK || find_normals(skin, err) != SF_OK ||
+        mark_held(m, skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
+        build_rows(m, skin, err) != SF_OK)
+        sf_skin_free(skin);
+    else if (!skin->alone)
+        find_planes(m, skin);
+    return err->status;
+}
+
 void sf_skin_free(sf_skin *skin) {
     free(skin->node);
+    free(skin->rest);
+    free(skin->size);
+    free(skin->passive);
     free(skin->facet);
     free(skin->ring_ptr);
     free(skin->ring);

@@ -3,27 +3,45 @@
 #define SF_SOLVER_CONTACT_SKIN_H
 #include "solver/contact/contact_rows.h"
 
-/* The faces of the pad that may touch the pad itself or the anvil, as the solver needs them
- * (solver/contact/self_contact.h). */
+/* The faces of the pad that may touch the pad itself, the anvil, a symmetry plane or the rigid support, with
+ * those of the support behind them, as the solver needs them (solver/contact/self_contact.h). */
 
-/* Constants of the skin. Its nodes are numbered from 0, ascending in the model. */
+/* A plane that stops the pad: that of the anvil, and those of symmetry, beyond which its mirror image is. */
+enum { SF_SKIN_ANVIL, SF_SKIN_SYMMETRY_X, SF_SKIN_SYMMETRY_Y, SF_SKIN_PLANES };
+typedef struct sf_skin_plane {
+    int axis;     /* of its normal */
+    double place; /* m, on that axis */
+    double side;  /* 1 or -1: the pad lies above or below it on that axis; 0: there is no plane */
+} sf_skin_plane;
+
+/* Constants of the skin. Its nodes are numbered from 0: first those of the pad, ascending in the model, then
+ * those of the support, which do not move. */
 typedef struct sf_skin {
-    int64_t count; /* nodes; 0: nothing touches */
-    int32_t *node; /* [count] of the model */
+    int64_t count;  /* nodes; 0: nothing touches */
+    int64_t moving; /* nodes of the pad */
+    int32_t *node;  /* [moving] of the model */
+    double *rest;   /* [count][3] m, position at rest */
+    double *size;   /* [count] m, spacing; of a support's node the least of the pad */
     int64_t facet_count;
-    int32_t *facet;       /* [facet_count][3] nodes of the skin, turned outwards */
-    int64_t *ring_ptr;    /* [count + 1] */
-    int32_t *ring;        /* [..] facets at each node */
-    uint8_t *held;        /* [count] SF_FIX_* bits */
-    uint8_t *rests;       /* [count] 1: the anvil presses the node in the missile's solve (contact.h) */
-    double *normal;       /* [count][3] outward at rest, unit */
+    int32_t *facet;    /* [facet_count][3] nodes of the skin, turned outwards */
+    int64_t *ring_ptr; /* [count + 1] */
+    int32_t *ring;     /* [..] facets at each node */
+    uint8_t *held;     /* [count] SF_FIX_* bits; of a support's node those of the symmetry planes it is on */
+    uint8_t *passive;  /* [count] 1: the node is only touched: it is on a flat part of the support */
+    uint8_t *rests;    /* [count] 1: the anvil presses the node in the missile's solve (contact.h) */
+    double *normal;    /* [count][3] outward at rest, unit */
     double *facet_normal; /* [facet_count][3] likewise */
-    double anvil;         /* m, height of its plane; -infinity: there is none */
-    double spread;        /* -, largest sum |Phi| of a node */
-    double spacing;       /* m, smallest of the skin */
+    bool alone;           /* the pad touches the support only */
+    sf_skin_plane plane[SF_SKIN_PLANES];
+    double spread;  /* -, largest sum |Phi| of a node */
+    double spacing; /* m, smallest of the skin */
     sf_contact_rows rows;
 } sf_skin;
 
 sf_status sf_skin_build(const sf_model *model, sf_skin *skin, sf_error *err);
 void sf_skin_free(sf_skin *skin);
+
+static inline bool sf_skin_is_rigid(const sf_skin *skin, int64_t node) {
+    return node >= skin->moving;
+}
 #endif

@@ -76,16 +76,18 @@ static void take_lanes(const sf_material_law *law, const uint8_t *material, int 
 }
 
 /* Updates the batch of a block with the laws of its nodes' materials, and their history at `from` into `to`
- * (NULL: not stored; may be `from`). Nodes are ordered by material: nearly every block has one. A block at a
- * border is updated once for each of its materials. */
+ * (NULL: not stored; may be `from`), after a rest of `pause` (s; 0: none). Nodes are ordered by material:
+ * nearly every block has one. A block at a border is updated once for each of its materials. */
 static void update_laws(const sf_model *m, const sf_operators *op, double dt, int64_t block, int count,
-                        const double *from, double *to, sf_law_batch *b) {
+                        const double *from, double *to, double pause, sf_law_batch *b) {
     const uint8_t *material = &m->node_material[block * SF_LANES];
     int first = material[0], last = material[count - 1];
     if (first == last) {
         const sf_material_law *law = &op->law[first];
         sf_material_load_history(law, from, b);
         law->law->update(law->numbers, dt, b);
+        if (pause > 0)
+            law->law->rest(law->numbers, pause, b->history);
         if (to)
             sf_material_store_history(law, b, to);
         return;
@@ -95,6 +97,8 @@ static void update_laws(const sf_model *m, const sf_operators *op, double dt, in
         sf_law_batch part = start;
         sf_material_load_history(&op->law[k], from, &part);
         op->law[k].law->update(op->law[k].numbers, dt, &part);
+        if (pause > 0)
+            op->law[k].law->rest(op->law[k].numbers, pause, part.history);
         take_lanes(&op->law[k], material, count, k, &part, to, b);
     }
 }
@@ -223,7 +227,7 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
         batch.directions = sf_time_step_due(s);
         load_batch(m, op, s, d, block, count, &batch);
         double *history = &s->history[block * s->history_rows * SF_LANES];
-        update_laws(m, op, s->dt_old, block, count, history, history, &batch);
+        update_laws(m, op, s->dt_old, block, count, history, history, 0, &batch);
         for (int l = count; l < SF_LANES; l++) /* nor is it short */
             batch.jacobian[l] = batch.stretch[0][l] = batch.stretch[1][l] = batch.stretch[2][l] = INFINITY;
         store_batch(m, op, s, block, count, &batch, &sum);
@@ -245,7 +249,29 @@ void sf_domain_law(const sf_model *m, const sf_operators *op, const sf_state *s,
         b->length[l] = 1;
     }
     update_laws(m, op, 0, block, left < SF_LANES ? (int)left : SF_LANES,
-                &s->history[block * s->history_rows * SF_LANES], NULL, b);
+                &s->history[block * s->history_rows * SF_LANES], NULL, 0, b);
+}
+
+double sf_domain_rest(const sf_model *m, const sf_operators *op, sf_state *s, double pause) {
+    double lost = 0;
+    for (int64_t block = 0; block * SF_LANES < m->node_count; block++) {
+        int64_t left = m->node_count - block * SF_LANES;
+        double *history = &s->history[block * s->history_rows * SF_LANES];
+        sf_law_batch b;
+        memset(&b, 0, sizeof b);
+        for (int l = 0; l < SF_LANES; l++) {
+            for (int k = 0; k < 9; k += 4)
+                b.f[k][l] = b.f_old[k][l] = 1;
+            b.length[l] = 1;
+        }
+        update_laws(m, op, 0, block, left < SF_LANES ? (int)left : SF_LANES, history, history, pause, &b);
+        for (int l = 0; l < SF_LANES && l < left; l++) {
+            lost += m->volume[block * SF_LANES + l] * b.lost[l];
+            if (m->material_count > 1)
+                s->lost_before[block * SF_LANES + l] = b.lost[l];
+        }
+    }
+    return lost;
 }
 
 void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {

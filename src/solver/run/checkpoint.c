@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "io/h5_members.h"
-#include "io/seal.h"
+#include "io/replace.h"
 
 static const sf_member members[] = {
 #define NUMBER(type, name, size, units, meaning) SF_MEMBER(sf_state, name, type, units, meaning),

@@ -161,7 +161,7 @@ static void sum_layers(const sf_model *m, const sf_operators *op, const sf_state
         if (lane == 0)
             sf_domain_law(m, op, s, i / SF_LANES, &b);
         own[0] += whole * m->volume[i] * b.stored[lane];
-        own[count] += whole * m->volume[i] * b.lost[lane];
+        own[count] += whole * m->volume[i] * (b.lost[lane] - s->lost_before[i]);
         own[2 * count] += whole * s->viscous_work[i];
         own[3 * count] = fmax(own[3 * count], s->compressed[i]);
     }

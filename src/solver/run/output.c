@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "io/folder.h"
-#include "io/seal.h"
+#include "io/replace.h"
 #include "model/columns.h"
 #include "model/flight.h"
 #include "model/model.h"
@@ -27,7 +27,8 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     int64_t driven = sf_missile_is_driven(m), turns = sf_missile_turns(m);
     const double unknown = NAN, *impact = m->missile.impact_known ? m->missile.impact : NULL;
     const double informed = sf_model_informed_strain(m);
-    double pull[3];
+    double pull[3], lock_begin;
+    const double lock_up = sf_model_lock_up(m, &lock_begin);
     sf_flight_gravity(&m->missile, pull);
     const double gravity = sf_missile_free_fall(m), density = sf_model_density(m);
     const double plane[2] = {find_plane(m, 0), find_plane(m, 1)};
@@ -61,6 +62,8 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/air", "m", "gaps on the same way as the thickness, which close first"}, SF_H5_F64, 0, {0}, &m->air},
         {{"/model/speed_scatter", "1", "standard deviation of the missile's speed over it"}, SF_H5_F64, 0, {0}, &m->run.speed_scatter},
         {{"/model/thickness_tolerance", "m", "standard deviation of the pad's thickness"}, SF_H5_F64, 0, {0}, &m->run.thickness_tolerance},
+        {{"/model/lock_up", "1", "strain at which the only foam locks up; NaN: none, or several foams"}, SF_H5_F64, 0, {0}, &lock_up},
+        {{"/model/lock_begin", "1", "strain from which that pole bends its stress"}, SF_H5_F64, 0, {0}, &lock_begin},
         {{"/model/impact_x", "m", "where the missile's lowest point arrives at the pad's top, x; NaN: not known"}, SF_H5_F64, 0, {0}, impact ? &impact[0] : &unknown},
         {{"/model/impact_y", "m", "the same, y"}, SF_H5_F64, 0, {0}, impact ? &impact[1] : &unknown},
         {{"/model/missile_driven", "1", "1: the missile had a prescribed motion, 0: none"}, SF_H5_I64, 0, {0}, &driven},

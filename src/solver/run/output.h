@@ -20,7 +20,7 @@ sf_status sf_results_create(const char *path, const sf_model *model, const sf_h5
  * another name and renamed, so that results.h5 is complete at any instant. During the run, results.h5 holds
  * the history and links to the model and the frames, which are files of their own in the folder
  * results.h5.run, like the fields at the peak; in the end everything is copied into results.h5 and the folder
- * removed. The files of the folder are sealed (io/seal.h) and checked before anything is taken from them. */
+ * removed. The files of the folder are sealed (io/replace.h) and checked before use. */
 
 typedef struct sf_output {
     char results[SF_PATH_SIZE];

@@ -20,15 +20,16 @@ bool sf_ending_rebounded(const sf_model *m, const sf_state *s) {
 }
 
 bool sf_ending_on_anvil(const sf_model *m, const sf_state *s) {
-    return m->anvil.depth > 0 && sf_missile_depth(m, &s->missile) >= m->anvil.depth;
+    return (m->anvil.depth > 0 && sf_missile_depth(m, &s->missile) >= m->anvil.depth) ||
+           (m->support_travel > 0 && s->missile.displacement >= m->support_travel);
 }
 
-sf_status sf_ending_fail_on_anvil(const sf_state *s, sf_error *err) {
+sf_status sf_ending_fail_on_anvil(const sf_model *m, const sf_state *s, sf_error *err) {
     return SF_FAIL(
         err, SF_ERR_NUMERIC,
-        "the missile reached the anvil at t = %.6g ms with %.4g m/s: an impact of rigid bodies has no "
+        "the missile reached the anvil%s at t = %.6g ms with %.4g m/s: an impact of rigid bodies has no "
         "acceleration that could be told, and the run ends there",
-        1e3 * s->time, s->missile.velocity_now);
+        m->support_travel > 0 ? " or the support" : "", 1e3 * s->time, s->missile.velocity_now);
 }
 
 bool sf_ending_finished(const sf_model *m, const sf_state *s) {
@@ -248,6 +249,20 @@ static sf_status write_count(sf_h5 *file, const char *path, const char *text, in
     return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
 }
 
+/* True if every material has a reloading path of its own. */
+static bool has_memory(const sf_model *m) {
+    bool all = true;
+    for (int64_t k = 0; k < m->material_count; k++) {
+        bool found = false;
+        for (int v = 0; v < m->material[k].law->history_count; v++) {
+            const sf_history_variable *h = &m->material[k].law->history[v];
+            found |= strcmp(h->name, "memory") == 0 && (!h->needed || h->needed(m->material[k].card));
+        }
+        all &= found;
+    }
+    return all;
+}
+
 /* The notes on the run, beginning with that of the program. */
 static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     sf_h5_info info = {"/summary/notes", "1", "what the solver noted of the run, a sentence per line"};
@@ -256,6 +271,13 @@ static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     const sf_extremes extremes = sf_recorder_extremes(&d->r);
     if (d->note[0])
         sf_sink_tell(&sink, SF_WARNING, "%s", d->note);
+    if (d->s->drop > 1)
+        sf_sink_tell(
+            &sink, SF_WARNING, "drop %lld on this pad, %g s after the one before: the foam is not new%s",
+            (long long)d->s->drop, d->s->pause,
+            has_memory(d->m) ? ""
+                             : ", and a material without `memory` loads along its unloading path up to "
+                               "the largest energy so far: too soft");
     sf_run_tell(d->m, d->s, &extremes, &sink);
     return sf_h5_write_text(file, &info, notes.text, err);
 }
@@ -271,6 +293,12 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         write_count(file, "/summary/interactions", "(domain, node) pairs", m->domain_nnz, err) != SF_OK ||
         write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) !=
             SF_OK ||
+        (m->run.drops > 1 &&
+         write_count(file, "/summary/drops", "drops of the series", (int64_t)m->run.drops, err) != SF_OK) ||
+        (s->drop > 1 &&
+         (write_count(file, "/summary/drop", "number of the drop on this pad, from 1", s->drop, err) !=
+              SF_OK ||
+          write_scalar(file, "/summary/pause", "s", "rest of the pad before it", s->pause, err) != SF_OK)) ||
         write_count(file, "/summary/restarts", "times that the run went on from a checkpoint", d->r.restarts,
                     err) != SF_OK ||
         write_notes(d, file, err) != SF_OK ||
@@ -321,10 +349,21 @@ static void resume_rebounded(drop *d) {
                 1e3 * d->s->time);
 }
 
+/* The state at t = 0 once more. */
+static sf_status begin_again(const drop *d, sf_error *err) {
+    return sf_series_begin(&d->run->earlier, d->m, d->op, d->s, err);
+}
+
 /* Everything anew at t = 0, in place of a checkpoint that cannot be used: of its recorder only what is told
  * of the run as a whole remains. */
 static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     const sf_recorder old = d->r;
+    if (d->s->drop > 1 && !d->run->earlier.results)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "frame %lld of the run so far is missing or damaged, and the run began from the pad of an earlier "
+            "one: start it again with --force and --start-from",
+            (long long)frame);
     sf_sink_tell(d->run->sink, SF_WARNING,
                  "frame %lld of the run so far is missing or damaged: the run starts from the beginning",
                  (long long)frame);
@@ -332,7 +371,7 @@ static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     sf_state_free(d->s);
     d->foreign = true;
     d->note = "";
-    if (sf_state_create(d->m, d->s, err) != SF_OK || load(d, NULL, err) != SF_OK)
+    if (begin_again(d, err) != SF_OK || load(d, NULL, err) != SF_OK)
         return err->status;
     d->r.restarts = old.restarts;
     d->r.wall_time = old.wall_time;
@@ -368,8 +407,8 @@ static sf_status replay(drop *d, sf_error *err) {
         return err->status;
     sf_recorder_free(&d->r);
     sf_state_free(d->s);
-    if (sf_state_create(d->m, d->s, err) == SF_OK && load(d, there ? &last : NULL, err) == SF_OK &&
-        run_steps(d, there, err) == SF_OK)
+    if ((there ? sf_state_create(d->m, d->s, err) : begin_again(d, err)) == SF_OK &&
+        load(d, there ? &last : NULL, err) == SF_OK && run_steps(d, there, err) == SF_OK)
         save(d, err);
     sf_checkpoint_close(&last);
     return err->status;
@@ -420,7 +459,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
     }
     run->wall_time = d.r.wall_time + sf_clock() - d.start;
     if (err->status == SF_OK && strcmp(run->ending, "anvil") == 0)
-        sf_ending_fail_on_anvil(s, &end);
+        sf_ending_fail_on_anvil(m, s, &end);
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC)
         end_run(&d, err, &end, &late);
     if (late.status != SF_OK)

@@ -10,6 +10,7 @@
 #include "solver/run/checkpoint.h"
 #include "solver/run/output.h"
 #include "solver/run/recorder.h"
+#include "solver/run/series.h"
 #include "solver/state.h"
 
 /* When a run is over. */
@@ -17,11 +18,11 @@
 /* The missile has left the pad for good, and the run shall end then. A driven missile may come back. */
 bool sf_ending_rebounded(const sf_model *model, const sf_state *state);
 
-/* The missile's lowest point is on the anvil: what follows is the impact of two rigid bodies, of which the
+/* The missile is on the anvil or the support: what follows is the impact of two rigid bodies, of which the
  * model says nothing. */
 bool sf_ending_on_anvil(const sf_model *model, const sf_state *state);
 /* Records SF_ERR_NUMERIC with a sentence for that. */
-sf_status sf_ending_fail_on_anvil(const sf_state *state, sf_error *err);
+sf_status sf_ending_fail_on_anvil(const sf_model *model, const sf_state *state, sf_error *err);
 
 /* The end time is reached. */
 bool sf_ending_finished(const sf_model *model, const sf_state *state);
@@ -54,6 +55,7 @@ typedef struct sf_run {
     double checkpoint_wall;          /* s of wall time between two, at most */
     double checkpoint_time;          /* s of simulated time between two */
     const sf_provenance *provenance; /* of the checkpoints; borrowed */
+    sf_earlier earlier;              /* the pad from which it begins */
     bool to_end_time;                /* resumed after its rebound, a run goes on to the end time */
     char note[1024];                 /* a sentence of the program for /summary/notes, or "" */
     /* out */

@@ -2,21 +2,82 @@
 #include "study/cfh/cfh_report.h"
 
 #include "build_info.h"
-#include "study/cfh/series.h"
-#include "study/cfh/spread_report.h"
-#include "report/chart.h"
-#include "report/html.h"
-#include "report/json.h"
-#include "post/results/origin.h"
-#include "post/view/report.h"
+#include "report/row.h"
+
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-static const char caution[] = "Indicative, not a certification: a computed height from one simulated impact "
+/* ---- texts ---- */
+
+const char *sf_cfh_interval_text(const sf_cfh_interval *i, char *text, size_t size) {
+    if (isnan(i->median))
+        snprintf(text, size, "–");
+    else if (isinf(i->low))
+        snprintf(text, size, "above %#.3g m", i->end[1]);
+    else if (i->high <= 0)
+        snprintf(text, size, "below %#.3g m", i->end[0]);
+    else if (i->low <= 0 && isinf(i->high))
+        snprintf(text, size, "open at both ends");
+    else if (i->low <= 0)
+        snprintf(text, size, "up to %#.3g m, open below", i->high);
+    else if (isinf(i->high))
+        snprintf(text, size, "from %#.3g m, open above", i->low);
+    else
+        snprintf(text, size, "%#.3g to %#.3g m", i->low, i->high);
+    return text;
+}
+
+/* True if the case's own material is none that the draws describe. */
+static bool is_aside(const sf_cfh_spread *s) {
+    const sf_cfh_interval *foam = &s->part[SF_CFH_PART_FOAM][SF_CFH_FIRST];
+    return s->own_height < 0.99 * foam->low || s->own_height > 1.01 * foam->high;
+}
+
+void sf_cfh_draws_text(const sf_cfh_spread *s, char *text, size_t size) {
+    const struct {
+        int count;
+        const char *words;
+    } kinds[] = {
+        {s->above, "reach no limit up to the greatest height looked at"},
+        {s->below, "exceed a limit at the lowest height looked at"},
+        {s->collapsed,
+         "have columns that collapse before they reach a limit, and count as reaching it there"},
+        {s->beyond,
+         "reach a limit outside of the simulated heights, where the correction of the columns is that "
+         "of the nearest one"}};
+    size_t used = 0;
+    int failed = 0;
+    text[0] = '\0';
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && used < size; k++)
+        if (kinds[k].count > 0)
+            used += (size_t)snprintf(text + used, size - used, "%s%d of the %d draws %s.", used ? " " : "",
+                                     kinds[k].count, s->draws, kinds[k].words);
+    for (int k = 0; k < s->checks; k++)
+        failed += s->check[k].failed;
+    if (failed > 0 && used < size)
+        used +=
+            (size_t)snprintf(text + used, size - used,
+                             "%s%d of the %d simulated draws failed: there the columns are not confirmed.",
+                             used ? " " : "", failed, s->checks);
+    if (is_aside(s) && used < size)
+        snprintf(
+            text + used, size - used,
+            "%sThe height of the case's own material, %.3g m, lies outside of 95 %% of the draws: it is not the foam "
+            "that they describe.",
+            used ? " " : "", s->own_height);
+}
+
+const char *sf_cfh_response_text(const sf_cfh_spread *s) {
+    return s->with_response
+               ? ""
+               : "The draws have no response_error: errors of the responses are not in the interval, "
+                 "which is too narrow where the law misses more than the curve.";
+}
+
+const char sf_cfh_caution[] = "Indicative, not a certification: a computed height from one simulated impact "
                               "site, not the test of ASTM F1292 or EN 1177.";
 
-static const sf_cfh_crossing *deciding(const sf_cfh_report *r) {
+const sf_cfh_crossing *sf_cfh_deciding(const sf_cfh_report *r) {
     return &r->result->crossing[r->result->deciding];
 }
 
@@ -46,7 +107,7 @@ static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
     switch (v->verdict) {
     case SF_CFH_FOUND:
         snprintf(text, size, "Critical fall height %.3f m of free fall%s: %s reaches %g%s first.",
-                 deciding(r)->height, r->spread ? " as simulated" : "", name, limit, unit);
+                 sf_cfh_deciding(r)->height, r->spread ? " as simulated" : "", name, limit, unit);
         break;
     case SF_CFH_ABOVE:
         if (!isnan(v->anvil)) {
@@ -90,23 +151,23 @@ void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
 }
 
 /* Returns the upper bound of the height for the verdict SF_CFH_BELOW. */
-static double upper_bound(const sf_cfh_result *v) {
+double sf_cfh_upper_bound(const sf_cfh_result *v) {
     return isnan(v->lowest) ? v->anvil : v->lowest;
 }
 
 /* The same on the rig; "" without a rig or a height. */
-static void rig_text(const sf_cfh_report *r, char *text, size_t size) {
+void sf_cfh_rig_text(const sf_cfh_report *r, char *text, size_t size) {
     double height = NAN;
     char interval[64], uncertainty[160] = "";
     const char *side = "";
     text[0] = '\0';
     if (r->result->verdict == SF_CFH_FOUND) {
-        height = deciding(r)->height;
+        height = sf_cfh_deciding(r)->height;
     } else if (r->result->verdict == SF_CFH_ABOVE) {
         height = r->result->highest;
         side = "above ";
     } else if (r->result->verdict == SF_CFH_BELOW) {
-        height = upper_bound(r->result);
+        height = sf_cfh_upper_bound(r->result);
         side = "below ";
     }
     if (r->rig->pairs == 0 || isnan(height))
@@ -129,17 +190,107 @@ static bool is_fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_p
 }
 
 /* ln(value / fit), NaN for a point that is not in the fit. */
-static double residual(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
+double sf_cfh_residual(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
     return is_fitted(r, c, p) ? log(p->value[c] / sf_cfh_fit_at(&r->result->crossing[c].fit, p->height))
                               : NAN;
 }
 
-/* ---- cfh.json ---- */
-
-static const char *side_word(const sf_cfh_crossing *crossing) {
+const char *sf_cfh_side_word(const sf_cfh_crossing *crossing) {
     static const char *const words[] = {"crossed", "not reached", "exceeded at the lowest height"};
     return crossing->side == SF_CFH_CROSSED && isnan(crossing->height) ? "not determined"
                                                                        : words[crossing->side];
+}
+
+/* ---- cfh.json ---- */
+
+/* To which side is the interval open? NULL: there is none. */
+static const char *open_side(const sf_cfh_interval *i) {
+    if (!i || isnan(i->median))
+        return NULL;
+    return i->low <= 0 ? isinf(i->high) ? "both" : "below" : isinf(i->high) ? "above" : "no";
+}
+
+void sf_cfh_put_interval_json(sf_json *json, const char *name, const sf_cfh_interval *i) {
+    char key[64];
+    static const sf_cfh_interval none = {NAN, NAN, NAN, {NAN, NAN}};
+    const char *open = open_side(i);
+    i = i ? i : &none;
+    snprintf(key, sizeof key, "%s_low_m", name);
+    sf_json_number(json, key, isinf(i->low) ? i->end[1] : i->low > 0 ? i->low : NAN);
+    snprintf(key, sizeof key, "%s_median_m", name);
+    sf_json_number(json, key, i->median > 0 ? i->median : NAN);
+    snprintf(key, sizeof key, "%s_high_m", name);
+    sf_json_number(json, key, i->high > 0 ? i->high : i->end[0]);
+    snprintf(key, sizeof key, "%s_open", name);
+    sf_json_text(json, key, open);
+}
+
+static void put_trends_json(sf_json *json, const sf_cfh_spread *s) {
+    sf_json_open(json, "columns_error", '[');
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_trend *t = &s->trend[c];
+        bool trend = t->sum > 0;
+        sf_json_open(json, NULL, '{');
+        sf_json_text(json, "criterion", sf_cfh_name((sf_cfh_criterion)c));
+        sf_json_integer(json, "checks", t->checks);
+        sf_json_number(json, "centre_m", trend ? exp(t->centre) : NAN);
+        sf_json_number(json, "shift", trend ? t->shift : NAN);
+        sf_json_number(json, "slope", trend ? t->slope : NAN);
+        sf_json_number(json, "scatter", t->scatter);
+        sf_json_integer(json, "degrees_of_freedom", t->freedom);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+static void put_checks_json(sf_json *json, const sf_cfh_spread *s) {
+    sf_json_open(json, "checks", '[');
+    for (int k = 0; k < s->checks; k++) {
+        const sf_cfh_check *check = &s->check[k];
+        sf_json_open(json, NULL, '{');
+        sf_json_integer(json, "draw", check->draw + 1);
+        sf_json_number(json, "share_below", check->share);
+        sf_json_number(json, "height_m", check->height);
+        sf_json_text(json, "criterion", sf_cfh_name(check->first));
+        sf_json_number(json, "a_max_columns_g", check->columns[SF_CFH_A_MAX]);
+        sf_json_number(json, "a_max_g", check->failed ? NAN : check->simulated[SF_CFH_A_MAX]);
+        sf_json_number(json, "hic_columns", check->columns[SF_CFH_HIC]);
+        sf_json_number(json, "hic", check->failed ? NAN : check->simulated[SF_CFH_HIC]);
+        sf_json_number(json, "height_shift", check->failed ? NAN : check->shift[check->first]);
+        sf_json_number(json, "a_max_height_shift", check->failed ? NAN : check->shift[SF_CFH_A_MAX]);
+        sf_json_number(json, "hic_height_shift", check->failed ? NAN : check->shift[SF_CFH_HIC]);
+        sf_json_bool(json, "failed", check->failed);
+        sf_json_text(json, "note", check->note[0] ? check->note : NULL);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+}
+
+/* The members of the object `posterior` of cfh.json. */
+static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
+    static const char *const names[SF_CFH_PARTS] = {"foam", "foam_response", "foam_response_mesh",
+                                                    "foam_response_mesh_fit",
+                                                    "foam_response_mesh_fit_columns"};
+    static const char *const shares[SF_CFH_PARTS] = {"foam", "response", "mesh", "fit", "columns"};
+    sf_json_integer(json, "draws", s->draws);
+    sf_json_integer(json, "draws_above", s->above);
+    sf_json_integer(json, "draws_below", s->below);
+    sf_json_integer(json, "draws_collapsed", s->collapsed);
+    sf_json_integer(json, "draws_beyond_simulated", s->beyond);
+    sf_json_integer(json, "repeats", SF_CFH_REPEATS);
+    sf_json_number(json, "expected_mesh_error", s->mesh_error);
+    sf_json_number(json, "fit_scatter_a_max", s->fit_scatter[SF_CFH_A_MAX]);
+    sf_json_number(json, "fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]);
+    for (int part = 0; part < SF_CFH_PARTS; part++)
+        sf_cfh_put_interval_json(json, names[part], &s->part[part][SF_CFH_FIRST]);
+    sf_cfh_put_interval_json(json, "single_drop", &s->part[SF_CFH_PARTS][SF_CFH_FIRST]);
+    sf_json_bool(json, "response_errors", s->with_response);
+    sf_json_open(json, "shares", '{');
+    for (int part = 0; part < SF_CFH_PARTS; part++)
+        sf_json_number(json, shares[part], sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
+    sf_json_close(json, '}');
+    put_trends_json(json, s);
+    put_checks_json(json, s);
 }
 
 /* Height of free fall and, if there is a rig, on the rig; `part` SF_CFH_FIRST or a criterion. */
@@ -162,8 +313,8 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     sf_json_text(json, "verdict", words[v->verdict]);
     sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
     sf_json_text(json, "deciding", !decided ? NULL : isnan(v->lowest) ? "anvil" : sf_cfh_name(v->deciding));
-    put_heights(json, r, found ? deciding(r)->height : NAN, SF_CFH_FIRST);
-    sf_json_number(json, "speed_m_s", found ? sf_cfh_speed(deciding(r)->height) : NAN);
+    put_heights(json, r, found ? sf_cfh_deciding(r)->height : NAN, SF_CFH_FIRST);
+    sf_json_number(json, "speed_m_s", found ? sf_cfh_speed(sf_cfh_deciding(r)->height) : NAN);
     sf_json_number(json, "confidence", 0.95);
     sf_json_number(json, "lowest_simulated_m", v->lowest);
     sf_json_number(json, "highest_simulated_m", v->highest);
@@ -202,7 +353,7 @@ static void put_criteria(sf_json *json, const sf_cfh_report *r) {
         sf_json_open(json, NULL, '{');
         sf_json_text(json, "criterion", sf_cfh_name(c));
         sf_json_number(json, c == SF_CFH_A_MAX ? "limit_g" : "limit", r->plan->limit[c]);
-        sf_json_text(json, "state", side_word(crossing));
+        sf_json_text(json, "state", sf_cfh_side_word(crossing));
         put_heights(json, r, crossing->height, (int)c);
         put_fit(json, r, crossing);
         sf_json_close(json, '}');
@@ -223,8 +374,8 @@ static void put_points(sf_json *json, const sf_cfh_report *r) {
         sf_json_text(json, "grade", sf_verdict_phrase(p->grade));
         sf_json_number(json, "a_max_g", p->failed ? NAN : p->value[SF_CFH_A_MAX]);
         sf_json_number(json, "hic", p->failed ? NAN : p->value[SF_CFH_HIC]);
-        sf_json_number(json, "a_max_residual", residual(r, SF_CFH_A_MAX, p));
-        sf_json_number(json, "hic_residual", residual(r, SF_CFH_HIC, p));
+        sf_json_number(json, "a_max_residual", sf_cfh_residual(r, SF_CFH_A_MAX, p));
+        sf_json_number(json, "hic_residual", sf_cfh_residual(r, SF_CFH_HIC, p));
         sf_json_number(json, "v_rebound_m_s", p->failed ? NAN : p->v_rebound);
         sf_json_number(json, "max_indentation_mm", p->failed ? NAN : p->max_indentation * 1e3);
         sf_json_number(json, "max_local_strain", p->failed ? NAN : p->max_local_strain);
@@ -240,7 +391,7 @@ static void put_posterior(sf_json *json, const sf_cfh_report *r) {
     sf_json_text(json, "folder", r->posterior);
     sf_json_text(json, "no_interval", r->no_interval[0] ? r->no_interval : NULL);
     if (r->spread)
-        sf_cfh_put_spread_json(json, r->spread);
+        put_spread_json(json, r->spread);
     sf_json_close(json, '}');
 }
 
@@ -259,7 +410,7 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
     sf_json_open(&json, NULL, '{');
     sf_json_text(&json, "program", "softfall-cfh " SF_VERSION);
     sf_json_text(&json, "command_line", r->command_line);
-    sf_json_text(&json, "caution", caution);
+    sf_json_text(&json, "caution", sf_cfh_caution);
     sf_json_text(&json, "case", r->case_path);
     sf_json_text(&json, "material", r->material);
     sf_json_number(&json, "missile_mass_kg", r->mass);
@@ -314,269 +465,50 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
     return sf_staging_close(file, "cfh.csv", err);
 }
 
-sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
-    if (r->spread && sf_cfh_write_band(output, r->spread, err) == SF_OK)
-        sf_cfh_write_crossings(output, r->spread, err);
-    return err->status;
-}
-
-/* ---- report.html ---- */
-
-static const char *banner_kind(const sf_cfh_report *r) {
-    char text[SF_CFH_NOTE_SIZE] = "";
-    if (r->result->verdict == SF_CFH_UNKNOWN)
-        return "bad";
-    if (r->spread)
-        sf_cfh_draws_text(r->spread, text, sizeof text);
-    if (text[0] || r->no_interval[0] || (r->spread && !r->spread->with_response))
-        return "fair";
-    for (int k = 0; k < r->points->count; k++)
-        if (r->points->point[k].note[0])
-            return "fair";
-    return "good";
-}
-
-/* "1.661 m", or a bound. */
-static void height_text(const sf_cfh_report *r, double scale, char *text, size_t size) {
-    const sf_cfh_result *v = r->result;
-    switch (v->verdict) {
-    case SF_CFH_FOUND:
-        snprintf(text, size, "%.3f m", scale * deciding(r)->height);
-        break;
-    case SF_CFH_ABOVE:
-        if (isnan(v->anvil))
-            snprintf(text, size, "> %.3f m", scale * v->highest);
-        else
-            snprintf(text, size, "%.3f to %.3f m", scale * v->highest, scale * v->anvil);
-        break;
-    case SF_CFH_BELOW:
-        snprintf(text, size, "< %.3f m", scale * upper_bound(v));
-        break;
-    case SF_CFH_UNKNOWN:
-        snprintf(text, size, "–");
-        break;
-    }
-}
-
-static void put_limit_tile(FILE *page, const sf_cfh_report *r, sf_cfh_criterion c) {
-    char title[48], value[48];
-    const sf_cfh_crossing *crossing = &r->result->crossing[c];
-    snprintf(title, sizeof title, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-    if (isfinite(crossing->height))
-        snprintf(value, sizeof value, "at %.3f m", crossing->height);
-    else
-        snprintf(value, sizeof value, "–");
-    sf_html_tile(page, "plain", title, value, side_word(crossing));
-}
-
-/* The interval below a height; "" if there is neither. */
-static void tile_remark(const sf_cfh_report *r, const sf_cfh_interval *interval, char *text, size_t size) {
-    char words[64];
-    text[0] = '\0';
-    if (r->spread)
-        snprintf(text, size, "95 %% interval %s", sf_cfh_interval_text(interval, words, sizeof words));
-    else if (r->result->verdict == SF_CFH_FOUND)
-        snprintf(text, size, "uncertainty of the foam not included");
-}
-
-static void put_tiles(FILE *page, const sf_cfh_report *r) {
-    char value[48], remark[160];
-    sf_html_tiles_begin(page);
-    height_text(r, 1, value, sizeof value);
-    tile_remark(r, r->spread ? sf_cfh_spread_whole(r->spread, SF_CFH_FIRST) : NULL, remark, sizeof remark);
-    sf_html_tile(page, banner_kind(r), "critical fall height, free fall", value, remark);
-    if (r->rig->pairs > 0) {
-        height_text(r, sf_cfh_rig_height(r->rig, 1), value, sizeof value);
-        tile_remark(r, r->spread ? &r->spread->rig : NULL, remark, sizeof remark);
-        size_t used = strlen(remark);
-        snprintf(remark + used, sizeof remark - used, "%sg_eff = %.3f ± %.3f m/s²", used ? "; " : "",
-                 r->rig->gravity, r->rig->standard_error);
-        sf_html_tile(page, banner_kind(r), "on the rig", value, remark);
-    }
-    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
-        put_limit_tile(page, r, c);
-    sf_html_tiles_end(page);
-}
-
-static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
-    bool rig = r->rig->pairs > 0;
-    sf_html_table table = sf_html_table_begin(page, "dense",
-                                              rig ? "limit|state|>height (m)|>95 % interval|>on the rig (m)"
-                                                  : "limit|state|>height (m)|>95 % interval");
-    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
-        const sf_cfh_crossing *crossing = &r->result->crossing[c];
-        char text[64] = "not known";
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-        sf_html_cell(&table, "%s", side_word(crossing));
-        sf_html_number(&table, 3, crossing->height);
-        if (r->spread)
-            sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, (int)c), text, sizeof text);
-        sf_html_cell(&table, "%s", text);
-        if (rig)
-            sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, crossing->height));
-    }
-    sf_html_table_end(&table);
-}
-
-/* The residuals say how well the quadratics fit, not how well the heights are known. */
-static void put_fit_table(FILE *page, const sf_cfh_report *r) {
-    bool rig = r->rig->pairs > 0;
-    sf_html_heading(page, "Fit of the simulated points");
-    sf_html_table table = sf_html_table_begin(
-        page, "dense",
-        rig ? "limit|>points|>rms residual (%)|>interval of the fit (m)|>on the rig, with g_eff (m)"
-            : "limit|>points|>rms residual (%)|>interval of the fit (m)");
-    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
-        const sf_cfh_crossing *crossing = &r->result->crossing[c];
-        double margin = sf_cfh_rig_margin(r->rig, crossing->margin);
-        double height = sf_cfh_rig_height(r->rig, crossing->height);
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-        sf_html_cell(&table, "%d", crossing->fit.count);
-        sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
-        if (isfinite(crossing->low))
-            sf_html_cell(&table, "%.3f to %.3f%s", crossing->low, crossing->high,
-                         crossing->bracketed ? ", the drops on both sides" : "");
-        else
-            sf_html_cell(&table, "–");
-        if (rig && isfinite(margin))
-            sf_html_cell(&table, "%.3f to %.3f", height * exp(-margin), height * exp(margin));
-        else if (rig)
-            sf_html_cell(&table, "–");
-    }
-    sf_html_table_end(&table);
-    sf_html_note(
-        page,
-        "Where a quadratic misses the points by 3 %% or more, as of a foam that locks up, the interval is that of "
-        "the drops on both sides of the limit. "
-        "The interval of the fit (95 %%, Student's t) says how well a quadratic describes the simulated "
-        "points, and on the rig how well g_eff is known. It is no uncertainty of the height: foam, mesh "
-        "and model are not in it.");
-}
-
-static void put_point_table(FILE *page, const sf_cfh_report *r) {
-    bool rig = r->rig->pairs > 0;
-    sf_html_table table = sf_html_table_begin(
-        page, "dense",
-        rig ? ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
-              "strain|>on the rig (m)|verdict"
-            : ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
-              "strain|verdict");
-    for (int k = 0; k < r->points->count; k++) {
-        const sf_cfh_point *p = &r->points->point[k];
-        sf_html_row(&table);
-        sf_html_number(&table, 3, p->height);
-        sf_html_number(&table, 3, p->speed);
-        sf_html_number(&table, 1, p->failed ? NAN : p->value[SF_CFH_A_MAX]);
-        sf_html_number(&table, 2, 100 * residual(r, SF_CFH_A_MAX, p));
-        sf_html_number(&table, 0, p->failed ? NAN : p->value[SF_CFH_HIC]);
-        sf_html_number(&table, 2, 100 * residual(r, SF_CFH_HIC, p));
-        sf_html_number(&table, 2, p->failed ? NAN : p->v_rebound);
-        sf_html_number(&table, 3, p->failed ? NAN : p->max_local_strain);
-        if (rig)
-            sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, p->height));
-        sf_html_cell(&table, "%s", p->failed ? "failed" : sf_verdict_phrase(p->grade));
-    }
-    sf_html_table_end(&table);
-}
-
-static void put_notes(FILE *page, const sf_cfh_report *r) {
-    bool any = false;
-    for (int k = 0; k < r->points->count; k++) {
-        const sf_cfh_point *p = &r->points->point[k];
-        if (!p->note[0])
-            continue;
-        if (!any)
-            sf_html_heading(page, "Warnings");
-        sf_html_paragraph(page, "%.3f m: %s.", p->height, p->note);
-        any = true;
-    }
-}
-
-static void put_bodies(FILE *page, const sf_cfh_report *r) {
-    sf_html_heading(page, "What falls on what");
-    sf_html_table table = sf_html_table_begin(page, "dense", NULL);
-    sf_html_fact(&table, "case", "%s", r->case_path);
-    sf_html_fact(&table, "material", "%s", r->material ? r->material : "of the case");
-    sf_html_fact(&table, "missile", "%g kg", r->mass);
-    sf_origin_put_key(&table, r->parameters, "geometry.missile_file", "its shape");
-    sf_origin_put_key(&table, r->parameters, "geometry.missile_parameters", "its parameters");
-    sf_origin_put_key(&table, r->parameters, "geometry.file", "pad");
-    sf_origin_put_key(&table, r->parameters, "geometry.parameters", "its parameters");
-    if (r->posterior)
-        sf_html_fact(&table, "draws of the foam", "%s", r->posterior);
-    if (r->rig_path)
-        sf_html_fact(&table, "rig", "%s, %d pairs", r->rig_path, r->rig->pairs);
-    sf_html_table_end(&table);
-}
-
-static void put_picture(FILE *page, const sf_staging *output, const sf_cfh_report *r) {
-    char warning[320];
-    char *svg = sf_chart_svg(output, "cfh", "softfall-cfh", warning, sizeof warning);
-    if (svg)
-        sf_html_figure(
-            page, svg, "a_max and HIC over the drop height%s.",
-            r->spread ? "; bands: 95 % of the draws of the foam, and the intervals of the crossings" : "");
-    else
-        sf_html_figure(page, NULL, "%s.", warning);
-    free(svg);
-}
-
-/* Writes the end of the data of each foam. */
-static void describe_foams(const sf_cfh_foams *foams, char *text, size_t size) {
-    size_t used = 0;
-    for (int k = 0; k < foams->count && used < size; k++) {
-        const sf_cfh_foam *foam = &foams->foam[k];
-        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s %.3f", k ? "; " : "",
-                                 foams->count > 1 ? foam->name : "", foams->count > 1 ? ": " : "",
-                                 foam->words, foam->end);
-    }
-}
-
-static void put_drops(FILE *page, const sf_cfh_report *r) {
-    char foams[SF_CASE_MAX_LAYERS * (SF_MATERIAL_NAME_SIZE + 64)];
-    describe_foams(r->foams, foams, sizeof foams);
-    sf_html_heading(page, "Crossings of the limits");
-    put_criteria_table(page, r);
-    if (r->spread)
-        sf_cfh_put_spread(page, r->spread, r->rig);
-    sf_html_heading(page, "Simulated drops");
-    put_point_table(page, r);
-    sf_html_note(
-        page,
-        "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: simulated value "
-        "against the fit, ln(value) quadratic in ln(height); a dash: not in the fit, or no value. The "
-        "curve of a foam is extrapolated beyond the strain to which its data reach: %s. The search "
-        "ended because %s.",
-        foams, sf_cfh_step_text(r->ending));
-    put_notes(page, r);
-    put_fit_table(page, r);
-}
-
-sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
-    char verdict[SF_CFH_VERDICT_SIZE], rig[400], *title = sf_origin_title(r->case_text);
-    FILE *page = sf_html_begin(output, "Critical fall height", title && *title ? title : NULL, err);
-    free(title);
-    if (!page)
+static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
+    FILE *file = sf_staging_open(output, "cfh_band.csv", err);
+    if (!file)
         return err->status;
-    sf_cfh_verdict_text(r, verdict, sizeof verdict);
-    rig_text(r, rig, sizeof rig);
-    sf_html_banner(page, banner_kind(r),
-                   r->result->verdict == SF_CFH_UNKNOWN ? "not determined" : "indicative", "%s%s%s %s",
-                   verdict, rig[0] ? " " : "", rig, caution);
-    put_tiles(page, r);
-    sf_html_columns_begin(page, "wide");
-    put_picture(page, output, r);
-    sf_html_block_begin(page);
-    put_bodies(page, r);
-    sf_html_block_end(page);
-    sf_html_columns_end(page);
-    put_drops(page, r);
-    sf_origin_put_material(page, r->case_text, r->parameters);
-    sf_html_heading(page, "The command that repeats this report");
-    sf_html_pre(page, r->command_line);
-    return sf_html_end(page, "softfall-cfh " SF_VERSION " (" SF_GIT_REVISION ")", err);
+    fputs(
+        "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,a_max_correction_1,"
+        "hic_correction_1\n",
+        file);
+    for (int k = 0; k < s->grid; k++) {
+        fprintf(file, "%.9g", s->height[k]);
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            const sf_cfh_band *band = &s->band[c][k];
+            put_cell(file, band->low);
+            put_cell(file, band->median);
+            put_cell(file, band->high);
+        }
+        put_cell(file, exp(s->correction[SF_CFH_A_MAX][k]));
+        put_cell(file, exp(s->correction[SF_CFH_HIC][k]));
+        fputc('\n', file);
+    }
+    return sf_staging_close(file, "cfh_band.csv", err);
+}
+
+static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
+    FILE *file = sf_staging_open(output, "cfh_draws.csv", err);
+    if (!file)
+        return err->status;
+    fputs("draw_1,height_m,a_max_height_m,hic_height_m\n", file);
+    for (int d = 0; d < s->draws; d++) {
+        const double *crossing = &s->crossing[(size_t)d * (SF_CFH_FIRST + 1)];
+        fprintf(file, "%d", d + 1);
+        for (int k = 0; k <= SF_CFH_FIRST; k++) { /* the first of them in front */
+            double height = crossing[k == 0 ? SF_CFH_FIRST : k - 1];
+            put_cell(file, height > 0 ? height : NAN);
+        }
+        fputc('\n', file);
+    }
+    return sf_staging_close(file, "cfh_draws.csv", err);
+}
+
+sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
+    if (r->spread && write_band(output, r->spread, err) == SF_OK)
+        write_crossings(output, r->spread, err);
+    return err->status;
 }
 
 /* ---- terminal ---- */
@@ -625,14 +557,14 @@ void sf_cfh_print(FILE *out, const sf_cfh_report *r) {
             fprintf(out, "at %.3f m, fit of %d points, rms residual %.2f %%\n", crossing->height,
                     crossing->fit.count, 100 * crossing->fit.rms);
         else
-            fprintf(out, "%s\n", side_word(crossing));
+            fprintf(out, "%s\n", sf_cfh_side_word(crossing));
     }
     put_checks(out, r);
     put_shares(out, r);
     sf_cfh_verdict_text(r, text, sizeof text);
     fprintf(out, "%s\n", text);
-    rig_text(r, text, sizeof text);
+    sf_cfh_rig_text(r, text, sizeof text);
     if (text[0])
         fprintf(out, "%s\n", text);
-    fprintf(out, "%s\n", caution);
+    fprintf(out, "%s\n", sf_cfh_caution);
 }

@@ -4,10 +4,9 @@
 #ifndef SF_CFH_REPORT_H
 #define SF_CFH_REPORT_H
 
-#include "study/cfh/foams.h"
-#include "study/cfh/search.h"
-#include "study/cfh/spread.h"
 #include "io/staging.h"
+#include "report/row.h"
+#include "study/cfh/series.h"
 
 typedef struct sf_cfh_report {
     const char *case_path;
@@ -29,15 +28,48 @@ typedef struct sf_cfh_report {
 
 enum { SF_CFH_VERDICT_SIZE = 2 * SF_CFH_NOTE_SIZE + 400 };
 
+/* ---- texts and files of data (cfh_report.c) ---- */
+
+extern const char sf_cfh_caution[]; /* a sentence that stands in every output */
+
 /* The critical fall height in a sentence or two. */
 void sf_cfh_verdict_text(const sf_cfh_report *report, char *text, size_t size);
+/* The same on the rig; "" without a rig or a height. */
+void sf_cfh_rig_text(const sf_cfh_report *report, char *text, size_t size);
+/* "1.52 to 1.85 m", or a bound, of which the end of the heights looked at. Returns `text`. */
+const char *sf_cfh_interval_text(const sf_cfh_interval *interval, char *text, size_t size);
+/* Writes the sentences of a warning, or "": draws that have no crossing of their own or one beyond the
+ * simulated heights, checks that failed, a material of the case that is none of the draws'. */
+void sf_cfh_draws_text(const sf_cfh_spread *spread, char *text, size_t size);
+/* Returns a sentence if the draws state no errors of the responses, else "". Static storage. */
+const char *sf_cfh_response_text(const sf_cfh_spread *spread);
+/* "crossed", "not reached", ...; static storage. */
+const char *sf_cfh_side_word(const sf_cfh_crossing *crossing);
 
+/* The crossing that decides. */
+const sf_cfh_crossing *sf_cfh_deciding(const sf_cfh_report *report);
+/* Returns the upper bound of the height for the verdict SF_CFH_BELOW. */
+double sf_cfh_upper_bound(const sf_cfh_result *result);
+/* ln(value / fit), NaN for a point that is not in the fit. */
+double sf_cfh_residual(const sf_cfh_report *report, sf_cfh_criterion criterion, const sf_cfh_point *point);
+
+/* The members `name`_low_m, `name`_median_m, `name`_high_m and `name`_open ("no", "above", "below", "both");
+ * all null with `interval` NULL. An interval wholly beyond the heights looked at has the end of these as its
+ * low or high. */
+void sf_cfh_put_interval_json(sf_json *json, const char *name, const sf_cfh_interval *interval);
 sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
 sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
 /* cfh_band.csv and cfh_draws.csv, if there is an interval. */
 sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
-/* After sf_cfh_plot, whose picture the page takes in. */
-sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
 void sf_cfh_print(FILE *out, const sf_cfh_report *report);
+
+/* ---- the picture and the page (cfh_page.c) ---- */
+
+/* cfh.gp and cfh.png: a_max and HIC over the drop height with limits, points, fits and crossings. `warning`
+ * (size bytes) says why there is no picture, or is "". */
+sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *report, char *warning, size_t size,
+                      sf_error *err);
+/* report.html, after sf_cfh_plot, whose picture it takes in. */
+sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
 
 #endif

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef SF_STUDY_CFH_POINTS_H
 #define SF_STUDY_CFH_POINTS_H
-#include <stdbool.h>
 
 #include "base/error.h"
 #include "io/table_csv.h"
 #include "post/figures/verdict.h"
+#include <stdbool.h>
 
 /* Drop height and speed at contact. In free fall v^2 = 2 g h with g = 9.80665 m s-2. On a rig whose guides
  * rub, v^2 = 2 g_eff h with a g_eff below that, fitted to measured pairs of height and speed. */
@@ -22,12 +22,6 @@ typedef struct sf_cfh_rig {
 
 /* Free fall. */
 sf_cfh_rig sf_cfh_free_fall(void);
-
-/* Least squares of speed^2 over 2 height through the origin. heights m, speeds m s-1. SF_ERR_INPUT: fewer
- * than two pairs, a number that is not positive, a speed above that of free fall (by more than 3 %). `name`
- * is where they come from, for the sentence. */
-sf_status sf_cfh_rig_fit(const char *name, int pairs, const double *height, const double *speed,
-                         sf_cfh_rig *rig, sf_error *err);
 
 /* The same from a CSV file (io/table_csv.h) with a column height_m, h_m or h_m_m ("h_m" in m) and a column
  * speed_m_s or v_test_m_s, or a height and a speed with units. */
@@ -95,12 +89,14 @@ typedef struct sf_cfh_point {
                        grade and note are set */
     bool on_anvil;  /* it failed as the missile reached the anvil: worse than every limit */
     sf_grade grade; /* of the run; "do not use" if it failed */
-    double value[SF_CFH_CRITERIA]; /* g, - */
-    double v_rebound;              /* m s-1, NaN: contact had not ended */
-    double max_indentation;        /* m */
-    double max_local_strain;       /* - */
-    double energy_error;           /* - */
-    char note[SF_CFH_NOTE_SIZE];   /* sentence, or "" */
+    double value[SF_CFH_CRITERIA];   /* g, - */
+    double scatter[SF_CFH_CRITERIA]; /* -, of single pads and drops (a_max_scatter, hic_scatter); NaN: not
+                                        known */
+    double v_rebound;                /* m s-1, NaN: contact had not ended */
+    double max_indentation;          /* m */
+    double max_local_strain;         /* - */
+    double energy_error;             /* - */
+    char note[SF_CFH_NOTE_SIZE];     /* sentence, or "" */
 } sf_cfh_point;
 
 typedef struct sf_cfh_points {
@@ -140,4 +136,42 @@ const char *sf_cfh_unit(sf_cfh_criterion criterion);
  * that of the height is `margin`. */
 double sf_cfh_rig_height(const sf_cfh_rig *rig, double height);
 double sf_cfh_rig_margin(const sf_cfh_rig *rig, double margin);
+
+/* Which heights to simulate next: up or down in ln(height) until the limit that is met first lies between two
+ * points, then on both sides of its crossing, where the quadratic needs them. Two heights at a time, which
+ * may be simulated side by side. Depends on the points alone, so a search that is repeated, with whatever
+ * number of drops at once, takes the same way. */
+
+typedef enum sf_cfh_step {
+    SF_CFH_SIMULATE,      /* the heights given */
+    SF_CFH_LIST_DONE,     /* every height of the list */
+    SF_CFH_ENOUGH,        /* points on both sides, the crossing known to 1 % or no place left */
+    SF_CFH_AT_MAX_HEIGHT, /* no limit reached up to the greatest height allowed */
+    SF_CFH_AT_MIN_HEIGHT, /* a limit exceeded down to 1 cm */
+    SF_CFH_COLLAPSED,     /* no limit reached up to where simulations fail */
+    SF_CFH_AT_CAP,        /* as many drops as allowed */
+} sf_cfh_step;
+
+typedef struct sf_cfh_plan {
+    double limit[SF_CFH_CRITERIA]; /* g, - */
+    double first;                  /* m, height of the first drop */
+    double max_height;             /* m */
+    int max_drops;
+    int list_count;                 /* a list instead of a search, 0: none */
+    double list[SF_CFH_MAX_POINTS]; /* m, ascending */
+    double unit; /* m of free fall for 1 m on the user's scale; heights are rounded there */
+} sf_cfh_plan;
+
+/* Heights that are simulated before the next are chosen. */
+typedef struct sf_cfh_round {
+    int count; /* 1 or 2 of a search; of a list all of it */
+    double height[SF_CFH_MAX_POINTS];
+} sf_cfh_round;
+
+/* `round` is set for SF_CFH_SIMULATE. */
+sf_cfh_step sf_cfh_next(const sf_cfh_plan *plan, const sf_cfh_points *points, sf_cfh_round *round);
+
+/* Why the search ended, in words; static storage. */
+const char *sf_cfh_step_text(sf_cfh_step step);
+
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/cfh/posterior.h"
+#include "study/cfh/spread.h"
 
 #include "study/runner.h"
 #include "case/case.h"
@@ -134,8 +134,8 @@ sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int overr
     const char *list[SF_RUNNER_OVERRIDES + 1];
     int count = 0;
     *out = (sf_cfh_draws){.folder = folder};
-    if (check_overrides(override_count, overrides, err) != SF_OK || count_draws(folder, &count, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_overrides(override_count, overrides, err));
+    SF_TRY(count_draws(folder, &count, err));
     out->draw = sf_alloc(err, (unsigned long)count, sizeof *out->draw, "draws");
     for (int k = 0; k < override_count; k++)
         list[k + 1] = overrides[k];

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+static const double STRAIN_MARGIN = 0.02; /* beyond the end of its data: worth a warning */
 _Static_assert((int)SF_CFH_CHECKS <= (int)SF_CFH_MAX_POINTS, "the checks are simulated as one batch");
 
 __attribute__((format(printf, 2, 3))) static void add_note(sf_cfh_point *point, const char *format, ...) {
@@ -25,7 +26,7 @@ static void note_extrapolation(const sf_runner_result *r, const sf_cfh_foams *fo
         const sf_cfh_foam *foam = &foams->foam[k];
         bool layer = foams->count > 1;
         double strain = layer && k < r->layer_count ? r->layer_strain[k] : layer ? NAN : r->max_local_strain;
-        if (strain > foam->end + SF_CFH_STRAIN_MARGIN)
+        if (strain > foam->end + STRAIN_MARGIN)
             add_note(p, "largest local strain%s%s%s %.3f, %s %.3f: extrapolated curve",
                      layer ? " of the layer \"" : "", layer ? foam->name : "", layer ? "\"" : "", strain,
                      foam->words, foam->end);
@@ -41,6 +42,8 @@ void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf
     }
     p->value[SF_CFH_A_MAX] = r->a_max_g;
     p->value[SF_CFH_HIC] = r->hic;
+    p->scatter[SF_CFH_A_MAX] = sf_runner_figure(r, "a_max_scatter");
+    p->scatter[SF_CFH_HIC] = sf_runner_figure(r, "hic_scatter");
     p->v_rebound = r->v_rebound;
     p->max_indentation = r->max_indentation;
     p->max_local_strain = r->max_local_strain;
@@ -57,8 +60,7 @@ static sf_status learn_pad(const sf_runner_result *result, sf_cfh_pad *pad, sf_e
     sf_results r;
     if (!pad || pad->columns.count > 0)
         return SF_OK;
-    if (sf_results_open(result->path, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_results_open(result->path, &r, err));
     pad->mesh_error = r.expected_mesh_error;
     sf_columns_build(&r, &pad->columns, err);
     sf_results_close(&r);
@@ -114,8 +116,7 @@ static sf_status take_drop(const sf_cfh_series *s, const sf_runner *runner, cons
 static sf_status run_drops(const sf_cfh_series *s, sf_runner *runner, drops *d, sf_error *err) {
     sf_runner_result result[SF_CFH_MAX_POINTS];
     sf_error failure[SF_CFH_MAX_POINTS];
-    if (sf_runner_run_each(runner, d->count, d->drop, result, failure, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_runner_run_each(runner, d->count, d->drop, result, failure, err));
     for (int k = 0; k < d->count; k++) {
         take_drop(s, runner, d->label[k], &result[k], &failure[k], &d->point[k], err);
         sf_runner_result_free(&result[k]);
@@ -133,8 +134,7 @@ sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_poin
             snprintf(d.label[k], sizeof d.label[k], "h%.4gm", sf_cfh_rig_height(s->rig, round.height[k]));
             add_drop(s, &d, NULL, round.height[k]);
         }
-        if (run_drops(s, runner, &d, err) != SF_OK)
-            return err->status;
+        SF_TRY(run_drops(s, runner, &d, err));
         for (int k = 0; k < d.count; k++)
             sf_cfh_points_add(points, &d.point[k]);
     }

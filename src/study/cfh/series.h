@@ -4,13 +4,22 @@
 #ifndef SF_CFH_SERIES_H
 #define SF_CFH_SERIES_H
 
-#include "study/runner.h"
-#include "study/cfh/foams.h"
-#include "study/cfh/search.h"
+#include "case/case.h"
+#include "study/cfh/points.h"
 #include "study/cfh/spread.h"
-#include <signal.h>
+#include "study/runner.h"
 
-#define SF_CFH_STRAIN_MARGIN 0.02 /* -, how far beyond the end of its data a strain is worth a warning */
+/* The foams of the pad, and the strains to which their curves are given. */
+typedef struct sf_cfh_foam {
+    char name[SF_MATERIAL_NAME_SIZE]; /* of a layer; "": the pad has one material */
+    double end;                       /* -, sf_law.data_end */
+    const char *words;                /* sf_law.data_end_words; static */
+} sf_cfh_foam;
+
+typedef struct sf_cfh_foams {
+    int count; /* at least 1; 1: one material, whatever its name */
+    sf_cfh_foam foam[SF_CASE_MAX_LAYERS];
+} sf_cfh_foams;
 
 typedef struct sf_cfh_series {
     const sf_cfh_plan *plan;

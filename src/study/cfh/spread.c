@@ -7,6 +7,7 @@
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,8 +28,7 @@ static sf_status drop_columns(const sf_columns *pad, const sf_material_law *law,
     sf_columns columns = *pad;
     sf_columns_figures figures;
     columns.speed = sf_cfh_speed(height);
-    if (sf_columns_respond(&columns, law, &figures, NULL, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_columns_respond(&columns, law, &figures, NULL, err));
     value[SF_CFH_A_MAX] = log(figures.a_max_g);
     value[SF_CFH_HIC] = log(figures.hic);
     if (!isfinite(value[SF_CFH_A_MAX]) || !isfinite(value[SF_CFH_HIC]))
@@ -87,7 +87,8 @@ static double interpolate(int count, const double *height, const double *value, 
 
 static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const sf_material_law *own,
                                  const sf_cfh_points *points, sf_error *err) {
-    double height[SF_CFH_MAX_POINTS], bracket[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS];
+    double height[SF_CFH_MAX_POINTS], bracket[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS],
+        scatter[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS];
     int count = 0;
     for (int k = 0; k < points->count && !points->point[k].on_anvil; k++) {
         const sf_cfh_point *p = &points->point[k];
@@ -101,8 +102,10 @@ static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const 
             continue;
         }
         height[count] = p->height;
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
             bracket[c][count] = log(p->value[c]) - y[c];
+            scatter[c][count] = p->scatter[c];
+        }
         count++;
     }
     if (err->status != SF_OK)
@@ -117,8 +120,10 @@ static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const 
     s->grid = (int)fmin(SF_CFH_GRID, ceil(span / STEP) + 1);
     for (int k = 0; k < s->grid; k++) {
         s->height[k] = low * exp(span * k / (s->grid - 1));
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
             s->correction[c][k] = interpolate(count, height, bracket[c], s->height[k]);
+            s->scatter[c][k] = interpolate(count, height, scatter[c], s->height[k]);
+        }
     }
     return SF_OK;
 }
@@ -186,11 +191,6 @@ static void find_crossings(sf_cfh_spread *s) {
 
 /* ---- quantiles ---- */
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Returns a quantile of sorted values, of which the first may be 0 and the last infinite: between those
  * and a value nothing is interpolated. */
 static double quantile(const double *sorted, int count, double share) {
@@ -202,7 +202,7 @@ static double quantile(const double *sorted, int count, double share) {
 }
 
 static sf_cfh_interval interval_of(double *values, int count) {
-    qsort(values, (size_t)count, sizeof *values, compare);
+    gsl_sort(values, 1, (size_t)count);
     return (sf_cfh_interval){.low = quantile(values, count, TAIL),
                              .median = quantile(values, count, 0.5),
                              .high = quantile(values, count, 1 - TAIL)};
@@ -279,7 +279,7 @@ typedef struct place {
 
 static int compare_places(const void *a, const void *b) {
     const place *x = a, *y = b;
-    return x->height != y->height ? compare(&x->height, &y->height)
+    return x->height != y->height ? (x->height > y->height) - (x->height < y->height)
                                   : (x->draw > y->draw) - (x->draw < y->draw);
 }
 
@@ -383,6 +383,7 @@ typedef struct errors {
     double mesh, fit[SF_CFH_CRITERIA];
     double columns[SF_CFH_CRITERIA]; /* Student's t, the same quantile of both */
     double rig;
+    double drop; /* of a single pad and drop, over the scatter of a criterion */
 } errors;
 
 static double or_none(double scatter) {
@@ -433,12 +434,19 @@ static double factor_of(const sf_cfh_spread *s, int d, const errors *e, sf_cfh_p
     return exp(fmax(-MOST_SHIFT, fmin(shift, MOST_SHIFT)));
 }
 
+/* Scatter of single pads and drops at a draw's critical height. */
+static double scatter_of(const sf_cfh_spread *s, int d, int criterion) {
+    double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];
+    return or_none(interpolate(s->grid, s->height, s->scatter[criterion], height));
+}
+
 /* values [SF_CFH_FIRST + 1][count] and rig [count] of one repeat, at `at`. */
 static void repeat(const sf_cfh_spread *s, int d, const errors *e, const sf_cfh_rig *rig, sf_cfh_part part,
                    int count, int at, double *values, double *on_rig) {
     double first = INFINITY;
     for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-        double height = cross(s, d, c, raise_of(e, part, c)) * factor_of(s, d, e, part, c);
+        double drop = part == SF_CFH_PARTS ? e->drop * scatter_of(s, d, c) : 0,
+               height = cross(s, d, c, raise_of(e, part, c) + drop) * factor_of(s, d, e, part, c);
         values[(size_t)c * (size_t)count + (size_t)at] = height;
         first = fmin(first, height);
     }
@@ -462,6 +470,7 @@ static void evaluate_part(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_cfh_part p
     for (int at = 0; at < count; at++) {
         errors e = random_errors(s, rig, random);
         respond(s, at, of_draw, &e);
+        e.drop = part == SF_CFH_PARTS ? gsl_ran_ugaussian(random) : 0;
         repeat(s, at / SF_CFH_REPEATS, &e, rig, part, count, at, values, on_rig);
     }
     for (int c = 0; c <= SF_CFH_FIRST; c++)
@@ -476,6 +485,7 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         s->trend[c] = find_trend(s, c);
     if (values && random && of_draw) {
+        evaluate_part(s, rig, SF_CFH_PARTS, count, values, random, of_draw);
         for (int part = 0; part < SF_CFH_PARTS; part++)
             evaluate_part(s, rig, (sf_cfh_part)part, count, values, random, of_draw);
         s->rig = rig->pairs ? height_interval(s, &values[(size_t)count * (SF_CFH_FIRST + 1)], count,
@@ -484,10 +494,8 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
     } else if (values) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
     }
-    if (random)
-        gsl_rng_free(random);
-    if (of_draw)
-        gsl_rng_free(of_draw);
+    gsl_rng_free(random);
+    gsl_rng_free(of_draw);
     free(values);
     return err->status;
 }

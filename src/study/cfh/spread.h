@@ -12,9 +12,39 @@
 #ifndef SF_CFH_SPREAD_H
 #define SF_CFH_SPREAD_H
 
+#include "material/laws.h"
+#include "model/good_run.h"
 #include "study/cfh/points.h"
-#include "study/cfh/posterior.h"
 #include "study/column.h"
+
+/* The draws of a foam's posterior: material files draw-001.cfg, draw-002.cfg, ... of a folder, each as
+ * probable as any other, as softfall-fit drop writes them. */
+
+enum { SF_CFH_LEAST_DRAWS = 100, SF_CFH_MOST_DRAWS = 2000 };
+
+typedef struct sf_cfh_draw {
+    char *path;           /* owned, as the next two */
+    sf_material material; /* of the case with that file */
+    sf_material_law law;
+    sf_response_error response; /* of its file; of other numbers than a_max and HIC none is used */
+} sf_cfh_draw;
+
+typedef struct sf_cfh_draws {
+    const char *folder; /* borrowed */
+    int count;
+    bool with_response; /* every draw states the errors of a_max and HIC; else none of them does */
+    sf_cfh_draw *draw;  /* [count] owned */
+} sf_cfh_draws;
+
+/* Reads every draw as the material of the case, with the case's overrides; `own` is the case's own material.
+ * SF_ERR_INPUT: an override of the material, which would be the same in every draw; no draw, a gap in their
+ * numbers, fewer than SF_CFH_LEAST_DRAWS, one that the case refuses, one with another law or density, one
+ * with errors of the responses where another has none, or of a_max or HIC only; draws that are all the same.
+ * Release with sf_cfh_draws_free, also on failure. */
+sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int override_count,
+                            const char *const *overrides, const sf_material *own, sf_cfh_draws *draws,
+                            sf_error *err);
+void sf_cfh_draws_free(sf_cfh_draws *draws);
 
 enum {
     SF_CFH_GRID = 80,               /* heights at which the columns drop, at most */
@@ -104,7 +134,10 @@ typedef struct sf_cfh_spread {
     int above, below, collapsed,
         beyond; /* draws: no limit reached; one exceeded at the lowest height; columns
                    collapse before a limit; crossing outside of `simulated` */
-    sf_cfh_interval part[SF_CFH_PARTS][SF_CFH_FIRST + 1];
+    double scatter[SF_CFH_CRITERIA]
+                  [SF_CFH_GRID]; /* -, of single pads and drops, at the heights; NaN: not known */
+    /* the last: that of a single pad and drop, which the whole interval does not hold */
+    sf_cfh_interval part[SF_CFH_PARTS + 1][SF_CFH_FIRST + 1];
     sf_cfh_interval rig; /* of the first, on the rig, with g_eff; NaN without a rig */
 } sf_cfh_spread;
 

@@ -20,9 +20,12 @@ typedef struct anchor {
     const double *matrix; /* [responses][parameters] */
 } anchor;
 
-/* Steps below it, in standard deviations, teach nothing about derivatives: the simulation's own noise would.
- */
-static const double LEAST_UPDATE = 0.3;
+/* The regression of M expects, in logarithms, this: the simulation's own noise, the second derivative of y -
+ * s, and the size of M. */
+static const double NOISE = 0.002, CURVATURE = 0.05, SLOPE = 0.3;
+
+enum { MOST_IDLE = 5 };                  /* steps in a row that gain nothing: the search ends */
+static const double LEAST_RADIUS = 0.02; /* of the trust region: shorter steps only tell the noise */
 
 /* One minimisation. */
 typedef struct minimisation {
@@ -46,6 +49,14 @@ static sf_status evaluate(const anchor *a, const double *u, double *y, sf_error 
     return SF_OK;
 }
 
+/* Residual of a response: of a datum, or of what exceeds a bound. */
+static double residual(const sf_mapping_problem *p, const double *sd, const double *y, int i) {
+    double over = y[i] - p->measured[i];
+    if (p->bound_sd && !isinf(p->bound_sd[i]))
+        return fmax(0, over) / p->bound_sd[i];
+    return isinf(sd[i]) ? 0 : over / sd[i];
+}
+
 /* Residuals: data, prior, and what holds the step back. */
 static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
     minimisation *m = data;
@@ -59,7 +70,7 @@ static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
     }
     size_t row = 0;
     for (int i = 0; i < p->responses; i++)
-        gsl_vector_set(f, row++, isinf(m->sd[i]) ? 0 : (m->y[i] - p->measured[i]) / m->sd[i]);
+        gsl_vector_set(f, row++, residual(p, m->sd, m->y, i));
     for (int j = 0; j < p->parameters; j++)
         gsl_vector_set(f, row++, (gsl_vector_get(x, (size_t)j) - p->prior[j]) / p->prior_sd[j]);
     for (int j = 0; j < p->parameters; j++)
@@ -198,8 +209,16 @@ static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_r
 static double misfit_of(const sf_mapping_problem *p, const double *y) {
     double sum = 0;
     for (int i = 0; i < p->responses; i++)
-        sum += isinf(p->sd[i]) ? 0 : pow((y[i] - p->measured[i]) / p->sd[i], 2);
+        sum += pow(residual(p, p->sd, y, i), 2);
     return sum;
+}
+
+/* True if a bound holds the point: the data alone would move it beyond. */
+static bool is_bound(const sf_mapping_problem *p, const double *y) {
+    for (int i = 0; i < p->responses && p->bound_sd; i++)
+        if (!isinf(p->bound_sd[i]) && residual(p, p->sd, y, i) > p->tolerance)
+            return true;
+    return false;
 }
 
 static double prior_of(const sf_mapping_problem *p, const double *u) {
@@ -216,215 +235,291 @@ typedef struct point {
     double misfit, objective;
 } point;
 
-static sf_status simulate(const sf_mapping_problem *p, int iteration, point *at, sf_error *err) {
+typedef struct search {
+    const sf_mapping_problem *problem;
+    sf_mapping_result *result; /* its matrix is that at `best` */
+    point best, trial;
+    int count;                              /* of simulated points */
+    double (*u)[SF_MAPPING_MAX_PARAMETERS]; /* [count] of them; owned */
+    double *offset;                         /* [count][responses]; owned */
+} search;
+
+static anchor anchor_at(const search *s) {
+    return (anchor){s->problem, s->best.u, s->best.offset, s->result->matrix};
+}
+
+static sf_status simulate(search *s, point *at, sf_error *err) {
+    const sf_mapping_problem *p = s->problem;
+    size_t n = (size_t)p->responses;
     if (p->simulate(p->context, at->u, at->y, err) != SF_OK ||
         p->surrogate(p->context, at->u, at->offset, err) != SF_OK)
         return err->status;
-    for (int i = 0; i < p->responses; i++)
+    for (size_t i = 0; i < n; i++)
         at->offset[i] = at->y[i] - at->offset[i];
     at->misfit = misfit_of(p, at->y);
     at->objective = at->misfit + prior_of(p, at->u);
+    memcpy(s->u[s->count], at->u, sizeof at->u);
+    memcpy(&s->offset[n * (size_t)s->count++], at->offset, n * sizeof *at->offset);
     if (p->progress)
-        p->progress(p->context, iteration, at->u, at->y, at->objective);
+        p->progress(p->context, s->result->iterations, at->u, at->y, at->objective);
     return SF_OK;
 }
 
-/* Broyden's update: M gives the change of the offset from `from` to `to`. */
-static void update_matrix(const sf_mapping_problem *p, const point *from, const point *to, double *matrix) {
-    double square = 0;
-    for (int j = 0; j < p->parameters; j++)
-        square += pow(to->u[j] - from->u[j], 2);
-    for (int i = 0; i < p->responses && square > 0; i++) {
-        double *row = &matrix[i * p->parameters], rest = to->offset[i] - from->offset[i];
-        for (int j = 0; j < p->parameters; j++)
-            rest -= row[j] * (to->u[j] - from->u[j]);
-        for (int j = 0; j < p->parameters; j++)
-            row[j] += rest * (to->u[j] - from->u[j]) / square;
+/* Adds a point to the normal equations (A, b) of the rows of M; the farther it is from `best`, the less the
+ * secant to it tells about the derivative there. */
+static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
+    double step[SF_MAPPING_MAX_PARAMETERS], square = 0;
+    int n = s->problem->parameters, responses = s->problem->responses;
+    for (int j = 0; j < n; j++) {
+        step[j] = s->u[k][j] - s->best.u[j];
+        square += step[j] * step[j];
     }
-}
-
-static void swap_points(point *a, point *b) {
-    point c = *a;
-    *a = *b;
-    *b = c;
-}
-
-/* Largest step in standard deviations, with the curvature of the anchor's Jacobian. */
-static sf_status measure_step(const sf_mapping_problem *p, sf_mapping_result *r, const point *best,
-                              const double *next, double *step, sf_error *err) {
-    anchor a = {p, best->u, best->offset, r->matrix};
-    r->misfit = best->misfit;
-    if (differentiate(&a, r->corrected, err) != SF_OK || estimate(p, false, r, err) != SF_OK)
-        return err->status;
-    *step = 0;
-    for (int j = 0; j < p->parameters; j++)
-        *step = fmax(*step, fabs(next[j] - best->u[j]) / sqrt(r->covariance[j][j]));
-    return SF_OK;
-}
-
-/* The minimum of the corrected surrogate at `best`, held back by `radius`. */
-static sf_status propose(const sf_mapping_problem *p, const sf_mapping_result *r, const point *best,
-                         double radius, double *next, sf_error *err) {
-    minimisation m = {.anchor = {p, best->u, best->offset, r->matrix},
-                      .sd = p->sd,
-                      .about = best->u,
-                      .radius = radius,
-                      .err = SF_ERROR_INIT};
-    memcpy(next, best->u, (size_t)p->parameters * sizeof *next);
-    return minimise(&m, next, err);
-}
-
-enum { WIDE_STARTS = 8 };
-
-/* The same without a simulation behind it, from `best` and from places of a Halton sequence over the prior:
- * the lowest of their minima. */
-static sf_status propose_widely(const sf_mapping_problem *p, const sf_mapping_result *r, const point *best,
-                                double *next, sf_error *err) {
-    double place[SF_MAPPING_MAX_PARAMETERS], lowest = INFINITY;
-    double *y = sf_alloc(err, (unsigned long)p->responses, sizeof *y, "responses");
-    gsl_qrng *places = gsl_qrng_alloc(gsl_qrng_halton, (unsigned)p->parameters);
-    const anchor a = {p, best->u, best->offset, r->matrix};
-    if (!places)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the starts of a search");
-    for (int k = 0; k <= WIDE_STARTS && err->status == SF_OK; k++) {
-        point from = *best;
-        sf_error failure = SF_ERROR_INIT;
-        if (k > 0)
-            gsl_qrng_get(places, place);
-        for (int j = 0; j < p->parameters && k > 0; j++)
-            from.u[j] = p->prior[j] + p->prior_sd[j] * gsl_cdf_ugaussian_Pinv(place[j]);
-        minimisation m = {
-            .anchor = a, .sd = p->sd, .about = best->u, .radius = INFINITY, .err = SF_ERROR_INIT};
-        if (minimise(&m, from.u, &failure) != SF_OK || evaluate(&a, from.u, y, &failure) != SF_OK) {
-            if (failure.status == SF_ERR_MEMORY)
-                *err = failure;
-            continue; /* the law cannot be there */
-        }
-        double objective = misfit_of(p, y) + prior_of(p, from.u);
-        if (objective < lowest) {
-            lowest = objective;
-            memcpy(next, from.u, (size_t)p->parameters * sizeof *next);
+    double weight = 1 / (NOISE * NOISE + pow(CURVATURE * square, 2));
+    for (int j = 0; j < n; j++) {
+        for (int l = 0; l < n; l++)
+            *gsl_matrix_ptr(a, (size_t)j, (size_t)l) += weight * step[j] * step[l];
+        for (int i = 0; i < responses; i++) {
+            double change = s->offset[k * responses + i] - s->best.offset[i];
+            if (isfinite(change))
+                *gsl_matrix_ptr(b, (size_t)i, (size_t)j) += weight * change * step[j];
         }
     }
-    if (isinf(lowest))
-        memcpy(next, best->u, (size_t)p->parameters * sizeof *next);
-    gsl_qrng_free(places);
-    free(y);
+}
+
+/* M by a ridge regression of y - s over all simulated points, about the M that the problem begins with. */
+static sf_status regress_matrix(search *s, sf_error *err) {
+    const sf_mapping_problem *p = s->problem;
+    size_t n = (size_t)p->parameters, responses = (size_t)p->responses;
+    gsl_matrix *a = gsl_matrix_calloc(n, n), *b = gsl_matrix_calloc(responses, n);
+    if (!a || !b)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a regression of %zu parameters", n);
+    for (size_t k = 0; err->status == SF_OK && k < responses * n; k++)
+        b->data[k] =
+            p->first_matrix && isfinite(p->first_matrix[k]) ? p->first_matrix[k] / (SLOPE * SLOPE) : 0;
+    for (size_t j = 0; err->status == SF_OK && j < n; j++)
+        gsl_matrix_set(a, j, j, 1 / (SLOPE * SLOPE));
+    for (int k = 0; err->status == SF_OK && k < s->count; k++)
+        add_secant(s, k, a, b);
+    if (err->status == SF_OK)
+        gsl_linalg_cholesky_decomp1(a);
+    for (size_t i = 0; err->status == SF_OK && i < responses; i++) {
+        gsl_vector_view row = gsl_matrix_row(b, i);
+        gsl_linalg_cholesky_svx(a, &row.vector);
+        memcpy(&s->result->matrix[i * n], row.vector.data, n * sizeof(double));
+    }
+    gsl_matrix_free(a);
+    gsl_matrix_free(b);
     return err->status;
 }
 
-/* Finds by how much the objective falls from `best` to the trial, by the corrected surrogate; its y is
- * overwritten. */
-static sf_status predict_gain(const sf_mapping_problem *p, const sf_mapping_result *r, const point *best,
-                              point *trial, double *gain, sf_error *err) {
-    anchor a = {p, best->u, best->offset, r->matrix};
-    if (evaluate(&a, trial->u, trial->y, err) == SF_OK)
-        *gain = best->objective - misfit_of(p, trial->y) - prior_of(p, trial->u);
+/* Largest step to the trial in standard deviations, with the curvature of the anchor's Jacobian; by how much
+ * the corrected surrogate expects the objective to fall. Overwrites the trial's y. */
+static sf_status measure_step(search *s, double *step, double *gain, sf_error *err) {
+    const sf_mapping_problem *p = s->problem;
+    sf_mapping_result *r = s->result;
+    const anchor a = anchor_at(s);
+    r->misfit = s->best.misfit;
+    if (differentiate(&a, r->corrected, err) != SF_OK || estimate(p, false, r, err) != SF_OK ||
+        evaluate(&a, s->trial.u, s->trial.y, err) != SF_OK)
+        return err->status;
+    *gain = s->best.objective - misfit_of(p, s->trial.y) - prior_of(p, s->trial.u);
+    *step = 0;
+    for (int j = 0; j < p->parameters; j++)
+        *step = fmax(*step, fabs(s->trial.u[j] - s->best.u[j]) / sqrt(r->covariance[j][j]));
+    return SF_OK;
+}
+
+static double distance(const search *s) {
+    double largest = 0;
+    for (int j = 0; j < s->problem->parameters; j++)
+        largest = fmax(largest, fabs(s->trial.u[j] - s->best.u[j]));
+    return largest;
+}
+
+/* The trial becomes the minimum of the corrected surrogate from `from`, held back from `best` by `hold`. */
+static sf_status propose(search *s, const double *from, double hold, sf_error *err) {
+    minimisation m = {.anchor = anchor_at(s),
+                      .sd = s->problem->sd,
+                      .about = s->best.u,
+                      .radius = hold,
+                      .err = SF_ERROR_INIT};
+    memmove(s->trial.u, from, (size_t)s->problem->parameters * sizeof *from);
+    return minimise(&m, s->trial.u, err);
+}
+
+/* The trial, a free minimum, is held back until it is no farther than `radius` from `best`. */
+static sf_status restrict_step(search *s, double radius, sf_error *err) {
+    for (double hold = 2 * radius; err->status == SF_OK && distance(s) > radius; hold /= 2)
+        propose(s, s->best.u, hold, err);
+    return err->status;
+}
+
+/* Objective by the corrected surrogate at the trial; INFINITY: the law cannot be there. */
+static double expect(search *s, sf_error *err) {
+    const anchor a = anchor_at(s);
+    sf_error failure = SF_ERROR_INIT;
+    if (evaluate(&a, s->trial.u, s->trial.y, &failure) == SF_OK)
+        return misfit_of(s->problem, s->trial.y) + prior_of(s->problem, s->trial.u);
+    if (failure.status == SF_ERR_MEMORY)
+        *err = failure;
+    return INFINITY;
+}
+
+enum { ROUNDS = 8, PLACES = 8 /* of a design over the prior, in each */ };
+
+/* The trial becomes the lowest of the minima of the corrected surrogate from `best` and from the best place
+ * of each round of a design (Halton's sequence). */
+static sf_status propose_widely(search *s, sf_error *err) {
+    const sf_mapping_problem *p = s->problem;
+    double place[SF_MAPPING_MAX_PARAMETERS], next[SF_MAPPING_MAX_PARAMETERS], from[SF_MAPPING_MAX_PARAMETERS];
+    double lowest = INFINITY;
+    gsl_qrng *places = gsl_qrng_alloc(gsl_qrng_halton, (unsigned)p->parameters);
+    if (!places)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the starts of a search");
+    memcpy(next, s->best.u, sizeof next);
+    memcpy(from, s->best.u, sizeof from);
+    for (int k = 0; k <= ROUNDS && err->status == SF_OK; k++) {
+        double least = INFINITY;
+        for (int l = 0; k > 0 && l < PLACES; l++) {
+            gsl_qrng_get(places, place);
+            for (int j = 0; j < p->parameters; j++)
+                s->trial.u[j] = p->prior[j] + p->prior_sd[j] * gsl_cdf_ugaussian_Pinv(place[j]);
+            double objective = expect(s, err);
+            if (objective < least) {
+                least = objective;
+                memcpy(from, s->trial.u, sizeof from);
+            }
+        }
+        sf_error failure = SF_ERROR_INIT;
+        if ((k > 0 && isinf(least)) || propose(s, from, INFINITY, &failure) != SF_OK)
+            continue;
+        double objective = expect(s, err);
+        if (objective < lowest) {
+            lowest = objective;
+            memcpy(next, s->trial.u, sizeof next);
+        }
+    }
+    memcpy(s->trial.u, next, sizeof next);
+    gsl_qrng_free(places);
     return err->status;
 }
 
 /* Simulates the trial point; a drop that fails numerically there is a point of infinite objective. */
-static sf_status try_point(const sf_mapping_problem *p, int iteration, point *trial, sf_error *err) {
+static sf_status try_point(search *s, sf_error *err) {
     sf_error failure = SF_ERROR_INIT;
-    if (simulate(p, iteration, trial, &failure) == SF_OK)
+    if (simulate(s, &s->trial, &failure) == SF_OK)
         return SF_OK;
     if (failure.status != SF_ERR_NUMERIC)
         *err = failure;
-    trial->objective = INFINITY;
+    s->trial.objective = INFINITY;
     return err->status;
 }
 
-static double distance(const sf_mapping_problem *p, const point *a, const point *b) {
-    double largest = 0;
-    for (int j = 0; j < p->parameters; j++)
-        largest = fmax(largest, fabs(a->u[j] - b->u[j]));
-    return largest;
-}
-
-/* The end: the free step is short, or would gain nothing that counts, or two steps in a row changed nothing
- * that counts. A matrix that began as another problem's can make the step short in every parameter although
- * the objective would fall along correlated ones: the step must then gain little, too. */
+/* The end: the free step is short, or would gain nothing that counts, or two steps in a row lowered nothing
+ * that counts where little is expected. A matrix that began as another problem's can make the step short in
+ * every parameter although the objective would fall along correlated ones: the step must then gain little,
+ * too. */
 static bool is_settled(const sf_mapping_problem *p, double step, double gain, int idle) {
     bool is_short = step < p->tolerance && (!p->first_matrix || gain < 2 * p->tolerance);
-    return is_short || gain < p->tolerance * p->tolerance || idle >= 2;
+    return is_short || gain < p->tolerance * p->tolerance || (idle >= 2 && gain < 10 * p->tolerance);
 }
 
 /* The first simulation, at the minimum with the given offset or at the start; there too if it fails. */
-static sf_status begin(const sf_mapping_problem *p, const sf_mapping_result *r, point *best, sf_error *err) {
-    double next[SF_MAPPING_MAX_PARAMETERS];
-    size_t size = (size_t)p->parameters * sizeof *next;
+static sf_status begin(search *s, sf_error *err) {
+    const sf_mapping_problem *p = s->problem;
+    point *best = &s->best;
+    size_t size = (size_t)p->parameters * sizeof *best->u;
     sf_error failure = SF_ERROR_INIT;
     memcpy(best->u, p->start, size);
     if (!p->first_offset)
-        return simulate(p, 0, best, err);
+        return simulate(s, best, err);
     if (p->first_point)
         memcpy(best->u, p->first_point, size);
     for (int i = 0; i < p->responses; i++)
         best->offset[i] = isfinite(p->first_offset[i]) ? p->first_offset[i] : 0;
-    if (propose(p, r, best, INFINITY, next, &failure) == SF_OK) {
-        memcpy(best->u, next, size);
-        if (simulate(p, 0, best, &failure) == SF_OK)
+    if (propose(s, best->u, INFINITY, &failure) == SF_OK) {
+        memcpy(best->u, s->trial.u, size);
+        if (simulate(s, best, &failure) == SF_OK)
             return SF_OK;
     }
     if (failure.status != SF_ERR_NUMERIC)
         return SF_FAIL(err, failure.status, "%s", failure.text);
     memcpy(best->u, p->start, size);
-    return simulate(p, 0, best, err);
+    return simulate(s, best, err);
 }
 
-static sf_status iterate(const sf_mapping_problem *p, sf_mapping_result *r, point *best, point *trial,
-                         sf_error *err) {
-    double radius = INFINITY, step = 0, gain = 0;
-    int idle = 0; /* steps in a row, taken or not, that changed the objective by nothing that counts */
-    if (begin(p, r, best, err) != SF_OK)
+/* Simulates the trial and keeps the better point. The radius of the trust region follows the ratio of what
+ * the objective lost to what it was expected to lose. */
+static sf_status advance(search *s, double expected, double *radius, int *idle, sf_error *err) {
+    static const double POOR = 0.25, GOOD = 0.75;
+    double length = distance(s);
+    if (try_point(s, err) != SF_OK)
+        return err->status;
+    double loss = s->best.objective - s->trial.objective, noise = s->problem->tolerance,
+           ratio = (loss + noise) / (expected + noise);
+    *idle = loss < 2 * s->problem->tolerance ? *idle + 1 : 0;
+    if (ratio < POOR)
+        *radius = fmax(LEAST_RADIUS, fmin(*radius, length) / (ratio < 0 ? 4 : 2));
+    else if (ratio > GOOD)
+        *radius = fmax(*radius, 2 * length);
+    if (loss > 0) {
+        point before = s->best;
+        s->best = s->trial;
+        s->trial = before;
+    }
+    return regress_matrix(s, err);
+}
+
+static sf_status iterate(search *s, sf_error *err) {
+    const sf_mapping_problem *p = s->problem;
+    sf_mapping_result *r = s->result;
+    double radius = INFINITY, step = 0, expected = 0;
+    int idle = 0; /* steps in a row, taken or not, that lowered the objective by nothing that counts */
+    if (begin(s, err) != SF_OK)
         return err->status;
     for (r->iterations = 1;; r->iterations++) {
-        bool widely = p->exact && r->iterations == 1;
-        if ((widely ? propose_widely(p, r, best, trial->u, err)
-                    : propose(p, r, best, INFINITY, trial->u, err)) != SF_OK ||
-            measure_step(p, r, best, trial->u, &step, err) != SF_OK ||
-            predict_gain(p, r, best, trial, &gain, err) != SF_OK)
+        bool widely = p->wide && r->iterations == 1 && !p->first_matrix;
+        if ((widely ? propose_widely(s, err) : propose(s, s->best.u, INFINITY, err)) != SF_OK ||
+            measure_step(s, &step, &r->gain, err) != SF_OK)
             return err->status;
-        r->gain = gain;
-        r->converged = is_settled(p, step, gain, idle);
-        if (r->converged || r->iterations == p->max_iterations)
+        bool settled = is_settled(p, step, r->gain, idle);
+        r->reason = settled && !is_bound(p, s->best.y) ? NULL
+                    : settled                          ? "a drop stands at the bound of what can be used"
+                    : idle >= MOST_IDLE ? "the simulations confirm no step that the columns propose"
+                                        : "the limit of simulations came first";
+        r->converged = !r->reason;
+        if (settled || idle >= MOST_IDLE || r->iterations == p->max_iterations)
             return estimate(p, true, r, err);
-        if ((!isinf(radius) && propose(p, r, best, radius, trial->u, err) != SF_OK) ||
-            measure_step(p, r, best, trial->u, &step, err) != SF_OK ||
-            try_point(p, r->iterations, trial, err) != SF_OK)
+        if (restrict_step(s, radius, err) != SF_OK || measure_step(s, &step, &expected, err) != SF_OK ||
+            advance(s, expected, &radius, &idle, err) != SF_OK)
             return err->status;
-        if (isfinite(trial->objective) && step > LEAST_UPDATE)
-            update_matrix(p, best, trial, r->matrix);
-        idle = fabs(best->objective - trial->objective) < 2 * p->tolerance ? idle + 1 : 0;
-        if (trial->objective < best->objective) {
-            swap_points(best, trial);
-            radius *= 2;
-        } else {
-            radius = fmin(radius, distance(p, trial, best)) / 2;
-        }
     }
 }
 
 sf_status sf_mapping_solve(const sf_mapping_problem *p, sf_mapping_result *r, sf_error *err) {
-    unsigned long n = (unsigned long)p->responses, entries = n * (unsigned long)p->parameters;
-    *r = (sf_mapping_result){0};
-    r->corrected = sf_alloc(err, entries, sizeof(double), "Jacobian");
-    r->matrix = sf_alloc(err, entries, sizeof(double), "Broyden matrix");
-    point best = {.y = sf_alloc(err, n, sizeof(double), "responses"),
-                  .offset = sf_alloc(err, n, sizeof(double), "responses")};
-    point trial = {.y = sf_alloc(err, n, sizeof(double), "responses"),
-                   .offset = sf_alloc(err, n, sizeof(double), "responses")};
-    for (unsigned long k = 0; err->status == SF_OK && p->first_matrix && k < entries; k++)
-        r->matrix[k] = isfinite(p->first_matrix[k]) ? p->first_matrix[k] : 0;
-    if (err->status == SF_OK)
-        iterate(p, r, &best, &trial, err);
-    memcpy(r->u, best.u, sizeof r->u);
-    r->y = best.y;
-    r->offset = best.offset;
-    r->misfit = best.misfit;
-    r->objective = best.objective;
-    free(trial.y);
-    free(trial.offset);
+    unsigned long n = (unsigned long)p->responses, entries = n * (unsigned long)p->parameters,
+                  points = (unsigned long)p->max_iterations + 2;
+    *r = (sf_mapping_result){.corrected = sf_alloc(err, entries, sizeof(double), "Jacobian"),
+                             .matrix = sf_alloc(err, entries, sizeof(double), "matrix")};
+    search s = {.problem = p,
+                .result = r,
+                .best = {.y = sf_alloc(err, n, sizeof(double), "responses"),
+                         .offset = sf_alloc(err, n, sizeof(double), "responses")},
+                .trial = {.y = sf_alloc(err, n, sizeof(double), "responses"),
+                          .offset = sf_alloc(err, n, sizeof(double), "responses")},
+                .u = sf_alloc(err, points, sizeof *s.u, "points"),
+                .offset = sf_alloc(err, points * n, sizeof(double), "points")};
+    if (err->status == SF_OK && regress_matrix(&s, err) == SF_OK)
+        iterate(&s, err);
+    memcpy(r->u, s.best.u, sizeof r->u);
+    r->y = s.best.y;
+    r->offset = s.best.offset;
+    r->misfit = s.best.misfit;
+    r->objective = s.best.objective;
+    free(s.trial.y);
+    free(s.trial.offset);
+    free(s.u);
+    free(s.offset);
     return err->status;
 }
 

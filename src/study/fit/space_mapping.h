@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parameter identification with an expensive simulation and a cheap surrogate (output space mapping; Bandler
  * et al. 2004, doi:10.1109/TMTT.2003.820904). At each iterate u_k the surrogate s is corrected so that it
- * agrees with the simulation y there and, by a Broyden update of the matrix M, at the iterate before:
+ * agrees with the simulation y there, and its derivatives by a matrix M, a regression of y - s over all
+ * simulated points:
  *
  *     y_c(u) = s(u) + [y(u_k) - s(u_k)] + M (u - u_k),
  *
  * and the next iterate minimises   sum ((y_c - measured) / sd)^2 + sum ((u - prior) / prior_sd)^2   (GSL's
- * Levenberg-Marquardt). If the simulation does not confirm a step, the next one starts from the best point
- * and is held back. Everything is in the caller's scaled variables: logarithms of parameters and of
- * responses. */
+ * Levenberg-Marquardt) within a trust region: the best point is kept, and the radius follows the ratio of
+ * what the objective lost to what y_c expected. Everything is in the caller's scaled variables: logarithms of
+ * parameters and of responses. */
 #ifndef SF_FIT_SPACE_MAPPING_H
 #define SF_FIT_SPACE_MAPPING_H
 
@@ -25,6 +26,8 @@ typedef struct sf_mapping_problem {
     const double *prior_sd; /* [parameters] > 0 */
     const double *measured; /* [responses] */
     const double *sd;       /* [responses] > 0; INFINITY: predicted only, no datum */
+    const double *bound_sd; /* [responses] INFINITY: none; else no datum: what exceeds `measured` counts over
+                               it. NULL: none */
     /* [responses] y - s of a similar problem: the first simulation is then at the minimum of s with it; NULL:
      * at the start */
     const double *first_offset;
@@ -36,11 +39,12 @@ typedef struct sf_mapping_problem {
     sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
     void *context;
     int max_iterations; /* simulations at most */
-    bool exact; /* the simulation is the surrogate: its minimum is looked for from several places first */
+    bool wide; /* first the lowest minimum of y_c from a design over the prior, not only from the start */
     double tolerance; /* in standard deviations. Converged: the free next step is below it in every parameter,
                          or would lower the objective by less than its square, or two steps in a row, taken or
-                         not, changed it by less than twice the tolerance. With a first_matrix a short step
-                         must lower it by less than that, too */
+                         not, lowered it by less than twice the tolerance where the free step expects less
+                         than ten times it. With a first_matrix a short step must lower it by less than twice
+                         the tolerance, too */
     /* called after each simulation; may be NULL */
     void (*progress)(void *context, int iteration, const double *u, const double *y, double objective);
 } sf_mapping_problem;
@@ -60,6 +64,7 @@ typedef struct sf_mapping_result {
     double gain;      /* by which y_c says that the objective could still fall */
     int iterations;
     bool converged;
+    const char *reason; /* for which it has not converged; static storage; NULL: it has */
 } sf_mapping_result;
 
 /* Finds the minimum. Release with sf_mapping_free, also on failure. */

@@ -18,6 +18,10 @@ static void count(sf_analysis *a) {
         a->done += done;
         a->failed += a->runs->state[k] == SF_SWEEP_FAILED;
         a->open += a->runs->state[k] == SF_SWEEP_OPEN;
+        a->predicted += a->runs->state[k] == SF_SWEEP_PREDICTED;
+        a->usable += sf_runs_usable(a->runs, k);
+        for (int i = 0; i < a->plan->figure_count; i++)
+            a->widest[i] = fmax(a->widest[i], expm1(sf_runs_half(a->runs, k, i)));
         a->unusable += done && a->runs->grade[k] == SF_GRADE_DO_NOT_USE;
         a->remarks += done && a->runs->grade[k] == SF_GRADE_REMARKS;
     }
@@ -76,18 +80,13 @@ static bool is_drawn(gsl_rng *random, int64_t wanted, int64_t left) {
 
 bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err) {
     int64_t picked = 0;
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng *random = sf_sample_random(SURFACE_SEED, err);
     bool *pick = sf_alloc(err, (unsigned long)count, sizeof *pick, "a picture");
-    if (!random && err->status == SF_OK)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a picture");
-    if (random)
-        gsl_rng_set(random, SURFACE_SEED);
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         pick[k] = picked < most && is_drawn(random, most - picked, count - k);
         picked += pick[k];
     }
-    if (random)
-        gsl_rng_free(random);
+    gsl_rng_free(random);
     if (err->status == SF_OK)
         return pick;
     free(pick);
@@ -100,10 +99,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
                                    offsets = count_offsets(a->plan);
     s->of = count_values(a, figure);
     int64_t most = s->of < SF_SURFACE_ROWS ? s->of : SF_SURFACE_ROWS, left = s->of;
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    if (!random)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a surface");
-    gsl_rng_set(random, SURFACE_SEED);
+    gsl_rng *random = sf_sample_random(SURFACE_SEED, err);
     double *x = sf_alloc(err, (unsigned long)most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
     s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     s->left_out = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");

@@ -4,12 +4,12 @@
 #include "base/hash.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
+#include "io/process.h"
 #include "io/replace.h"
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double WRITE_INTERVAL = 20; /* s between two tables, or this many times what one takes */
@@ -24,12 +24,6 @@ static path file_of(const sf_sweep_campaign *c, const char *name) {
     path p;
     snprintf(p.text, sizeof p.text, "%s/%s", c->folder, name);
     return p;
-}
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* ---- whose folder it is: the file sweep.key ---- */
@@ -82,8 +76,7 @@ static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, bo
     uint64_t hash = 0;
     if (access(key.text, F_OK) != 0) /* first of all: without it the table is somebody else's */
         SF_TRY(write_keys(c, 0, err));
-    if (sf_runs_write(runs, table.text, &hash, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_runs_write(runs, table.text, &hash, err));
     if (turned)
         remove_report(c);
     return write_keys(c, hash, err);
@@ -91,8 +84,7 @@ static sf_status write_table(const sf_sweep_campaign *c, const sf_runs *runs, bo
 
 static sf_status check_keys(const sf_sweep_campaign *c, keys *k, bool *known, sf_error *err) {
     *known = false;
-    if (read_keys(c, k, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_keys(c, k, err));
     *known = k->there && k->table == sf_plan_hash(c->plan);
     if (k->there && !*known && !c->force)
         return SF_FAIL(
@@ -139,8 +131,7 @@ static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *cha
     keys k;
     bool known = false;
     path table = file_of(c, "runs.csv");
-    if (check_keys(c, &k, &known, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_keys(c, &k, &known, err));
     *changed = !known || k.inputs != c->inputs || access(table.text, F_OK) != 0;
     if (known && access(table.text, F_OK) == 0 && sf_runs_read(runs, table.text, k.text, err) == SF_OK)
         open_missing(c, runs, err);
@@ -149,8 +140,7 @@ static sf_status read_table(const sf_sweep_campaign *c, sf_runs *runs, bool *cha
 
 sf_status sf_sweep_campaign_status(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err) {
     bool changed = false;
-    if (read_table(c, runs, &changed, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_table(c, runs, &changed, err));
     *open = sf_runs_count(runs, SF_SWEEP_OPEN) + (c->retry ? sf_runs_count(runs, SF_SWEEP_FAILED) : 0);
     *open = changed ? runs->count : *open;
     return SF_OK;
@@ -171,6 +161,7 @@ static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_e
         return SF_OK;
     open_all(runs, SF_SWEEP_DONE);
     open_all(runs, SF_SWEEP_FAILED);
+    open_all(runs, SF_SWEEP_PREDICTED);
     return SF_FAIL(err, SF_ERR_IO,
                    "the inputs of the campaign changed while it ran: %.700s; finished drops are kept: repeat "
                    "the command",
@@ -190,8 +181,7 @@ static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, bool turned, sf
 }
 
 static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, bool *changed, sf_error *err) {
-    if (read_table(c, runs, changed, err) != SF_OK)
-        return err->status;
+    SF_TRY(read_table(c, runs, changed, err));
     if (*changed) {
         bool there = sf_runs_count(runs, SF_SWEEP_OPEN) < runs->count;
         open_all(runs, SF_SWEEP_DONE);
@@ -397,7 +387,7 @@ static int next_piece(const sf_runs *runs, int64_t *from, int most, int64_t *row
 
 static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t done, int64_t open,
                           double start) {
-    double spent = now() - start, left = spent / (double)done * (double)(open - done);
+    double spent = sf_process_now() - start, left = spent / (double)done * (double)(open - done);
     if (c->log) {
         fprintf(c->log, "%lld of %lld runs; %.0f s so far, about %.0f s to go\n", (long long)(begun + done),
                 (long long)(begun + open), spent, left);
@@ -408,20 +398,22 @@ static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t don
 static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs, int64_t *row,
                       sf_error *err) {
     int64_t from = 0, done = 0, open = sf_runs_count(runs, SF_SWEEP_OPEN);
-    double start = now(), written = start, duration = 0;
+    double start = sf_process_now(), written = start, duration = 0;
     int count;
-    while (err->status == SF_OK && (count = next_piece(runs, &from, engine->piece, row)) > 0) {
+    while (err->status == SF_OK &&
+           (count = c->chooser ? c->chooser->next(c->chooser->context, runs, engine->piece, row, err)
+                               : next_piece(runs, &from, engine->piece, row)) > 0) {
         int fresh = 0;
-        if (engine->run(engine->context, runs, count, row, &fresh, err) != SF_OK)
-            return err->status;
+        SF_TRY(engine->run(engine->context, runs, count, row, &fresh, err));
         done += count;
-        double time = now();
+        double time = sf_process_now();
         if (time - written < WRITE_INTERVAL || time - written < WRITE_SHARE * duration)
             continue;
         save(c, runs, false, err);
-        written = now();
+        written = sf_process_now();
         duration = written - time;
-        tell_progress(c, runs->count - open, done, open, start);
+        if (!c->chooser)
+            tell_progress(c, runs->count - open, done, open, start);
     }
     return err->status;
 }
@@ -436,6 +428,8 @@ sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engin
     if (pick_samples(runs, &s, err) == SF_OK && write_samples_open(c, runs, turned, &s, err) == SF_OK &&
         probe(c, engine, runs, &s, err) == SF_OK && work(c, engine, runs, row, err) == SF_OK)
         turned = probe_again(engine, runs, err) != SF_OK || turned;
+    if (c->chooser && err->status == SF_OK)
+        c->chooser->finish(c->chooser->context, runs, err);
     save(c, runs, turned, err);
 done:
     free_samples(&s);

@@ -18,6 +18,15 @@ typedef struct sf_sweep_engine {
     bool (*is_current)(void *context, const sf_runs *runs, int64_t row);
 } sf_sweep_engine;
 
+/* Chooses which open rows are run, and says what the others are. */
+typedef struct sf_sweep_chooser {
+    /* The next rows, `most` at the most; 0: no more are needed, or a failure. */
+    int (*next)(void *context, const sf_runs *runs, int most, int64_t *row, sf_error *err);
+    /* Fills in rows that were not run, when the others are done. */
+    sf_status (*finish)(void *context, sf_runs *runs, sf_error *err);
+    void *context;
+} sf_sweep_chooser;
+
 typedef struct sf_sweep_campaign {
     const sf_plan *plan;
     const char *folder; /* of the output; it exists */
@@ -30,6 +39,7 @@ typedef struct sf_sweep_campaign {
     const char *const
         *report; /* names of the files in `folder` that are made of the table, ends with NULL: they
                     are removed when the table turns to other inputs or another plan; NULL: none */
+    const sf_sweep_chooser *chooser; /* NULL: all rows are run, in order */
     bool retry;  /* failed rows are done again */
     bool force;  /* another plan in the folder gives way */
     FILE *log;   /* NULL: silent */
@@ -47,5 +57,41 @@ sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engin
 /* Reads the rows that are done, for a look without a run. `*open`: rows that a campaign looks at, which are
  * all of them if the inputs have changed since, and those that failed if they are done again. */
 sf_status sf_sweep_campaign_status(const sf_sweep_campaign *c, sf_runs *runs, int64_t *open, sf_error *err);
+
+/* The engine of a sweep that simulates drops, by study/runner.h. */
+
+#define SF_SWEEP_LABEL "drop" /* begins the names of the drops' folders */
+
+enum {
+    SF_SWEEP_PIECE = 32,       /* rows at a time, for each drop that runs side by side */
+    SF_SWEEP_ELSEWHERE = 20000 /* rows at a time by another engine, a thousand jobs of 20, which waits for the
+                                  slowest job of a piece */
+};
+
+/* The context of the engine is the runner, borrowed. */
+sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs);
+
+/* The cost of the open runs of a plan: from the runs that are done, or else from the model of the first
+ * row. */
+
+typedef struct sf_sweep_cost {
+    double seconds;    /* processor time of one run; NaN: not known, as the first row has no model */
+    double bytes;      /* of its results */
+    double work_bytes; /* that one run needs while it is at work */
+    int64_t open;      /* runs */
+    int64_t there;     /* of them at most so many have a drop's folder already */
+    char basis[512];   /* where that comes from */
+} sf_sweep_cost;
+
+/* Estimates the cost of `open` rows, of which some may have a figure of earlier inputs. `folder`: that of
+ * the results' folders ("DIR/runs"). Without a finished run the model of the first row is built in memory. */
+sf_status sf_sweep_cost_estimate(const sf_runs *runs, int64_t open, const char *folder, sf_sweep_cost *cost,
+                                 sf_error *err);
+
+/* SF_ERR_INPUT if the file system of `folder` has too little room for all runs, and for `jobs` at work. */
+sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *cost, const char *folder, int jobs, sf_error *err);
+
+/* `jobs` 0: on machines that are not known. */
+void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *cost, int jobs);
 
 #endif

@@ -1,10 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/drops.h"
+#include "study/sweep/campaign.h"
 
-#include "study/engine.h"
+#include "io/folder.h"
+#include "io/plain_file.h"
 #include "io/process.h"
+#include "pre/make.h"
+#include "pre/model_report.h"
+#include "study/batch.h"
+
+#include <gsl/gsl_sort.h>
+#include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+/* ---- the engine ---- */
 
 typedef struct piece {
     int count;
@@ -129,4 +141,138 @@ sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
                              .context = runner,
                              .piece = sf_engine_is_local(&runner->engine) ? SF_SWEEP_PIECE * abreast
                                                                           : SF_SWEEP_ELSEWHERE};
+}
+
+/* ---- cost ---- */
+
+/* Measured of examples/sweep (docs/campaigns.md): results.h5 without fields, and what a run has on disk while
+ * it is at work, per node; with log and folder. */
+static const double NODE_BYTES = 300, RUN_BYTES = 1e6, NODE_WORK_BYTES = 4000;
+/* s, of softfall-pre with a mesh that is there, of the starts of the programs and of the files. */
+static const double SETUP_SECONDS = 0.2;
+
+static double size_of(const char *folder, const char *name) {
+    char path[PATH_MAX];
+    int handle = -1;
+    uint64_t size = 0;
+    sf_error none = SF_ERROR_INIT;
+    snprintf(path, sizeof path, "%s/%s/results.h5", folder, name);
+    if (sf_plain_open(path, NULL, &handle, &size, &none) == SF_OK)
+        close(handle);
+    return (double)size;
+}
+
+/* Measures the cost by the median of wall_s x threads; 0: no run is done. */
+static sf_status measure(const sf_runs *r, double *seconds, int64_t *done, sf_error *err) {
+    double *value = sf_alloc(err, (unsigned long)r->count, sizeof *value, "run times");
+    size_t wall = sf_runs_figure("wall_s"), threads = sf_runs_figure("threads"), n = 0;
+    for (int64_t row = 0; row < r->count && value; row++) {
+        const double *place = r->value + row * (int64_t)r->figures;
+        if (r->state[row] == SF_SWEEP_DONE && place[wall] * place[threads] >= 0)
+            value[n++] = place[wall] * place[threads];
+    }
+    *done = (int64_t)n;
+    if (n > 0)
+        gsl_sort(value, 1, n);
+    *seconds = n > 0 ? SETUP_SECONDS + value[n / 2] : 0;
+    free(value);
+    return err->status;
+}
+
+static void from_runs(const sf_runs *r, const char *folder, int64_t done, sf_sweep_cost *c) {
+    for (int64_t row = 0; row < r->count && c->bytes <= 0; row++)
+        if (r->state[row] == SF_SWEEP_DONE && r->folder[row])
+            c->bytes = size_of(folder, r->folder[row]) + 1e4;
+    c->work_bytes = 20 * c->bytes;
+    snprintf(
+        c->basis, sizeof c->basis,
+        "from %lld finished run%s: the median of the solver's wall time and its threads, and what else a run takes",
+        (long long)done, done > 1 ? "s" : "");
+}
+
+static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
+    sf_case first;
+    sf_model model;
+    sf_build_report report;
+    char libraries[SF_LIBRARIES_SIZE];
+    sf_error refused = SF_ERROR_INIT;
+    SF_TRY(sf_sweep_read_case(p, 0, &first, err));
+    if (sf_model_make(&first, &model, &report, libraries, NULL, &refused) == SF_OK) {
+        c->seconds = SETUP_SECONDS + 2 * sf_report_seconds(&model, &report); /* of two cores */
+        c->bytes = RUN_BYTES + NODE_BYTES * (double)model.node_count;
+        c->work_bytes = c->bytes + NODE_WORK_BYTES * (double)model.node_count;
+        snprintf(c->basis, sizeof c->basis,
+                 "the estimate of softfall-pre for the first row, to a factor of 2; no run is finished yet");
+        sf_model_free(&model);
+    } else if (refused.status == SF_ERR_INPUT ||
+               refused.status == SF_ERR_MODEL) { /* it will be a failed run */
+        c->seconds = NAN;
+        snprintf(c->basis, sizeof c->basis, "the first row has no model: %.480s", refused.text);
+    } else {
+        *err = refused;
+    }
+    sf_case_free(&first);
+    return err->status;
+}
+
+sf_status sf_sweep_cost_estimate(const sf_runs *r, int64_t open, const char *folder, sf_sweep_cost *c,
+                                 sf_error *err) {
+    int64_t done = 0, kept = sf_runs_count(r, SF_SWEEP_DONE);
+    *c = (sf_sweep_cost){.open = open};
+    SF_TRY(measure(r, &c->seconds, &done, err));
+    kept = kept < r->count - open ? kept : r->count - open;
+    int64_t more = sf_folder_count(folder, SF_SWEEP_LABEL "-") - kept;
+    c->there = more < 0 ? 0 : more < c->open ? more : c->open;
+    if (done == 0)
+        return from_model(r->plan, c, err);
+    from_runs(r, folder, done, c);
+    return SF_OK;
+}
+
+/* The file system of the folder, or of the nearest one above it that exists. */
+static double free_bytes(const char *folder) {
+    char path[PATH_MAX];
+    struct statvfs info;
+    snprintf(path, sizeof path, "%s", folder);
+    while (*path && statvfs(path, &info) != 0) {
+        char *slash = NULL;
+        for (char *c = path; *c; c++)
+            slash = *c == '/' ? c : slash;
+        if (!slash || slash == path)
+            snprintf(path, sizeof path, slash ? "/" : ".");
+        else
+            *slash = '\0';
+    }
+    return *path ? (double)info.f_bavail * (double)info.f_frsize : INFINITY;
+}
+
+sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, int jobs, sf_error *err) {
+    double need = c->bytes * (double)c->open + c->work_bytes * jobs, there = free_bytes(folder);
+    if (need <= there)
+        return SF_OK;
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "the runs need about %.3g GB and the disk of %s has %.3g GB: give another directory",
+                   need / 1e9, folder, there / 1e9);
+}
+
+void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {
+    double hours = c->seconds * (double)c->open / 3600, size = c->bytes * (double)c->open / 1e9;
+    if (isnan(c->seconds))
+        fprintf(out, "%lld open runs; what they cost is not known\n  (%s)\n", (long long)c->open, c->basis);
+    else if (jobs > 0)
+        fprintf(
+            out,
+            "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
+            (long long)c->open, c->seconds, hours / jobs, jobs, size, c->basis);
+    else
+        fprintf(
+            out,
+            "%lld open runs of about %.3g s of one core like those of this machine: about %.3g core hours, "
+            "%.3g GB\n  (%s)\n",
+            (long long)c->open, c->seconds, hours, size, c->basis);
+    if (c->there > 0)
+        fprintf(
+            out,
+            "  (up to %lld of them may be there already: the folder has drops that runs.csv does not list, or lists with earlier inputs)\n",
+            (long long)c->there);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/factor.h"
+#include "study/sweep/plan.h"
 
 #include "case/parts.h"
 #include "case/values.h"
@@ -261,11 +261,11 @@ static sf_status read_range(reading *r, const config_setting_t *first, sf_error 
     const config_setting_t *last = config_setting_get_member(r->group, "to");
     if (!last)
         return sf_config_refuse(r->config, r->group, err, "%s: from needs to and count", f->key);
-    if (take_number(r, first, &from, err) != SF_OK || take_number(r, last, &to, err) != SF_OK ||
-        sf_config_whole(r->config, r->group, "count", true, 2, MOST_LEVELS, &count, err) != SF_OK ||
-        sf_config_choice(r->config, r->group, "spacing", "linear|log", &logarithmic, err) != SF_OK ||
-        make_levels(f, (int64_t)count, false, err) != SF_OK)
-        return err->status;
+    SF_TRY(take_number(r, first, &from, err));
+    SF_TRY(take_number(r, last, &to, err));
+    SF_TRY(sf_config_whole(r->config, r->group, "count", true, 2, MOST_LEVELS, &count, err));
+    SF_TRY(sf_config_choice(r->config, r->group, "spacing", "linear|log", &logarithmic, err));
+    SF_TRY(make_levels(f, (int64_t)count, false, err));
     if (logarithmic && !(from > 0 && to > 0))
         return sf_config_refuse(r->config, first, err, "%s: a logarithmic range needs values above zero",
                                 f->key);
@@ -308,8 +308,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
         return sf_config_refuse(r->config, s, err,
                                 "a posterior is of key = \"material\" or of a layer, not of %s",
                                 r->factor->key);
-    if (sf_config_whole(r->config, r->group, "draws", false, 1, MOST_DRAWS, &draws, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_whole(r->config, r->group, "draws", false, 1, MOST_DRAWS, &draws, err));
     bool given = config_setting_get_member(r->group, "draws") != NULL;
     snprintf(folder, sizeof folder, "%s%s%s", *name == '/' ? "" : r->config->folder, *name == '/' ? "" : "/",
              name);
@@ -318,8 +317,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
         return sf_config_refuse(r->config, s, err, "posterior: there is no draw-001.cfg in %s", folder);
     if (there < count)
         return sf_config_refuse(r->config, s, err, "draws is %d, but %s holds %d", count, folder, there);
-    if (make_levels(r->factor, count, true, err) != SF_OK)
-        return err->status;
+    SF_TRY(make_levels(r->factor, count, true, err));
     r->factor->uncertain = r->factor->posterior = true;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         draw_name(name, chosen_draw(k, count, there), path, sizeof path);
@@ -449,9 +447,8 @@ static sf_status read_head(reading *r, sf_error *err) {
     int line = (int)config_setting_source_line(r->group);
     const char *path = sf_case_source_find(&r->config->source, line, &line);
     snprintf(f->where, sizeof f->where, "%.480s:%d", path, line);
-    if (sf_config_text(r->config, r->group, "key", true, &key, err) != SF_OK ||
-        sf_config_text(r->config, r->group, "name", false, &name, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_text(r->config, r->group, "key", true, &key, err));
+    SF_TRY(sf_config_text(r->config, r->group, "name", false, &name, err));
     if (strlen(key) >= sizeof f->key || strpbrk(key, "= \t\"@") || (name && strlen(name) >= sizeof f->name))
         return sf_config_refuse(r->config, r->group, err, "\"%.80s\" is no key of a case", key);
     snprintf(f->key, sizeof f->key, "%s", key);

@@ -2,10 +2,10 @@
 #include "study/sweep/plan.h"
 
 #include "base/hash.h"
+#include "io/plain_file.h"
 #include "post/figures/figures.h"
 #include "pre/mesh/geo_parameters.h"
 #include "study/run_folder.h"
-#include "study/sweep/sample.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,8 +30,7 @@ static sf_status add_factor(const sf_config *config, const config_setting_t *gro
         return sf_config_refuse(config, group, err, "more than %d factors", SF_SWEEP_FACTORS);
     p->block_of[p->factor_count] = p->block_count;
     sf_factor *f = &p->factor[p->factor_count++];
-    if (sf_factor_read(config, group, sampled, f, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_factor_read(config, group, sampled, f, err));
     if (is_column(f->name))
         return sf_config_refuse(config, group, err,
                                 "\"%s\" is a column of runs.csv already: give the factor another name",
@@ -90,8 +89,7 @@ static sf_status copy_levels(sf_factor *f, sf_error *err) {
 
 static sf_status read_list_block(const sf_config *config, const config_setting_t *group, sf_plan *p,
                                  sf_block *b, sf_error *err) {
-    if (add_factor(config, group, false, p, err) != SF_OK)
-        return err->status;
+    SF_TRY(add_factor(config, group, false, p, err));
     b->rows = p->factor[b->first].count;
     return copy_levels(&p->factor[b->first], err);
 }
@@ -100,10 +98,9 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
                           sf_error *err) {
     const config_setting_t *list = NULL;
     b->kind = SF_BLOCK_ZIP;
-    if (sf_config_names(config, group, "zip", err) != SF_OK ||
-        sf_config_list(config, group, "zip", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
-        add_members(config, list, false, p, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, group, "zip", err));
+    SF_TRY(sf_config_list(config, group, "zip", true, SF_SWEEP_FACTORS, &list, err));
+    SF_TRY(add_members(config, list, false, p, err));
     b->rows = p->factor[b->first].count;
     for (int k = b->first; k < p->factor_count; k++) {
         const sf_factor *f = &p->factor[k];
@@ -118,8 +115,7 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
                 "probability belongs to a choice: give the chosen one uncertain = true, or "
                 "cross them",
                 p->factor[b->first].key, f->key);
-        if (copy_levels(&p->factor[k], err) != SF_OK)
-            return err->status;
+        SF_TRY(copy_levels(&p->factor[k], err));
     }
     return SF_OK;
 }
@@ -156,13 +152,12 @@ static sf_status read_sample(const sf_config *config, const config_setting_t *gr
     int method = 0;
     double count = 0, seed = 1;
     b->kind = SF_BLOCK_SAMPLE;
-    if (sf_config_names(config, group, "sample|count|seed|of", err) != SF_OK ||
-        sf_config_choice(config, group, "sample", SF_SAMPLING_WORDS, &method, err) != SF_OK ||
-        sf_config_whole(config, group, "count", true, 1, MOST_SAMPLES, &count, err) != SF_OK ||
-        sf_config_whole(config, group, "seed", false, 0, 4294967295.0, &seed, err) != SF_OK ||
-        sf_config_list(config, group, "of", true, SF_SWEEP_FACTORS, &list, err) != SF_OK ||
-        add_members(config, list, true, p, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, group, "sample|count|seed|of", err));
+    SF_TRY(sf_config_choice(config, group, "sample", SF_SAMPLING_WORDS, &method, err));
+    SF_TRY(sf_config_whole(config, group, "count", true, 1, MOST_SAMPLES, &count, err));
+    SF_TRY(sf_config_whole(config, group, "seed", false, 0, 4294967295.0, &seed, err));
+    SF_TRY(sf_config_list(config, group, "of", true, SF_SWEEP_FACTORS, &list, err));
+    SF_TRY(add_members(config, list, true, p, err));
     if ((sf_sampling)method == SF_SAMPLING_SALTELLI && count < SF_INDEX_LEAST)
         return sf_config_refuse(config, config_setting_get_member(group, "count"), err,
                                 "count: Sobol' indices need %d samples, and some hundreds to tell anything",
@@ -220,8 +215,7 @@ static sf_status multiply(const sf_config *config, const config_setting_t *list,
 
 static sf_status read_factors(const sf_config *config, bool huge, sf_plan *p, sf_error *err) {
     const config_setting_t *root = config_root_setting(&config->config), *list = NULL;
-    if (sf_config_list(config, root, "factors", true, SF_SWEEP_FACTORS, &list, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_list(config, root, "factors", true, SF_SWEEP_FACTORS, &list, err));
     for (int k = 0; k < config_setting_length(list) && err->status == SF_OK; k++)
         read_block(config, config_setting_get_elem(list, (unsigned)k), huge, p, err);
     return err->status == SF_OK ? multiply(config, list, huge, p, err) : err->status;
@@ -259,14 +253,17 @@ static sf_status read_set(const sf_config *config, sf_plan *p, sf_error *err) {
 }
 
 static sf_status add_figure(const sf_config *config, const config_setting_t *s, const char *key, double limit,
-                            sf_plan *p, sf_error *err) {
+                            double accuracy, sf_plan *p, sf_error *err) {
     const sf_figure *figure = sf_figure_find(key);
     if (!figure || figure->row.type == SF_ROW_TEXT)
         return sf_config_refuse(config, s, err, "\"%.80s\" is no figure of summary.json (docs/formats.md)",
                                 key);
     if (p->figure_count == SF_SWEEP_FIGURES)
         return sf_config_refuse(config, s, err, "at most %d figures", SF_SWEEP_FIGURES);
-    p->figure[p->figure_count++] = (sf_sweep_limit){figure->row.key, limit};
+    p->figure[p->figure_count++] = (sf_sweep_limit){figure->row.key, limit, accuracy};
+    if ((accuracy > 0) != (p->figure[0].accuracy > 0))
+        return sf_config_refuse(
+            config, s, err, "accuracy: give it to every figure or to none, as a predicted row has no others");
     return SF_OK;
 }
 
@@ -274,8 +271,8 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
     const config_setting_t *list = config_lookup(&config->config, "figures");
     if (!list) {
         p->figure_count = 2;
-        p->figure[0] = (sf_sweep_limit){"a_max_g", SF_DEFAULT_LIMIT_G};
-        p->figure[1] = (sf_sweep_limit){"hic", SF_DEFAULT_LIMIT_HIC};
+        p->figure[0] = (sf_sweep_limit){"a_max_g", SF_DEFAULT_LIMIT_G, 0};
+        p->figure[1] = (sf_sweep_limit){"hic", SF_DEFAULT_LIMIT_HIC, 0};
         return SF_OK;
     }
     if (!config_setting_is_list(list) || config_setting_length(list) == 0)
@@ -284,13 +281,14 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
     for (int k = 0; k < config_setting_length(list) && err->status == SF_OK; k++) {
         const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
         const char *key = NULL;
-        double limit = NAN;
+        double limit = NAN, accuracy = 0;
         if (!config_setting_is_group(s))
             return sf_config_refuse(config, s, err, "figures: each entry must be a group: { ... }");
-        if (sf_config_names(config, s, "key|limit", err) == SF_OK &&
+        if (sf_config_names(config, s, "key|limit|accuracy", err) == SF_OK &&
             sf_config_text(config, s, "key", true, &key, err) == SF_OK &&
-            sf_config_number(config, s, "limit", false, -1e300, 1e300, &limit, err) == SF_OK)
-            add_figure(config, s, key, limit, p, err);
+            sf_config_number(config, s, "limit", false, -1e300, 1e300, &limit, err) == SF_OK &&
+            sf_config_number(config, s, "accuracy", false, 1e-4, 0.5, &accuracy, err) == SF_OK)
+            add_figure(config, s, key, limit, accuracy, p, err);
     }
     return err->status;
 }
@@ -298,11 +296,11 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
 static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_error *err) {
     const config_setting_t *root = config_root_setting(&config->config);
     const char *title = NULL;
-    if (sf_config_names(config, root, "case|title|set|factors|figures", err) != SF_OK ||
-        sf_config_file(config, root, "case", true, &p->case_path, err) != SF_OK ||
-        sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
-        read_factors(config, huge, p, err) != SF_OK || read_set(config, p, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, root, "case|title|set|factors|figures", err));
+    SF_TRY(sf_config_file(config, root, "case", true, &p->case_path, err));
+    SF_TRY(sf_config_text(config, root, "title", false, &title, err));
+    SF_TRY(read_factors(config, huge, p, err));
+    SF_TRY(read_set(config, p, err));
     p->title = title ? strdup(title) : NULL;
     p->folder = strdup(config->folder);
     if (!p->folder)
@@ -337,12 +335,13 @@ double sf_plan_value(const sf_plan *p, int factor, int64_t row) {
     return p->factor[factor].value[row / b->stride % b->rows];
 }
 
-bool sf_factor_is_group(const sf_factor *f) {
+/* True if the overrides of this factor replace a whole group; they come first. */
+static bool is_group(const sf_factor *f) {
     return f->words && f->text[0][0] == '@';
 }
 
 /* A file in place of a group is relative to the plan. */
-void sf_plan_set(const sf_plan *p, int k, char *text) {
+static void set_override(const sf_plan *p, int k, char *text) {
     const char *set = p->set[k];
     const char *file = sf_case_override_file(set);
     if (file && *file != '/')
@@ -355,11 +354,11 @@ int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERR
     int count = 0;
     for (int groups = 1; groups >= 0; groups--) {
         for (int f = 0; f < p->factor_count; f++)
-            if (sf_factor_is_group(&p->factor[f]) == groups)
+            if (is_group(&p->factor[f]) == groups)
                 sf_factor_override(&p->factor[f], sf_plan_value(p, f, row), text[count++],
                                    SF_SWEEP_OVERRIDE_SIZE);
         for (int k = 0; groups && k < p->set_count; k++)
-            sf_plan_set(p, k, text[count++]);
+            set_override(p, k, text[count++]);
     }
     return count;
 }
@@ -380,6 +379,10 @@ uint64_t sf_plan_hash(const sf_plan *p) {
             hash = sf_hash_bytes(hash, factor->label[k], strlen(factor->label[k]) + 1);
     }
     return hash;
+}
+
+bool sf_plan_is_adaptive(const sf_plan *p) {
+    return p->figure[0].accuracy > 0;
 }
 
 const sf_block *sf_plan_saltelli(const sf_plan *p) {
@@ -408,7 +411,7 @@ static bool is_of_set(const sf_plan *p, const char *sentence) {
         const char *const list[] = {text};
         sf_case c;
         sf_error err = SF_ERROR_INIT;
-        sf_plan_set(p, k, text);
+        set_override(p, k, text);
         if (sf_case_read(p->case_path, 1, list, NULL, &c, &err) == SF_OK)
             sf_case_free(&c);
         found = strcmp(err.text, sentence) == 0;
@@ -425,7 +428,8 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     *own = 0;
     if (sf_sweep_read_case(p, row, &c, &inner) == SF_OK) {
         if (sf_geo_parameters_check_alone(&c.pad, &inner) == SF_OK &&
-            sf_geo_parameters_check_alone(&c.missile, &inner) == SF_OK)
+            sf_geo_parameters_check_alone(&c.missile, &inner) == SF_OK &&
+            sf_geo_parameters_check_alone(&c.support, &inner) == SF_OK)
             sf_campaign_key(&c, own, &inner);
         sf_case_free(&c);
     }
@@ -451,13 +455,9 @@ static sf_status check_extremes(const sf_plan *p, int factor, uint64_t *hash, sf
     return check(p, greatest * b->stride, f, hash, &key, err);
 }
 
-static size_t folder_length(const char *path) {
-    const char *last = strrchr(path, '/');
-    return last ? (size_t)(last - path) : 0;
-}
-
 static bool is_same_folder(const char *a, const char *b) {
-    return folder_length(a) == folder_length(b) && strncmp(a, b, folder_length(a)) == 0;
+    size_t length = sf_path_folder_length(a);
+    return length == sf_path_folder_length(b) && strncmp(a, b, length) == 0;
 }
 
 /* The key of a run knows a geometry by its own text; what that merges lies beside it. */

@@ -9,8 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const states[] = {
-    [SF_SWEEP_OPEN] = "open", [SF_SWEEP_DONE] = "done", [SF_SWEEP_FAILED] = "failed"};
+static const char *const states[] = {[SF_SWEEP_OPEN] = "open",
+                                     [SF_SWEEP_DONE] = "done",
+                                     [SF_SWEEP_FAILED] = "failed",
+                                     [SF_SWEEP_PREDICTED] = "predicted"};
 
 sf_status sf_runs_create(const sf_plan *plan, sf_runs *r, sf_error *err) {
     unsigned long n = (unsigned long)plan->rows;
@@ -21,6 +23,8 @@ sf_status sf_runs_create(const sf_plan *plan, sf_runs *r, sf_error *err) {
     r->folder = sf_alloc(err, n, sizeof *r->folder, "the runs");
     r->message = sf_alloc(err, n, sizeof *r->message, "the runs");
     r->value = sf_alloc(err, n, r->figures * sizeof *r->value, "the figures of the runs");
+    if (sf_plan_is_adaptive(plan))
+        r->half = sf_alloc(err, n, (unsigned long)plan->figure_count * sizeof *r->half, "predictions");
     for (int64_t k = 0; r->value && k < r->count * (int64_t)r->figures; k++)
         r->value[k] = NAN;
     return err->status;
@@ -38,6 +42,7 @@ void sf_runs_free(sf_runs *r) {
     free(r->folder);
     free(r->message);
     free(r->value);
+    free(r->half);
     *r = (sf_runs){0};
 }
 
@@ -110,6 +115,25 @@ void sf_runs_open(sf_runs *r, int64_t row) {
     r->message[row] = r->folder[row] = NULL;
     for (size_t k = 0; k < r->figures; k++)
         place[k] = NAN;
+    for (int k = 0; k < r->plan->figure_count && r->half; k++)
+        r->half[row * r->plan->figure_count + k] = 0;
+}
+
+sf_status sf_runs_leave(sf_runs *r, int64_t row, const char *message, sf_error *err) {
+    return keep_text(&r->message[row], message, err);
+}
+
+void sf_runs_predicted(sf_runs *r, int64_t row, const double *value, const double *half) {
+    sf_runs_open(r, row);
+    r->state[row] = SF_SWEEP_PREDICTED;
+    for (int k = 0; k < r->plan->figure_count; k++) {
+        sf_runs_place(r, row)[sf_runs_figure(r->plan->figure[k].figure)] = to_nine_digits(value[k]);
+        r->half[row * r->plan->figure_count + k] = half[k];
+    }
+}
+
+double sf_runs_half(const sf_runs *r, int64_t row, int figure) {
+    return r->half ? r->half[row * r->plan->figure_count + figure] : 0;
 }
 
 int64_t sf_runs_count(const sf_runs *r, sf_sweep_state state) {
@@ -120,7 +144,8 @@ int64_t sf_runs_count(const sf_runs *r, sf_sweep_state state) {
 }
 
 bool sf_runs_usable(const sf_runs *r, int64_t row) {
-    return r->state[row] == SF_SWEEP_DONE && r->grade[row] != SF_GRADE_DO_NOT_USE;
+    return r->state[row] == SF_SWEEP_PREDICTED ||
+           (r->state[row] == SF_SWEEP_DONE && r->grade[row] != SF_GRADE_DO_NOT_USE);
 }
 
 /* ---- runs.csv ---- */
@@ -159,6 +184,8 @@ static void put_heading(FILE *out, const sf_runs *r) {
     fputs(",run_status,grade,message,folder", out);
     for (size_t k = 0; k < count; k++)
         fprintf(out, ",%s", list[k].row.key);
+    for (int k = 0; k < r->plan->figure_count && r->half; k++)
+        fprintf(out, ",%s_low,%s_high", r->plan->figure[k].figure, r->plan->figure[k].figure);
     fputc('\n', out);
 }
 
@@ -170,6 +197,17 @@ static void put_figure(FILE *out, const sf_runs *r, const sf_figure *figure, dou
         put_cell(out, r->text[(int)value]);
     else
         fprintf(out, "%.9g", value);
+}
+
+/* The 95 % interval of a figure of a predicted row; of others two empty cells. */
+static void put_interval(FILE *out, const sf_runs *r, int64_t row, int figure) {
+    double value =
+               r->value[row * (int64_t)r->figures + (int64_t)sf_runs_figure(r->plan->figure[figure].figure)],
+           half = sf_runs_half(r, row, figure);
+    if (r->state[row] == SF_SWEEP_PREDICTED)
+        fprintf(out, ",%.9g,%.9g", value * exp(-half), value * exp(half));
+    else
+        fputs(",,", out);
 }
 
 static void put_row(FILE *out, const sf_runs *r, int64_t row) {
@@ -188,7 +226,9 @@ static void put_row(FILE *out, const sf_runs *r, int64_t row) {
     fputc(',', out);
     put_cell(out, r->folder[row] ? r->folder[row] : "");
     for (size_t k = 0; k < count; k++)
-        put_figure(out, r, &list[k], done ? r->value[row * (int64_t)count + (int64_t)k] : NAN);
+        put_figure(out, r, &list[k], r->value[row * (int64_t)count + (int64_t)k]);
+    for (int k = 0; k < r->plan->figure_count && r->half; k++)
+        put_interval(out, r, row, k);
     fputc('\n', out);
 }
 

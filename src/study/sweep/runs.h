@@ -7,7 +7,12 @@
 #include "post/figures/verdict.h"
 #include "study/sweep/plan.h"
 
-typedef enum sf_sweep_state { SF_SWEEP_OPEN, SF_SWEEP_DONE, SF_SWEEP_FAILED } sf_sweep_state;
+typedef enum sf_sweep_state {
+    SF_SWEEP_OPEN,
+    SF_SWEEP_DONE,
+    SF_SWEEP_FAILED,
+    SF_SWEEP_PREDICTED
+} sf_sweep_state;
 
 enum { SF_RUNS_TEXTS = 64 };
 
@@ -17,8 +22,13 @@ typedef struct sf_runs {
     size_t figures;               /* of the list of summary.json, post/figures/figures.h */
     unsigned char *state, *grade; /* [count] sf_sweep_state, sf_grade */
     double *value;                /* [count][figures] as in summary.json; NaN: none; a text: its number */
+    double *half; /* [count][figures of the plan] of a predicted row half of the 95 % interval of the
+                     logarithm, else 0; NULL: the plan predicts none */
+    int checked[SF_SWEEP_FIGURES], held[SF_SWEEP_FIGURES]; /* simulated rows by which the predictions of a
+                        figure were checked, and those of them that their intervals held */
     char **folder;                /* [count] name of its folder; NULL: none */
-    char **message;               /* [count] why it failed, or the remarks of its verdict; NULL: none */
+    char **message; /* [count] why it failed or is left open, or the remarks of its verdict; NULL:
+                       none */
     char text[SF_RUNS_TEXTS][80]; /* of the figures that are texts */
     int text_count;
 } sf_runs;
@@ -40,9 +50,16 @@ sf_status sf_runs_done(sf_runs *runs, int64_t row, sf_grade grade, const char *f
                        sf_error *err);
 sf_status sf_runs_failed(sf_runs *runs, int64_t row, const char *message, sf_error *err);
 void sf_runs_open(sf_runs *runs, int64_t row);
+/* Leaves an open row as it is, and says why. */
+sf_status sf_runs_leave(sf_runs *runs, int64_t row, const char *message, sf_error *err);
+/* Predicts the figures of the plan, value [figures of the plan], with half of the 95 % interval of each
+ * logarithm. A table that is read again has the row open: it is predicted anew. */
+void sf_runs_predicted(sf_runs *runs, int64_t row, const double *value, const double *half);
+/* Returns that half; 0 of a row that was simulated. */
+double sf_runs_half(const sf_runs *runs, int64_t row, int figure);
 int64_t sf_runs_count(const sf_runs *runs, sf_sweep_state state);
 
-/* Can the figures of the row be used: done, and not "do not use"? */
+/* True if the figures of the row can be used: done and not "do not use", or predicted. */
 bool sf_runs_usable(const sf_runs *runs, int64_t row);
 
 /* Writes runs.csv aside and renames it. `hash`: of its text. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/sample.h"
+#include "study/sweep/plan.h"
 
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_randist.h>
@@ -15,15 +15,21 @@ int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
     return method == SF_SAMPLING_SALTELLI ? count * (d + 2) : count;
 }
 
-static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
+gsl_rng *sf_sample_random(uint64_t seed, sf_error *err) {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    if (!rng)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
-    gsl_rng_set(rng, seed);
-    for (int i = 0; i < d; i++)
+    if (rng)
+        gsl_rng_set(rng, seed);
+    else
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
+    return rng;
+}
+
+static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
+    gsl_rng *rng = sf_sample_random(seed, err);
+    for (int i = 0; rng && i < d; i++)
         shift[i] = gsl_rng_uniform_pos(rng);
     gsl_rng_free(rng);
-    return SF_OK;
+    return err->status;
 }
 
 /* The sequence, or, with another seed than 1, moved as a whole (modulo 1; Cranley and Patterson 1976,
@@ -88,13 +94,10 @@ sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, dou
         return sobol(d, count, seed, u, err);
     if (method == SF_SAMPLING_SALTELLI)
         return saltelli(d, count, seed, u, err);
-    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    if (!rng)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
-    gsl_rng_set(rng, seed);
-    if (method == SF_SAMPLING_LATIN)
+    gsl_rng *rng = sf_sample_random(seed, err);
+    if (rng && method == SF_SAMPLING_LATIN)
         latin(rng, d, count, u, err);
-    else
+    else if (rng)
         independent(rng, d, count, u);
     gsl_rng_free(rng);
     return err->status;
@@ -147,19 +150,14 @@ static void estimate(const sample *s, const int64_t *pick, double *out) {
 
 /* value [resamples][2 d] */
 static sf_status resample(const sample *s, uint64_t seed, int resamples, double *value, sf_error *err) {
-    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng *rng = sf_sample_random(seed, err);
     int64_t *pick = sf_alloc(err, (unsigned long)s->used, sizeof *pick, "bootstrap samples");
-    if (!rng)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
-    if (rng)
-        gsl_rng_set(rng, seed);
     for (int r = 0; r < resamples && err->status == SF_OK; r++) {
         for (int64_t k = 0; k < s->used; k++)
             pick[k] = (int64_t)gsl_rng_uniform_int(rng, (unsigned long)s->used);
         estimate(s, pick, value + r * 2 * s->d);
     }
-    if (rng)
-        gsl_rng_free(rng);
+    gsl_rng_free(rng);
     free(pick);
     return err->status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/sweep_plot.h"
+#include "study/sweep/sweep_report.h"
 
+#include "io/plain_file.h"
 #include "report/chart.h"
 #include <limits.h>
 #include <math.h>
@@ -35,16 +36,10 @@ static void label_factor(sf_axis *axis, const sf_factor *f) {
     sf_axis_label(axis, "%s", text);
 }
 
-/* The last part of a level's name: a file without its folders. */
-static const char *short_label(const char *label) {
-    const char *slash = strrchr(label, '/');
-    return slash ? slash + 1 : label;
-}
-
 static void level_text(const sf_factor *f, double value, char *text, size_t size) {
     char whole[SF_SWEEP_OVERRIDE_SIZE];
     if (f->words)
-        snprintf(text, size, "%s", short_label(f->label[(int64_t)value]));
+        snprintf(text, size, "%s", sf_path_name(f->label[(int64_t)value])); /* a file without its folders */
     else if (sf_factor_text(f, value, whole, sizeof whole), *f->unit)
         snprintf(text, size, "%.32s %s", whole, f->unit);
     else
@@ -63,8 +58,7 @@ static sf_status choose_series(const sf_plan *p, int other, series *s, sf_error 
     for (int f = 0; f < p->factor_count && s->factor < 0; f++) {
         if (f == other || p->factor[f].uncertain || (other >= 0 && p->block_of[f] == p->block_of[other]))
             continue;
-        if (sf_groups_make(p, f, &s->groups, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_groups_make(p, f, &s->groups, err));
         if (s->groups.count > 1 && s->groups.count <= SERIES)
             s->factor = f;
         else
@@ -194,7 +188,7 @@ static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, ch
             list[columns++] = f;
     if (columns == 0 || figures == 0)
         return SF_OK;
-    bool *shown = sf_analysis_pick(a->done - a->unusable, POINTS, err);
+    bool *shown = sf_analysis_pick(a->usable, POINTS, err);
     sf_chart *chart = sf_chart_new("factors", columns > 1 ? 900 * columns : 1300, 620 * figures, err);
     sf_chart_columns(chart, columns);
     for (int c = 0; c < columns && err->status == SF_OK; c++)
@@ -233,9 +227,8 @@ static sf_status plot_curves(const sf_staging *output, const sf_analysis *a, con
     int64_t at = -1;
     series s;
     bool titled[SERIES] = {false};
-    if (choose_series(a->plan, -1, &s, err) != SF_OK)
-        return err->status;
-    bool *shown = sf_analysis_pick(a->done - a->unusable, CURVES, err);
+    SF_TRY(choose_series(a->plan, -1, &s, err));
+    bool *shown = sf_analysis_pick(a->usable, CURVES, err);
     sf_chart *chart = sf_chart_new("curves", 1600, 900, err);
     sf_panel *panel = sf_chart_panel(chart);
     if (panel) {
@@ -416,7 +409,7 @@ static void put_level_axis(sf_chart *chart, sf_axis *axis, const sf_plan *p, int
     char text[512];
     for (int64_t k = 0; k < b->rows; k++) {
         if (f->words)
-            snprintf(text, sizeof text, "%s", short_label(f->label[(int64_t)f->value[k]]));
+            snprintf(text, sizeof text, "%s", sf_path_name(f->label[(int64_t)f->value[k]]));
         else
             snprintf(text, sizeof text, "%.6g", f->value[k]);
         sf_axis_word(chart, axis, text);
@@ -502,7 +495,7 @@ static sf_status plot_probability(const sf_staging *output, const sf_analysis *a
 sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *a, const char *folder, char *warning,
                         size_t size, sf_error *err) {
     warning[0] = '\0';
-    if (a->done - a->unusable < 1)
+    if (a->usable < 1)
         return SF_OK;
     if (plot_factors(output, a, warning, size, err) == SF_OK &&
         plot_curves(output, a, folder, warning, size, err) == SF_OK &&

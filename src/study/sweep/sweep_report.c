@@ -4,8 +4,7 @@
 #include "build_info.h"
 #include "report/chart.h"
 #include "report/html.h"
-#include "report/json.h"
-#include "study/sweep/sweep_plot.h"
+#include "report/row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +32,8 @@ static void list_text(const sf_factor *f, char *text, size_t size) {
     snprintf(text, size, "%lld values, %.6g to %.6g %s", (long long)f->count, low, high, f->unit);
 }
 
-void sf_sweep_factor_text(const sf_plan *p, int factor, char *text, size_t size) {
+/* Writes the values of a factor in a few words: "5 values, 4 to 6 m/s". */
+static void factor_text(const sf_plan *p, int factor, char *text, size_t size) {
     const sf_factor *f = &p->factor[factor];
     const sf_block *b = &p->block[p->block_of[factor]];
     if (f->distribution)
@@ -52,7 +52,7 @@ void sf_sweep_factor_text(const sf_plan *p, int factor, char *text, size_t size)
 void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
     char text[SF_SWEEP_OVERRIDE_SIZE];
     for (int f = 0; f < p->factor_count; f++) {
-        sf_sweep_factor_text(p, f, text, sizeof text);
+        factor_text(p, f, text, sizeof text);
         fprintf(out, "  %-36s %s\n", p->factor[f].name, text);
     }
     fprintf(out, "%lld runs\n  id", (long long)p->rows);
@@ -76,7 +76,7 @@ static void json_factors(sf_json *j, const sf_plan *p) {
     char text[512];
     sf_json_open(j, "factors", '[');
     for (int f = 0; f < p->factor_count; f++) {
-        sf_sweep_factor_text(p, f, text, sizeof text);
+        factor_text(p, f, text, sizeof text);
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "key", p->factor[f].key);
         sf_json_text(j, "name", p->factor[f].name);
@@ -181,6 +181,7 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
         sf_json_integer(j, "below", c->below);
         sf_json_integer(j, "above", c->above);
         sf_json_integer(j, "unknown", c->unknown);
+        sf_json_integer(j, "within_scatter", c->within);
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -198,6 +199,7 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     sf_json_integer(&j, "done", a->done);
     sf_json_integer(&j, "failed", a->failed);
     sf_json_integer(&j, "open", a->open);
+    sf_json_integer(&j, "predicted", a->predicted);
     sf_json_integer(&j, "do_not_use", a->unusable);
     json_factors(&j, r->plan);
     sf_json_open(&j, "figures", '[');
@@ -205,6 +207,12 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
         sf_json_open(&j, NULL, '{');
         sf_json_text(&j, "figure", r->plan->figure[k].figure);
         sf_json_number(&j, "limit", r->plan->figure[k].limit);
+        if (sf_plan_is_adaptive(r->plan)) {
+            sf_json_number(&j, "accuracy", r->plan->figure[k].accuracy);
+            sf_json_number(&j, "widest_prediction", a->widest[k]);
+            sf_json_integer(&j, "checked_rows", r->runs->checked[k]);
+            sf_json_integer(&j, "held_rows", r->runs->held[k]);
+        }
         json_probability(&j, r, k);
         json_effects(&j, r, k);
         json_indices(&j, r, k);
@@ -223,9 +231,10 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
     char value[64], remark[96];
     sf_html_tiles_begin(page);
     snprintf(value, sizeof value, "%lld of %lld", (long long)a->done, (long long)r->plan->rows);
-    snprintf(remark, sizeof remark, "%lld failed, %lld open", (long long)a->failed, (long long)a->open);
+    snprintf(remark, sizeof remark, "%lld predicted, %lld failed, %lld open", (long long)a->predicted,
+             (long long)a->failed, (long long)a->open);
     sf_html_tile(page, a->failed + a->open > 0 ? "fair" : "good", "runs done", value, remark);
-    snprintf(value, sizeof value, "%lld", (long long)(a->done - a->unusable));
+    snprintf(value, sizeof value, "%lld", (long long)a->usable);
     snprintf(remark, sizeof remark, "%lld with remarks; %lld more are not to be used", (long long)a->remarks,
              (long long)a->unusable);
     sf_html_tile(page, a->unusable > 0 ? "fair" : "good", "runs whose figures count", value, remark);
@@ -251,7 +260,7 @@ static void put_factors(FILE *page, const sf_plan *p) {
     sf_html_table t = sf_html_table_begin(page, "dense", "factor|key of the case|values|role");
     for (int f = 0; f < p->factor_count; f++) {
         sf_html_row(&t);
-        sf_sweep_factor_text(p, f, text, sizeof text);
+        factor_text(p, f, text, sizeof text);
         sf_html_cell(&t, "%s", p->factor[f].name);
         sf_html_cell(&t, "%s", p->factor[f].key);
         sf_html_cell(&t, "%s", text);
@@ -259,6 +268,30 @@ static void put_factors(FILE *page, const sf_plan *p) {
     }
     sf_html_table_end(&t);
     sf_html_paragraph(page, "%lld runs of %s, a row each in runs.csv.", (long long)p->rows, p->case_path);
+}
+
+static void put_predictions(FILE *page, const sf_sweep_report *r) {
+    const sf_analysis *a = r->analysis;
+    if (!sf_plan_is_adaptive(r->plan))
+        return;
+    sf_html_heading(page, "Predicted runs");
+    sf_html_table t = sf_html_table_begin(
+        page, "dense", "figure|>accuracy asked for|>widest half of a 95 % interval|>checks held");
+    for (int k = 0; k < r->plan->figure_count; k++) {
+        sf_html_row(&t);
+        sf_html_cell(&t, "%s", r->plan->figure[k].figure);
+        sf_html_cell(&t, "%.3g %%", 100 * r->plan->figure[k].accuracy);
+        sf_html_cell(&t, a->predicted > 0 ? "%.3g %%" : "–", 100 * a->widest[k]);
+        sf_html_cell(&t, "%d of %d", r->runs->held[k], r->runs->checked[k]);
+    }
+    sf_html_table_end(&t);
+    sf_html_note(
+        page,
+        "%lld of %lld rows were not simulated but predicted from the others; runs.csv has the state and the "
+        "interval of each. The checks are random rows that were simulated and from which nothing was learnt. In "
+        "probabilities a prediction whose interval holds the limit is unknown. %lld rows "
+        "are open: they are expected to fail or to be not to be used.",
+        (long long)a->predicted, (long long)r->plan->rows, (long long)a->open);
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
@@ -291,8 +324,8 @@ static void put_probability_row(sf_html_table *t, const sf_sweep_report *r, int6
         if (isnan(r->plan->figure[k].limit))
             continue;
         sf_html_cell(t, isnan(c->share) ? "–" : "%.3f (%.3f to %.3f)", c->share, c->low, c->high);
-        sf_html_cell(t, "%lld / %lld / %lld", (long long)c->below, (long long)c->above,
-                     (long long)c->unknown);
+        sf_html_cell(t, "%lld / %lld / %lld / %lld", (long long)c->below, (long long)c->above,
+                     (long long)c->unknown, (long long)c->within);
     }
 }
 
@@ -310,9 +343,10 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
         }
     for (int k = 0; k < r->plan->figure_count && used < sizeof columns; k++)
         if (!isnan(r->plan->figure[k].limit))
-            used += (size_t)snprintf(columns + used, sizeof columns - used,
-                                     "%s>P(%s < %g), 95 %% interval|>below / above / unknown",
-                                     used ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
+            used +=
+                (size_t)snprintf(columns + used, sizeof columns - used,
+                                 "%s>P(%s < %g), 95 %% interval|>below / above / unknown / within scatter",
+                                 used ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
     if (used == 0)
         return;
     sf_html_heading(page, "Probability of staying below the limits");
@@ -324,15 +358,16 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
         page,
         "Over the uncertain factors of the plan, all draws equally probable; the interval (Clopper and Pearson) "
         "is that of the number of runs. Unknown ones (failed, or not to be used) are taken as above, and as "
-        "below for the high end of the interval alone. A run that reached the anvil counts as above. It holds neither "
-        "the error of the model nor what the plan does not vary.%s%s",
+        "below for the high end of the interval alone. A run that reached the anvil counts as above. Within scatter: runs "
+        "whose limit another pad or drop may find on the other side, by the scatter of speed and thickness (95 %%). The "
+        "interval holds neither that nor the error of the model nor what the plan does not vary.%s%s",
         q->open > 0 ? " Open runs are not counted." : "",
         q->cells > CELLS_LISTED ? " sweep.json has the other combinations." : "");
 }
 
 /* Means and fits of a part that the outcome has chosen. */
 static void note_missing(FILE *page, const sf_sweep_report *r, const char *what) {
-    int64_t missing = r->plan->rows - (r->analysis->done - r->analysis->unusable);
+    int64_t missing = r->plan->rows - r->analysis->usable;
     if (missing > 0)
         sf_html_note(page,
                      "%lld of %lld runs are left out (failed, not to be used, or open). These are no random "
@@ -476,15 +511,17 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
     bool whole = a->failed + a->open + a->unusable == 0;
     sf_html_banner(
         page,
-        whole                   ? "good"
-        : a->done > a->unusable ? "fair"
-                                : "bad",
+        whole           ? "good"
+        : a->usable > 0 ? "fair"
+                        : "bad",
         whole ? "complete" : "with gaps",
-        "%lld of %lld runs are done, %lld failed, %lld are open; the figures of %lld are not to be used. %s",
-        (long long)a->done, (long long)r->plan->rows, (long long)a->failed, (long long)a->open,
-        (long long)a->unusable, caution);
+        "%lld of %lld runs are done, %lld are predicted, %lld failed, %lld are open; the figures of %lld are not to "
+        "be used. %s",
+        (long long)a->done, (long long)r->plan->rows, (long long)a->predicted, (long long)a->failed,
+        (long long)a->open, (long long)a->unusable, caution);
     put_tiles(page, r);
     put_factors(page, r->plan);
+    put_predictions(page, r);
     put_pictures(page, output);
     put_probability(page, r);
     put_effects(page, r);
@@ -503,6 +540,10 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     fprintf(out, "%lld runs: %lld done, %lld failed, %lld open; the figures of %lld are not to be used\n",
             (long long)r->plan->rows, (long long)a->done, (long long)a->failed, (long long)a->open,
             (long long)a->unusable);
+    for (int k = 0; k < r->plan->figure_count && a->predicted > 0; k++)
+        fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n",
+                (long long)a->predicted, r->plan->figure[k].figure, 100 * a->widest[k],
+                100 * r->plan->figure[k].accuracy);
     int listed = 0;
     for (int64_t row = 0; row < r->runs->count && listed < 5; row++)
         if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)

@@ -22,7 +22,17 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *report);
 /* The factors, their number of values and the number of runs, and the first `rows` of them. */
 void sf_sweep_print_table(FILE *out, const sf_plan *plan, int rows);
 
-/* Writes the values of a factor in a few words: "5 values, 4 to 6 m/s". */
-void sf_sweep_factor_text(const sf_plan *plan, int factor, char *text, size_t size);
+/* The pictures of a sweep, each a gnuplot script that holds its data. */
+
+/* The pictures there may be, NULL at the end, and what each shows. */
+typedef struct sf_sweep_picture {
+    const char *name, *caption;
+} sf_sweep_picture;
+const sf_sweep_picture *sf_sweep_pictures(void);
+
+/* Writes NAME.gp and NAME.png of each picture that the runs allow. `folder`: that of the results' folders
+ * ("DIR/runs"). `warning`: as sf_chart_write. */
+sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *analysis, const char *folder,
+                        char *warning, size_t size, sf_error *err);
 
 #endif

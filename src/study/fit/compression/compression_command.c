@@ -6,25 +6,19 @@
 #include "study/material_file.h"
 #include "study/setup.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { KEY_SIMULATE = 256, KEY_FRICTION };
-
-static const struct argp_option options[] = {
-    {"simulate", KEY_SIMULATE, "CASE", 0,
+static const sf_option options[] = {
+    {"simulate", 0, "CASE",
      "press a cube of the fitted material between platens too, as CASE says "
      "(examples/compression/case.cfg), and compare it with the material point",
-     1},
-    {"friction", KEY_FRICTION, "MU", 0, "of the upper platen in --simulate (default: that of CASE)", 1},
+     .member = offsetof(sf_compression_job, cube.case_path), .group = 1},
+    {"friction", 0, "MU", "of the upper platen in --simulate (default: that of CASE)",
+     .member = offsetof(sf_compression_job, cube.friction), .group = 1},
     {0},
 };
-
-static void take_option(int key, const char *text, void *own, sf_error *err) {
-    sf_compression_job *job = own;
-    (void)err;
-    *(key == KEY_SIMULATE ? &job->cube.case_path : &job->cube.friction) = text;
-}
 
 static const sf_compression_kind *kind_of(const sf_compression_config *config) {
     return config->hyperfoam.terms > 0 ? &sf_compression_hyperfoam
@@ -157,7 +151,6 @@ int sf_fit_compression_main(int argc, char **argv) {
                "report.html, fit.json, fit.png (and .gp), fit.csv and loading_curve.csv. "
                "docs/identification.md explains FIT.cfg and the report.",
         .options = options,
-        .take = take_option,
         .run = run,
     };
     sf_compression_job job = {.cube.log = stdout};

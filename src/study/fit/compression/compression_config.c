@@ -203,7 +203,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
     SF_TRY(sf_config_names(
         file, root,
         hyperfoam ? SF_HYPERFOAM_REQUEST_KEYS
-        : form    ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|" SF_FORM_REQUEST_KEYS
+        : form    ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|cycles|" SF_FORM_REQUEST_KEYS
                   : "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
                     "confidence|specimen|toe_correction|curve_form",
         err));
@@ -230,6 +230,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
     if (!form)
         return SF_OK;
     SF_TRY(read_tests(file, root, "predict", true, c, err));
+    SF_TRY(sf_cycle_record_read(file, root, &c->cycles, err));
     return sf_form_request_read(file, root, c->density, c->damp, c->modulus_range, c->test_count, c->test,
                                 c->predicted_count, c->predicted, &c->form, err);
 }
@@ -311,6 +312,7 @@ sf_status sf_compression_config_read(const char *path, sf_compression_config *co
 
 void sf_compression_config_free(sf_compression_config *config) {
     sf_hyperfoam_request_free(&config->hyperfoam);
+    sf_cycle_record_free(&config->cycles);
     for (int k = 0; k < config->test_count; k++)
         sf_compression_test_free(&config->test[k]);
     for (int k = 0; k < config->predicted_count; k++)

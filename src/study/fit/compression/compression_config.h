@@ -5,6 +5,7 @@
 
 #include "study/fit/compression/law_request.h"
 #include "study/config.h"
+#include "study/fit/compression/cycle_record.h"
 #include "study/fit/compression/compression_test.h"
 #include <stdio.h>
 
@@ -45,6 +46,7 @@ typedef struct sf_compression_config {
     sf_compression_test test[SF_COMPRESSION_TESTS]; /* ascending rate; owned */
     sf_form_request form;           /* which form of the loading curve; its curve is NULL: a free spline */
     sf_hyperfoam_request hyperfoam; /* its terms are 0: another law */
+    sf_cycle_record cycles;         /* several cycles of one specimen; of a form */
     int predicted_count;            /* tests that a form is to predict, not fitted */
     sf_compression_test predicted[SF_COMPRESSION_TESTS]; /* owned */
 } sf_compression_config;

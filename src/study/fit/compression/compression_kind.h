@@ -5,7 +5,7 @@
 #define SF_FIT_COMPRESSION_KIND_H
 
 #include "io/staging.h"
-#include "report/json.h"
+#include "report/row.h"
 #include "study/fit/compression/compression_config.h"
 #include "study/fit/compression/cube.h"
 

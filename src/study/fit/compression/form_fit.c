@@ -377,6 +377,7 @@ static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, cons
     sf_compression_walk walk = {0};
     double peak, energy;
     bool back = fit->has_unloading && t->count > t->loading;
+    free(out->stress);
     out->stress = sf_alloc(err, (unsigned long)t->count, sizeof(double), "test");
     if (err->status != SF_OK)
         return err->status;
@@ -407,6 +408,14 @@ static sf_status follow_all(sf_form_fit *fit, const sf_curve *curve, sf_error *e
     for (int k = 0; k < c->predicted_count; k++)
         SF_TRY(follow_test(fit, curve, &c->predicted[k], &fit->predicted[k], err));
     return SF_OK;
+}
+
+sf_status sf_form_fit_follow(sf_form_fit *fit, sf_error *err) {
+    sf_curve curve = {0};
+    if (sf_curve_build(&fit->card, 0, &curve, err) == SF_OK)
+        follow_all(fit, &curve, err);
+    sf_curve_free(&curve);
+    return err->status;
 }
 
 /* ---- all ---- */
@@ -458,6 +467,7 @@ void sf_form_fit_free(sf_form_fit *fit) {
         free(fit->test[k].stress);
         free(fit->predicted[k].stress);
     }
+    free(fit->cycles.stress);
     sf_foam_card_free(&fit->card);
     *fit = (sf_form_fit){0};
 }

@@ -23,6 +23,16 @@ typedef struct sf_form_test {
     double *stress;                            /* [count] Pa, of the law; owned */
 } sf_form_test;
 
+enum { SF_CYCLE_MEMORY = 3 };
+
+/* The memory in a record of cycles (cycle_fit.h). */
+typedef struct sf_cycle_result {
+    double value[SF_CYCLE_MEMORY],
+        width[SF_CYCLE_MEMORY]; /* of the memory, and half widths; see sf_cycle_fit_name */
+    double rms[2][SF_CYCLES];   /* -, of loading and of unloading of each cycle, over the largest stress */
+    double *stress;             /* [count] Pa, of the law along the record; NULL: there is none; owned */
+} sf_cycle_result;
+
 typedef struct sf_form_fit {
     const sf_compression_config *config; /* borrowed */
     double value[SF_PARAMETER_COUNT];    /* SI */
@@ -33,6 +43,7 @@ typedef struct sf_form_fit {
     sf_form_unloading unloading_of_one; /* with ALPHA = 1 */
     sf_form_unloading unloading;        /* ALPHA too */
     sf_form_test test[SF_COMPRESSION_TESTS], predicted[SF_COMPRESSION_TESTS];
+    sf_cycle_result cycles;
     sf_foam_card card; /* the material; curves owned */
 } sf_form_fit;
 
@@ -40,6 +51,9 @@ typedef struct sf_form_fit {
  * it deviates by more than the tests' largest stress. */
 sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit, sf_error *err);
 void sf_form_fit_free(sf_form_fit *fit);
+
+/* Compares the tests with the present card and values once more. */
+sf_status sf_form_fit_follow(sf_form_fit *fit, sf_error *err);
 
 /* True if the standard error of an unknown, by its number, is below its own value. An unknown at a bound
  * has none. */

@@ -4,7 +4,7 @@
 
 #include "material/low_density_foam.h"
 #include "report/row.h"
-#include "study/fit/compression/form_fit.h"
+#include "study/fit/compression/cycle_fit.h"
 #include <math.h>
 
 static const char *const outputs[] = {"fit.csv", "fit.json", "material.csv", "material.cfg", NULL};
@@ -15,7 +15,8 @@ static const char POOR_WARNING[] =
     "the form does not describe these tests: a deviation exceeds 10 % of the largest stress";
 
 static sf_status run(const sf_compression_config *config, void *fit, sf_error *err) {
-    return sf_form_fit_run(config, fit, err);
+    SF_TRY(sf_form_fit_run(config, fit, err));
+    return sf_cycle_fit_run(fit, err);
 }
 
 static void release(void *fit) {
@@ -49,7 +50,8 @@ static void put_unloading(FILE *out, const sf_form_unloading *u) {
     for (int k = 0; k < 3; k++)
         fprintf(out, "%s %s %.4g%s", k ? "," : "", unloading_names[k], u->value[k],
                 u->at_bound[k] ? AT_BOUND : "");
-    fprintf(out, "; rms %.2g %% of the largest stress, rms of the factor %.2g\n", 100 * u->rms,
+    fprintf(out, "; rms %.2g %% of the largest stress", 100 * u->rms);
+    fprintf(out, isfinite(u->factor_rms) ? ", rms of the factor %.2g\n" : " (in the first of the cycles)\n",
             u->factor_rms);
 }
 
@@ -61,6 +63,25 @@ static void put_test(FILE *out, const sf_form_fit *fit, const sf_compression_tes
         fprintf(out, ", of unloading %.2g %%; energy returned: %.3g %% measured, %.3g %% by the law",
                 100 * f->unloading_rms, 100 * f->returned_measured, 100 * f->returned_fitted);
     fputs("\n", out);
+}
+
+static void put_cycles(FILE *out, const sf_form_fit *fit) {
+    const sf_cycle_record *r = &fit->config->cycles;
+    fprintf(out, "  memory, by cycles 1 to %d of %s:", r->fitted, r->path);
+    for (int k = 0; k < SF_CYCLE_MEMORY; k++)
+        if (isfinite(fit->cycles.width[k]))
+            fprintf(out, "%s %s %.3g +- %.2g", k ? "," : "", sf_cycle_fit_name(k), fit->cycles.value[k],
+                    fit->cycles.width[k]);
+        else
+            fprintf(out, "%s %s %.3g (this record does not tell it)", k ? "," : "", sf_cycle_fit_name(k),
+                    fit->cycles.value[k]);
+    fprintf(out, "\n  largest rms of a cycle, of the largest stress: loading %.2g %%, unloading %.2g %%",
+            100 * sf_cycle_fit_worst(fit, 0, 0, r->fitted), 100 * sf_cycle_fit_worst(fit, 1, 0, r->fitted));
+    if (r->fitted < r->cycles)
+        fprintf(out, "; predicted, cycles %d to %d: loading %.2g %%, unloading %.2g %%", r->fitted + 1,
+                r->cycles, 100 * sf_cycle_fit_worst(fit, 0, r->fitted, r->cycles),
+                100 * sf_cycle_fit_worst(fit, 1, r->fitted, r->cycles));
+    fputs("\n  Not in the law: permanent set, and the fall of the stress at the largest strain.\n", out);
 }
 
 static void title(FILE *out, const void *place) {
@@ -80,9 +101,12 @@ static void describe(FILE *out, const void *place, bool comments) {
             100 * fit->loading_rms, c->form.unknown_count);
     put_unknowns(out, fit);
     if (fit->has_unloading) {
-        put_unloading(out, &fit->unloading_of_one);
+        if (!fit->cycles.stress)
+            put_unloading(out, &fit->unloading_of_one);
         put_unloading(out, &fit->unloading);
     }
+    if (fit->cycles.stress)
+        put_cycles(out, fit);
     for (int k = 0; k < c->test_count; k++)
         put_test(out, fit, &c->test[k], &fit->test[k], "fitted");
     for (int k = 0; k < c->predicted_count; k++)
@@ -130,6 +154,15 @@ static void put_test_points(FILE *file, int number, const sf_compression_test *t
     }
 }
 
+static void put_cycle_points(FILE *file, const sf_form_fit *fit) {
+    const sf_cycle_record *r = &fit->config->cycles;
+    for (int k = 0; k < 2 * r->cycles; k++)
+        for (int i = r->turn[k] + (k > 0); i <= r->turn[k + 1]; i++)
+            fprintf(file, "cycle %d,%s,,%s,%.9g,%.9g,%.9g\n", k / 2 + 1,
+                    k / 2 < r->fitted ? "fitted" : "predicted", k % 2 ? "unloading" : "loading", r->strain[i],
+                    1e-3 * r->stress[i], 1e-3 * fit->cycles.stress[i]);
+}
+
 static void put_points(FILE *file, const void *place) {
     const sf_form_fit *fit = place;
     const sf_compression_config *c = fit->config;
@@ -138,6 +171,31 @@ static void put_points(FILE *file, const void *place) {
         put_test_points(file, k + 1, &c->test[k], fit->test[k].stress, "fitted");
     for (int k = 0; k < c->predicted_count; k++)
         put_test_points(file, c->test_count + k + 1, &c->predicted[k], fit->predicted[k].stress, "predicted");
+    if (fit->cycles.stress)
+        put_cycle_points(file, fit);
+}
+
+static void json_cycles(sf_json *json, const sf_form_fit *fit) {
+    static const char *const branch[] = {"loading_rms", "unloading_rms"};
+    const sf_cycle_record *r = &fit->config->cycles;
+    sf_json_open(json, "memory", '{');
+    sf_json_text(json, "file", r->path);
+    sf_json_integer(json, "cycles", r->cycles);
+    sf_json_integer(json, "fitted", r->fitted);
+    sf_json_integer(json, "pauses", r->pauses);
+    for (int k = 0; k < SF_CYCLE_MEMORY; k++) {
+        char key[64];
+        sf_json_number(json, sf_cycle_fit_name(k), fit->cycles.value[k]);
+        snprintf(key, sizeof key, "%s_half_width", sf_cycle_fit_name(k));
+        sf_json_number(json, key, fit->cycles.width[k]);
+    }
+    for (int b = 0; b < 2; b++) {
+        sf_json_open(json, branch[b], '[');
+        for (int k = 0; k < r->cycles; k++)
+            sf_json_number(json, NULL, fit->cycles.rms[b][k]);
+        sf_json_close(json, ']');
+    }
+    sf_json_close(json, '}');
 }
 
 static void json_unknowns(sf_json *json, const sf_form_fit *fit) {
@@ -212,6 +270,8 @@ static void put_json(sf_json *json, const void *place, const char *path) {
         json_unloading(json, "unloading_with_ALPHA_1", &fit->unloading_of_one);
         json_unloading(json, "unloading", &fit->unloading);
     }
+    if (fit->cycles.stress)
+        json_cycles(json, fit);
     json_tests(json, fit, "tests", c->test_count, c->test, fit->test);
     json_tests(json, fit, "predicted", c->predicted_count, c->predicted, fit->predicted);
 }

@@ -185,9 +185,10 @@ static sf_status warn(const sf_sink *sink, const models *all, sf_error *err) {
                          sf_model_label(&all->input[m], text, sizeof text), all->failure[m].text);
         else if (!all->fit[m].result.converged) {
             open++;
-            sf_sink_tell(sink, SF_WARNING, "%s%snot converged after %d iterations",
+            sf_sink_tell(sink, SF_WARNING, "%s%snot converged after %d iterations: %s",
                          all->count > 1 ? sf_model_label(&all->input[m], text, sizeof text) : "",
-                         all->count > 1 ? ": " : "", all->fit[m].result.iterations);
+                         all->count > 1 ? ": " : "", all->fit[m].result.iterations,
+                         all->fit[m].result.reason);
         }
     if (open > 0)
         SF_FAIL(err, SF_ERR_NUMERIC,

@@ -12,8 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_ITERATIONS = 8, EXACT_ITERATIONS = 100 /* of a fit without simulations */ };
-static const double TOLERANCE = 0.1;  /* of a standard deviation: the last step */
+enum { MAX_ITERATIONS = 30, EXACT_ITERATIONS = 100 /* of a fit without simulations */ };
+static const double TOLERANCE = 0.1; /* of a standard deviation: the last step */
+/* The bound of the indentation lies a little before the check of the anvil refuses the drop; its logarithm
+ * has this standard deviation. */
+static const double BOUND = 0.99, BOUND_SD = 0.003;
 static const double BIN_WIDTH = 0.05; /* of strain */
 
 _Static_assert(SF_MAPPING_MAX_PARAMETERS >= SF_FIT_MAX_UNKNOWNS + SF_SIGNAL_CHAIN + SF_FIT_MAX_DROPS,
@@ -87,10 +90,25 @@ static sf_status pass_chain(const sf_signal_chain *chain, const sf_series *curve
     return sf_columns_read(passed, figures, err);
 }
 
-/* Scaled responses of one drop from its figures and its curve, which has CFC 1000, as the chain reads it. */
+/* Largest indentation (m) of a missile with this curve, which begins in free flight and touches at 0. */
+static double deepest(const sf_series *curve, double speed) {
+    double depth = 0, largest = 0;
+    for (int64_t i = 1; i < curve->count && speed > 0; i++) {
+        double dt = curve->time[i] - curve->time[i - 1];
+        if (curve->time[i] <= 0)
+            continue;
+        depth += dt * speed;
+        speed += dt * SF_STANDARD_GRAVITY * (1 - 0.5 * (curve->value[i] + curve->value[i - 1]));
+        largest = fmax(largest, depth);
+    }
+    return largest;
+}
+
+/* Scaled responses of one drop from its figures, its curve, which has CFC 1000, as the chain reads it, and
+ * its indentation over the thickness. */
 static sf_status respond(const sf_fit_drop *drop, const sf_signal_chain *chain,
-                         const sf_columns_figures *figures, const sf_series *curve, double *y,
-                         sf_error *err) {
+                         const sf_columns_figures *figures, const sf_series *curve, double indentation,
+                         double *y, sf_error *err) {
     sf_series filtered = {0}, passed = {0};
     sf_columns_figures read = *figures;
     bool lower = drop->sample_class > 0 && drop->sample_class < 1000;
@@ -99,6 +117,7 @@ static sf_status respond(const sf_fit_drop *drop, const sf_signal_chain *chain,
         curve = &passed;
     if (err->status == SF_OK)
         sf_drop_values_scale(&read, y);
+    y[SF_FIT_SAMPLES + drop->samples] = log(indentation);
     if (drop->samples > 0 && err->status == SF_OK &&
         (!lower || filter_like_measured(curve, drop->sample_class, &filtered, err) == SF_OK))
         take_samples(drop, lower ? &filtered : curve, &y[SF_FIT_SAMPLES], err);
@@ -111,7 +130,7 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
     fit->row[0] = in->joint.rows;
     for (int d = 0; d < in->drop_count; d++) {
-        fit->row[d + 1] = fit->row[d] + SF_FIT_SAMPLES + in->drop[d].samples;
+        fit->row[d + 1] = fit->row[d] + SF_FIT_SAMPLES + in->drop[d].samples + 1;
         fit->measured_drops += !in->drop[d].predicted;
     }
     fit->parameters = in->unknown_count;
@@ -126,9 +145,12 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
     fit->sd = sf_alloc(err, n, sizeof(double), "responses");
     fit->without = sf_alloc(err, n, sizeof(double), "responses");
     fit->response_sd = sf_alloc(err, n, sizeof(double), "responses");
+    fit->bound_sd = sf_alloc(err, n, sizeof(double), "responses");
     if (err->status != SF_OK)
         return err->status;
     sf_joint_data(&in->joint, fit->measured, fit->sd);
+    for (unsigned long k = 0; k < n; k++)
+        fit->bound_sd[k] = INFINITY;
     for (int d = 0; d < in->drop_count; d++) {
         const sf_fit_drop *drop = &in->drop[d];
         double *measured = &fit->measured[fit->row[d]], *sd = &fit->sd[fit->row[d]];
@@ -141,6 +163,10 @@ static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
             measured[SF_FIT_SAMPLES + k] = drop->sample_value[k] / drop->sample_scale;
             sd[SF_FIT_SAMPLES + k] = drop->sample_sd;
         }
+        int bound = SF_FIT_SAMPLES + drop->samples;
+        measured[bound] = log(BOUND * sf_good_run_rule_get(SF_CHECK_anvil)->refuse);
+        sd[bound] = INFINITY;
+        fit->bound_sd[fit->row[d] + bound] = BOUND_SD;
     }
     return SF_OK;
 }
@@ -179,7 +205,8 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
         if (u && fit->speed[d] >= 0)
             columns.speed *= exp(u[fit->speed[d]]);
         if (sf_columns_respond(&columns, &law, &figures, &curve, err) == SF_OK &&
-            respond(drop, &chain, &figures, &curve, &y[fit->row[d]], err) == SF_OK)
+            respond(drop, &chain, &figures, &curve, deepest(&curve, columns.speed) / columns.thickness,
+                    &y[fit->row[d]], err) == SF_OK)
             check_values(drop, &y[fit->row[d]], "its columns end", "this foam does not let go", err);
         sf_series_free(&curve);
         if (drop->predicted && err->status == SF_ERR_NUMERIC) { /* the foam may be too soft for this one */
@@ -196,35 +223,35 @@ static uint64_t hash_inputs(const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     sf_foam_card base = in->form.base;
     const sf_material material = sf_foam_material(&base);
-    uint64_t hash = sf_hash(SF_HASH_START, &fit->memory->program, sizeof fit->memory->program);
+    uint64_t hash = sf_hash_identity(SF_HASH_START, &fit->memory->program, sizeof fit->memory->program);
     hash = sf_material_hash(hash, &material);
-    hash = sf_hash(hash, in->form.curve->name, strlen(in->form.curve->name));
-    hash = sf_hash(hash, &in->form.solid_density, sizeof in->form.solid_density);
-    hash = sf_hash(hash, in->start, sizeof in->start);
-    hash = sf_hash(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
+    hash = sf_hash_identity(hash, in->form.curve->name, strlen(in->form.curve->name));
+    hash = sf_hash_identity(hash, &in->form.solid_density, sizeof in->form.solid_density);
+    hash = sf_hash_identity(hash, in->start, sizeof in->start);
+    hash = sf_hash_identity(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
     hash = sf_joint_hash(hash, &in->joint);
-    hash = sf_hash(hash, &in->chain, sizeof in->chain);
-    hash = sf_hash(hash, fit->chain, sizeof fit->chain);
+    hash = sf_hash_identity(hash, &in->chain, sizeof in->chain);
+    hash = sf_hash_identity(hash, fit->chain, sizeof fit->chain);
     for (int d = 0; d < in->drop_count; d++) {
         const sf_fit_drop *drop = &in->drop[d];
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) { /* which must be defined */
             bool known = !isnan(drop->value[kind]);
-            hash = sf_hash(hash, &known, sizeof known);
+            hash = sf_hash_identity(hash, &known, sizeof known);
         }
-        hash = sf_hash(hash, &drop->samples, sizeof drop->samples);
-        hash = sf_hash(hash, &drop->sample_scale, sizeof drop->sample_scale);
-        hash = sf_hash(hash, &drop->sample_class, sizeof drop->sample_class);
-        hash = sf_hash(hash, drop->sample_time, (size_t)drop->samples * sizeof *drop->sample_time);
+        hash = sf_hash_identity(hash, &drop->samples, sizeof drop->samples);
+        hash = sf_hash_identity(hash, &drop->sample_scale, sizeof drop->sample_scale);
+        hash = sf_hash_identity(hash, &drop->sample_class, sizeof drop->sample_class);
+        hash = sf_hash_identity(hash, drop->sample_time, (size_t)drop->samples * sizeof *drop->sample_time);
     }
     return hash;
 }
 
 static uint64_t hash_columns(uint64_t hash, const sf_columns *c) {
     const double missile[] = {c->mass, c->speed, c->thickness};
-    hash = sf_hash(hash, missile, sizeof missile);
-    hash = sf_hash(hash, &c->count, sizeof c->count);
-    hash = sf_hash(hash, c->area, (size_t)c->count * sizeof *c->area);
-    return sf_hash(hash, c->gap, (size_t)c->count * sizeof *c->gap);
+    hash = sf_hash_identity(hash, missile, sizeof missile);
+    hash = sf_hash_identity(hash, &c->count, sizeof c->count);
+    hash = sf_hash_identity(hash, c->area, (size_t)c->count * sizeof *c->area);
+    return sf_hash_identity(hash, c->gap, (size_t)c->count * sizeof *c->gap);
 }
 
 enum { AS_GIVEN = -2, NOWHERE = -1 }; /* in place of the bin in which the curve is raised */
@@ -234,9 +261,9 @@ static uint64_t key_of(const sf_drop_fit *fit, int first, int last, int bin, con
     const int which[] = {first, last, bin, fit->parameters};
     if (!fit->memory)
         return 0;
-    uint64_t hash = sf_hash(fit->inputs, which, sizeof which);
-    hash = sf_hash(hash, u, (size_t)fit->parameters * sizeof *u);
-    hash = sf_hash(hash, &fit->speed[first], (size_t)(last - first) * sizeof *fit->speed);
+    uint64_t hash = sf_hash_identity(fit->inputs, which, sizeof which);
+    hash = sf_hash_identity(hash, u, (size_t)fit->parameters * sizeof *u);
+    hash = sf_hash_identity(hash, &fit->speed[first], (size_t)(last - first) * sizeof *fit->speed);
     for (int d = first; d < last; d++)
         hash = hash_columns(hash, &fit->columns[d]);
     return hash;
@@ -315,7 +342,8 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
                                         .hic_window = result->hic_window,
                                         .v_rebound = result->v_rebound,
                                         .contact_time = result->contact_time};
-    if (respond(drop, &fit->chain_now, &figures, &result->curve, &y[fit->row[d]], err) == SF_OK)
+    if (respond(drop, &fit->chain_now, &figures, &result->curve,
+                result->max_indentation / fit->columns[d].thickness, &y[fit->row[d]], err) == SF_OK)
         check_values(drop, &y[fit->row[d]], "its simulation ends", "raise solver.end_time of its case", err);
     sf_series_free(&last->curve);
     *last = (sf_fit_simulated){.max_local_strain = result->max_local_strain,
@@ -711,11 +739,12 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
                                   .first_offset = fit->earlier ? fit->earlier->result.offset : NULL,
                                   .measured = fit->measured,
                                   .sd = fit->sd,
+                                  .bound_sd = fit->bound_sd,
                                   .surrogate = surrogate,
                                   .simulate = simulate,
                                   .context = fit,
                                   .max_iterations = exact ? EXACT_ITERATIONS : MAX_ITERATIONS,
-                                  .exact = exact,
+                                  .wide = true,
                                   .tolerance = TOLERANCE,
                                   .progress = report_progress};
     if (in->coarse_count > 0 && !fit->earlier)
@@ -737,4 +766,5 @@ void sf_drop_fit_free(sf_drop_fit *fit) {
     free(fit->sd);
     free(fit->without);
     free(fit->response_sd);
+    free(fit->bound_sd);
 }

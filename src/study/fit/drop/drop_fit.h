@@ -3,7 +3,8 @@
  * mapping, and the conclusions from the result.
  *
  * Scaled variables: u = ln(value / SI unit) of the unknown parameters; responses per drop: logarithms
- * of the numbers of kinds.h, then the samples of a measured curve over its peak. Measured or not, every drop
+ * of the numbers of kinds.h, then the samples of a measured curve over its peak, then the logarithm of the
+ * largest indentation over the thickness, which is no datum but bounded. Measured or not, every drop
  * has the numbers; one that is not defined (no rebound within the end time) and was not measured is NaN. */
 #ifndef SF_FIT_DROP_FIT_H
 #define SF_FIT_DROP_FIT_H
@@ -47,6 +48,7 @@ typedef struct sf_drop_fit {
     int chain[SF_SIGNAL_CHAIN];  /* index of the chain's numbers among them; -1: it is known */
     int speed[SF_FIT_MAX_DROPS]; /* index of the drop's speed among them; -1: it is known */
     double *measured, *sd;       /* [responses] scaled; sd INFINITY where nothing was measured; owned */
+    double *bound_sd;            /* [responses] of sf_mapping_problem; owned */
     sf_columns columns[SF_FIT_MAX_DROPS];
     bool borrowed[SF_FIT_MAX_DROPS]; /* columns of the coarse drop, until the drop itself was simulated */
     sf_fit_simulated simulated[SF_FIT_MAX_DROPS];

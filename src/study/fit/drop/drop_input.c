@@ -9,7 +9,6 @@
 
 #include "io/plain_file.h"
 #include "post/figures/compare.h"
-#include "post/figures/record.h"
 
 void sf_drop_values_scale(const sf_columns_figures *v, double y[SF_FIT_SAMPLES]) {
     y[SF_FIT_A_MAX] = log(v->a_max_g);

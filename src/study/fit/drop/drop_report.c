@@ -21,21 +21,22 @@ static void put_misfit(FILE *f, const sf_drop_fit *fit) {
             fit->result.scale);
 }
 
-/* The marginal standard deviations of the last step can hide a fall of the objective along correlated
- * parameters: what is left of it is said. */
-static void describe_gain(const sf_drop_fit *fit, char *text, size_t size) {
+/* Why the fit has not converged. The marginal standard deviations of the last step can hide a fall of the
+ * objective along correlated parameters: what is left of it is said. */
+static void describe_end(const sf_drop_fit *fit, char *text, size_t size) {
     static const double LEAST = 0.1;
-    *text = '\0';
-    if (fit->result.gain > LEAST)
-        snprintf(text, size, "; the corrected columns expect the objective to fall by %.2g more",
-                 fit->result.gain);
+    const sf_mapping_result *r = &fit->result;
+    int used = snprintf(text, size, "%s%s", r->reason ? "; " : "", r->reason ? r->reason : "");
+    if (r->gain > LEAST)
+        snprintf(&text[used], size - (size_t)used,
+                 "; the corrected columns expect the objective to fall by %.2g more", r->gain);
 }
 
 static void put_banner(FILE *f, const sf_drop_fit *fit) {
     double low, high;
     bool misses = fit->result.scale > 1;
-    char coarse[64] = "", gain[96];
-    describe_gain(fit, gain, sizeof gain);
+    char coarse[64] = "", end[192];
+    describe_end(fit, end, sizeof end);
     if (fit->coarse_iterations > 0)
         snprintf(coarse, sizeof coarse, " and %d with the coarse mesh of coarse_set", fit->coarse_iterations);
     sf_report_informed_strains(fit, &low, &high);
@@ -48,8 +49,8 @@ static void put_banner(FILE *f, const sf_drop_fit *fit) {
         "After %d simulations of every measured drop%s; misfit %.2f with %.1f degrees of freedom%s%s. The drops "
         "inform the curve between strains of %.2f and %.2f.",
         fit->result.iterations, coarse, fit->result.misfit, fit->result.freedom,
-        misses ? ", more than the stated standard deviations allow: the intervals are widened" : "", gain,
-        low, high);
+        misses ? ", more than the stated standard deviations allow: the intervals are widened" : "", end, low,
+        high);
 }
 
 static void put_picture(FILE *f, const sf_staging *output) {
@@ -100,6 +101,8 @@ static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *avera
     sf_json_text(&j, "input", input_path);
     sf_json_text(&j, "input_text", fit->input->text);
     sf_json_bool(&j, "converged", fit->result.converged);
+    if (fit->result.reason)
+        sf_json_text(&j, "reason", fit->result.reason);
     sf_json_integer(&j, "iterations", fit->result.iterations);
     sf_json_integer(&j, "coarse_iterations", fit->coarse_iterations);
     sf_json_number(&j, "expected_gain", fit->result.gain);
@@ -130,15 +133,15 @@ sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *av
 
 void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
     double low, high;
-    char gain[96];
+    char end[192];
     sf_report_informed_strains(fit, &low, &high);
-    describe_gain(fit, gain, sizeof gain);
+    describe_end(fit, end, sizeof end);
     fprintf(f, "\n%s after %d iterations", fit->result.converged ? "Converged" : "NOT converged",
             fit->result.iterations);
     if (fit->coarse_iterations > 0)
         fprintf(f, " (and %d with coarse_set)", fit->coarse_iterations);
     fprintf(f, "; misfit %.2f with %.1f degrees of freedom%s\n", fit->result.misfit, fit->result.freedom,
-            gain);
+            end);
     sf_report_parameters_print(f, fit);
     sf_report_chain_print(f, fit);
     sf_report_drops_print(f, fit);

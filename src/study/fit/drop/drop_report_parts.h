@@ -3,7 +3,7 @@
 #define SF_STUDY_FIT_DROP_DROP_REPORT_PARTS_H
 #include "io/staging.h"
 #include "report/html.h"
-#include "report/json.h"
+#include "report/row.h"
 #include "study/fit/drop/average.h"
 #include "study/fit/drop/drop_fit.h"
 

@@ -471,7 +471,7 @@ static sf_status read_options(const sf_config *config, const config_setting_t *r
     in->model_count = list ? config_setting_length(list) : 1;
     if (list && config_setting_get_member(root, "curve_form"))
         return sf_config_refuse(config, list, err, "give either forms or curve_form");
-    if (list && !in->posterior)
+    if (in->model_count > 1 && !in->posterior)
         return sf_config_refuse(config, list, err,
                                 "several forms are compared by their posteriors: posterior must be true");
     for (int k = 0; k < in->model_count && list && err->status == SF_OK; k++)

@@ -4,7 +4,7 @@
 #ifndef SF_FIT_DROP_INPUT_H
 #define SF_FIT_DROP_INPUT_H
 
-#include "study/drop.h"
+#include "study/batch.h"
 #include "study/fit/drop/drop_input.h"
 #include "study/fit/drop/joint.h"
 #include "study/fit/drop/parameters.h"

@@ -5,7 +5,7 @@
 #define SF_FIT_DROP_INFERENCE_REPORT_H
 
 #include "study/fit/drop/average.h"
-#include "report/json.h"
+#include "report/row.h"
 #include "io/staging.h"
 
 /* "gas_solid, Maxwell branch": of the form and the rate terms of a model. Returns `text`. */

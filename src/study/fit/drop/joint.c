@@ -79,14 +79,14 @@ uint64_t sf_joint_hash(uint64_t hash, const sf_joint *joint) {
     for (int t = 0; t < joint->test_count; t++) {
         const sf_joint_test *test = &joint->test[t];
         const double numbers[] = {test->rate, test->turn, test->scale, test->count, test->loading};
-        hash = sf_hash(hash, numbers, sizeof numbers);
-        hash = sf_hash(hash, test->strain, (size_t)test->count * sizeof *test->strain);
+        hash = sf_hash_identity(hash, numbers, sizeof numbers);
+        hash = sf_hash_identity(hash, test->strain, (size_t)test->count * sizeof *test->strain);
     }
     for (int c = 0; c < joint->cushion_count; c++) {
         const sf_joint_cushion *cushion = &joint->cushion[c];
         const double numbers[] = {cushion->thickness, cushion->height, cushion->count};
-        hash = sf_hash(hash, numbers, sizeof numbers);
-        hash = sf_hash(hash, cushion->static_stress, (size_t)cushion->count * sizeof(double));
+        hash = sf_hash_identity(hash, numbers, sizeof numbers);
+        hash = sf_hash_identity(hash, cushion->static_stress, (size_t)cushion->count * sizeof(double));
     }
     return hash;
 }

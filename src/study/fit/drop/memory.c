@@ -33,7 +33,7 @@ static size_t measure(const char *record, size_t left) {
         return 0;
     size_t length = sizeof(head) + (size_t)head_at(record).count * sizeof(double);
     memcpy(&hash, record + length, sizeof hash);
-    return hash == sf_hash(SF_HASH_START, record, length) ? length + sizeof hash : 0;
+    return hash == sf_hash_identity(SF_HASH_START, record, length) ? length + sizeof hash : 0;
 }
 
 /* Opened and locked; -1 on failure. */
@@ -101,7 +101,7 @@ void sf_fit_memory_add(sf_fit_memory *m, uint64_t key, size_t count, const doubl
         const head h = {key, count};
         memcpy(record, &h, sizeof h);
         memcpy(record + sizeof h, value, count * sizeof *value);
-        uint64_t hash = sf_hash(SF_HASH_START, record, length);
+        uint64_t hash = sf_hash_identity(SF_HASH_START, record, length);
         memcpy(record + length, &hash, sizeof hash);
     }
     if (record && pwrite(m->file, record, size, (off_t)m->end) == (ssize_t)size) {

@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A case file with values of one's own, and its drop."""
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import hashlib
+import os
+import re
+import shutil
+import tempfile
+import warnings
+from pathlib import Path
+from typing import Any, Callable, Iterator, Mapping, MutableMapping, NamedTuple
+
+import h5py
+import numpy as np
+
+from . import library, programs
+from .drop import Drop, as_str
+from .errors import Error, InputError, NumericError, SoftfallWarning, find
+
+RUNS = "softfall-runs"  # the folder of runs without a name
+_LINE = re.compile(r'(\S+)\s+("(?:[^"\\]|\\.)*"|\[[^]]*\]|\([^)]*\)|\{[^}]*\}|\S+)')
+_MEMBER = re.compile(r'([\w-]+) = ("(?:[^"\\]|\\.)*"|[^;]+);')
+_PROGRESS = re.compile(r"t\s+([\d.]+) / \S+ ms\s+step\s+(\d+)\s+dt\s+([\d.]+) us\s+(?:a|force)\s+(-?[\d.]+) (g|N)"
+                       r"\s+indentation\s+(-?[\d.]+) mm\s+compression (-?[\d.]+)\s+energy ([-+][\d.]+) %")
+
+
+class Step(NamedTuple):
+    """Progress of a drop, rounded as softfall-solve prints it; `drop.history` has every step with all digits."""
+
+    time: float  # s
+    step: int
+    time_step: float  # s
+    load: float  # g: the deceleration; N: the contact force of a prescribed motion
+    indentation: float  # m
+    compression: float  # the largest, 1 - smallest stretch
+    energy_error: float  # relative
+
+
+def as_text(value: Any) -> str:
+    """Returns a value as --set takes it.
+
+    >>> as_text(True), as_text(0.5), as_text(np.float64(2)), as_text("5.2 m/s"), as_text([1, 2.5]), as_text(["1 ms", "2 ms"])
+    ('true', '0.5', '2.0', '5.2 m/s', '[1, 2.5]', '["1 ms", "2 ms"]')
+    """
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value) if isinstance(os.fspath(value), str) else os.fsdecode(value)
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(f'"{item}"' if isinstance(item, str) else as_text(item) for item in value) + "]"
+    raise TypeError(f"a value is a text, a number, True or False, or a list of them, not {type(value).__name__}")
+
+
+def _as_value(text: str) -> Any:
+    """Returns a value of the list of parameters as a Python value; lists and groups stay texts."""
+    if text.startswith('"'):
+        return re.sub(r"\\(.)", r"\1", text[1:-1])
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return {"true": True, "false": False, "(absent)": None}.get(text, text)
+
+
+class Case(MutableMapping[str, Any]):
+    """A case file (docs/case.md) whose values can be changed; the file stays as it is.
+
+    Keys are those of the file, `group.key`, and `geometry.parameters.NAME` of a geometry. A value is what --set takes: a text with
+    its unit, such as "5.2 m/s", a number, a bool, a list, or "@file" for a whole group. An unknown key or a wrong value is an
+    InputError with the sentence of softfall-pre at once; `update` sets several values that are right only together. A relative path
+    in a value begins in the present folder, one in the file in that of the file.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], values: Mapping[str, Any] | None = None) -> None:
+        self.path = Path(path).absolute()
+        self._overrides: dict[str, str] = {}
+        self._take({})
+        self.update(values or {})
+
+    def __repr__(self) -> str:
+        return f"softfall.Case({str(self.path)!r}, {self._overrides!r})"
+
+    @property
+    def overrides(self) -> dict[str, str]:
+        """The values that differ from the file, as --set takes them."""
+        return dict(self._overrides)
+
+    def copy(self) -> Case:
+        """Returns a case of its own with the same values."""
+        return Case(self.path, self._overrides)
+
+    def _texts(self) -> list[str]:
+        return [f"{key}={text}" for key, text in self._overrides.items()]
+
+    def _take(self, values: Mapping[str, Any]) -> None:
+        """Sets values if the case is right with them."""
+        trial = dict(self._overrides)
+        for key, value in values.items():
+            if not isinstance(key, str) or not re.fullmatch(r"[\w.-]+", key):
+                raise InputError(f"{key!r} is no key of a case, such as missile.velocity")
+            trial.pop(key, None)  # of two that touch the same value, such as a group and its key, the later one counts
+            trial[key] = as_text(value)
+        listing = library.case_parameters(str(self.path), [f"{key}={text}" for key, text in trial.items()])
+        self._overrides = trial
+        self._values: dict[str, Any] = {}
+        for line in listing.splitlines():
+            name, text = _LINE.match(line).groups()  # type: ignore[union-attr]
+            self._values[name] = _as_value(text)
+            if text.startswith("{"):
+                self._values.update((f"{name}.{key}", _as_value(item)) for key, item in _MEMBER.findall(text))
+
+    def __getitem__(self, key: str) -> Any:
+        """Returns the value of a key, also a default: a text with its unit, a number or a bool; None if it is absent."""
+        return find(self._values, "key of the case", key)
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        self._take({key: value})
+
+    def update(self, *others: Any, **more: Any) -> None:
+        """Sets several values at once; either all are right, or none is set."""
+        values = dict(*others, **more)
+        if values:
+            self._take(values)
+
+    def __delitem__(self, key: str) -> None:
+        """Takes back a value that was set: that of the file holds again."""
+        value = find(self._overrides, "value that was set", key)
+        del self._overrides[key]
+        try:
+            self._take({})
+        except Exception:
+            self._overrides[key] = value
+            raise
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def run(self, threads: int | None = None, on_step: Callable[[Step], object] | None = None,
+            output: str | os.PathLike[str] | None = None, force: bool = False) -> Drop:
+        """Simulates the drop and returns it.
+
+        `threads`: of the solver, all processors by default; the results do not depend on it. `on_step`: called some times a second
+        with a `Step`; what it raises ends the run. `output`: a folder for model.h5, results.h5 and `out/`, the files of
+        softfall-post; without one, a folder below softfall-runs/ that is named after the content of the model.
+
+        A drop that is there, of the same model by the same programs, is not computed again. After Ctrl-C, or an exception of
+        `on_step`, the run ends with a checkpoint, and the same call resumes it. `force` computes it anew, and replaces results of
+        another model in `output`. A failure of the solution is a NumericError.
+        """
+        if threads is not None and (isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1):
+            raise InputError(f"threads: {threads!r} is not a number from 1 on")
+        if on_step is not None and not callable(on_step):
+            raise InputError(f"on_step: {on_step!r} is no function")
+        top = Path(RUNS if output is None else output).absolute()
+        with _folder(top), tempfile.TemporaryDirectory(prefix=".softfall-", dir=top) as scratch:
+            model = Path(scratch) / "model.h5"
+            share = [f"--share={top / 'shared'}"] if output is None else []
+            programs.run("pre", [str(self.path), f"--output={model}", *share, *(f"--set={text}" for text in self._texts())],
+                         threads=threads)
+            folder = top if output is not None else top / f"{self._name()}-{_state(model)['model']}"
+            with _folder(folder), open(folder / "lock", "w", encoding="utf-8") as lock:
+                try:  # the child inherits the lock: nobody else takes the folder while it runs
+                    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    warnings.warn(f"another process runs the drop in {folder}: this one waits for it", SoftfallWarning, stacklevel=2)
+                    fcntl.flock(lock, fcntl.LOCK_EX)
+                return _solve(model, folder, threads, on_step, force, lock.fileno())
+
+    def _name(self) -> str:
+        generic = self.path.stem == "case"
+        return re.sub(r"[^\w.-]", "_", self.path.parent.name if generic else self.path.stem) or "case"
+
+
+def example(name: str, values: Mapping[str, Any] | None = None) -> Case:
+    """Returns the case of an example that comes with softfall, such as "eva50-v4.5"; `softfall-new --list` says what they are.
+
+    >>> example("eva50-v4.5")["missile.velocity"]
+    '4.5 m/s'
+    """
+    folder = programs.folder().parent / "share/softfall/examples"
+    known = {path.parent.name: path for path in sorted(folder.glob("*/case.cfg"))}
+    return Case(find(known, "example", name), values)
+
+
+@contextlib.contextmanager
+def _folder(path: Path) -> Iterator[None]:
+    """Makes a folder in which the caller then writes; it goes again if nothing was written."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=path).close()
+    except OSError as error:
+        raise Error(f"the folder {path} cannot be written to: {error.strerror}", 3) from None
+    try:
+        yield
+    finally:
+        with contextlib.suppress(OSError):
+            path.rmdir()
+
+
+def _state(path: Path) -> dict[str, str]:
+    """Returns what tells a model, or the results of one, from others: `model`, also `revision` and `status`; {} without the file."""
+    if not path.exists():
+        return {}
+    try:
+        with h5py.File(path, "r") as file:
+            def text(name: str) -> str:
+                return as_str(file[name][()]) if name in file else ""
+            content = as_str(file.attrs["content_hash"]) if "content_hash" in file.attrs else text("provenance/model_hash")
+            values = text("provenance/model/parameters") or text("provenance/parameters")
+            return {"model": hashlib.sha256(f"{content} {values}".encode()).hexdigest()[:16],
+                    "revision": text("provenance/git_revision"), "status": text("summary/status") or "interrupted"}
+    except OSError:
+        return {"model": "damaged"}
+
+
+def _solve(model: Path, folder: Path, threads: int | None, on_step: Callable[[Step], object] | None, force: bool,
+           lock: int) -> Drop:
+    """Moves the model into the folder and solves it there, unless that is done; resumes a run of it."""
+    results, checkpoint = folder / "results.h5", folder / "results.h5.restart"
+    ours, revision = _state(model)["model"], library.version().split("(")[1].rstrip(")")
+    done, built = _state(results), _state(folder / "model.h5")
+    strange = checkpoint.exists() and not built or any(state and state["model"] != ours for state in (done, built))
+    if strange and not force:
+        raise InputError(f"{folder} holds a run of other values; force=True replaces it, another output keeps it")
+    if not force and done.get("status") in ("finished", "rebound") and done.get("revision") == revision:
+        return Drop(results, folder / "out")
+    shutil.move(model, folder / "model.h5")
+    resumes = not force and checkpoint.exists() and done.get("status", "interrupted") == "interrupted"
+    where = [f"--restart={results}", str(folder / "model.h5")] if resumes else [str(folder / "model.h5"), f"--output={results}",
+                                                                               "--force"]
+
+    def tell(line: str) -> None:
+        found = _PROGRESS.search(line)
+        if found and on_step:
+            t, step, dt, load, _, depth, compression, energy = found.groups()
+            on_step(Step(float(t) / 1e3, int(step), float(dt) / 1e6, float(load), float(depth) / 1e3, float(compression),
+                         float(energy) / 100))
+
+    try:
+        programs.run("solve", [*where, *([f"--threads={threads}"] if threads else [])], terminal=on_step is not None, keep=[lock],
+                     on_line=tell)
+    except NumericError as error:
+        error.results = str(results) if results.exists() else None
+        raise
+    return Drop(results, folder / "out")

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The result of a protocol, of measured and of simulated drops alike."""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from .curves import STANDARD_GRAVITY
+from .protocol import Protocol
+from .protocol_drops import Drop, Drops, Search, Spot, figures_of
+
+
+@dataclass
+class Line:
+    """A row of the result: what it is of, the figure, its value with a 95 % interval (NaN: none), the limit, and whether it is met."""
+
+    of: str
+    figure: str
+    value: float
+    limit: float | None = None
+    passed: bool | None = None
+    low: float = math.nan
+    high: float = math.nan
+    note: str = ""
+
+
+@dataclass
+class Outcome:
+    """The result: as it is stated, passed or not (None: not decided), value and interval (m, of a critical height), and its lines.
+
+    `probability` is the share of the draws of a posterior that pass at every spot, with its 95 % interval.
+    """
+
+    stated: str
+    passed: bool | None = None
+    value: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+    lines: list[Line] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    probability: tuple[float, float, float] | None = None
+    meaning: str = "value"  # of the lines' values
+
+
+def judge(p: Protocol, drops: Drops) -> Outcome:
+    """Returns the result of the drops by the rules of the protocol."""
+    made = {"pass": _judge_pass, "critical height": _judge_height, "cushion curve": _judge_cushion}[p.kind](p, drops)
+    made.notes += drops.missing
+    if any("is not simulated" in note for note in drops.missing) and made.passed:
+        made.passed, made.stated = None, made.stated + " in what was simulated; not decided for the rest"
+    return made
+
+
+def _spots(drops: Drops) -> dict[Spot, list[Drop]]:
+    spots: dict[Spot, list[Drop]] = {}
+    for drop in drops.drops:
+        spots.setdefault(drop.spot, []).append(drop)
+    return spots
+
+
+def _counted(p: Protocol, drops: list[Drop]) -> tuple[int, ...]:
+    """Returns the drops that count: of a simulated spot its only drop."""
+    return p.counted if len(drops) == p.count else (drops[0].number,)
+
+
+def _unusable(drops: list[Drop], counted: tuple[int, ...]) -> str:
+    return "; ".join(f"drop {drop.number} is not to be used ({drop.note})" for drop in drops if drop.number in counted and not drop.is_usable)
+
+
+def _judge_pass(p: Protocol, drops: Drops) -> Outcome:
+    made = Outcome("")
+    for spot, group in _spots(drops).items():
+        counted = _counted(p, group)
+        for figure in p.figures:
+            value = figures_of(group, figure.label, counted)
+            passed = None if figure.limit is None or math.isnan(value) else value < figure.limit
+            low, high = _draw_interval(group[0], figure.label)
+            made.lines.append(Line(str(spot), figure.label, value, figure.limit, passed, low, high, _unusable(group, counted)))
+    judged = [line.passed for line in made.lines if line.limit is not None]
+    if any(passed is False for passed in judged):
+        made.passed, made.stated = False, "not passed"
+    elif any(passed is None for passed in judged):
+        made.stated = "not decided: figures of some drops are not to be used"
+    else:
+        made.passed, made.stated = True, "passed"
+    made.probability = _probability(p, drops)
+    return made
+
+
+def _draw_interval(drop: Drop, key: str) -> tuple[float, float]:
+    """Returns 2.5 and 97.5 % of the draws of a drop, NaN of fewer than 20."""
+    values = sorted(figures[key] for figures in drop.draws.values() if key in figures)
+    if len(values) < 20:
+        return math.nan, math.nan
+    return values[int(0.025 * (len(values) - 1))], values[math.ceil(0.975 * (len(values) - 1))]
+
+
+def _probability(p: Protocol, drops: Drops) -> tuple[float, float, float] | None:
+    """Returns the share of the draws that pass at every spot, with the interval of Wilson; a draw that lacks a figure does not pass."""
+    labels = sorted({label for drop in drops.drops for label in drop.draws})
+    if not labels:
+        return None
+    limits = [figure for figure in p.figures if figure.limit is not None]
+    passed = sum(all(drop.draws.get(label, {}).get(figure.label, math.inf) < figure.limit for drop in drops.drops for figure in limits)  # type: ignore[operator]
+                 for label in labels)
+    n, z = len(labels), 1.959963984540054
+    share = passed / n
+    middle, half = (share + z * z / 2 / n) / (1 + z * z / n), z * math.sqrt(share * (1 - share) / n + z * z / 4 / n / n) / (1 + z * z / n)
+    return share, max(0.0, middle - half), min(1.0, middle + half)
+
+
+def _judge_height(p: Protocol, drops: Drops) -> Outcome:
+    made = Outcome("", meaning="height at the limit (m)")
+    bounds: list[tuple[float, bool]] = []  # heights of all positions, and whether each is exact
+    for search in drops.searches:
+        bounds.append(_take_search(p, search, made))
+    measured: dict[tuple[str, str], dict[float, list[Drop]]] = {}
+    for spot, group in _spots(drops).items():
+        measured.setdefault((spot.condition, spot.position), {})[spot.height] = group
+    for (condition, position), heights in measured.items():
+        bounds.append(_cross(p, f"{condition}, {position}", heights, made))
+    values = [value for value, exact in bounds if exact]
+    least = min(values, default=math.nan)
+    if any(math.isnan(value) for value, _ in bounds):
+        made.stated = "not determined"
+    elif any(not exact and value <= (least if values else math.inf) and value < 0 for value, exact in bounds):
+        made.stated = f"below {min(-value for value, exact in bounds if not exact and value < 0):.3g} m"
+    elif not values:
+        made.stated = f"above {min(value for value, _ in bounds):.3g} m"
+    else:
+        lower_bounds = [value for value, exact in bounds if not exact and value < least]
+        made.value = least
+        rounded = math.floor(least / p.rounding + 1e-9) * p.rounding if p.rounding else least
+        made.stated = f"{rounded:.3g} m" if not lower_bounds else f"between {min(lower_bounds):.3g} and {least:.3g} m"
+        decisive = min((line for line in made.lines if not math.isnan(line.value)), key=lambda line: line.value)
+        made.low, made.high = decisive.low, decisive.high
+    return made
+
+
+def _take_search(p: Protocol, search: Search, made: Outcome) -> tuple[float, bool]:
+    """Adds the line of a search; returns its height, negative where it is an upper bound, and whether it is exact."""
+    found: dict[str, Any] = search.summary["critical_fall_height"]
+    of = f"{search.condition}, {search.position}"
+    heights = [point["height_m"] for point in search.summary["points"]]
+    verdict, value = found["verdict"], found.get("height_m")
+    note = "" if verdict == "found" else verdict
+    interval = [found.get(key) if found.get(key) is not None else math.nan for key in ("height_low_m", "height_high_m")]
+    made.lines.append(Line(of, str(found.get("deciding") or ""), math.nan if value is None else value, None, None, *interval, note))
+    if verdict == "found":
+        return value, True
+    if verdict.startswith("above"):
+        return max(heights), False
+    if verdict.startswith("below"):
+        return -min(heights), False
+    made.notes.append(f"{of}: {found.get('problem') or verdict}")
+    return math.nan, False
+
+
+def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome) -> tuple[float, bool]:
+    """Returns where a figure first reaches its limit: straight lines of its logarithm over that of the height, between the measured heights."""
+    order = sorted(heights)
+    best: tuple[float, bool] = (order[-1], False)
+    for figure in p.figures:
+        if figure.limit is None:
+            continue
+        values = [figures_of(heights[h], figure.label, _counted(p, heights[h])) for h in order]
+        bad = next((h for h, value in zip(order, values) if math.isnan(value)), None)
+        if bad is not None:
+            made.lines.append(Line(of, figure.label, math.nan, figure.limit, None,
+                                   note=f"{bad:g} m: {_unusable(heights[bad], _counted(p, heights[bad]))}"))
+            return math.nan, False
+        k = next((k for k, value in enumerate(values) if value >= figure.limit), None)
+        if k is None:
+            made.lines.append(Line(of, figure.label, math.nan, figure.limit, note=f"not reached up to {order[-1]:g} m"))
+        elif k == 0:
+            made.lines.append(Line(of, figure.label, math.nan, figure.limit, note=f"exceeded at the lowest height, {order[0]:g} m"))
+            return -order[0], False
+        else:
+            share = math.log(figure.limit / values[k - 1]) / math.log(values[k] / values[k - 1])
+            height = order[k - 1] * (order[k] / order[k - 1]) ** share
+            made.lines.append(Line(of, figure.label, height, figure.limit, note=f"between {order[k - 1]:g} and {order[k]:g} m"))
+            if not best[1] or height < best[0]:
+                best = (height, True)
+    return best
+
+
+def _judge_cushion(p: Protocol, drops: Drops) -> Outcome:
+    made = Outcome("curve of the table")
+    for spot, group in sorted(_spots(drops).items(), key=lambda entry: float(entry[0].mass.split()[0])):
+        stress = float(spot.mass.split()[0]) * STANDARD_GRAVITY / p.area / 1e3
+        for what, counted in (("first drop", (1,)), ("mean of the later ones", p.counted)):
+            if not set(counted) <= {drop.number for drop in group}:
+                continue
+            for figure in p.figures:
+                made.lines.append(Line(f"{spot.condition}, {spot.height:g} m, {stress:.3g} kPa, {what}", figure.label,
+                                       figures_of(group, figure.label, counted), figure.limit, note=_unusable(group, counted)))
+    return made

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""libsoftfall by ctypes, for what needs no file: checks of a case, HIC and filters (include/softfall/softfall.h)."""
+from __future__ import annotations
+
+import ctypes as c
+import functools
+import locale
+import threading
+from typing import Any, NamedTuple, Sequence
+
+import numpy as np
+
+from . import programs
+from .errors import Error, failure
+
+_one_at_a_time = threading.Lock()  # files are read by one thread at a time
+
+
+class _Failure(c.Structure):
+    _fields_ = [("status", c.c_int), ("text", c.c_char * 1024)]
+
+
+@functools.lru_cache(maxsize=None)
+def _load() -> c.CDLL:
+    """Loads the library beside the programs in use, so that checks and runs are of one build."""
+    prefix = programs.folder().resolve().parent
+    for pattern in ("lib/libsoftfall-build.so", "lib/*/libsoftfall-build.so", "lib64/libsoftfall-build.so"):
+        for path in prefix.glob(pattern):
+            library = c.CDLL(str(path))
+            library.softfall_version.restype = library.softfall_revision.restype = c.c_char_p
+            library.softfall_case_parameters.restype = c.c_char_p
+            library.softfall_case_parameters.argtypes = library.softfall_case_free.argtypes = [c.c_void_p]
+            for text in (library.softfall_record_verdict, library.softfall_record_interpretation):
+                text.restype, text.argtypes = c.c_char_p, [c.c_void_p]
+            library.softfall_record_curve.restype = c.c_int64
+            library.softfall_record_grade.argtypes = library.softfall_record_free.argtypes = [c.c_void_p]
+            return library
+    raise Error(f"there is no library libsoftfall-build.so in {prefix}/lib, beside the programs of {programs.folder()}", 3)
+
+
+def version() -> str:
+    """Returns the version and revision of the softfall in use.
+
+    >>> version().split(".")[0]
+    '1'
+    """
+    return f"{_load().softfall_version().decode()} ({_load().softfall_revision().decode()})"
+
+
+def _call(name: str, *arguments: Any) -> None:
+    """Calls a function whose last argument receives the error; raises its sentence."""
+    if locale.localeconv()["decimal_point"] != ".":
+        raise Error("the locale of this process has a decimal comma, with which numbers would be read wrongly: "
+                    'locale.setlocale(locale.LC_NUMERIC, "C") mends it', 2)
+    error = _Failure()
+    if _load()[name](*arguments, c.byref(error)) != 0:
+        raise failure(error.text.decode(errors="replace"), error.status)
+
+
+def case_parameters(path: str, overrides: Sequence[str]) -> str:
+    """Reads and checks a case with its overrides as softfall-pre does, and returns the list of its values."""
+    for text in (path, *overrides):
+        if "\0" in text:
+            raise failure(f"{text!r} has a zero byte", 2)
+    texts = (c.c_char_p * max(1, len(overrides)))(*(text.encode() for text in overrides))
+    case = c.c_void_p()
+    with _one_at_a_time:
+        _call("softfall_case_read", path.encode(), texts, c.c_int(len(overrides)), None, c.byref(case))
+        try:
+            return _load().softfall_case_parameters(case).decode(errors="replace")
+        finally:
+            _load().softfall_case_free(case)
+
+
+def _array(values: Any) -> Any:
+    return values.ctypes.data_as(c.POINTER(c.c_double))
+
+
+def hic(time: Any, deceleration: Any, window: float) -> tuple[float, float, float]:
+    """softfall_hic: value and window; arrays of double of one length."""
+    value, t1, t2 = c.c_double(), c.c_double(), c.c_double()
+    _call("softfall_hic", _array(time), _array(deceleration), c.c_int64(time.size), c.c_double(window), c.byref(value),
+          c.byref(t1), c.byref(t2))
+    return value.value, t1.value, t2.value
+
+
+def cfc(time: Any, value: Any, channel_class: float, out: Any) -> None:
+    """softfall_cfc: fills `out`; arrays of double of one length."""
+    _call("softfall_cfc", _array(time), _array(value), c.c_int64(time.size), c.c_double(channel_class), _array(out))
+
+
+class RecordParts(NamedTuple):
+    """What the library says of a measured record."""
+
+    time: np.ndarray  # s
+    deceleration: np.ndarray  # g
+    grade: int
+    verdict: str
+    interpretation: str
+    figures: dict[str, float]
+
+
+RECORD_FIGURES = ("a_max_g", "a_max_time_ms", "hic", "hic_t1_ms", "hic_t2_ms", "hic15", "hic36", "gadd", "clip_3ms_g", "clip_3ms_cumulative_g")
+
+
+def read_record(path: str, options: Sequence[str]) -> RecordParts:
+    """softfall_record_read, and all that it has."""
+    texts = (c.c_char_p * max(1, len(options)))(*(text.encode() for text in options))
+    record, time, value = c.c_void_p(), c.POINTER(c.c_double)(), c.POINTER(c.c_double)()
+    with _one_at_a_time:
+        _call("softfall_record_read", path.encode(), texts, c.c_int(len(options)), c.byref(record))
+    try:
+        count = _load().softfall_record_curve(record, c.byref(time), c.byref(value))
+        figures, number = {}, c.c_double()
+        for key in RECORD_FIGURES:
+            _call("softfall_record_figure", record, key.encode(), c.byref(number))
+            figures[key] = number.value
+        return RecordParts(np.array(time[:count]), np.array(value[:count]), _load().softfall_record_grade(record),
+                           _load().softfall_record_verdict(record).decode(errors="replace"),
+                           _load().softfall_record_interpretation(record).decode(errors="replace"), figures)
+    finally:
+        _load().softfall_record_free(record)

@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A protocol: which drops a test has, what is read from them, and how its result is stated (docs/protocols.md)."""
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Mapping
+
+from . import programs
+from .curves import STANDARD_GRAVITY
+from .errors import InputError
+
+KINDS = ("pass", "critical height", "cushion curve")
+CAUTION = "softfall indicates; it certifies nothing."
+_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048, "in": 0.0254}
+
+
+@dataclass(frozen=True)
+class Clause:
+    """What a standard says: `of` is the group of the protocol that rests on it."""
+
+    of: str
+    text: str
+    source: str
+    confirmed: bool
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure: `factor` times one of summary.json plus `offset`, the limit to stay below (None: it is reported alone) and a least
+    window of HIC (s; 0: none)."""
+
+    key: str
+    limit: float | None
+    least_window: float = 0.0
+    name: str = ""
+    factor: float = 1.0
+    offset: float = 0.0
+
+    @property
+    def label(self) -> str:
+        """Its name in tables: the key unless the protocol has another one."""
+        return self.name or self.key
+
+    def of(self, value: float) -> float:
+        """Returns the figure of the value in summary.json."""
+        return self.factor * value + self.offset
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A state of the sample, such as a temperature, and the keys of the case that set it."""
+
+    name: str
+    keys: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Position:
+    """An impact point of the sample; `at` in m, or None: where the case has it."""
+
+    name: str
+    at: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """A protocol as its file has it. Lengths in m."""
+
+    name: str
+    path: Path
+    title: str
+    standard: str
+    kind: str
+    missile: Mapping[str, Any]  # keys of the case
+    filter: float
+    conditions: tuple[Condition, ...]
+    positions: tuple[Position, ...]
+    heights: tuple[float, ...]  # empty: they are searched for
+    masses: tuple[str, ...]  # of a cushion curve
+    count: int  # drops on one spot
+    interval: str
+    counted: tuple[int, ...]
+    rounding: float  # m, of a critical height, downwards; 0: none
+    area: float  # m2, of the platen of a cushion curve
+    figures: tuple[Figure, ...]
+    clauses: tuple[Clause, ...]
+
+    @property
+    def unconfirmed(self) -> list[Clause]:
+        """The clauses that were not read at a source."""
+        return [clause for clause in self.clauses if not clause.confirmed]
+
+
+def speed(height: float) -> float:
+    """Returns the speed (m/s) of a free fall from a height (m).
+
+    >>> round(speed(1.0), 4)
+    4.4287
+    """
+    return math.sqrt(2 * STANDARD_GRAVITY * height)
+
+
+def length(text: Any, where: str) -> float:
+    """Returns a length such as "1.5 m" in m; InputError names the place.
+
+    >>> length("900 mm", "x"), length("1.5 m", "x")
+    (0.9, 1.5)
+    """
+    parts = text.split() if isinstance(text, str) else []
+    try:
+        value = float(parts[0]) * _UNITS[parts[1]] if len(parts) == 2 else math.nan
+    except (ValueError, KeyError):
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f'{where}: {text!r} is no length; it is a text with a number and one of {", ".join(_UNITS)}, such as "1.5 m"')
+    return value
+
+
+class _Group:
+    """A table of the file: every key is taken once, and one that is left is refused."""
+
+    def __init__(self, where: str, table: Any) -> None:
+        if not isinstance(table, dict):
+            raise InputError(f"{where}: a table is expected")
+        self.where, self.left = where, dict(table)
+
+    def take(self, key: str, kind: type | tuple[type, ...], default: Any = ...) -> Any:
+        """Returns the value of a key; without a default it must be there."""
+        if key not in self.left:
+            if default is ...:
+                raise InputError(f"{self.where}: {key} is missing")
+            return default
+        value = self.left.pop(key)
+        if isinstance(value, bool) or not isinstance(value, kind):
+            kinds = kind if isinstance(kind, tuple) else (kind,)
+            words = {str: "a text", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
+            raise InputError(f"{self.where}: {key} = {value!r} is not {' or '.join(words[k] for k in kinds)}")
+        return value
+
+    def end(self, known: str) -> None:
+        """Refuses what was not taken."""
+        if self.left:
+            raise InputError(f"{self.where}: there is no key {next(iter(self.left))!r}; there are {known}")
+
+
+def folder() -> Path:
+    """Returns the folder of the protocols that come with softfall."""
+    return programs.folder().parent / "share/softfall/protocols"
+
+
+def names() -> list[str]:
+    """Returns the names of the protocols that come with softfall."""
+    return sorted(path.stem for path in folder().glob("*.toml"))
+
+
+def find(name: str) -> Path:
+    """Returns the file of a protocol: a path that ends with .toml, or a name."""
+    if name.endswith(".toml"):
+        return Path(name)
+    path = folder() / f"{name}.toml"
+    if not path.exists():
+        raise InputError(f"there is no protocol {name!r}; there are {', '.join(names())}, or the path of a file NAME.toml")
+    return path
+
+
+def read(name: str) -> Protocol:
+    """Reads and checks a protocol. A mistake is an InputError that names file, group and key."""
+    path = find(name)
+    try:
+        top = _Group(str(path), tomllib.loads(path.read_text(encoding="utf-8")))
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: {error}") from None
+    title, standard = top.take("title", str), top.take("standard", str)
+    missile, drops = _Group(f"{path}: missile", top.take("missile", dict)), _Group(f"{path}: drops", top.take("drops", dict))
+    result = _Group(f"{path}: result", top.take("result", dict))
+    kind = result.take("kind", str)
+    if kind not in KINDS:
+        raise InputError(f"{path}: result: kind {kind!r} is none of {', '.join(KINDS)}")
+    rounding = result.take("rounding", str, None)
+    figures = tuple(_figure(path, k, table) for k, table in enumerate(top.take("figure", list), 1))
+    clauses = tuple(_clause(path, k, table) for k, table in enumerate(top.take("clause", list), 1))
+    made = Protocol(
+        name=path.stem, path=path, title=title, standard=standard, kind=kind, missile=_missile(path, missile),
+        filter=_filter(path, missile), **_drops(path, drops, kind), figures=figures, clauses=clauses,
+        rounding=length(rounding, f"{path}: result: rounding") if rounding else 0.0)
+    result.end("kind and rounding")
+    missile.end("geometry, parameters, mass, keys and filter")
+    drops.end("conditions, positions, heights, masses, area, count, interval and counted")
+    top.end("title, standard, missile, drops, figure, result and clause")
+    _check(made)
+    return made
+
+
+def _figure(path: Path, number: int, table: Any) -> Figure:
+    group = _Group(f"{path}: figure {number}", table)
+    window = group.take("least_window_ms", (int, float), 0)
+    limit = group.take("limit", (int, float), None)
+    factor, offset = (float(group.take(key, (int, float), default)) for key, default in (("factor", 1), ("offset", 0)))
+    if factor <= 0:
+        raise InputError(f"{group.where}: factor {factor:g} is not above 0")
+    figure = Figure(group.take("key", str), None if limit is None else float(limit), 1e-3 * window, group.take("name", str, ""), factor, offset)
+    group.end("key, limit, least_window_ms, name, factor and offset")
+    return figure
+
+
+def _clause(path: Path, number: int, table: Any) -> Clause:
+    group = _Group(f"{path}: clause {number}", table)
+    of, text, source, status = (group.take(key, str) for key in ("of", "text", "source", "status"))
+    if not source.strip():
+        raise InputError(f"{group.where}: source is empty: say where the clause was read, or that it is from memory")
+    if status not in ("confirmed", "unconfirmed"):
+        raise InputError(f"{group.where}: status {status!r} is neither confirmed nor unconfirmed")
+    group.end("of, text, source and status")
+    return Clause(of, text, source, status == "confirmed")
+
+
+def _missile(path: Path, group: _Group) -> dict[str, Any]:
+    """Returns the keys of the case that the missile sets."""
+    keys: dict[str, Any] = {}
+    geometry = group.take("geometry", str, None)
+    if geometry:
+        places = [path.parent / geometry, programs.folder().parent / "share/softfall/geo" / geometry]
+        file = next((place for place in places if place.exists()), None)
+        if not file:
+            raise InputError(f"{group.where}: the geometry {geometry} is neither beside the protocol nor in {places[1].parent}")
+        keys["geometry.missile_file"] = str(file.resolve())
+    for name, value in group.take("parameters", dict, {}).items():
+        keys[f"geometry.missile_parameters.{name}"] = value
+    mass = group.take("mass", str, None)
+    if mass:
+        keys["missile.mass"] = mass
+    keys.update(group.take("keys", dict, {}))
+    return keys
+
+
+def _filter(path: Path, group: _Group) -> float:
+    value = group.take("filter", (int, float), 1000)
+    if value not in (60, 180, 600, 1000):
+        raise InputError(f"{group.where}: filter {value} is no channel frequency class: 60, 180, 600 or 1000")
+    return float(value)
+
+
+def _drops(path: Path, group: _Group, kind: str) -> dict[str, Any]:
+    conditions, positions = [], []
+    for k, table in enumerate(group.take("conditions", list, [{"name": "as it is"}]), 1):
+        one = _Group(f"{group.where}: condition {k}", table)
+        conditions.append(Condition(one.take("name", str), one.take("keys", dict, {})))
+        one.end("name and keys")
+    for k, table in enumerate(group.take("positions", list, [{"name": "centre"}]), 1):
+        one = _Group(f"{group.where}: position {k}", table)
+        name, at = one.take("name", str), one.take("at", list, None)
+        if at is not None and len(at) != 2:
+            raise InputError(f'{one.where}: at = {at} is not x and y: ["100 mm", "0 mm"]')
+        positions.append(Position(name, None if at is None else tuple(length(part, one.where) for part in at)))  # type: ignore[arg-type]
+        one.end("name and at")
+    count = group.take("count", int, 1)
+    counted = tuple(group.take("counted", list, list(range(1, count + 1))))
+    if not 1 <= count <= 20 or not counted or any(not isinstance(k, int) or not 1 <= k <= count for k in counted):
+        raise InputError(f"{group.where}: counted {list(counted)} are not drops of count = {count} (1 to 20)")
+    area = group.take("area", str, None)
+    return {"conditions": tuple(conditions), "positions": tuple(positions), "count": count, "counted": counted,
+            "heights": tuple(length(text, f"{group.where}: heights") for text in group.take("heights", list, [])),
+            "masses": tuple(group.take("masses", list, [])), "interval": group.take("interval", str, ""),
+            "area": _area(area, group.where) if area else 0.0}
+
+
+def _area(text: str, where: str) -> float:
+    """Returns an area such as "129 cm2" in m2."""
+    unit = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
+    parts = text.split()
+    try:
+        return float(parts[0]) * unit[parts[1]]
+    except (ValueError, KeyError, IndexError):
+        raise InputError(f'{where}: area {text!r} is no area such as "400 cm2"') from None
+
+
+def _check(p: Protocol) -> None:
+    """Refuses what contradicts itself, and a group without a clause: nobody could say where its numbers are from."""
+    for what, entries in (("condition", p.conditions), ("position", p.positions)):
+        doubles = {entry.name for entry in entries if sum(other.name == entry.name for other in entries) > 1}
+        if doubles or not entries:
+            raise InputError(f"{p.path}: drops: {'two ' + what + 's are named ' + repr(doubles.pop()) if doubles else 'no ' + what}")
+    if p.kind != "critical height" and not p.heights:
+        raise InputError(f"{p.path}: drops: heights is missing (only a critical height is searched for)")
+    if any(not 0 < h <= 30 for h in p.heights) or len(set(p.heights)) != len(p.heights):
+        raise InputError(f"{p.path}: drops: heights must differ and be above 0 and at most 30 m")
+    if (p.kind == "cushion curve") != (bool(p.masses) and p.area > 0):
+        raise InputError(f"{p.path}: drops: masses and area belong to a cushion curve, and it needs both")
+    if not p.figures or (p.kind != "cushion curve" and all(figure.limit is None for figure in p.figures)):
+        raise InputError(f"{p.path}: a figure with a limit is missing")
+    if p.kind == "critical height" and any(f.label not in ("a_max_g", "hic") for f in p.figures if f.limit is not None):
+        raise InputError(f"{p.path}: a critical height has limits of a_max_g and hic alone")
+    if len({figure.label for figure in p.figures}) < len(p.figures):
+        raise InputError(f"{p.path}: two figures have one name")
+    if p.rounding and p.kind != "critical height":
+        raise InputError(f"{p.path}: result: rounding belongs to a critical height")
+    groups = ("missile", "drops", "figure", "result")
+    for clause in p.clauses:
+        if clause.of not in groups:
+            raise InputError(f"{p.path}: a clause is of {clause.of!r}, which is none of {', '.join(groups)}")
+    for group in groups:
+        if not any(clause.of == group for clause in p.clauses):
+            raise InputError(f"{p.path}: {group} has no clause that says where it is from; add one, with status = \"unconfirmed\" if need be")

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""softfall-protocol: runs a protocol on a pad, on measured drops, or on both side by side."""
+from __future__ import annotations
+
+import argparse
+import base64
+import sys
+import tempfile
+import tomllib
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .case import Case
+from .curves import column
+from .drop import read_results
+from .errors import Error, InputError
+from .judge import judge
+from .protocol import CAUTION, Protocol, names, read
+from .protocol_drops import Drop, Drops, measure, simulate
+from .protocol_report import FIELDS, write
+from .rating import rate
+
+PICTURES = {".png": "png", ".jpg": "jpeg", ".jpeg": "jpeg"}
+MOST_PHOTO = 4_000_000  # bytes
+FILES = ("report.html", "protocol.json", "drops.csv")
+
+
+def read_laboratory(path: str | None) -> tuple[dict[str, str], str]:
+    """Returns the fields of the text file of a laboratory, and its photo as HTML."""
+    if path is None:
+        return {}, ""
+    try:
+        fields = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: {error}") from None
+    for key, value in fields.items():
+        if key not in FIELDS:
+            raise InputError(f"{path}: there is no field {key!r}; there are {', '.join(FIELDS)}")
+        if not isinstance(value, str):
+            fields[key] = str(value)
+    if "photo" not in fields:
+        return fields, ""
+    file = Path(path).parent / fields["photo"]
+    if file.suffix.lower() not in PICTURES or not file.is_file() or file.stat().st_size > MOST_PHOTO:
+        raise InputError(f"{path}: photo {file} is no {', '.join(PICTURES)} file of at most {MOST_PHOTO // 1_000_000} MB")
+    data = base64.b64encode(file.read_bytes()).decode()
+    return fields, f'<figure><img alt="sample" src="data:image/{PICTURES[file.suffix.lower()]};base64,{data}"></figure>'
+
+
+def compare(p: Protocol, measured: Drops, simulated: Drops) -> list[dict[str, Any]]:
+    """Returns the differences of each simulated drop from the first counted measured one at its spot."""
+    first = {drop.spot: drop for drop in sorted(measured.drops, key=lambda d: d.number, reverse=True)}
+    pairs = []
+    for drop in simulated.drops:
+        other = first.get(drop.spot)
+        if other is not None and drop.curve is not None and other.is_usable and drop.is_usable:
+            pairs.append(_pair(p, other, drop))
+    return pairs
+
+
+def _pair(p: Protocol, measured: Drop, simulated: Drop) -> dict[str, Any]:
+    """Compares two drops by softfall-post, which aligns the contacts, and rates the curves over the measured pulse."""
+    with tempfile.TemporaryDirectory(prefix="softfall-") as scratch, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        curve = Path(scratch) / "measured.csv"
+        np.savetxt(curve, np.column_stack(measured.curve), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.12g")  # type: ignore[arg-type]
+        told = read_results(simulated.source).post(Path(scratch) / "out", reference=str(curve), reference_filter="none", filter=int(p.filter))
+    said = told["reference"]
+    (t, a), (s, b) = measured.curve, simulated.curve  # type: ignore[misc]
+    begin, end = (edge - said["shift_ms"] / 1e3 for edge in (s[0], s[-1]))
+    rating = rate(t, a, column(s - said["shift_ms"] / 1e3, "s"), b, (max(t[0], begin), min(t[-1], end)))
+    return {"spot": f"{measured.spot}, drop {measured.number}", "a_max_difference": told["a_max_g"] / said["a_max_g"] - 1,
+            "hic_difference": told["hic"] / said["hic"] - 1, "r2": float(said["fits"][0]["r2"]), "rmse_g": float(said["fits"][0]["rmse_g"]),
+            "rating": {**rating._asdict(), "word": rating.word}}
+
+
+def perform(o: argparse.Namespace) -> str:
+    """Runs the command; returns what it prints."""
+    if o.list:
+        return "\n".join(f"{name:12} {read(name).title}, {read(name).standard}" for name in names())
+    if not o.protocol or not o.output or not (o.pad or o.measured):
+        raise InputError("PROTOCOL, --output=DIR and --pad=CASE or --measured=DIR are needed; --list lists the protocols")
+    p, output = read(o.protocol), Path(o.output)
+    laboratory, photo = read_laboratory(o.laboratory)
+    there = [name for name in FILES if (output / name).exists()]
+    if there and not o.force:
+        raise InputError(f"{output} has {there[0]} already: give --force to replace it (finished drops are used again), or another directory")
+    parts: dict[str, Drops] = {}
+    if o.measured:
+        parts["measured"] = measure(p, Path(o.measured), o.pattern)
+    if o.pad:
+        for text in o.set:
+            if "=" not in text:
+                raise InputError(f"--set {text}: KEY=VALUE is expected")
+        pad = Case(o.pad, dict(text.split("=", 1) for text in o.set))
+        options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile}
+        output.mkdir(parents=True, exist_ok=True)
+        parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, **options)
+    outcomes = {what: judge(p, drops) for what, drops in parts.items()}
+    pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
+    output.mkdir(parents=True, exist_ok=True)
+    write(p, parts, outcomes, pairs, laboratory, photo, output)
+    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}" for what, outcome in outcomes.items()),
+            *(f"  note: {note}" for outcome in outcomes.values() for note in outcome.notes),
+            f"  {len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed. {CAUTION}", f"Written: {output}/report.html, protocol.json, drops.csv"]
+    return "\n".join(said)
+
+
+def run(o: argparse.Namespace) -> int:
+    """Runs softfall-protocol and returns its exit code."""
+    warnings.showwarning = lambda message, *_, **__: print(f"softfall-protocol: warning: {message}", file=sys.stderr)
+    try:
+        print(perform(o))
+    except (Error, KeyError) as error:
+        print(f"softfall-protocol: {error.args[0]}", file=sys.stderr)
+        return error.code if isinstance(error, Error) else 2
+    except OSError as error:
+        print(f"softfall-protocol: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 3
+    except KeyboardInterrupt:
+        print("softfall-protocol: interrupted; the same command resumes", file=sys.stderr)
+        return 130
+    return 0

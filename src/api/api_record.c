@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* libsoftfall: measured records of one impact. */
+#include "api/api.h"
+
+#include "post/figures/compare.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct softfall_record {
+    sf_reference reference;
+    sf_injury injury;
+    sf_record_verdict verdict;
+    char line[SF_VERDICT_LINE_SIZE];
+};
+
+static const struct {
+    const char *key;
+    size_t place; /* in sf_injury */
+    double factor;
+} figures[] = {{"a_max_g", offsetof(sf_injury, a_max_g), 1},
+               {"a_max_time_ms", offsetof(sf_injury, a_max_time), 1e3},
+               {"hic", offsetof(sf_injury, hic.value), 1},
+               {"hic_t1_ms", offsetof(sf_injury, hic.t1), 1e3},
+               {"hic_t2_ms", offsetof(sf_injury, hic.t2), 1e3},
+               {"hic15", offsetof(sf_injury, hic15.value), 1},
+               {"hic36", offsetof(sf_injury, hic36.value), 1},
+               {"gadd", offsetof(sf_injury, gadd), 1},
+               {"clip_3ms_g", offsetof(sf_injury, clip_contiguous_g), 1},
+               {"clip_3ms_cumulative_g", offsetof(sf_injury, clip_cumulative_g), 1}};
+
+/* ---- options, "name=value" or "name" ---- */
+
+typedef struct settings {
+    sf_reference_options options;
+    char *texts[16]; /* values, owned */
+    int count;
+} settings;
+
+static sf_status take_number(const char *name, const char *value, double *out, sf_error *err) {
+    char *end;
+    *out = strtod(value, &end);
+    return end != value && *end == '\0'
+               ? SF_OK
+               : SF_FAIL(err, SF_ERR_INPUT, "%s: \"%.80s\" is no number", name, value);
+}
+
+static sf_status take_option(sf_reference_options *o, const char *name, const char *value, sf_error *err) {
+    double number = 0;
+    if (strcmp(name, "column") == 0)
+        o->column = value;
+    else if (strcmp(name, "columns") == 0)
+        o->columns = value;
+    else if (strcmp(name, "heading") == 0)
+        o->heading = value;
+    else if (strcmp(name, "scale") == 0)
+        sf_reference_parse_sensitivity(value, &o->sensitivity, err);
+    else if (strcmp(name, "rate") == 0)
+        sf_reference_parse_rate(value, &o->rate, err);
+    else if (strcmp(name, "filter") == 0 && strcmp(value, "none") == 0)
+        o->cfc = 0;
+    else if (strcmp(name, "filter") == 0)
+        take_number(name, value, &o->cfc, err);
+    else if (strcmp(name, "impact") == 0 && take_number(name, value, &number, err) == SF_OK)
+        o->impact = (int)number;
+    else if (strcmp(name, "invert") == 0)
+        o->invert = true;
+    else if (strcmp(name, "zero") == 0)
+        o->zero = true;
+    else if (err->status == SF_OK)
+        SF_FAIL(err, SF_ERR_INPUT,
+                "a record has no option \"%.80s\"; there are column, columns, heading, scale, rate, filter, "
+                "impact, invert and zero",
+                name);
+    return err->status;
+}
+
+static sf_status take_options(settings *s, const char *const *options, int count, sf_error *err) {
+    for (int k = 0; k < count && err->status == SF_OK; k++) {
+        if (s->count == (int)(sizeof s->texts / sizeof s->texts[0]))
+            return SF_FAIL(err, SF_ERR_INPUT, "a record has at most %d options", s->count);
+        char *text = s->texts[s->count++] = strdup(options[k]), *value = text ? strchr(text, '=') : NULL;
+        if (!text)
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the options of a record");
+        if (value)
+            *value++ = '\0';
+        take_option(&s->options, text, value ? value : "", err);
+    }
+    return err->status;
+}
+
+static sf_status read_record(softfall_record *r, const sf_reference_options *options, sf_error *err) {
+    if (sf_reference_read(options, &r->reference, err) != SF_OK ||
+        sf_injury_evaluate(&r->reference.curve, &r->injury, err) != SF_OK ||
+        sf_record_judge(&r->reference.raw, &r->reference.curve, r->reference.other, &r->verdict, err) !=
+            SF_OK)
+        return err->status;
+    sf_record_line(&r->verdict, r->line, sizeof r->line);
+    return SF_OK;
+}
+
+softfall_status softfall_record_read(const char *path, const char *const *options, int count,
+                                     softfall_record **out, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    settings s = {.options = {.path = path,
+                              .cfc = 1000,
+                              .column_option = "column=HEADING",
+                              .unfiltered_option = "filter=none",
+                              .invert_option = "invert",
+                              .heading_option = "heading=TEXT"}};
+    *out = softfall_new(&err, sizeof **out, "a record");
+    if (*out &&
+        (take_options(&s, options, count, &err) != SF_OK || read_record(*out, &s.options, &err) != SF_OK)) {
+        softfall_record_free(*out);
+        *out = NULL;
+    }
+    for (int k = 0; k < s.count; k++)
+        free(s.texts[k]);
+    return softfall_return(&err, error);
+}
+
+void softfall_record_free(softfall_record *r) {
+    if (r)
+        sf_reference_free(&r->reference);
+    free(r);
+}
+
+int64_t softfall_record_curve(const softfall_record *r, const double **time, const double **deceleration) {
+    *time = r->reference.curve.time;
+    *deceleration = r->reference.curve.value;
+    return r->reference.curve.count;
+}
+
+int softfall_record_grade(const softfall_record *r) {
+    return (int)r->verdict.grade;
+}
+
+const char *softfall_record_verdict(const softfall_record *r) {
+    return r->line;
+}
+
+const char *softfall_record_interpretation(const softfall_record *r) {
+    return r->reference.interpretation;
+}
+
+softfall_status softfall_record_figure(const softfall_record *r, const char *key, double *value,
+                                       softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    for (size_t k = 0; k < sizeof figures / sizeof figures[0]; k++)
+        if (strcmp(figures[k].key, key) == 0) {
+            *value = figures[k].factor * *(const double *)((const char *)&r->injury + figures[k].place);
+            return softfall_return(&err, error);
+        }
+    SF_FAIL(&err, SF_ERR_INPUT, "a record has no figure \"%.80s\"", key);
+    return softfall_return(&err, error);
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Memory of the foam laws (theory, section "Memory"): below the largest W so far a second loading follows the
+ * factor f + q (1 - f), f that of unloading. Between the two lies an elastic range: with the energy gap
+ * Z = integral of (1 - f) over W the factor is f + p (1 - f), dp = dZ / L within 0 <= p <= q. Where p stands
+ * at q, what is loaded further is lost; hence no path creates energy, whatever q does. q falls with the
+ * unloadings that a point has passed, and grows with time at rest. */
+#ifndef SF_MATERIAL_MEMORY_H
+#define SF_MATERIAL_MEMORY_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "material/unloading.h"
+
+/* L over the largest Z so far. */
+#define SF_MEMORY_ELASTIC 0.2
+
+/* Parameters; a foam with `reload` and `recovery` 0 has no memory beyond the largest W: q = 0. */
+typedef struct sf_memory {
+    double reload;    /* -, q of the second loading, 0 .. 1 */
+    double drift;     /* -, q of loading n + 1 is reload / (1 + drift (n - 1)) */
+    double recovery;  /* -, part of the softening that a decade of time at rest takes back */
+    double start;     /* s, time at rest from which decades count */
+    double permanent; /* -, part that stays for ever */
+} sf_memory;
+
+static inline bool sf_memory_acts(const sf_memory *m) {
+    return m->reload > 0 || m->recovery > 0;
+}
+
+/* The history of a point beside its largest W. */
+typedef struct sf_memory_point {
+    double back;      /* J m-3, Z - L p */
+    double loops;     /* J m-3, lost in loading below the largest W */
+    double passes;    /* -, unloadings since the largest W, 1: a whole one */
+    double recovered; /* -, part of the softening that rests have taken back; it fades with unloading */
+} sf_memory_point;
+
+/* q of the point. */
+double sf_memory_factor(const sf_memory *memory, const sf_memory_point *point);
+
+/* A rest of `pause` (s) without load, in closed form: two rests give the same as one of their sum. */
+void sf_memory_rest(const sf_memory *memory, double pause, sf_memory_point *point);
+
+/* Evaluates a batch as sf_unloading_lanes does, with memory; rows of `point` are its members. `softening`
+ * bounds the derivative of the factor on both sides of a reversal. */
+void sf_memory_lanes(const sf_memory *memory, const sf_unloading *unloading, const double energy[SF_LANES],
+                     double peak[SF_LANES], double (*point)[SF_LANES], double factor[SF_LANES],
+                     double softening[SF_LANES], double stored[SF_LANES], double lost[SF_LANES]);
+
+/* The factor at one point, which it advances. */
+double sf_memory_advance(const sf_memory *memory, const sf_unloading *unloading, double energy, double *peak,
+                         sf_memory_point *point);
+
+#endif

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "model/cells.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/model.h"
+
+int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]) {
+    static const int simple[1][4] = {{0, 1, 2, 3}};
+    static const int pyramid[2][4] = {{0, 1, 2, 4}, {0, 2, 3, 4}};
+    static const int prism[3][4] = {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 4, 3, 5}};
+    static const int hexahedron[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
+                                         {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+    switch (type) {
+    case SF_CELL_PYRAMID:
+        *tetrahedra = pyramid;
+        return 2;
+    case SF_CELL_PRISM:
+        *tetrahedra = prism;
+        return 3;
+    case SF_CELL_HEXAHEDRON:
+        *tetrahedra = hexahedron;
+        return 6;
+    default:
+        *tetrahedra = simple;
+        return 1;
+    }
+}
+
+int sf_cell_faces(int type, const int (**faces)[4]) {
+    static const int tetrahedron[4][4] = {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}};
+    static const int pyramid[5][4] = {
+        {0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}};
+    static const int prism[5][4] = {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
+    static const int hexahedron[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                         {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    switch (type) {
+    case SF_CELL_PYRAMID:
+        *faces = pyramid;
+        return 5;
+    case SF_CELL_PRISM:
+        *faces = prism;
+        return 5;
+    case SF_CELL_HEXAHEDRON:
+        *faces = hexahedron;
+        return 6;
+    default:
+        *faces = tetrahedron;
+        return 4;
+    }
+}
+
+/* ---- the skin ---- */
+
+/* A face of a cell: its nodes around it, and ascending. */
+typedef struct face {
+    int32_t node[4], sorted[4]; /* -1 in the fourth place of a triangle, in the first of the sorted ones */
+} face;
+
+static int by_node(const void *a, const void *b) {
+    const int32_t *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/* The order is that of the bytes: the triangles of model.h5, and with them the bits of a run, follow it. */
+static int by_nodes(const void *a, const void *b) {
+    return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
+}
+
+/* Returns the number of faces of all cells; writes them unless `out` is NULL. */
+static int64_t list_faces(const sf_cells *c, face *out) {
+    int64_t count = 0;
+    for (int64_t k = 0; k < c->cell_count; k++) {
+        const int(*faces)[4];
+        int n = sf_cell_faces(c->type[k], &faces);
+        for (int f = 0; f < n && out; f++) {
+            face *to = &out[count + f];
+            for (int v = 0; v < 4; v++)
+                to->node[v] = faces[f][v] < 0 ? -1 : c->node[c->ptr[k] + faces[f][v]];
+            memcpy(to->sorted, to->node, sizeof to->sorted);
+            qsort(to->sorted, 4, sizeof *to->sorted, by_node);
+        }
+        count += n;
+    }
+    return count;
+}
+
+/* Keeps the faces that are alone among sorted ones; returns how many. */
+static int64_t keep_single(face *list, int64_t count) {
+    int64_t kept = 0;
+    for (int64_t k = 0, next; k < count; k = next) {
+        for (next = k + 1; next < count && by_nodes(&list[k], &list[next]) == 0; next++)
+            ;
+        if (next == k + 1)
+            list[kept++] = list[k];
+    }
+    return kept;
+}
+
+/* Numbers the nodes of the faces in the order of the mesh. */
+static sf_status number_nodes(const sf_cells *c, const face *list, sf_skin_faces *s, sf_error *err) {
+    int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's skin");
+    s->node = sf_alloc(err, (unsigned long)c->node_count, sizeof *s->node, "the pad's skin");
+    s->face = sf_alloc(err, (unsigned long)s->face_count, sizeof *s->face, "the pad's skin");
+    for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++)
+        if (list[k / 4].node[k % 4] >= 0)
+            place[list[k / 4].node[k % 4]] = 1;
+    for (int64_t i = 0; err->status == SF_OK && i < c->node_count; i++)
+        if (place[i]) {
+            place[i] = (int32_t)s->node_count;
+            s->node[s->node_count++] = i;
+        }
+    for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++) {
+        int32_t node = list[k / 4].node[k % 4];
+        s->face[k / 4][k % 4] = node < 0 ? -1 : place[node];
+    }
+    free(place);
+    return err->status;
+}
+
+sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err) {
+    int64_t count = list_faces(c, NULL);
+    face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
+    *s = (sf_skin_faces){0};
+    if (!list)
+        return err->status;
+    list_faces(c, list);
+    qsort(list, (size_t)count, sizeof *list, by_nodes);
+    s->face_count = keep_single(list, count);
+    number_nodes(c, list, s, err);
+    free(list);
+    return err->status;
+}
+
+void sf_skin_faces_free(sf_skin_faces *s) {
+    free(s->face);
+    free(s->node);
+    *s = (sf_skin_faces){0};
+}

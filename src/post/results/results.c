@@ -1,0 +1,611 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/results/results.h"
+
+#include "base/mat3.h"
+#include "io/provenance.h"
+#include "io/replace.h"
+#include "model/model.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- checks ---- */
+
+/* s; a run ends at 1000 s at the latest (sf_model_check), and resampling to 100 kHz must fit into memory. */
+static const double LONGEST_TIME = 1001;
+
+bool sf_results_ended_well(const sf_results *r) {
+    return strcmp(r->status, "finished") == 0 || strcmp(r->status, "rebound") == 0 ||
+           strcmp(r->status, "interrupted") == 0;
+}
+
+void sf_results_note(sf_results *r, const char *format, ...) {
+    if (r->note_count == SF_RESULTS_NOTES)
+        return;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(r->notes[r->note_count++], sizeof r->notes[0], format, args);
+    va_end(args);
+}
+
+/* The same of a sentence that only says how the run ended. */
+static void note_ending(sf_results *r, const char *sentence) {
+    int k = r->note_count;
+    sf_results_note(r, "%s", sentence);
+    if (r->note_count > k)
+        r->note_of_ending[k] = true;
+}
+
+/* Refuses with SF_ERR_IO and a sentence naming the dataset, the value and the bound. */
+static sf_status check_finite(const double *values, int64_t count, const char *path, sf_error *err) {
+    for (int64_t i = 0; i < count; i++)
+        if (!isfinite(values[i]))
+            return SF_FAIL(err, SF_ERR_IO, "%s: value %lld is not finite", path, (long long)i);
+    return SF_OK;
+}
+
+static int vertices_of(int type) {
+    switch (type) {
+    case SF_CELL_TETRAHEDRON:
+        return 4;
+    case SF_CELL_PYRAMID:
+        return 5;
+    case SF_CELL_PRISM:
+        return 6;
+    case SF_CELL_HEXAHEDRON:
+        return 8;
+    default:
+        return 0;
+    }
+}
+
+static sf_status check_indices(const int32_t *index, int64_t count, int64_t limit, const char *path,
+                               sf_error *err) {
+    for (int64_t i = 0; i < count; i++)
+        if (index[i] < 0 || index[i] >= limit)
+            return SF_FAIL(err, SF_ERR_IO, "%s: entry %lld is %d, it must be in 0 to %lld", path,
+                           (long long)i, index[i], (long long)limit - 1);
+    return SF_OK;
+}
+
+static sf_status check_cells(const sf_results *r, sf_error *err) {
+    if (r->cell_ptr[0] != 0 || r->cell_ptr[r->cell_count] != r->cell_nnz)
+        return SF_FAIL(
+            err, SF_ERR_IO, "/model/cell_ptr runs from %lld to %lld, /model/cell_node has %lld entries",
+            (long long)r->cell_ptr[0], (long long)r->cell_ptr[r->cell_count], (long long)r->cell_nnz);
+    for (int64_t c = 0; c < r->cell_count; c++) {
+        int vertices = vertices_of(r->cell_type[c]);
+        if (vertices == 0)
+            return SF_FAIL(err, SF_ERR_IO, "/model/cell_type: cell %lld has type %d, known are 6, 7, 8 and 9",
+                           (long long)c, r->cell_type[c]);
+        if (r->cell_ptr[c + 1] - r->cell_ptr[c] != vertices)
+            return SF_FAIL(
+                err, SF_ERR_IO, "/model/cell_ptr: cell %lld of type %d has %lld vertices, expected %d",
+                (long long)c, r->cell_type[c], (long long)(r->cell_ptr[c + 1] - r->cell_ptr[c]), vertices);
+    }
+    return check_indices(r->cell_node, r->cell_nnz, r->node_count, "/model/cell_node", err);
+}
+
+static sf_status check_positive(double value, const char *path, sf_error *err) {
+    if (!(value > 0) || !isfinite(value))
+        return SF_FAIL(err, SF_ERR_IO, "%s is %g, it must be positive", path, value);
+    return SF_OK;
+}
+
+/* Cells, indices, positions, and the missile. */
+static sf_status check_model(const sf_results *r, sf_error *err) {
+    if (r->node_count < 1 || r->node_count > INT32_MAX || r->cell_nnz > INT32_MAX - r->cell_count)
+        return SF_FAIL(err, SF_ERR_IO, "/model has %lld nodes and %lld cell vertices: 1 to 2^31 are possible",
+                       (long long)r->node_count, (long long)r->cell_nnz);
+    if (check_finite(r->position, 3 * r->node_count, "/model/position", err) != SF_OK ||
+        check_finite(r->surface_position, 3 * r->surface_node_count, "/model/surface_position", err) ||
+        check_cells(r, err) != SF_OK ||
+        check_indices(r->surface_triangle, 3 * r->surface_triangle_count, r->surface_node_count,
+                      "/model/surface_triangle", err) != SF_OK)
+        return err->status;
+    if (r->surface_node_count < 1)
+        return SF_FAIL(err, SF_ERR_IO, "/model/surface_position is empty: the missile has no surface");
+    for (int64_t i = 0; i < r->node_count; i++)
+        if (!(r->volume[i] > 0) || !isfinite(r->volume[i]))
+            return SF_FAIL(err, SF_ERR_IO, "/model/volume: node %lld has %g m3, it must be positive",
+                           (long long)i, r->volume[i]);
+    if (r->symmetry_factor != 1 && r->symmetry_factor != 2 && r->symmetry_factor != 4)
+        return SF_FAIL(err, SF_ERR_IO, "/model/symmetry_factor is %lld, it must be 1, 2 or 4",
+                       (long long)r->symmetry_factor);
+    int planes = isfinite(r->symmetry_place[0]) + isfinite(r->symmetry_place[1]);
+    if (r->symmetry_factor < 1 << planes)
+        return SF_FAIL(err, SF_ERR_IO,
+                       "/model/symmetry_factor is %lld, /model/symmetry_x and symmetry_y tell %d plane%s",
+                       (long long)r->symmetry_factor, planes, planes > 1 ? "s" : "");
+    const double *d = r->missile_direction;
+    if (!(fabs(sf_results_along(r, d) - 1) < 1e-6))
+        return SF_FAIL(err, SF_ERR_IO, "/model/missile_direction (%g, %g, %g) is not a unit vector", d[0],
+                       d[1], d[2]);
+    SF_TRY(check_finite(r->missile_centre, 3, "/model/missile_centre", err));
+    if (r->turns && (r->driven || r->symmetry_factor != 1))
+        return SF_FAIL(err, SF_ERR_IO, "/model/missile_free is 1 of a driven missile or of a part of one");
+    SF_TRY(check_positive(r->thickness, "/model/thickness", err));
+    SF_TRY(check_positive(r->density, "/model/density", err));
+    if (!(fabs(r->gravity_along - sf_results_along(r, r->gravity)) <= 1e-9 * (1 + fabs(r->gravity_along))))
+        return SF_FAIL(err, SF_ERR_IO, "/model/gravity_along is %g m/s2, and /model/gravity (%g, %g, %g)",
+                       r->gravity_along, r->gravity[0], r->gravity[1], r->gravity[2]);
+    if (r->driven)
+        return SF_OK;
+    SF_TRY(check_positive(r->missile_mass, "/model/missile_mass", err));
+    SF_TRY(check_positive(r->missile_speed, "/model/missile_speed", err));
+    return SF_OK;
+}
+
+static sf_status check_lengths(sf_results *r, const int64_t *rows, sf_error *err) {
+    r->history.rows = rows[0];
+    for (int c = 1; c < SF_HISTORY_COUNT; c++) {
+        if (rows[c] != rows[0] && sf_results_ended_well(r))
+            return SF_FAIL(err, SF_ERR_IO,
+                           "/history/%s has %lld rows, /history/time has %lld: the file is damaged",
+                           sf_history_column_get(c)->name, (long long)rows[c], (long long)rows[0]);
+        if (rows[c] < r->history.rows)
+            r->history.rows = rows[c];
+    }
+    for (int c = 0; c < SF_HISTORY_COUNT; c++) {
+        if (rows[c] != r->history.rows) {
+            sf_results_note(r, "the columns of /history differ in length: the first %lld rows are used",
+                            (long long)r->history.rows);
+            break;
+        }
+    }
+    return SF_OK;
+}
+
+static sf_status check_row(const sf_results *r, int64_t i, sf_error *err) {
+    for (int c = 0; c < SF_HISTORY_COUNT; c++)
+        if (!isfinite(r->history.column[c][i]))
+            return SF_FAIL(err, SF_ERR_IO, "/history/%s: row %lld is not finite",
+                           sf_history_column_get(c)->name, (long long)i);
+    const double *time = r->history.time;
+    if (!(time[i] >= 0 && time[i] <= LONGEST_TIME))
+        return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld, it must be in 0 to %g s", time[i],
+                       (long long)i, LONGEST_TIME);
+    if (i > 0 && !(time[i] > time[i - 1]))
+        return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld does not follow %.9g s", time[i],
+                       (long long)i, time[i - 1]);
+    return SF_OK;
+}
+
+/* Sets history.rows from the lengths of the columns, `rows` [SF_HISTORY_COUNT]: equal lengths, finite values,
+ * times ascending; of a run that did not end well the longest part of which that holds. */
+static sf_status check_history(sf_results *r, const int64_t *rows, sf_error *err) {
+    SF_TRY(check_lengths(r, rows, err));
+    for (int64_t i = 0; i < r->history.rows; i++) {
+        sf_error problem = SF_ERROR_INIT;
+        if (check_row(r, i, &problem) == SF_OK)
+            continue;
+        if (sf_results_ended_well(r))
+            return SF_FAIL(err, problem.status, "%s", problem.text);
+        sf_results_note(r, "%.180s: the rows before it are used", problem.text);
+        r->history.rows = i;
+    }
+    if (r->history.rows < 3 && r->has_summary && !sf_results_ended_well(r))
+        return SF_FAIL(err, SF_ERR_IO, "%s (/history has %lld usable rows, figures need at least 3)",
+                       r->status, (long long)r->history.rows);
+    if (r->history.rows < 3)
+        return SF_FAIL(err, SF_ERR_IO, "/history has %lld usable rows, at least 3 are needed",
+                       (long long)r->history.rows);
+    return SF_OK;
+}
+
+/* ---- reading ---- */
+
+double sf_results_fall_speed(const sf_results *r) {
+    return -r->missile_speed * r->missile_direction[2];
+}
+
+void sf_results_place(const sf_results *r, const sf_frame_head *head, const double x[3], double out[3]) {
+    double arm[3];
+    for (int k = 0; k < 3; k++)
+        arm[k] = x[k] - r->missile_centre[k];
+    sf_rotate(head->missile_quaternion, arm, out);
+    for (int k = 0; k < 3; k++)
+        out[k] = (r->turns ? out[k] + r->missile_centre[k] : x[k]) + head->missile_displacement[k];
+}
+
+double sf_results_whole(const sf_results *r) {
+    return (double)r->symmetry_factor;
+}
+
+double sf_results_cross_section(const sf_results *r) {
+    double volume = 0, low = INFINITY, high = -INFINITY;
+    for (int64_t i = 0; i < r->node_count; i++) {
+        volume += r->volume[i];
+        low = fmin(low, r->position[3 * i + 2]);
+        high = fmax(high, r->position[3 * i + 2]);
+    }
+    return sf_results_whole(r) * volume / (high - low);
+}
+
+bool sf_results_touched(const sf_results *results) {
+    for (int64_t i = 0; i < results->history.rows; i++)
+        if (results->history.contact_nodes[i] > 0)
+            return true;
+    return false;
+}
+
+static sf_status read_array(const sf_results *r, const char *path, sf_h5_type type, int64_t *rows,
+                            int64_t columns, void *array, sf_error *err) {
+    int64_t dims[2] = {*rows, columns};
+    void *data = NULL;
+    SF_TRY(sf_h5_read(r->file, path, type, columns > 1 ? 2 : 1, dims, &data, err));
+    *rows = dims[0];
+    *(void **)array = data;
+    return SF_OK;
+}
+
+static sf_status read_integer(const sf_results *r, const char *path, int64_t *value, sf_error *err) {
+    void *data = NULL;
+    SF_TRY(sf_h5_read(r->file, path, SF_H5_I64, 0, NULL, &data, err));
+    *value = *(int64_t *)data;
+    free(data);
+    return SF_OK;
+}
+
+static sf_status read_numbers(const sf_results *r, const char *path, int64_t count, double *numbers,
+                              sf_error *err) {
+    double *data = NULL;
+    SF_TRY(read_array(r, path, SF_H5_F64, &count, 1, &data, err));
+    memcpy(numbers, data, (size_t)count * sizeof *numbers);
+    free(data);
+    return SF_OK;
+}
+
+static sf_status read_vector(const sf_results *r, const char *path, double vector[3], sf_error *err) {
+    return read_numbers(r, path, 3, vector, err);
+}
+
+/* NaN: the law of the mesh error does not apply. */
+static sf_status read_mesh_error(sf_results *r, sf_error *err) {
+    double value = 0;
+    sf_h5_read_scalar(r->file, "/model/expected_mesh_error", &value, err);
+    r->expected_mesh_error = value > 0 ? value : NAN;
+    return err->status;
+}
+
+static sf_status read_flag(const sf_results *r, const char *path, bool *flag, sf_error *err) {
+    int64_t value = 0;
+    read_integer(r, path, &value, err);
+    *flag = value != 0;
+    return err->status;
+}
+
+/* A scalar that a file of an earlier version does not hold; NaN: likewise, or not finite. */
+static sf_status read_optional(const sf_results *r, const char *path, double *value, sf_error *err) {
+    *value = NAN;
+    if (sf_h5_exists(r->file, path))
+        sf_h5_read_scalar(r->file, path, value, err);
+    if (!isfinite(*value))
+        *value = NAN;
+    return err->status;
+}
+
+/* Files of earlier versions have it along -z only. */
+static sf_status read_gravity(sf_results *r, sf_error *err) {
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/gravity_along", &r->gravity_along, err));
+    if (sf_h5_exists(r->file, "/model/gravity"))
+        return read_vector(r, "/model/gravity", r->gravity, err);
+    r->gravity[2] = r->gravity_along / r->missile_direction[2];
+    return SF_OK;
+}
+
+/* The exact sphere that contact takes for the missile, if it does. */
+static sf_status read_sphere(sf_results *r, sf_error *err) {
+    SF_TRY(read_optional(r, "/model/sphere_radius", &r->sphere_radius, err));
+    if (!(r->sphere_radius > 0))
+        r->sphere_radius = NAN;
+    else if (read_vector(r, "/model/sphere_centre", r->sphere_centre, err) == SF_OK)
+        check_finite(r->sphere_centre, 3, "/model/sphere_centre", err);
+    return err->status;
+}
+
+/* The names of the layers, a line each. */
+static sf_status read_layer_names(sf_results *r, sf_error *err) {
+    char *rest = NULL;
+    int count = 0;
+    r->layer_name = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_name, "names of layers");
+    if (!r->layer_name || sf_h5_read_text(r->file, "/model/layer_names", &r->layer_names, err) != SF_OK)
+        return err->status;
+    for (char *line = strtok_r(r->layer_names, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        sf_error_clean(line);
+        if (count < r->layer_count)
+            r->layer_name[count] = line;
+        count++;
+    }
+    if (count != r->layer_count)
+        return SF_FAIL(err, SF_ERR_IO, "/model/layer_names: %d names for %d layers", count, r->layer_count);
+    return SF_OK;
+}
+
+/* The layers of a pad of several materials. */
+static sf_status read_layers(sf_results *r, sf_error *err) {
+    int64_t count = -1, nodes = r->node_count;
+    if (!sf_h5_exists(r->file, "/model/node_layer"))
+        return SF_OK;
+    SF_TRY(read_array(r, "/model/node_layer", SF_H5_U8, &nodes, 1, &r->node_layer, err));
+    SF_TRY(read_array(r, "/model/layer_density", SF_H5_F64, &count, 1, &r->layer_density, err));
+    if (count < 1 || count > SF_MATERIAL_MAX)
+        return SF_FAIL(err, SF_ERR_IO, "/model/layer_density: %lld layers, 1 to %d are possible",
+                       (long long)count, SF_MATERIAL_MAX);
+    r->layer_count = (int)count;
+    SF_TRY(read_array(r, "/model/layer_informed_strain", SF_H5_F64, &count, 1, &r->layer_informed, err));
+    for (int64_t i = 0; i < r->node_count; i++)
+        if (r->node_layer[i] >= count)
+            return SF_FAIL(err, SF_ERR_IO, "/model/node_layer: node %lld is of layer %d, of 0 to %lld",
+                           (long long)i, r->node_layer[i], (long long)count - 1);
+    for (int64_t k = 0; k < count; k++)
+        if (!(r->layer_density[k] > 0) || isnan(r->layer_informed[k]))
+            return SF_FAIL(err, SF_ERR_IO, "/model/layer_density, /model/layer_informed_strain: %g, %g",
+                           r->layer_density[k], r->layer_informed[k]);
+    return read_layer_names(r, err);
+}
+
+/* Reads the sums by layer of the frame; none if the frame has none. */
+static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_error *err) {
+    static const char *const names[] = {"layer_stored", "layer_hysteresis", "layer_viscous",
+                                        "layer_compression"};
+    static const size_t offsets[] = {offsetof(sf_layer_sums, stored), offsetof(sf_layer_sums, hysteresis),
+                                     offsetof(sf_layer_sums, viscous), offsetof(sf_layer_sums, compression)};
+    r->layer_sums = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_sums, "sums of layers");
+    for (int k = 0; k < 4 && err->status == SF_OK; k++) {
+        char path[80];
+        double *value = NULL;
+        int64_t count = r->layer_count;
+        snprintf(path, sizeof path, "%s/%s", head->group, names[k]);
+        if (read_array(r, path, SF_H5_F64, &count, 1, &value, err) != SF_OK)
+            break;
+        for (int64_t i = 0; i < count && check_finite(value, count, path, err) == SF_OK; i++)
+            *(double *)((char *)&r->layer_sums[i] + offsets[k]) = value[i];
+        free(value);
+    }
+    return err->status;
+}
+
+static sf_status read_model(sf_results *r, sf_error *err) {
+    int64_t pointers = -1;
+    r->node_count = r->cell_count = r->cell_nnz = r->surface_node_count = r->surface_triangle_count = -1;
+    SF_TRY(read_array(r, "/model/position", SF_H5_F64, &r->node_count, 3, &r->position, err));
+    SF_TRY(read_array(r, "/model/volume", SF_H5_F64, &r->node_count, 1, &r->volume, err));
+    SF_TRY(read_array(r, "/model/cell_type", SF_H5_U8, &r->cell_count, 1, &r->cell_type, err));
+    pointers = r->cell_count + 1;
+    if (read_array(r, "/model/cell_ptr", SF_H5_I64, &pointers, 1, &r->cell_ptr, err) != SF_OK ||
+        read_array(r, "/model/cell_node", SF_H5_I32, &r->cell_nnz, 1, &r->cell_node, err) != SF_OK ||
+        read_array(r, "/model/surface_position", SF_H5_F64, &r->surface_node_count, 3, &r->surface_position,
+                   err) ||
+        read_array(r, "/model/surface_triangle", SF_H5_I32, &r->surface_triangle_count, 3,
+                   &r->surface_triangle, err))
+        return err->status;
+    SF_TRY(read_integer(r, "/model/symmetry_factor", &r->symmetry_factor, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/thickness", &r->thickness, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/density", &r->density, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err));
+    SF_TRY(read_vector(r, "/model/missile_direction", r->missile_direction, err));
+    SF_TRY(read_gravity(r, err));
+    SF_TRY(read_flag(r, "/model/kinematic", &r->kinematic, err));
+    SF_TRY(read_flag(r, "/model/missile_driven", &r->driven, err));
+    SF_TRY(read_flag(r, "/model/missile_free", &r->turns, err));
+    SF_TRY(read_vector(r, "/model/missile_centre", r->missile_centre, err));
+    SF_TRY(read_mesh_error(r, err));
+    SF_TRY(read_optional(r, "/model/informed_strain", &r->informed_strain, err));
+    SF_TRY(read_optional(r, "/model/impact_x", &r->impact_x, err));
+    SF_TRY(read_optional(r, "/model/impact_y", &r->impact_y, err));
+    SF_TRY(read_optional(r, "/model/anvil_depth", &r->anvil_depth, err));
+    SF_TRY(read_optional(r, "/model/air", &r->air, err));
+    SF_TRY(read_optional(r, "/model/speed_scatter", &r->speed_scatter, err));
+    SF_TRY(read_optional(r, "/model/thickness_tolerance", &r->thickness_tolerance, err));
+    SF_TRY(read_optional(r, "/model/lock_up", &r->lock_up, err));
+    SF_TRY(read_optional(r, "/model/lock_begin", &r->lock_begin, err));
+    SF_TRY(read_optional(r, "/model/slit_fraction", &r->slit_fraction, err));
+    SF_TRY(read_optional(r, "/model/symmetry_x", &r->symmetry_place[0], err));
+    SF_TRY(read_optional(r, "/model/symmetry_y", &r->symmetry_place[1], err));
+    SF_TRY(read_sphere(r, err));
+    SF_TRY(read_layers(r, err));
+    return check_model(r, err);
+}
+
+/* The solver's notes, a sentence per line; files of earlier versions have none. */
+static sf_status read_notes(sf_results *r, sf_error *err) {
+    char *notes = NULL, *rest = NULL;
+    if (!sf_h5_exists(r->file, "/summary/notes"))
+        return SF_OK;
+    SF_TRY(sf_h5_read_text(r->file, "/summary/notes", &notes, err));
+    for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        sf_error_clean(line);
+        if (strcmp(line, "the missile never touched the pad") == 0) /* solver/run/run.c */
+            note_ending(r, line);
+        else
+            sf_results_note(r, "%s", line);
+    }
+    free(notes);
+    return SF_OK;
+}
+
+static sf_status read_summary(sf_results *r, sf_error *err) {
+    r->steps = r->threads = r->interactions = -1;
+    r->contact_time = r->wall_time = r->given_back = NAN;
+    r->has_summary = sf_h5_exists(r->file, "/summary/status");
+    if (!r->has_summary) {
+        note_ending(
+            r, "there is no /summary: the run still runs or was killed; the data written so far are used");
+        return SF_OK;
+    }
+    char *status = NULL;
+    SF_TRY(sf_h5_read_text(r->file, "/summary/status", &status, err));
+    snprintf(r->status, sizeof r->status, "%s", status);
+    free(status);
+    SF_TRY(read_integer(r, "/summary/steps", &r->steps, err));
+    SF_TRY(read_integer(r, "/summary/threads", &r->threads, err));
+    SF_TRY(read_integer(r, "/summary/interactions", &r->interactions, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/summary/wall_time", &r->wall_time, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err));
+    SF_TRY(read_optional(r, "/summary/given_back", &r->given_back, err));
+    SF_TRY(read_notes(r, err));
+    if (!sf_results_ended_well(r))
+        sf_results_note(r, "the run stopped with: %s", r->status);
+    else if (strcmp(r->status, "interrupted") == 0)
+        note_ending(r, "the run was interrupted: the figures are those of the part that was computed");
+    return SF_OK;
+}
+
+static sf_status read_history(sf_results *r, sf_error *err) {
+    int64_t rows[SF_HISTORY_COUNT];
+    for (int c = 0; c < SF_HISTORY_COUNT; c++) {
+        char path[64];
+        snprintf(path, sizeof path, "/history/%s", sf_history_column_get(c)->name);
+        rows[c] = -1;
+        SF_TRY(read_array(r, path, SF_H5_F64, &rows[c], 1, &r->history.column[c], err));
+    }
+    return check_history(r, rows, err);
+}
+
+static sf_status read_head(const sf_results *r, sf_frame_head *head, sf_error *err) {
+    char path[64];
+    snprintf(path, sizeof path, "%s/time", head->group);
+    SF_TRY(sf_h5_read_scalar(r->file, path, &head->time, err));
+    snprintf(path, sizeof path, "%s/acceleration", head->group);
+    SF_TRY(sf_h5_read_scalar(r->file, path, &head->acceleration, err));
+    snprintf(path, sizeof path, "%s/missile_displacement", head->group);
+    SF_TRY(read_vector(r, path, head->missile_displacement, err));
+    snprintf(path, sizeof path, "%s/missile_quaternion", head->group);
+    SF_TRY(read_numbers(r, path, 4, head->missile_quaternion, err));
+    const double *u = head->missile_displacement, *q = head->missile_quaternion;
+    if (!(fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6))
+        return SF_FAIL(err, SF_ERR_IO, "%s: its missile_quaternion is not of unit length", head->group);
+    if (!isfinite(head->time) || !isfinite(head->acceleration) || !isfinite(u[0] + u[1] + u[2]))
+        return SF_FAIL(err, SF_ERR_IO, "%s: its time, acceleration or missile_displacement is not finite",
+                       head->group);
+    return SF_OK;
+}
+
+/* True if the error is to be passed on; otherwise it becomes a note, as the run did not end well. */
+static bool keep_error(sf_results *r, sf_error *problem, sf_error *err) {
+    if (sf_results_ended_well(r)) {
+        SF_FAIL(err, problem->status, "%s", problem->text);
+        return true;
+    }
+    sf_results_note(r, "left out: %.200s", problem->text);
+    return false;
+}
+
+static sf_status read_frame_list(sf_results *r, sf_error *err) {
+    int64_t count = sf_h5_group_size(r->file, "/frames");
+    r->frames =
+        sf_alloc(err, (unsigned long)(count > 0 ? count : 0), sizeof *r->frames, "the list of frames");
+    if (!r->frames)
+        return err->status;
+    for (int64_t k = 0; k < count; k++) {
+        char name[16];
+        sf_error problem = SF_ERROR_INIT;
+        sf_frame_head *head = &r->frames[r->frame_count];
+        SF_TRY(sf_h5_group_member(r->file, "/frames", k, name, sizeof name, err));
+        snprintf(head->group, sizeof head->group, "/frames/%s", name);
+        if (read_head(r, head, &problem) == SF_OK && k > 0 && r->frame_count > 0 &&
+            !(head->time > head[-1].time))
+            SF_FAIL(&problem, SF_ERR_IO, "%s: its time %.9g s does not follow %.9g s of the frame before",
+                    head->group, head->time, head[-1].time);
+        if (problem.status == SF_OK)
+            r->frame_count++;
+        else if (keep_error(r, &problem, err))
+            return err->status;
+    }
+    sf_error problem = SF_ERROR_INIT;
+    if (r->frame_count > 0 && r->layer_count > 0 &&
+        read_layer_sums(r, &r->frames[r->frame_count - 1], &problem) != SF_OK) {
+        free(r->layer_sums);
+        r->layer_sums = NULL;
+        if (keep_error(r, &problem, err))
+            return err->status;
+    }
+    if (r->frame_count == 0)
+        sf_results_note(r, "there are no frames: nothing to show in ParaView");
+    snprintf(r->peak.group, sizeof r->peak.group, "/peak");
+    if (!sf_h5_exists(r->file, "/peak"))
+        return SF_OK;
+    problem = (sf_error)SF_ERROR_INIT;
+    r->has_peak = read_head(r, &r->peak, &problem) == SF_OK;
+    if (!r->has_peak)
+        keep_error(r, &problem, err);
+    return err->status;
+}
+
+sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) {
+    *results = (sf_results){0};
+    if (sf_h5_open(path, &results->file, err) != SF_OK ||
+        sf_provenance_check(results->file, path, "softfall-results", err) != SF_OK ||
+        read_model(results, err) != SF_OK || read_summary(results, err) != SF_OK ||
+        read_history(results, err) != SF_OK || read_frame_list(results, err) != SF_OK ||
+        sf_seal_check_any(path, err) != SF_OK)
+        sf_results_close(results);
+    return err->status;
+}
+
+void sf_results_close(sf_results *results) {
+    sf_error ignored = SF_ERROR_INIT; /* nothing was written, so nothing can be lost */
+    sf_h5_close(&results->file, &ignored);
+    free(results->position);
+    free(results->volume);
+    free(results->cell_type);
+    free(results->cell_ptr);
+    free(results->cell_node);
+    free(results->surface_position);
+    free(results->surface_triangle);
+    free(results->node_layer);
+    free(results->layer_name);
+    free(results->layer_names);
+    free(results->layer_density);
+    free(results->layer_informed);
+    free(results->layer_sums);
+    sf_history_free(&results->history);
+    free(results->frames);
+    *results = (sf_results){0};
+}
+
+sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame,
+                        sf_error *err) {
+    return sf_frame_read_fields(results, head, SF_FIELD_ALL, frame, err);
+}
+
+sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
+                               sf_frame *frame, sf_error *err) {
+    *frame = (sf_frame){0};
+    for (int f = 0; f < SF_FRAME_FIELDS; f++) {
+        const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s", head->group, info->name);
+        if (!(fields >> f & 1))
+            continue;
+        if (!sf_h5_exists(results->file, path)) {
+            if (sf_h5_exists(results->file, head->group))
+                continue; /* not among output.fields */
+            sf_frame_free(frame);
+            return SF_FAIL(
+                err, SF_ERR_IO,
+                "%s is no longer where results.h5 named it: the run has gone on or ended meanwhile; "
+                "read the results again",
+                head->group);
+        }
+        int64_t rows = results->node_count;
+        if (read_array(results, path, SF_H5_F64, &rows, info->components, &frame->field[f], err) != SF_OK ||
+            check_finite(frame->field[f], rows * info->components, path, err) != SF_OK) {
+            sf_frame_free(frame);
+            return err->status;
+        }
+    }
+    return SF_OK;
+}
+
+void sf_frame_free(sf_frame *frame) {
+    for (int f = 0; f < SF_FRAME_FIELDS; f++)
+        free(frame->field[f]);
+    *frame = (sf_frame){0};
+}

@@ -1,0 +1,402 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/view/browser.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "build_info.h"
+#include "model/cells.h"
+#include "model/model.h"
+#include "post/view/paraview.h"
+#include "post/view/picture.h"
+#include "report/row.h"
+
+static const char PAGE[] = "view.html", FACTS[] = "id=\"drop\">{}";
+
+enum {
+    OVERHEAD = 128000,  /* bytes of the page beside the arrays: its script, curve and texts */
+    FEW_FRAMES = 12,    /* with fewer the inside of the pad is left out */
+    CURVE_POINTS = 800, /* at most, of the curve */
+    HIGHEST_CODE = 65535
+};
+
+/* The fields that a frame may be coloured by. */
+static const struct {
+    sf_frame_field field;
+    double factor;
+    const char *name, *unit;
+    bool logarithmic;
+} colourings[] = {{SF_FRAME_VON_MISES, 1e-3, "von Mises stress", "kPa", true},
+                  {SF_FRAME_LARGEST_COMPRESSION, 100, "compression", "%", false},
+                  {SF_FRAME_CONTACT_PRESSURE, 1e-3, "contact pressure", "kPa", false}};
+enum { COLOURINGS = sizeof colourings / sizeof colourings[0] };
+
+/* The page, and what is shown on it. */
+typedef struct page {
+    const sf_report *report;
+    const sf_results *results;
+    const sf_xdmf *made;
+    double bytes; /* that it may have */
+    sf_shown shown;
+    sf_skin_faces skin;
+    bool inside;          /* the cells and all nodes stand on the page; else those of the skin */
+    bool wide;            /* indices have 32 bits; else 16 */
+    int64_t node_count;   /* shown */
+    int64_t frame_count;  /* shown */
+    double *value;        /* [3 node_count] room for an array; owned */
+    unsigned char *coded; /* room for its codes or for indices; owned */
+    sf_json json;
+} page;
+
+/* ---- what fits ---- */
+
+static int count_fields(const page *p) {
+    int count = 0;
+    for (int k = 0; k < COLOURINGS; k++)
+        count += p->made->fields >> colourings[k].field & 1;
+    return count;
+}
+
+/* Returns how many frames fit beside the topology. */
+static int64_t count_fitting(const page *p, int64_t nodes, bool inside) {
+    const sf_results *r = p->results;
+    int64_t index = nodes > HIGHEST_CODE ? 4 : 2;
+    int64_t fixed = index * (4 * p->skin.face_count + 3 * r->surface_triangle_count) +
+                    6 * r->surface_node_count + (inside ? index * r->cell_nnz + r->cell_count : 4 * nodes);
+    double frame = 6.0 + 2.0 * count_fields(p), room = (p->bytes - OVERHEAD) * 3 / 4 - (double)fixed;
+    return room > 0 ? (int64_t)(room / (frame * (double)nodes + 256)) : 0;
+}
+
+/* Chooses nodes and frames; false: not even two frames of the skin fit, or the only one. */
+static bool choose(page *p) {
+    const sf_results *r = p->results;
+    int64_t all = p->made->frames, fitting = count_fitting(p, r->node_count, true);
+    p->inside = fitting >= (all < FEW_FRAMES ? all : FEW_FRAMES);
+    p->node_count = p->inside ? r->node_count : p->skin.node_count;
+    if (!p->inside)
+        fitting = count_fitting(p, p->node_count, false);
+    p->wide = p->node_count > HIGHEST_CODE;
+    p->frame_count = fitting < all ? fitting : all;
+    return p->frame_count >= (all < 2 ? all : 2);
+}
+
+/* Returns the place of the shown frame k among those that are there: they are evenly spread, but the one next
+ * to the peak, not the first, is the peak; *peak is set if it is. */
+static int64_t frame_at(const page *p, int64_t k, bool *is_peak) {
+    int64_t all = p->made->frames, gaps = p->frame_count - 1, peak = p->shown.peak < all ? p->shown.peak : -1;
+    int64_t nearest = peak > 0 && gaps > 0 ? (2 * peak * gaps + all - 1) / (2 * (all - 1)) : 0;
+    if (peak > 0 && nearest == 0 && gaps > 0)
+        nearest = 1;
+    *is_peak = peak >= 0 && k == nearest;
+    return *is_peak ? peak : gaps > 0 ? k * (all - 1) / gaps : 0;
+}
+
+/* ---- arrays ---- */
+
+static int64_t node_of(const page *p, int64_t i) {
+    return p->inside ? i : p->skin.node[i];
+}
+
+/* Writes numbers as bytes, the lowest first. */
+static void encode(unsigned char *to, uint32_t value, int bytes) {
+    for (int b = 0; b < bytes; b++)
+        to[b] = (unsigned char)(value >> 8 * b);
+}
+
+/* Writes every `step`-th of the numbers as an array. */
+static void put_numbers(page *p, const char *key, const double *value, int64_t count, int64_t step) {
+    sf_json_open(&p->json, key, '[');
+    for (int64_t i = 0; i < count; i += step)
+        sf_json_number(&p->json, NULL, value[i]);
+    sf_json_close(&p->json, ']');
+}
+
+/* Writes value[count][components] with the least value and the step of each component. */
+static void put_quantised(page *p, const char *key, const double *value, int64_t count, int components) {
+    double low[3], step[3];
+    for (int c = 0; c < components; c++) {
+        double high = -DBL_MAX;
+        low[c] = DBL_MAX;
+        for (int64_t i = 0; i < count; i++) {
+            low[c] = fmin(low[c], value[components * i + c]);
+            high = fmax(high, value[components * i + c]);
+        }
+        step[c] = count > 0 ? high / HIGHEST_CODE - low[c] / HIGHEST_CODE : 0;
+        low[c] = count > 0 ? low[c] : 0;
+    }
+    for (int64_t i = 0; i < count * components; i++) {
+        int c = (int)(i % components);
+        double code = step[c] > 0 ? rint((value[i] - low[c]) / step[c]) : 0;
+        encode(&p->coded[2 * i], (uint32_t)fmin(code, HIGHEST_CODE), 2);
+    }
+    sf_json_open(&p->json, key, '{');
+    put_numbers(p, "low", low, components, 1);
+    put_numbers(p, "step", step, components, 1);
+    sf_json_base64(&p->json, "data", p->coded, 2 * (size_t)(count * components));
+    sf_json_close(&p->json, '}');
+}
+
+/* Writes indices; -1 becomes the largest number. */
+static void put_indices(page *p, const char *key, const int32_t *index, int64_t count) {
+    int bytes = p->wide ? 4 : 2;
+    for (int64_t k = 0; k < count; k++)
+        encode(&p->coded[bytes * k], (uint32_t)index[k], bytes);
+    sf_json_base64(&p->json, key, p->coded, (size_t)(bytes * count));
+}
+
+/* ---- the parts of the facts ---- */
+
+static void put_texts(page *p) {
+    const sf_verdict *verdict = p->report->summary->verdict;
+    char title[SF_REPORT_TITLE_SIZE], line[SF_VERDICT_LINE_SIZE], foot[320];
+    sf_report_title(p->results, title, sizeof title);
+    snprintf(foot, sizeof foot, "softfall-post %s (%s), from %.160s; drawn by WebGL 2, without a library",
+             SF_VERSION, SF_GIT_REVISION, p->report->summary->results_path);
+    sf_json_text(&p->json, "title", title);
+    sf_json_text(&p->json, "verdict", sf_verdict_phrase(verdict->grade));
+    sf_json_text(&p->json, "kind", sf_report_kind(verdict->grade));
+    sf_json_text(&p->json, "findings", sf_report_findings(verdict, line, sizeof line));
+    sf_json_text(&p->json, "foot", foot);
+}
+
+static void put_notes(page *p, bool planes_known) {
+    const sf_results *r = p->results;
+    char few[160], skin[160];
+    snprintf(few, sizeof few,
+             "%lld of %lld frames are shown, so that the page has at most %.3g MB (softfall-post --view).",
+             (long long)p->frame_count, (long long)p->made->frames, p->bytes * 1e-6);
+    snprintf(skin, sizeof skin,
+             "Of the pad its surface is shown, so that the page has at most %.3g MB: a cut shows no inside.",
+             p->bytes * 1e-6);
+    const struct {
+        bool holds;
+        const char *text;
+    } notes[] = {{p->frame_count < p->made->frames, few},
+                 {!p->inside, skin},
+                 {!(p->made->fields & SF_FIELD_DISPLACEMENT),
+                  "The frames hold no displacement: the pad is shown undeformed."},
+                 {!planes_known,
+                  "Only the modelled part is shown: results.h5 does not say where the symmetry planes lie."}};
+    sf_json_open(&p->json, "notes", '[');
+    for (size_t k = 0; k < sizeof notes / sizeof notes[0]; k++)
+        if (notes[k].holds)
+            sf_json_text(&p->json, NULL, notes[k].text);
+    for (int k = 0; k < r->note_count; k++)
+        sf_json_text(&p->json, NULL, r->notes[k]);
+    sf_json_close(&p->json, ']');
+}
+
+static void put_scale(page *p) {
+    double colours[3 * SF_PICTURE_COLOURS];
+    for (int k = 0; k < 3 * SF_PICTURE_COLOURS; k++)
+        colours[k] = sf_picture_colours[k / 3][k % 3];
+    put_numbers(p, "colours", colours, 3 * SF_PICTURE_COLOURS, 1);
+    sf_json_number(&p->json, "decades", sf_picture_decades);
+    sf_json_open(&p->json, "fields", '[');
+    for (int k = 0; k < COLOURINGS; k++) {
+        if (!(p->made->fields >> colourings[k].field & 1))
+            continue;
+        sf_json_open(&p->json, NULL, '{');
+        sf_json_text(&p->json, "name", colourings[k].name);
+        sf_json_text(&p->json, "unit", colourings[k].unit);
+        sf_json_number(&p->json, "factor", colourings[k].factor);
+        sf_json_bool(&p->json, "logarithmic", colourings[k].logarithmic);
+        sf_json_close(&p->json, '}');
+    }
+    sf_json_close(&p->json, ']');
+}
+
+/* Faces in the numbers of the shown nodes; of the skin alone also its nodes in those of the model. */
+static void put_skin(page *p) {
+    int32_t *face = (int32_t *)p->skin.face;
+    sf_json_bool(&p->json, "wide", p->wide);
+    for (int64_t k = 0; p->inside && k < 4 * p->skin.face_count; k++)
+        face[k] = face[k] < 0 ? -1 : (int32_t)p->skin.node[face[k]];
+    put_indices(p, "skin", face, 4 * p->skin.face_count);
+    if (p->inside)
+        return;
+    for (int64_t i = 0; i < p->node_count; i++)
+        encode(&p->coded[4 * i], (uint32_t)p->skin.node[i], 4);
+    sf_json_base64(&p->json, "node", p->coded, 4 * (size_t)p->node_count);
+}
+
+static void put_cells(page *p) {
+    const sf_results *r = p->results;
+    if (!p->inside)
+        return;
+    sf_json_open(&p->json, "cells", '{');
+    sf_json_base64(&p->json, "type", r->cell_type, (size_t)r->cell_count);
+    put_indices(p, "node", r->cell_node, r->cell_nnz);
+    sf_json_close(&p->json, '}');
+    sf_json_open(&p->json, "tetrahedra", '{');
+    for (int type = SF_CELL_TETRAHEDRON; type <= SF_CELL_HEXAHEDRON; type++) {
+        char key[8];
+        const int(*part)[4];
+        snprintf(key, sizeof key, "%d", type);
+        sf_json_open(&p->json, key, '[');
+        int count = sf_cell_tetrahedra(type, &part);
+        for (int k = 0; k < 4 * count; k++)
+            sf_json_integer(&p->json, NULL, part[k / 4][k % 4]);
+        sf_json_close(&p->json, ']');
+    }
+    sf_json_close(&p->json, '}');
+}
+
+static void put_missile(page *p) {
+    const sf_results *r = p->results;
+    if (r->surface_triangle_count == 0)
+        return;
+    sf_json_open(&p->json, "missile", '{');
+    put_quantised(p, "position", r->surface_position, r->surface_node_count, 3);
+    put_indices(p, "triangle", r->surface_triangle, 3 * r->surface_triangle_count);
+    const double *c = r->sphere_centre, sphere[4] = {c[0], c[1], c[2], r->sphere_radius};
+    if (r->sphere_radius > 0)
+        put_numbers(p, "sphere", sphere, 4, 1);
+    sf_json_close(&p->json, '}');
+}
+
+/* The curve that the time runs along, with few enough of its points. */
+static void put_curve(page *p) {
+    const sf_figures *f = p->report->summary->figures;
+    const sf_history *h = &p->results->history;
+    bool force = f->driven || f->filtered.count < 2;
+    const double *x = force ? h->time : f->filtered.time, *y = force ? h->contact_force : f->filtered.value;
+    int64_t count = force ? h->rows : f->filtered.count, step = count / CURVE_POINTS + 1;
+    char label[256];
+    if (force)
+        snprintf(label, sizeof label, "contact force (N)");
+    else
+        snprintf(label, sizeof label, "%s (g), CFC %.0f%s", f->acceleration, f->cfc, f->passed);
+    sf_json_open(&p->json, "curve", '{');
+    sf_json_text(&p->json, "label", label);
+    put_numbers(p, "time", x, count, step);
+    put_numbers(p, "value", y, count, step);
+    sf_json_close(&p->json, '}');
+}
+
+/* ---- frames ---- */
+
+/* Writes the places of the origin and of the unit points of the missile at rest. */
+static void put_motion(page *p, const sf_frame_head *head) {
+    double place[4][3];
+    for (int k = 0; k < 4; k++)
+        sf_results_place(p->results, head, (const double[3]){k == 1, k == 2, k == 3}, place[k]);
+    put_numbers(p, "missile", place[0], 12, 1);
+}
+
+static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
+    const sf_results *r = p->results;
+    sf_frame frame = {0};
+    int fields = p->made->fields & SF_FIELD_DISPLACEMENT;
+    for (int k = 0; k < COLOURINGS; k++)
+        fields |= p->made->fields & 1 << colourings[k].field;
+    if (sf_frame_read_fields(r, head, fields, &frame, err) != SF_OK)
+        return err->status;
+    sf_json_open(&p->json, NULL, '{');
+    sf_json_number(&p->json, "time", head->time);
+    put_motion(p, head);
+    const double *moved = frame.field[SF_FRAME_DISPLACEMENT];
+    for (int64_t i = 0; i < 3 * p->node_count; i++) {
+        int64_t from = 3 * node_of(p, i / 3) + i % 3;
+        p->value[i] = r->position[from] + (moved ? moved[from] : 0);
+    }
+    put_quantised(p, "position", p->value, p->node_count, 3);
+    sf_json_open(&p->json, "fields", '[');
+    for (int k = 0; k < COLOURINGS; k++) {
+        const double *field = frame.field[colourings[k].field];
+        for (int64_t i = 0; field && i < p->node_count; i++)
+            p->value[i] = field[node_of(p, i)];
+        if (field)
+            put_quantised(p, NULL, p->value, p->node_count, 1);
+    }
+    sf_json_close(&p->json, ']');
+    sf_json_close(&p->json, '}');
+    sf_frame_free(&frame);
+    return SF_OK;
+}
+
+static sf_status put_frames(page *p, sf_error *err) {
+    int64_t shown_peak = -1;
+    sf_json_open(&p->json, "frames", '[');
+    for (int64_t k = 0; k < p->frame_count && err->status == SF_OK; k++) {
+        bool is_peak;
+        put_frame(p, p->shown.head[frame_at(p, k, &is_peak)], err);
+        if (is_peak)
+            shown_peak = k;
+    }
+    sf_json_close(&p->json, ']');
+    sf_json_integer(&p->json, "peak", shown_peak);
+    return err->status;
+}
+
+/* ---- the page ---- */
+
+static sf_status write_facts(page *p, sf_error *err) {
+    const sf_results *r = p->results;
+    double place[2], axis[2];
+    bool known = sf_axis_planes(r, place);
+    int64_t numbers = 3 * (p->node_count + r->surface_node_count + r->surface_triangle_count) +
+                      4 * p->skin.face_count + r->cell_nnz; /* more than the longest array has */
+    p->value = sf_alloc(err, 3 * (unsigned long)p->node_count, sizeof *p->value, "view.html");
+    p->coded = sf_alloc(err, (unsigned long)numbers, 4, "view.html");
+    if (err->status != SF_OK)
+        return err->status;
+    sf_axis_find(r, axis);
+    sf_json_open(&p->json, NULL, '{');
+    put_texts(p);
+    put_notes(p, known);
+    put_scale(p);
+    put_numbers(p, "planes", place, 2, 1);
+    put_numbers(p, "axis", axis, 2, 1);
+    put_skin(p);
+    put_cells(p);
+    put_missile(p);
+    put_curve(p);
+    put_frames(p, err);
+    sf_json_close(&p->json, '}');
+    return err->status;
+}
+
+static sf_status write_page(page *p, const sf_staging *output, const char *text, sf_error *err) {
+    const char *mark = strstr(text, FACTS) + strlen(FACTS) - 2;
+    if (!(p->json.file = sf_staging_open(output, PAGE, err)))
+        return err->status;
+    fwrite(text, 1, (size_t)(mark - text), p->json.file);
+    write_facts(p, err);
+    fputs(mark + 2, p->json.file);
+    sf_error ignored = SF_ERROR_INIT;
+    sf_staging_close(p->json.file, PAGE, err->status == SF_OK ? err : &ignored);
+    return err->status;
+}
+
+sf_status sf_browser_write(const sf_staging *output, const sf_report *report, const sf_xdmf *made,
+                           double megabytes, char *warning, size_t size, sf_error *err) {
+    const sf_results *r = report->summary->results;
+    const sf_cells cells = {r->node_count, r->cell_count, r->position,
+                            r->cell_type,  r->cell_ptr,   r->cell_node};
+    page p = {.report = report, .results = r, .made = made, .bytes = megabytes * 1e6};
+    sf_error problem = SF_ERROR_INIT;
+    char *text = NULL;
+    *warning = '\0';
+    if (made->frames == 0 || megabytes == 0)
+        return SF_OK;
+    if (sf_template_read(PAGE, FACTS, &text, &problem) != SF_OK)
+        snprintf(warning, size, "there is no %s: %s", PAGE, problem.text);
+    else if (sf_shown_find(r, &p.shown, err) != SF_OK || sf_skin_faces_find(&cells, &p.skin, err) != SF_OK)
+        ; /* err says it */
+    else if (!choose(&p))
+        snprintf(
+            warning, size,
+            "there is no %s: the %lld nodes of the pad's surface do not fit into %.3g MB (--view MB allows more)",
+            PAGE, (long long)p.skin.node_count, megabytes);
+    else
+        write_page(&p, output, text, err);
+    sf_skin_faces_free(&p.skin);
+    sf_shown_free(&p.shown);
+    free(p.value);
+    free(p.coded);
+    free(text);
+    return err->status;
+}

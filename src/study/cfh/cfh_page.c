@@ -1,0 +1,570 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The picture and the page of a critical fall height. */
+#include "study/cfh/cfh_report.h"
+
+#include "build_info.h"
+#include "post/results/origin.h"
+#include "post/view/report.h"
+#include "report/chart.h"
+#include "report/html.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the picture ---- */
+
+/* Heights (m) of the picture: the successes, the failures not far above them, and a margin. */
+static void height_range(const sf_cfh_report *r, double range[2]) {
+    const sf_cfh_points *points = r->points;
+    double low = points->point[0].height, high = points->point[points->count - 1].height;
+    if (r->result->highest > 0)
+        high = fmin(high, 1.3 * r->result->highest);
+    double margin = fmax(0.06 * (high - low), 0.02 * high);
+    range[0] = fmax(low - margin, 0);
+    range[1] = high + margin;
+}
+
+/* Returns the end of the axis, a bit above the limit and the largest value. */
+static double value_top(const sf_cfh_report *r, sf_cfh_criterion c) {
+    double top = r->plan->limit[c];
+    for (int k = 0; k < r->points->count; k++)
+        if (!r->points->point[k].failed)
+            top = fmax(top, r->points->point[k].value[c]);
+    return 1.12 * top;
+}
+
+/* Both panels stand above each other; the x axis is below the lower one, the rig's above the upper one. */
+static void put_axes(sf_panel *panel, const sf_cfh_report *r, sf_cfh_criterion c) {
+    bool upper = c == SF_CFH_A_MAX, rig = r->rig->pairs > 0;
+    double range[2], top = rig ? 0.855 : 0.93, middle = 0.5 * (0.155 + top);
+    height_range(r, range);
+    const double area[4] = {0.11, 0.97, upper ? middle + 0.025 : 0.155, upper ? top : middle - 0.025};
+    memcpy(panel->area, area, sizeof area);
+    sf_axis_label(&panel->x, "drop height, free fall (m)");
+    sf_axis_range(&panel->x, range[0], range[1]);
+    panel->x.hidden = upper;
+    sf_axis_label(&panel->y, "%s", upper ? "a_max (g)" : "HIC");
+    sf_axis_range(&panel->y, 0, value_top(r, c));
+    if (upper && rig) {
+        sf_axis_label(&panel->x2, "drop height on the rig (m)");
+        sf_axis_range(&panel->x2, sf_cfh_rig_height(r->rig, range[0]), sf_cfh_rig_height(r->rig, range[1]));
+    }
+    panel->key = upper ? SF_KEY_NONE : SF_KEY_BELOW; /* one key, below both */
+    panel->key_columns = 5;
+}
+
+/* 95 % of the draws at each height. */
+static void put_band(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
+    if (!r->spread)
+        return;
+    sf_series_data *range = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_RANGE, .colour = "#6baed6", .opacity = 0.4},
+        "95 %% of the draws");
+    for (int k = 0; k < r->spread->grid; k++) {
+        const sf_cfh_band *band = &r->spread->band[c][k];
+        if (isfinite(band->low) && isfinite(band->high))
+            sf_series_add(range, r->spread->height[k], band->median, band->low, band->high);
+    }
+}
+
+/* The interval of the crossing as a band, where the draws give one, and the crossing as a line with its
+ * height. */
+static void put_crossing(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
+    const sf_cfh_crossing *crossing = &r->result->crossing[c];
+    bool decides = r->result->verdict == SF_CFH_FOUND && r->result->deciding == c;
+    const char *colour = decides ? "#cb181d" : "#606060";
+    double limit = r->plan->limit[c], range[2];
+    height_range(r, range);
+    sf_chart_level(chart, limit, "#cb181d", "limit %g%s", limit, sf_cfh_unit(c));
+    if (r->spread) {
+        const sf_cfh_interval *interval = sf_cfh_spread_whole(r->spread, (int)c);
+        const double x[2] = {fmax(interval->low, range[0]), fmin(interval->high, range[1])};
+        if (x[0] < x[1])
+            sf_chart_band(chart, x, (const double[2]){-INFINITY, limit}, colour, 0.25);
+    }
+    if (!isnan(crossing->height))
+        sf_chart_drop(chart, crossing->height, limit, colour, "%.3f m%s", crossing->height,
+                      decides ? ", decides" : "");
+}
+
+/* The fit between the lowest and the highest of its points. */
+static void put_fit(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
+    enum { STEPS = 200 };
+    const sf_cfh_fit *fit = &r->result->crossing[c].fit;
+    double lowest = 0, highest = 0;
+    if (fit->count == 0)
+        return;
+    for (int k = 0, n = 0; k < r->points->count; k++) {
+        if (r->points->point[k].failed)
+            continue;
+        if (n == fit->first)
+            lowest = r->points->point[k].height;
+        if (n++ == fit->first + fit->count - 1)
+            highest = r->points->point[k].height;
+    }
+    sf_series_data *line = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = "#08519c", .width = 3.5}, "fit");
+    for (int k = 0; k <= STEPS; k++) {
+        double height = lowest + (highest - lowest) * k / STEPS;
+        sf_series_point(line, height, sf_cfh_fit_at(fit, height));
+    }
+}
+
+static void put_points(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
+    sf_series_data *simulated = sf_chart_series(
+        chart, (sf_series_style){.kind = SF_SERIES_POINTS, .colour = "#08519c", .size = 1.8}, "simulated");
+    sf_series_data *failed = sf_chart_series(
+        chart,
+        (sf_series_style){
+            .kind = SF_SERIES_POINTS, .colour = "#606060", .shape = SF_POINT_CROSS, .size = 2.2, .width = 3},
+        "failed");
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        sf_series_point(p->failed ? failed : simulated, p->height, p->failed ? 0 : p->value[c]);
+    }
+}
+
+/* The verdict in a few words. */
+static void put_title(sf_chart *chart, const sf_cfh_report *r) {
+    const sf_cfh_result *v = r->result;
+    char height[96] = "not determined", rig[48] = "", interval[64], spread[96] = "";
+    if (v->verdict == SF_CFH_FOUND)
+        snprintf(height, sizeof height, "%.3f m of free fall", v->crossing[v->deciding].height);
+    else if (v->verdict == SF_CFH_ABOVE)
+        snprintf(height, sizeof height, "above %.3f m of free fall", v->highest);
+    else if (v->verdict == SF_CFH_BELOW)
+        snprintf(height, sizeof height, "below %.3f m of free fall", v->lowest);
+    if (v->verdict == SF_CFH_FOUND && r->rig->pairs > 0)
+        snprintf(rig, sizeof rig, ", %.3f m on the rig",
+                 sf_cfh_rig_height(r->rig, v->crossing[v->deciding].height));
+    if (r->spread)
+        snprintf(
+            spread, sizeof spread, "; 95 %% interval %s",
+            sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, SF_CFH_FIRST), interval, sizeof interval));
+    sf_chart_title(chart, "Critical fall height %s%s%s (indicative)", height, rig, spread);
+}
+
+sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *warning, size_t size,
+                      sf_error *err) {
+    sf_chart *chart = sf_chart_new("cfh", 1600, 1300, err);
+    put_title(chart, r);
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
+        sf_panel *panel = sf_chart_panel(chart);
+        if (!panel)
+            break;
+        put_axes(panel, r, c);
+        put_band(chart, r, c);
+        put_crossing(chart, r, c);
+        put_fit(chart, r, c);
+        put_points(chart, r, c);
+    }
+    sf_chart_write(chart, output, warning, size, err);
+    sf_chart_free(chart);
+    return err->status;
+}
+
+/* ---- the section about the interval ---- */
+
+static void put_share(sf_html_table *table, double share) {
+    if (isnan(share))
+        sf_html_cell(table, "–");
+    else
+        sf_html_cell(table, "%.0f", 100 * share);
+}
+
+/* The line of the interval that a single pad and drop have. */
+static const char *single_drop_text(const sf_cfh_spread *s) {
+    return isnan(s->scatter[SF_CFH_A_MAX][0])
+               ? "of a single pad and drop: not known, as above"
+               : "of a single pad and drop, with the scatter of speed and thickness; not in the whole interval";
+}
+
+static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
+    static const char *const words[SF_CFH_PARTS] = {
+        "foam alone (the draws: parameters and curve)", "and the errors of the responses",
+        "and the error of the mesh", "and the points about their fit", "and the columns' own error"};
+    char text[64];
+    sf_html_table table = sf_html_table_begin(
+        page, "dense", "95 % interval with|>median (m)|>critical height|>share (%)|>a_max|>HIC");
+    for (int part = 0; part < SF_CFH_PARTS; part++) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s%s", words[part],
+                     part == SF_CFH_PART_RESPONSE && !s->with_response ? ": not known, not in it" : "");
+        sf_html_number(&table, 3, s->part[part][SF_CFH_FIRST].median);
+        sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][SF_CFH_FIRST], text, sizeof text));
+        put_share(&table, sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][c], text, sizeof text));
+    }
+    const sf_cfh_interval *drop = s->part[SF_CFH_PARTS];
+    sf_html_row(&table);
+    sf_html_cell(&table, "%s", single_drop_text(s));
+    sf_html_number(&table, 3, drop[SF_CFH_FIRST].median);
+    sf_html_cell(&table, "%s", sf_cfh_interval_text(&drop[SF_CFH_FIRST], text, sizeof text));
+    sf_html_cell(&table, "–");
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        sf_html_cell(&table, "%s", sf_cfh_interval_text(&drop[c], text, sizeof text));
+    if (rig->pairs > 0) {
+        sf_html_row(&table);
+        sf_html_cell(&table, "without that, and g_eff: on the rig");
+        sf_html_number(&table, 3, s->rig.median);
+        sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->rig, text, sizeof text));
+        for (int k = 0; k < 1 + SF_CFH_CRITERIA; k++)
+            sf_html_cell(&table, "–");
+    }
+    sf_html_table_end(&table);
+    sf_html_note(page,
+                 "Share: what the line adds to the squared length of the interval of ln(height). Below 0, "
+                 "the trend of the simulated draws makes it narrower.");
+}
+
+/* Describes the correction of a criterion's height by the checks. */
+static const char *trend_text(const sf_cfh_trend *t, char *text, size_t size) {
+    if (t->checks == 0)
+        snprintf(text, size, "not known");
+    else if (t->sum > 0)
+        snprintf(
+            text, size,
+            "%+.2g %% at the lowest and %+.2g %% at the highest of %d simulated draws by their trend, which the "
+            "heights follow, ±%.2g %% about it (Student's t, %d degrees of freedom)",
+            100 * (t->shift + t->slope * (t->range[0] - t->centre)),
+            100 * (t->shift + t->slope * (t->range[1] - t->centre)), t->checks, 100 * t->scatter, t->freedom);
+    else
+        snprintf(text, size,
+                 "±%.2g %%, the root mean square of %d simulated draws (Student's t, %d degrees of freedom)",
+                 100 * t->scatter, t->checks, t->freedom);
+    return text;
+}
+
+/* "0.12 %" */
+static const char *percent_text(double value, char text[24]) {
+    if (isnan(value))
+        snprintf(text, 24, "not known");
+    else
+        snprintf(text, 24, "%.2g %%", 100 * value);
+    return text;
+}
+
+static void put_errors(FILE *page, const sf_cfh_spread *s) {
+    char columns[SF_CFH_CRITERIA][240], fit[SF_CFH_CRITERIA][24], mesh[24];
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        trend_text(&s->trend[c], columns[c], sizeof columns[c]);
+        percent_text(s->fit_scatter[c], fit[c]);
+    }
+    sf_html_note(
+        page,
+        "%d draws of the foam, each as columns below the missile, corrected by the drops simulated with the "
+        "case's own material between %.3f and %.3f m. Error of the mesh (expected of a_max: %s): assumed is that the "
+        "draws were identified by drops of the same spacing, whose error of the mesh is in them. How much it differs at this "
+        "height is not known: a scatter of %.2g times that of a_max, and %.1f times as much of HIC, to both sides. Points about "
+        "their fit: %s of a_max, %s of HIC. Errors of the responses: one of each draw, and one drawn for each of its %d repeats "
+        "(response_error). The columns' own error of the height at a_max: %s; at HIC: %s. What is not known "
+        "is not in the interval.",
+        s->draws, s->simulated[0], s->simulated[1], percent_text(s->mesh_error, mesh), SF_CFH_MESH_SIZE,
+        SF_CFH_MESH_HIC, fit[SF_CFH_A_MAX], fit[SF_CFH_HIC], SF_CFH_REPEATS, columns[SF_CFH_A_MAX],
+        columns[SF_CFH_HIC]);
+}
+
+static void put_checks(FILE *page, const sf_cfh_spread *s) {
+    if (s->checks == 0) {
+        sf_html_paragraph(
+            page, "No draw was simulated: how well the columns stand for the draws is not known, and the "
+                  "interval does not hold their error.");
+        return;
+    }
+    sf_html_table table = sf_html_table_begin(
+        page, "dense",
+        "simulated draw|>draws below (%)|>height (m)|limit|>a_max, columns (g)|>simulated (g)|>its height moves by "
+        "(%)|>HIC, columns|>simulated|>its height moves by (%)");
+    for (int k = 0; k < s->checks; k++) {
+        const sf_cfh_check *check = &s->check[k];
+        sf_html_row(&table);
+        sf_html_cell(&table, "%d", check->draw + 1);
+        sf_html_number(&table, 0, 100 * check->share);
+        sf_html_number(&table, 3, check->height);
+        sf_html_cell(&table, "%s", sf_cfh_name(check->first));
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            sf_html_number(&table, c == SF_CFH_A_MAX, check->columns[c]);
+            sf_html_number(&table, c == SF_CFH_A_MAX, check->failed ? NAN : check->simulated[c]);
+            sf_html_number(&table, 2, check->failed ? NAN : 100 * check->shift[c]);
+        }
+    }
+    sf_html_table_end(&table);
+    for (int k = 0; k < s->checks; k++)
+        if (s->check[k].note[0])
+            sf_html_paragraph(page, "Draw %d: %s.", s->check[k].draw + 1, s->check[k].note);
+}
+
+/* The section of report.html about the interval. */
+static void put_spread(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
+    char text[SF_CFH_NOTE_SIZE];
+    sf_html_heading(page, "Interval of the critical height");
+    put_parts(page, s, rig);
+    sf_cfh_draws_text(s, text, sizeof text);
+    if (text[0])
+        sf_html_paragraph(page, "%s", text);
+    if (!s->with_response)
+        sf_html_paragraph(page, "%s", sf_cfh_response_text(s));
+    put_checks(page, s);
+    put_errors(page, s);
+}
+
+/* ---- the page ---- */
+
+static const char *banner_kind(const sf_cfh_report *r) {
+    char text[SF_CFH_NOTE_SIZE] = "";
+    if (r->result->verdict == SF_CFH_UNKNOWN)
+        return "bad";
+    if (r->spread)
+        sf_cfh_draws_text(r->spread, text, sizeof text);
+    if (text[0] || r->no_interval[0] || (r->spread && !r->spread->with_response))
+        return "fair";
+    for (int k = 0; k < r->points->count; k++)
+        if (r->points->point[k].note[0])
+            return "fair";
+    return "good";
+}
+
+/* "1.661 m", or a bound. */
+static void height_text(const sf_cfh_report *r, double scale, char *text, size_t size) {
+    const sf_cfh_result *v = r->result;
+    switch (v->verdict) {
+    case SF_CFH_FOUND:
+        snprintf(text, size, "%.3f m", scale * sf_cfh_deciding(r)->height);
+        break;
+    case SF_CFH_ABOVE:
+        if (isnan(v->anvil))
+            snprintf(text, size, "> %.3f m", scale * v->highest);
+        else
+            snprintf(text, size, "%.3f to %.3f m", scale * v->highest, scale * v->anvil);
+        break;
+    case SF_CFH_BELOW:
+        snprintf(text, size, "< %.3f m", scale * sf_cfh_upper_bound(v));
+        break;
+    case SF_CFH_UNKNOWN:
+        snprintf(text, size, "–");
+        break;
+    }
+}
+
+static void put_limit_tile(FILE *page, const sf_cfh_report *r, sf_cfh_criterion c) {
+    char title[48], value[48];
+    const sf_cfh_crossing *crossing = &r->result->crossing[c];
+    snprintf(title, sizeof title, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+    if (isfinite(crossing->height))
+        snprintf(value, sizeof value, "at %.3f m", crossing->height);
+    else
+        snprintf(value, sizeof value, "–");
+    sf_html_tile(page, "plain", title, value, sf_cfh_side_word(crossing));
+}
+
+/* The interval below a height; "" if there is neither. */
+static void tile_remark(const sf_cfh_report *r, const sf_cfh_interval *interval, char *text, size_t size) {
+    char words[64];
+    text[0] = '\0';
+    if (r->spread)
+        snprintf(text, size, "95 %% interval %s", sf_cfh_interval_text(interval, words, sizeof words));
+    else if (r->result->verdict == SF_CFH_FOUND)
+        snprintf(text, size, "uncertainty of the foam not included");
+}
+
+static void put_tiles(FILE *page, const sf_cfh_report *r) {
+    char value[48], remark[160];
+    sf_html_tiles_begin(page);
+    height_text(r, 1, value, sizeof value);
+    tile_remark(r, r->spread ? sf_cfh_spread_whole(r->spread, SF_CFH_FIRST) : NULL, remark, sizeof remark);
+    sf_html_tile(page, banner_kind(r), "critical fall height, free fall", value, remark);
+    if (r->rig->pairs > 0) {
+        height_text(r, sf_cfh_rig_height(r->rig, 1), value, sizeof value);
+        tile_remark(r, r->spread ? &r->spread->rig : NULL, remark, sizeof remark);
+        size_t used = strlen(remark);
+        snprintf(remark + used, sizeof remark - used, "%sg_eff = %.3f ± %.3f m/s²", used ? "; " : "",
+                 r->rig->gravity, r->rig->standard_error);
+        sf_html_tile(page, banner_kind(r), "on the rig", value, remark);
+    }
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
+        put_limit_tile(page, r, c);
+    sf_html_tiles_end(page);
+}
+
+static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
+    bool rig = r->rig->pairs > 0;
+    sf_html_table table = sf_html_table_begin(page, "dense",
+                                              rig ? "limit|state|>height (m)|>95 % interval|>on the rig (m)"
+                                                  : "limit|state|>height (m)|>95 % interval");
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_crossing *crossing = &r->result->crossing[c];
+        char text[64] = "not known";
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+        sf_html_cell(&table, "%s", sf_cfh_side_word(crossing));
+        sf_html_number(&table, 3, crossing->height);
+        if (r->spread)
+            sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, (int)c), text, sizeof text);
+        sf_html_cell(&table, "%s", text);
+        if (rig)
+            sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, crossing->height));
+    }
+    sf_html_table_end(&table);
+}
+
+/* The residuals say how well the quadratics fit, not how well the heights are known. */
+static void put_fit_table(FILE *page, const sf_cfh_report *r) {
+    bool rig = r->rig->pairs > 0;
+    sf_html_heading(page, "Fit of the simulated points");
+    sf_html_table table = sf_html_table_begin(
+        page, "dense",
+        rig ? "limit|>points|>rms residual (%)|>interval of the fit (m)|>on the rig, with g_eff (m)"
+            : "limit|>points|>rms residual (%)|>interval of the fit (m)");
+    for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
+        const sf_cfh_crossing *crossing = &r->result->crossing[c];
+        double margin = sf_cfh_rig_margin(r->rig, crossing->margin);
+        double height = sf_cfh_rig_height(r->rig, crossing->height);
+        sf_html_row(&table);
+        sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+        sf_html_cell(&table, "%d", crossing->fit.count);
+        sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
+        if (isfinite(crossing->low))
+            sf_html_cell(&table, "%.3f to %.3f%s", crossing->low, crossing->high,
+                         crossing->bracketed ? ", the drops on both sides" : "");
+        else
+            sf_html_cell(&table, "–");
+        if (rig && isfinite(margin))
+            sf_html_cell(&table, "%.3f to %.3f", height * exp(-margin), height * exp(margin));
+        else if (rig)
+            sf_html_cell(&table, "–");
+    }
+    sf_html_table_end(&table);
+    sf_html_note(
+        page,
+        "Where a quadratic misses the points by 3 %% or more, as of a foam that locks up, the interval is that of "
+        "the drops on both sides of the limit. "
+        "The interval of the fit (95 %%, Student's t) says how well a quadratic describes the simulated "
+        "points, and on the rig how well g_eff is known. It is no uncertainty of the height: foam, mesh "
+        "and model are not in it.");
+}
+
+static void put_point_table(FILE *page, const sf_cfh_report *r) {
+    bool rig = r->rig->pairs > 0;
+    sf_html_table table = sf_html_table_begin(
+        page, "dense",
+        rig ? ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
+              "strain|>on the rig (m)|verdict"
+            : ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
+              "strain|verdict");
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        sf_html_row(&table);
+        sf_html_number(&table, 3, p->height);
+        sf_html_number(&table, 3, p->speed);
+        sf_html_number(&table, 1, p->failed ? NAN : p->value[SF_CFH_A_MAX]);
+        sf_html_number(&table, 2, 100 * sf_cfh_residual(r, SF_CFH_A_MAX, p));
+        sf_html_number(&table, 0, p->failed ? NAN : p->value[SF_CFH_HIC]);
+        sf_html_number(&table, 2, 100 * sf_cfh_residual(r, SF_CFH_HIC, p));
+        sf_html_number(&table, 2, p->failed ? NAN : p->v_rebound);
+        sf_html_number(&table, 3, p->failed ? NAN : p->max_local_strain);
+        if (rig)
+            sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, p->height));
+        sf_html_cell(&table, "%s", p->failed ? "failed" : sf_verdict_phrase(p->grade));
+    }
+    sf_html_table_end(&table);
+}
+
+static void put_notes(FILE *page, const sf_cfh_report *r) {
+    bool any = false;
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        if (!p->note[0])
+            continue;
+        if (!any)
+            sf_html_heading(page, "Warnings");
+        sf_html_paragraph(page, "%.3f m: %s.", p->height, p->note);
+        any = true;
+    }
+}
+
+static void put_bodies(FILE *page, const sf_cfh_report *r) {
+    sf_html_heading(page, "What falls on what");
+    sf_html_table table = sf_html_table_begin(page, "dense", NULL);
+    sf_html_fact(&table, "case", "%s", r->case_path);
+    sf_html_fact(&table, "material", "%s", r->material ? r->material : "of the case");
+    sf_html_fact(&table, "missile", "%g kg", r->mass);
+    sf_origin_put_key(&table, r->parameters, "geometry.missile_file", "its shape");
+    sf_origin_put_key(&table, r->parameters, "geometry.missile_parameters", "its parameters");
+    sf_origin_put_key(&table, r->parameters, "geometry.file", "pad");
+    sf_origin_put_key(&table, r->parameters, "geometry.parameters", "its parameters");
+    if (r->posterior)
+        sf_html_fact(&table, "draws of the foam", "%s", r->posterior);
+    if (r->rig_path)
+        sf_html_fact(&table, "rig", "%s, %d pairs", r->rig_path, r->rig->pairs);
+    sf_html_table_end(&table);
+}
+
+static void put_picture(FILE *page, const sf_staging *output, const sf_cfh_report *r) {
+    char warning[320];
+    char *svg = sf_chart_svg(output, "cfh", "softfall-cfh", warning, sizeof warning);
+    if (svg)
+        sf_html_figure(
+            page, svg, "a_max and HIC over the drop height%s.",
+            r->spread ? "; bands: 95 % of the draws of the foam, and the intervals of the crossings" : "");
+    else
+        sf_html_figure(page, NULL, "%s.", warning);
+    free(svg);
+}
+
+/* Writes the end of the data of each foam. */
+static void describe_foams(const sf_cfh_foams *foams, char *text, size_t size) {
+    size_t used = 0;
+    for (int k = 0; k < foams->count && used < size; k++) {
+        const sf_cfh_foam *foam = &foams->foam[k];
+        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s %.3f", k ? "; " : "",
+                                 foams->count > 1 ? foam->name : "", foams->count > 1 ? ": " : "",
+                                 foam->words, foam->end);
+    }
+}
+
+static void put_drops(FILE *page, const sf_cfh_report *r) {
+    char foams[SF_CASE_MAX_LAYERS * (SF_MATERIAL_NAME_SIZE + 64)];
+    describe_foams(r->foams, foams, sizeof foams);
+    sf_html_heading(page, "Crossings of the limits");
+    put_criteria_table(page, r);
+    if (r->spread)
+        put_spread(page, r->spread, r->rig);
+    sf_html_heading(page, "Simulated drops");
+    put_point_table(page, r);
+    sf_html_note(
+        page,
+        "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: simulated value "
+        "against the fit, ln(value) quadratic in ln(height); a dash: not in the fit, or no value. The "
+        "curve of a foam is extrapolated beyond the strain to which its data reach: %s. The search "
+        "ended because %s.",
+        foams, sf_cfh_step_text(r->ending));
+    put_notes(page, r);
+    put_fit_table(page, r);
+}
+
+sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
+    char verdict[SF_CFH_VERDICT_SIZE], rig[400], *title = sf_origin_title(r->case_text);
+    FILE *page = sf_html_begin(output, "Critical fall height", title && *title ? title : NULL, err);
+    free(title);
+    if (!page)
+        return err->status;
+    sf_cfh_verdict_text(r, verdict, sizeof verdict);
+    sf_cfh_rig_text(r, rig, sizeof rig);
+    sf_html_banner(page, banner_kind(r),
+                   r->result->verdict == SF_CFH_UNKNOWN ? "not determined" : "indicative", "%s%s%s %s",
+                   verdict, rig[0] ? " " : "", rig, sf_cfh_caution);
+    put_tiles(page, r);
+    sf_html_columns_begin(page, "wide");
+    put_picture(page, output, r);
+    sf_html_block_begin(page);
+    put_bodies(page, r);
+    sf_html_block_end(page);
+    sf_html_columns_end(page);
+    put_drops(page, r);
+    sf_origin_put_material(page, r->case_text, r->parameters);
+    sf_html_heading(page, "The command that repeats this report");
+    sf_html_pre(page, r->command_line);
+    return sf_html_end(page, "softfall-cfh " SF_VERSION " (" SF_GIT_REVISION ")", err);
+}

@@ -1,0 +1,346 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/predictor.h"
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_multimin.h>
+#include <gsl/gsl_sort.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_FOR_LENGTHS = 250, STEPS = 60, LEAST_FOR_CALIBRATION = 20 };
+/* Normal prior of ln(length) and ln(nugget): it holds lengths that the points do not determine. */
+static const double LENGTH_SD = 1.5, NUGGET_MEDIAN = 1e-6, NUGGET_SD = 3;
+static const double LEAST_VARIANCE = 1e-20, LEAST_CALIBRATION = 0.25, SHARE = 0.95;
+
+/* ---- correlation ---- */
+
+/* Squared scaled differences of two points, by input, and their sum. */
+static double differences(int inputs, const bool *word, const double *length, const double *p,
+                          const double *q, double *part) {
+    double sum = 0;
+    for (int i = 0; i < inputs; i++) {
+        double d = (word[i] ? p[i] != q[i] : p[i] - q[i]) / length[i];
+        sum += part[i] = d * d;
+    }
+    return sum;
+}
+
+static double correlation(const sf_predictor *p, const double *a, const double *b) {
+    double part[SF_PREDICTOR_INPUTS], s = sqrt(5 * differences(p->inputs, p->word, p->length, a, b, part));
+    return (1 + s + s * s / 3) * exp(-s);
+}
+
+/* The lower triangle and the diagonal with the nugget. */
+static void fill_correlation(const sf_predictor *p, int count, const double *x, gsl_matrix *k) {
+    for (int i = 0; i < count; i++) {
+        for (int j = 0; j < i; j++)
+            gsl_matrix_set(k, (size_t)i, (size_t)j,
+                           correlation(p, x + (long)i * p->inputs, x + (long)j * p->inputs));
+        gsl_matrix_set(k, (size_t)i, (size_t)i, 1 + p->nugget);
+    }
+}
+
+/* Solves for the weights of `y` with the factored correlation: mean, K^-1 (y - mean), K^-1 1, variance. */
+static double weigh(const gsl_matrix *factor, const gsl_vector *y, double *mean, gsl_vector *weight,
+                    gsl_vector *ones, double *ones_sum) {
+    double sum = 0, squares = 0;
+    gsl_vector_set_all(ones, 1);
+    gsl_linalg_cholesky_svx(factor, ones);
+    *ones_sum = 0;
+    for (size_t k = 0; k < y->size; k++)
+        *ones_sum += gsl_vector_get(ones, k);
+    gsl_blas_ddot(ones, y, &sum);
+    *mean = sum / *ones_sum;
+    gsl_vector_memcpy(weight, y);
+    gsl_vector_add_constant(weight, -*mean);
+    gsl_linalg_cholesky_svx(factor, weight);
+    for (size_t k = 0; k < y->size; k++)
+        squares += (gsl_vector_get(y, k) - *mean) * gsl_vector_get(weight, k);
+    return fmax(LEAST_VARIANCE, squares / (double)(y->size - 1));
+}
+
+/* ---- lengths and nugget ---- */
+
+/* The objective of the minimiser: the negative restricted log likelihood with the prior, of the logarithms of
+ * the lengths and of the nugget. */
+typedef struct likelihood {
+    sf_predictor *p; /* lengths and nugget of the last evaluation */
+    int count;
+    const double *x;
+    gsl_vector_view y;
+    gsl_matrix *k;
+    gsl_vector *weight, *ones;
+} likelihood;
+
+static void take_logarithms(const gsl_vector *at, sf_predictor *p) {
+    for (int i = 0; i < p->inputs; i++)
+        p->length[i] = exp(gsl_vector_get(at, (size_t)i));
+    p->nugget = exp(gsl_vector_get(at, (size_t)p->inputs));
+}
+
+static double prior(const gsl_vector *at, gsl_vector *gradient) {
+    double sum = 0;
+    for (size_t i = 0; i < at->size; i++) {
+        bool nugget = i + 1 == at->size;
+        double sd = nugget ? NUGGET_SD : LENGTH_SD,
+               z = (gsl_vector_get(at, i) - (nugget ? log(NUGGET_MEDIAN) : 0)) / sd;
+        sum += 0.5 * z * z;
+        gsl_vector_set(gradient, i, z / sd);
+    }
+    return sum;
+}
+
+/* Adds half of the sum of M dK over all pairs, M = K^-1 - a a' / s2 - w w' / (1' w), where k holds K^-1. */
+static void add_slopes(const likelihood *l, double variance, double ones_sum, gsl_vector *gradient) {
+    const sf_predictor *p = l->p;
+    double slope[SF_PREDICTOR_INPUTS] = {0}, diagonal = 0, part[SF_PREDICTOR_INPUTS];
+    for (int i = 0; i < l->count; i++)
+        for (int j = 0; j <= i; j++) {
+            double m =
+                gsl_matrix_get(l->k, (size_t)i, (size_t)j) -
+                gsl_vector_get(l->weight, (size_t)i) * gsl_vector_get(l->weight, (size_t)j) / variance -
+                gsl_vector_get(l->ones, (size_t)i) * gsl_vector_get(l->ones, (size_t)j) / ones_sum;
+            if (i == j) {
+                diagonal += m;
+                continue;
+            }
+            double s = sqrt(5 * differences(p->inputs, p->word, p->length, l->x + (long)i * p->inputs,
+                                            l->x + (long)j * p->inputs, part)),
+                   factor = m * 5. / 3 * (1 + s) * exp(-s);
+            for (int k = 0; k < p->inputs; k++)
+                slope[k] += factor * part[k];
+        }
+    for (int k = 0; k < p->inputs; k++)
+        *gsl_vector_ptr(gradient, (size_t)k) += slope[k];
+    *gsl_vector_ptr(gradient, (size_t)p->inputs) += 0.5 * p->nugget * diagonal;
+}
+
+static void evaluate(const gsl_vector *at, void *context, double *value, gsl_vector *gradient) {
+    likelihood *l = context;
+    double mean, ones_sum, logarithms = 0;
+    take_logarithms(at, l->p);
+    *value = prior(at, gradient);
+    fill_correlation(l->p, l->count, l->x, l->k);
+    if (gsl_linalg_cholesky_decomp1(l->k) != GSL_SUCCESS) {
+        *value = GSL_NAN;
+        return;
+    }
+    double variance = weigh(l->k, &l->y.vector, &mean, l->weight, l->ones, &ones_sum);
+    for (size_t i = 0; i < l->k->size1; i++)
+        logarithms += log(gsl_matrix_get(l->k, i, i));
+    *value += 0.5 * (l->count - 1) * log(variance) + logarithms + 0.5 * log(ones_sum);
+    gsl_linalg_cholesky_invert(l->k);
+    add_slopes(l, variance, ones_sum, gradient);
+}
+
+static double evaluate_value(const gsl_vector *at, void *context) {
+    double value;
+    gsl_vector *gradient = gsl_vector_alloc(at->size);
+    if (!gradient)
+        return GSL_NAN;
+    evaluate(at, context, &value, gradient);
+    gsl_vector_free(gradient);
+    return value;
+}
+
+static void evaluate_gradient(const gsl_vector *at, void *context, gsl_vector *gradient) {
+    double value;
+    evaluate(at, context, &value, gradient);
+}
+
+/* Descends from lengths of one and the median nugget; the last point is kept wherever it stops. */
+static sf_status find_lengths(likelihood *l, sf_error *err) {
+    size_t n = (size_t)l->p->inputs + 1;
+    gsl_multimin_function_fdf objective = {evaluate_value, evaluate_gradient, evaluate, n, l};
+    gsl_multimin_fdfminimizer *m = gsl_multimin_fdfminimizer_alloc(gsl_multimin_fdfminimizer_vector_bfgs2, n);
+    gsl_vector *start = gsl_vector_calloc(n);
+    if (m && start) {
+        gsl_vector_set(start, n - 1, log(NUGGET_MEDIAN));
+        gsl_multimin_fdfminimizer_set(m, &objective, start, 0.5, 0.1);
+        for (int k = 0; k < STEPS && gsl_multimin_fdfminimizer_iterate(m) == GSL_SUCCESS; k++)
+            if (gsl_multimin_test_gradient(m->gradient, 1e-2) == GSL_SUCCESS)
+                break;
+        take_logarithms(m->x, l->p);
+    } else {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a predictor");
+    }
+    if (m)
+        gsl_multimin_fdfminimizer_free(m);
+    gsl_vector_free(start);
+    return err->status;
+}
+
+/* Points of which the lengths are found: of many, those at equal distances in their order. */
+static sf_status fit_lengths(sf_predictor *p, const double *y, sf_error *err) {
+    int n = p->count < MOST_FOR_LENGTHS ? p->count : MOST_FOR_LENGTHS;
+    double *x = sf_alloc(err, (unsigned long)n, (unsigned long)(p->inputs + 1) * sizeof *x, "a predictor");
+    if (!x)
+        return err->status;
+    double *part = x + (long)n * p->inputs;
+    for (int k = 0; k < n; k++) {
+        int from = (int)((long)k * p->count / n);
+        memcpy(x + (long)k * p->inputs, p->x + (long)from * p->inputs, (size_t)p->inputs * sizeof *x);
+        part[k] = y[from];
+    }
+    likelihood l = {.p = p,
+                    .count = n,
+                    .x = x,
+                    .y = gsl_vector_view_array(part, (size_t)n),
+                    .k = gsl_matrix_alloc((size_t)n, (size_t)n),
+                    .weight = gsl_vector_alloc((size_t)n),
+                    .ones = gsl_vector_alloc((size_t)n)};
+    if (l.k && l.weight && l.ones)
+        find_lengths(&l, err);
+    else
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a predictor");
+    gsl_matrix_free(l.k);
+    gsl_vector_free(l.weight);
+    gsl_vector_free(l.ones);
+    free(x);
+    return err->status;
+}
+
+/* ---- fit ---- */
+
+/* Sets the factor of the residuals of points left out over what the process expects of them: a function that
+ * is smoother than Matern's has smaller ones. */
+static sf_status calibrate(sf_predictor *p, sf_error *err) {
+    size_t n = (size_t)p->count;
+    p->calibration = 1;
+    if (p->count < LEAST_FOR_CALIBRATION)
+        return SF_OK;
+    gsl_matrix *inverse = gsl_matrix_alloc(n, n);
+    double *z = sf_alloc(err, n, sizeof *z, "a predictor");
+    if (inverse && z) {
+        gsl_matrix_memcpy(inverse, p->factor);
+        gsl_linalg_cholesky_invert(inverse);
+        double squares = 0;
+        for (size_t i = 0; i < n; i++) {
+            double w = gsl_vector_get(p->ones, i), own = gsl_matrix_get(inverse, i, i) - w * w / p->ones_sum;
+            z[i] = fabs(gsl_vector_get(p->weight, i)) / sqrt(own) / p->deviation;
+            squares += z[i] * z[i];
+        }
+        gsl_sort(z, 1, n);
+        p->calibration = fmax(LEAST_CALIBRATION, fmax(sqrt(squares / (double)n),
+                                                      z[(size_t)(SHARE * (double)n)] / SF_PREDICTOR_SIDES));
+    } else if (err->status == SF_OK) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a predictor");
+    }
+    gsl_matrix_free(inverse);
+    free(z);
+    return err->status;
+}
+
+static sf_status solve(sf_predictor *p, const double *y, sf_error *err) {
+    gsl_vector_const_view outputs = gsl_vector_const_view_array(y, (size_t)p->count);
+    fill_correlation(p, p->count, p->x, p->factor);
+    while (gsl_linalg_cholesky_decomp1(p->factor) != GSL_SUCCESS) {
+        if ((p->nugget *= 10) > 1)
+            return SF_FAIL(err, SF_ERR_NUMERIC, "the correlation of %d points cannot be factored", p->count);
+        fill_correlation(p, p->count, p->x, p->factor);
+    }
+    p->deviation = sqrt(weigh(p->factor, &outputs.vector, &p->mean, p->weight, p->ones, &p->ones_sum));
+    return calibrate(p, err);
+}
+
+sf_status sf_predictor_fit(int inputs, const bool *word, int count, const double *x, const double *y,
+                           sf_predictor *p, sf_error *err) {
+    size_t n = (size_t)count;
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    *p = (sf_predictor){.inputs = inputs, .count = count};
+    memcpy(p->word, word, (size_t)inputs * sizeof *word);
+    p->x = sf_alloc(err, n, (unsigned long)inputs * sizeof *x, "a predictor");
+    p->factor = gsl_matrix_alloc(n, n);
+    p->weight = gsl_vector_alloc(n);
+    p->ones = gsl_vector_alloc(n);
+    if (p->x && p->factor && p->weight && p->ones) {
+        memcpy(p->x, x, n * (size_t)inputs * sizeof *x);
+        if (fit_lengths(p, y, err) == SF_OK)
+            solve(p, y, err);
+    } else if (err->status == SF_OK) {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a predictor");
+    }
+    gsl_set_error_handler(handler);
+    return err->status;
+}
+
+void sf_predictor_free(sf_predictor *p) {
+    free(p->x);
+    gsl_matrix_free(p->factor);
+    gsl_vector_free(p->weight);
+    gsl_vector_free(p->ones);
+    *p = (sf_predictor){0};
+}
+
+/* ---- predictions ---- */
+
+/* Correlations with the points in `room`, then L^-1 of them; returns the variance over that of the process.
+ */
+static double project(const sf_predictor *p, const double *x, double *room, double *mean) {
+    gsl_vector_view k = gsl_vector_view_array(room, (size_t)p->count);
+    double sum = 0, ones = 0, squares = 0;
+    for (int j = 0; j < p->count; j++) {
+        room[j] = correlation(p, x, p->x + (long)j * p->inputs);
+        sum += room[j] * gsl_vector_get(p->weight, (size_t)j);
+        ones += room[j] * gsl_vector_get(p->ones, (size_t)j);
+    }
+    gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, p->factor, &k.vector);
+    for (int j = 0; j < p->count; j++)
+        squares += room[j] * room[j];
+    *mean = p->mean + sum;
+    return fmax(0, 1 + p->nugget - squares + (1 - ones) * (1 - ones) / p->ones_sum);
+}
+
+void sf_predictor_at(const sf_predictor *p, const double *x, double *room, double *mean, double *deviation) {
+    *deviation = p->calibration * p->deviation * sqrt(project(p, x, room, mean));
+}
+
+/* Lowers the variances by what point `next` would tell, whose projection grows by one entry like all others.
+ */
+static void condition(const sf_predictor *p, int candidates, const double *x, int width, int known, int next,
+                      double *projection, double *variance) {
+    const double *own = projection + (long)next * width;
+    double scale = sqrt(fmax(LEAST_VARIANCE, variance[next]));
+    for (int c = 0; c < candidates; c++) {
+        double *other = projection + (long)c * width,
+               rest = correlation(p, x + (long)c * p->inputs, x + (long)next * p->inputs);
+        for (int k = 0; k < known && c != next; k++)
+            rest -= own[k] * other[k];
+        other[known] = c == next ? scale : rest / scale;
+        variance[c] = fmax(0, variance[c] - other[known] * other[known]);
+    }
+}
+
+int sf_predictor_choose(const sf_predictor *p, int candidates, const double *x, const double *wish, int most,
+                        int *chosen) {
+    int width = p->count + most, count = 0;
+    double mean, *variance = malloc((size_t)candidates * sizeof *variance),
+                 *projection = malloc((size_t)candidates * (size_t)width * sizeof *projection);
+    if (!variance || !projection)
+        count = -1;
+    for (int c = 0; c < candidates && count == 0; c++)
+        variance[c] = project(p, x + (long)c * p->inputs, projection + (long)c * width, &mean);
+    while (count >= 0 && count < most) {
+        int next = -1;
+        double largest = 1;
+        for (int c = 0; c < candidates; c++) {
+            double ratio = p->calibration * p->deviation * sqrt(variance[c]) / wish[c];
+            if (ratio > largest) {
+                largest = ratio;
+                next = c;
+            }
+        }
+        if (next < 0)
+            break;
+        chosen[count] = next;
+        condition(p, candidates, x, width, p->count + count, next, projection, variance);
+        variance[next] = 0; /* not again, whatever the nugget leaves */
+        count++;
+    }
+    free(variance);
+    free(projection);
+    return count;
+}

@@ -1,0 +1,495 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/sweep/adaptive.h"
+
+#include "io/process.h"
+#include "study/predictor.h"
+#include "study/sweep/analysis.h"
+#include "study/sweep/trend.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    CHECKED_PART = 40, /* one row of so many is a check, within bounds */
+    LEAST_CHECKS = 10,
+    MOST_CHECKS = 50,
+    DESIGN_PER_INPUT = 8, /* further rows of the first round */
+    LEAST_DESIGN = 12,
+    MOST_DESIGN = 96,
+    SAMPLE = 2000, /* open rows that a round looks at */
+    DESIGN_SAMPLE = 20000,
+    ROUND_PART = 6,    /* a round simulates one row for so many that are there */
+    MOST_POINTS = 3000 /* of a process: 72 MB and 10 s a fit */
+};
+
+/* Quantities that tell whether the figures of a row can be used, and the values from which they cannot; the
+ * last one is 1 of a row that failed or is not to be used, and 0 of others. */
+static const struct {
+    const char *figure;
+    int check;
+} watched[] = {{"max_mean_strain", SF_CHECK_anvil}, {"energy_beyond_data", SF_CHECK_informed}, {NULL, 0}};
+enum { WATCHED = sizeof watched / sizeof watched[0], TARGETS = SF_SWEEP_FIGURES + WATCHED };
+enum { INPUTS = SF_SWEEP_FACTORS + SF_TRENDS };
+static const double COLLAPSED = 1.5; /* scaled figure of columns that collapse: beyond those of all others */
+static const double UNUSABLE = 0.5, HELD = 0.95, LEAST_DEVIATION = 1e-9;
+
+struct sf_sweep_adaptive {
+    const sf_plan *plan;
+    const char *drops;
+    int jobs;
+    FILE *log;
+    int factors, factor[SF_SWEEP_FACTORS]; /* those that vary */
+    int inputs;                            /* these, and of a plan with columns their figures */
+    bool word[INPUTS];
+    double low[INPUTS], range[INPUTS];
+    bool *check; /* [rows] random rows that are simulated and teach nothing: they measure the predictions;
+                    owned */
+    int64_t checks;
+    int held[SF_SWEEP_FIGURES], checked[SF_SWEEP_FIGURES]; /* of them, in the intervals and with figures */
+    sf_sweep_trend trend;
+    double *expected; /* [rows][SF_TRENDS] of the columns; NULL: not yet computed; owned */
+    int targets;
+    sf_predictor model[TARGETS]; /* the plan's figures, then `watched` */
+    bool all;                    /* too few rows can be used: every row is simulated */
+};
+
+/* Judgement of an open row by the processes. */
+typedef struct outlook {
+    double ratio;     /* of the widest half interval to its wish; at most one: the row is predicted */
+    int target;       /* of that */
+    double wish;      /* standard deviation of the target that meets it */
+    bool is_unusable; /* surely */
+    double value[SF_SWEEP_FIGURES], half[SF_SWEEP_FIGURES]; /* of the logarithm */
+} outlook;
+
+/* ---- inputs ---- */
+
+static void list_inputs(sf_sweep_adaptive *a) {
+    const sf_plan *p = a->plan;
+    for (int f = 0; f < p->factor_count; f++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t k = 0; k < p->block[p->block_of[f]].rows; k++) {
+            low = fmin(low, p->factor[f].value[k]);
+            high = fmax(high, p->factor[f].value[k]);
+        }
+        if (!(high > low))
+            continue;
+        a->word[a->factors] = p->factor[f].words;
+        a->low[a->factors] = low;
+        a->range[a->factors] = p->factor[f].words ? 1 : high - low;
+        a->factor[a->factors++] = f;
+    }
+    a->inputs = a->factors;
+}
+
+/* Makes the figures of the columns inputs, too: foams that differ as words are near to each other by these.
+ */
+static void add_columns(sf_sweep_adaptive *a) {
+    for (int k = 0; k < SF_TRENDS && !a->trend.problem; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t row = 0; row < a->plan->rows; row++) {
+            low = fmin(low, a->expected[row * SF_TRENDS + k]);
+            high = fmax(high, a->expected[row * SF_TRENDS + k]);
+        }
+        a->low[a->factors + k] = low;
+        a->range[a->factors + k] = high > low ? high - low : 1;
+        a->inputs = a->factors + k + 1;
+    }
+}
+
+static void put_inputs(const sf_sweep_adaptive *a, int64_t row, double *x) {
+    for (int i = 0; i < a->factors; i++)
+        x[i] = (sf_plan_value(a->plan, a->factor[i], row) - a->low[i]) / a->range[i];
+    for (int i = a->factors; i < a->inputs; i++) {
+        double value = (a->expected[row * SF_TRENDS + i - a->factors] - a->low[i]) / a->range[i];
+        x[i] = isfinite(value) ? value : COLLAPSED;
+    }
+}
+
+/* ---- the first round ---- */
+
+static int64_t count_checks(const sf_plan *plan) {
+    int64_t count = plan->rows / CHECKED_PART;
+    count = count < LEAST_CHECKS ? LEAST_CHECKS : count > MOST_CHECKS ? MOST_CHECKS : count;
+    return count < plan->rows ? count : plan->rows;
+}
+
+int64_t sf_sweep_adaptive_design(const sf_plan *plan) {
+    int64_t count = count_checks(plan) + DESIGN_PER_INPUT * plan->factor_count;
+    count = count > MOST_DESIGN ? MOST_DESIGN : count;
+    return count < plan->rows ? count : plan->rows;
+}
+
+static double distance(const sf_sweep_adaptive *a, const double *p, const double *q) {
+    double sum = 0;
+    for (int i = 0; i < a->inputs; i++)
+        sum += a->word[i] ? p[i] != q[i] : (p[i] - q[i]) * (p[i] - q[i]);
+    return sum;
+}
+
+/* Up to `most` open rows, each as far as can be from all that are there and that were chosen before it: every
+ * `step`-th row is looked at. */
+static int choose_apart(const sf_sweep_adaptive *a, const sf_runs *runs, int most, int64_t *row,
+                        sf_error *err) {
+    int64_t step = (runs->count + DESIGN_SAMPLE - 1) / DESIGN_SAMPLE, n = (runs->count + step - 1) / step;
+    int count = 0;
+    double *x = sf_alloc(err, (unsigned long)n, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
+    if (!x)
+        return 0;
+    double *apart = x + n * a->inputs, own[INPUTS];
+    for (int64_t k = 0; k < n; k++) {
+        put_inputs(a, k * step, x + k * a->inputs);
+        apart[k] = runs->state[k * step] == SF_SWEEP_OPEN ? a->inputs + 1 : -1;
+    }
+    for (int64_t r = 0; r < runs->count; r++) {
+        if (runs->state[r] != SF_SWEEP_DONE && runs->state[r] != SF_SWEEP_FAILED)
+            continue;
+        put_inputs(a, r, own);
+        for (int64_t k = 0; k < n; k++)
+            apart[k] = fmin(apart[k], distance(a, own, x + k * a->inputs));
+    }
+    while (count < most) {
+        int64_t best = 0;
+        for (int64_t k = 1; k < n; k++)
+            best = apart[k] > apart[best] ? k : best;
+        if (apart[best] < 0)
+            break;
+        row[count++] = best * step;
+        for (int64_t k = 0; k < n; k++)
+            apart[k] = k == best ? -1 : fmin(apart[k], distance(a, x + best * a->inputs, x + k * a->inputs));
+    }
+    free(x);
+    return count;
+}
+
+/* ---- what the rows are expected to be ---- */
+
+static sf_status expect(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err) {
+    if (a->expected)
+        return SF_OK;
+    if (sf_sweep_trend_learn(runs, a->drops, &a->trend, err) != SF_OK)
+        return err->status;
+    a->expected =
+        sf_alloc(err, (unsigned long)runs->count, SF_TRENDS * sizeof *a->expected, "columns of the rows");
+    for (int64_t row = 0; row < runs->count && err->status == SF_OK; row++) {
+        if (sf_process_stopped())
+            return SF_FAIL(err, SF_INTERRUPTED, "interrupted");
+        sf_sweep_trend_at(&a->trend, row, a->expected + row * SF_TRENDS, err);
+    }
+    if (err->status == SF_OK)
+        add_columns(a);
+    if (a->log && err->status == SF_OK && a->trend.problem)
+        fprintf(a->log, "  rows are predicted without columns: %s\n", a->trend.problem);
+    return err->status;
+}
+
+/* ln of what columns expect of a figure of the plan; 0: they have no such figure. */
+static double expected_of(const sf_sweep_adaptive *a, int target, int64_t row) {
+    int k = sf_sweep_trend_find(a->plan->figure[target].figure);
+    return k < 0 ? 0 : a->expected[row * SF_TRENDS + k];
+}
+
+/* The output of a process at a row that was simulated; NaN: the row has none. */
+static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
+    const double *place = runs->value + row * (int64_t)runs->figures;
+    int k = target - a->plan->figure_count;
+    bool done = runs->state[row] == SF_SWEEP_DONE;
+    if (k < 0)
+        return sf_runs_usable(runs, row)
+                   ? log(place[sf_runs_figure(a->plan->figure[target].figure)]) - expected_of(a, target, row)
+                   : NAN;
+    if (watched[k].figure)
+        return done ? place[sf_runs_figure(watched[k].figure)] : NAN;
+    return done || runs->state[row] == SF_SWEEP_FAILED ? !sf_runs_usable(runs, row) : NAN;
+}
+
+static bool is_simulated(const sf_runs *runs, int64_t row) {
+    return runs->state[row] == SF_SWEEP_DONE || runs->state[row] == SF_SWEEP_FAILED;
+}
+
+static void free_models(sf_sweep_adaptive *a) {
+    for (int t = 0; t < TARGETS; t++)
+        sf_predictor_free(&a->model[t]);
+}
+
+static int compare(const void *a, const void *b) {
+    double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+/* Widens the intervals of a figure until they hold 95 % of the check rows. */
+static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int target, sf_error *err) {
+    sf_predictor *p = &a->model[target];
+    double *room = sf_alloc(err, (unsigned long)(p->count + a->checks), sizeof *room, "predictions"),
+           x[INPUTS], mean, deviation;
+    int64_t n = 0, held = 0;
+    if (!room)
+        return err->status;
+    double *z = room + p->count;
+    for (int64_t row = 0; row < runs->count; row++) {
+        double value = a->check[row] && is_simulated(runs, row) ? output_of(a, runs, target, row) : NAN;
+        if (!isfinite(value))
+            continue;
+        put_inputs(a, row, x);
+        sf_predictor_at(p, x, room, &mean, &deviation);
+        z[n++] = fabs(value - mean) / SF_PREDICTOR_SIDES / fmax(deviation, LEAST_DEVIATION);
+    }
+    if (n > 0) {
+        qsort(z, (size_t)n, sizeof *z, compare);
+        double wider = fmax(1, z[(int64_t)(HELD * (double)(n - 1) + 0.5)]);
+        p->calibration *= wider;
+        while (held < n && z[held] <= wider)
+            held++;
+    }
+    a->checked[target] = (int)n;
+    a->held[target] = (int)held;
+    free(room);
+    return err->status;
+}
+
+/* Fits one process; of too many points the last ones of the list are left out. */
+static sf_status fit_target(sf_sweep_adaptive *a, const sf_runs *runs, int target, sf_error *err) {
+    double *x = sf_alloc(err, MOST_POINTS, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
+    int n = 0;
+    if (!x)
+        return err->status;
+    double *y = x + (int64_t)MOST_POINTS * a->inputs;
+    for (int64_t row = 0; row < runs->count && n < MOST_POINTS; row++) {
+        double value = is_simulated(runs, row) && !a->check[row] ? output_of(a, runs, target, row) : NAN;
+        if (!isfinite(value))
+            continue;
+        put_inputs(a, row, x + (int64_t)n * a->inputs);
+        y[n++] = value;
+    }
+    bool fits = n >= LEAST_DESIGN / 2;
+    a->all |= !fits && target < a->plan->figure_count;
+    if (fits)
+        sf_predictor_fit(a->inputs, a->word, n, x, y, &a->model[target], err);
+    free(x);
+    return fits && err->status == SF_OK && target < a->plan->figure_count ? check_target(a, runs, target, err)
+                                                                          : err->status;
+}
+
+static sf_status fit_models(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err) {
+    free_models(a);
+    a->all = a->inputs == 0;
+    a->targets = a->plan->figure_count + WATCHED;
+    for (int t = 0; t < a->targets && !a->all && err->status == SF_OK; t++)
+        fit_target(a, runs, t, err);
+    return err->status;
+}
+
+/* ---- outlook of a row ---- */
+
+static void judge_figure(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, double *room,
+                         outlook *o) {
+    double mean, deviation, wish = log1p(a->plan->figure[target].accuracy);
+    sf_predictor_at(&a->model[target], x, room, &mean, &deviation);
+    o->value[target] = exp(mean + expected_of(a, target, row));
+    o->half[target] = SF_PREDICTOR_SIDES * deviation;
+    double ratio = isfinite(o->value[target]) ? o->half[target] / wish : INFINITY;
+    if (ratio > o->ratio) {
+        o->ratio = ratio;
+        o->target = target;
+        o->wish = wish / SF_PREDICTOR_SIDES;
+    }
+}
+
+static void judge_use(const sf_sweep_adaptive *a, int k, const double *x, double *room, outlook *o) {
+    double mean, deviation,
+        bound = watched[k].figure ? sf_good_run_rule_get(watched[k].check)->refuse : UNUSABLE;
+    int target = a->plan->figure_count + k;
+    sf_predictor_at(&a->model[target], x, room, &mean, &deviation);
+    double margin = fmax(1e-12, fabs(bound - mean)), ratio = SF_PREDICTOR_SIDES * deviation / margin;
+    o->is_unusable |= mean > bound && ratio <= 1;
+    if (ratio > o->ratio) {
+        o->ratio = ratio;
+        o->target = target;
+        o->wish = margin / SF_PREDICTOR_SIDES;
+    }
+}
+
+static outlook judge(const sf_sweep_adaptive *a, int64_t row, double *room) {
+    double x[INPUTS];
+    outlook o = {0};
+    put_inputs(a, row, x);
+    for (int k = 0; k < WATCHED; k++)
+        if (a->model[a->plan->figure_count + k].count > 0)
+            judge_use(a, k, x, room, &o);
+    for (int t = 0; t < a->plan->figure_count; t++)
+        judge_figure(a, t, row, x, room, &o);
+    if (o.is_unusable)
+        o.ratio = 0;
+    return o;
+}
+
+/* Judges `count` rows, side by side. */
+static sf_status judge_rows(const sf_sweep_adaptive *a, int64_t count, const int64_t *row, outlook *o,
+                            sf_error *err) {
+    bool failed = false;
+    int most = 0;
+    for (int t = 0; t < a->targets; t++)
+        most = a->model[t].count > most ? a->model[t].count : most;
+#pragma omp parallel reduction(|| : failed)
+    {
+        double *room = malloc((size_t)most * sizeof *room);
+        failed = !room;
+#pragma omp for schedule(dynamic, 64)
+        for (int64_t k = 0; k < count; k++)
+            if (room && !sf_process_stopped())
+                o[k] = judge(a, row[k], room);
+        free(room);
+    }
+    if (sf_process_stopped())
+        return SF_FAIL(err, SF_INTERRUPTED, "interrupted");
+    return failed ? SF_FAIL(err, SF_ERR_MEMORY, "out of memory for predictions") : SF_OK;
+}
+
+/* ---- a further round ---- */
+
+/* The open rows from `first` on, every `step`-th; returns how many. */
+static int64_t list_open(const sf_runs *runs, int64_t step, int64_t *row) {
+    int64_t count = 0, at = 0;
+    for (int64_t r = 0; r < runs->count; r++)
+        if (runs->state[r] == SF_SWEEP_OPEN && at++ % step == 0)
+            row[count++] = r;
+    return count;
+}
+
+/* Chooses the next rows to simulate among those that miss their wishes, by the process that is farthest from
+ * its own. */
+static int choose_needed(const sf_sweep_adaptive *a, int64_t count, const int64_t *row, const outlook *o,
+                         int most, int64_t *next, sf_error *err) {
+    double worst = 1;
+    int target = -1, candidates = 0;
+    for (int64_t k = 0; k < count; k++)
+        if (o[k].ratio > worst) {
+            worst = o[k].ratio;
+            target = o[k].target;
+        }
+    if (target < 0)
+        return 0;
+    double *x = sf_alloc(err, SAMPLE, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
+    int64_t *of = sf_alloc(err, SAMPLE, sizeof *of, "rows");
+    int *chosen = sf_alloc(err, (unsigned long)most, sizeof *chosen, "rows");
+    int n = 0;
+    if (x && of && chosen) {
+        double *wish = x + (int64_t)SAMPLE * a->inputs;
+        for (int64_t k = 0; k < count && candidates < SAMPLE; k++)
+            if (o[k].ratio > 1 && o[k].target == target) {
+                put_inputs(a, row[k], x + (int64_t)candidates * a->inputs);
+                wish[candidates] = isfinite(o[k].ratio) ? o[k].wish : 0;
+                of[candidates++] = row[k];
+            }
+        n = sf_predictor_choose(&a->model[target], candidates, x, wish, most, chosen);
+        if (n < 0)
+            SF_FAIL(err, SF_ERR_MEMORY, "out of memory for predictions");
+        for (int k = 0; k < n; k++)
+            next[k] = of[chosen[k]];
+    }
+    free(x);
+    free(of);
+    free(chosen);
+    return n > 0 ? n : 0;
+}
+
+/* Looks at a sample of the open rows, and at all of them once the sample needs no more drops. */
+static int choose_round(sf_sweep_adaptive *a, const sf_runs *runs, int most, int64_t *next, sf_error *err) {
+    int64_t open = sf_runs_count(runs, SF_SWEEP_OPEN), ended = runs->count - open, count;
+    int64_t *row = sf_alloc(err, (unsigned long)open, sizeof *row, "rows"), step = open / SAMPLE + 1;
+    outlook *o = sf_alloc(err, (unsigned long)open, sizeof *o, "predictions");
+    int n = 0, wanted = (int)(ended / ROUND_PART);
+    wanted = wanted < a->jobs ? a->jobs : wanted;
+    wanted = wanted < most ? wanted : most;
+    for (; row && o && n == 0 && step > 0; step = step > 1 ? 1 : 0) {
+        count = list_open(runs, step, row);
+        if (judge_rows(a, count, row, o, err) != SF_OK)
+            break;
+        n = choose_needed(a, count, row, o, wanted, next, err);
+    }
+    if (a->log && n > 0 && err->status == SF_OK) {
+        fprintf(a->log, "%lld of %lld rows simulated; %d more for the accuracy of the others\n",
+                (long long)ended, (long long)runs->count, n);
+        fflush(a->log);
+    }
+    free(row);
+    free(o);
+    return n;
+}
+
+/* The first open rows; `check`: of those that it marks. */
+static int choose_open(const sf_runs *runs, const bool *check, int most, int64_t *row) {
+    int count = 0;
+    for (int64_t r = 0; r < runs->count && count < most; r++)
+        if (runs->state[r] == SF_SWEEP_OPEN && (!check || check[r]))
+            row[count++] = r;
+    return count;
+}
+
+static int next(void *context, const sf_runs *runs, int most, int64_t *row, sf_error *err) {
+    sf_sweep_adaptive *a = context;
+    int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN),
+            missing = sf_sweep_adaptive_design(a->plan) - ended;
+    int checks = choose_open(runs, a->check, most, row);
+    if (checks > 0)
+        return checks;
+    if (missing > 0 && ended < runs->count)
+        return choose_apart(a, runs, missing < most ? (int)missing : most, row, err);
+    if (expect(a, runs, err) != SF_OK || fit_models(a, runs, err) != SF_OK)
+        return 0;
+    return a->all ? choose_open(runs, NULL, most, row) : choose_round(a, runs, most, row, err);
+}
+
+/* ---- predictions ---- */
+
+static sf_status finish(void *context, sf_runs *runs, sf_error *err) {
+    sf_sweep_adaptive *a = context;
+    int64_t open = sf_runs_count(runs, SF_SWEEP_OPEN);
+    int64_t *row = sf_alloc(err, (unsigned long)open, sizeof *row, "rows");
+    outlook *o = sf_alloc(err, (unsigned long)open, sizeof *o, "predictions");
+    if (row && o && open > 0 && !a->all) {
+        list_open(runs, 1, row);
+        judge_rows(a, open, row, o, err);
+        for (int64_t k = 0; k < open && err->status == SF_OK; k++)
+            if (o[k].is_unusable)
+                sf_runs_leave(runs, row[k], "not simulated: its figures are expected to be not to be used",
+                              err);
+            else if (o[k].ratio <= 1)
+                sf_runs_predicted(runs, row[k], o[k].value, o[k].half);
+    }
+    for (int k = 0; k < a->plan->figure_count; k++) {
+        runs->checked[k] = a->checked[k];
+        runs->held[k] = a->held[k];
+    }
+    free(row);
+    free(o);
+    return err->status;
+}
+
+sf_sweep_adaptive *sf_sweep_adaptive_new(const sf_plan *plan, const char *drops, int jobs, FILE *log,
+                                         sf_error *err) {
+    sf_sweep_adaptive *a = sf_alloc(err, 1, sizeof *a, "predictions");
+    if (!a)
+        return NULL;
+    *a = (sf_sweep_adaptive){.plan = plan, .drops = drops, .jobs = jobs, .log = log};
+    list_inputs(a);
+    a->checks = count_checks(plan);
+    a->check = sf_analysis_pick(plan->rows, a->checks, err);
+    if (a->check)
+        return a;
+    free(a);
+    return NULL;
+}
+
+void sf_sweep_adaptive_free(sf_sweep_adaptive *a) {
+    if (!a)
+        return;
+    free_models(a);
+    free(a->expected);
+    free(a->check);
+    free(a);
+}
+
+sf_sweep_chooser sf_sweep_adaptive_chooser(sf_sweep_adaptive *a) {
+    return (sf_sweep_chooser){next, finish, a};
+}

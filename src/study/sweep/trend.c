@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/sweep/trend.h"
+
+#include <gsl/gsl_multifit.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+enum { MOST_DROPS = 64, LEVELS = 8 };
+static const double SAME_PROFILE = 0.02, SAME_THICKNESS = 0.01; /* relative */
+
+static const struct {
+    const char *figure;
+    size_t place; /* in sf_columns_figures */
+} figures[SF_TRENDS] = {{"a_max_g", offsetof(sf_columns_figures, a_max_g)},
+                        {"hic", offsetof(sf_columns_figures, hic)},
+                        {"v_rebound_m_s", offsetof(sf_columns_figures, v_rebound)}};
+
+int sf_sweep_trend_find(const char *figure) {
+    for (int k = 0; k < SF_TRENDS; k++)
+        if (strcmp(figures[k].figure, figure) == 0)
+            return k;
+    return -1;
+}
+
+/* ---- the pad and the missile ---- */
+
+/* A finished drop by which they are learnt. */
+typedef struct drop {
+    int64_t row;
+    sf_columns columns;
+} drop;
+
+static sf_status read_drops(const sf_runs *runs, const char *folder, drop *list, int *count, sf_error *err) {
+    char path[PATH_MAX];
+    sf_results r;
+    *count = 0;
+    for (int64_t row = 0; row < runs->count && *count < MOST_DROPS && err->status == SF_OK; row++) {
+        sf_error unreadable = SF_ERROR_INIT;
+        if (runs->state[row] != SF_SWEEP_DONE || !runs->folder[row])
+            continue;
+        snprintf(path, sizeof path, "%s/%s/results.h5", folder, runs->folder[row]);
+        if (sf_results_open(path, &r, &unreadable) != SF_OK)
+            continue;
+        list[*count].row = row;
+        if (sf_columns_build(&r, &list[*count].columns, &unreadable) == SF_OK)
+            ++*count;
+        sf_results_close(&r);
+    }
+    return err->status;
+}
+
+/* Area (m2) of the missile that is at most `height` above its lowest point. */
+static double area_below(const sf_columns *c, double height) {
+    double area = 0;
+    for (int k = 0; k < c->count && c->gap[k] < height; k++)
+        area += c->area[k];
+    return area;
+}
+
+static bool is_same_profile(const sf_columns *a, const sf_columns *b) {
+    double least = fmin(a->thickness, b->thickness);
+    for (int k = 1; k <= LEVELS; k++) {
+        double p = area_below(a, least * k / LEVELS), q = area_below(b, least * k / LEVELS);
+        if (fabs(p - q) > SAME_PROFILE * fmax(p, q) + area_below(a, a->thickness) / SF_COLUMNS)
+            return false;
+    }
+    return true;
+}
+
+static void list_numbers(sf_sweep_trend *t) {
+    for (int f = 0; f < t->plan->factor_count; f++)
+        if (!t->plan->factor[f].words && strncmp(t->plan->factor[f].key, "geometry", 8) == 0)
+            t->number[t->numbers++] = f;
+}
+
+static double thickness_at(const sf_sweep_trend *t, int64_t row) {
+    double sum = t->thickness[0];
+    for (int k = 0; k < t->numbers; k++)
+        sum += t->thickness[k + 1] * sf_plan_value(t->plan, t->number[k], row);
+    return sum;
+}
+
+/* Least squares; the fit has no use where the drops determine fewer terms. */
+static sf_status fit_thickness(sf_sweep_trend *t, const drop *list, int count, sf_error *err) {
+    size_t terms = (size_t)t->numbers + 1, n = (size_t)count, rank = 0;
+    double squares;
+    gsl_matrix *x = gsl_matrix_alloc(n, terms), *covariance = gsl_matrix_alloc(terms, terms);
+    gsl_vector *y = gsl_vector_alloc(n), *c = gsl_vector_alloc(terms);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, terms);
+    if (x && covariance && y && c && work) {
+        for (size_t i = 0; i < n; i++) {
+            gsl_vector_set(y, i, list[i].columns.thickness);
+            gsl_matrix_set(x, i, 0, 1);
+            for (size_t k = 1; k < terms; k++)
+                gsl_matrix_set(x, i, k, sf_plan_value(t->plan, t->number[k - 1], list[i].row));
+        }
+        gsl_multifit_linear_tsvd(x, y, 1e-10, c, covariance, &squares, &rank, work);
+        for (size_t k = 0; k < terms; k++)
+            t->thickness[k] = gsl_vector_get(c, k);
+    } else {
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the thickness of the pads");
+    }
+    gsl_matrix_free(x);
+    gsl_matrix_free(covariance);
+    gsl_vector_free(y);
+    gsl_vector_free(c);
+    if (work)
+        gsl_multifit_linear_free(work);
+    return err->status;
+}
+
+static const char *find_problem(const sf_sweep_trend *t, const drop *list, int count) {
+    for (int k = 0; k < count; k++) {
+        if (!is_same_profile(&list[0].columns, &list[k].columns))
+            return "the missile's profile differs between the drops";
+        double own = list[k].columns.thickness;
+        if (fabs(thickness_at(t, list[k].row) - own) > SAME_THICKNESS * own)
+            return "the pad's thickness is not linear in the factors";
+    }
+    return NULL;
+}
+
+/* True if the first row is no drop of a missile on a pad of one material. */
+static bool is_beyond_columns(const sf_plan *plan) {
+    sf_case c;
+    sf_error refused = SF_ERROR_INIT;
+    if (sf_sweep_read_case(plan, 0, &c, &refused) != SF_OK)
+        return true;
+    bool beyond = c.layer_count > 0 || c.motion_count > 0;
+    sf_case_free(&c);
+    return beyond;
+}
+
+sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep_trend *t, sf_error *err) {
+    int count = 0;
+    *t = (sf_sweep_trend){.plan = runs->plan, .problem = "no finished drop has columns"};
+    if (is_beyond_columns(runs->plan)) {
+        t->problem = "columns have one material and a missile that falls";
+        return SF_OK;
+    }
+    drop *list = sf_alloc(err, MOST_DROPS, sizeof *list, "columns");
+    list_numbers(t);
+    if (list && folder && read_drops(runs, folder, list, &count, err) == SF_OK && count > t->numbers) {
+        t->columns = list[0].columns;
+        if (fit_thickness(t, list, count, err) == SF_OK)
+            t->problem = find_problem(t, list, count);
+    }
+    free(list);
+    return err->status;
+}
+
+/* ---- a row ---- */
+
+static void respond(const sf_sweep_trend *t, const sf_case *c, int64_t row, double *expected) {
+    sf_columns columns = t->columns;
+    sf_columns_figures f;
+    sf_material_law law;
+    sf_error refused = SF_ERROR_INIT;
+    columns.mass = c->missile_card.mass;
+    columns.speed = -c->missile_card.speed * c->missile_card.direction[2];
+    columns.thickness = thickness_at(t, row);
+    if (!(columns.thickness > 0) || sf_material_law_build(&c->material, &law, &refused) != SF_OK)
+        return;
+    if (sf_columns_respond(&columns, &law, &f, NULL, &refused) == SF_OK)
+        for (int k = 0; k < SF_TRENDS; k++)
+            expected[k] = log(*(double *)((char *)&f + figures[k].place));
+    sf_material_law_free(&law);
+}
+
+sf_status sf_sweep_trend_at(const sf_sweep_trend *t, int64_t row, double *expected, sf_error *err) {
+    sf_case c;
+    sf_error refused = SF_ERROR_INIT;
+    for (int k = 0; k < SF_TRENDS; k++)
+        expected[k] = t->problem ? 0 : NAN;
+    if (t->problem)
+        return SF_OK;
+    if (sf_sweep_read_case(t->plan, row, &c, &refused) != SF_OK)
+        return refused.status == SF_ERR_INPUT ? SF_OK : (*err = refused, err->status);
+    respond(t, &c, row, expected);
+    sf_case_free(&c);
+    return err->status;
+}

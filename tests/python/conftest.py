@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A coarse case in a folder of its own, and its drop."""
+import os
+import pathlib
+import subprocess
+import warnings
+
+import pytest
+
+import matplotlib
+matplotlib.use("agg")
+import softfall  # noqa: E402
+
+BIN = pathlib.Path(os.environ["SF_BIN_DIR"])
+
+
+def program(name, *arguments, cwd):
+    """Runs a program as a user does, and returns what it prints."""
+    return subprocess.run([str(BIN / f"softfall-{name}"), *map(str, arguments)], cwd=cwd, check=True, capture_output=True, text=True).stdout
+
+
+@pytest.fixture(scope="session")
+def place(tmp_path_factory):
+    """A folder with pad/case.cfg: nodes 20 mm apart, which take part of a second; slow.cfg beside it has 10 mm."""
+    folder = tmp_path_factory.mktemp("drops")
+    program("new", "pad", "--from", "eva50-v4.5", "--set", "geometry.parameters.fine_spacing=20", "--set",
+            "geometry.parameters.outer_spacing=20", "--set", "geometry.missile_parameters.element_size=20", "--set",
+            "pad.mesh_error_limit=1.0", cwd=folder)
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def here(place, monkeypatch):
+    """Every test runs in that folder, without the warnings about the coarse mesh."""
+    monkeypatch.chdir(place)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=softfall.SoftfallWarning)
+        yield place
+
+
+@pytest.fixture
+def case(here):
+    return softfall.Case("pad/case.cfg")
+
+
+@pytest.fixture
+def slow(case):
+    """The case with finer nodes: some seconds, long enough to be ended in between."""
+    case.update({"geometry.parameters.fine_spacing": 10.0, "geometry.parameters.outer_spacing": 20.0})
+    return case
+
+
+@pytest.fixture
+def drop(case):
+    return case.run()  # found again after the first time

@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Protocols, measured records, ratings."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+import softfall
+from softfall import judge, protocol, protocol_drops, refinement
+from softfall.protocol_drops import Drop, Drops, Spot
+from conftest import BIN
+
+SOURCE = pathlib.Path(os.environ["SF_SOURCE_DIR"])
+MAT = SOURCE / "examples/protocol/measured/mat.toml"
+
+
+def softfall_protocol(*arguments):
+    return subprocess.run([str(BIN / "softfall-protocol"), *map(str, arguments)], capture_output=True, text=True)
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """A copy of the measured example."""
+    return pathlib.Path(shutil.copytree(MAT.parent, tmp_path / "measured"))
+
+
+# ---- ratings ----
+
+def half_sine(shift=0.0, factor=1.0):
+    t = np.arange(0, 0.04, 1e-4)
+    x = t - 0.005 - shift
+    return t, factor * np.where((x > 0) & (x < 0.02), np.sin(np.pi * x / 0.02), 0)
+
+
+def test_a_curve_rates_itself_with_one():
+    assert softfall.rate(*half_sine(), *half_sine()) == (1, 1, 1, 1, 1)
+
+
+def test_a_shift_costs_phase_alone():
+    rating = softfall.rate(*half_sine(), *half_sine(shift=0.002))
+    assert rating.phase == pytest.approx(1 - 20 / (0.2 * 400), abs=1e-12)
+    assert rating.magnitude == pytest.approx(1, abs=1e-12) and rating.slope == pytest.approx(1, abs=1e-12)
+    assert softfall.rate(*half_sine(), *half_sine(shift=0.012)).phase == 0  # more than a fifth of the length
+
+
+def test_a_factor_costs_slope_and_corridor_by_their_closed_forms():
+    (t, a), factor = half_sine(), 1.2
+    rating = softfall.rate(t, a, t, factor * a)
+    assert rating.phase == 1 and rating.slope == pytest.approx(1 - 0.2 / 2, abs=1e-12)
+    score = np.clip((0.5 - 0.2 * a / a.max()) / 0.45, 0, 1) ** 2
+    assert rating.corridor == pytest.approx(score.mean(), abs=1e-12)
+    assert 0.6 <= rating.magnitude < 1  # 1 - 0.2 / 0.5 without warping, which only lessens the difference
+    assert rating.overall == pytest.approx(0.4 * rating.corridor + 0.2 * (1 + rating.magnitude + rating.slope), abs=1e-12)
+
+
+def test_what_cannot_be_rated_is_refused():
+    t, a = half_sine()
+    with pytest.raises(softfall.InputError, match="too little to rate"):
+        softfall.rate(t, a, t + 0.0395, a)
+    with pytest.raises(softfall.InputError, match="zero all along"):
+        softfall.rate(t, 0 * a, t, a)
+
+
+# ---- records and figures ----
+
+def test_a_record_has_the_figures_of_its_curve(measured):
+    record = softfall.read_record(measured / "centre-0.9-1.csv")
+    assert record.verdict == "valid" and record.figures["hic"] == softfall.hic(record.time, record.deceleration)
+    assert record.figures["a_max_g"] == record.deceleration.max() and record.time.units == "s"
+    with pytest.raises(softfall.InputError, match='no option "fillter"'):
+        softfall.read_record(measured / "centre-0.9-1.csv", fillter=60)
+    with pytest.raises(softfall.InputError, match="nowhere.csv"):
+        softfall.read_record("nowhere.csv")
+
+
+def test_a_least_window_of_hic_has_its_closed_form():
+    t = np.array([0, 1e-3, 2e-3, 0.02])
+    triangle = np.array([0, 300, 0, 0])
+    free = softfall.hic(t, triangle)
+    assert free.t2 - free.t1 < 3e-3
+    assert protocol_drops.hic_from(t, triangle, 3e-3) == pytest.approx(3e-3 * 100**2.5, rel=1e-9)  # 300 g ms over 3 ms
+    assert protocol_drops.hic_from(t, triangle, 1e-5) == free
+
+
+# ---- protocols ----
+
+def test_every_protocol_reads_and_names_what_is_unconfirmed():
+    assert {"f1292", "en1177", "en913", "goalpost", "d1596", "fmvss201u", "own"} <= set(protocol.names())
+    for name in protocol.names():
+        p = protocol.read(name)
+        assert p.clauses and all(clause.source for clause in p.clauses)
+    listed = softfall_protocol("--list")
+    assert listed.returncode == 0 and all(name in listed.stdout for name in protocol.names())
+
+
+@pytest.mark.parametrize("old, new, said", [
+    ('title = "', 'titel = "', "title is missing"),
+    ('count = 3', 'count = 3\ncuont = 3', "there is no key 'cuont'"),
+    ('heights = ["0.6 m", "0.9 m", "1.2 m"]', 'heights = ["0.6 kg"]', "'0.6 kg' is no length"),
+    ('heights = ["0.6 m", "0.9 m", "1.2 m"]', 'heights = ["0.6 m", "0.6 m"]', "heights must differ"),
+    ('counted = [2, 3]', 'counted = [4]', "are not drops of count = 3"),
+    ('status = "confirmed"', 'status = "sure"', "neither confirmed nor unconfirmed"),
+    ('source = "made for this example"', 'source = " "', "source is empty"),
+    ('of = "result"', 'of = "figure"', "result has no clause"),
+    ('filter = 1000', 'filter = 100', "no channel frequency class"),
+    ('name = "edge"', 'name = "centre"', "two positions are named 'centre'"),
+    ('kind = "critical height"', 'kind = "height"', "none of pass, critical height, cushion curve"),
+    ('limit = 100.0', 'limit = "100 g"', "is not a whole number or a number"),
+    ('key = "a_max_g"', 'key = "gadd"', "limits of a_max_g and hic alone"),
+    ('[missile]', '[missile', "TOML|Expected"),
+])
+def test_a_wrong_protocol_is_refused_in_one_sentence(tmp_path, old, new, said):
+    text = MAT.read_text()
+    assert old in text
+    (tmp_path / "mine.toml").write_text(text.replace(old, new, 1))
+    result = softfall_protocol(tmp_path / "mine.toml", "--measured", MAT.parent, "-o", tmp_path / "out")
+    assert result.returncode == 2 and result.stderr.count("\n") == 1 and "mine.toml" in result.stderr
+    assert re.search(said, result.stderr), result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_measured_drops_are_judged_by_straight_lines_between_the_heights(measured, tmp_path):
+    result = softfall_protocol(MAT, "--measured", measured, "--laboratory", measured / "laboratory.toml", "-o", tmp_path / "out")
+    assert result.returncode == 0 and "measured   0.75 m" in result.stdout and "certifies nothing" in result.stdout
+    told = json.loads((tmp_path / "out/protocol.json").read_text())
+    found = told["results"]["measured"]
+    # by hand: the corner, HIC of windows of 3 ms and more, mean of the second and the third drop
+    hics = {h: np.mean([next(d["figures"]["hic"] for d in told["drops"] if d["position"] == "corner" and d["height_m"] == h and d["drop"] == k)
+                        for k in (2, 3)]) for h in (0.6, 0.9)}
+    share = np.log(400 / hics[0.6]) / np.log(hics[0.9] / hics[0.6])
+    assert found["value_m"] == pytest.approx(0.6 * (0.9 / 0.6) ** share, rel=1e-12) and found["stated"] == "0.75 m"
+    page = (tmp_path / "out/report.html").read_text()
+    assert "UNCONFIRMED" in page and "made-up laboratory" in page and "<svg" in page and "certifies nothing" in page
+    again = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert again.returncode == 2 and "--force" in again.stderr
+    assert len((tmp_path / "out/drops.csv").read_text().splitlines()) == 28
+
+
+def test_files_may_be_found_by_a_pattern(measured, tmp_path):
+    (measured / "list.csv").unlink()
+    for path in list(measured.glob("*-*-*.csv")):
+        position, height, drop = path.stem.split("-")
+        path.rename(measured / f"{position}_{height} m_{drop}.csv")
+    result = softfall_protocol(MAT, "--measured", measured, "--pattern", "{position}_{height}_{drop}.csv", "-o", tmp_path / "out")
+    assert result.returncode == 0 and "0.75 m" in result.stdout, result.stderr
+
+
+@pytest.mark.parametrize("old, new, said", [
+    ("edge-0.9-2.csv,edge,0.9 m,2\n", "", r"1 drop is missing, first drop 2 at as it is, edge, 0.9 m"),
+    ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,edge,0.9 m,3", "are both drop 3"),
+    ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,side,0.9 m,2", "no position 'side'; there are centre, edge, corner"),
+    ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,edge,0.8 m,2", "no height of 0.8 m"),
+    ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,edge,0.9 m,4", "drop 4 is none of the 3"),
+    ("edge-0.9-2.csv,edge,0.9 m,2", "gone.csv,edge,0.9 m,2", "gone.csv"),
+    ("file,position", "flie,position", "there is no column 'flie'"),
+])
+def test_a_wrong_list_is_refused_and_nothing_is_written(measured, tmp_path, old, new, said):
+    text = (measured / "list.csv").read_text()
+    (measured / "list.csv").write_text(text.replace(old, new, 1))
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 2 and result.stderr.count("\n") == 1 and re.search(said, result.stderr), result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_record_that_is_not_to_be_used_decides_nothing(measured, tmp_path):
+    lines = (measured / "corner-0.9-3.csv").read_text().splitlines()
+    (measured / "corner-0.9-3.csv").write_text("\n".join(lines[:90]) + "\n")  # it ends in the pulse
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 0 and "not determined" in result.stdout
+    assert "cut in the pulse" in (tmp_path / "out/report.html").read_text()
+
+
+def drops(*values, grade="valid"):
+    return Drops([Drop(Spot("as it is", "centre", height), 1, "", {"a_max_g": a}, grade) for height, a in values])
+
+
+def test_results_at_the_ends_are_bounds(tmp_path):
+    text = MAT.read_text().replace("count = 3", "count = 1").replace("counted = [2, 3]", "counted = [1]")
+    text = re.sub(r'\[\[figure\]\]\nkey = "hic".*?\n\n', "", text, flags=re.S)
+    (tmp_path / "one.toml").write_text(text)
+    p = protocol.read(str(tmp_path / "one.toml"))
+    assert judge.judge(p, drops((0.6, 50), (0.9, 80), (1.2, 90))).stated == "above 1.2 m"
+    assert judge.judge(p, drops((0.6, 110), (0.9, 180), (1.2, 190))).stated == "below 0.6 m"
+    found = judge.judge(p, drops((0.6, 50), (0.9, 200), (1.2, 290)))
+    assert found.value == pytest.approx(0.6 * 1.5**0.5) and found.stated == "0.7 m"  # ln 100 is half-way
+    assert judge.judge(p, drops((0.6, 50), (0.9, 200), grade="do not use")).stated == "not determined"
+
+
+# ---- simulated ----
+
+COARSE = ["--set", "missile.mass=4.6 kg", "-j", "2"]
+
+
+def test_a_pad_is_simulated_measured_and_compared(case, drop, tmp_path):
+    """Measured records are the curves of the simulation: the two agree to the last digits of the file."""
+    text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
+    text = text.replace("count = 2", "count = 1").replace("counted = [2]", "counted = [1]").replace('key = "max_indentation_mm"', 'key = "hic"')
+    (tmp_path / "mine.toml").write_text(text)
+    first = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "out", *COARSE)
+    assert first.returncode == 0, first.stderr
+    told = json.loads((tmp_path / "out/protocol.json").read_text())
+    assert [d["height_m"] for d in told["drops"]] == [0.6, 1.0] and "simulated" in told["results"]
+    (tmp_path / "lab").mkdir()
+    rows = ["file,position,height,drop"]
+    for k, entry in enumerate(told["drops"]):
+        t, a = softfall.read_results(entry["source"]).curve()
+        np.savetxt(tmp_path / f"lab/{k}.csv", np.column_stack([t, a]), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
+        rows.append(f"{k}.csv,centre,{entry['height_m']} m,1")
+    (tmp_path / "lab/list.csv").write_text("\n".join(rows) + "\n")
+    both = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force", *COARSE)
+    assert both.returncode == 0, both.stderr
+    told = json.loads((tmp_path / "out/protocol.json").read_text())
+    assert len(told["comparison"]) == 2
+    for pair in told["comparison"]:  # the record is filtered once more
+        assert abs(pair["a_max_difference"]) < 2e-3 and pair["r2"] > 0.999 and pair["rating"]["overall"] > 0.99
+    assert told["results"]["measured"]["passed"] == told["results"]["simulated"]["passed"]
+
+
+def test_what_the_pad_cannot_do_is_told_and_not_decided(case, tmp_path):
+    text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
+    text = text.replace('# conditions = [ { name = "cold", keys = { "pad.temperature" = "5 degC" } }, { name = "room" } ]',
+                        'conditions = [ { name = "cold", keys = { "pad.nonsense" = "5 degC" } }, { name = "room" } ]')
+    (tmp_path / "mine.toml").write_text(text.replace("limit = 80.0", "limit = 800.0"))
+    result = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "out", *COARSE)
+    assert result.returncode == 0, result.stderr
+    told = json.loads((tmp_path / "out/protocol.json").read_text())["results"]["simulated"]
+    assert told["passed"] is None and "not decided for the rest" in told["stated"]
+    assert any("condition cold is not simulated" in note for note in told["notes"])
+    assert any("the first is simulated" in note for note in told["notes"])
+    wrong = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "other", "--set", "missile.mas=1 kg")
+    assert wrong.returncode == 2 and "missile.mas" in wrong.stderr
+
+
+# ---- two meshes ----
+
+def test_pairs_of_the_mesh_study_are_within_half_of_the_stated_error():
+    """Every pair of spacings h and 2 h of docs/verification.md against the value of five spacings."""
+    cases = {}
+    for line in (SOURCE / "docs/verification.md").read_text().splitlines():
+        cells = [cell.strip() for cell in line.split("|")[1:-1]]
+        if len(cells) == 11 and cells[0].startswith("eva") and (cells[1] == "→ 0" or re.fullmatch(r"[\d.]+", cells[1])):
+            cases.setdefault(cells[0], {})[cells[1]] = [float(cell.split(" ")[0]) for cell in cells[4:6]]
+    checked = 0
+    for rows in cases.values():
+        for coarse, fine in (("10.000", "5.000"), ("6.667", "3.333")):
+            for k in (0, 1):
+                refined = refinement.extrapolate(rows[fine][k], rows[coarse][k])
+                assert abs(refined.value - rows["→ 0"][k]) <= 0.5 * refined.error + 0.05
+                checked += 1
+    assert checked == 20
+
+
+def test_a_case_is_refined_by_its_two_drops(case, drop):
+    refined = softfall.refine(case, ratio=1.25)
+    assert refined["hic"].fine == drop.figures["hic"] and refined.coarse.figures["hic"] == refined["hic"].coarse
+    assert refined["hic"].value == pytest.approx(refined["hic"].fine + (refined["hic"].fine - refined["hic"].coarse) / (1.25**1.3 - 1))
+    with pytest.raises(softfall.InputError, match="none of the spacings"):
+        softfall.refine(case, spacings=["geometry.parameters.nothing"])
+    with pytest.raises(softfall.InputError, match="ratio: 9"):
+        softfall.refine(case, ratio=9)

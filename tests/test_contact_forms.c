@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contact of the pad with itself and with a support against closed forms: two bars exchange their speeds, a
+ * block that hits a plane or a block aslant, Hertz' contact of a sphere. The foam is linear elastic, its
+ * Poisson's ratio is zero. */
+#include "layer_fixture.h"
+#include "program_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "post_check.h"
+#include "pre/make.h"
+#include "solver/ledger.h"
+#include "solver/step.h"
+
+static const double MODULUS = 1e6, DENSITY = 100; /* Pa, kg m-3 */
+enum { HALF = 4 };
+
+static int by_height(const double cell[3]) {
+    return cell[2] > HALF;
+}
+static int by_many(const double cell[3]) {
+    return cell[2] > 100;
+}
+
+/* Layers that only touch; the missile is far away. */
+static void loose_case(sf_case *c, int count, double friction) {
+    static const char *const far[] = {"missile.gap=0.5 m", "solver.end_time=200 ms",
+                                      "pad.self_contact=\"on\"", NULL},
+                             *const nothing[] = {NULL};
+    layers_case(c, far, nothing, count);
+    for (int k = 0; k < count; k++)
+        layers_make_linear(&c->layer[k], MODULUS, DENSITY);
+    c->self_friction = friction;
+    c->loose_count = count - 1;
+    c->loose_layer[0][1] = 1;
+    strcpy(c->loose_name[0], "A/B");
+}
+
+/* Mass and velocity of a layer's centre. */
+static double mean_velocity(const fixture *f, int layer, double v[3]) {
+    double mass = 0;
+    memset(v, 0, 3 * sizeof *v);
+    for (int64_t i = 0; i < f->model.node_count; i++)
+        if (f->model.node_material[i] == layer) {
+            mass += f->model.mass[i];
+            for (int r = 0; r < 3; r++)
+                v[r] += f->model.mass[i] * f->state.v[3 * i + r];
+        }
+    for (int r = 0; r < 3; r++)
+        v[r] /= mass;
+    return mass;
+}
+
+static void throw_layer(fixture *f, int layer, double x, double z) {
+    for (int64_t i = 0; i < f->model.node_count; i++)
+        if (f->model.node_material[i] == layer) {
+            f->state.v[3 * i] = x;
+            f->state.v[3 * i + 2] = z;
+        }
+    f->state.fastest = hypot(x, z);
+}
+
+static void two_bars_exchange_their_speeds(void **state) {
+    const fixture_block block = {.cells = {2, 2, 200}, .spacing = 0.001};
+    const double speed = 0.5, wave = sqrt(MODULUS / DENSITY), twice = 2 * 0.1 / wave;
+    sf_case c;
+    fixture f;
+    double low[3] = {0}, high[3], half = NAN, before = 0, last = 0;
+    (void)state;
+    loose_case(&c, 2, 0);
+    layers_under_plate(&c, &block, by_many, &f);
+    fixture_start(&f);
+    throw_layer(&f, 1, 0, -speed);
+    while (f.state.time < 1.5 * twice) {
+        fixture_advance(&f);
+        mean_velocity(&f, 0, low); /* at the half step */
+        double time = f.state.time - 0.5 * f.state.dt_old;
+        if (isnan(half) && low[2] < -0.5 * speed)
+            half = before + (time - before) * (-0.5 * speed - last) / (low[2] - last);
+        before = time;
+        last = low[2];
+    }
+    mean_velocity(&f, 1, high);
+    print_message("speeds %.5f and %.5f of %.3g m/s; time of contact %.5f ms, 2 L / c is %.5f ms\n", low[2],
+                  high[2], speed, 2e3 * half, 1e3 * twice);
+    assert_true(fabs(low[2] + speed) < 0.01 * speed && fabs(high[2]) < 0.01 * speed);
+    assert_relative(2 * half, twice, 0.01);
+    assert_true(f.state.self_penetration < 0.01 * block.spacing);
+    for (int64_t k = 0; k < 3 * f.operators.skin.count; k++)
+        assert_true(f.state.self_force[k] == 0); /* they have parted */
+    fixture_free(&f);
+}
+
+static const double SLIP = 0.3, DROP = 0.1, FRICTION = 0.3; /* m/s, m/s, - */
+
+/* Coulomb's law for the impulses of a block that slides all the time: the change along the plane is FRICTION
+ * times that normal to it. */
+static void assert_slid(const double after[3]) {
+    double along = SLIP - after[0], up = DROP + after[2];
+    print_message("velocity (%.4f, %.1e, %.4f) m/s: %.5f of %.3g\n", after[0], after[1], after[2], along / up,
+                  FRICTION);
+    assert_true(after[2] > 0.8 * DROP);
+    assert_true(fabs(after[1]) < 0.01 * SLIP);
+    assert_relative(along, FRICTION * up, 0.01);
+}
+
+static void a_block_slides_on_a_support(void **state) {
+    const fixture_block block = {.cells = {4, 4, 4}, .spacing = 0.01};
+    sf_case c;
+    sf_mesh mesh;
+    sf_surface missile, plate;
+    fixture f;
+    const double gap = 1e-5;
+    double after[3], energy = 0;
+    (void)state;
+    loose_case(&c, 1, 0);
+    c.support_friction = FRICTION;
+    fixture_block_mesh(&block, &mesh);
+    layers_assign(&block, by_height, &mesh);
+    memset(mesh.cell_layer, 0, (size_t)mesh.cell_count);
+    fixture_plate(1, 0, 0, &missile);
+    fixture_plate(0.5, 0.02, 0.02, &plate);
+    for (int64_t k = 0; k < plate.node_count; k++)
+        plate.position[3 * k + 2] = -gap;
+    mesh.support = &plate;
+    fixture_build(&c, &mesh, &missile, &f);
+    sf_surface_free(&plate);
+    fixture_start(&f);
+    throw_layer(&f, 0, SLIP, -DROP);
+    while (f.state.time < gap / DROP + 1.5 * 2 * 0.04 / sqrt(MODULUS / DENSITY))
+        fixture_advance(&f);
+    double mass = mean_velocity(&f, 0, after);
+    assert_slid(after);
+    const sf_ledger *l = &f.state.ledger;
+    energy = l->kinetic_pad + sf_ledger_internal(l) + l->contact + l->friction;
+    assert_relative(energy, 0.5 * mass * (SLIP * SLIP + DROP * DROP), 0.01);
+    assert_true(l->friction > 0);
+    fixture_free(&f);
+}
+
+static void a_block_slides_on_a_block(void **state) {
+    const fixture_block block = {.cells = {4, 4, 2 * HALF}, .spacing = 0.01};
+    sf_case c;
+    fixture f;
+    double low[3], high[3];
+    (void)state;
+    loose_case(&c, 2, FRICTION);
+    layers_under_plate(&c, &block, by_height, &f);
+    fixture_start(&f);
+    throw_layer(&f, 1, SLIP, -DROP);
+    while (f.state.time < 1.5 * 2 * 0.04 / sqrt(MODULUS / DENSITY))
+        fixture_advance(&f);
+    double mass[2] = {mean_velocity(&f, 0, low), mean_velocity(&f, 1, high)};
+    print_message("velocities (%.4f, %.4f) and (%.4f, %.4f) m/s\n", low[0], low[2], high[0], high[2]);
+    assert_true(fabs(mass[0] * low[2] + mass[1] * (high[2] + DROP)) < 1e-12 * mass[1] * DROP);
+    assert_true(fabs(mass[0] * low[0] + mass[1] * (high[0] - SLIP)) < 1e-12 * mass[1] * SLIP);
+    assert_true(low[2] < -0.9 * DROP);
+    assert_relative(low[0], -FRICTION * low[2], 0.01);
+    fixture_free(&f);
+}
+
+/* The quarter of a hemisphere of 100 mm, pole down, fine at the pole. */
+static const char DOME[] =
+    "SetFactory(\"OpenCASCADE\");\n"
+    "Sphere(1) = {0,0,100,100}; Box(2) = {0,0,0,100,100,100};\n"
+    "BooleanIntersection{ Volume{1}; Delete; }{ Volume{2}; Delete; }\n"
+    "Physical Volume(\"pad\") = Volume{:};\n"
+    "Physical Surface(\"top\") = Surface In BoundingBox{-1,-1,99.9,101,101,100.1};\n"
+    "Physical Surface(\"symmetry_x\") = Surface In BoundingBox{-0.1,-1,-1,0.1,101,101};\n"
+    "Physical Surface(\"symmetry_y\") = Surface In BoundingBox{-1,-0.1,-1,101,0.1,101};\n"
+    "Field[1] = MathEval; Field[1].F = \"Max(1.2, 0.16*Sqrt(x*x+y*y+z*z))\"; Background Field = 1;\n"
+    "Mesh.MeshSizeExtendFromBoundary = 0; Mesh.MeshSizeFromPoints = 0; Mesh.MeshSizeMax = 16;\n";
+
+static void hertz_on_a_support(void **state) {
+    const program_place *p = *state;
+    const double depth = 0.7e-3, ramp = 10e-3, end = 14e-3, radius = 0.1;
+    char motion[4096] = "time_ms,displacement_mm\n";
+    for (int k = 0; k <= 40; k++)
+        snprintf(motion + strlen(motion), sizeof motion - strlen(motion), "%.6g,%.9g\n", 1e3 * ramp * k / 40,
+                 500 * depth * (1 - cos(M_PI * k / 40)));
+    snprintf(motion + strlen(motion), sizeof motion - strlen(motion), "%g,%g\n", 1e3 * end, 1e3 * depth);
+    program_write_text(p, "motion.csv", motion);
+    program_write_text(p, "dome.geo", DOME);
+    program_shell(p, "cp \"$SF_SOURCE_DIR\"/geo/slab.geo \"$SF_SOURCE_DIR\"/geo/platen.geo geo/");
+    program_write_text(
+        p, "case.cfg",
+        "geometry: { file = \"dome.geo\"; missile_file = \"geo/platen.geo\"; support_file = \"geo/slab.geo\";\n"
+        "  length_unit = \"mm\"; missile_parameters = { side = 300.0; }; };\n"
+        "pad: { fixed = []; mesh_error_limit = 100.0; };\nmaterial: {\n@include \"materials/eva35.cfg\"\n};\n"
+        "missile: { motion = \"motion.csv\"; shape = \"surface\"; };\nsupport: { friction = 0.0; };\n"
+        "solver: { end_time = \"14 ms\"; };\n");
+    sf_error err = SF_ERROR_INIT;
+    sf_case c;
+    fixture f = {0};
+    char libraries[SF_LIBRARIES_SIZE];
+    if (sf_case_read(program_path(p, "case.cfg"), 0, NULL, NULL, &c, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    layers_make_linear(&c.material, MODULUS, DENSITY);
+    if (sf_model_make(&c, &f.model, &f.report, libraries, NULL, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    sf_case_free(&c);
+    fixture_start(&f);
+    double force = 0, moment = 0, rows = 0;
+    while (f.state.time < end) {
+        fixture_advance(&f);
+        for (int64_t n = 0; n < f.operators.skin.moving && f.state.time > ramp; n++) {
+            const double *x = &f.state.self_position[3 * n], *q = &f.state.self_force[3 * n];
+            force += 4 * q[2];
+            moment += 4 * q[2] * (x[0] * x[0] + x[1] * x[1]);
+        }
+        rows += f.state.time > ramp;
+    }
+    /* The mean square of the distance from the middle is 2/5 of the square of the contact's radius. */
+    double a = sqrt(2.5 * moment / force), hertz = 4 * MODULUS * a * a * a / (3 * radius);
+    print_message("%lld nodes: force %.4f N, radius %.3f mm, Hertz %.4f N: %.4f\n",
+                  (long long)f.model.node_count, force / rows, 1e3 * a, hertz, force / rows / hertz);
+    assert_relative(force / rows, hertz, 0.02);
+    fixture_free(&f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(two_bars_exchange_their_speeds),
+        cmocka_unit_test(a_block_slides_on_a_support),
+        cmocka_unit_test(a_block_slides_on_a_block),
+        cmocka_unit_test(hertz_on_a_support),
+    };
+    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+}

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Memory identified from records of cycles: a law that is known, LEAP, and records that say too little. */
+#include "model_fixture.h"
+#include "point_fixture.h"
+#include "program_fixture.h"
+
+#include "material/low_density_foam.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+static const double S0 = 5e4, E = 9e5, P0 = 101e3, PHI = 0.06; /* of gas_solid, without B */
+
+static void make_foam(point_card *card) {
+    double strain[400], stress[400];
+    point_card_init(card);
+    for (int i = 0; i < 400; i++) {
+        double e = strain[i] = 0.85 * i / 399;
+        stress[i] = S0 * (1 - exp(-(E - P0 / (1 - PHI)) * e / S0)) + P0 * e / (1 - e - PHI);
+    }
+    point_card_add(card, 0, 400, strain, stress);
+    card->card.modulus = E;
+    card->card.hysteresis_hu = 0.02;
+    card->card.hysteresis_shape = 0.3;
+    card->card.hysteresis_alpha = 0.6;
+    card->card.memory = (sf_memory){.reload = 0.35, .drift = 0.25, .recovery = 0.12, .start = 1};
+}
+
+/* Five cycles to 60 %, with pauses of 100 s and 3000 s before the fourth and the fifth, if `pauses`. */
+static void write_record(const program_place *p, const char *name, int cycles, bool pauses) {
+    point_card card;
+    sf_error err = SF_ERROR_INIT;
+    sf_material_law law;
+    sf_uniaxial point = {0};
+    double rows[SF_LAW_HISTORY][SF_LANES] = {{0}}, time = 0;
+    FILE *out = fopen(program_path(p, name), "w");
+    make_foam(&card);
+    const sf_material material = sf_foam_material(&card.card);
+    assert_int_equal(sf_material_law_build(&material, &law, &err), SF_OK);
+    fputs("time_s,strain,stress_kPa\n", out);
+    for (int i = 0; i <= 100 * cycles; i++, time += 0.05) {
+        double x = 0.01 * (i % 100), strain = 0.6 * (x < 0.5 ? 2 * x : 2 - 2 * x);
+        double pause = pauses && i == 301 ? 100 : pauses && i == 401 ? 3000 : 0;
+        for (int k = 0; pause > 0 && k < SF_LAW_HISTORY; k++)
+            rows[k][0] = point.history[k];
+        if (pause > 0)
+            law.law->rest(law.numbers, pause, rows);
+        for (int k = 0; pause > 0 && k < SF_LAW_HISTORY; k++)
+            point.history[k] = rows[k][0];
+        time += pause;
+        fprintf(out, "%.6f,%.8f,%.8f\n", time, strain,
+                1e-3 * law.law->uniaxial(law.numbers, 0.05, strain, &point));
+    }
+    fclose(out);
+    sf_material_law_free(&law);
+}
+
+static program_result fit(const program_place *p, const char *name, const char *file, const char *cycles) {
+    char text[4096], config[64];
+    snprintf(
+        text, sizeof text,
+        "density = \"100 kg/m3\"; curve_form = \"gas_solid\"; unknown = ( \"E\", \"s0\", \"solid_fraction\" );\n"
+        "start = { B = \"1 Pa\"; };\ntests = ( { file = \"%s\"; rate = \"0.25 1/s\"; } );\n"
+        "cycles = { file = \"%s\"; %s };\n",
+        file, file, cycles);
+    snprintf(config, sizeof config, "%s.cfg", name);
+    program_write_text(p, config, text);
+    return program_run(p, "fit", "compression %s -o %s --force", config, name);
+}
+
+static void assert_number(const program_place *p, const char *key, double expected, double tolerance) {
+    double value = program_file_number(p, "known/fit.json", key);
+    if (!(fabs(value / expected - 1) < tolerance))
+        fail_msg("%s is %.5g, not %.5g", key, value, expected);
+}
+
+static void a_known_memory_is_found(void **state) {
+    const program_place *p = *state;
+    write_record(p, "known.csv", 5, true);
+    program_result r = fit(p, "known", "known.csv", "");
+    if (r.code != 0)
+        fail_msg("%s", r.err);
+    assert_number(p, "reload", 0.35, 0.02);
+    assert_number(p, "drift", 0.25, 0.05);
+    assert_number(p, "recovery", 0.12, 0.03);
+    assert_true(program_file_number(p, "known/fit.json", "pauses") == 2);
+    assert_true(program_file_number(p, "known/fit.json", "reload_half_width") < 0.05);
+    program_bytes material = program_read_file(program_path(p, "known/material.cfg"));
+    assert_non_null(strstr(material.data, "memory"));
+    free(material.data);
+}
+
+/* What a record does not tell is left out, and said. */
+static void little_is_told_by_little(void **state) {
+    const program_place *p = *state;
+    write_record(p, "two.csv", 2, false);
+    program_result r = fit(p, "two", "two.csv", "");
+    if (r.code != 0)
+        fail_msg("%s", r.err);
+    assert_non_null(strstr(r.out, "drift 0 (this record does not tell it)"));
+    assert_non_null(strstr(r.out, "recovery 0 (this record does not tell it)"));
+    write_record(p, "one.csv", 1, false);
+    r = fit(p, "one", "one.csv", "");
+    assert_true(r.code != 0 && strstr(r.err, "memory is in the cycles after the first"));
+    r = fit(p, "one", "two.csv", "fitted = 1;");
+    assert_true(r.code != 0 && strstr(r.err, "fitted"));
+    program_shell(p, "awk -F, 'NR==1 || $2 > 0.3' known.csv > high.csv");
+    r = fit(p, "one", "high.csv", "");
+    assert_true(r.code != 0);
+    program_shell(p, "awk -F, 'NR==120 {sub(/^[^,]*/, \"0.01\")} {print}' two.csv > back.csv");
+    r = fit(p, "one", "back.csv", "");
+    assert_true(r.code != 0 && strstr(r.err, "time must rise"));
+}
+
+/* The worst number of an array of fit.json. */
+static double worst(const program_place *p, const char *name, const char *key, int first, int last) {
+    char path[64];
+    snprintf(path, sizeof path, "%s/fit.json", name);
+    program_bytes json = program_read_file(program_path(p, path));
+    char *at = strstr(strstr(json.data, "\"memory\""), key);
+    double most = 0;
+    at = strchr(at, '[') + 1;
+    for (int k = 0; k < last; k++) {
+        double value = strtod(at, &at);
+        most = k >= first ? fmax(most, value) : most;
+        at += strcspn(at, ",]") + 1;
+    }
+    free(json.data);
+    return most;
+}
+
+/* Six cycles of two specimens, all fitted, and the last three predicted from the first three. */
+static void leap_is_described(void **state) {
+    const program_place *p = *state;
+    static const char *const files[] = {"examples/data/leap_cycles_a.csv", "examples/data/leap_cycles_b.csv"};
+    for (int k = 0; k < 2; k++) {
+        char path[1024];
+        snprintf(path, sizeof path, "%s", fixture_source(files[k]));
+        assert_int_equal(fit(p, "leap", path, "").code, 0);
+        assert_true(worst(p, "leap", "\"loading_rms\"", 0, 6) < 0.02);
+        assert_true(worst(p, "leap", "\"unloading_rms\"", 0, 6) < 0.03);
+        assert_int_equal(fit(p, "three", path, "fitted = 3;").code, 0);
+        assert_true(worst(p, "three", "\"loading_rms\"", 3, 6) < 0.025);
+        assert_true(worst(p, "three", "\"unloading_rms\"", 3, 6) < 0.025);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_known_memory_is_found),
+        cmocka_unit_test(little_is_told_by_little),
+        cmocka_unit_test(leap_is_described),
+    };
+    return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
+}

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Checks predicted rows of softfall-sweep against their drops: runs each plan of examples/accuracy with the accuracy that
+# it asks for, then simulates all of its rows, and prints how many intervals hold the drop and how large the errors are
+# (docs/performance.md, "Predicted rows").
+#
+#     tools/accuracy_study.sh ROWS [PLAN...]     2000 rows: a drop of about one second of a core each; plans: their
+#                                                names without .cfg, default all
+#
+# Folders out/accuracy-PLAN keep the drops. The programs are those in build/bin, or in $SF_BIN_DIR.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+[ $# -ge 1 ] && [[ $1 =~ ^[0-9]+$ ]] || { echo 'usage: tools/accuracy_study.sh ROWS [PLAN...]' >&2 && exit 2; }
+rows=$1
+shift
+[ $# -gt 0 ] || set -- $(cd examples/accuracy && ls ./*.cfg | sed 's,^\./,,; s,\.cfg$,,')
+mkdir -p out
+for plan in "$@"; do
+    folder=out/accuracy-$plan
+    sed -e "s/count = 2000/count = $rows/" -e "s,\"\.\./,\"$PWD/examples/,g" "examples/accuracy/$plan.cfg" >"$folder.cfg"
+    sed -e 's/ accuracy = [0-9.]*;//g' "$folder.cfg" >"$folder-all.cfg"
+    "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder.cfg" -o "$folder" >"$folder.log"
+    cp "$folder/runs.csv" "$folder-predicted.csv"
+    "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder-all.cfg" -o "$folder" >"$folder-all.log"
+done
+exec python3 - "$@" <<'PYTHON'
+import csv
+import math
+import sys
+
+
+def read(path):
+    with open(path, newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+print("| plan | rows | simulated | left open | figure | predicted | intervals that hold | largest error | rms error |")
+print("|---|---:|---:|---:|---|---:|---:|---:|---:|")
+for plan in sys.argv[1:]:
+    rows, drops = read(f"out/accuracy-{plan}-predicted.csv"), read(f"out/accuracy-{plan}/runs.csv")
+    simulated = sum(row["run_status"] in ("done", "failed") for row in rows)
+    left = sum(row["run_status"] == "open" for row in rows)
+    for low in [name for name in rows[0] if name.endswith("_low")]:
+        figure = low[: -len("_low")]
+        errors, held, wrong = [], 0, 0
+        for row, drop in zip(rows, drops):
+            if row["run_status"] != "predicted":
+                continue
+            if drop["run_status"] != "done" or drop["grade"] == "do not use":
+                wrong += 1
+                continue
+            value = float(drop[figure])
+            errors.append(float(row[figure]) / value - 1)
+            held += float(row[low]) <= value <= float(row[figure + "_high"])
+        rms = math.sqrt(sum(e * e for e in errors) / len(errors))
+        note = f" ({wrong} are not to be used)" if wrong else ""
+        print(f"| {plan} | {len(rows)} | {simulated} ({100 * simulated / len(rows):.1f} %) | {left} | {figure} "
+              f"| {len(errors)}{note} | {100 * held / len(errors):.1f} % | {100 * max(map(abs, errors)):.2f} % "
+              f"| {100 * rms:.2f} % |")
+PYTHON
