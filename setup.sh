@@ -104,7 +104,6 @@ demo() {
     echo "  $dir/model.h5           the model of softfall-pre"
     echo "  $dir/results.h5         the results of softfall-solve"
     echo "  $report         the lines above"
-    echo "  $dir/view.html          the drop to turn, cut and play: open it in a browser"
     echo "The files are in $PWD. Next: docs/guide.md explains how to read the results and change the case."
 }
 
