@@ -46,14 +46,14 @@ for plan in sys.argv[1:]:
         for row, drop in zip(rows, drops):
             if row["run_status"] != "predicted":
                 continue
-            if drop["run_status"] != "done" or drop["grade"] == "do not use":
+            if drop["run_status"] != "done" or drop["grade"] == "do not use" or not drop[figure]:
                 wrong += 1
                 continue
             value = float(drop[figure])
             errors.append(float(row[figure]) / value - 1)
             held += float(row[low]) <= value <= float(row[figure + "_high"])
         rms = math.sqrt(sum(e * e for e in errors) / len(errors))
-        note = f" ({wrong} are not to be used)" if wrong else ""
+        note = f" ({wrong} have none that may be used)" if wrong else ""
         print(f"| {plan} | {len(rows)} | {simulated} ({100 * simulated / len(rows):.1f} %) | {left} | {figure} "
               f"| {len(errors)}{note} | {100 * held / len(errors):.1f} % | {100 * max(map(abs, errors)):.2f} % "
               f"| {100 * rms:.2f} % |")
