@@ -49,6 +49,9 @@ def judge(p: Protocol, drops: Drops) -> Outcome:
     made.notes += drops.missing
     if any("is not simulated" in note for note in drops.missing) and made.passed:
         made.passed, made.stated = None, made.stated + " in what was simulated; not decided for the rest"
+    if drops.stands_in and 1 not in p.counted:  # later drops on a spot are mostly harder
+        made.passed = None if made.passed else made.passed
+        made.stated += " by the first drop; not decided for those that count"
     return made
 
 

@@ -74,6 +74,7 @@ class Drops:
     drops: list[Drop] = field(default_factory=list)
     searches: list[Search] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
+    stands_in: bool = False  # the first drop on a spot stands for those that count
 
 
 def hic_from(time: Any, deceleration: Any, least: float) -> float:
@@ -139,6 +140,7 @@ def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None,
     made = Drops()
     output.mkdir(parents=True, exist_ok=True)
     if p.count > 1:
+        made.stands_in = True
         made.missing.append(f"of the {p.count} drops on a spot ({p.interval} apart) the first is simulated; it stands for "
                             f"drop{'s' if len(p.counted) > 1 else ''} {', '.join(map(str, p.counted))}")
     for condition in p.conditions:

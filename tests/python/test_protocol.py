@@ -232,6 +232,7 @@ def test_what_the_pad_cannot_do_is_told_and_not_decided(case, tmp_path):
     assert told["passed"] is None and "not decided for the rest" in told["stated"]
     assert any("condition cold is not simulated" in note for note in told["notes"])
     assert any("the first is simulated" in note for note in told["notes"])
+    assert told["stated"].endswith("by the first drop; not decided for those that count")
     wrong = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "other", "--set", "missile.mas=1 kg")
     assert wrong.returncode == 2 and "missile.mas" in wrong.stderr
 

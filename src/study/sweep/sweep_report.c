@@ -290,7 +290,8 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
         "%lld of %lld rows were not simulated but predicted from the others; runs.csv has the state and the "
         "interval of each. The checks are random rows that were simulated and from which nothing was learnt. In "
         "probabilities a prediction whose interval holds the limit is unknown. %lld rows "
-        "are open: they are expected to fail or to be not to be used.",
+        "are open: they are expected to fail or to be not to be used. A figure that a drop would not define, such as "
+        "the rebound of a run that ends in contact, is predicted all the same.",
         (long long)a->predicted, (long long)r->plan->rows, (long long)a->open);
 }
 
