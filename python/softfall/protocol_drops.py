@@ -16,7 +16,7 @@ import numpy as np
 from . import programs
 from .case import Case
 from .curves import hic
-from .drop import read_results
+from .drop import later_results, read_results
 from .errors import Error, InputError, NumericError
 from .protocol import Condition, Figure, Position, Protocol, length, speed
 from .record import read_record
@@ -215,12 +215,12 @@ def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapp
     one.update({"missile.velocity": f"{speed(spot.height):.12g} m/s", "series.drops": p.count, "series.interval": p.interval,
                 **({"missile.mass": spot.mass} if spot.mass else {})})
     place = folder / folder_name("series", f"{spot.height:g}m", *([spot.mass] if spot.mass else []))
-    files = [place / ("results.h5" if k == 1 else f"results-{k}.h5") for k in range(1, p.count + 1)]
+    files = [later_results(place / "results.h5", number) for number in range(1, p.count + 1)]
     failure, drops = "", []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            one.run(threads=options.get("threads"), output=place, force=not all(path.exists() for path in files))
+            one.run(threads=options.get("threads"), output=place)
         except NumericError as error:
             failure = str(error)
         for number, path in enumerate(files, 1):
