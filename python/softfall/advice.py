@@ -10,9 +10,9 @@ import csv
 import json
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -21,18 +21,18 @@ from .errors import InputError
 CRITERIA = ("a_max_g", "hic")
 MESH_SIZE, MESH_HIC = 0.78, 1.3  # as in softfall-cfh (docs/cfh.md, "The interval")
 REPEATS, TRUTHS, LEAST_DRAWS = 32, 128, 8
+MOST_SHIFT, MISFIT = 1.0, -12.0
 SAME = 0.01  # of a logarithm: drops of one pad are never told apart by less
 TEST_STRAINS, TEST_SCATTER = (0.3, 0.5, 0.7), 0.04  # of a compression test; specimens of one foam scatter by that
 
 
 @dataclass(frozen=True)
 class Drop:
-    """A measured drop, or the mean of `number` drops on one spot: figures by CRITERIA, NaN where there is none."""
+    """A measured drop, the first on its spot: figures by CRITERIA, NaN where there is none."""
 
     place: str
     height: float
     figures: tuple[float, float]
-    number: int = 1
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,8 @@ class Choice:
     cost: float
     loss: float
     gain: float
+    place: str = ""  # of a drop
+    height: float = math.nan  # m
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,15 @@ class Advice:
 
 
 @dataclass(frozen=True)
+class Trend:
+    """The error of ln(height) of the columns, by the draws that softfall-cfh simulated: a line over the ln of a draw's critical height."""
+
+    shift: np.ndarray  # [draws]
+    remainder: np.ndarray  # [draws] standard deviation about it, but for Student's t
+    freedom: int  # degrees of freedom; 0: the error is not known
+
+
+@dataclass(frozen=True)
 class Place:
     """What softfall-cfh knows of a condition and a position: for each draw ln(figure) over ln(height), the errors of the model, the scatter."""
 
@@ -76,7 +87,13 @@ class Place:
     scatter: np.ndarray  # [2][grid], standard deviation of ln(figure) from drop to drop
     mesh: float
     fit: np.ndarray  # [2]
-    trend: tuple[Mapping[str, Any], ...]  # of cfh.json
+    trend: tuple[Trend, ...]  # of the columns' errors, for each figure
+    notes: tuple[str, ...] = ()  # what is not known of it
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The heights (m) between which the drops of the draws are known."""
+        return math.exp(self.log_height[0]), math.exp(self.log_height[-1])
 
 
 def _columns(path: Path) -> dict[str, np.ndarray]:
@@ -104,8 +121,38 @@ def read_place(name: str, folder: Path) -> Place:
     error = np.nan_to_num(np.array([draws[key] for key in ("a_max_shared_1", "hic_shared_1", "a_max_sd_1", "hic_sd_1")]))
     scatter = np.maximum(np.nan_to_num(np.array([band["a_max_scatter_1"], band["hic_scatter_1"]])), SAME)
     fit = np.array([posterior.get(f"fit_scatter_{key}") or 0.0 for key in ("a_max", "hic")])
-    return Place(name, np.log(height), value, error[:2], error[2:], scatter, posterior.get("expected_mesh_error") or 0.0, fit,
-                 tuple(posterior["columns_error"]))
+    crossing = np.log(np.clip(np.nan_to_num(draws["height_m"], nan=height[-1]), height[0], height[-1]))
+    trends = tuple(_trend(told, posterior["checks"], key, crossing) for told, key in zip(posterior["columns_error"], ("a_max", "hic")))
+    return Place(name, np.log(height), value, error[:2], error[2:], scatter, posterior.get("expected_mesh_error") or 0.0, fit, trends,
+                 tuple(_doubts(name, posterior, trends, band)))
+
+
+def _trend(told: Mapping[str, Any], checks: Sequence[Mapping[str, Any]], key: str, crossing: np.ndarray) -> Trend:
+    """Returns the trend of softfall-cfh (docs/cfh.md) at the ln of each draw's critical height; beyond the checks it is constant."""
+    x = np.log([check["height_m"] for check in checks if not check["failed"] and check[f"{key}_height_shift"] is not None])
+    freedom, scatter = int(told["degrees_of_freedom"] or 0), told["scatter"] or 0.0
+    if told["slope"] is None or x.size == 0:
+        return Trend(0 * crossing, scatter + 0 * crossing, freedom)
+    centre = math.log(told["centre_m"])
+    away = np.clip(crossing, x.min(), x.max()) - centre
+    return Trend(told["shift"] + told["slope"] * away, scatter * np.sqrt(1 + 1 / x.size + away**2 / ((x - centre) ** 2).sum()), freedom)
+
+
+def _doubts(name: str, posterior: Mapping[str, Any], trends: Sequence[Trend], band: Mapping[str, np.ndarray]) -> Iterator[str]:
+    """Yields what softfall-cfh does not know of a place, in sentences."""
+    failed = sum(check["failed"] for check in posterior["checks"])
+    if any(trend.freedom == 0 for trend in trends):
+        yield f"{name}: no draw was simulated, or too few: the error of the columns is not known, and nothing is decided"
+    elif failed:
+        yield f"{name}: {failed} of {len(posterior['checks'])} simulated draws failed: there the columns are not confirmed"
+    if posterior["draws_beyond_simulated"]:
+        yield f"{name}: {posterior['draws_beyond_simulated']} draws reach a limit outside of the simulated heights, where the correction of the columns is the nearest one"
+    if posterior["expected_mesh_error"] is None:
+        yield f"{name}: the error of the mesh is not known, and is left out"
+    if not posterior["response_errors"]:
+        yield f"{name}: the draws state no errors of the responses, which are left out"
+    if np.isnan(band["a_max_scatter_1"]).any():
+        yield f"{name}: the scatter from drop to drop is not known; {100 * SAME:g} % is taken"
 
 
 class Pads:
@@ -119,21 +166,22 @@ class Pads:
         random = np.random.default_rng(seed)
         self.draw = np.repeat(np.arange(self.draws), REPEATS)
         self.log_weight = np.zeros(self.draw.size)
+        self.misfit = 0.0  # ln of the likelihood of the worst drop at the pad that fits it best
         self.offset, self.shift = {}, {}
+        n, freedom = self.draw.size, max(1, min(trend.freedom for place in places for trend in place.trend))
+        mesh, student = random.standard_normal(n), random.standard_t(freedom, n)  # all places are of one pad, and of one way to compute it
+        size = np.array([MESH_SIZE, MESH_SIZE * MESH_HIC])[:, None]
         for place in places:
-            n, mesh = self.draw.size, random.standard_normal(self.draw.size)
             own = random.standard_normal((2, n)) * place.own_sd[:, self.draw]
-            size = np.array([MESH_SIZE, MESH_SIZE * MESH_HIC])[:, None] * place.mesh
-            self.offset[place.name] = place.shared[:, self.draw] + own + size * mesh + place.fit[:, None] * random.standard_normal((2, n))
-            self.shift[place.name] = [_height_error(trend, random, n) for trend in place.trend]
+            self.offset[place.name] = place.shared[:, self.draw] + own + size * place.mesh * mesh + place.fit[:, None] * random.standard_normal((2, n))
+            self.shift[place.name] = [np.clip(t.shift[self.draw] + t.remainder[self.draw] * student, -MOST_SHIFT, MOST_SHIFT) for t in place.trend]
 
     def predict(self, place: str, height: float) -> np.ndarray:
         """Returns ln(figure) [2][pads] at a height (m); inf: the foam collapses."""
         p = self.places[place]
         made = np.empty((2, self.draw.size))
         for c in range(2):
-            shift, slope, centre = self.shift[place][c]
-            moved = math.log(height) - (shift + slope * (math.log(height) - centre))
+            moved = np.clip(math.log(height) - self.shift[place][c], p.log_height[0], p.log_height[-1])
             k = np.clip(np.searchsorted(p.log_height, moved) - 1, 0, p.log_height.size - 2)
             part = np.clip((moved - p.log_height[k]) / (p.log_height[k + 1] - p.log_height[k]), 0, 1)
             low, high = p.value[c][self.draw, k], p.value[c][self.draw, k + 1]
@@ -147,7 +195,7 @@ class Pads:
         return np.array([np.interp(math.log(height), p.log_height, p.scatter[c]) for c in range(2)])
 
     def crossing(self, place: str, limits: Sequence[float | None]) -> np.ndarray:
-        """Returns the height (m) [pads] where the first limit is reached; inf: at none of the heights looked at."""
+        """Returns the height (m) [pads] where the first limit is reached; inf: at none of the heights looked at; 0: at all of them."""
         p, lowest = self.places[place], np.full(self.draw.size, np.inf)
         grid = np.exp(np.linspace(p.log_height[0], p.log_height[-1], 4 * p.log_height.size))
         values = np.array([self.predict(place, h) for h in grid])  # [grid][2][pads]
@@ -161,7 +209,7 @@ class Pads:
             with np.errstate(invalid="ignore", divide="ignore"):
                 part = np.where(np.isfinite(high) & (high > low), (math.log(limit) - low) / (high - low), 1.0)
             found = grid[before] * (grid[first] / grid[before]) ** np.clip(part, 0, 1)
-            lowest = np.minimum(lowest, np.where(over.any(axis=0), found, np.inf))
+            lowest = np.minimum(lowest, np.where(over[0], 0.0, np.where(over.any(axis=0), found, np.inf)))
         return lowest
 
     @property
@@ -178,19 +226,9 @@ class Pads:
 
     def learn(self, drop: Drop) -> None:
         """Takes a measured drop into the weights."""
-        predicted, sd = self.predict(drop.place, drop.height), self.scatter(drop.place, drop.height) / math.sqrt(drop.number)
-        self.log_weight = self.log_weight + _log_likelihood(np.log(np.array(drop.figures)), predicted, sd)
-
-    def learn_test(self, stress: np.ndarray, measured: np.ndarray) -> None:
-        """Takes a compression test into the weights: `stress` [draws][strains] and `measured` [strains]."""
-        self.log_weight = self.log_weight - 0.5 * (((np.log(measured) - np.log(stress[self.draw])) / TEST_SCATTER) ** 2).mean(axis=1)
-
-
-def _height_error(trend: Mapping[str, Any], random: np.random.Generator, n: int) -> tuple[np.ndarray, float, float]:
-    """Returns the error of ln(height) of the columns at each pad: a constant, with the scatter of the checks, a slope and its centre."""
-    freedom = max(int(trend["degrees_of_freedom"] or 0), 1)
-    scatter = (trend["scatter"] or 0.0) * np.clip(random.standard_t(freedom, n), -4, 4)
-    return (trend["shift"] or 0.0) + scatter, trend["slope"] or 0.0, math.log(trend["centre_m"] or 1.0)
+        likelihood = _log_likelihood(np.log(np.array(drop.figures)), self.predict(drop.place, drop.height), self.scatter(drop.place, drop.height))
+        self.misfit = min(self.misfit, float(likelihood.max()))
+        self.log_weight = self.log_weight + likelihood
 
 
 def _log_likelihood(measured: np.ndarray, predicted: np.ndarray, sd: np.ndarray) -> np.ndarray:
@@ -259,8 +297,8 @@ class _Loss:
             share = self.probability(weight)
             return np.minimum(share, 1 - share)
         low, median, high = np.moveaxis(quantiles(self.order, self.height, weight), -1, 0)
-        with np.errstate(invalid="ignore"):
-            return np.where(np.isfinite(high), (high - low) / median, 1.0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.where(np.isfinite(high) & (low > 0), (high - low) / median, 1.0)
 
 
 def _expected(loss: _Loss, weight: np.ndarray, log_likelihood: np.ndarray) -> float:
@@ -275,15 +313,13 @@ def _truths(weight: np.ndarray) -> np.ndarray:
     return np.minimum(np.searchsorted(np.cumsum(weight), (np.arange(TRUTHS) + 0.5) / TRUTHS), weight.size - 1)
 
 
-def _drop_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, place: str, height: float, number: int) -> Choice:
-    truths, sd = _truths(weight), pads.scatter(place, height) / math.sqrt(number)
-    predicted = pads.predict(place, height)
-    error = np.random.default_rng(2).standard_normal(TRUTHS)
-    measured = predicted[:, truths] + sd[:, None] * error
+def _drop_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, place: str, height: float) -> Choice:
+    truths, sd, predicted = _truths(weight), pads.scatter(place, height), pads.predict(place, height)
+    measured = predicted[:, truths] + sd[:, None] * np.random.default_rng(2).standard_normal(TRUTHS)
     measured = np.where(np.isinf(measured), np.nan, measured)
     likelihood = np.stack([_log_likelihood(measured[:, m], predicted, sd) for m in range(TRUTHS)])
     after = _expected(loss, weight, likelihood)
-    return Choice(f"{f'{number} drops' if number > 1 else 'a drop'} from {height:.4g} m, {place}", number, after, (now - after) / number)
+    return Choice(f"a drop from {height:.4g} m, {place}", 1, after, now - after, place, height)
 
 
 def _test_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, stress: np.ndarray, cost: float) -> Choice:
@@ -291,48 +327,50 @@ def _test_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, stress
     measured = of[truths] + TEST_SCATTER * np.random.default_rng(3).standard_normal((TRUTHS, stress.shape[1]))
     likelihood = -0.5 * (((measured[:, None] - of) / TEST_SCATTER) ** 2).mean(axis=2)
     after = _expected(loss, weight, likelihood)
-    return Choice("a slow compression test", cost, after, (now - after) / cost)
+    return Choice("a slow compression test, for softfall-fit drop", cost, after, (now - after) / cost)
 
 
-def candidate_heights(pads: Pads, q: Question, height: Sequence[float]) -> list[float]:
-    """Returns heights (m) that may be measured: those of the protocol, and nine about the critical height, in steps of 5 cm."""
-    place = next(iter(pads.places.values()))
-    low, high = math.exp(place.log_height[0]), math.exp(place.log_height[-1])
-    middle = height[1] if math.isfinite(height[1]) else high / 1.3
-    about = {round(20 * middle * part) / 20 for part in np.linspace(0.6, 1.2, 9)}
+def candidate_heights(place: Place, q: Question, median: float) -> list[float]:
+    """Returns heights (m) that may be measured at a place: those of the protocol, and nine about the critical height, of two digits."""
+    low, high = place.ends
+    middle = min(max(median, low), high / 1.2)
+    about = {float(f"{middle * part:.2g}") for part in np.linspace(0.6, 1.2, 9)}
     asked = {*q.heights, *([] if math.isnan(q.required) else [q.required])}
     return sorted(h for h in about | asked if low <= h <= high)
 
 
-def advise(pads: Pads, q: Question, number: int = 1, stress: np.ndarray | None = None, test_cost: float = 3.0) -> Advice:
+def advise(pads: Pads, q: Question, stress: np.ndarray | None = None, test_cost: float = 3.0) -> Advice:
     """Returns the state of knowledge and the choices.
 
-    `number`: drops on a spot. `stress` [draws][strains]: of a compression test of each draw (None: no such test), which costs as much as `test_cost` drops.
+    `stress` [draws][strains]: of a compression test of each draw (None: no such test), which costs as much as `test_cost` drops.
     """
     for place in pads.places.values():
-        ends = math.exp(place.log_height[0]), math.exp(place.log_height[-1])
+        low, high = place.ends
         for h in (*q.heights, *([] if math.isnan(q.required) else [q.required])):
-            if not ends[0] <= h <= ends[1]:
-                raise InputError(f"{place.name}: {h:g} m lies outside of the heights looked at, {ends[0]:.3g} to {ends[1]:.3g} m")
+            if not low <= h <= high:
+                raise InputError(f"{place.name}: {h:g} m lies outside of the heights looked at, {low:.3g} to {high:.3g} m, about the critical height: "
+                                 "at the one all pads pass, at the other none")
     weight, loss = pads.weight, _Loss(pads, q)
-    low, median, high = (float(v) for v in quantiles(loss.order, loss.height, weight))
-    share = float(loss.probability(weight)) if q.decides else math.nan
-    now = float(loss(weight))
-    if pads.effective_draws < LEAST_DRAWS:
-        return Advice(share, (low, median, high), now, q.bound, None, False, [], f"what was measured leaves {pads.effective_draws:.1f} of {pads.draws} draws: "
-                      "the foam is none of them, or hardly; give these drops to softfall-fit drop and begin anew with its posterior")
+    height = tuple(float(v) for v in quantiles(loss.order, loss.height, weight))
+    share, now = float(loss.probability(weight)) if q.decides else math.nan, float(loss(weight))
+    known = Advice(share, (height[0], height[1], height[2]), now, q.bound, None, False)
+    if pads.misfit < MISFIT or pads.effective_draws < LEAST_DRAWS:
+        return replace(known, problem=f"what was measured leaves {pads.effective_draws:.1f} of {pads.draws} draws, or fits none: the foam is none of them. Give these "
+                       "drops to softfall-fit drop, and begin anew with its posterior and without them")
+    if any(trend.freedom == 0 for place in pads.places.values() for trend in place.trend):
+        return replace(known, problem="the error of the columns is not known, as no draw was simulated with success")
     if now <= q.bound:
-        return Advice(share, (low, median, high), now, q.bound, share > 0.5 if q.decides else None, True)
-    choices = [_drop_choice(pads, loss, weight, now, place, h, number) for place in pads.places for h in candidate_heights(pads, q, (low, median, high))]
+        return replace(known, decision=share > 0.5 if q.decides else None, stop=True)
+    choices = [_drop_choice(pads, loss, weight, now, name, h) for name, place in pads.places.items() for h in candidate_heights(place, q, height[1])]
     if stress is not None:
         choices.append(_test_choice(pads, loss, weight, now, stress, test_cost))
-    return Advice(share, (low, median, high), now, q.bound, None, False, sorted(choices, key=lambda c: -c.gain))
+    return replace(known, choices=sorted(choices, key=lambda c: -c.gain))
 
 
 def test_stresses(folder: Path) -> np.ndarray | None:
     """Returns the stress [draws][strains] at TEST_STRAINS of the first curve of each draw-NNN.cfg; None: a draw has no curve as a file."""
     stress = []
-    for path in sorted(folder.glob("draw-*.cfg")):
+    for path in sorted(folder.glob("draw-*.cfg"), key=lambda path: int(re.sub(r"\D", "", path.stem) or 0)):
         named = re.search(r'^\s*curves?\s*=[^"]*"([^"]+\.csv)"', path.read_text(encoding="utf-8"), re.M)
         if not named:
             return None

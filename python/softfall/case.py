@@ -247,7 +247,7 @@ def _solve(model: Path, folder: Path, drops: int, threads: int | None, on_step: 
         for path in files[1:]:  # those of an earlier series are not of this one
             path.unlink(missing_ok=True)
             _checkpoint(path).unlink(missing_ok=True)
-    where = [f"--restart={files[first]}", str(folder / "model.h5")] if resumes else [str(folder / "model.h5"), f"--output={files[0]}",
+    where = [f"--restart={files[0]}", str(folder / "model.h5")] if resumes else [str(folder / "model.h5"), f"--output={files[0]}",
                                                                                    "--force"]
 
     def tell(line: str) -> None:

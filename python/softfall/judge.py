@@ -47,11 +47,11 @@ def judge(p: Protocol, drops: Drops) -> Outcome:
     """Returns the result of the drops by the rules of the protocol."""
     made = {"pass": _judge_pass, "critical height": _judge_height, "cushion curve": _judge_cushion}[p.kind](p, drops)
     made.notes += drops.missing
-    if any("is not simulated" in note for note in drops.missing) and made.passed:
-        made.passed, made.stated = None, made.stated + " in what was simulated; not decided for the rest"
+    if any("is not simulated" in note for note in drops.missing) and made.passed is not False:
+        made.passed, made.stated = None, made.stated + " in what was simulated, and not decided for the rest"
     if drops.stands_in and 1 not in p.counted:  # later drops on a spot are mostly harder
         made.passed = None if made.passed else made.passed
-        made.stated += " by the first drop; not decided for those that count"
+        made.stated += ", by the first drop, and not decided for those that count"
     return made
 
 
@@ -79,16 +79,28 @@ def _judge_pass(p: Protocol, drops: Drops) -> Outcome:
             value = figures_of(group, figure.label, counted)
             passed = None if figure.limit is None or math.isnan(value) else value < figure.limit
             low, high = _draw_interval(group[0], figure.label)
-            made.lines.append(Line(str(spot), figure.label, value, figure.limit, passed, low, high, _unusable(group, counted)))
+            notes = [_unusable(group, counted)]
+            if passed and figure.of(figure.value_of(value) * (1 + _mesh_error(group, figure.key))) >= figure.limit:  # type: ignore[operator]
+                passed = None
+                notes.append("the expected error of the mesh reaches the limit")
+            if len(group) > 1 and len(counted) < len(group):
+                notes.append(f"of drop{'s' if len(counted) > 1 else ''} {', '.join(map(str, counted))}")
+            made.lines.append(Line(str(spot), figure.label, value, figure.limit, passed, low, high, "; ".join(note for note in notes if note)))
     judged = [line.passed for line in made.lines if line.limit is not None]
     if any(passed is False for passed in judged):
         made.passed, made.stated = False, "not passed"
     elif any(passed is None for passed in judged):
-        made.stated = "not decided: figures of some drops are not to be used"
+        made.stated = "not decided: " + ("the mesh is too coarse for the limit" if any("error of the mesh" in line.note for line in made.lines)
+                                          else "figures of some drops are not to be used")
     else:
         made.passed, made.stated = True, "passed"
     made.probability = _probability(p, drops)
     return made
+
+
+def _mesh_error(group: list[Drop], key: str) -> float:
+    """Returns the expected relative error of a figure from the mesh: that of HIC is 1.3 times that of a_max (docs/cfh.md)."""
+    return {"a_max_g": 1.0, "hic": 1.3}.get(key, 0.0) * max(drop.mesh_error for drop in group)
 
 
 def _draw_interval(drop: Drop, key: str) -> tuple[float, float]:
@@ -168,7 +180,8 @@ def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome
         if figure.limit is None:
             continue
         values = [figures_of(heights[h], figure.label, _counted(p, heights[h])) for h in order]
-        bad = next((h for h, value in zip(order, values) if math.isnan(value)), None)
+        first = next((h for h, value in zip(order, values) if value >= figure.limit), math.inf)  # what is above it does not matter
+        bad = next((h for h, value in zip(order, values) if math.isnan(value) and h < first), None)
         if bad is not None:
             made.lines.append(Line(of, figure.label, math.nan, figure.limit, None,
                                    note=f"{bad:g} m: {_unusable(heights[bad], _counted(p, heights[bad]))}"))

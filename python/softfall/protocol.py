@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 from . import programs
 from .curves import STANDARD_GRAVITY
@@ -48,6 +49,10 @@ class Figure:
         """Returns the figure of the value in summary.json."""
         return self.factor * value + self.offset
 
+    def value_of(self, figure: float) -> float:
+        """Returns the value in summary.json of a figure."""
+        return (figure - self.offset) / self.factor
+
 
 @dataclass(frozen=True)
 class Condition:
@@ -88,6 +93,10 @@ class Protocol:
     figures: tuple[Figure, ...]
     clauses: tuple[Clause, ...]
 
+    def limit_of(self, key: str) -> float | None:
+        """Returns the least limit of a value in summary.json, over all figures that are made of it; None: there is none."""
+        return min((f.value_of(f.limit) for f in self.figures if f.key == key and f.limit is not None), default=None)
+
     @property
     def unconfirmed(self) -> list[Clause]:
         """The clauses that were not read at a source."""
@@ -106,10 +115,10 @@ def speed(height: float) -> float:
 def length(text: Any, where: str) -> float:
     """Returns a length such as "1.5 m" in m; InputError names the place.
 
-    >>> length("900 mm", "x"), length("1.5 m", "x")
+    >>> length("900 mm", "x"), length("1.5m", "x")
     (0.9, 1.5)
     """
-    parts = text.split() if isinstance(text, str) else []
+    parts = re.sub(r"(?<=[\d.])(?=[a-z])", " ", text).split() if isinstance(text, str) else []
     try:
         value = float(parts[0]) * _UNITS[parts[1]] if len(parts) == 2 else math.nan
     except (ValueError, KeyError):
@@ -131,13 +140,14 @@ class _Group:
         """Returns the value of a key; without a default it must be there."""
         if key not in self.left:
             if default is ...:
-                raise InputError(f"{self.where}: {key} is missing")
+                raise InputError(f"{self.where}: {'the group [' + key + ']' if kind is dict else key} is missing")
             return default
         value = self.left.pop(key)
         if isinstance(value, bool) or not isinstance(value, kind):
             kinds = kind if isinstance(kind, tuple) else (kind,)
             words = {str: "a text", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
-            raise InputError(f"{self.where}: {key} = {value!r} is not {' or '.join(words[k] for k in kinds)}")
+            expected = "a number without a unit" if float in kinds else " or ".join(words[k] for k in kinds)
+            raise InputError(f"{self.where}: {key} = {value!r} is not {expected}")
         return value
 
     def end(self, known: str) -> None:
@@ -203,6 +213,8 @@ def _figure(path: Path, number: int, table: Any) -> Figure:
     factor, offset = (float(group.take(key, (int, float), default)) for key, default in (("factor", 1), ("offset", 0)))
     if factor <= 0:
         raise InputError(f"{group.where}: factor {factor:g} is not above 0")
+    if limit is not None and (limit - offset) / factor <= 0:
+        raise InputError(f"{group.where}: limit {limit:g} is not above {offset:g}, which the figure has at a value of 0")
     figure = Figure(group.take("key", str), None if limit is None else float(limit), 1e-3 * window, group.take("name", str, ""), factor, offset)
     group.end("key, limit, least_window_ms, name, factor and offset")
     return figure
@@ -233,6 +245,7 @@ def _missile(path: Path, group: _Group) -> dict[str, Any]:
         keys[f"geometry.missile_parameters.{name}"] = value
     mass = group.take("mass", str, None)
     if mass:
+        _quantity(mass, ("kg", "g", "lb"), f"{group.where}: mass")
         keys["missile.mass"] = mass
     keys.update(group.take("keys", dict, {}))
     return keys
@@ -265,8 +278,20 @@ def _drops(path: Path, group: _Group, kind: str) -> dict[str, Any]:
     area = group.take("area", str, None)
     return {"conditions": tuple(conditions), "positions": tuple(positions), "count": count, "counted": counted,
             "heights": tuple(length(text, f"{group.where}: heights") for text in group.take("heights", list, [])),
-            "masses": tuple(group.take("masses", list, [])), "interval": group.take("interval", str, ""),
+            "masses": tuple(_quantity(text, ("kg", "g", "lb"), f"{group.where}: masses") for text in group.take("masses", list, [])),
+            "interval": _quantity(group.take("interval", str, "1 s"), ("s", "min", "h"), f"{group.where}: interval") if "interval" in group.left else "",
             "area": _area(area, group.where) if area else 0.0}
+
+
+def _quantity(text: Any, units: Sequence[str], where: str) -> str:
+    """Returns a text such as "4.6 kg" if it is a number above 0 and one of the units."""
+    found = re.fullmatch(r"\s*([\d.]+(?:e[+-]?\d+)?) *(\w+)\s*", text) if isinstance(text, str) else None
+    try:
+        if found and found.group(2) in units and float(found.group(1)) > 0:
+            return str(text)
+    except ValueError:
+        pass
+    raise InputError(f"{where} {text!r} is not a number above 0 with one of {', '.join(units)}")
 
 
 def _area(text: str, where: str) -> float:

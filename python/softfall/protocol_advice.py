@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Iterator, Mapping
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from .case import Case
 from .errors import InputError
 from .judge import Line, Outcome
 from .protocol import Figure, Protocol
-from .protocol_drops import Drop, Drops, Spot, case_at, folder_name, search
+from .protocol_drops import Drop, Drops, case_at, folder_name, search
 
 LISTED = 10
 
@@ -24,41 +24,51 @@ def _question(p: Protocol, required: float, bound: float | None) -> advice.Quest
         raise InputError(f"{p.path}: --advise needs a protocol with limits; a cushion curve has none")
     if not math.isnan(required) and p.kind != "critical height":
         raise InputError("--required belongs to a critical height; this protocol has its heights")
-    limits: dict[str, float] = {}
     for figure in p.figures:
-        if figure.limit is None:
-            continue
-        if figure.key not in advice.CRITERIA:
+        if figure.limit is not None and figure.key not in advice.CRITERIA:
             raise InputError(f"{p.path}: --advise knows limits of {' and '.join(advice.CRITERIA)}, not of {figure.key}")
-        limits[figure.key] = (figure.limit - figure.offset) / figure.factor
     decides = p.kind == "pass" or not math.isnan(required)
     chosen = bound if bound is not None else 0.05 if decides else 0.1
     if not 0 < chosen < 0.5:
         raise InputError(f"--bound={chosen:g} is not between 0 and 0.5")
     heights = p.heights if p.kind == "pass" else ()
-    return advice.Question((limits.get("a_max_g"), limits.get("hic")), heights, required, chosen)
+    return advice.Question((p.limit_of("a_max_g"), p.limit_of("hic")), heights, required, chosen)
 
 
 def _value(drop: Drop, figures: tuple[Figure, ...], key: str) -> float:
     """Returns a figure of summary.json of a measured drop; NaN: the protocol does not read it."""
     found = next((f for f in figures if f.key == key and f.label in drop.figures), None)
-    return (drop.figures[found.label] - found.offset) / found.factor if found else math.nan
+    return found.value_of(drop.figures[found.label]) if found else math.nan
 
 
-def _measured(p: Protocol, drops: Drops, notes: list[str]) -> list[advice.Drop]:
-    """Returns the mean of the counted drops of each spot, or of all if none of these is there yet."""
-    spots: dict[Spot, list[Drop]] = {}
-    for drop in drops.drops:
-        if drop.is_usable:
-            spots.setdefault(drop.spot, []).append(drop)
-        else:
-            notes.append(f"drop {drop.number} at {drop.spot} is not to be used ({drop.note}), and is left out")
+def _measured(p: Protocol, drops: Drops, pads: advice.Pads, notes: list[str]) -> list[advice.Drop]:
+    """Returns the drops that can be learnt from: the first on each spot, as the draws are foams without memory."""
     made = []
-    for spot, group in spots.items():
-        counted = [drop for drop in group if drop.number in p.counted] or group
-        values = [float(np.exp(np.mean(np.log([_value(drop, p.figures, key) for drop in counted])))) for key in advice.CRITERIA]
-        made.append(advice.Drop(f"{spot.condition}, {spot.position}", spot.height, (values[0], values[1]), len(counted)))
+    for drop in drops.drops:
+        at, named = f"{drop.spot.condition}, {drop.spot.position}", f"drop {drop.number} at {drop.spot} is left out"
+        if not drop.is_usable:
+            notes.append(f"{named}: it is not to be used ({drop.note})")
+        elif drop.number > 1:
+            notes.append(f"{named}: the draws of the foam know first drops alone")
+        elif at not in pads.places:
+            notes.append(f"{named}: its place is not simulated")
+        elif not pads.places[at].ends[0] <= drop.spot.height <= pads.places[at].ends[1]:
+            low, high = pads.places[at].ends
+            notes.append(f"{named}: it lies outside of the heights looked at, {low:.3g} to {high:.3g} m")
+        else:
+            made.append(advice.Drop(at, drop.spot.height, (_value(drop, p.figures, "a_max_g"), _value(drop, p.figures, "hic"))))
     return made
+
+
+def _expected(pads: advice.Pads, question: advice.Question, drop: advice.Drop) -> Iterator[Line]:
+    """Yields what was expected of a drop before it, with the scatter of drops."""
+    weight, error = pads.weight, np.random.default_rng(4).standard_normal(pads.draw.size)
+    predicted = np.exp(pads.predict(drop.place, drop.height) + pads.scatter(drop.place, drop.height)[:, None] * error)
+    for c, key in enumerate(advice.CRITERIA):
+        if not math.isnan(drop.figures[c]):
+            low, _, high = (float(v) for v in advice.quantiles(np.argsort(predicted[c]), predicted[c], weight))
+            yield Line(f"{drop.place}, {drop.height:g} m", key, drop.figures[c], question.limits[c], None, low, high,
+                       "" if low <= drop.figures[c] <= high else "outside of what was expected before it")
 
 
 def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str, required: float, bound: float | None,
@@ -70,27 +80,28 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
             case = case_at(p, pad, condition, position, notes)
             if case is not None:
                 folder = output / folder_name(condition.name, position.name)
-                search(p, case, condition, position, folder, posterior, options)
-                places.append(advice.read_place(f"{condition.name}, {position.name}", folder))
+                places.append(advice.read_place(f"{condition.name}, {position.name}",
+                                                search(p, case, condition, position, folder, posterior, options).folder))
     if not places:
         raise InputError(f"nothing of the protocol can be simulated: {'; '.join(notes)}")
-    pads, lines = advice.Pads(places), []
-    for drop in _measured(p, measured, notes):
-        if drop.place not in pads.places:
-            notes.append(f"the drop from {drop.height:g} m at {drop.place} is left out, as its place is not simulated")
-            continue
-        predicted, weight = np.exp(pads.predict(drop.place, drop.height)), pads.weight
-        for c, key in enumerate(advice.CRITERIA):
-            order = np.argsort(predicted[c])
-            low, _, high = advice.quantiles(order, predicted[c], weight)
-            lines.append(Line(f"{drop.place}, {drop.height:g} m", key, drop.figures[c], question.limits[c], None, float(low), float(high),
-                              "" if low <= drop.figures[c] <= high else "outside of what was expected before it"))
+    pads, lines = advice.Pads(places), list[Line]()
+    notes += [note for place in places for note in place.notes]
+    for drop in _measured(p, measured, pads, notes):
+        lines += _expected(pads, question, drop)
         pads.learn(drop)
-    told = advice.advise(pads, question, p.count, advice.test_stresses(Path(posterior)))
+    told = advice.advise(pads, question, advice.test_stresses(Path(posterior)))
+    if any(line.note for line in lines):
+        notes.append("some measured figures were not expected: the foam may be none of the draws")
+    notes.append(f"{pads.effective_draws:.0f} of {pads.draws} draws are left after what was measured")
     outcome = Outcome(_stated(p, question, told), told.decision, told.height[1], told.height[0], told.height[2], lines, notes,
-                      meaning="measured (interval: expected before)")
+                      meaning="measured; the interval was expected before the drop")
     if any("is not simulated" in note for note in notes) and told.decision:
-        outcome.passed, outcome.stated = None, outcome.stated + " in what was simulated; not decided for the rest"
+        outcome.passed, outcome.stated = None, outcome.stated + " in what was simulated, and not decided for the rest"
+    if outcome.passed and any(line.note for line in lines):
+        outcome.passed = None
+    if 1 not in p.counted:
+        outcome.passed = None if told.decision else told.decision
+        outcome.stated += ", by first drops, and not decided for those that count"
     if any(figure.least_window for figure in p.figures):
         notes.append("what is expected of HIC counts windows of every length")
     return told, outcome
@@ -101,9 +112,10 @@ def _stated(p: Protocol, question: advice.Question, told: advice.Advice) -> str:
     known = f"probability of passing {told.probability:.2f}" if question.decides else f"interval of {100 * told.loss:.0f} % of the height"
     if told.problem:
         return f"not decided: {told.problem}"
-    if not told.stop:
-        return f"go on ({known}; to stop: {'a wrong decision' if question.decides else 'an interval'} of {100 * told.bound:g} %): {told.choices[0].name}"
-    return f"{'passed' if told.decision else 'not passed'} ({known}); stop" if question.decides else f"stop ({known})"
+    if told.stop:
+        return f"{'passed' if told.decision else 'not passed'} ({known}); stop" if question.decides else f"stop ({known})"
+    best = f": {told.choices[0].name}" if told.choices else ""
+    return f"go on{best} ({known}; measuring stops below {100 * told.bound:g} % {'of a wrong decision' if question.decides else 'of the height'})"
 
 
 def rows(told: advice.Advice) -> list[list[str]]:

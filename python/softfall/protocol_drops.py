@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import math
 import re
@@ -15,8 +16,8 @@ import numpy as np
 
 from . import programs
 from .case import Case
-from .curves import hic
-from .drop import later_results, read_results
+from .curves import STANDARD_GRAVITY, hic
+from .drop import Verdict, later_results, read_results
 from .errors import Error, InputError, NumericError
 from .protocol import Condition, Figure, Position, Protocol, length, speed
 from .record import read_record
@@ -50,6 +51,7 @@ class Drop:
     note: str = ""
     curve: tuple[Any, Any] | None = None  # s, g
     draws: dict[str, dict[str, float]] = field(default_factory=dict)
+    mesh_error: float = 0.0  # expected of a_max, simulated; the figures fall short by it
 
     @property
     def is_usable(self) -> bool:
@@ -101,6 +103,12 @@ def hic_from(time: Any, deceleration: Any, least: float) -> float:
     return float((least * mean**2.5).max())
 
 
+def _mesh_error(verdict: Verdict) -> float:
+    """Returns the expected relative error of a_max from the mesh; 0: it is not known."""
+    value = next((check["value"] for check in verdict.checks if check["key"] == "mesh"), None)
+    return value or 0.0
+
+
 def _take_figures(figures: Iterable[Figure], known: Mapping[str, Any], curve: tuple[Any, Any] | None) -> dict[str, float]:
     """Returns the figures of a protocol; one that needs a least window of HIC is computed from the curve."""
     taken = {}
@@ -115,6 +123,9 @@ def _take_figures(figures: Iterable[Figure], known: Mapping[str, Any], curve: tu
 # ---- simulated ----
 
 def folder_name(*parts: str) -> str:
+    """Returns the name of a folder; where a part has other characters than those of names, with a hash of it."""
+    if any(re.search(r"[^\w. -]", part) for part in parts):
+        parts = (*parts, hashlib.sha256("\0".join(parts).encode()).hexdigest()[:6])
     return "-".join(re.sub(r"[^\w.]+", "_", part) for part in parts)
 
 
@@ -146,7 +157,7 @@ def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None,
             case = case_at(p, pad, condition, position, made.missing)
             if case is None:
                 continue
-            folder, remembers = output / folder_name(condition.name, position.name), p.count > 1 and bool(case["material.memory.reload"])
+            folder, remembers = output / folder_name(condition.name, position.name), p.count > 1 and any(case[key] for key in case if key.endswith("memory.reload"))
             if p.count > 1 and not remembers and not made.stands_in:
                 made.stands_in = True
                 made.missing.append(f"of the {p.count} drops on a spot ({p.interval} apart) the first is simulated; it stands for drop"
@@ -176,15 +187,21 @@ def _series(p: Protocol, case: Case, condition: Condition, position: Position, f
 
     if p.heights:
         return [drop for height in p.heights for mass in (p.masses or ("",)) for drop in at(height, mass)]
-    found = search(p, case, condition, position, folder / "first-drop", None, options).summary["critical_fall_height"].get("height_m")
-    if found is None:
-        made.missing.append(f"{condition.name}, {position.name}: no critical height of first drops was found, where the search for later ones begins")
+    summary = search(p, case, condition, position, folder, None, options).summary
+    found, heights = summary["critical_fall_height"], [point["height_m"] for point in summary["points"] if not point["failed"]]
+    begin = {"found": found.get("height_m"), "above the highest point": max(heights, default=None), "below the lowest point": min(heights, default=None)}
+    first = begin.get(found["verdict"])
+    if first is None:
+        made.missing.append(f"{condition.name}, {position.name} is not simulated: no height was found where the search for later drops could begin")
         return []
     tried: dict[float, list[Drop]] = {}
-    height = float(f"{0.95 * found:.3g}")
+    height = float(f"{0.95 * first:.3g}")
     while height not in tried and len(tried) < SEARCH_MOST:
         tried[height] = at(height)
         height = _next_height(p, tried)
+    if height not in tried:
+        made.missing.append(f"{condition.name}, {position.name}: the search ended after {SEARCH_MOST} series, before two heights within "
+                            f"{100 * (SEARCH_WIDTH - 1):.0f} % held the limit")
     return [drop for height in sorted(tried) for drop in tried[height]]
 
 
@@ -214,7 +231,8 @@ def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapp
     one = case.copy()
     one.update({"missile.velocity": f"{speed(spot.height):.12g} m/s", "series.drops": p.count, "series.interval": p.interval,
                 **({"missile.mass": spot.mass} if spot.mass else {})})
-    place = folder / folder_name("series", f"{spot.height:g}m", *([spot.mass] if spot.mass else []))
+    values = hashlib.sha256(repr((p.count, p.interval, sorted(one.overrides.items()))).encode()).hexdigest()[:8]
+    place = folder / folder_name("series", f"{spot.height:g}m", *([spot.mass] if spot.mass else []), values)
     files = [later_results(place / "results.h5", number) for number in range(1, p.count + 1)]
     failure, drops = "", []
     with warnings.catch_warnings():
@@ -230,15 +248,15 @@ def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapp
             result = read_results(path)
             result.post(filter=int(p.filter))
             drops.append(Drop(spot, number, str(path), _take_figures(p.figures, result.figures, result.curve()), str(result.verdict),
-                              "; ".join(result.verdict.remarks), result.curve()))
+                              "; ".join(result.verdict.remarks), result.curve(), mesh_error=_mesh_error(result.verdict)))
     return drops
 
 
 def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
             options: Mapping[str, Any]) -> Search:
+    folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
-    limits = {figure.key: figure.limit for figure in p.figures}
-    given = {"limit_g": limits.get("a_max_g") or 1e6, "limit_hic": limits.get("hic") or 1e9, "posterior": posterior,
+    given = {"limit_g": p.limit_of("a_max_g") or 1e6, "limit_hic": p.limit_of("hic") or 1e9, "posterior": posterior,
              "force": (folder / "cfh.json").exists(), **options}
     programs.run("cfh", [str(case.path), f"--output={folder}", *(f"--set={key}={text}" for key, text in case.overrides.items()),
                          *programs.options(given)])
@@ -254,9 +272,11 @@ def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, fo
         factors.append({"key": "material", "name": "foam", "posterior": str(Path(posterior).absolute()),
                         **({"draws": draws} if draws else {})})
     plan = {"case": str(case.path), "set": [f"{key}={text}" for key, text in case.overrides.items()], "factors": factors,
-            "figures": [{"key": figure.key, **({"limit": (figure.limit - figure.offset) / figure.factor} if figure.limit is not None else {})}
+            "figures": [{"key": figure.key, **({"limit": figure.value_of(figure.limit)} if figure.limit is not None else {})}
                         for figure in p.figures]}
     plan = {key: value for key, value in plan.items() if value != []}
+    folder.mkdir(parents=True, exist_ok=True)
+    folder /= "sweep"
     sweep(plan, output=folder, **options)
     return _rows(p, condition, position, folder)
 
@@ -282,7 +302,7 @@ def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -
                 warnings.simplefilter("ignore")
                 result = read_results(results)
                 result.post(filter=int(p.filter))
-                drop.curve, own = result.curve(), result.figures
+                drop.curve, own, drop.mesh_error = result.curve(), result.figures, _mesh_error(result.verdict)
             drop.figures = _take_figures(p.figures, own, drop.curve)
         if "foam" in cell:
             drop.draws[cell["foam"]] = _take_figures(p.figures, {key: float(text) for key, text in cell.items()
@@ -305,6 +325,11 @@ def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: boo
     if not folder.is_dir():
         raise InputError(f"there is no folder {folder}")
     rows = _listed(folder) if (folder / "list.csv").exists() and not pattern else _matched(folder, pattern)
+    files: dict[str, str] = {}
+    for where, row in rows:
+        if row["file"] in files:
+            raise InputError(f"{where}: {row['file']} is the record of {files[row['file']]} already")
+        files[row["file"]] = where
     made = Drops([_measured(p, folder, where, row, complete) for where, row in rows])
     seen: dict[tuple[Spot, int], str] = {}
     for drop in made.drops:
@@ -362,7 +387,8 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
         height = height_there
     mass = row.get("mass", "")
     if p.masses and mass not in p.masses or mass and not p.masses:
-        raise InputError(f"{where}: the protocol has no mass {mass!r}; there are {', '.join(p.masses) or 'none'}")
+        raise InputError(f"{where}: " + (f"the protocol has no mass {mass!r}; there are {', '.join(p.masses)}" if p.masses else
+                                         "the column mass belongs to a protocol with drops.masses, and this one has one missile"))
     number = row.get("drop") or "1"
     if not number.isdigit() or not 1 <= int(number) <= p.count:
         raise InputError(f"{where}: drop {number} is none of the {p.count} of the protocol")
@@ -381,10 +407,25 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
     curve = (record.time, record.deceleration)
     taken = _take_figures(p.figures, record.figures, curve)
     drop = Drop(spot, int(number), str(path), taken, str(record.verdict), "; ".join(record.verdict.remarks), curve)
+    _check_pulse(drop)
     absent = [figure.label for figure in p.figures if figure.limit is not None and figure.label not in taken]
     if absent:
         raise InputError(f"{where}: a measured record has no {absent[0]}, which the protocol limits")
     return drop
+
+
+LEAST_CHANGE, MOST_CHANGE = 0.7, 2.2  # of the velocity, over that of a free fall: a guided fall without rebound, an elastic one
+
+
+def _check_pulse(drop: Drop) -> None:
+    """Takes a record that cannot be of a fall from its height as one that is not to be used: of another unit, or of another drop."""
+    time, value = (np.asarray(part, float) for part in drop.curve or ((), ()))
+    change = STANDARD_GRAVITY * float(np.sum(0.5 * (value[1:] + value[:-1]) * np.diff(time)))
+    ratio = change / speed(drop.spot.height)
+    if not LEAST_CHANGE <= ratio <= MOST_CHANGE:
+        drop.grade = "do not use"
+        drop.note = "; ".join(part for part in (drop.note, f"its velocity changes by {change:.3g} m/s, {ratio:.2g} times that of a fall from {drop.spot.height:g} m; "
+                              f"{LEAST_CHANGE:g} to {MOST_CHANGE:g} can be: another unit, or another drop") if part)
 
 
 def _refuse_missing(p: Protocol, folder: Path, seen: set[tuple[Spot, int]]) -> None:
@@ -400,7 +441,8 @@ def _refuse_missing(p: Protocol, folder: Path, seen: set[tuple[Spot, int]]) -> N
             raise InputError(f"{folder}: there is no drop of {', '.join(empty[0])}")
     absent = sorted(spots - seen, key=lambda entry: (str(entry[0]), entry[1]))
     if absent:
-        raise InputError(f"{folder}: {len(absent)} drop{'s are' if len(absent) > 1 else ' is'} missing, first drop {absent[0][1]} at {absent[0][0]}")
+        more = f", and {len(absent) - 10} more" if len(absent) > 10 else ""
+        raise InputError(f"{folder}: missing: " + ", ".join(f"drop {number} at {spot}" for spot, number in absent[:10]) + more)
 
 
 def figures_of(drops: Iterable[Drop], key: str, counted: Iterable[int]) -> float:

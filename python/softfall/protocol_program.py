@@ -27,6 +27,7 @@ from .rating import rate
 
 PICTURES = {".png": "png", ".jpg": "jpeg", ".jpeg": "jpeg"}
 MOST_PHOTO = 4_000_000  # bytes
+SHOWN = ("geometry.file", "geometry.parameters.thickness", "material.law", "material.density", "material.curve", "missile.mass", "pad.base", "pad.temperature")
 FILES = ("report.html", "protocol.json", "drops.csv")
 
 
@@ -53,11 +54,12 @@ def read_laboratory(path: str | None) -> tuple[dict[str, str], str]:
 
 
 def compare(p: Protocol, measured: Drops, simulated: Drops) -> list[dict[str, Any]]:
-    """Returns the differences of each simulated drop from the first counted measured one at its spot."""
+    """Returns the differences of each simulated drop from the measured one of its number, or from the first one where it stands in for all."""
+    by_number = {(drop.spot, drop.number): drop for drop in measured.drops}
     first = {drop.spot: drop for drop in sorted(measured.drops, key=lambda d: d.number, reverse=True)}
     pairs = []
     for drop in simulated.drops:
-        other = first.get(drop.spot)
+        other = first.get(drop.spot) if simulated.stands_in else by_number.get((drop.spot, drop.number))
         if other is not None and drop.curve is not None and other.is_usable and drop.is_usable:
             pairs.append(_pair(p, other, drop))
     return pairs
@@ -92,17 +94,26 @@ def perform(o: argparse.Namespace) -> str:
         raise InputError(f"{output} has {there[0]} already: give --force to replace it (finished drops are used again), or another directory")
     if o.advise and not (o.pad and o.posterior):
         raise InputError("--advise needs --pad=CASE and --posterior=FOLDER, draws of its foam")
+    ignored = [name for name in ("posterior", "draws", "set", "engine", "profile") if getattr(o, name)] if not o.pad else []
+    if ignored:
+        raise InputError(f"--{ignored[0]} belongs to --pad")
+    if o.draws is not None and o.draws < 1:
+        raise InputError(f"--draws={o.draws} is not a number from 1 on")
+    if o.advise and o.draws:
+        raise InputError("--draws is not for --advise, which takes all draws")
     if not o.advise and (o.required or o.bound is not None):
         raise InputError("--required and --bound belong to --advise")
     parts: dict[str, Drops] = {}
     if o.measured:
         parts["measured"] = measure(p, Path(o.measured), o.pattern, complete=not o.advise)
-    outcomes, told, pairs = {}, None, []
+    outcomes, told, pairs, set_up = {}, None, [], dict[str, str]()
     if o.pad:
         for text in o.set:
             if "=" not in text:
                 raise InputError(f"--set {text}: KEY=VALUE is expected")
         pad = Case(o.pad, dict(text.split("=", 1) for text in o.set))
+        set_up = {"case": str(pad.path), **({"changed": ", ".join(o.set)} if o.set else {}), **{key: str(pad[key]) for key in SHOWN if pad.get(key) is not None},
+                  **({"draws of the foam": str(o.posterior)} if o.posterior else {})}
         options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile}
         output.mkdir(parents=True, exist_ok=True)
         if o.advise:
@@ -114,7 +125,7 @@ def perform(o: argparse.Namespace) -> str:
         outcomes = {what: judge(p, drops) for what, drops in parts.items()}
         pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
     output.mkdir(parents=True, exist_ok=True)
-    write(p, parts, outcomes, pairs, laboratory, photo, output, told)
+    write(p, parts, outcomes, pairs, laboratory, photo, output, told, {**set_up, **({"measured records": str(o.measured)} if o.measured else {}), "command": " ".join(sys.argv[1:])})
     said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}" for what, outcome in outcomes.items()),
             *(f"  note: {note}" for outcome in outcomes.values() for note in outcome.notes),
             f"  {len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed. {CAUTION}", f"Written: {output}/report.html, protocol.json, drops.csv"]

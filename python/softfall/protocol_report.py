@@ -10,13 +10,16 @@ import math
 from pathlib import Path
 from typing import Any, Mapping, Sequence
 
+import numpy as np
+
 from . import library
 from .advice import Advice
 from .judge import Outcome
 from .protocol import CAUTION, Protocol
 from .protocol_advice import rows
-from .protocol_drops import Drops
+from .protocol_drops import Drop, Drops
 
+MOST_PANELS = 12
 FIELDS = ("laboratory", "address", "sample", "order", "date", "conditioning", "operator", "remarks", "photo")
 
 _STYLE = """body{font:15px/1.45 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}h1{font-size:1.5em}h2{font-size:1.15em;
@@ -41,21 +44,29 @@ def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def _curves(parts: Mapping[str, Drops]) -> str:
-    """Returns the filtered curves as SVG: simulated ones dashed."""
+    """Returns the filtered curves as SVG, a panel for each spot: simulated ones dashed."""
     import matplotlib
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
-    shown = [(what, drop) for what, drops in parts.items() for drop in drops.drops if drop.curve is not None][:24]
-    if not shown:
+    spots: dict[str, list[tuple[str, Drop]]] = {}
+    for what, drops in parts.items():
+        for drop in drops.drops:
+            if drop.curve is not None and (str(drop.spot) in spots or len(spots) < MOST_PANELS):
+                spots.setdefault(str(drop.spot), []).append((what, drop))
+    if not spots:
         return ""
-    figure, ax = plt.subplots(figsize=(8, 3.6), layout="constrained")
-    for what, drop in shown:
-        time, value = drop.curve  # type: ignore[misc]
-        ax.plot(1e3 * (time - time[0]), value, "--" if what == "simulated" and len(parts) > 1 else "-", lw=1.1,
-                label=f"{what}: {drop.spot}, drop {drop.number}")
-    ax.set(xlabel="time (ms)", ylabel="deceleration (g)")
-    if len(shown) <= 8:
-        ax.legend(fontsize=8)
+    rows = math.ceil(len(spots) / 2)
+    figure, axes = plt.subplots(rows, min(2, len(spots)), figsize=(8, 0.6 + 2.4 * rows), layout="constrained", squeeze=False, sharex=True, sharey=True)
+    for ax in axes.flat[len(spots):]:
+        ax.set_visible(False)
+    for ax, (spot, shown) in zip(axes.flat, spots.items()):
+        for what, drop in shown:
+            time, value = (np.asarray(part, float) for part in drop.curve)  # type: ignore[union-attr]
+            contact = time[int(np.argmax(value > 0.05 * value.max()))]
+            ax.plot(1e3 * (time - contact), value, "--" if what == "simulated" and len(parts) > 1 else "-", lw=1.1, label=f"{what}, drop {drop.number}")
+        ax.set_title(spot, fontsize=9)
+        ax.set(xlabel="time from 5 % of the peak (ms)", ylabel="deceleration (g)")
+        ax.legend(fontsize=7)
     text = io.StringIO()
     with plt.rc_context({"svg.hashsalt": "softfall"}):
         figure.savefig(text, format="svg", metadata={"Date": None})
@@ -67,7 +78,7 @@ def _result(what: str, outcome: Outcome) -> str:
     kind = {True: " good", False: " bad", None: ""}[outcome.passed]
     more = []
     if not math.isnan(outcome.low) or not math.isnan(outcome.high):
-        more.append(f"95 % interval {_number(outcome.low)} to {_number(outcome.high)} m")
+        more.append(f"95 % interval of the critical height {_number(outcome.low)} to {_number(outcome.high)} m")
     if outcome.probability:
         share, low, high = outcome.probability
         more.append(f"probability of passing {share:.2f} (95 % interval of the draws {low:.2f} to {high:.2f})")
@@ -75,13 +86,20 @@ def _result(what: str, outcome: Outcome) -> str:
     rows = [[line.of, line.figure, _number(line.value), f"{_number(line.low)} to {_number(line.high)}" if not math.isnan(line.low) else "–",
              "–" if line.limit is None else f"{line.limit:g}", {True: "yes", False: "NO", None: "–"}[line.passed], line.note]
             for line in outcome.lines]
-    return f'<p class="result{kind}">{text}</p>' + _table(["of", "figure", f">{outcome.meaning}", ">95 % interval", ">limit", "met", "note"], rows)
+    return f'<p class="result{kind}">{text}</p>' + ("" if not rows else _table(["of", "figure", f">{outcome.meaning}", ">95 % interval", ">limit", "met", "note"], rows))
 
 
 def _header(p: Protocol, laboratory: Mapping[str, str], photo: str) -> str:
     rows = [[key, laboratory[key]] for key in FIELDS if key in laboratory and key != "photo"]
     return (f"<h1>{html.escape(p.title)}</h1><p>{html.escape(p.standard)}; protocol {html.escape(p.name)}. <b>{CAUTION}</b></p>"
             + (_table(["", ""], rows) if rows else "") + photo)
+
+
+def _set_up(p: Protocol, told: Mapping[str, str]) -> str:
+    """Returns what was tested by what, as a table."""
+    rows = [["drops", f"{p.count} on a spot" + (f", {p.interval} apart" if p.interval else "") + f"; counted: {', '.join(map(str, p.counted))}"],
+            ["missile of the protocol", ", ".join(f"{key} = {value}" for key, value in p.missile.items()) or "that of the case"], *([key, text] for key, text in told.items())]
+    return "<h2>Set-up</h2>" + _table(["", ""], rows)
 
 
 def _drop_table(p: Protocol, parts: Mapping[str, Drops]) -> str:
@@ -97,10 +115,11 @@ def _drop_table(p: Protocol, parts: Mapping[str, Drops]) -> str:
 def _choices(advice: Advice | None) -> str:
     if advice is None or not advice.choices:
         return ""
-    return "<h2>The next measurement</h2>" + _table(["measurement", ">cost (drops)", ">expected loss after it (%)", ">fall of the loss for each drop (%)"],
-                                                    rows(advice)) + (
-        f'<p class="note">Now the loss is {100 * advice.loss:.1f} %: the probability of a wrong decision, or the length of the 95 % interval over the '
-        "height. Expected over the draws of the foam, the errors of the model, and the scatter of drops by speed and thickness.</p>")
+    loss = "length of the 95 % interval over the height" if math.isnan(advice.probability) else "probability of a wrong decision"
+    listed = rows(advice)
+    return "<h2>The next measurement</h2>" + _table(["measurement", ">cost (drops)", ">expected loss after it (%)", ">fall of the loss for each drop (%)"], listed) + (
+        f'<p class="note">The {len(listed)} best of {len(advice.choices)}. The loss is the {loss}; now it is {100 * advice.loss:.1f} %. Expected over the draws of the foam, '
+        "the errors of the model, and the scatter of drops by speed and thickness. A measured drop of any height stands in list.csv with this height.</p>")
 
 
 def _clauses(p: Protocol) -> str:
@@ -110,7 +129,7 @@ def _clauses(p: Protocol) -> str:
 
 
 def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcome], pairs: Sequence[Mapping[str, Any]],
-          laboratory: Mapping[str, str], photo: str, output: Path, advice: Advice | None = None) -> None:
+          laboratory: Mapping[str, str], photo: str, output: Path, advice: Advice | None = None, told: Mapping[str, str] | None = None) -> None:
     """Writes the three files; each is whole or as it was before."""
     compared = "<h2>Measured and simulated</h2>" + _table(
         ["drop", ">a_max simulated − measured", ">HIC simulated − measured", ">R²", ">RMSE (g)", ">ISO/TS 18571", "in words"],
@@ -120,11 +139,11 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
     page = "".join([
         f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(p.title)}</title>'
         f"<style>{_STYLE}</style>", _header(p, laboratory, photo), *(_result(what, outcome) for what, outcome in outcomes.items()),
-        "<h2>What was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
-        _choices(advice), _drop_table(p, parts), _curves(parts), compared, _clauses(p),
+        "<h2>Notes, and what was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
+        _choices(advice), _set_up(p, told or {}), _drop_table(p, parts), _curves(parts), compared, _clauses(p),
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
     _replace(output / "report.html", page)
-    _replace(output / "protocol.json", json.dumps(_summary(p, parts, outcomes, pairs, laboratory, advice), indent=2, allow_nan=False) + "\n")
+    _replace(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["kind", "condition", "position", "height_m", "mass", "drop", *(figure.label for figure in p.figures), "grade", "note", "source"])
@@ -157,9 +176,9 @@ def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Out
                        "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "grade": d.grade, "note": d.note,
                        "source": d.source} for what, drops in parts.items() for d in drops.drops],
             "comparison": [{key: _plain(value) for key, value in pair.items()} for pair in pairs],
-            "advice": advice and {"probability": _plain(advice.probability), "height_m": [_plain(h) for h in advice.height], "loss": advice.loss,
+            "advice": advice and {"probability": _plain(advice.probability), "height_m": [_plain(h) for h in advice.height], "loss": _plain(advice.loss),
                                   "bound": advice.bound, "stop": advice.stop, "decision": advice.decision, "problem": advice.problem,
-                                  "choices": [vars(choice) for choice in advice.choices]},
+                                  "choices": [{key: _plain(value) for key, value in vars(choice).items()} for choice in advice.choices]},
             "unconfirmed": [{"of": c.of, "text": c.text, "source": c.source} for c in p.unconfirmed]}
 
 

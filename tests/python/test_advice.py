@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The advice which drop to do next: against closed forms of normal distributions, and as a program."""
+import dataclasses
 import json
 import math
 import os
@@ -15,7 +16,6 @@ from test_protocol import MAT, softfall_protocol
 
 SOURCE = pathlib.Path(os.environ["SF_SOURCE_DIR"])
 POSTERIOR = SOURCE / "examples/materials/eva35_posterior"
-NO_TREND = {"degrees_of_freedom": 0, "scatter": None, "shift": None, "slope": None, "centre_m": None}
 SPREAD, SCATTER, SLOPE = 0.2, 0.05, 2.0
 
 
@@ -25,7 +25,8 @@ def place(count=500, name="centre", scatter=SCATTER):
     log_height = np.linspace(math.log(0.2), math.log(5), 80)
     value = math.log(1000) + SLOPE * log_height[None, None, :] + SPREAD * z[None, :, None] + np.zeros((2, 1, 1))
     zero = np.zeros((2, count))
-    return advice.Place(name, log_height, value, zero, zero, np.full((2, 80), scatter), 0.0, np.zeros(2), (NO_TREND, NO_TREND))
+    trend = advice.Trend(zero[0], zero[0], 3)
+    return advice.Place(name, log_height, value, zero, zero, np.full((2, 80), scatter), 0.0, np.zeros(2), (trend, trend))
 
 
 def inverse_erf(y):
@@ -67,13 +68,14 @@ def test_a_measured_drop_has_the_weights_of_bayes():
     assert advice.advise(again, QUESTION).height == told.height
 
 
-def test_means_of_more_drops_tell_more():
+def test_more_drops_tell_more():
     one, four = advice.Pads([place()]), advice.Pads([place()])
     one.learn(advice.Drop("centre", 1.0, (math.nan, 1000.0)))
-    four.learn(advice.Drop("centre", 1.0, (math.nan, 1000.0), 4))
+    for _ in range(4):
+        four.learn(advice.Drop("centre", 1.0, (math.nan, 1000.0)))
     widths = [math.log(told.height[2] / told.height[0]) for told in (advice.advise(one, QUESTION), advice.advise(four, QUESTION))]
     sds = [1 / math.sqrt(1 / SPREAD**2 + n / SCATTER**2) for n in (1, 4)]
-    assert widths[1] / widths[0] == pytest.approx(sds[1] / sds[0], rel=0.02)
+    assert widths[1] / widths[0] == pytest.approx(sds[1] / sds[0], rel=0.03)
 
 
 def test_the_expected_loss_of_a_drop_has_its_value():
@@ -96,17 +98,17 @@ def test_what_tells_more_comes_first():
     stress = np.exp(0.3 * np.linspace(-2, 2, 500))[:, None] * np.ones((1, 3))
     told = advice.advise(pads, advice.Question((None, 1000.0), heights=(1.0,)), stress=stress, test_cost=50)
     names = [choice.name for choice in told.choices]
-    assert names[0].endswith("centre") and names[-1] == "a slow compression test"
+    assert names[0].endswith("centre") and names[-1].startswith("a slow compression test")
     assert max(k for k, name in enumerate(names) if "centre" in name) < min(k for k, name in enumerate(names) if "corner" in name)
 
 
 def test_measuring_stops_and_decides():
     pads = advice.Pads([place()])
-    pads.learn(advice.Drop("centre", 1.1, (math.nan, 850.0), 4))
+    pads.learn(advice.Drop("centre", 1.1, (math.nan, 850.0)))
     told = advice.advise(pads, QUESTION)
     assert told.stop and told.decision is True and told.loss < 0.05 and not told.choices
     pads = advice.Pads([place()])
-    pads.learn(advice.Drop("centre", 1.1, (math.nan, 1600.0), 4))
+    pads.learn(advice.Drop("centre", 1.1, (math.nan, 1600.0)))
     assert advice.advise(pads, QUESTION).decision is False
     width = advice.Question((None, 1000.0), bound=0.12)
     assert not advice.advise(advice.Pads([place()]), width).stop
@@ -118,9 +120,40 @@ def test_measuring_stops_and_decides():
 
 def test_a_foam_that_is_none_of_the_draws_is_told():
     pads = advice.Pads([place(count=200)])
-    pads.learn(advice.Drop("centre", 1.0, (math.nan, 3000.0), 9))
+    pads.learn(advice.Drop("centre", 1.0, (math.nan, 3000.0)))
     told = advice.advise(pads, QUESTION)
     assert "softfall-fit drop" in told.problem and told.decision is None and not told.stop
+
+
+def test_a_drop_that_no_draw_can_have_is_told():
+    """Also where all draws fit equally badly, so that the weights stay."""
+    p = place(count=100)
+    p.value[:, :, 40:] = np.inf
+    pads = advice.Pads([p])
+    pads.learn(advice.Drop("centre", math.exp(p.log_height[60]), (math.nan, 1000.0)))
+    assert "fits none" in advice.advise(pads, QUESTION).problem
+
+
+def test_pads_that_fail_at_every_height_have_no_interval():
+    p = place(count=100)
+    told = advice.advise(advice.Pads([p]), advice.Question((None, 1.0), bound=0.1))
+    assert told.height == (0, 0, 0) and told.loss == 1 and not told.stop
+    unknown = advice.advise(advice.Pads([dataclasses.replace(p, trend=(advice.Trend(p.shared[0], p.shared[0], 0),) * 2)]), QUESTION)
+    assert "no draw was simulated" in unknown.problem and unknown.decision is None
+
+
+def test_the_trend_of_the_checks_shifts_the_height_of_each_draw():
+    """By the line at the draw's own critical height, and by the end of the checks beyond them."""
+    checks = [{"height_m": h, "failed": False, "hic_height_shift": 0.0} for h in (0.9, 1.0, 1.1)]
+    told = {"degrees_of_freedom": 1, "scatter": 0.0, "shift": 0.02, "slope": -0.5, "centre_m": 1.0}
+    crossing = np.log([0.5, 0.95, 1.0, 1.05, 2.0])
+    trend = advice._trend(told, checks, "hic", crossing)
+    assert trend.shift == pytest.approx(0.02 - 0.5 * np.log([0.9, 0.95, 1.0, 1.05, 1.1]))
+    p = place(count=100)
+    pads = advice.Pads([dataclasses.replace(p, trend=(advice.Trend(0 * p.shared[0] + 0.1, 0 * p.shared[0], 3),) * 2)])
+    plain = advice.Pads([p])
+    assert pads.crossing("centre", (None, 1000.0)) == pytest.approx(plain.crossing("centre", (None, 1000.0)) * math.exp(0.1), rel=1e-3)
+    assert pads.predict("centre", 1.0) == pytest.approx(plain.predict("centre", math.exp(-0.1)))
 
 
 def test_collapsed_columns_are_beyond_every_limit():
@@ -155,11 +188,18 @@ def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
     assert told["choices"] and not told["stop"] or told["stop"]
     low, median, high = told["height_m"]
     assert low < median < high
-    curves = advice.read_place("x", next((tmp_path / "out/drops").iterdir()))
+    heights = next((tmp_path / "out/drops").glob("*/heights"))
+    curves = advice.read_place("x", heights)
+    pads, points = advice.Pads([curves]), json.loads((heights / "cfh.json").read_text())["points"]
+    for point in points:  # the case's own drops, whose foam is in the middle of the draws, lie in the middle of the pads
+        if not point["failed"] and point["height_m"] < median:
+            for c, key in enumerate(("a_max_g", "hic")):
+                share = float(np.mean(pads.predict("x", point["height_m"])[c] < math.log(point[key])))
+                assert 0.1 < share < 0.9, (point["height_m"], key, share)
     k = int(np.argmin(abs(curves.log_height - math.log(median))))
     height, a_max = math.exp(curves.log_height[k]), math.exp(np.median(curves.value[0][:, k]))
-    t = np.arange(0, 0.03, 1e-4)
-    pulse = np.where((t > 0.005) & (t < 0.02), a_max * np.sin(np.pi * (t - 0.005) / 0.015), 0)
+    t, length = np.arange(0, 0.03, 1e-4), 1.7 * protocol.speed(height) * math.pi / (2 * a_max * 9.80665)
+    pulse = np.where((t > 0.005) & (t < 0.005 + length), a_max * np.sin(np.pi * (t - 0.005) / length), 0)
     (tmp_path / "lab").mkdir()
     np.savetxt(tmp_path / "lab/1.csv", np.column_stack([t, pulse]), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
     (tmp_path / "lab/list.csv").write_text(f"file,height,drop\n1.csv,{height:.6g} m,1\n")

@@ -262,3 +262,27 @@ def test_a_series_has_all_its_drops(tmp_path):
     last.unlink()
     again = case.run(output=tmp_path / "run").series
     assert [drop.figures["a_max_g"] for drop in again] == a
+
+
+def test_a_series_that_was_stopped_in_a_later_drop_is_resumed_there(tmp_path):
+    """The drops before it stay as they are, and all are those of a series without a stop."""
+    source = pathlib.Path(os.environ["SF_SOURCE_DIR"])
+    coarse = {"geometry.parameters.fine_spacing": 12, "geometry.parameters.outer_spacing": 20, "geometry.missile_parameters.element_size": 20,
+              "pad.mesh_error_limit": 1, "series.drops": 2, "missile.velocity": "3 m/s"}
+    case = softfall.Case(source / "examples/series/case.cfg", coarse)
+
+    class Stop(Exception):
+        pass
+
+    def stop(step):
+        if (tmp_path / "run/results-2.h5").exists() and step.time > 2e-3:
+            raise Stop
+
+    with pytest.raises(Stop):
+        case.run(output=tmp_path / "run", on_step=stop)
+    first = (tmp_path / "run/results.h5").stat().st_mtime_ns
+    drops = case.run(output=tmp_path / "run").series
+    assert (tmp_path / "run/results.h5").stat().st_mtime_ns == first
+    assert sorted(path.name for path in (tmp_path / "run").glob("results*.h5")) == ["results-2.h5", "results.h5"]
+    whole = case.run(output=tmp_path / "whole").series
+    assert [drop.figures["a_max_g"] for drop in drops] == [drop.figures["a_max_g"] for drop in whole]

@@ -110,9 +110,12 @@ def test_every_protocol_reads_and_names_what_is_unconfirmed():
     ('filter = 1000', 'filter = 100', "no channel frequency class"),
     ('name = "edge"', 'name = "centre"', "two positions are named 'centre'"),
     ('kind = "critical height"', 'kind = "height"', "none of pass, critical height, cushion curve"),
-    ('limit = 100.0', 'limit = "100 g"', "is not a whole number or a number"),
+    ('limit = 100.0', 'limit = "100 g"', "is not a number without a unit"),
     ('key = "a_max_g"', 'key = "gadd"', "limits of a_max_g and hic alone"),
     ('[missile]', '[missile', "TOML|Expected"),
+    ('[missile]', '[misile]', r"the group \[missile\] is missing"),
+    ('mass = "4.6 kg"', 'mass = "4.6"', "mass '4.6' is not a number above 0 with one of kg"),
+    ('limit = 100.0', 'limit = -100.0', "limit -100 is not above 0"),
 ])
 def test_a_wrong_protocol_is_refused_in_one_sentence(tmp_path, old, new, said):
     text = MAT.read_text()
@@ -151,13 +154,14 @@ def test_files_may_be_found_by_a_pattern(measured, tmp_path):
 
 
 @pytest.mark.parametrize("old, new, said", [
-    ("edge-0.9-2.csv,edge,0.9 m,2\n", "", r"1 drop is missing, first drop 2 at as it is, edge, 0.9 m"),
+    ("edge-0.9-2.csv,edge,0.9 m,2\n", "", r"missing: drop 2 at as it is, edge, 0.9 m"),
     ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,edge,0.9 m,3", "are both drop 3"),
     ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,side,0.9 m,2", "no position 'side'; there are centre, edge, corner"),
     ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,edge,0.8 m,2", "no height of 0.8 m"),
     ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,edge,0.9 m,4", "drop 4 is none of the 3"),
     ("edge-0.9-2.csv,edge,0.9 m,2", "gone.csv,edge,0.9 m,2", "gone.csv"),
     ("file,position", "flie,position", "there is no column 'flie'"),
+    ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-1.csv,edge,0.9 m,2", "edge-0.9-1.csv is the record of"),
 ])
 def test_a_wrong_list_is_refused_and_nothing_is_written(measured, tmp_path, old, new, said):
     text = (measured / "list.csv").read_text()
@@ -173,6 +177,25 @@ def test_a_record_that_is_not_to_be_used_decides_nothing(measured, tmp_path):
     result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 0 and "not determined" in result.stdout
     assert "cut in the pulse" in (tmp_path / "out/report.html").read_text()
+
+
+def test_a_record_of_another_unit_or_height_decides_nothing(measured, tmp_path):
+    """Its area is the change of the velocity, which a fall from its height bounds on both sides."""
+    text = (measured / "corner-0.9-3.csv").read_text().splitlines()
+    (measured / "corner-0.9-3.csv").write_text("\n".join([text[0], *(",".join([row.split(",")[0], f"{float(row.split(',')[1]) / 9.80665:.6g}"]) for row in text[1:])]))
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 0 and "not determined" in result.stdout, result.stdout + result.stderr
+    assert "another unit, or another drop" in (tmp_path / "out/report.html").read_text()
+
+
+def test_a_limit_within_the_error_of_the_mesh_is_not_decided():
+    p = protocol.read("en913")
+    spot = Spot(p.conditions[0].name, p.positions[0].name, p.heights[0])
+    limit = p.figures[0].limit
+    def judged(error):
+        return judge.judge(p, Drops([Drop(spot, 1, "", {f.label: 0.95 * limit for f in p.figures}, "valid", mesh_error=error)]))
+    assert judged(0.04).passed is True
+    assert judged(0.06).passed is None and "too coarse for the limit" in judged(0.06).stated
 
 
 def drops(*values, grade="valid"):
@@ -259,7 +282,7 @@ def test_a_critical_height_is_that_of_the_drops_that_count(remembering, tmp_path
     result = softfall_protocol(tmp_path / "mine.toml", "--pad", remembering, *SERIES, "-o", tmp_path / "out")
     assert result.returncode == 0, result.stderr
     told = json.loads((tmp_path / "out/protocol.json").read_text())
-    first = json.loads(next((tmp_path / "out/drops").glob("*/first-drop/cfh.json")).read_text())["critical_fall_height"]["height_m"]
+    first = json.loads(next((tmp_path / "out/drops").glob("*/heights/cfh.json")).read_text())["critical_fall_height"]["height_m"]
     found = told["results"]["simulated"]
     heights = sorted({d["height_m"] for d in told["drops"]})
     assert found["value_m"] < 0.99 * first and any(h <= found["value_m"] <= 1.03 * h for h in heights)
@@ -277,7 +300,7 @@ def test_what_the_pad_cannot_do_is_told_and_not_decided(case, tmp_path):
     assert told["passed"] is None and "not decided for the rest" in told["stated"]
     assert any("condition cold is not simulated" in note for note in told["notes"])
     assert any("the first is simulated" in note for note in told["notes"])
-    assert told["stated"].endswith("by the first drop; not decided for those that count")
+    assert told["stated"].endswith("by the first drop, and not decided for those that count")
     wrong = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "other", "--set", "missile.mas=1 kg")
     assert wrong.returncode == 2 and "missile.mas" in wrong.stderr
 

@@ -157,9 +157,32 @@ static sf_status find_peak(const sf_results *r, const double *const channel[3], 
     return err->status;
 }
 
-/* rad s-1 about x, y and z of the head, by the strain of the brain (Takhounts et al., Stapp Car Crash J. 57,
- * 2013). */
+/* rad s-1 about the axes x, y and z of the head, by the strain of the brain (Takhounts et al., Stapp Car
+ * Crash J. 57, 2013). */
 static const double CRITICAL[3] = {66.25, 56.45, 42.87};
+
+static sf_status compute_bric(const sf_results *r, sf_figures *f, sf_error *err) {
+    const sf_history *h = &r->history;
+    double *own = sf_alloc(err, (unsigned long)(3 * h->rows), sizeof *own, "angular velocity of the missile");
+    f->bric = own ? 0 : NAN;
+    for (int64_t k = 0; k < h->rows && own; k++) {
+        const double q[4] = {h->quaternion_w[k], h->quaternion_x[k], h->quaternion_y[k], h->quaternion_z[k]},
+                     omega[3] = {h->angular_velocity_x[k], h->angular_velocity_y[k],
+                                 h->angular_velocity_z[k]};
+        double turned[3];
+        sf_rotate_back(q, omega, turned);
+        for (int axis = 0; axis < 3; axis++)
+            own[axis * h->rows + k] = turned[axis];
+    }
+    for (int axis = 0; axis < 3 && err->status == SF_OK; axis++) {
+        const double *one = &own[axis * h->rows], *const same[3] = {one, one, one}; /* sqrt(3) of one */
+        double peak = 0, time;
+        find_peak(r, same, true, f, &peak, &time, err);
+        f->bric = hypot(f->bric, peak / sqrt(3) / CRITICAL[axis]);
+    }
+    free(own);
+    return err->status;
+}
 
 static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
@@ -173,14 +196,7 @@ static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *
         return err->status;
     if (find_peak(r, velocity, true, f, &f->peak_angular_velocity, &f->peak_angular_velocity_time, err))
         return err->status;
-    f->bric = 0;
-    for (int axis = 0; axis < 3 && err->status == SF_OK; axis++) {
-        const double *const same[3] = {velocity[axis], velocity[axis], velocity[axis]}; /* sqrt(3) of one */
-        double peak = 0, time;
-        find_peak(r, same, true, f, &peak, &time, err);
-        f->bric = hypot(f->bric, peak / sqrt(3) / CRITICAL[axis]);
-    }
-    return err->status;
+    return compute_bric(r, f, err);
 }
 
 /* Rows around the raw peak, without a gap, above half of it. */
