@@ -166,8 +166,8 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     char where[SF_CASE_WHERE_SIZE];
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: the name of a curve's CSV file is expected",
-                       sf_case_where(reader, setting, where), reader->material_group);
+        return SF_REFUSE(reader, setting, err, "%s: the name of a curve's CSV file is expected",
+                         reader->material_group);
     char *path = sf_case_resolve(reader, setting, text, err);
     if (!path)
         return err->status;
@@ -202,40 +202,36 @@ static const curve_order RATES = {"rate", "0.0017 1/s", "s-1", SF_RATE},
 /* One { rate = "..."; file = "..."; } of material.curves, or with a temperature. */
 static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, const curve_order *order,
                             sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_law_curves *card = sf_material_curves(reader->material);
     const config_setting_t *rate =
         config_setting_is_group(entry) ? config_setting_get_member(entry, order->key) : NULL;
     const config_setting_t *file =
         config_setting_is_group(entry) ? config_setting_get_member(entry, "file") : NULL;
     if (!rate || !file || config_setting_length(entry) != 2)
-        return SF_FAIL(
-            err, SF_ERR_INPUT, "%s: %s.curves: each entry must be { %s = \"%s\"; file = \"name.csv\"; }",
-            sf_case_where(reader, entry, where), reader->material_group, order->key, order->example);
+        return SF_REFUSE(reader, entry, err,
+                         "%s.curves: each entry must be { %s = \"%s\"; file = \"name.csv\"; }",
+                         reader->material_group, order->key, order->example);
     const char *text = config_setting_get_string(rate);
     sf_error inner = SF_ERROR_INIT;
     double value = 0.0;
     if (!text)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: the %s must be a text such as \"%s\"",
-                       sf_case_where(reader, rate, where), reader->material_group, order->key,
-                       order->example);
+        return SF_REFUSE(reader, rate, err, "%s.curves: the %s must be a text such as \"%s\"",
+                         reader->material_group, order->key, order->example);
     if (sf_units_parse(reader->units, text, order->quantity, &value, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %s", sf_case_where(reader, rate, where),
-                       reader->material_group, inner.text);
+        return SF_REFUSE(reader, rate, err, "%s.curves: %s", reader->material_group, inner.text);
     double last = card->curve_count > 0 ? card->curve_rate[card->curve_count - 1] : 0.0;
     if (!(value > last))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %s.curves: the %s %g %s is not above %g %s before it; %ss must be "
-                       "positive and ascend",
-                       sf_case_where(reader, rate, where), reader->material_group, order->key, value,
-                       order->unit, last, order->unit, order->key);
+        return SF_REFUSE(reader, rate, err,
+                         "%s.curves: the %s %g %s is not above %g %s before it; %ss must be "
+                         "positive and ascend",
+                         reader->material_group, order->key, value, order->unit, last, order->unit,
+                         order->key);
     return read_file(reader, file, value, err);
 }
 
 /* A stress that falls with the rate would create energy. */
 static sf_status check_order(const sf_case_reader *reader, const config_setting_t *list, int k,
                              sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_law_curves *card = sf_material_curves(reader->material);
     const config_setting_t *file[2];
     sf_curve_fall fall;
@@ -243,13 +239,13 @@ static sf_status check_order(const sf_case_reader *reader, const config_setting_
         return SF_OK;
     for (int i = 0; i < 2; i++)
         file[i] = config_setting_get_member(config_setting_get_elem(list, (unsigned)(k - 1 + i)), "file");
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "%s: %s.curves: at a strain of %.3g the stress falls with the rate, from %.4g kPa at %g s-1 (%s) "
+    return SF_REFUSE(
+        reader, file[1], err,
+        "%s.curves: at a strain of %.3g the stress falls with the rate, from %.4g kPa at %g s-1 (%s) "
         "to %.4g kPa at %g s-1 (%s): are the rates or the files exchanged? Such a foam would create "
         "energy",
-        sf_case_where(reader, file[1], where), reader->material_group, fall.strain, 1e-3 * fall.slow,
-        card->curve_rate[k - 1], config_setting_get_string(file[0]), 1e-3 * fall.fast, card->curve_rate[k],
+        reader->material_group, fall.strain, 1e-3 * fall.slow, card->curve_rate[k - 1],
+        config_setting_get_string(file[0]), 1e-3 * fall.fast, card->curve_rate[k],
         config_setting_get_string(file[1]));
 }
 
@@ -292,22 +288,20 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
 /* Leaves the curve at the pad's temperature, of those at several, whose temperatures stand in place of rates.
  */
 static sf_status take_temperature(sf_case_reader *reader, const config_setting_t *setting, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     sf_law_curves *card = sf_material_curves(reader->material);
     const double *t = card->curve_rate, at = reader->out->temperature;
     int64_t last = card->curve_count - 1, k = 0;
     sf_case_curve curve = {0};
     if (last < 1 || at == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: curves at temperatures need %s",
-                       sf_case_where(reader, setting, where), reader->material_group,
-                       at == 0 ? "pad.temperature, such as \"23 degC\", in the case" : "two of them or more");
+        return SF_REFUSE(
+            reader, setting, err, "%s.curves: curves at temperatures need %s", reader->material_group,
+            at == 0 ? "pad.temperature, such as \"23 degC\", in the case" : "two of them or more");
     if (at < t[0] || at > t[last])
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: %s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
+        return SF_REFUSE(
+            reader, setting, err,
+            "%s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
             "extrapolation",
-            sf_case_where(reader, setting, where), reader->material_group, at - 273.15, t[0] - 273.15,
-            t[last] - 273.15);
+            reader->material_group, at - 273.15, t[0] - 273.15, t[last] - 273.15);
     while (k < last - 1 && at > t[k + 1])
         k++;
     if (interpolate(card, k, (at - t[k]) / (t[k + 1] - t[k]), &curve, err) == SF_OK) {
@@ -331,23 +325,20 @@ static void describe(const sf_law_curves *card, char *detail, size_t size) {
 
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     if (sf_material_curves(reader->material)->curve_count > 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has both curve and curves; only one of them may be given",
-                       sf_case_where(reader, setting, where), reader->material_group);
+        return SF_REFUSE(reader, setting, err, "%s has both curve and curves; only one of them may be given",
+                         reader->material_group);
     if (strcmp(config_setting_name(setting), "curve") == 0) {
         if (read_file(reader, setting, 0.0, err) != SF_OK)
             return err->status;
     } else {
         if (!config_setting_is_list(setting) || config_setting_length(setting) == 0)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
-                "%s: %s.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
-                sf_case_where(reader, setting, where), reader->material_group);
+            return SF_REFUSE(reader, setting, err,
+                             "%s.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
+                             reader->material_group);
         if (config_setting_length(setting) > MOST_CURVES)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %d curves; at most %d are read",
-                           sf_case_where(reader, setting, where), reader->material_group,
-                           config_setting_length(setting), MOST_CURVES);
+            return SF_REFUSE(reader, setting, err, "%s.curves: %d curves; at most %d are read",
+                             reader->material_group, config_setting_length(setting), MOST_CURVES);
         const config_setting_t *head = config_setting_get_elem(setting, 0);
         bool thermal = config_setting_is_group(head) && config_setting_get_member(head, "temperature");
         const curve_order *order = thermal ? &TEMPERATURES : &RATES;
@@ -424,8 +415,7 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     sf_case *c = reader->out;
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: missile.motion: the name of a CSV file is expected",
-                       sf_case_where(reader, setting, where));
+        return SF_REFUSE(reader, setting, err, "missile.motion: the name of a CSV file is expected");
     char *path = sf_case_resolve(reader, setting, text, err);
     if (!path)
         return err->status;

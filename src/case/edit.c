@@ -12,71 +12,6 @@ static sf_status no_memory(sf_error *err) {
     return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of a case");
 }
 
-/* ---- reading ---- */
-
-typedef struct marked_text {
-    FILE *out;
-    const char *folder; /* from which the includes are named from / on; NULL: they stay as they are */
-    int depth;
-    bool ended; /* the last line has a line end */
-} marked_text;
-
-static sf_status put_line(void *context, const char *text, size_t length, bool ended, sf_error *err) {
-    marked_text *m = context;
-    fprintf(m->out, "%.*s%s", (int)length, text, ended ? "\n" : "");
-    m->ended = ended;
-    if (memchr(text, SF_EDIT_BEGIN, length) || memchr(text, SF_EDIT_END, length))
-        return SF_FAIL(err, SF_ERR_INPUT, "a line of the case holds a control character: %.*s",
-                       length < 80 ? (int)length : 80, text);
-    return SF_OK;
-}
-
-static sf_status put_begin(void *context, const char *text, size_t length, bool ended,
-                           const sf_case_slice *name, sf_error *err) {
-    marked_text *m = context;
-    (void)ended;
-    char *file = strndup(name->text, name->length),
-         *whole = file && m->folder ? sf_path_whole(m->folder, file, err) : NULL;
-    if (!file)
-        no_memory(err);
-    else
-        fprintf(m->out, "#%c%.*s%s%.*s\n", SF_EDIT_BEGIN, (int)(name->text - text), text,
-                whole ? whole : file, (int)(length - (size_t)(name->text - text) - name->length),
-                name->text + name->length);
-    m->depth++;
-    free(file);
-    free(whole);
-    return err->status;
-}
-
-static sf_status put_end(void *context, sf_error *err) {
-    marked_text *m = context;
-    if (m->depth-- > 0)
-        fprintf(m->out, "%s#%c\n", m->ended ? "" : "\n", SF_EDIT_END);
-    m->ended = true;
-    return err->status;
-}
-
-/* `folder`: as in marked_text. */
-static char *read_marked(const char *path, const char *folder, sf_error *err) {
-    char *text = NULL;
-    size_t size = 0;
-    marked_text m = {.out = open_memstream(&text, &size), .folder = folder, .ended = true};
-    const sf_case_visitor visitor = {.context = &m, .line = put_line, .include = put_begin, .end = put_end};
-    if (m.out)
-        sf_case_walk(path, &visitor, err);
-    if (!m.out || fclose(m.out) != 0)
-        no_memory(err);
-    if (err->status == SF_OK)
-        return text;
-    free(text);
-    return NULL;
-}
-
-char *sf_case_edit_read(const char *path, sf_error *err) {
-    return read_marked(path, NULL, err);
-}
-
 /* ---- settings ---- */
 
 /* The characters of names, numbers and words. */
@@ -257,14 +192,12 @@ static sf_status put_value(const char *path, const char *value, char *folder, FI
 
 /* Writes the file of a "group=@file" as a group that includes it. */
 static sf_status put_file(const char *file, FILE *out, sf_error *err) {
-    char *folder = sf_case_folder_of(file, err), *whole = sf_path_whole(NULL, file, err),
-         *text = folder && whole ? read_marked(file, folder, err) : NULL;
+    char *whole = sf_path_whole(NULL, file, err), *text = whole ? sf_case_load_marked(file, true, err) : NULL;
     if (text) {
         size_t size = strlen(text);
-        fprintf(out, "{\n#%c@include \"%s\"\n%s%s#%c\n}", SF_EDIT_BEGIN, whole, text,
-                size > 0 && text[size - 1] != '\n' ? "\n" : "", SF_EDIT_END);
+        fprintf(out, "{\n#%c@include \"%s\"\n%s%s#%c\n}", SF_CASE_BEGIN, whole, text,
+                size > 0 && text[size - 1] != '\n' ? "\n" : "", SF_CASE_END);
     }
-    free(folder);
     free(whole);
     free(text);
     return err->status;
@@ -275,7 +208,7 @@ static sf_status replace(char **text, size_t begin, size_t end, const char *inse
     char *changed = NULL;
     int depth = 0;
     for (size_t k = begin; k < end && depth >= 0; k++)
-        depth += ((*text)[k] == SF_EDIT_BEGIN) - ((*text)[k] == SF_EDIT_END);
+        depth += ((*text)[k] == SF_CASE_BEGIN) - ((*text)[k] == SF_CASE_END);
     if (depth != 0)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "a setting that --set changes begins in one file and ends in another");

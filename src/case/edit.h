@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The text of a case with its includes in place, to be changed and written at another place: its lines stay
  * as they are but for the values of --set texts and the names of files. Only of cases that sf_case_read took
- * with the same texts.
- *
- * Two marks, comments on lines of their own, frame the text of an included file: "#" and SF_EDIT_BEGIN with
- * the line of the include behind them, "#" and SF_EDIT_END. No other line holds these characters. */
+ * with the same texts. sf_case_load_marked reads it. */
 #ifndef SF_CASE_EDIT_H
 #define SF_CASE_EDIT_H
 
@@ -12,13 +9,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
-
-#define SF_EDIT_BEGIN '\001'
-#define SF_EDIT_END '\002'
-#define SF_EDIT_MARKS "\001\002"
-
-/* The text of the case file; from malloc, NULL on failure. */
-char *sf_case_edit_read(const char *path, sf_error *err);
 
 /* Puts a --set text, "group.key=value" or "group=@file", where it belongs; the names of files in it become
  * paths from /. `*text` is from malloc and may move; `path` is that of the case. */

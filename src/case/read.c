@@ -38,7 +38,7 @@ static void add_unknown(unknown *u, const config_setting_t *item, const char *gr
 }
 
 static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE], names[400], near[64], meant[96] = "", more[480] = "";
+    char names[400], near[64], meant[96] = "", more[480] = "";
     const char *name = config_setting_name(u->first);
     sf_case_list_names(&reader->keys, u->group, names, sizeof names);
     const char *hint = sf_case_near_name(&reader->keys, u->group, name, near, sizeof near);
@@ -48,16 +48,15 @@ static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, 
         snprintf(more, sizeof more, "; unknown too: %s and %d more", u->others, u->count - NAMED_UNKNOWN);
     else if (u->count > 1)
         snprintf(more, sizeof more, "; unknown too: %s", u->others);
-    sf_case_where(reader, u->first, where);
     if (strcmp(u->group, "") == 0)
         strncat(names, ", materials", sizeof names - strlen(names) - 1);
     else if (strcmp(u->group, reader->material_group) == 0)
         strncat(names, ", " SF_RESPONSE_ERROR, sizeof names - strlen(names) - 1);
     if (*u->group)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown key \"%.80s\" in group %s%s%s; its keys are %s", where,
-                       name, u->group, meant, more, names);
-    return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown group \"%.80s\"%s%s; the groups are %s", where, name,
-                   meant, more, names);
+        return SF_REFUSE(reader, u->first, err, "unknown key \"%.80s\" in group %s%s%s; its keys are %s",
+                         name, u->group, meant, more, names);
+    return SF_REFUSE(reader, u->first, err, "unknown group \"%.80s\"%s%s; the groups are %s", name, meant,
+                     more, names);
 }
 
 /* Finds everything in `setting` (the group called `group`, "" for the file) that is not in the table. */
@@ -66,7 +65,7 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
     for (int i = 0; i < config_setting_length(setting); i++) {
         const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
         const char *name = config_setting_name(item);
-        char inner[SF_CASE_GROUP_SIZE], where[SF_CASE_WHERE_SIZE];
+        char inner[SF_CASE_GROUP_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
         if (sf_case_find_key(&reader->keys, group, name) || item == reader->layers ||
             sf_case_is_response_error(reader, group, name))
@@ -74,8 +73,7 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
         if (length >= (int)sizeof inner || !sf_case_is_group(&reader->keys, inner))
             add_unknown(u, item, group);
         else if (!config_setting_is_group(item))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s must be a group: %s: { ... }",
-                           sf_case_where(reader, item, where), inner, name);
+            return SF_REFUSE(reader, item, err, "%s must be a group: %s: { ... }", inner, name);
         else
             SF_TRY(find_unknown(reader, item, inner, u, err));
     }
@@ -270,13 +268,12 @@ static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
     const char *name = setting ? config_setting_get_string(setting) : NULL;
     const sf_law *law = setting ? (name ? sf_law_find(name) : NULL) : sf_law_get(0);
     if (!law) {
-        char where[SF_CASE_WHERE_SIZE], known[256] = "";
+        char known[256] = "";
         size_t used = 0;
         for (int k = 0; sf_law_get(k) && used < sizeof known; k++)
             used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", k ? ", " : "",
                                      sf_law_get(k)->name);
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: \"%.80s\" is none of: %s",
-                       sf_case_where(reader, setting, where), path, name ? name : "", known);
+        return SF_REFUSE(reader, setting, err, "%s: \"%.80s\" is none of: %s", path, name ? name : "", known);
     }
     if (reader->material_only && strcmp(reader->material_group, "material") != 0)
         sf_case_list_layer_keys(law, reader->material_group, &reader->keys);
@@ -304,7 +301,6 @@ static sf_status read_layer(const sf_case_reader *reader, const config_setting_t
 }
 
 static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     sf_case *c = reader->out;
     int count = config_setting_length(reader->layers);
     c->layer = sf_alloc(err, (unsigned long)count, sizeof *c->layer, "materials");
@@ -312,14 +308,14 @@ static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
         const config_setting_t *setting = config_setting_get_elem(reader->layers, (unsigned)k);
         const char *name = config_setting_name(setting);
         if (!config_setting_is_group(setting))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: materials.%.80s must be a group, the material of the volume of this name: "
-                           "materials = { NAME = { density = ...; }; }",
-                           sf_case_where(reader, setting, where), name);
+            return SF_REFUSE(reader, setting, err,
+                             "materials.%.80s must be a group, the material of the volume of this name: "
+                             "materials = { NAME = { density = ...; }; }",
+                             name);
         if (strlen(name) >= SF_MATERIAL_NAME_SIZE)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: materials: the name \"%.80s\" is longer than %d characters",
-                           sf_case_where(reader, setting, where), name, SF_MATERIAL_NAME_SIZE - 1);
+            return SF_REFUSE(reader, setting, err,
+                             "materials: the name \"%.80s\" is longer than %d characters", name,
+                             SF_MATERIAL_NAME_SIZE - 1);
         c->layer_count++;
         read_layer(reader, setting, &c->layer[k], err);
     }
@@ -328,27 +324,22 @@ static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
 
 /* The group `materials`, if there is one; `parted`: the case file has it, and no group `material`. */
 static sf_status find_layers(sf_case_reader *reader, bool parted, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const config_setting_t *found = config_lookup(&reader->config, "materials");
     int count = found && config_setting_is_group(found) ? config_setting_length(found) : 0;
     reader->layers = found;
-    if (found && parted && config_lookup(&reader->config, "material"))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: the pad is of layers, each with a material of its own: there is no place for one "
-                       "material from outside the case file; a layer takes it as materials.NAME (--set "
-                       "materials.NAME=@FILE)",
-                       sf_case_where(reader, found, where));
     if (found && config_lookup(&reader->config, "material"))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: the case has both material and materials: the first is for a pad of one material, "
-            "the second for one of layers",
-            sf_case_where(reader, found, where));
+        return SF_REFUSE(
+            reader, found, err, "%s",
+            parted ? "the pad is of layers, each with a material of its own: there is no place for one "
+                     "material from outside the case file; a layer takes it as materials.NAME (--set "
+                     "materials.NAME=@FILE)"
+                   : "the case has both material and materials: the first is for a pad of one material, "
+                     "the second for one of layers");
     if (found && (count < 1 || count > SF_CASE_MAX_LAYERS))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: materials must be a group with the materials of 1 to %d layers by the names of "
-                       "their volumes: materials = { NAME = { density = ...; }; }",
-                       sf_case_where(reader, found, where), SF_CASE_MAX_LAYERS);
+        return SF_REFUSE(reader, found, err,
+                         "materials must be a group with the materials of 1 to %d layers by the names of "
+                         "their volumes: materials = { NAME = { density = ...; }; }",
+                         SF_CASE_MAX_LAYERS);
     return SF_OK;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/reader.h"
 
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,7 +46,7 @@ bool sf_case_is_given(const sf_case_reader *reader, const char *group, const cha
     return reader->given[sf_case_find_key(&reader->keys, path, name) - reader->keys.key];
 }
 
-const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out) {
+const config_setting_t *sf_case_setting(const sf_case_reader *reader, const char *path) {
     char text[SF_CASE_GROUP_SIZE];
     sf_case_material_path(reader->material_group, path, text, sizeof text);
     const config_setting_t *setting = config_lookup(&reader->config, text);
@@ -53,18 +54,25 @@ const char *sf_case_where_is(const sf_case_reader *reader, const char *path, cha
         *dot = '\0';
         setting = config_lookup(&reader->config, text);
     }
-    return sf_case_where(reader, setting, out);
+    return setting;
+}
+
+sf_status sf_case_refuse(const sf_case_reader *reader, const config_setting_t *setting, sf_error *err,
+                         const char *file, int line, const char *format, ...) {
+    char where[SF_CASE_WHERE_SIZE], sentence[sizeof err->text];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    return sf_error_set(err, SF_ERR_INPUT, file, line, "%s: %s", sf_case_where(reader, setting, where),
+                        sentence);
 }
 
 sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const config_setting_t *group = config_lookup(&reader->config, key->group);
-    sf_case_where(reader, group, where);
-    const char *absent = group ? "" : " (there is no such group)";
-    if (key->kind == SF_KEY_QUANTITY)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is missing%s: %s, for example %s = \"%s\"", where,
-                       key->group, key->name, absent, key->description, key->name,
-                       sf_quantity_example(key->quantity));
-    return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is missing%s: %s", where, key->group, key->name, absent,
-                   key->description);
+    bool quantity = key->kind == SF_KEY_QUANTITY;
+    return SF_REFUSE(reader, group, err, "%s.%s is missing%s: %s%s%s%s%s%s", key->group, key->name,
+                     group ? "" : " (there is no such group)", key->description,
+                     quantity ? ", for example " : "", quantity ? key->name : "", quantity ? " = \"" : "",
+                     quantity ? sf_quantity_example(key->quantity) : "", quantity ? "\"" : "");
 }

@@ -41,8 +41,15 @@ typedef struct sf_case_origin {
 
 /* "file:line", or "--set key=value" for a setting that came from the command line. */
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out);
-/* Location of a key "group.name", or of its group, or of the file: whatever is there. */
-const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
+/* The setting "group.name", of the reader's material if it is one of "material"; else its group; NULL:
+ * neither is there. */
+const config_setting_t *sf_case_setting(const sf_case_reader *reader, const char *path);
+/* Records "where: sentence", SF_ERR_INPUT, for a setting; NULL: the file. */
+#define SF_REFUSE(reader, setting, err, ...)                                                                 \
+    sf_case_refuse(reader, setting, err, __FILE__, __LINE__, __VA_ARGS__)
+sf_status sf_case_refuse(const sf_case_reader *reader, const config_setting_t *setting, sf_error *err,
+                         const char *file, int line, const char *format, ...)
+    __attribute__((format(printf, 6, 7)));
 /* Resolves `path` against the folder of the file in which `setting` stands; from malloc. */
 char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
                       sf_error *err);

@@ -221,8 +221,8 @@ static void write_part(const part *p, const char *at, sf_error *err);
 
 /* Returns the place behind the mark that ends the included file at `at`, or the end of the text. */
 static const char *pass_part(const char *at) {
-    for (int depth = 1; depth > 0 && (at = strpbrk(at, SF_EDIT_MARKS)); at++)
-        depth += *at == SF_EDIT_BEGIN ? 1 : -1;
+    for (int depth = 1; depth > 0 && (at = strpbrk(at, SF_CASE_MARKS)); at++)
+        depth += *at == SF_CASE_BEGIN ? 1 : -1;
     return at;
 }
 
@@ -254,10 +254,10 @@ static void write_part(const part *p, const char *at, sf_error *err) {
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     for (bool open = out; open && err->status == SF_OK;) {
-        const char *mark = strpbrk(at, SF_EDIT_MARKS), *end = mark ? mark - 1 : at + strlen(at);
+        const char *mark = strpbrk(at, SF_CASE_MARKS), *end = mark ? mark - 1 : at + strlen(at);
         sf_case_edit_write(p->f->text, (size_t)(at - p->f->text), (size_t)(end - p->f->text), &p->f->named,
                            place_file, (void *)p, out, err);
-        open = mark && *mark == SF_EDIT_BEGIN && err->status == SF_OK;
+        open = mark && *mark == SF_CASE_BEGIN && err->status == SF_OK;
         at = open ? write_include(p, mark + 1, out, err) : end;
     }
     if (!out || fclose(out) != 0)
@@ -318,7 +318,7 @@ static sf_status write_files(folder *f, sf_error *err) {
     char *path = sf_path_whole(NULL, q->case_path, err);
     part whole = {f, path, CASE_NAME};
     f->case_folder = path ? sf_case_folder_of(path, err) : NULL;
-    f->text = f->case_folder ? sf_case_edit_read(q->case_path, err) : NULL;
+    f->text = f->case_folder ? sf_case_load_marked(q->case_path, false, err) : NULL;
     for (int k = 0; k < q->override_count && err->status == SF_OK; k++)
         sf_case_edit_set(&f->text, q->case_path, q->overrides[k], err);
     if (err->status == SF_OK && sf_case_edit_find(f->text, true, &f->named, err) == SF_OK &&
