@@ -3,11 +3,8 @@
  */
 #include "case/case.h"
 
-#include "case/rules.h"
-#include "case/override.h"
 #include "case/values.h"
 #include "case/reader.h"
-#include "case/value.h"
 
 #include "base/hash.h"
 #include "base/mat3.h"

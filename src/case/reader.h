@@ -58,4 +58,36 @@ bool sf_case_is_given(const sf_case_reader *reader, const char *group, const cha
 /* Records that the key is missing. */
 sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
 
+/* The rules that join several keys of a case, or a key with the law of the material. Each refusal is
+ * SF_ERR_INPUT with place, key, value and bound. Internal to src/case. */
+
+/* The card of the reader's material, and the law as the solver will build it. */
+sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err);
+/* The values as they are given. */
+sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err);
+/* The complete case; warnings go to the reader's sink. */
+sf_status sf_case_check_complete(const sf_case_reader *reader, sf_error *err);
+
+/* One setting of each kind of key. Internal to src/case. */
+
+/* Reads one setting into the case. `detail` receives the SI value for the listing. */
+sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
+                             char *detail, size_t size, sf_error *err);
+
+/* The group response_error of a material, which belongs to no law: softfall-fit drop writes it into the draws
+ * of a posterior, softfall-cfh uses it, the other programs check it and leave it. Internal to src/case. */
+
+#define SF_RESPONSE_ERROR "response_error"
+
+/* True if this is the group `response_error` in the group of the reader's material. */
+bool sf_case_is_response_error(const sf_case_reader *reader, const char *group, const char *name);
+
+/* Reads it into the case, if the material has it. SF_ERR_INPUT: no group, an unknown key, a value that is no
+ * number or out of bounds, an error without its standard deviation. Of a layer it is checked only. */
+sf_status sf_case_read_response_error(sf_case_reader *reader, sf_error *err);
+
+/* Values from the command line. Internal to src/case. */
+
+/* Puts one --set text into the configuration, whose destructor must be free(). */
+sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
 #endif

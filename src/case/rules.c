@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/rules.h"
+#include "case/reader.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/value.h"
+#include "case/reader.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -54,18 +54,18 @@ static void take_mesh(sf_mesh *mesh, sf_model *m, sf_build_report *report) {
 }
 
 /* The worst of all layers. */
-static void report_domains(const sf_domains *d, sf_build_report *report) {
-    report->enlarged_count += d->enlarged_count;
-    report->largest_enlargement = fmax(report->largest_enlargement, d->largest_enlargement);
-    if (d->worst_condition > report->worst_condition) {
-        report->worst_condition = d->worst_condition;
-        memcpy(report->worst_position, d->worst_position, sizeof d->worst_position);
+static void report_domains(const sf_domain_figures *d, sf_domain_figures *worst) {
+    worst->enlarged_count += d->enlarged_count;
+    worst->largest_enlargement = fmax(worst->largest_enlargement, d->largest_enlargement);
+    if (d->worst_condition > worst->worst_condition) {
+        worst->worst_condition = d->worst_condition;
+        memcpy(worst->worst_position, d->worst_position, sizeof d->worst_position);
     }
-    if (d->hidden_count > 0 && (report->hidden_count == 0 || d->hidden_distance < report->hidden_distance)) {
-        report->hidden_distance = d->hidden_distance;
-        memcpy(report->hidden_position, d->hidden_position, sizeof d->hidden_position);
+    if (d->hidden_count > 0 && (worst->hidden_count == 0 || d->hidden_distance < worst->hidden_distance)) {
+        worst->hidden_distance = d->hidden_distance;
+        memcpy(worst->hidden_position, d->hidden_position, sizeof d->hidden_position);
     }
-    report->hidden_count += d->hidden_count;
+    worst->hidden_count += d->hidden_count;
 }
 
 /* Puts a layer's array of `count` items behind the `used` items in *array, and releases it: the first one is
@@ -161,8 +161,9 @@ static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dua
         for (int64_t i = 0; i < n; i++)
             m->mass[first + i] = sf_material_density(material) * domains.volume[i];
         report_invariants(&invariants, &report->invariants);
-        domains.hidden_count = c->layer_count > 1 ? 0 : domains.hidden_count; /* report_gaps */
-        report_domains(&domains, report);
+        domains.figures.hidden_count =
+            c->layer_count > 1 ? 0 : domains.figures.hidden_count; /* report_gaps */
+        report_domains(&domains.figures, &report->domains);
         take_domains(&domains, dual, first, n, m, err);
     }
     sf_domains_free(&domains);
@@ -178,9 +179,9 @@ static sf_status report_gaps(const sf_mesh *mesh, const sf_dual *dual, const sf_
     for (int64_t i = 0; support && i < layers->first[layers->count]; i++)
         support[layers->origin[i]] = fmax(support[layers->origin[i]], m->support[i]);
     if (support && sf_domains_find_gaps(mesh, dual, support, &gaps, err) == SF_OK)
-        report_domains(&gaps, report);
+        report_domains(&gaps.figures, &report->domains);
     free(support);
-    m->slit_fraction = (double)report->hidden_count / (double)mesh->node_count;
+    m->slit_fraction = (double)report->domains.hidden_count / (double)mesh->node_count;
     return err->status;
 }
 
@@ -244,7 +245,7 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
                            report, err) != SF_OK) {
         goto done;
     } else {
-        m->slit_fraction = (double)report->hidden_count / (double)mesh->node_count;
+        m->slit_fraction = (double)report->domains.hidden_count / (double)mesh->node_count;
     }
     take_mesh(mesh, m, report);
     sf_membrane_weigh(m);
@@ -388,10 +389,7 @@ done:
 
 /* Height (m) of the missile's lowest point above the pad's highest. */
 static double find_clearance(const sf_model *m) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_missile_surface(m);
     double lowest[3];
     sf_impact_lowest(&missile, &m->missile, lowest);
     return lowest[2] - sf_impact_top(m);
@@ -644,13 +642,13 @@ static sf_status find_skin(const sf_case *c, sf_model *m, sf_build_report *repor
 
 /* Faces of a pad without contact with itself pass through each other. */
 static void tell_slits(const sf_model *m, const sf_build_report *r, const sf_sink *sink) {
-    if (r->hidden_count > 0 && (m->skin_count == 0 || m->skin_alone))
+    if (r->domains.hidden_count > 0 && (m->skin_count == 0 || m->skin_alone))
         sf_sink_tell(
             sink, SF_WARNING,
             "the pad has a slit, hole or gap narrower than the supports: nodes %.3g mm apart at (%.4g, %.4g, "
             "%.4g) mm do not act on each other; its faces pass through each other where they meet",
-            1e3 * r->hidden_distance, 1e3 * r->hidden_position[0], 1e3 * r->hidden_position[1],
-            1e3 * r->hidden_position[2]);
+            1e3 * r->domains.hidden_distance, 1e3 * r->domains.hidden_position[0],
+            1e3 * r->domains.hidden_position[1], 1e3 * r->domains.hidden_position[2]);
     if (!isnan(r->unheld[0]))
         sf_sink_tell(
             sink, SF_WARNING,

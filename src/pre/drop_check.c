@@ -66,10 +66,7 @@ static double mean_spacing(const sf_model *m, const double centre[2], double rad
 /* The zone when the missile stands `part` of the thickness deep, by fine x fine points for each contact node.
  */
 static void measure_at(const sf_model *m, double part, int fine, sf_contact_zone *zone) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_missile_surface(m);
     double centre[2], wide, deepest = m->missile.gap - part * m->thickness / m->missile.direction[2];
     const bool plane[2] = {sf_symmetry_plane(m, 0, &centre[0]), sf_symmetry_plane(m, 1, &centre[1])};
     zone_sums sums = {0};
@@ -143,10 +140,7 @@ static const double TOUCHING = 1e-3; /* of the thickness */
 /* The missile is placed at its gap from the contact group; no other part of the pad may be nearer. Only nodes
  * above the missile's leading point can be. */
 static sf_status check_outside(const sf_case *c, const sf_model *m, sf_error *err) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_missile_surface(m);
     const double *d = m->missile.direction, slack = TOUCHING * m->thickness;
     double lead = -INFINITY;
     for (int64_t k = 0; k < m->surface_node_count; k++)
@@ -193,9 +187,7 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
     double rate = sqrt(sf_dot3(card.angular_velocity, card.angular_velocity)), flight = sf_flight_time(&card);
     if (!sf_missile_turns(m) || !(rate * flight > 0))
         return SF_OK;
-    sf_surface surface = {.node_count = m->surface_node_count,
-                          .triangle_count = m->surface_triangle_count,
-                          .triangle = m->surface_triangle};
+    sf_surface surface = sf_missile_surface(m);
     surface.position =
         sf_alloc(err, 3 * (unsigned long)surface.node_count, sizeof *surface.position, "missile's flight");
     card.shape = SF_SHAPE_SURFACE;
@@ -433,10 +425,7 @@ static bool is_rim(const sf_model *m, const edge *list, int64_t t, int k) {
 
 /* Can the pad meet the edge before any other part of the missile? */
 static bool leads(const sf_model *m, const double middle[3]) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_missile_surface(m);
     double ahead = 2 * m->thickness + m->missile.gap, x[3], low[3], high[3];
     for (int i = 0; i < 3; i++) {
         low[i] = INFINITY;

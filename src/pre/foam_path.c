@@ -144,10 +144,7 @@ static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8
 
 /* Sets the travel of each face that the missile may touch; returns the first touched, or -1. */
 static int64_t find_touched(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_missile_surface(m);
     int64_t first = -1;
     for (int64_t i = 0; i < pad->count; i++) {
         triangle *t = &pad->list[i];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/impact.h"
+#include "pre/mesh/missile_shape.h"
 
 #include "model/model.h"
 #include <math.h>
@@ -165,10 +166,7 @@ sf_status sf_impact_place(const sf_case *c, const sf_model *m, sf_surface *surfa
 }
 
 void sf_impact_point(const sf_model *m, double point[3]) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_missile_surface(m);
     double place;
     sf_impact_lowest(&missile, &m->missile, point);
     follow(&m->missile, sf_impact_top(m), point);

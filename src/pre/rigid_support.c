@@ -276,10 +276,7 @@ sf_status sf_support_take(const sf_case *c, sf_surface *surface, sf_model *m, sf
 
 /* Compares vertices with triangles, both ways; the missile does not turn. */
 sf_status sf_support_find_travel(sf_model *m, sf_error *err) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_missile_surface(m);
     double travel = INFINITY;
     for (int64_t k = 0; k < m->support_node_count; k++)
         travel = fmin(travel, sf_missile_travel(&missile, &m->missile, &m->support_position[3 * k]));

@@ -521,3 +521,10 @@ sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *
                        card->direction[0], card->direction[1], card->direction[2]);
     return SF_OK;
 }
+
+sf_surface sf_missile_surface(const sf_model *m) {
+    return (sf_surface){.node_count = m->surface_node_count,
+                        .position = m->surface_position,
+                        .triangle_count = m->surface_triangle_count,
+                        .triangle = m->surface_triangle};
+}
