@@ -143,7 +143,7 @@ sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const s
         if (s->begin < begin || s->begin >= end)
             continue;
         if (s->end > end)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s begins in one file and ends in another", s->path);
+            return SF_REFUSE(err, "%s begins in one file and ends in another", s->path);
         char *name = text_of(text + s->begin, s->end - s->begin, &one),
              *renamed = name ? rename(context, s->path, name, err) : NULL;
         fprintf(out, "%.*s", (int)(s->begin - begin), text + begin);
@@ -210,8 +210,7 @@ static sf_status replace(char **text, size_t begin, size_t end, const char *inse
     for (size_t k = begin; k < end && depth >= 0; k++)
         depth += ((*text)[k] == SF_CASE_BEGIN) - ((*text)[k] == SF_CASE_END);
     if (depth != 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "a setting that --set changes begins in one file and ends in another");
+        return SF_REFUSE(err, "a setting that --set changes begins in one file and ends in another");
     if (asprintf(&changed, "%.*s%s%s", (int)begin, *text, insert, *text + end) < 0)
         return no_memory(err);
     free(*text);

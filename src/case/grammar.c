@@ -330,8 +330,7 @@ static sf_status walk_include(walk *w, slice text, slice name, const char *path,
     const char *shown = name.text;
     int length = (int)name.length;
     if (++w->includes > MOST_INCLUDES)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: more than %d files are included", path, line,
-                       MOST_INCLUDES);
+        return SF_REFUSE(err, "%s:%d: more than %d files are included", path, line, MOST_INCLUDES);
     if (asprintf(&included, "%s%s%.*s", *name.text == '/' ? "" : w->folder, *name.text == '/' ? "" : "/",
                  length, name.text) < 0)
         return no_memory(path, err);
@@ -368,7 +367,7 @@ static sf_status walk_lines(walk *w, const char *text, size_t size, const char *
             SF_TRY(walk_include(w, (slice){text, length}, include, path, line, depth, err));
         } else {
             if (w->marked && (memchr(text, SF_CASE_BEGIN, length) || memchr(text, SF_CASE_END, length)))
-                return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: a control character", path, line);
+                return SF_REFUSE(err, "%s:%d: a control character", path, line);
             fwrite(text, 1, length, w->out);
             fputs(end || depth > 0 || !w->marked ? "\n" : "", w->out);
             w->lines++;
@@ -389,14 +388,13 @@ static sf_status walk_file(walk *w, const char *path, const char *from, int line
     if (from)
         snprintf(where, sizeof where, "%s:%d: ", from, line);
     if (depth > INCLUDE_DEPTH)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s@include is nested more than %d deep", where, INCLUDE_DEPTH);
+        return SF_REFUSE(err, "%s@include is nested more than %d deep", where, INCLUDE_DEPTH);
     if (sf_plain_read(path, "file", LARGEST_TEXT, &text, &size, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "%s%s", where, inner.text);
     size_t mark = strncmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark */
     w->bytes += size;
     if (w->bytes > LARGEST_TEXT)
-        SF_FAIL(err, SF_ERR_INPUT, "%sthe file %s and its includes are larger than %d bytes", where, path,
-                LARGEST_TEXT);
+        SF_REFUSE(err, "%sthe file %s and its includes are larger than %d bytes", where, path, LARGEST_TEXT);
     else if (begin_piece(w, path, 1, err) == SF_OK)
         walk_lines(w, text + mark, size - mark, path, depth, err);
     free(text);

@@ -72,10 +72,10 @@ sf_status sf_case_refuse(const sf_case_reader *reader, const config_setting_t *s
 sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err) {
     const config_setting_t *group = config_lookup(&reader->config, key->group);
     bool quantity = key->kind == SF_KEY_QUANTITY;
-    return SF_REFUSE(reader, group, err, "%s.%s is missing%s: %s%s%s%s%s%s", key->group, key->name,
-                     group ? "" : " (there is no such group)", key->description,
-                     quantity ? ", for example " : "", quantity ? key->name : "", quantity ? " = \"" : "",
-                     quantity ? sf_quantity_example(key->quantity) : "", quantity ? "\"" : "");
+    return SF_REFUSE_AT(reader, group, err, "%s.%s is missing%s: %s%s%s%s%s%s", key->group, key->name,
+                        group ? "" : " (there is no such group)", key->description,
+                        quantity ? ", for example " : "", quantity ? key->name : "", quantity ? " = \"" : "",
+                        quantity ? sf_quantity_example(key->quantity) : "", quantity ? "\"" : "");
 }
 
 /* ---- overrides ---- */
@@ -160,7 +160,7 @@ static sf_status put_value(config_setting_t *parent, const char *name, const cha
     }
     config_destroy(&scratch);
     if (!done)
-        SF_FAIL(err, SF_ERR_INPUT, "--set %s: \"%s\" is not a valid key", text, name);
+        SF_REFUSE(err, "--set %s: \"%s\" is not a valid key", text, name);
     return err->status;
 }
 
@@ -190,8 +190,8 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
         if (!config_read_string(&scratch, whole)) {
             int line = 0;
             const char *file = sf_case_source_find(&lines, config_error_line(&scratch), &line);
-            SF_FAIL(err, SF_ERR_INPUT, "--set %s: %s:%d: %s", text, file, line,
-                    sf_case_syntax_phrase(config_error_text(&scratch)));
+            SF_REFUSE(err, "--set %s: %s:%d: %s", text, file, line,
+                      sf_case_syntax_phrase(config_error_text(&scratch)));
         } else {
             if (parent)
                 config_setting_remove(parent, member);
@@ -202,7 +202,7 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
                 done = copy_setting(item, group, config_setting_name(item), &source);
             }
             if (!done)
-                SF_FAIL(err, SF_ERR_INPUT, "--set %s: \"%s\" is not a valid group", text, name);
+                SF_REFUSE(err, "--set %s: \"%s\" is not a valid group", text, name);
         }
     }
     config_destroy(&scratch);
@@ -220,14 +220,14 @@ sf_status sf_case_override(config_t *config, const char *text, sf_error *err) {
         return replace_group(config, name, sf_case_override_file(text), text, err);
     }
     if (!equals || !first_dot || first_dot > equals)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "--set %s: expected group.key=value, for example --set missile.velocity=\"5.2 m/s\", "
-                       "or group=@file",
-                       text);
+        return SF_REFUSE(
+            err,
+            "--set %s: expected group.key=value, for example --set missile.velocity=\"5.2 m/s\", "
+            "or group=@file",
+            text);
     char path[256];
     if ((size_t)(equals - text) >= sizeof path)
-        return SF_FAIL(err, SF_ERR_INPUT, "--set %.40s...: the key is longer than %zu characters", text,
-                       sizeof path - 1);
+        return SF_REFUSE(err, "--set %.40s...: the key is longer than %zu characters", text, sizeof path - 1);
     memcpy(path, text, (size_t)(equals - text));
     path[equals - text] = '\0';
     for (char *end = path + strlen(path); end > path && (end[-1] == ' ' || end[-1] == '\t');)
@@ -240,7 +240,7 @@ sf_status sf_case_override(config_t *config, const char *text, sf_error *err) {
         *dot = '\0';
         parent = enter_group(parent, name, text);
         if (!parent)
-            return SF_FAIL(err, SF_ERR_INPUT, "--set %s: \"%s\" is not a group", text, name);
+            return SF_REFUSE(err, "--set %s: \"%s\" is not a group", text, name);
     }
     config_setting_remove(parent, name);
     return put_value(parent, name, value, text, err);

@@ -18,15 +18,16 @@ typedef struct sf_case_reader {
     sf_units *units;
     sf_case *out;
     config_t config;
-    sf_case_source source;                   /* of the settings without a hook */
-    sf_key_list keys;                        /* of the case's law */
-    const config_setting_t *layers;          /* the group `materials`; NULL: one material */
-    sf_material *material;                   /* under construction */
-    char material_group[SF_KEY_GROUP_SIZE];  /* "material", or "materials.NAME" */
-    bool given[SF_KEY_MAX];                  /* per row of `keys` */
-    bool material_only;                      /* read the keys of the material, and no others */
-    const sf_sink *sink;                     /* borrowed */
-    FILE *listing;                           /* the parameters text under construction */
+    sf_case_source source;                  /* of the settings without a hook */
+    sf_key_list keys;                       /* of the case's law */
+    const config_setting_t *layers;         /* the group `materials`; NULL: one material */
+    sf_material *material;                  /* under construction */
+    char material_group[SF_KEY_GROUP_SIZE]; /* "material", or "materials.NAME" */
+    bool given[SF_KEY_MAX];                 /* per row of `keys` */
+    bool material_only;                     /* read the keys of the material, and no others */
+    const sf_sink *sink;                    /* borrowed */
+    FILE *listing;                          /* the parameters text under construction */
+    size_t listing_size;
     const struct sf_case_listener *listener; /* of each value; NULL: nobody; borrowed */
 } sf_case_reader;
 
@@ -45,7 +46,7 @@ const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *
  * neither is there. */
 const config_setting_t *sf_case_setting(const sf_case_reader *reader, const char *path);
 /* Records "where: sentence", SF_ERR_INPUT, for a setting; NULL: the file. */
-#define SF_REFUSE(reader, setting, err, ...)                                                                 \
+#define SF_REFUSE_AT(reader, setting, err, ...)                                                              \
     sf_case_refuse(reader, setting, err, __FILE__, __LINE__, __VA_ARGS__)
 sf_status sf_case_refuse(const sf_case_reader *reader, const config_setting_t *setting, sf_error *err,
                          const char *file, int line, const char *format, ...)

@@ -11,7 +11,7 @@
 #include "model/model.h"
 
 #define AT(path) sf_case_setting(reader, path)
-#define REFUSE_AT(path, ...) SF_REFUSE(reader, AT(path), err, __VA_ARGS__)
+#define REFUSE_AT(path, ...) SF_REFUSE_AT(reader, AT(path), err, __VA_ARGS__)
 #define REFUSE(path, ...) REFUSE_AT(path, path ": " __VA_ARGS__)
 
 /* Refuses the first of these keys, "one|two", that the case gives; `why`: behind its name. */
@@ -334,8 +334,7 @@ sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
     reader->out->stabilised = sf_case_is_given(reader, "kernel", "stabilisation");
     if (!reader->layers && sf_case_check_card(reader, err) != SF_OK)
         return err->status;
-    if (check_layers(reader, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_layers(reader, err));
     if (!c->missile.path && c->missile.parameter_count > 0)
         return REFUSE_AT(
             "geometry.missile_parameters",

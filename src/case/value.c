@@ -385,14 +385,14 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
 #define KEYS(name, key, error_key, ...) ", " error_key ", " SF_DROP_SD(error_key)
     static const char keys[] = SF_DROP_KINDS(KEYS);
     if (!config_setting_is_group(group))
-        return SF_REFUSE(reader, group, err,
-                         "%s must be a group: " SF_RESPONSE_ERROR " = { %s = 0.01; %s = 0.02; }", path,
-                         sf_drop_kind_get(SF_FIT_HIC)->error_key, sf_drop_kind_get(SF_FIT_HIC)->sd_key);
+        return SF_REFUSE_AT(reader, group, err,
+                            "%s must be a group: " SF_RESPONSE_ERROR " = { %s = 0.01; %s = 0.02; }", path,
+                            sf_drop_kind_get(SF_FIT_HIC)->error_key, sf_drop_kind_get(SF_FIT_HIC)->sd_key);
     for (int k = 0; k < config_setting_length(group); k++) {
         const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
         if (find_kind(config_setting_name(item)) < 0)
-            return SF_REFUSE(reader, item, err, "unknown key \"%.80s\" in group %s; its keys are %s",
-                             config_setting_name(item), path, keys + 2);
+            return SF_REFUSE_AT(reader, item, err, "unknown key \"%.80s\" in group %s; its keys are %s",
+                                config_setting_name(item), path, keys + 2);
     }
     return SF_OK;
 }
@@ -418,9 +418,9 @@ static sf_status read_kind(sf_case_reader *reader, const config_setting_t *group
     if (!shared && !own)
         return SF_OK;
     if (!shared || !own)
-        return SF_REFUSE(reader, shared ? shared : own, err, "%s.%s is given without %s", path,
-                         shared ? about->error_key : about->sd_key,
-                         shared ? about->sd_key : about->error_key);
+        return SF_REFUSE_AT(reader, shared ? shared : own, err, "%s.%s is given without %s", path,
+                            shared ? about->error_key : about->sd_key,
+                            shared ? about->sd_key : about->error_key);
     reader->out->response_error.given[kind] = true;
     if (read_deviation(reader, shared, path, -LARGEST, SHARED + (size_t)kind * sizeof(double), err) == SF_OK)
         read_deviation(reader, own, path, 0, OWN + (size_t)kind * sizeof(double), err);

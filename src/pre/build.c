@@ -33,12 +33,9 @@ static void take_mesh(sf_mesh *mesh, sf_model *m, sf_build_report *report) {
     for (int64_t k = 0; k < mesh->cell_count; k++)
         report->cells[mesh->cell_type[k]]++;
     report->orphan_count = mesh->orphan_count;
-    double low = INFINITY, high = -INFINITY;
-    for (int64_t i = 0; i < mesh->node_count; i++) {
-        low = fmin(low, mesh->position[3 * i + 2]);
-        high = fmax(high, mesh->position[3 * i + 2]);
-    }
-    m->thickness = high - low;
+    double low[3], high[3];
+    sf_box3(mesh->node_count, mesh->position, low, high);
+    m->thickness = high[2] - low[2];
     m->node_count = mesh->node_count;
     m->cell_count = mesh->cell_count;
     m->cell_nnz = mesh->cell_ptr[mesh->cell_count];
@@ -116,11 +113,10 @@ static sf_status check_facing(const sf_case *c, const sf_mesh *mesh, const sf_du
                               const sf_node_set *contact, sf_error *err) {
     static const double LEAST = 1e-3; /* of the area */
     sf_surface_sides sides;
-    if (sf_surface_find_sides(mesh, dual, contact, c->missile_card.direction, &sides, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_surface_find_sides(mesh, dual, contact, c->missile_card.direction, &sides, err));
     if (!(sides.facing > LEAST * sides.area))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "pad.contact: the surface group \"%s\" does not face the missile, which moves along (%g, "
             "%g, %g): are pad.contact and pad.fixed exchanged, or is the pad upside down?",
             contact->name, c->missile_card.direction[0], c->missile_card.direction[1],
@@ -266,16 +262,15 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
             return err->status;
         int axis = sf_group_plane_axis(m, set);
         if (axis != 0 && axis != 1)
-            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is not a plane normal to x or y",
-                           set->name);
+            return SF_REFUSE(err, "the symmetry group \"%s\" is not a plane normal to x or y", set->name);
         if (fabs(c->missile_card.direction[axis]) > 1e-12)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "missile.direction has the component %g normal to the symmetry plane \"%s\": an "
-                           "oblique impact needs a model without that plane",
-                           c->missile_card.direction[axis], set->name);
+            return SF_REFUSE(err,
+                             "missile.direction has the component %g normal to the symmetry plane \"%s\": an "
+                             "oblique impact needs a model without that plane",
+                             c->missile_card.direction[axis], set->name);
         if (seen & (1 << axis))
-            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is a second plane normal to %c",
-                           set->name, 'x' + axis);
+            return SF_REFUSE(err, "the symmetry group \"%s\" is a second plane normal to %c", set->name,
+                             'x' + axis);
         seen |= 1 << axis;
         m->symmetry_factor *= 2;
         for (int64_t k = 0; k < set->count; k++)
@@ -389,7 +384,7 @@ done:
 
 /* Height (m) of the missile's lowest point above the pad's highest. */
 static double find_clearance(const sf_model *m) {
-    const sf_surface missile = sf_missile_surface(m);
+    const sf_surface missile = sf_surface_of_missile(m);
     double lowest[3];
     sf_impact_lowest(&missile, &m->missile, lowest);
     return lowest[2] - sf_impact_top(m);
@@ -399,10 +394,11 @@ static double find_clearance(const sf_model *m) {
 static sf_status check_freedom(const sf_case *c, const sf_model *m, sf_error *err) {
     if (c->freedom == SF_MISSILE_GUIDED || m->symmetry_factor == 1)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "missile.freedom: a free missile needs the whole pad and the whole missile; this model is "
-                   "1/%lld of them",
-                   (long long)m->symmetry_factor);
+    return SF_REFUSE(
+        err,
+        "missile.freedom: a free missile needs the whole pad and the whole missile; this model is "
+        "1/%lld of them",
+        (long long)m->symmetry_factor);
 }
 
 static double across(const double direction[3], const double a[3], const double b[3]) {
@@ -502,14 +498,13 @@ static sf_status check_depth(const sf_model *m, sf_error *err) {
         depth < m->thickness * (1 - 1e-9) * limit) /* a difference of coordinates */
         return SF_OK;
     if (depth < m->thickness * (1 - 1e-9))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "missile.motion compresses the pad by %.4g mm of %.4g mm, a strain of %.4g: its foam cannot be "
             "compressed beyond %.4g, the limit of its densification",
             1e3 * depth, 1e3 * m->thickness, depth / m->thickness, limit);
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
-                   1e3 * depth, 1e3 * m->thickness);
+    return SF_REFUSE(err, "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
+                     1e3 * depth, 1e3 * m->thickness);
 }
 
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
@@ -578,8 +573,7 @@ static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double c
            start = fmin(m->run.step_limit, m->run.step_safety * first);
     sf_law_batch batch;
     sf_material_law law;
-    if (sf_material_law_build(material, &law, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_material_law_build(material, &law, err));
     memset(&batch, 0, sizeof batch);
     set_stretch(batch.f, 1);
     for (int l = 0; l < SF_LANES; l++)
@@ -623,11 +617,11 @@ static sf_status check_first_step(const sf_model *m, double first, int64_t criti
     double step = m->run.step_safety * first, least = SF_SMALLEST_STEP * m->run.end_time;
     if (step >= least)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "the first stable time step is %.3g s, below %g of solver.end_time (%g s), where a run "
-                   "stops: the foam is too stiff or too viscous (%s%s: %s, ED, eta, DAMP), or too light",
-                   step, SF_SMALLEST_STEP, m->run.end_time, material->name[0] ? "materials." : "material",
-                   material->name, material->law->stiffness_keys);
+    return SF_REFUSE(err,
+                     "the first stable time step is %.3g s, below %g of solver.end_time (%g s), where a run "
+                     "stops: the foam is too stiff or too viscous (%s%s: %s, ED, eta, DAMP), or too light",
+                     step, SF_SMALLEST_STEP, m->run.end_time, material->name[0] ? "materials." : "material",
+                     material->name, material->law->stiffness_keys);
 }
 
 /* Faces of a slit that touch each other do not pass through each other. */

@@ -10,7 +10,7 @@
 
 typedef struct sf_bodies {
     int64_t count;
-    int32_t *cell;  /* [cell_count] owned */
+    int64_t *cell;  /* [cell_count] owned */
     int32_t *node;  /* [node_count] owned; of a node where several bodies meet one of them */
     int32_t *first; /* [count] owned; the first node of each, ascending */
 } sf_bodies;

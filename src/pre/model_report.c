@@ -125,7 +125,7 @@ static void add_body(sf_model_report *out, const sf_model *m) {
     sf_solid solid;
     sf_error open = SF_ERROR_INIT;
     double lowest[3];
-    const sf_surface missile = sf_missile_surface(m);
+    const sf_surface missile = sf_surface_of_missile(m);
     if (sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
                          m->surface_triangle, &solid, &open) != SF_OK)
         return;

@@ -341,8 +341,8 @@ static sf_status check_reading(const folder *f, const sf_broker *read, const cha
     for (size_t k = 0; k < read->count && err->status == SF_OK; k++) {
         char *whole = sf_path_whole(NULL, read->file[k].path, err);
         if (whole && !sf_path_below(root, whole))
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "%s has no folder of its own: its geometry reads %s by a path from /; name it relative to "
                 "the geometry",
                 f->request->case_path, whole);
@@ -360,8 +360,8 @@ static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) 
         if (check_reading(f, &mesh[k].broker, root, err) == SF_OK &&
             (mesh[k].size != f->mesh[k].size ||
              (mesh[k].size > 0 && memcmp(mesh[k].stream, f->mesh[k].stream, mesh[k].size) != 0)))
-            SF_FAIL(err, SF_ERR_INPUT, "%s has no folder of its own: in another folder %s gives another mesh",
-                    f->request->case_path, geometry(&f->c, k)->path);
+            SF_REFUSE(err, "%s has no folder of its own: in another folder %s gives another mesh",
+                      f->request->case_path, geometry(&f->c, k)->path);
     for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&mesh[k]);
     free(root);
@@ -414,8 +414,8 @@ sf_status sf_case_folder_make(const sf_case_folder_request *q, const sf_sink *si
         sf_case_read(q->case_path, q->override_count, q->overrides, sink, &f.c, err) == SF_OK) {
         f.hash = sf_campaign_case_hash(&f.c);
         if (f.c.run.drops > 1)
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "%s: series.drops = %g: studies run single drops; leave the series out, and run it by softfall-solve",
                 q->case_path, f.c.run.drops);
         else if (mesh_each(&f.c, f.mesh, err) == SF_OK && list_reading(&f, err) == SF_OK &&

@@ -142,28 +142,20 @@ static sf_status write_materials(const store *s, sf_error *err) {
     return err->status;
 }
 
-static sf_status write_pad(const store *s, const sf_h5_info *info, const double *displacement,
-                           sf_error *err) {
-    const sf_results *r = s->results;
-    double *moved = sf_alloc(err, 3 * (unsigned long)r->node_count, sizeof *moved, info->description);
+/* Writes points where they are in a frame: the pad's by their displacement (NULL: at rest), the missile's
+ * surface, `head`, by the missile's place. */
+static sf_status write_points(const store *s, const sf_h5_info *info, int64_t count, const double *position,
+                              const double *displacement, const sf_frame_head *head, sf_error *err) {
+    double *moved = sf_alloc(err, 3 * (unsigned long)count, sizeof *moved, info->description);
     if (!moved)
         return err->status;
-    for (int64_t i = 0; i < 3 * r->node_count; i++)
-        moved[i] = r->position[i] + (displacement ? displacement[i] : 0);
-    put(s, info, r->node_count, 3, moved, err);
-    free(moved);
-    return err->status;
-}
-
-static sf_status write_missile(const store *s, const sf_h5_info *info, const sf_frame_head *head,
-                               sf_error *err) {
-    const sf_results *r = s->results;
-    double *moved = sf_alloc(err, 3 * (unsigned long)r->surface_node_count, sizeof *moved, info->description);
-    if (!moved)
-        return err->status;
-    for (int64_t i = 0; i < r->surface_node_count; i++)
-        sf_results_place(r, head, &r->surface_position[3 * i], &moved[3 * i]);
-    put(s, info, r->surface_node_count, 3, moved, err);
+    for (int64_t i = 0; i < count; i++)
+        if (head)
+            sf_results_place(s->results, head, &position[3 * i], &moved[3 * i]);
+        else
+            for (int64_t k = 3 * i; k < 3 * i + 3; k++)
+                moved[k] = position[k] + (displacement ? displacement[k] : 0);
+    put(s, info, count, 3, moved, err);
     free(moved);
     return err->status;
 }
@@ -225,16 +217,15 @@ static sf_status write_fields(const store *s, sf_frame *frame, int64_t index, sf
 
 static sf_status write_frame(const store *s, const sf_frame_head *head, sf_frame *frame, int64_t index,
                              sf_error *err) {
+    const sf_results *r = s->results;
     char path[96];
     snprintf(path, sizeof path, "/frames/%06lld/pad_position", (long long)index);
-    if (write_pad(s, &(sf_h5_info){path, "m", "positions of the pad's nodes, deformed"},
-                  frame->field[SF_FRAME_DISPLACEMENT], err) != SF_OK)
-        return err->status;
+    SF_TRY(write_points(s, &(sf_h5_info){path, "m", "positions of the pad's nodes, deformed"}, r->node_count,
+                        r->position, frame->field[SF_FRAME_DISPLACEMENT], NULL, err));
     snprintf(path, sizeof path, "/frames/%06lld/missile_position", (long long)index);
-    if (write_missile(s, &(sf_h5_info){path, "m", "positions of the missile's surface nodes"}, head, err) !=
-            SF_OK ||
-        write_missile_arrays(s, head, index, err) != SF_OK)
-        return err->status;
+    SF_TRY(write_points(s, &(sf_h5_info){path, "m", "positions of the missile's surface nodes"},
+                        r->surface_node_count, r->surface_position, NULL, head, err));
+    SF_TRY(write_missile_arrays(s, head, index, err));
     return write_fields(s, frame, index, err);
 }
 
@@ -280,8 +271,7 @@ static sf_status write_frames(const store *s, sf_results *r, sf_shown *shown, sf
         note_largest(r, &frame, shown->largest);
         write_frame(s, head, &frame, k, err);
         sf_frame_free(&frame);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(err->status);
     }
     if (!moved)
         sf_results_note(r, "the frames hold no displacement: ParaView shows the pad undeformed");
@@ -293,8 +283,7 @@ sf_status sf_xdmf_write_data(const char *path, sf_results *r, const sf_xdmf_opti
     const sf_provenance provenance = {.program = "softfall-post", .command_line = options->command_line};
     sf_error ignored = SF_ERROR_INIT;
     store s = {.results = r, .full = options->full};
-    if (sf_h5_create(path, &s.file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_create(path, &s.file, err));
     if (sf_provenance_write(s.file, "softfall-paraview", &provenance, err) == SF_OK &&
         write_topology(&s, err) == SF_OK && write_materials(&s, err) == SF_OK)
         write_frames(&s, r, shown, err);
@@ -408,8 +397,7 @@ static const char NEW_DATA[] = "pad.h5"; /* before it has its name */
 static sf_status name_data(const sf_staging *output, const char *path, char data[SF_XDMF_NAME_SIZE],
                            sf_error *err) {
     uint64_t hash = 0;
-    if (sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, err));
     snprintf(data, SF_XDMF_NAME_SIZE, "pad-%016llx.h5", (unsigned long long)hash);
     char *named = sf_staging_path(output, data, err);
     if (named && rename(path, named) != 0)

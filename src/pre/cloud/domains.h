@@ -13,7 +13,7 @@
 #include "pre/cloud/dual.h"
 #include "pre/mesh/mesh.h"
 
-/* What the supports and the nodes' sight came to. */
+/* Figures of the supports, and of the nodes that do not see each other. */
 typedef struct sf_domain_figures {
     double worst_condition;     /* of the moment matrices used */
     double worst_position[3];   /* m, where */

@@ -118,8 +118,8 @@ static sf_status add_inner(const sf_mesh *mesh, const raw_face *raw, sf_dual *du
     if (!is_same_side(mesh, &raw[0], &raw[1]))
         return SF_OK;
     const double *x = &mesh->position[3 * (int64_t)raw->key[3]];
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "the pad's cells overlap: two that share a face at (%.4g, %.4g, %.4g) mm lie on the same side of it",
         1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
 }
@@ -151,8 +151,8 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
             end++;
         if (end - k > 2) {
             const double *x = &mesh->position[3 * (int64_t)raw[k].key[3]];
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "the pad's cells overlap: %lld of them share one face at (%.4g, %.4g, %.4g) mm; no more than two "
                 "can",
                 (long long)(end - k), 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
@@ -174,8 +174,7 @@ static sf_status build_adjacency(const sf_mesh *mesh, sf_dual *dual, sf_error *e
         sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_node, "edge adjacency");
     dual->edge_id =
         sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_id, "edge adjacency");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < 2 * dual->edge_count; k++)
         dual->edge_ptr[dual->edge[k] + 2]++;
     for (int64_t i = 0; i < n; i++)

@@ -124,8 +124,8 @@ static sf_status refuse_missing(const sf_geo_source *source, const name_list *li
         names[0] = '\0';
         for (int i = 0; i < list->count && used < sizeof names; i++)
             used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", list->name[i]);
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
-                       source->path, source->parameter[k].name, list->count ? names : "none");
+        return SF_REFUSE(err, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
+                         source->path, source->parameter[k].name, list->count ? names : "none");
     }
     return SF_OK;
 }

@@ -126,7 +126,7 @@ static sf_status number_nodes(const sf_raw_mesh *raw, const sf_tag_index *index,
             size_t tag = raw->cell_node[SF_RAW_CELL * k + (size_t)a];
             size_t place = sf_raw_mesh_find(raw, index, tag);
             if (place == SIZE_MAX)
-                return SF_FAIL(err, SF_ERR_INPUT, "a cell uses node %zu, which the mesh does not have", tag);
+                return SF_REFUSE(err, "a cell uses node %zu, which the mesh does not have", tag);
             if (raw->cell_chosen[k])
                 number[place] = 0;
             else if (number[place] == UNUSED)
@@ -154,8 +154,7 @@ static sf_status copy_cells(const sf_raw_mesh *raw, const sf_tag_index *index, c
     mesh->cell_node = sf_alloc(err, (size_t)entries, sizeof *mesh->cell_node, "cell vertices");
     if (layers > 1)
         mesh->cell_layer = sf_alloc(err, (size_t)mesh->cell_count, 1, "layers of the cells");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (size_t n = 0; n < raw->node_count; n++)
         for (size_t i = 0; number[n] >= 0 && i < 3; i++)
             mesh->position[3 * (size_t)number[n] + i] = unit * raw->xyz[3 * n + i];
@@ -252,8 +251,7 @@ sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_m
     int32_t *number = NULL;
     sf_tag_index *index = NULL;
     if (raw->node_count > INT32_MAX)
-        return SF_FAIL(err, SF_ERR_INPUT, "the mesh has %zu nodes; at most %d are supported", raw->node_count,
-                       INT32_MAX);
+        return SF_REFUSE(err, "the mesh has %zu nodes; at most %d are supported", raw->node_count, INT32_MAX);
     index = sf_raw_mesh_index(raw, err);
     number = sf_alloc(err, raw->node_count, sizeof *number, "node numbers");
     if (err->status == SF_OK && number_nodes(raw, index, number, mesh, err) == SF_OK &&
@@ -303,14 +301,13 @@ static sf_status prepare(surface_builder *b, sf_error *err) {
     b->keys = sf_alloc(err, raw->face_count, sizeof *b->keys, "surface faces");
     b->known = sf_alloc(err, raw->face_count, 1, "face marks");
     b->outward = sf_alloc(err, 3 * raw->face_count, sizeof *b->outward, "outward vectors");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (size_t f = 0; f < raw->face_count; f++) {
         memcpy(b->keys[f].tag, raw->face_node + SF_RAW_FACE * f, sizeof b->keys[f].tag);
         for (int a = 0; a < SF_RAW_FACE; a++)
             if (b->keys[f].tag[a] != 0 && !node_position(b, b->keys[f].tag[a]))
-                return SF_FAIL(err, SF_ERR_INPUT, "a face uses node %zu, which the mesh does not have",
-                               b->keys[f].tag[a]);
+                return SF_REFUSE(err, "a face uses node %zu, which the mesh does not have",
+                                 b->keys[f].tag[a]);
         sf_raw_face_sort(b->keys[f].tag);
         b->keys[f].face = f;
     }
@@ -344,8 +341,8 @@ static sf_status match_cells(surface_builder *b, sf_error *err) {
                 continue;
             average(b, node, shape->vertices, found->centre);
             if (++found->behind > 1)
-                return SF_FAIL(
-                    err, SF_ERR_INPUT,
+                return SF_REFUSE(
+                    err,
                     "the surface of the missile or support has cells on both sides near (%g, %g, %g) in the "
                     "geometry's unit: it must be an outer surface",
                     found->centre[0], found->centre[1], found->centre[2]);
