@@ -12,22 +12,25 @@
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
 
+/* The connected parts of a pad of layers: cells that share a face, within a layer or where all the nodes of
+ * the face are tied in all components. Parts move rigidly against each other unless ties or supports hold
+ * them. */
+typedef struct body_list {
+    int64_t count;
+    int64_t *cell;  /* [cell_count] owned */
+    int32_t *node;  /* [node_count] owned; of a node where several bodies meet one of them */
+    int32_t *first; /* [count] owned; the first node of each, ascending */
+} body_list;
+
 typedef struct cell_face {
     int32_t key[4]; /* ascending; the first is -1 for a triangle */
     int32_t cell;
 } cell_face;
 
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
-
 static int by_key(const void *a, const void *b) {
     const cell_face *x = a, *y = b;
-    for (int k = 0; k < 4; k++)
-        if (x->key[k] != y->key[k])
-            return x->key[k] < y->key[k] ? -1 : 1;
-    return (x->cell > y->cell) - (x->cell < y->cell);
+    int keys = sf_face_compare(x->key, y->key);
+    return keys ? keys : (x->cell > y->cell) - (x->cell < y->cell);
 }
 
 static int64_t count_faces(const sf_model *m) {
@@ -46,7 +49,7 @@ static void list_faces(const sf_model *m, int64_t *place, cell_face *face) {
             *face = (cell_face){{-1, -1, -1, -1}, c};
             for (int p = 0; p < topology->face_size[f]; p++)
                 face->key[p] = (int32_t)sf_sets_find(place, v[topology->face[f][p]]);
-            qsort(face->key, 4, sizeof face->key[0], by_value);
+            sf_face_sort(face->key);
         }
     }
 }
@@ -79,7 +82,7 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
 
 /* Bodies in the order of their first nodes; b->cell holds the lowest cells and becomes the numbers. `number`
  * [cell_count] is room. */
-static void number_bodies(const sf_model *m, int32_t *number, sf_bodies *b) {
+static void number_bodies(const sf_model *m, int32_t *number, body_list *b) {
     for (int64_t i = 0; i < m->node_count; i++)
         b->node[i] = -1;
     for (int64_t c = 0; c < m->cell_count; c++) {
@@ -100,7 +103,7 @@ static void number_bodies(const sf_model *m, int32_t *number, sf_bodies *b) {
         b->cell[c] = number[b->cell[c]];
 }
 
-static sf_status find_parts(const sf_model *m, sf_bodies *b, sf_error *err) {
+static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
     unsigned long cells = (unsigned long)m->cell_count;
     int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
     b->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *b->node, "parts of the pad");
@@ -111,8 +114,16 @@ static sf_status find_parts(const sf_model *m, sf_bodies *b, sf_error *err) {
     return err->status;
 }
 
-sf_status sf_bodies_find(const sf_model *m, sf_bodies *b, sf_error *err) {
-    *b = (sf_bodies){0};
+static void free_bodies(body_list *b) {
+    free(b->cell);
+    free(b->node);
+    free(b->first);
+    *b = (body_list){0};
+}
+
+/* A pad of one material and without ties is one body. On failure `*b` is empty. */
+static sf_status find_bodies(const sf_model *m, body_list *b, sf_error *err) {
+    *b = (body_list){0};
     if (m->node_material[m->node_count - 1] > 0) {
         find_parts(m, b, err);
     } else {
@@ -122,15 +133,8 @@ sf_status sf_bodies_find(const sf_model *m, sf_bodies *b, sf_error *err) {
         b->first = sf_alloc(err, 1, sizeof *b->first, "parts of the pad");
     }
     if (err->status != SF_OK)
-        sf_bodies_free(b);
+        free_bodies(b);
     return err->status;
-}
-
-void sf_bodies_free(sf_bodies *b) {
-    free(b->cell);
-    free(b->node);
-    free(b->first);
-    *b = (sf_bodies){0};
 }
 
 enum {
@@ -166,7 +170,7 @@ static void motion_row(const double r[3], int c, double row[MOTIONS]) {
 /* The sum of squares of what is forbidden. */
 typedef struct holder {
     const sf_model *model;
-    const sf_bodies *bodies;
+    const body_list *bodies;
     double middle[3], size;
     gsl_matrix *sum;   /* [6 bodies][6 bodies] */
     double *row_count; /* [bodies] */
@@ -224,7 +228,7 @@ static void add_rows(holder *h, sf_hold *hold) {
 /* Parts of a layer that share an edge or a point only are joined there. */
 static void add_hinges(holder *h) {
     const sf_model *m = h->model;
-    const sf_bodies *b = h->bodies;
+    const body_list *b = h->bodies;
     for (int64_t cell = 0; cell < m->cell_count; cell++)
         for (int64_t k = m->cell_ptr[cell]; k < m->cell_ptr[cell + 1]; k++) {
             int32_t node = m->cell_node[k];
@@ -244,7 +248,7 @@ static void scale_sum(holder *h) {
 }
 
 /* The middle of a part, m; `alone`: it is the whole of its layer. */
-static void place_part(const sf_model *m, const sf_bodies *b, int64_t body, double middle[3], bool *alone) {
+static void place_part(const sf_model *m, const body_list *b, int64_t body, double middle[3], bool *alone) {
     double count = 0;
     uint8_t layer = m->node_material[b->first[body]];
     *alone = true;
@@ -319,9 +323,9 @@ static sf_status find_motions(holder *h, sf_hold *hold, sf_error *err) {
 }
 
 sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
-    sf_bodies bodies;
+    body_list bodies;
     *hold = (sf_hold){0};
-    SF_TRY(sf_bodies_find(m, &bodies, err));
+    SF_TRY(find_bodies(m, &bodies, err));
     holder h = {.model = m, .bodies = &bodies};
     if (bodies.count > MOST_BODIES)
         SF_REFUSE(
@@ -331,7 +335,7 @@ sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
             (long long)bodies.count, MOST_BODIES);
     else if (find_motions(&h, hold, err) == SF_OK)
         find_underside(m, hold);
-    sf_bodies_free(&bodies);
+    free_bodies(&bodies);
     return err->status;
 }
 

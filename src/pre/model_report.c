@@ -2,6 +2,7 @@
 #include "pre/model_report.h"
 #include "pre/mesh/missile_shape.h"
 
+#include "base/mat3.h"
 #include "model/flight.h"
 #include "model/model.h"
 #include "pre/missile_body.h"
@@ -64,14 +65,10 @@ static void add_neighbours(sf_model_report *out, const sf_model *m) {
 
 /* The lengths of the box that holds the points [count][3] (mm). */
 static void find_size(int64_t count, const double *x, double size[3]) {
-    for (int k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t i = 0; i < count; i++) {
-            low = fmin(low, x[3 * i + k]);
-            high = fmax(high, x[3 * i + k]);
-        }
-        size[k] = 1e3 * (high - low);
-    }
+    double low[3], high[3];
+    sf_box3(count, x, low, high);
+    for (int k = 0; k < 3; k++)
+        size[k] = 1e3 * (high[k] - low[k]);
 }
 
 static void add_size(sf_model_report *out, const sf_model *m) {

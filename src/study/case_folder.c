@@ -267,47 +267,38 @@ static void write_part(const part *p, const char *at, sf_error *err) {
     free(text);
 }
 
-/* The first comment of the case, or something to say. */
-static void find_title(const char *text, char *out, size_t size) {
-    const char *from = text + strspn(text, "# \t");
-    int length = (int)strcspn(from, "\r\n");
-    if (*text == '#' && length > 0)
-        snprintf(out, size, "%.*s", length, from);
-    else
-        snprintf(out, size, "A drop test");
-}
-
-/* " with --set a=1 --set b=2", or "": the title may be true of the original only. */
-static char *list_overrides(const sf_case_folder_request *q) {
+/* The README: the first comment of the case, and what the folder was made of; the title may be true of the
+ * case without its --set texts only. */
+static sf_status write_readme(folder *f, sf_error *err) {
+    const sf_case_folder_request *q = f->request;
+    const char *title = f->text + strspn(f->text, "# \t");
+    int length = *f->text == '#' ? (int)strcspn(title, "\r\n") : 0;
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    for (int k = 0; out && k < q->override_count; k++)
-        fprintf(out, "%s--set '%.200s'", k ? " " : " with ", q->overrides[k]);
-    if (out)
-        fclose(out);
-    return text;
-}
-
-static sf_status write_readme(folder *f, sf_error *err) {
-    char title[PATH_SIZE], *text = NULL, *overrides = list_overrides(f->request);
-    const char *origin = f->request->origin ? f->request->origin : f->request->case_path;
-    find_title(f->text, title, sizeof title);
-    int length = asprintf(
-        &text,
-        "%s\n\n"
+    if (!out)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", q->folder);
+    if (length > 0)
+        fprintf(out, "%.*s\n\n", length, title);
+    else
+        fputs("A drop test\n\n", out);
+    fprintf(
+        out,
         "This folder holds all that the case needs; it may be moved, packed and sent. softfall " SF_VERSION
-        " made it from %s%s.\n\n"
+        " made it from %s",
+        q->origin ? q->origin : q->case_path);
+    for (int k = 0; k < q->override_count; k++)
+        fprintf(out, "%s--set '%.200s'", k ? " " : " with ", q->overrides[k]);
+    fputs(
+        ".\n\n"
         "    softfall-pre case.cfg -o model.h5       # mesh the geometry, build and check the model\n"
         "    softfall-solve model.h5 -o results.h5   # the drop\n"
         "    softfall-post results.h5 -o out         # figures, out/report.html, files for ParaView\n\n"
         "Edit case.cfg and run the three again, each with --force. softfall-pre --keys explains every key.\n",
-        title, origin, overrides ? overrides : "");
-    free(overrides);
-    if (length < 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", f->request->folder);
+        out);
+    fclose(out);
     if (add_file(f, README_NAME, "", NULL, err) == SF_OK)
-        sf_tree_put(&f->tree, README_NAME, text, (size_t)length, err);
+        sf_tree_put(&f->tree, README_NAME, text, size, err);
     free(text);
     return err->status;
 }

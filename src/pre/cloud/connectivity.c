@@ -255,16 +255,7 @@ typedef struct face_key {
 } face_key;
 
 static int compare_key(const void *a, const void *b) {
-    const face_key *p = a, *q = b;
-    for (int k = 0; k < 4; k++)
-        if (p->node[k] != q->node[k])
-            return p->node[k] < q->node[k] ? -1 : 1;
-    return 0;
-}
-
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
+    return sf_face_compare(((const face_key *)a)->node, ((const face_key *)b)->node);
 }
 
 /* The faces of one cell and those of two, each ascending; owned. */
@@ -280,7 +271,7 @@ static sf_status list_faces(const sf_dual *dual, face_lists *lists, sf_error *er
     lists->inner = sf_alloc(err, (unsigned long)dual->inner_count, sizeof *lists->inner, "inner faces");
     for (int64_t f = 0; lists->outer && f < dual->face_count; f++) {
         memcpy(lists->outer[f].node, dual->face[f].node, sizeof dual->face[f].node);
-        qsort(lists->outer[f].node, 4, sizeof(int32_t), by_value);
+        sf_face_sort(lists->outer[f].node);
     }
     for (int64_t f = 0; lists->inner && f < dual->inner_count; f++)
         memcpy(lists->inner[f].node, dual->inner[f].node, sizeof dual->inner[f].node);

@@ -30,19 +30,8 @@ static int by_edge(const void *a, const void *b) {
 
 static int by_face(const void *a, const void *b) {
     const raw_face *x = a, *y = b;
-    for (int k = 0; k < 4; k++)
-        if (x->key[k] != y->key[k])
-            return x->key[k] < y->key[k] ? -1 : 1;
-    return (x->cell > y->cell) - (x->cell < y->cell);
-}
-
-static void sort4(int32_t key[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && key[j] < key[j - 1]; j--) {
-            int32_t swap = key[j];
-            key[j] = key[j - 1];
-            key[j - 1] = swap;
-        }
+    int keys = sf_face_compare(x->key, y->key);
+    return keys ? keys : (x->cell > y->cell) - (x->cell < y->cell);
 }
 
 static int64_t count_parts(const sf_mesh *mesh, bool edges) {
@@ -141,7 +130,7 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
             raw[k] = (raw_face){{-1, -1, -1, -1}, (int32_t)c, (int8_t)f};
             for (int p = 0; p < topology->face_size[f]; p++)
                 raw[k].key[p] = v[topology->face[f][p]];
-            sort4(raw[k].key);
+            sf_face_sort(raw[k].key);
         }
     }
     qsort(raw, (size_t)count, sizeof *raw, by_face);

@@ -64,6 +64,22 @@ const sf_cell_topology *sf_cell_topology_of(int type) {
     return type >= SF_CELL_TETRAHEDRON && type <= SF_CELL_HEXAHEDRON ? &shapes[type].topology : NULL;
 }
 
+void sf_face_sort(int32_t node[4]) {
+    for (int i = 1; i < 4; i++)
+        for (int j = i; j > 0 && node[j] < node[j - 1]; j--) {
+            int32_t swap = node[j];
+            node[j] = node[j - 1];
+            node[j - 1] = swap;
+        }
+}
+
+int sf_face_compare(const int32_t a[4], const int32_t b[4]) {
+    for (int k = 0; k < 4; k++)
+        if (a[k] != b[k])
+            return a[k] < b[k] ? -1 : 1;
+    return 0;
+}
+
 void sf_mesh_free(sf_mesh *mesh) {
     free(mesh->position);
     free(mesh->cell_type);

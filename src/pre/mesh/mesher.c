@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/types.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -78,6 +79,11 @@ sf_status sf_mesher_find(char *path, size_t size, sf_error *err) {
                    SF_LIBEXEC_DIR);
 }
 
+typedef struct mesher_child {
+    pid_t process;
+    int control, data, print; /* this side of the child's files (mesher_protocol.h) */
+} mesher_child;
+
 /* The child's ends, out of the way of the numbers that they get there. */
 typedef struct ends {
     int control, data, print, parameters;
@@ -97,7 +103,7 @@ static void close_ends(const ends *e) {
             close(file[k]);
 }
 
-static bool make_ends(const char *parameters, sf_mesher_child *child, ends *e) {
+static bool make_ends(const char *parameters, mesher_child *child, ends *e) {
     int control[2] = {-1, -1}, data[2] = {-1, -1}, print[2] = {-1, -1};
     bool made = socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, control) == 0 &&
                 pipe2(data, O_CLOEXEC) == 0 && pipe2(print, O_CLOEXEC) == 0;
@@ -156,7 +162,8 @@ static int prepare_signals(posix_spawnattr_t *attributes) {
     return result == 0 ? posix_spawnattr_setsigmask(attributes, &none) : result;
 }
 
-sf_status sf_mesher_start(const char *parameters, sf_mesher_child *child, sf_error *err) {
+/* The child gets `parameters` as a file, a small environment and no other open files. */
+static sf_status start(const char *parameters, mesher_child *child, sf_error *err) {
     char path[PATH_MAX];
     ends e;
     posix_spawn_file_actions_t actions;
@@ -188,7 +195,7 @@ typedef struct conversation {
     const sf_mesher_limits *limits;
     double seconds, bytes; /* limits of processor time and memory */
     bool confined;
-    sf_mesher_child child;
+    mesher_child child;
     sf_broker broker;
     char *stream;
     size_t size, capacity;
@@ -382,10 +389,10 @@ static void watch(conversation *c, double step) {
 static void converse(conversation *c, sf_error *err) {
     struct pollfd channel[] = {
         {c->child.control, POLLIN, 0}, {c->child.data, POLLIN, 0}, {c->child.print, POLLIN, 0}};
-    double start = sf_process_now(), told = 0, seen = 0;
+    double begin = sf_process_now(), told = 0, seen = 0;
     while (!c->stopped && (channel[0].fd >= 0 || channel[1].fd >= 0 || channel[2].fd >= 0)) {
         int ready = poll(channel, 3, 1000);
-        double elapsed = sf_process_now() - start;
+        double elapsed = sf_process_now() - begin;
         if (elapsed > told + REPORT_SECONDS) {
             told = elapsed;
             tell_progress(c, elapsed);
@@ -529,7 +536,7 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
     c.broker.parameters = parameters;
     c.broker.most = c.bytes < 0x1p34 ? (uint64_t)(c.bytes / 4) : (uint64_t)1 << 32;
     if (err->status == SF_OK && sf_plain_check(source->path, "geometry", err) == SF_OK &&
-        sf_mesher_start(parameters, &c.child, err) == SF_OK) {
+        start(parameters, &c.child, err) == SF_OK) {
         send_request(&c, err);
         if (err->status != SF_OK)
             stop(&c);
