@@ -100,8 +100,8 @@ static void a_case_of_layers_runs_to_the_same_bits(void **state) {
     assert_same_drop(p, path, "layers", set);
 }
 
-/* A geometry of several folders: it includes a file above it and merges STEP files, of which it names one
- * from /; measured curves; a motion; a blank in a name. */
+/* A geometry of several folders: it includes a file above it and merges STEP files, one of another
+ * folder; measured curves; a motion; a blank in a name. */
 static void geometries_keep_what_they_read(void **state) {
     const program_place *p = *state;
     char text[2048], path[700];
@@ -114,14 +114,13 @@ static void geometries_keep_what_they_read(void **state) {
     program_write_text(p, "lab/cad/size.geo", "size = 20;\n");
     snprintf(text, sizeof text,
              "SetFactory(\"OpenCASCADE\");\nInclude \"../size.geo\";\nMerge \"../box.step\";\n"
-             "Merge \"%s/lab/far/plate.step\"; // from /\n"
+             "Merge \"../../far/plate.step\"; // beside\n"
              "Physical Volume(\"pad\") = {1};\n"
              "Physical Surface(\"base\") = Surface In BoundingBox{-51, -51, -1, 51, 51, 1};\n"
              "top() = Surface In BoundingBox{-51, -51, 39, 51, 51, 41};\nPhysical Surface(\"top\") = top();\n"
              "down() = Surface In BoundingBox{-81, -81, 39, 81, 81, 41};\ndown() -= top();\n"
              "Physical Surface(\"missile_surface\") = down();\n"
-             "Mesh.MeshSizeMin = size; Mesh.MeshSizeMax = size;\n",
-             p->folder);
+             "Mesh.MeshSizeMin = size; Mesh.MeshSizeMax = size;\n");
     program_write_text(p, "lab/cad/pad/pad.geo", text);
     program_write_text(p, "lab/foam data/slow.csv", "strain,stress_kPa\n0,0\n0.1,10\n0.5,40\n0.8,200\n");
     program_write_text(p, "lab/foam data/fast.csv", "strain,stress_kPa\n0,0\n0.1,14\n0.5,55\n0.8,260\n");
@@ -138,10 +137,11 @@ static void geometries_keep_what_they_read(void **state) {
                        "solver = { end_time = \"0.5 ms\" };");
     snprintf(path, sizeof path, "%s/lab/cases/press.cfg", p->folder);
     succeed(p, path, "press", NULL);
-    assert_string_equal(files_of(p, "press"),
-                        "README.md case.cfg geo/box.step geo/pad/pad.geo geo/plate.step geo/size.geo "
-                        "materials/fast.csv materials/foam.cfg materials/slow.csv motion.csv ");
-    assert_holds(p, "press/geo/pad/pad.geo", "Merge \"../plate.step\"; // from /");
+    assert_string_equal(
+        files_of(p, "press"),
+        "README.md case.cfg geo/cad/box.step geo/cad/pad/pad.geo geo/cad/size.geo geo/far/plate.step "
+        "materials/fast.csv materials/foam.cfg materials/slow.csv motion.csv ");
+    assert_holds(p, "press/geo/cad/pad/pad.geo", "Merge \"../../far/plate.step\"; // beside");
     assert_holds(p, "press/README.md", "Pressed\n");
     static const char *const set[] = {NULL};
     assert_same_drop(p, path, "press", set);
@@ -228,10 +228,9 @@ static void what_cannot_be_made_leaves_nothing(void **state) {
                   fixture_source("examples/compression/motion.csv"), path);
     program_write_text(p, "bad.geo", "Point(1) = {0, 0, 0};\nnonsense;\n");
     assert_refused(p, bad, "new", SF_ERR_INPUT, "bad.geo");
-    /* A path that the geometry makes. */
+    /* A path from / in the geometry. */
     char text[1500];
-    snprintf(text, sizeof text,
-             "side = 50; spacing = 10; quarter = 1;\nInclude StrCat(\"%s\", \"/far/cube.geo\");\n",
+    snprintf(text, sizeof text, "side = 50; spacing = 10; quarter = 1;\nInclude \"%s/far/cube.geo\";\n",
              p->folder);
     program_write_text(p, "bad.geo", text);
     assert_refused(p, bad, "new", SF_ERR_INPUT, "/far/cube.geo by a path from /");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The identities of the smoothed gradient on the real graded pad (quarter, 5 mm) and on a jittered block, and
  * the supports that grow where a cloud is too sparse. Everything is measured here, not by
- * pre/cloud/invariants.c.
+ * pre/cloud/domains.c.
  */
 #include "extreme.h"
 #include "model_fixture.h"
@@ -281,7 +281,7 @@ static void lattice_domains_are_cubes_and_their_parts(void **state) {
     }
     assert_int_equal(kinds[0], 4 * 3 * 2);
     assert_int_equal(kinds[3], 8);
-    assert_int_equal(c.domains.enlarged_count, 0);
+    assert_int_equal(c.domains.figures.enlarged_count, 0);
     cloud_free(&c);
 }
 
@@ -294,17 +294,17 @@ static void too_small_supports_are_enlarged(void **state) {
     cloud_block(&c, &block);
     if (cloud_domains(&c, 0.8, CONDITION_LIMIT, &err) != SF_OK)
         fail_msg("%s", err.text);
-    assert_true(c.domains.enlarged_count > 0);
-    assert_true(c.domains.largest_enlargement > 1.1);
+    assert_true(c.domains.figures.enlarged_count > 0);
+    assert_true(c.domains.figures.largest_enlargement > 1.1);
     double largest = 0;
     int64_t enlarged = 0;
     for (int64_t i = 0; i < c.mesh.node_count; i++) {
         largest = larger(largest, c.support[i] / (0.8 * c.spacing[i]));
         enlarged += c.support[i] > 0.8 * c.spacing[i] * (1 + 1e-12);
     }
-    assert_relative(c.domains.largest_enlargement, largest, 1e-12);
-    assert_int_equal(c.domains.enlarged_count, enlarged);
-    assert_true(c.domains.worst_condition <= CONDITION_LIMIT);
+    assert_relative(c.domains.figures.largest_enlargement, largest, 1e-12);
+    assert_int_equal(c.domains.figures.enlarged_count, enlarged);
+    assert_true(c.domains.figures.worst_condition <= CONDITION_LIMIT);
     assert_close(worst_row(&c, false), 0, BOUND);
     assert_close(worst_row(&c, true), 0, BOUND);
     cloud_free(&c);

@@ -50,7 +50,7 @@ static sf_status mesh_file(const char *path, double seconds, int64_t *nodes, sf_
     snprintf(copy, sizeof copy, "%s", path);
     const sf_geo_source source = {.path = copy};
     if (sf_gmsh_begin(&session, err) == SF_OK) {
-        sf_gmsh_limit(session, seconds, NULL);
+        session->limits.seconds = seconds;
         if (sf_gmsh_load(session, &source, err) == SF_OK)
             sf_gmsh_read_mesh(session, "pad", 1e-3, &mesh, err);
     }
@@ -305,19 +305,19 @@ static void what_was_read_is_listed(void **state) {
     sf_gmsh_begin(&session, &err);
     if (sf_gmsh_load(session, &source, &err) != SF_OK)
         fail_msg("%s", err.text);
-    const char *files = sf_gmsh_files(session), *second = strchr(files, '\n');
+    const char *files = session->files, *second = strchr(files, '\n');
     assert_non_null(second);
     assert_int_equal(strncmp(files, SF_GMSH_FILES_OF "\n", strlen(SF_GMSH_FILES_OF) + 1), 0);
     assert_non_null(strstr(files, " outer.geo\n"));
     assert_non_null(strstr(second, " inner.geo\n"));
     assert_null(strstr(files, SF_GMSH_UNKNOWN_FILES));
-    assert_null(strstr(sf_gmsh_version(session), "unconfined"));
+    assert_null(strstr(session->version, "unconfined"));
     setenv("SOFTFALL_UNCONFINED", "1", 1);
     const sf_geo_source plain = {.path = (char[]){"outer.geo"}};
     if (sf_gmsh_load(session, &plain, &err) != SF_OK)
         fail_msg("%s", err.text);
-    assert_non_null(strstr(sf_gmsh_files(session), SF_GMSH_UNKNOWN_FILES "\n"));
-    assert_non_null(strstr(sf_gmsh_version(session), "unconfined"));
+    assert_non_null(strstr(session->files, SF_GMSH_UNKNOWN_FILES "\n"));
+    assert_non_null(strstr(session->version, "unconfined"));
     unsetenv("SOFTFALL_UNCONFINED");
     sf_gmsh_end(&session);
 }

@@ -142,9 +142,9 @@ static void gaps_are_those_of_the_whole_pad(void **state) {
         c.self_contact = SF_SELF_CONTACT_OFF;
         fixture_plate(1, 0, 0, &surface);
         fixture_build(&c, &mesh, &surface, &f);
-        assert_int_equal(f.report.hidden_count > 0, slit);
+        assert_int_equal(f.report.domains.hidden_count > 0, slit);
         assert_int_equal(f.model.slit_fraction > 0, slit);
-        assert_true(!slit || fabs(f.report.hidden_distance - 0.002) < 1e-9);
+        assert_true(!slit || fabs(f.report.domains.hidden_distance - 0.002) < 1e-9);
         fixture_free(&f);
     }
 }

@@ -5,7 +5,6 @@
 #include "report/html.h"
 #include "post/view/cut.h"
 #include "post/results/origin.h"
-#include "post/view/picture.h"
 #include "post/view/plot.h"
 #include "post_fixture.h"
 #include "program_fixture.h"

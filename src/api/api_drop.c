@@ -57,9 +57,9 @@ static const softfall_drop_options by_default;
 
 static sf_status check_options(const softfall_drop_options *o, sf_error *err) {
     if (o->threads < 0 || o->threads > 1024)
-        return SF_FAIL(err, SF_ERR_INPUT, "threads: %d is not between 0 and 1024", o->threads);
+        return SF_REFUSE(err, "threads: %d is not between 0 and 1024", o->threads);
     if (!(o->end_time >= 0) || !isfinite(o->end_time))
-        return SF_FAIL(err, SF_ERR_INPUT, "end_time: %g s is not 0 or above", o->end_time);
+        return SF_REFUSE(err, "end_time: %g s is not 0 or above", o->end_time);
     return SF_OK;
 }
 
@@ -180,13 +180,13 @@ static sf_status take_field(const softfall_drop *d, const char *name, double *va
     while (field < SF_FRAME_FIELDS && strcmp(d->field[field].name, name) != 0)
         field++;
     if (field == SF_FRAME_FIELDS)
-        return SF_FAIL(err, SF_ERR_INPUT, "there is no field \"%.80s\" of the nodes", name);
+        return SF_REFUSE(err, "there is no field \"%.80s\" of the nodes", name);
     int64_t needed = d->model.node_count * d->field[field].components;
     if (size != needed)
-        return SF_FAIL(err, SF_ERR_INPUT, "the field \"%s\" has %lld values, room was given for %lld", name,
-                       (long long)needed, (long long)size);
+        return SF_REFUSE(err, "the field \"%s\" has %lld values, room was given for %lld", name,
+                         (long long)needed, (long long)size);
     if (d->recorder.history.rows == 0 || d->failure.status != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "the drop has no good step whose fields could be read");
+        return SF_REFUSE(err, "the drop has no good step whose fields could be read");
     sf_frame_take(&d->model, &d->operators, &d->state, (sf_frame_field)field, values);
     return SF_OK;
 }
@@ -291,8 +291,7 @@ struct softfall_figures {
 static sf_status check_filter(double filter, sf_error *err) {
     if (filter == 60 || filter == 180 || filter == 600 || filter == 1000)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT, "filter: %g; the channel frequency classes are 60, 180, 600 and 1000",
-                   filter);
+    return SF_REFUSE(err, "filter: %g; the channel frequency classes are 60, 180, 600 and 1000", filter);
 }
 
 /* True if the library offers the figure: a number of sf_figures. */
@@ -346,8 +345,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .history = d->recorder.history};
     sf_flight_gravity(&m->missile, r->gravity);
     if (r->history.rows < 3)
-        return SF_FAIL(err, SF_ERR_INPUT, "the drop has %lld steps: figures need 3 at least",
-                       (long long)r->history.rows);
+        return SF_REFUSE(err, "the drop has %lld steps: figures need 3 at least", (long long)r->history.rows);
     return SF_OK;
 }
 

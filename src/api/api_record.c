@@ -39,9 +39,7 @@ typedef struct settings {
 static sf_status take_number(const char *name, const char *value, double *out, sf_error *err) {
     char *end;
     *out = strtod(value, &end);
-    return end != value && *end == '\0'
-               ? SF_OK
-               : SF_FAIL(err, SF_ERR_INPUT, "%s: \"%.80s\" is no number", name, value);
+    return end != value && *end == '\0' ? SF_OK : SF_REFUSE(err, "%s: \"%.80s\" is no number", name, value);
 }
 
 static sf_status take_option(sf_reference_options *o, const char *name, const char *value, sf_error *err) {
@@ -67,17 +65,18 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
     else if (strcmp(name, "zero") == 0)
         o->zero = true;
     else if (err->status == SF_OK)
-        SF_FAIL(err, SF_ERR_INPUT,
-                "a record has no option \"%.80s\"; there are column, columns, heading, scale, rate, filter, "
-                "impact, invert and zero",
-                name);
+        SF_REFUSE(
+            err,
+            "a record has no option \"%.80s\"; there are column, columns, heading, scale, rate, filter, "
+            "impact, invert and zero",
+            name);
     return err->status;
 }
 
 static sf_status take_options(settings *s, const char *const *options, int count, sf_error *err) {
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         if (s->count == (int)(sizeof s->texts / sizeof s->texts[0]))
-            return SF_FAIL(err, SF_ERR_INPUT, "a record has at most %d options", s->count);
+            return SF_REFUSE(err, "a record has at most %d options", s->count);
         char *text = s->texts[s->count++] = strdup(options[k]), *value = text ? strchr(text, '=') : NULL;
         if (!text)
             return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the options of a record");

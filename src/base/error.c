@@ -16,8 +16,7 @@ void sf_error_clean(char *sentence) {
 
 sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int line, const char *format,
                        ...) {
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     err->status = status;
     err->where = where;
     err->line = line;

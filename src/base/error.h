@@ -34,6 +34,9 @@ typedef struct sf_error {
 /* Records a failure (unless one is recorded already) and returns the recorded status. */
 #define SF_FAIL(err, status, ...) sf_error_set((err), (status), __FILE__, __LINE__, __VA_ARGS__)
 
+/* Refuses what the user gave. */
+#define SF_REFUSE(err, ...) SF_FAIL(err, SF_ERR_INPUT, __VA_ARGS__)
+
 /* Leaves the function with the status of `call` unless that is SF_OK. For a sequence of calls in a function
  * that returns sf_status and has nothing to release; where something must be released, chain the calls in one
  * condition or use `goto done`. */

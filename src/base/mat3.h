@@ -3,6 +3,7 @@
 #define SF_BASE_MAT3_H
 
 #include <math.h>
+#include <stdint.h>
 
 /* Small 3-vector and symmetric 3 x 3 algebra. Symmetric matrices are stored (xx, yy, zz, xy, yz, xz). */
 
@@ -13,6 +14,18 @@ static inline double sf_dot3(const double a[3], const double b[3]) {
 static inline void sf_cross3(const double a[3], const double b[3], double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* The smallest and the largest coordinates of `count` points; INFINITY and -INFINITY without any. */
+static inline void sf_box3(int64_t count, const double *position, double low[3], double high[3]) {
+    for (int k = 0; k < 3; k++) {
+        low[k] = INFINITY;
+        high[k] = -INFINITY;
+    }
+    for (int64_t i = 0; i < 3 * count; i++) {
+        low[i % 3] = fmin(low[i % 3], position[i]);
+        high[i % 3] = fmax(high[i % 3], position[i]);
+    }
 }
 
 /* Makes a vector one of unit length; zero stays zero. */

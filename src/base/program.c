@@ -160,8 +160,8 @@ static sf_status check_environment(const sf_sink *sink, sf_error *err) {
                      variables[k].words ? variables[k].words : "a number above 0");
         return SF_OK;
     }
-    return SF_FAIL(err, SF_ERR_INPUT, "the environment has %s=\"%s\"; a number from 1 to %ld is possible",
-                   variables[k].name, first_fault.value, variables[k].most);
+    return SF_REFUSE(err, "the environment has %s=\"%s\"; a number from 1 to %ld is possible",
+                     variables[k].name, first_fault.value, variables[k].most);
 }
 
 /* ---- the start ---- */
@@ -298,20 +298,19 @@ sf_status sf_command_parse(const sf_command *c, int argc, char **argv, sf_error 
     argp_program_version = version;
     const struct argp known = {.options = list, .parser = take, .args_doc = c->operands, .doc = c->meaning};
     if (argp_parse(&known, argc, argv, 0, NULL, &p) != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "the command line cannot be read");
+        return SF_REFUSE(err, "the command line cannot be read");
     return err->status;
 }
 
 sf_status sf_program_read_threads(const char *option, const char *text, void *threads, sf_error *err) {
     if (!sf_whole_is(text, 1, SF_MOST_THREADS, threads))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s takes a number from 1 to %d, not \"%s\"", option,
-                       SF_MOST_THREADS, text);
+        return SF_REFUSE(err, "%s takes a number from 1 to %d, not \"%s\"", option, SF_MOST_THREADS, text);
     return SF_OK;
 }
 
 sf_status sf_program_read_limit(const char *option, const char *text, void *limit, sf_error *err) {
     if (!sf_decimal_is(text, limit) || !(*(double *)limit > 0))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a positive number", option, text);
+        return SF_REFUSE(err, "%s %s: not a positive number", option, text);
     return SF_OK;
 }
 
@@ -319,7 +318,7 @@ sf_status sf_program_read_texts(const char *option, const char *text, void *text
     enum { MOST = sizeof((sf_option_texts *)0)->text / sizeof(char *) };
     sf_option_texts *all = texts;
     if (all->count == MOST)
-        return SF_FAIL(err, SF_ERR_INPUT, "at most %d %s options", MOST, option);
+        return SF_REFUSE(err, "at most %d %s options", MOST, option);
     all->text[all->count++] = text;
     return SF_OK;
 }

@@ -360,22 +360,21 @@ static sf_status convert(const sf_units *units, const char *text, double number,
     if (!same_dimension(unit, units->si[kind])) {
         char found[192];
         describe_unit(units, unit, found, sizeof found);
-        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" %s; expected %s, for example \"%s\"%s", text, found,
-                       want->phrase, want->example,
-                       kind == SF_ACCELERATION && same_dimension(unit, units->si[SF_MASS])
-                           ? " (g is the gram; standard gravity is " SF_STANDARD_GRAVITY_TEXT ")"
-                           : "");
+        return SF_REFUSE(err, "\"%s\" %s; expected %s, for example \"%s\"%s", text, found, want->phrase,
+                         want->example,
+                         kind == SF_ACCELERATION && same_dimension(unit, units->si[SF_MASS])
+                             ? " (g is the gram; standard gravity is " SF_STANDARD_GRAVITY_TEXT ")"
+                             : "");
     }
     cv_converter *converter = ut_get_converter((ut_unit *)unit, units->si[kind]);
     if (!converter)
-        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" cannot be converted to %s", text, want->unit);
+        return SF_REFUSE(err, "\"%s\" cannot be converted to %s", text, want->unit);
     double zero = cv_convert_double(converter, 0.0);
     *si = cv_convert_double(converter, number);
     cv_free(converter);
     if (zero != 0.0 || !isfinite(*si))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "\"%s\" has no finite value on a scale that begins at zero; expected %s, for example \"%s\"",
+        return SF_REFUSE(
+            err, "\"%s\" has no finite value on a scale that begins at zero; expected %s, for example \"%s\"",
             text, want->phrase, want->example);
     return SF_OK;
 }
@@ -387,12 +386,11 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     double number = 0;
     const char *rest = sf_decimal_read(text + strspn(text, " \t"), &number);
     if (!rest)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "\"%s\" does not begin with a number; expected %s, for example \"%s\"", text,
-                       want->phrase, want->example);
+        return SF_REFUSE(err, "\"%s\" does not begin with a number; expected %s, for example \"%s\"", text,
+                         want->phrase, want->example);
     if (!isfinite(number))
-        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" is not finite; expected %s, for example \"%s\"", text,
-                       want->phrase, want->example);
+        return SF_REFUSE(err, "\"%s\" is not finite; expected %s, for example \"%s\"", text, want->phrase,
+                         want->example);
     char name[96];
     rest += strspn(rest, " \t");
     bool fits = snprintf(name, sizeof name, "%s", rest) < (int)sizeof name;
@@ -400,12 +398,11 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
         name[--end] = '\0';
     double fraction;
     if (*name == ',' && sf_decimal_read(name + 1, &fraction))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "\"%s\" has a decimal comma; write a decimal point, for example \"%s\"", text,
-                       want->example);
+        return SF_REFUSE(err, "\"%s\" has a decimal comma; write a decimal point, for example \"%s\"", text,
+                         want->example);
     if (name[0] == '\0')
-        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" has no unit; expected %s, for example \"%s\"", text,
-                       want->phrase, want->example);
+        return SF_REFUSE(err, "\"%s\" has no unit; expected %s, for example \"%s\"", text, want->phrase,
+                         want->example);
     if (kind == SF_TEMPERATURE &&
         strcmp(name, "degC") == 0) { /* the only scale that does not begin at zero */
         *si = number + 273.15;
@@ -414,8 +411,8 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     const unit_text factors = read_unit(name);
     ut_unit *unit = fits && !factors.reason[0] ? make_unit(units, &factors) : NULL;
     if (!unit)
-        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\": \"%s\" is not a unit%s%s; expected %s, for example \"%s\"",
-                       text, name, *factors.reason ? ": " : "", factors.reason, want->phrase, want->example);
+        return SF_REFUSE(err, "\"%s\": \"%s\" is not a unit%s%s; expected %s, for example \"%s\"", text, name,
+                         *factors.reason ? ": " : "", factors.reason, want->phrase, want->example);
     sf_status status = convert(units, text, number, unit, kind, si, err);
     ut_free(unit);
     return status;

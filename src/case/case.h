@@ -49,7 +49,7 @@ typedef struct sf_case {
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */
     const char *store;    /* folder in which meshes and domains are kept for other drops (io/folder.h); NULL:
                              they are not; borrowed, not of the case file */
-    char *geometry_files; /* what the geometries read (sf_gmsh_files), set when they are meshed; owned */
+    char *geometry_files; /* what the geometries read (sf_gmsh.files), set when they are meshed; owned */
     char pad_group[SF_CASE_NAME_SIZE]; /* physical volume group of the pad; of layers, for sentences: all */
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */
     int base_rule;                         /* SF_BASE_*: how the fixed groups stand on the anvil */

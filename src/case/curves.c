@@ -39,28 +39,25 @@ void sf_case_curve_free(sf_case_curve *curve) {
 
 static sf_status check_point(const sf_table_point *p, sf_error *err) {
     if (p->value[0] < 0.0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: strain %s is negative; compression is positive", p->path,
-                       p->line, p->text[0]);
+        return SF_REFUSE(err, "%s:%d: strain %s is negative; compression is positive", p->path, p->line,
+                         p->text[0]);
     if (p->value[0] >= 1.0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s:%d: strain %s means a compression to nothing; it must be below 1 (100 %%)",
-                       p->path, p->line, p->text[0]);
+        return SF_REFUSE(err, "%s:%d: strain %s means a compression to nothing; it must be below 1 (100 %%)",
+                         p->path, p->line, p->text[0]);
     if (p->value[1] < 0.0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: stress %s is negative; compression is positive", p->path,
-                       p->line, p->text[1]);
+        return SF_REFUSE(err, "%s:%d: stress %s is negative; compression is positive", p->path, p->line,
+                         p->text[1]);
     if (p->index == 0)
         return p->value[0] == 0.0 && p->value[1] != 0.0
-                   ? SF_FAIL(err, SF_ERR_INPUT,
-                             "%s:%d: stress %s at zero strain; the curve must start at (0, 0)", p->path,
-                             p->line, p->text[1])
+                   ? SF_REFUSE(err, "%s:%d: stress %s at zero strain; the curve must start at (0, 0)",
+                               p->path, p->line, p->text[1])
                    : SF_OK;
     if (p->value[0] <= p->before[0])
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: strain %s is not above the one before it (%g)", p->path,
-                       p->line, p->text[0], p->last[0]);
+        return SF_REFUSE(err, "%s:%d: strain %s is not above the one before it (%g)", p->path, p->line,
+                         p->text[0], p->last[0]);
     if (p->value[1] < p->before[1])
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s:%d: stress %s is below the one before it (%g); it must not fall", p->path, p->line,
-                       p->text[1], p->last[1]);
+        return SF_REFUSE(err, "%s:%d: stress %s is below the one before it (%g); it must not fall", p->path,
+                         p->line, p->text[1], p->last[1]);
     return SF_OK;
 }
 
@@ -71,8 +68,7 @@ static sf_status take_points(const sf_table *table, sf_case_curve *curve, sf_err
     curve->count = (int64_t)(points + before);
     curve->strain = sf_alloc(err, points + before, sizeof *curve->strain, "the curve");
     curve->stress = sf_alloc(err, points + before, sizeof *curve->stress, "the curve");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     memcpy(curve->strain + before, table->value[0], points * sizeof *curve->strain);
     memcpy(curve->stress + before, table->value[1], points * sizeof *curve->stress);
     return SF_OK;
@@ -82,16 +78,15 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
     const sf_table_layout layout = sf_case_curve_layout("curve", check_point);
     sf_table table;
     memset(curve, 0, sizeof *curve);
-    if (sf_table_read(path, &layout, &table, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count < SF_CURVE_MIN_POINTS)
-        SF_FAIL(err, SF_ERR_INPUT, "%s: %lld points; a compression curve needs at least %d", path,
-                (long long)table.count, SF_CURVE_MIN_POINTS);
+        SF_REFUSE(err, "%s: %lld points; a compression curve needs at least %d", path, (long long)table.count,
+                  SF_CURVE_MIN_POINTS);
     else if (!(table.value[1][table.count - 1] > 0.0))
-        SF_FAIL(err, SF_ERR_INPUT, "%s: the stress is zero everywhere", path);
+        SF_REFUSE(err, "%s: the stress is zero everywhere", path);
     else if (!(table.value[0][table.count - 1] >= SF_CURVE_MIN_END))
-        SF_FAIL(err, SF_ERR_INPUT, "%s: the curve stops at the strain %g; it must reach at least %g", path,
-                table.value[0][table.count - 1], SF_CURVE_MIN_END);
+        SF_REFUSE(err, "%s: the curve stops at the strain %g; it must reach at least %g", path,
+                  table.value[0][table.count - 1], SF_CURVE_MIN_END);
     else
         take_points(&table, curve, err);
     if (!table.plain)
@@ -106,42 +101,35 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
 
 enum { MOST_CURVES = 64 };
 
+/* A new array with the bytes of both, one after the other. */
+static void *join(const void *a, size_t a_size, const void *b, size_t b_size, sf_error *err) {
+    char *both = sf_alloc(err, a_size + b_size, 1, "curves");
+    if (both && a_size > 0)
+        memcpy(both, a, a_size);
+    if (both)
+        memcpy(both + a_size, b, b_size);
+    return both;
+}
+
 /* Appends a curve to the card's lists. */
 static sf_status add_curve(sf_law_curves *card, double rate, const sf_case_curve *curve, sf_error *err) {
-    size_t curves = (size_t)card->curve_count, points = (size_t)card->curve_points,
-           more = (size_t)curve->count;
-    double *rates = sf_alloc(err, curves + 1, sizeof *rates, "curve rates");
-    int64_t *ptr = sf_alloc(err, curves + 2, sizeof *ptr, "curve list");
-    double *strain = sf_alloc(err, points + more, sizeof *strain, "curve strains");
-    double *stress = sf_alloc(err, points + more, sizeof *stress, "curve stresses");
-    if (!rates || !ptr || !strain || !stress) {
-        free(rates);
-        free(ptr);
-        free(strain);
-        free(stress);
-        return err->status;
+    size_t curves = (size_t)card->curve_count, points = (size_t)card->curve_points * sizeof(double),
+           more = (size_t)curve->count * sizeof(double), rows = curves > 0 ? curves + 1 : 0;
+    const int64_t ends[2] = {0, card->curve_points + curve->count};
+    sf_law_curves all = {.curve_count = card->curve_count + 1,
+                         .curve_points = ends[1],
+                         .curve_rate = join(card->curve_rate, curves * sizeof rate, &rate, sizeof rate, err),
+                         .curve_ptr = join(card->curve_ptr, rows * sizeof *ends, &ends[rows > 0],
+                                           (rows > 0 ? 1 : 2) * sizeof *ends, err),
+                         .curve_strain = join(card->curve_strain, points, curve->strain, more, err),
+                         .curve_stress = join(card->curve_stress, points, curve->stress, more, err)};
+    if (err->status == SF_OK) {
+        sf_law_curves_free(card);
+        *card = all;
+    } else {
+        sf_law_curves_free(&all);
     }
-    if (curves > 0) {
-        memcpy(rates, card->curve_rate, curves * sizeof *rates);
-        memcpy(ptr, card->curve_ptr, (curves + 1) * sizeof *ptr);
-        memcpy(strain, card->curve_strain, points * sizeof *strain);
-        memcpy(stress, card->curve_stress, points * sizeof *stress);
-        free(card->curve_rate);
-        free(card->curve_ptr);
-        free(card->curve_strain);
-        free(card->curve_stress);
-    }
-    memcpy(strain + points, curve->strain, more * sizeof *strain);
-    memcpy(stress + points, curve->stress, more * sizeof *stress);
-    rates[curves] = rate;
-    ptr[curves + 1] = (int64_t)(points + more);
-    card->curve_rate = rates;
-    card->curve_ptr = ptr;
-    card->curve_strain = strain;
-    card->curve_stress = stress;
-    card->curve_count++;
-    card->curve_points += curve->count;
-    return SF_OK;
+    return err->status;
 }
 
 static const double STEEPEST = 1e12; /* Pa, as the bound on a modulus */
@@ -151,8 +139,8 @@ static sf_status check_slopes(const char *path, const sf_case_curve *curve, sf_e
     for (int64_t k = 1; k < curve->count; k++) {
         double slope = (curve->stress[k] - curve->stress[k - 1]) / (curve->strain[k] - curve->strain[k - 1]);
         if (!(slope <= STEEPEST))
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "%s: from the strain %g to %g the stress rises from %g to %g Pa, with a modulus of "
                 "%.3g Pa; at most %g Pa are possible",
                 path, curve->strain[k - 1], curve->strain[k], curve->stress[k - 1], curve->stress[k], slope,
@@ -166,8 +154,8 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     char where[SF_CASE_WHERE_SIZE];
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: the name of a curve's CSV file is expected",
-                       sf_case_where(reader, setting, where), reader->material_group);
+        return SF_REFUSE_AT(reader, setting, err, "%s: the name of a curve's CSV file is expected",
+                            reader->material_group);
     char *path = sf_case_resolve(reader, setting, text, err);
     if (!path)
         return err->status;
@@ -202,40 +190,36 @@ static const curve_order RATES = {"rate", "0.0017 1/s", "s-1", SF_RATE},
 /* One { rate = "..."; file = "..."; } of material.curves, or with a temperature. */
 static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, const curve_order *order,
                             sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_law_curves *card = sf_material_curves(reader->material);
     const config_setting_t *rate =
         config_setting_is_group(entry) ? config_setting_get_member(entry, order->key) : NULL;
     const config_setting_t *file =
         config_setting_is_group(entry) ? config_setting_get_member(entry, "file") : NULL;
     if (!rate || !file || config_setting_length(entry) != 2)
-        return SF_FAIL(
-            err, SF_ERR_INPUT, "%s: %s.curves: each entry must be { %s = \"%s\"; file = \"name.csv\"; }",
-            sf_case_where(reader, entry, where), reader->material_group, order->key, order->example);
+        return SF_REFUSE_AT(reader, entry, err,
+                            "%s.curves: each entry must be { %s = \"%s\"; file = \"name.csv\"; }",
+                            reader->material_group, order->key, order->example);
     const char *text = config_setting_get_string(rate);
     sf_error inner = SF_ERROR_INIT;
     double value = 0.0;
     if (!text)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: the %s must be a text such as \"%s\"",
-                       sf_case_where(reader, rate, where), reader->material_group, order->key,
-                       order->example);
+        return SF_REFUSE_AT(reader, rate, err, "%s.curves: the %s must be a text such as \"%s\"",
+                            reader->material_group, order->key, order->example);
     if (sf_units_parse(reader->units, text, order->quantity, &value, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %s", sf_case_where(reader, rate, where),
-                       reader->material_group, inner.text);
+        return SF_REFUSE_AT(reader, rate, err, "%s.curves: %s", reader->material_group, inner.text);
     double last = card->curve_count > 0 ? card->curve_rate[card->curve_count - 1] : 0.0;
     if (!(value > last))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %s.curves: the %s %g %s is not above %g %s before it; %ss must be "
-                       "positive and ascend",
-                       sf_case_where(reader, rate, where), reader->material_group, order->key, value,
-                       order->unit, last, order->unit, order->key);
+        return SF_REFUSE_AT(reader, rate, err,
+                            "%s.curves: the %s %g %s is not above %g %s before it; %ss must be "
+                            "positive and ascend",
+                            reader->material_group, order->key, value, order->unit, last, order->unit,
+                            order->key);
     return read_file(reader, file, value, err);
 }
 
 /* A stress that falls with the rate would create energy. */
 static sf_status check_order(const sf_case_reader *reader, const config_setting_t *list, int k,
                              sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_law_curves *card = sf_material_curves(reader->material);
     const config_setting_t *file[2];
     sf_curve_fall fall;
@@ -243,13 +227,13 @@ static sf_status check_order(const sf_case_reader *reader, const config_setting_
         return SF_OK;
     for (int i = 0; i < 2; i++)
         file[i] = config_setting_get_member(config_setting_get_elem(list, (unsigned)(k - 1 + i)), "file");
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "%s: %s.curves: at a strain of %.3g the stress falls with the rate, from %.4g kPa at %g s-1 (%s) "
+    return SF_REFUSE_AT(
+        reader, file[1], err,
+        "%s.curves: at a strain of %.3g the stress falls with the rate, from %.4g kPa at %g s-1 (%s) "
         "to %.4g kPa at %g s-1 (%s): are the rates or the files exchanged? Such a foam would create "
         "energy",
-        sf_case_where(reader, file[1], where), reader->material_group, fall.strain, 1e-3 * fall.slow,
-        card->curve_rate[k - 1], config_setting_get_string(file[0]), 1e-3 * fall.fast, card->curve_rate[k],
+        reader->material_group, fall.strain, 1e-3 * fall.slow, card->curve_rate[k - 1],
+        config_setting_get_string(file[0]), 1e-3 * fall.fast, card->curve_rate[k],
         config_setting_get_string(file[1]));
 }
 
@@ -275,8 +259,7 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
     double *strain = sf_alloc(err, (unsigned long)count, sizeof *strain, "curve"),
            *stress = sf_alloc(err, (unsigned long)count, sizeof *stress, "curve");
     *out = (sf_case_curve){.strain = strain, .stress = stress};
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     memcpy(strain, &c->curve_strain[first], (size_t)count * sizeof *strain);
     qsort(strain, (size_t)count, sizeof *strain, compare);
     for (int64_t i = 0; i < count && strain[i] <= end; i++) {
@@ -292,22 +275,20 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
 /* Leaves the curve at the pad's temperature, of those at several, whose temperatures stand in place of rates.
  */
 static sf_status take_temperature(sf_case_reader *reader, const config_setting_t *setting, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     sf_law_curves *card = sf_material_curves(reader->material);
     const double *t = card->curve_rate, at = reader->out->temperature;
     int64_t last = card->curve_count - 1, k = 0;
     sf_case_curve curve = {0};
     if (last < 1 || at == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: curves at temperatures need %s",
-                       sf_case_where(reader, setting, where), reader->material_group,
-                       at == 0 ? "pad.temperature, such as \"23 degC\", in the case" : "two of them or more");
+        return SF_REFUSE_AT(
+            reader, setting, err, "%s.curves: curves at temperatures need %s", reader->material_group,
+            at == 0 ? "pad.temperature, such as \"23 degC\", in the case" : "two of them or more");
     if (at < t[0] || at > t[last])
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: %s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
+        return SF_REFUSE_AT(
+            reader, setting, err,
+            "%s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
             "extrapolation",
-            sf_case_where(reader, setting, where), reader->material_group, at - 273.15, t[0] - 273.15,
-            t[last] - 273.15);
+            reader->material_group, at - 273.15, t[0] - 273.15, t[last] - 273.15);
     while (k < last - 1 && at > t[k + 1])
         k++;
     if (interpolate(card, k, (at - t[k]) / (t[k + 1] - t[k]), &curve, err) == SF_OK) {
@@ -331,23 +312,21 @@ static void describe(const sf_law_curves *card, char *detail, size_t size) {
 
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     if (sf_material_curves(reader->material)->curve_count > 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has both curve and curves; only one of them may be given",
-                       sf_case_where(reader, setting, where), reader->material_group);
+        return SF_REFUSE_AT(reader, setting, err,
+                            "%s has both curve and curves; only one of them may be given",
+                            reader->material_group);
     if (strcmp(config_setting_name(setting), "curve") == 0) {
-        if (read_file(reader, setting, 0.0, err) != SF_OK)
-            return err->status;
+        SF_TRY(read_file(reader, setting, 0.0, err));
     } else {
         if (!config_setting_is_list(setting) || config_setting_length(setting) == 0)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
-                "%s: %s.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
-                sf_case_where(reader, setting, where), reader->material_group);
+            return SF_REFUSE_AT(
+                reader, setting, err,
+                "%s.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
+                reader->material_group);
         if (config_setting_length(setting) > MOST_CURVES)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.curves: %d curves; at most %d are read",
-                           sf_case_where(reader, setting, where), reader->material_group,
-                           config_setting_length(setting), MOST_CURVES);
+            return SF_REFUSE_AT(reader, setting, err, "%s.curves: %d curves; at most %d are read",
+                                reader->material_group, config_setting_length(setting), MOST_CURVES);
         const config_setting_t *head = config_setting_get_elem(setting, 0);
         bool thermal = config_setting_is_group(head) && config_setting_get_member(head, "temperature");
         const curve_order *order = thermal ? &TEMPERATURES : &RATES;
@@ -371,20 +350,19 @@ static sf_status check_motion_point(const sf_table_point *p, sf_error *err) {
     if (p->index == 0) {
         for (int c = 0; c < 2; c++)
             if (p->value[c] != 0.0)
-                return SF_FAIL(err, SF_ERR_INPUT,
-                               "%s:%d: %s %s in the first point; a motion starts at (0, 0)", p->path, p->line,
-                               c ? "displacement" : "time", p->text[c]);
+                return SF_REFUSE(err, "%s:%d: %s %s in the first point; a motion starts at (0, 0)", p->path,
+                                 p->line, c ? "displacement" : "time", p->text[c]);
         return SF_OK;
     }
     double span = p->value[0] - p->before[0];
     if (!(span > 0.0))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: time %s is not above the one before it (%g)", p->path,
-                       p->line, p->text[0], p->last[0]);
+        return SF_REFUSE(err, "%s:%d: time %s is not above the one before it (%g)", p->path, p->line,
+                         p->text[0], p->last[0]);
     double speed = fabs(p->value[1] - p->before[1]) / span;
     if (!(speed <= SF_MOTION_MAX_SPEED))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s:%d: displacement %s after %g means a speed of %g m/s; at most %g m/s are possible",
-                       p->path, p->line, p->text[1], p->last[1], speed, SF_MOTION_MAX_SPEED);
+        return SF_REFUSE(
+            err, "%s:%d: displacement %s after %g means a speed of %g m/s; at most %g m/s are possible",
+            p->path, p->line, p->text[1], p->last[1], speed, SF_MOTION_MAX_SPEED);
     return SF_OK;
 }
 
@@ -411,10 +389,9 @@ static sf_status check_motion_table(const char *path, const sf_table *table, sf_
     for (int64_t k = 0; k < table->count; k++)
         largest = fmax(largest, fabs(table->value[1][k]));
     if (table->count < 2)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %lld points; a motion needs at least 2", path,
-                       (long long)table->count);
+        return SF_REFUSE(err, "%s: %lld points; a motion needs at least 2", path, (long long)table->count);
     if (!(largest > 0.0))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: the displacement is zero everywhere", path);
+        return SF_REFUSE(err, "%s: the displacement is zero everywhere", path);
     return SF_OK;
 }
 
@@ -424,8 +401,7 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     sf_case *c = reader->out;
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: missile.motion: the name of a CSV file is expected",
-                       sf_case_where(reader, setting, where));
+        return SF_REFUSE_AT(reader, setting, err, "missile.motion: the name of a CSV file is expected");
     char *path = sf_case_resolve(reader, setting, text, err);
     if (!path)
         return err->status;

@@ -18,9 +18,27 @@ enum { MOST_WORDS = 20000, DEEPEST = 32, LONGEST = 4096 /* characters of a strin
 
 static const char DIGITS[] = "0123456789", HEXADECIMAL[] = "0123456789abcdefABCDEF";
 
+/* One text, with everything that it includes. Begins with zeros; `path` and `line` are those of the line that
+ * follows, for the sentences. */
+typedef struct scan_state {
+    const char *path;
+    int line;
+    bool open; /* within a comment that began on `open_line` */
+    int open_line;
+    int comments; /* so far, like the next */
+    int words;    /* names, numbers and strings */
+    int depth;    /* of brackets */
+} scan_state;
+
+/* A piece of a line, not terminated. */
+typedef struct slice {
+    const char *text; /* NULL: none */
+    size_t length;
+} slice;
+
 /* The line being read. */
 typedef struct cursor {
-    sf_case_scan *scan;
+    scan_state *scan;
     const char *at, *end;
     sf_error *err;
 } cursor;
@@ -28,8 +46,8 @@ typedef struct cursor {
 /* Records "path:line: sentence", of a line 0 "path: sentence". */
 #define REFUSE(c, ...) refuse((c)->scan, (c)->scan->line, (c)->err, __LINE__, __VA_ARGS__)
 
-__attribute__((format(printf, 5, 6))) static sf_status
-refuse(const sf_case_scan *scan, int line, sf_error *err, int source_line, const char *format, ...) {
+__attribute__((format(printf, 5, 6))) static sf_status refuse(const scan_state *scan, int line, sf_error *err,
+                                                              int source_line, const char *format, ...) {
     char sentence[400], number[16] = "";
     va_list args;
     va_start(args, format);
@@ -176,7 +194,7 @@ static sf_status read_item(cursor *c) {
 }
 
 /* `@include "name"`, and a comment at most behind it. */
-static sf_status read_include(cursor *c, sf_case_slice *include) {
+static sf_status read_include(cursor *c, slice *include) {
     c->at += 8;
     c->at += blanks(c);
     const char *name = c->at + 1;
@@ -186,7 +204,7 @@ static sf_status read_include(cursor *c, sf_case_slice *include) {
         ;
     if (c->at == c->end)
         return REFUSE(c, "%s", "@include: the name of the file is not closed with \"");
-    *include = (sf_case_slice){name, (size_t)(c->at - name)};
+    *include = (slice){name, (size_t)(c->at - name)};
     c->at++;
     c->at += blanks(c);
     if (c->at < c->end && !begins(c, "#") && !begins(c, "//"))
@@ -196,11 +214,12 @@ static sf_status read_include(cursor *c, sf_case_slice *include) {
     return include->length > 0 ? SF_OK : REFUSE(c, "%s", "@include: the name of the file is empty");
 }
 
-sf_status sf_case_scan_line(sf_case_scan *scan, const char *line, size_t length, sf_case_slice *include,
-                            sf_error *err) {
+/* Reads one line (`length` characters, without its line end). `include` receives the file name of an
+ * `@include "name"`. */
+static sf_status scan_line(scan_state *scan, const char *line, size_t length, slice *include, sf_error *err) {
     bool dos = length > 0 && line[length - 1] == '\r';
     cursor c = {scan, line, line + length - dos, err};
-    *include = (sf_case_slice){0};
+    *include = (slice){0};
     if (memchr(line, '\0', length))
         return REFUSE(&c, "%s", "a zero byte: this is not a text file");
     if (memchr(line, '\r', length - dos))
@@ -218,7 +237,8 @@ sf_status sf_case_scan_line(sf_case_scan *scan, const char *line, size_t length,
     return err->status;
 }
 
-sf_status sf_case_scan_end(const sf_case_scan *scan, sf_error *err) {
+/* At the end of a file: an open comment is refused. */
+static sf_status scan_end(const scan_state *scan, sf_error *err) {
     if (scan->open)
         return refuse(scan, scan->open_line, err, __LINE__,
                       "the comment that begins here is not closed with */");
@@ -226,10 +246,10 @@ sf_status sf_case_scan_end(const sf_case_scan *scan, sf_error *err) {
 }
 
 sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err) {
-    sf_case_scan scan = {.path = name};
-    sf_case_slice include;
-    SF_TRY(sf_case_scan_line(&scan, text, strlen(text), &include, err));
-    SF_TRY(sf_case_scan_end(&scan, err));
+    scan_state scan = {.path = name};
+    slice include;
+    SF_TRY(scan_line(&scan, text, strlen(text), &include, err));
+    SF_TRY(scan_end(&scan, err));
     if (scan.comments > 0)
         return refuse(&scan, 0, err, __LINE__, "the value holds a comment");
     return SF_OK;
@@ -269,141 +289,119 @@ const char *sf_case_source_find(const sf_case_source *source, int line, int *fil
     return source->piece[k].path;
 }
 
-/* ---- the walk over includes ---- */
+/* ---- the text with its includes in place ---- */
 
 typedef struct walk {
-    const sf_case_visitor *visitor;
-    const char *folder; /* of the case: includes are relative to it */
+    FILE *out;
+    int lines;              /* written */
+    sf_case_source *source; /* NULL: not wanted */
+    bool marked, whole;     /* as sf_case_load_marked */
+    const char *folder;     /* of the case: includes are relative to it */
     int includes;
     size_t bytes; /* read so far: includes of includes multiply */
-    sf_case_scan scan;
+    scan_state scan;
 } walk;
 
-static sf_status walk_file(walk *w, const char *path, const sf_case_slice *included_as, const char *from,
-                           int line, int depth, sf_error *err);
+static sf_status no_memory(const char *path, sf_error *err) {
+    return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+}
 
-static sf_status walk_include(walk *w, const sf_case_slice *name, const char *path, int line, int depth,
+/* The next line of the text is line `line` of the file. */
+static sf_status begin_piece(const walk *w, const char *path, int line, sf_error *err) {
+    sf_case_source *source = w->source;
+    if (!source)
+        return SF_OK;
+    sf_case_piece *grown = realloc(source->piece, (size_t)(source->count + 1) * sizeof *grown);
+    if (grown)
+        source->piece = grown;
+    char *name = grown ? strdup(path) : NULL;
+    if (!name)
+        return no_memory(path, err);
+    source->piece[source->count++] = (sf_case_piece){w->lines + 1, line, name};
+    return SF_OK;
+}
+
+static sf_status walk_file(walk *w, const char *path, const char *from, int line, int depth, sf_error *err);
+
+/* The file of an include in place of its line, `text`. */
+static sf_status walk_include(walk *w, slice text, slice name, const char *path, int line, int depth,
                               sf_error *err) {
-    const sf_case_visitor *v = w->visitor;
-    char *included = NULL;
+    char *included = NULL, *whole = NULL;
+    const char *shown = name.text;
+    int length = (int)name.length;
     if (++w->includes > MOST_INCLUDES)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: more than %d files are included", path, line,
-                       MOST_INCLUDES);
-    if (asprintf(&included, "%s%s%.*s", *name->text == '/' ? "" : w->folder, *name->text == '/' ? "" : "/",
-                 (int)name->length, name->text) < 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-    if (walk_file(w, included, name, path, line, depth + 1, err) == SF_OK && v->resume)
-        v->resume(v->context, path, line + 1, err);
+        return SF_REFUSE(err, "%s:%d: more than %d files are included", path, line, MOST_INCLUDES);
+    if (asprintf(&included, "%s%s%.*s", *name.text == '/' ? "" : w->folder, *name.text == '/' ? "" : "/",
+                 length, name.text) < 0)
+        return no_memory(path, err);
+    if (w->whole && (whole = sf_path_whole(NULL, included, err))) {
+        shown = whole;
+        length = (int)strlen(whole);
+    }
+    if (w->marked)
+        fprintf(w->out, "#%c%.*s%.*s%.*s\n", SF_CASE_BEGIN, (int)(name.text - text.text), text.text, length,
+                shown, (int)(text.length - (size_t)(name.text - text.text) - name.length),
+                name.text + name.length);
+    else
+        fprintf(w->out, SF_INCLUDED_BEGIN "%.*s" SF_INCLUDED_END "\n", length, shown);
+    w->lines++;
+    if (err->status == SF_OK && walk_file(w, included, path, line, depth + 1, err) == SF_OK)
+        begin_piece(w, path, line + 1, err);
+    if (w->marked)
+        fprintf(w->out, "#%c\n", SF_CASE_END);
     free(included);
+    free(whole);
     return err->status;
 }
 
 static sf_status walk_lines(walk *w, const char *text, size_t size, const char *path, int depth,
                             sf_error *err) {
-    const sf_case_visitor *v = w->visitor;
     for (int line = 1; size > 0; line++) {
         const char *end = memchr(text, '\n', size);
         size_t length = end ? (size_t)(end - text) : size;
-        sf_case_slice include;
+        slice include;
         w->scan.path = path;
         w->scan.line = line;
-        SF_TRY(sf_case_scan_line(&w->scan, text, length, &include, err));
-        if (!include.text) {
-            SF_TRY(v->line(v->context, text, length, end != NULL, err));
+        SF_TRY(scan_line(&w->scan, text, length, &include, err));
+        if (include.text) {
+            SF_TRY(walk_include(w, (slice){text, length}, include, path, line, depth, err));
         } else {
-            if (v->include)
-                SF_TRY(v->include(v->context, text, length, end != NULL, &include, err));
-            SF_TRY(walk_include(w, &include, path, line, depth, err));
+            if (w->marked && (memchr(text, SF_CASE_BEGIN, length) || memchr(text, SF_CASE_END, length)))
+                return SF_REFUSE(err, "%s:%d: a control character", path, line);
+            fwrite(text, 1, length, w->out);
+            fputs(end || depth > 0 || !w->marked ? "\n" : "", w->out);
+            w->lines++;
         }
         text += length + (end != NULL);
         size -= length + (end != NULL);
     }
     w->scan.path = path;
-    return sf_case_scan_end(&w->scan, err);
+    return scan_end(&w->scan, err);
 }
 
-/* `from`: the file with the @include, at `line`; NULL: none. */
-static sf_status walk_file(walk *w, const char *path, const sf_case_slice *included_as, const char *from,
-                           int line, int depth, sf_error *err) {
-    const sf_case_visitor *v = w->visitor;
+/* `from`: the file with the @include, at `line`; NULL: none. Refuses includes that are missing or no plain
+ * files, nested or many beyond reason, and what the scan refuses. */
+static sf_status walk_file(walk *w, const char *path, const char *from, int line, int depth, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE] = "", *text = NULL;
     size_t size = 0;
     sf_error inner = SF_ERROR_INIT;
     if (from)
         snprintf(where, sizeof where, "%s:%d: ", from, line);
     if (depth > INCLUDE_DEPTH)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s@include is nested more than %d deep", where, INCLUDE_DEPTH);
+        return SF_REFUSE(err, "%s@include is nested more than %d deep", where, INCLUDE_DEPTH);
     if (sf_plain_read(path, "file", LARGEST_TEXT, &text, &size, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "%s%s", where, inner.text);
     size_t mark = strncmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark */
     w->bytes += size;
     if (w->bytes > LARGEST_TEXT)
-        SF_FAIL(err, SF_ERR_INPUT, "%sthe file %s and its includes are larger than %d bytes", where, path,
-                LARGEST_TEXT);
-    else if ((!v->begin || v->begin(v->context, path, included_as, err) == SF_OK) &&
-             walk_lines(w, text + mark, size - mark, path, depth, err) == SF_OK && v->end)
-        v->end(v->context, err);
+        SF_REFUSE(err, "%sthe file %s and its includes are larger than %d bytes", where, path, LARGEST_TEXT);
+    else if (begin_piece(w, path, 1, err) == SF_OK)
+        walk_lines(w, text + mark, size - mark, path, depth, err);
     free(text);
     return err->status;
 }
 
-sf_status sf_case_walk(const char *path, const sf_case_visitor *visitor, sf_error *err) {
-    char *folder = sf_case_folder_of(path, err);
-    walk w = {.visitor = visitor, .folder = folder};
-    if (folder)
-        walk_file(&w, path, NULL, NULL, 0, 0, err);
-    free(folder);
-    return err->status;
-}
-
-/* ---- the text with its includes in place ---- */
-
-typedef struct text_copy {
-    FILE *out;
-    int lines;
-    sf_case_source *source; /* NULL: not wanted */
-} text_copy;
-
-/* The next line of the text is line `line` of the file. */
-static sf_status begin_piece(void *context, const char *path, int line, sf_error *err) {
-    const text_copy *copy = context;
-    sf_case_source *source = copy->source;
-    if (!source)
-        return SF_OK;
-    if (source->count == source->capacity) {
-        int capacity = source->capacity ? 2 * source->capacity : 8;
-        sf_case_piece *grown = realloc(source->piece, (size_t)capacity * sizeof *grown);
-        if (!grown)
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-        source->piece = grown;
-        source->capacity = capacity;
-    }
-    char *name = strdup(path);
-    if (!name)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-    source->piece[source->count++] = (sf_case_piece){copy->lines + 1, line, name};
-    return SF_OK;
-}
-
-static sf_status begin_copy(void *context, const char *path, const sf_case_slice *included_as,
-                            sf_error *err) {
-    text_copy *copy = context;
-    if (included_as) {
-        fprintf(copy->out, SF_INCLUDED_BEGIN "%.*s" SF_INCLUDED_END "\n", (int)included_as->length,
-                included_as->text);
-        copy->lines++;
-    }
-    return begin_piece(copy, path, 1, err);
-}
-
-static sf_status copy_line(void *context, const char *text, size_t length, bool ended, sf_error *err) {
-    text_copy *copy = context;
-    (void)ended;
-    fwrite(text, 1, length, copy->out);
-    fputc('\n', copy->out);
-    copy->lines++;
-    return err->status;
-}
+/* ---- overrides ---- */
 
 /* A file that stands in place of a group, each line as a comment. */
 static sf_status copy_as_comment(const char *path, FILE *out, sf_error *err) {
@@ -422,32 +420,35 @@ static void put_override(const char *text, FILE *out) {
     fputc('\n', out);
 }
 
+static char *load(walk *w, const char *path, int count, const char *const *overrides, sf_error *err) {
+    char *text = NULL, *folder = sf_case_folder_of(path, err);
+    size_t size = 0;
+    w->folder = folder;
+    w->out = folder ? open_memstream(&text, &size) : NULL;
+    if (w->out)
+        walk_file(w, path, NULL, 0, 0, err);
+    for (int i = 0; i < count && err->status == SF_OK && w->out; i++) {
+        const char *file = sf_case_override_file(overrides[i]);
+        put_override(overrides[i], w->out);
+        if (file)
+            copy_as_comment(file, w->out, err);
+    }
+    if (!w->out || fclose(w->out) != 0)
+        no_memory(path, err);
+    free(folder);
+    if (err->status == SF_OK)
+        return text;
+    free(text);
+    return NULL;
+}
+
 char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
                         sf_error *err) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-        return NULL;
-    }
-    text_copy copy = {.out = out, .source = source};
-    const sf_case_visitor visitor = {
-        .context = &copy, .begin = begin_copy, .line = copy_line, .resume = begin_piece};
-    sf_case_walk(path, &visitor, err);
-    for (int i = 0; i < count && err->status == SF_OK; i++) {
-        const char *file = sf_case_override_file(overrides[i]);
-        put_override(overrides[i], out);
-        if (file)
-            copy_as_comment(file, out, err);
-    }
-    if (fclose(out) != 0)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
-    if (err->status != SF_OK) {
-        free(text);
-        return NULL;
-    }
-    return text;
+    return load(&(walk){.source = source}, path, count, overrides, err);
+}
+
+char *sf_case_load_marked(const char *path, bool whole, sf_error *err) {
+    return load(&(walk){.marked = true, .whole = whole}, path, 0, NULL, err);
 }
 
 const char *sf_case_syntax_phrase(const char *text) {

@@ -3,11 +3,8 @@
  */
 #include "case/case.h"
 
-#include "case/rules.h"
-#include "case/override.h"
 #include "case/values.h"
 #include "case/reader.h"
-#include "case/value.h"
 
 #include "base/hash.h"
 #include "base/mat3.h"
@@ -38,7 +35,7 @@ static void add_unknown(unknown *u, const config_setting_t *item, const char *gr
 }
 
 static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE], names[400], near[64], meant[96] = "", more[480] = "";
+    char names[400], near[64], meant[96] = "", more[480] = "";
     const char *name = config_setting_name(u->first);
     sf_case_list_names(&reader->keys, u->group, names, sizeof names);
     const char *hint = sf_case_near_name(&reader->keys, u->group, name, near, sizeof near);
@@ -48,16 +45,15 @@ static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, 
         snprintf(more, sizeof more, "; unknown too: %s and %d more", u->others, u->count - NAMED_UNKNOWN);
     else if (u->count > 1)
         snprintf(more, sizeof more, "; unknown too: %s", u->others);
-    sf_case_where(reader, u->first, where);
     if (strcmp(u->group, "") == 0)
         strncat(names, ", materials", sizeof names - strlen(names) - 1);
     else if (strcmp(u->group, reader->material_group) == 0)
         strncat(names, ", " SF_RESPONSE_ERROR, sizeof names - strlen(names) - 1);
     if (*u->group)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown key \"%.80s\" in group %s%s%s; its keys are %s", where,
-                       name, u->group, meant, more, names);
-    return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown group \"%.80s\"%s%s; the groups are %s", where, name,
-                   meant, more, names);
+        return SF_REFUSE_AT(reader, u->first, err, "unknown key \"%.80s\" in group %s%s%s; its keys are %s",
+                            name, u->group, meant, more, names);
+    return SF_REFUSE_AT(reader, u->first, err, "unknown group \"%.80s\"%s%s; the groups are %s", name, meant,
+                        more, names);
 }
 
 /* Finds everything in `setting` (the group called `group`, "" for the file) that is not in the table. */
@@ -66,7 +62,7 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
     for (int i = 0; i < config_setting_length(setting); i++) {
         const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
         const char *name = config_setting_name(item);
-        char inner[SF_CASE_GROUP_SIZE], where[SF_CASE_WHERE_SIZE];
+        char inner[SF_CASE_GROUP_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
         if (sf_case_find_key(&reader->keys, group, name) || item == reader->layers ||
             sf_case_is_response_error(reader, group, name))
@@ -74,8 +70,7 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
         if (length >= (int)sizeof inner || !sf_case_is_group(&reader->keys, inner))
             add_unknown(u, item, group);
         else if (!config_setting_is_group(item))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s must be a group: %s: { ... }",
-                           sf_case_where(reader, item, where), inner, name);
+            return SF_REFUSE_AT(reader, item, err, "%s must be a group: %s: { ... }", inner, name);
         else
             SF_TRY(find_unknown(reader, item, inner, u, err));
     }
@@ -118,31 +113,22 @@ static void hash_value(sf_case *out, const sf_key *key, const char *name, const 
         out->values = sf_hash_bytes(out->values, part[k], strlen(part[k]) + 1);
 }
 
+/* A kind of key that is not listed is of SF_CASE_VALUE_OTHER. */
 static sf_case_value_kind value_kind(const sf_key *key) {
-    switch (key->kind) {
-    case SF_KEY_QUANTITY:
-    case SF_KEY_UNIT:
-    case SF_KEY_NAME:
-        return SF_CASE_VALUE_TEXT;
-    case SF_KEY_NAMES:
-    case SF_KEY_FIELDS:
-    case SF_KEY_TIMES:
-    case SF_KEY_QUANTITIES:
-    case SF_KEY_VECTOR:
-    case SF_KEY_PLACE:
-        return SF_CASE_VALUE_LIST;
-    case SF_KEY_NUMBER:
-        return SF_CASE_VALUE_NUMBER;
-    case SF_KEY_BOOL:
-        return SF_CASE_VALUE_FLAG;
-    case SF_KEY_CHOICE:
-        return SF_CASE_VALUE_WORD;
-    case SF_KEY_PATH:
-    case SF_KEY_MOTION:
-        return SF_CASE_VALUE_FILE;
-    default:
-        return SF_CASE_VALUE_OTHER;
-    }
+    static const struct {
+        sf_key_kind key;
+        sf_case_value_kind value;
+    } kinds[] = {{SF_KEY_QUANTITY, SF_CASE_VALUE_TEXT},   {SF_KEY_UNIT, SF_CASE_VALUE_TEXT},
+                 {SF_KEY_NAME, SF_CASE_VALUE_TEXT},       {SF_KEY_NAMES, SF_CASE_VALUE_LIST},
+                 {SF_KEY_FIELDS, SF_CASE_VALUE_LIST},     {SF_KEY_TIMES, SF_CASE_VALUE_LIST},
+                 {SF_KEY_QUANTITIES, SF_CASE_VALUE_LIST}, {SF_KEY_VECTOR, SF_CASE_VALUE_LIST},
+                 {SF_KEY_PLACE, SF_CASE_VALUE_LIST},      {SF_KEY_NUMBER, SF_CASE_VALUE_NUMBER},
+                 {SF_KEY_BOOL, SF_CASE_VALUE_FLAG},       {SF_KEY_CHOICE, SF_CASE_VALUE_WORD},
+                 {SF_KEY_PATH, SF_CASE_VALUE_FILE},       {SF_KEY_MOTION, SF_CASE_VALUE_FILE}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        if (kinds[k].key == key->kind)
+            return kinds[k].value;
+    return SF_CASE_VALUE_OTHER;
 }
 
 /* A text without the quotes that its print has. */
@@ -190,8 +176,7 @@ static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_erro
     config_init(&scratch);
     sf_status status = SF_OK;
     if (!config_read_string(&scratch, line))
-        status =
-            SF_FAIL(err, SF_ERR_INPUT, "the default of %s.%s is not valid: %s", key->group, key->name, line);
+        status = SF_REFUSE(err, "the default of %s.%s is not valid: %s", key->group, key->name, line);
     else
         status = sf_case_read_value(reader, key, config_setting_get_elem(scratch.root, 0), detail,
                                     sizeof detail, err);
@@ -222,8 +207,7 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
         if (key->kind == SF_KEY_LAW)
             snprintf(detail, sizeof detail, "%s", reader->material->law->name);
         if (setting) {
-            if (sf_case_read_value(reader, key, setting, detail, sizeof detail, err) != SF_OK)
-                return err->status;
+            SF_TRY(sf_case_read_value(reader, key, setting, detail, sizeof detail, err));
             list_value(reader, key, setting, detail, "given");
         } else if (!key->fallback) {
             return sf_case_missing_key(reader, key, err);
@@ -270,13 +254,13 @@ static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
     const char *name = setting ? config_setting_get_string(setting) : NULL;
     const sf_law *law = setting ? (name ? sf_law_find(name) : NULL) : sf_law_get(0);
     if (!law) {
-        char where[SF_CASE_WHERE_SIZE], known[256] = "";
+        char known[256] = "";
         size_t used = 0;
         for (int k = 0; sf_law_get(k) && used < sizeof known; k++)
             used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", k ? ", " : "",
                                      sf_law_get(k)->name);
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: \"%.80s\" is none of: %s",
-                       sf_case_where(reader, setting, where), path, name ? name : "", known);
+        return SF_REFUSE_AT(reader, setting, err, "%s: \"%.80s\" is none of: %s", path, name ? name : "",
+                            known);
     }
     if (reader->material_only && strcmp(reader->material_group, "material") != 0)
         sf_case_list_layer_keys(law, reader->material_group, &reader->keys);
@@ -304,7 +288,6 @@ static sf_status read_layer(const sf_case_reader *reader, const config_setting_t
 }
 
 static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     sf_case *c = reader->out;
     int count = config_setting_length(reader->layers);
     c->layer = sf_alloc(err, (unsigned long)count, sizeof *c->layer, "materials");
@@ -312,14 +295,14 @@ static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
         const config_setting_t *setting = config_setting_get_elem(reader->layers, (unsigned)k);
         const char *name = config_setting_name(setting);
         if (!config_setting_is_group(setting))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: materials.%.80s must be a group, the material of the volume of this name: "
-                           "materials = { NAME = { density = ...; }; }",
-                           sf_case_where(reader, setting, where), name);
+            return SF_REFUSE_AT(reader, setting, err,
+                                "materials.%.80s must be a group, the material of the volume of this name: "
+                                "materials = { NAME = { density = ...; }; }",
+                                name);
         if (strlen(name) >= SF_MATERIAL_NAME_SIZE)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: materials: the name \"%.80s\" is longer than %d characters",
-                           sf_case_where(reader, setting, where), name, SF_MATERIAL_NAME_SIZE - 1);
+            return SF_REFUSE_AT(reader, setting, err,
+                                "materials: the name \"%.80s\" is longer than %d characters", name,
+                                SF_MATERIAL_NAME_SIZE - 1);
         c->layer_count++;
         read_layer(reader, setting, &c->layer[k], err);
     }
@@ -328,27 +311,22 @@ static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
 
 /* The group `materials`, if there is one; `parted`: the case file has it, and no group `material`. */
 static sf_status find_layers(sf_case_reader *reader, bool parted, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const config_setting_t *found = config_lookup(&reader->config, "materials");
     int count = found && config_setting_is_group(found) ? config_setting_length(found) : 0;
     reader->layers = found;
-    if (found && parted && config_lookup(&reader->config, "material"))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: the pad is of layers, each with a material of its own: there is no place for one "
-                       "material from outside the case file; a layer takes it as materials.NAME (--set "
-                       "materials.NAME=@FILE)",
-                       sf_case_where(reader, found, where));
     if (found && config_lookup(&reader->config, "material"))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: the case has both material and materials: the first is for a pad of one material, "
-            "the second for one of layers",
-            sf_case_where(reader, found, where));
+        return SF_REFUSE_AT(
+            reader, found, err, "%s",
+            parted ? "the pad is of layers, each with a material of its own: there is no place for one "
+                     "material from outside the case file; a layer takes it as materials.NAME (--set "
+                     "materials.NAME=@FILE)"
+                   : "the case has both material and materials: the first is for a pad of one material, "
+                     "the second for one of layers");
     if (found && (count < 1 || count > SF_CASE_MAX_LAYERS))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: materials must be a group with the materials of 1 to %d layers by the names of "
-                       "their volumes: materials = { NAME = { density = ...; }; }",
-                       sf_case_where(reader, found, where), SF_CASE_MAX_LAYERS);
+        return SF_REFUSE_AT(reader, found, err,
+                            "materials must be a group with the materials of 1 to %d layers by the names of "
+                            "their volumes: materials = { NAME = { density = ...; }; }",
+                            SF_CASE_MAX_LAYERS);
     return SF_OK;
 }
 
@@ -357,13 +335,11 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
     if (!config_read_string(config, reader->out->text)) {
         int line = 0;
         const char *path = sf_case_source_find(&reader->source, config_error_line(config), &line);
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line,
-                       sf_case_syntax_phrase(config_error_text(config)));
+        return SF_REFUSE(err, "%s:%d: %s", path, line, sf_case_syntax_phrase(config_error_text(config)));
     }
     bool parted = config_lookup(config, "materials") && !config_lookup(config, "material");
     for (int i = 0; i < count; i++)
-        if (sf_case_override(config, overrides[i], err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_case_override(config, overrides[i], err));
     if (find_layers(reader, parted, err) != SF_OK || choose_law(reader, err) != SF_OK)
         return err->status;
     return check_names(reader, config_root_setting(config), "", err);
@@ -372,6 +348,37 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
 sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                        sf_case *out, sf_error *err) {
     return sf_case_read_values(path, count, overrides, sink, NULL, out, err);
+}
+
+/* Opens what a reader needs, and reads the text of the case or, of a material alone, puts its file in place
+ * of the group. */
+static sf_status begin_reading(sf_case_reader *reader, int count, const char *const *overrides,
+                               sf_error *err) {
+    sf_case *c = reader->out;
+    char *material = NULL;
+    config_init(&reader->config);
+    config_set_destructor(&reader->config, free); /* of the hooks */
+    reader->listing = open_memstream(&c->parameters, &reader->listing_size);
+    c->path = strdup(reader->path);
+    if (!reader->listing || !c->path || asprintf(&material, "material=@%s", reader->path) < 0)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case %s", reader->path);
+    if (sf_units_open(&reader->units, err) == SF_OK && reader->material_only) {
+        if (sf_case_override(&reader->config, material, err) == SF_OK && choose_law(reader, err) == SF_OK)
+            check_names(reader, config_root_setting(&reader->config), "", err);
+    } else if (err->status == SF_OK &&
+               (c->text = sf_case_load_text(reader->path, count, overrides, &reader->source, err))) {
+        parse_text(reader, count, overrides, err);
+    }
+    free(material);
+    return err->status;
+}
+
+static void end_reading(sf_case_reader *reader) {
+    if (reader->listing)
+        fclose(reader->listing);
+    sf_units_close(&reader->units);
+    config_destroy(&reader->config);
+    sf_case_source_free(&reader->source);
 }
 
 sf_status sf_case_read_values(const char *path, int count, const char *const *overrides, const sf_sink *sink,
@@ -383,30 +390,12 @@ sf_status sf_case_read_values(const char *path, int count, const char *const *ov
                              .material = &out->material,
                              .material_group = "material",
                              .listener = listener};
-    size_t listing_size = 0;
-    config_init(&reader.config);
-    config_set_destructor(&reader.config, free); /* of the hooks */
-    if (sf_units_open(&reader.units, err) != SF_OK)
-        goto done;
-    reader.listing = open_memstream(&out->parameters, &listing_size);
-    out->path = strdup(path);
-    if (!reader.listing || !out->path) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case %s", path);
-        goto done;
-    }
-    out->text = sf_case_load_text(path, count, overrides, &reader.source, err);
-    if (!out->text || parse_text(&reader, count, overrides, err) != SF_OK || read_keys(&reader, err) != SF_OK)
-        goto done;
-    if (sf_case_check_given(&reader, err) == SF_OK) {
+    if (begin_reading(&reader, count, overrides, err) == SF_OK && read_keys(&reader, err) == SF_OK &&
+        sf_case_check_given(&reader, err) == SF_OK) {
         complete(&reader, out);
         sf_case_check_complete(&reader, err);
     }
-done:
-    if (reader.listing)
-        fclose(reader.listing);
-    sf_units_close(&reader.units);
-    config_destroy(&reader.config);
-    sf_case_source_free(&reader.source);
+    end_reading(&reader);
     if (err->status != SF_OK)
         sf_case_free(out);
     return err->status;
@@ -414,28 +403,14 @@ done:
 
 /* The keys of a material file alone, into an empty case. */
 static sf_status read_alone(const char *path, sf_case *scratch, sf_error *err) {
-    char *override = NULL;
-    size_t size = 0;
     sf_case_reader reader = {.path = path,
                              .out = scratch,
                              .material = &scratch->material,
                              .material_group = "material",
                              .material_only = true};
-    config_init(&reader.config);
-    config_set_destructor(&reader.config, free);
-    reader.listing = open_memstream(&scratch->parameters, &size);
-    if (!reader.listing || asprintf(&override, "material=@%s", path) < 0)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material %s", path);
-    else if (sf_units_open(&reader.units, err) == SF_OK &&
-             sf_case_override(&reader.config, override, err) == SF_OK && choose_law(&reader, err) == SF_OK &&
-             check_names(&reader, config_root_setting(&reader.config), "", err) == SF_OK &&
-             read_keys(&reader, err) == SF_OK)
+    if (begin_reading(&reader, 0, NULL, err) == SF_OK && read_keys(&reader, err) == SF_OK)
         sf_case_check_card(&reader, err);
-    if (reader.listing)
-        fclose(reader.listing);
-    free(override);
-    sf_units_close(&reader.units);
-    config_destroy(&reader.config);
+    end_reading(&reader);
     return err->status;
 }
 

@@ -18,15 +18,16 @@ typedef struct sf_case_reader {
     sf_units *units;
     sf_case *out;
     config_t config;
-    sf_case_source source;                   /* of the settings without a hook */
-    sf_key_list keys;                        /* of the case's law */
-    const config_setting_t *layers;          /* the group `materials`; NULL: one material */
-    sf_material *material;                   /* under construction */
-    char material_group[SF_KEY_GROUP_SIZE];  /* "material", or "materials.NAME" */
-    bool given[SF_KEY_MAX];                  /* per row of `keys` */
-    bool material_only;                      /* read the keys of the material, and no others */
-    const sf_sink *sink;                     /* borrowed */
-    FILE *listing;                           /* the parameters text under construction */
+    sf_case_source source;                  /* of the settings without a hook */
+    sf_key_list keys;                       /* of the case's law */
+    const config_setting_t *layers;         /* the group `materials`; NULL: one material */
+    sf_material *material;                  /* under construction */
+    char material_group[SF_KEY_GROUP_SIZE]; /* "material", or "materials.NAME" */
+    bool given[SF_KEY_MAX];                 /* per row of `keys` */
+    bool material_only;                     /* read the keys of the material, and no others */
+    const sf_sink *sink;                    /* borrowed */
+    FILE *listing;                          /* the parameters text under construction */
+    size_t listing_size;
     const struct sf_case_listener *listener; /* of each value; NULL: nobody; borrowed */
 } sf_case_reader;
 
@@ -41,8 +42,15 @@ typedef struct sf_case_origin {
 
 /* "file:line", or "--set key=value" for a setting that came from the command line. */
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out);
-/* Location of a key "group.name", or of its group, or of the file: whatever is there. */
-const char *sf_case_where_is(const sf_case_reader *reader, const char *path, char *out);
+/* The setting "group.name", of the reader's material if it is one of "material"; else its group; NULL:
+ * neither is there. */
+const config_setting_t *sf_case_setting(const sf_case_reader *reader, const char *path);
+/* Records "where: sentence", SF_ERR_INPUT, for a setting; NULL: the file. */
+#define SF_REFUSE_AT(reader, setting, err, ...)                                                              \
+    sf_case_refuse(reader, setting, err, __FILE__, __LINE__, __VA_ARGS__)
+sf_status sf_case_refuse(const sf_case_reader *reader, const config_setting_t *setting, sf_error *err,
+                         const char *file, int line, const char *format, ...)
+    __attribute__((format(printf, 6, 7)));
 /* Resolves `path` against the folder of the file in which `setting` stands; from malloc. */
 char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *setting, const char *path,
                       sf_error *err);
@@ -51,4 +59,36 @@ bool sf_case_is_given(const sf_case_reader *reader, const char *group, const cha
 /* Records that the key is missing. */
 sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
 
+/* The rules that join several keys of a case, or a key with the law of the material. Each refusal is
+ * SF_ERR_INPUT with place, key, value and bound. Internal to src/case. */
+
+/* The card of the reader's material, and the law as the solver will build it. */
+sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err);
+/* The values as they are given. */
+sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err);
+/* The complete case; warnings go to the reader's sink. */
+sf_status sf_case_check_complete(const sf_case_reader *reader, sf_error *err);
+
+/* One setting of each kind of key. Internal to src/case. */
+
+/* Reads one setting into the case. `detail` receives the SI value for the listing. */
+sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
+                             char *detail, size_t size, sf_error *err);
+
+/* The group response_error of a material, which belongs to no law: softfall-fit drop writes it into the draws
+ * of a posterior, softfall-cfh uses it, the other programs check it and leave it. Internal to src/case. */
+
+#define SF_RESPONSE_ERROR "response_error"
+
+/* True if this is the group `response_error` in the group of the reader's material. */
+bool sf_case_is_response_error(const sf_case_reader *reader, const char *group, const char *name);
+
+/* Reads it into the case, if the material has it. SF_ERR_INPUT: no group, an unknown key, a value that is no
+ * number or out of bounds, an error without its standard deviation. Of a layer it is checked only. */
+sf_status sf_case_read_response_error(sf_case_reader *reader, sf_error *err);
+
+/* Values from the command line. Internal to src/case. */
+
+/* Puts one --set text into the configuration, whose destructor must be free(). */
+sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/rules.h"
+#include "case/reader.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,76 +10,68 @@
 #include "model/flight.h"
 #include "model/model.h"
 
-static sf_status check_guided(const sf_case_reader *reader, sf_error *err) {
-    static const char *const of_free[] = {"inertia", "centre", "angular_velocity"};
-    char where[SF_CASE_WHERE_SIZE], path[64];
-    for (int k = 0; k < 3; k++) {
-        snprintf(path, sizeof path, "missile.%s", of_free[k]);
-        if (sf_case_is_given(reader, "missile", of_free[k]))
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
-                "%s: %s has no meaning for a guided missile, which does not turn: leave it out, or set "
-                "missile.freedom = \"free\"",
-                sf_case_where_is(reader, path, where), path);
+#define AT(path) sf_case_setting(reader, path)
+#define REFUSE_AT(path, ...) SF_REFUSE_AT(reader, AT(path), err, __VA_ARGS__)
+#define REFUSE(path, ...) REFUSE_AT(path, path ": " __VA_ARGS__)
+
+/* Refuses the first of these keys, "one|two", that the case gives; `why`: behind its name. */
+static sf_status refuse_given(const sf_case_reader *reader, const char *group, const char *keys,
+                              const char *why, sf_error *err) {
+    char path[64];
+    for (int length; *keys; keys += length + (keys[length] == '|')) {
+        length = (int)strcspn(keys, "|");
+        snprintf(path, sizeof path, "%s.%.*s", group, length, keys);
+        if (sf_case_is_given(reader, group, path + strlen(group) + 1))
+            return REFUSE_AT(path, "%s%s", path, why);
     }
     return SF_OK;
 }
 
 static sf_status check_inertia(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     double p[3];
     if (c->inertia_count == 0 || sf_missile_inertia_is_possible(c->inertia, p))
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
-        "%s: missile.inertia: no body has the principal moments %.4g, %.4g and %.4g kg m2: they must be "
-        "positive, and none larger than the sum of the others",
-        sf_case_where_is(reader, "missile.inertia", where), p[0], p[1], p[2]);
+    return REFUSE("missile.inertia",
+                  "no body has the principal moments %.4g, %.4g and %.4g kg m2: they must be "
+                  "positive, and none larger than the sum of the others",
+                  p[0], p[1], p[2]);
 }
 
 static sf_status check_freedom(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     if (c->freedom == SF_MISSILE_GUIDED)
-        return check_guided(reader, err);
+        return refuse_given(reader, "missile", "inertia|centre|angular_velocity",
+                            " has no meaning for a guided missile, which does not turn: leave it out, or set "
+                            "missile.freedom = \"free\"",
+                            err);
     if (c->motion_count > 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: missile.freedom: a missile whose displacement missile.motion prescribes cannot be free",
-            sf_case_where_is(reader, "missile.freedom", where));
+        return REFUSE("missile.freedom",
+                      "a missile whose displacement missile.motion prescribes cannot be free");
     if (c->centre_count > 0 && c->inertia_count == 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: missile.centre needs missile.inertia: a solid of uniform density has its centre already",
-            sf_case_where_is(reader, "missile.centre", where));
+        return REFUSE_AT(
+            "missile.centre",
+            "missile.centre needs missile.inertia: a solid of uniform density has its centre already");
     return check_inertia(reader, err);
 }
 
 static sf_status check_motion(const sf_case_reader *reader, sf_error *err) {
-    static const char *const replaced[] = {"mass", "velocity", "gravity"};
-    char where[SF_CASE_WHERE_SIZE], path[64];
+    static const char *const needed[] = {"mass", "velocity"};
     const sf_case *c = reader->out;
     if (c->motion_count == 0) {
         for (int k = 0; k < 2; k++)
-            if (!sf_case_is_given(reader, "missile", replaced[k]))
-                return sf_case_missing_key(reader, sf_case_find_key(&reader->keys, "missile", replaced[k]),
+            if (!sf_case_is_given(reader, "missile", needed[k]))
+                return sf_case_missing_key(reader, sf_case_find_key(&reader->keys, "missile", needed[k]),
                                            err);
         return SF_OK;
     }
-    for (int k = 0; k < 3; k++) {
-        snprintf(path, sizeof path, "missile.%s", replaced[k]);
-        if (sf_case_is_given(reader, "missile", replaced[k]))
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
-                "%s: %s has no meaning when missile.motion prescribes the displacement: leave it out",
-                sf_case_where_is(reader, path, where), path);
-    }
+    SF_TRY(refuse_given(reader, "missile", "mass|velocity|gravity",
+                        " has no meaning when missile.motion prescribes the displacement: leave it out",
+                        err));
     double end = c->motion_time[c->motion_count - 1];
     if (!(c->run.end_time <= end * (1 + SF_MOTION_SLACK)))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: solver.end_time: %g s lies beyond the end of missile.motion (%g s)",
-                       sf_case_where_is(reader, "solver.end_time", where), c->run.end_time, end);
+        return REFUSE("solver.end_time", "%g s lies beyond the end of missile.motion (%g s)", c->run.end_time,
+                      end);
     return SF_OK;
 }
 
@@ -105,7 +97,7 @@ static sf_status check_law(const sf_case_reader *reader, sf_error *err) {
         place = sf_case_is_given(reader, "material", "curve") ? "material.curve" : "material.curves";
     sf_case_material_path(reader->material_group, place, path, sizeof path);
     config_lookup_string(&reader->config, path, &file);
-    return SF_FAIL(err, inner.status, "%s: %s: %s%s%s", sf_case_where_is(reader, place, where), path,
+    return SF_FAIL(err, inner.status, "%s: %s: %s%s%s", sf_case_where(reader, AT(place), where), path,
                    file ? file : "", file ? ": " : "", inner.text);
 }
 
@@ -120,75 +112,60 @@ sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err) {
     if (!m->law->check_keys || m->law->check_keys(m->card, &given, &place, &inner) == SF_OK)
         return check_law(reader, err);
     sf_case_material_path(reader->material_group, inner.text, text, sizeof text);
-    return SF_FAIL(err, inner.status, "%s: %s", sf_case_where_is(reader, place, where), text);
+    return SF_FAIL(err, inner.status, "%s: %s", sf_case_where(reader, AT(place), where), text);
 }
 
 /* All of a membrane's keys, or none. */
 static sf_status check_membrane(const sf_case_reader *reader, sf_error *err) {
-    static const char *const keys[] = {"E", "thickness", "density", "nu", "fabric"};
-    enum { NEEDED = 3, KEYS = 5 };
-    char where[SF_CASE_WHERE_SIZE], path[64];
-    bool there = reader->out->membrane_count > 0;
-    for (int k = 0; k < KEYS; k++) {
-        bool given = sf_case_is_given(reader, "membrane", keys[k]);
-        snprintf(path, sizeof path, "membrane.%s", keys[k]);
-        if (there && !given && k < NEEDED)
-            return sf_case_missing_key(reader, sf_case_find_key(&reader->keys, "membrane", keys[k]), err);
-        if (!there && given)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has no meaning without membrane.faces",
-                           sf_case_where_is(reader, path, where), path);
-    }
+    static const char *const needed[] = {"E", "thickness", "density"};
+    if (reader->out->membrane_count == 0)
+        return refuse_given(reader, "membrane", "E|thickness|density|nu|fabric",
+                            " has no meaning without membrane.faces", err);
+    for (int k = 0; k < 3; k++)
+        if (!sf_case_is_given(reader, "membrane", needed[k]))
+            return sf_case_missing_key(reader, sf_case_find_key(&reader->keys, "membrane", needed[k]), err);
     return SF_OK;
 }
 
 static const double FLATTEST = 0.0871557; /* cosine of 85 degrees */
 
 static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     const double *d = c->missile_card.direction, *up = c->up, *down = c->missile_card.down;
     double square = sf_dot3(d, d), length = sqrt(sf_dot3(up, up)), towards = -sf_dot3(d, up) / length;
     if (!(length > 0) || !isfinite(length) || !(sf_dot3(down, down) > 0) || !isfinite(sf_dot3(down, down)))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.up and missile.gravity_direction must have a length",
-                       sf_case_where_is(reader, "pad.up", where));
+        return REFUSE_AT("pad.up", "pad.up and missile.gravity_direction must have a length");
     if (c->base_rule == SF_BASE_RESTING && up[2] < (1 - 1e-9) * length)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.up: a resting pad lies on the ground, its face upwards; hold this one "
-                       "(pad.base = \"glued\" or \"smooth\")",
-                       sf_case_where_is(reader, "pad.up", where));
+        return REFUSE("pad.up", "a resting pad lies on the ground, its face upwards; hold this one "
+                                "(pad.base = \"glued\" or \"smooth\")");
     if (!(square > 0.0) || !(towards > 0.0) || !isfinite(square))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: missile.direction: [%g, %g, %g] does not point to the pad, whose face looks along "
-            "[%g, %g, %g]; give that by pad.up, for example [-1.0, 0.0, 0.0] of a wall that is "
-            "hit along x",
-            sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2], up[0], up[1], up[2]);
+        return REFUSE("missile.direction",
+                      "[%g, %g, %g] does not point to the pad, whose face looks along "
+                      "[%g, %g, %g]; give that by pad.up, for example [-1.0, 0.0, 0.0] of a wall that is "
+                      "hit along x",
+                      d[0], d[1], d[2], up[0], up[1], up[2]);
     if (towards < FLATTEST * sqrt(square))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: missile.direction: [%g, %g, %g] is %.1f degrees from the normal of the pad's face (pad.up) and "
-            "grazes it; at most %.0f degrees are possible",
-            sf_case_where_is(reader, "missile.direction", where), d[0], d[1], d[2],
-            acos(towards / sqrt(square)) * 180 / M_PI, acos(FLATTEST) * 180 / M_PI);
+        return REFUSE("missile.direction",
+                      "[%g, %g, %g] is %.1f degrees from the normal of the pad's face (pad.up) and "
+                      "grazes it; at most %.0f degrees are possible",
+                      d[0], d[1], d[2], acos(towards / sqrt(square)) * 180 / M_PI,
+                      acos(FLATTEST) * 180 / M_PI);
     return SF_OK;
 }
 
 /* The speed is that of first contact: the missile must have been slower at the start of its fall. */
 static sf_status check_flight(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_missile_card *card = &reader->out->missile_card;
     if (isfinite(sf_flight_time(card)))
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: missile.gap: in a fall over %g m from rest the missile gets faster (%.4g m/s) than "
-                   "missile.velocity, %g m/s, which is its speed at first contact",
-                   sf_case_where_is(reader, "missile.gap", where), card->gap,
-                   sqrt(2 * sf_flight_pull(card) * card->gap), card->speed);
+    return REFUSE("missile.gap",
+                  "in a fall over %g m from rest the missile gets faster (%.4g m/s) than "
+                  "missile.velocity, %g m/s, which is its speed at first contact",
+                  card->gap, sqrt(2 * sf_flight_pull(card) * card->gap), card->speed);
 }
 
 /* The free missile falls while it travels along its direction. */
 static sf_status check_reach(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     SF_TRY(check_flight(reader, err));
     const sf_missile_card *card = &c->missile_card;
@@ -199,10 +176,10 @@ static sf_status check_reach(const sf_case_reader *reader, sf_error *err) {
         reach = sf_flight_start_speed(card) * time + 0.5 * sf_flight_pull(card) * time * time;
     if (reach > card->gap)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: missile.gap: the missile travels %g m until solver.end_time (%g s) and never reaches "
-                   "the pad, which is %g m away",
-                   sf_case_where_is(reader, "missile.gap", where), reach, time, card->gap);
+    return REFUSE("missile.gap",
+                  "the missile travels %g m until solver.end_time (%g s) and never reaches "
+                  "the pad, which is %g m away",
+                  reach, time, card->gap);
 }
 
 /* A curve needs 3 rows of the history, one per step; frames are files' worth of fields. */
@@ -211,28 +188,25 @@ static sf_status check_times(const sf_case_reader *reader, sf_error *err) {
     const sf_case *c = reader->out;
     const sf_run_options *run = &c->run;
     if (run->end_time < LEAST_STEPS * run->step_limit)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: solver.end_time: %g s is less than %d times solver.step_limit (%g s): there "
-                       "would be no curve",
-                       sf_case_where_is(reader, "solver.end_time", where), run->end_time, LEAST_STEPS,
-                       run->step_limit);
+        return REFUSE("solver.end_time",
+                      "%g s is less than %d times solver.step_limit (%g s): there "
+                      "would be no curve",
+                      run->end_time, LEAST_STEPS, run->step_limit);
     if (run->step_limit < SF_SMALLEST_STEP * run->end_time)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: solver.step_limit: %g s is below %g of solver.end_time (%g s), where a run stops",
-                       sf_case_where_is(reader, "solver.step_limit", where), run->step_limit,
-                       SF_SMALLEST_STEP, run->end_time);
+        return REFUSE("solver.step_limit", "%g s is below %g of solver.end_time (%g s), where a run stops",
+                      run->step_limit, SF_SMALLEST_STEP, run->end_time);
     if (run->end_time / run->frame_interval > SF_MOST_FRAMES)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: output.frame_interval: %g s up to solver.end_time (%g s) means %.3g frames; at "
-                       "most %d are written",
-                       sf_case_where_is(reader, "output.frame_interval", where), run->frame_interval,
-                       run->end_time, run->end_time / run->frame_interval, SF_MOST_FRAMES);
+        return REFUSE("output.frame_interval",
+                      "%g s up to solver.end_time (%g s) means %.3g frames; at "
+                      "most %d are written",
+                      run->frame_interval, run->end_time, run->end_time / run->frame_interval,
+                      SF_MOST_FRAMES);
     for (int k = 0; k < c->frame_time_count; k++)
         if (c->frame_time[k] > run->end_time)
             sf_sink_tell(reader->sink, SF_WARNING,
                          "%s: output.times: %g s lies beyond solver.end_time (%g s): there "
                          "will be no such frame",
-                         sf_case_where_is(reader, "output.times", where), c->frame_time[k], run->end_time);
+                         sf_case_where(reader, AT("output.times"), where), c->frame_time[k], run->end_time);
     return SF_OK;
 }
 
@@ -255,35 +229,31 @@ typedef struct interface_list {
 /* Two different layers. */
 static sf_status find_interface(const sf_case_reader *reader, const interface_list *list, int k,
                                 sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     int *layer = list->layer[k];
     const char *name = list->name[k], *slash = strchr(name, '/');
     layer[0] = slash ? find_layer(reader->out, name, (size_t)(slash - name)) : -1;
     layer[1] = slash ? find_layer(reader->out, slash + 1, strlen(slash + 1)) : -1;
     if (layer[0] >= 0 && layer[1] >= 0 && layer[0] != layer[1])
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: %s: \"%s\" does not name two layers of materials, for example \"cover/core\"",
-                   sf_case_where_is(reader, list->key, where), list->key, name);
+    return REFUSE_AT(list->key,
+                     "%s: \"%s\" does not name two layers of materials, for example \"cover/core\"",
+                     list->key, name);
 }
 
 /* Interface k of a list is, in either order of its layers, not among the first `count` of another. */
 static sf_status check_interface_once(const sf_case_reader *reader, const interface_list *list, int k,
                                       const interface_list *others, int count, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const int *own = list->layer[k];
     for (int j = 0; j < count; j++) {
         const int *other = others->layer[j];
         if ((own[0] == other[0] && own[1] == other[1]) || (own[0] == other[1] && own[1] == other[0]))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s: \"%s\" and \"%s\" are the same interface",
-                           sf_case_where_is(reader, list->key, where), list->key, others->name[j],
-                           list->name[k]);
+            return REFUSE_AT(list->key, "%s: \"%s\" and \"%s\" are the same interface", list->key,
+                             others->name[j], list->name[k]);
     }
     return SF_OK;
 }
 
 static sf_status check_interfaces(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     sf_case *c = reader->out;
     const interface_list list[] = {{"pad.sliding_interfaces", c->interface_count,
                                     (const char(*)[SF_CASE_NAME_SIZE])c->interface_name, c->interface_layer},
@@ -291,9 +261,8 @@ static sf_status check_interfaces(const sf_case_reader *reader, sf_error *err) {
                                     (const char(*)[SF_CASE_NAME_SIZE])c->loose_name, c->loose_layer}};
     for (int i = 0; i < 2; i++) {
         if (!reader->layers && list[i].count > 0)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: %s: the pad has one material; layers are the groups of materials",
-                           sf_case_where_is(reader, list[i].key, where), list[i].key);
+            return REFUSE_AT(list[i].key, "%s: the pad has one material; layers are the groups of materials",
+                             list[i].key);
         for (int k = 0; k < list[i].count; k++)
             if (find_interface(reader, &list[i], k, err) != SF_OK ||
                 check_interface_once(reader, &list[i], k, &list[i], k, err) != SF_OK ||
@@ -301,22 +270,17 @@ static sf_status check_interfaces(const sf_case_reader *reader, sf_error *err) {
                 return err->status;
     }
     if (c->loose_count > 0 && c->self_contact == SF_SELF_CONTACT_OFF)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.loose_interfaces need pad.self_contact",
-                       sf_case_where_is(reader, "pad.loose_interfaces", where));
+        return REFUSE_AT("pad.loose_interfaces", "pad.loose_interfaces need pad.self_contact");
     return SF_OK;
 }
 
 /* Rules on the layers; their names, for sentences, as the pad's group. */
 static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     sf_case *c = reader->out;
     SF_TRY(check_interfaces(reader, err));
     if (reader->layers && sf_case_is_given(reader, "pad", "group"))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: pad.group: the groups of materials name the pad's volumes; only one of the two may "
-            "be given",
-            sf_case_where_is(reader, "pad.group", where));
+        return REFUSE("pad.group", "the groups of materials name the pad's volumes; only one of the two may "
+                                   "be given");
     for (int k = 0; k < c->layer_count; k++) {
         size_t used = k ? strlen(c->pad_group) : 0;
         snprintf(c->pad_group + used, sizeof c->pad_group - used, "%s%s", k ? "\", \"" : "",
@@ -334,36 +298,24 @@ static bool in_list(const char *name, int count, const char (*list)[SF_CASE_NAME
 
 /* Friction and weight belong to a pad that rests. */
 static sf_status check_resting(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
-    static const char *const keys[] = {"friction", "gravity"};
-    for (int k = 0; k < 2 && c->base_rule != SF_BASE_RESTING; k++)
-        if (sf_case_is_given(reader, "pad", keys[k])) {
-            char key[32];
-            snprintf(key, sizeof key, "pad.%s", keys[k]);
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: %s: it acts on a resting pad only, and pad.base is not \"resting\"",
-                           sf_case_where_is(reader, key, where), key);
-        }
-    if (c->base_rule == SF_BASE_RESTING && !(c->pad_gravity > 0))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: pad.gravity: a resting pad without weight is not held by anything",
-                       sf_case_where_is(reader, "pad.gravity", where));
+    if (c->base_rule != SF_BASE_RESTING)
+        return refuse_given(reader, "pad", "friction|gravity",
+                            ": it acts on a resting pad only, and pad.base is not \"resting\"", err);
+    if (!(c->pad_gravity > 0))
+        return REFUSE("pad.gravity", "a resting pad without weight is not held by anything");
     return SF_OK;
 }
 
 /* The base: surfaces that no other key holds or moves. */
 static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     if (c->fixed_count + c->sliding_count == 0 && !c->support.path)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: pad.fixed: at least one surface must hold the pad, here or in pad.sliding, or a support (geometry.support_file)",
-            sf_case_where_is(reader, "pad.fixed", where));
+        return REFUSE(
+            "pad.fixed",
+            "at least one surface must hold the pad, here or in pad.sliding, or a support (geometry.support_file)");
     if (sf_case_is_given(reader, "pad", "base") && c->fixed_count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: pad.base: pad.fixed names no surface that it could apply to",
-                       sf_case_where_is(reader, "pad.base", where));
+        return REFUSE("pad.base", "pad.fixed names no surface that it could apply to");
     for (int g = 0; g < c->fixed_count && sf_case_is_given(reader, "pad", "base"); g++) {
         const char *name = c->fixed_group[g],
                    *other = strcmp(name, c->contact_group) == 0                   ? "contact"
@@ -371,33 +323,27 @@ static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
                             : in_list(name, c->symmetry_count, c->symmetry_group) ? "symmetry"
                                                                                   : NULL;
         if (other)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: pad.base: the surface group \"%s\" is in pad.fixed and in pad.%s",
-                           sf_case_where_is(reader, "pad.base", where), name, other);
+            return REFUSE("pad.base", "the surface group \"%s\" is in pad.fixed and in pad.%s", name, other);
     }
     return check_resting(reader, err);
 }
 
 /* Rules that join several keys, on the values as they are given. */
 sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     reader->out->stabilised = sf_case_is_given(reader, "kernel", "stabilisation");
     if (!reader->layers && sf_case_check_card(reader, err) != SF_OK)
         return err->status;
-    if (check_layers(reader, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_layers(reader, err));
     if (!c->missile.path && c->missile.parameter_count > 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s: geometry.missile_parameters are given but no geometry.missile_file that they belong to",
-            sf_case_where_is(reader, "geometry.missile_parameters", where));
-    static const char *const of_support[] = {"geometry.support_parameters", "support.group",
-                                             "support.friction"};
-    for (int k = 0; k < 3 && !c->support.path; k++)
-        if (config_lookup(&reader->config, of_support[k]))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s has no meaning without geometry.support_file",
-                           sf_case_where_is(reader, of_support[k], where), of_support[k]);
+        return REFUSE_AT(
+            "geometry.missile_parameters",
+            "geometry.missile_parameters are given but no geometry.missile_file that they belong to");
+    static const char no_support[] = " has no meaning without geometry.support_file";
+    if (!c->support.path &&
+        (refuse_given(reader, "geometry", "support_parameters", no_support, err) != SF_OK ||
+         refuse_given(reader, "support", "group|friction", no_support, err) != SF_OK))
+        return err->status;
     if (check_membrane(reader, err) != SF_OK || check_base(reader, err) != SF_OK ||
         check_direction(reader, err) != SF_OK || check_freedom(reader, err) != SF_OK)
         return err->status;
@@ -407,23 +353,21 @@ sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
 /* A free missile's first step adds the speed g dt, and the energy balance of the run sees it. */
 static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
     static const double SHARE = 0.5; /* of the energy limit: the rest of the run needs some, too */
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     double gain = fabs(sf_flight_pull(&c->missile_card)) * c->run.step_limit,
            most = SHARE * c->run.energy_limit;
     if (c->motion_count > 0 || 0.5 * gain <= most * c->missile_card.speed)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: missile.velocity: %g m/s is too slow to resolve: in one solver.step_limit (%g s) "
-                   "gravity adds %g m/s, an energy error of %.3g %%, more than half of solver.energy_limit "
-                   "(%g %%)",
-                   sf_case_where_is(reader, "missile.velocity", where), c->missile_card.speed,
-                   c->run.step_limit, gain, 50 * gain / c->missile_card.speed, 100 * c->run.energy_limit);
+    return REFUSE("missile.velocity",
+                  "%g m/s is too slow to resolve: in one solver.step_limit (%g s) "
+                  "gravity adds %g m/s, an energy error of %.3g %%, more than half of solver.energy_limit "
+                  "(%g %%)",
+                  c->missile_card.speed, c->run.step_limit, gain, 50 * gain / c->missile_card.speed,
+                  100 * c->run.energy_limit);
 }
 
 /* A series of drops; a single one leaves no trace. */
 static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     sf_run_options *run = &reader->out->run;
     bool series = run->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
     const char *wrong =
@@ -436,8 +380,7 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
             ? "a series needs solver.stop_after_rebound: each drop ends when the missile has left"
             : NULL;
     if (wrong)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: series.drops = %g: %s",
-                       sf_case_where_is(reader, "series.drops", where), run->drops, wrong);
+        return REFUSE_AT("series.drops", "series.drops = %g: %s", run->drops, wrong);
     if (!series)
         run->drops = 0;
     return SF_OK;
@@ -445,14 +388,12 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
 
 /* A temperature that changes nothing would look as if it did. */
 static sf_status check_temperature(const sf_case_reader *reader, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     if (c->temperature == 0 || c->temperature_acts)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s: pad.temperature is given, but the material has no curves at several temperatures: "
-                   "material.curves = ( { temperature = \"5 degC\"; file = \"cold.csv\"; }, ... )",
-                   sf_case_where_is(reader, "pad.temperature", where));
+    return REFUSE_AT("pad.temperature",
+                     "pad.temperature is given, but the material has no curves at several temperatures: "
+                     "material.curves = ( { temperature = \"5 degC\"; file = \"cold.csv\"; }, ... )");
 }
 
 /* Rules on the complete case. */
@@ -467,6 +408,6 @@ sf_status sf_case_check_complete(const sf_case_reader *reader, sf_error *err) {
         sf_sink_tell(reader->sink, SF_WARNING,
                      "%s: kernel.support_ratio = %g: from 2 on the constraint matrix is "
                      "nearly singular",
-                     sf_case_where_is(reader, "kernel.support_ratio", where), c->support_ratio);
+                     sf_case_where(reader, AT("kernel.support_ratio"), where), c->support_ratio);
     return SF_OK;
 }

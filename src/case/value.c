@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/value.h"
+#include "case/reader.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -7,52 +7,47 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "case/curves.h"
 #include "io/plain_file.h"
 
 /* Reads one value of each kind of sf_key_kind into the case. */
 
-enum { KEY_PATH_SIZE = 160 };
 static const double LARGEST_PARAMETER = 1e12; /* of a geometry, in its own unit */
 
-static const char *key_path(const sf_key *key, char *out) {
-    snprintf(out, KEY_PATH_SIZE, "%s.%s", key->group, key->name);
-    return out;
-}
+/* A setting, and where its value goes. */
+typedef struct slot {
+    sf_case_reader *reader;
+    const sf_key *key;
+    const config_setting_t *setting;
+    void *at;     /* of the type of the key's kind */
+    int *count;   /* of an array's items */
+    char *detail; /* [size] the SI value for the listing, "-" unless a reader sets it */
+    size_t size;
+    sf_error *err;
+} slot;
 
-/* Records "file:line: group.key = value: sentence". */
-#define FAIL_AT(reader, key, setting, err, ...) fail_at(reader, key, setting, err, __LINE__, __VA_ARGS__)
+/* Records "file:line: group.key: sentence". */
+#define REFUSE(s, ...) refuse(s, __LINE__, __VA_ARGS__)
 
-__attribute__((format(printf, 6, 7))) static sf_status fail_at(const sf_case_reader *reader,
-                                                               const sf_key *key,
-                                                               const config_setting_t *setting, sf_error *err,
-                                                               int line, const char *format, ...) {
-    char where[SF_CASE_WHERE_SIZE], path[KEY_PATH_SIZE], sentence[640];
+__attribute__((format(printf, 3, 4))) static sf_status refuse(const slot *s, int line, const char *format,
+                                                              ...) {
+    char sentence[640];
     va_list args;
     va_start(args, format);
     vsnprintf(sentence, sizeof sentence, format, args);
     va_end(args);
-    return sf_error_set(err, SF_ERR_INPUT, __FILE__, line, "%s: %s: %s",
-                        sf_case_where(reader, setting, where), key_path(key, path), sentence);
+    return sf_case_refuse(s->reader, s->setting, s->err, __FILE__, line, "%s.%s: %s", s->key->group,
+                          s->key->name, sentence);
 }
 
 static const char *type_phrase(const config_setting_t *setting) {
-    switch (config_setting_type(setting)) {
-    case CONFIG_TYPE_GROUP:
-        return "a group";
-    case CONFIG_TYPE_INT:
-    case CONFIG_TYPE_INT64:
-    case CONFIG_TYPE_FLOAT:
-        return "a plain number";
-    case CONFIG_TYPE_STRING:
-        return "a text";
-    case CONFIG_TYPE_BOOL:
-        return "true or false";
-    case CONFIG_TYPE_ARRAY:
-        return "an array";
-    default:
-        return "a list";
-    }
+    static const char *const phrases[] = {
+        [CONFIG_TYPE_GROUP] = "a group",        [CONFIG_TYPE_INT] = "a plain number",
+        [CONFIG_TYPE_INT64] = "a plain number", [CONFIG_TYPE_FLOAT] = "a plain number",
+        [CONFIG_TYPE_STRING] = "a text",        [CONFIG_TYPE_BOOL] = "true or false",
+        [CONFIG_TYPE_ARRAY] = "an array",       [CONFIG_TYPE_LIST] = "a list"};
+    return phrases[config_setting_type(setting)];
 }
 
 /* libconfig's get_float returns 0 for the integer types unless automatic conversion is on. */
@@ -67,205 +62,170 @@ static double number_of(const config_setting_t *setting) {
     }
 }
 
-static sf_status check_bounds(const sf_case_reader *reader, const sf_key *key,
-                              const config_setting_t *setting, double value, const char *unit,
-                              sf_error *err) {
+static bool is_finite_number(const config_setting_t *setting) {
+    return config_setting_is_number(setting) && isfinite(number_of(setting));
+}
+
+static sf_status check_bounds(const slot *s, double value, const char *unit) {
+    const sf_key *key = s->key;
     /* Units are converted with a rounding: 20 us may come out an ulp above 20e-6 s. */
     double high = key->high * (1.0 + 1e-12);
     bool low_bad = key->low_open ? !(value > key->low) : !(value >= key->low);
     bool high_bad = key->high != 0.0 && value > high;
+    const char *blank = *unit ? " " : "";
+    char upper[64] = "";
     if (!low_bad && !high_bad)
         return SF_OK;
-    char upper[64] = "";
     if (key->high != 0.0)
-        snprintf(upper, sizeof upper, " and at most %g%s%s", key->high, *unit ? " " : "", unit);
-    return FAIL_AT(reader, key, setting, err, "%g%s%s is out of bounds; it must be %s %g%s%s%s", value,
-                   *unit ? " " : "", unit, key->low_open ? "greater than" : "at least", key->low,
-                   *unit ? " " : "", unit, upper);
+        snprintf(upper, sizeof upper, " and at most %g%s%s", key->high, blank, unit);
+    return REFUSE(s, "%g%s%s is out of bounds; it must be %s %g%s%s%s", value, blank, unit,
+                  key->low_open ? "greater than" : "at least", key->low, blank, unit, upper);
 }
 
-/* Returns the place of the key's value. */
-static void *place_of(const sf_case_reader *reader, const sf_key *key) {
-    return (key->in_card ? (char *)reader->material->card : (char *)reader->out) + key->offset;
-}
-
-static sf_status read_quantity(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                               char *detail, size_t size, sf_error *err) {
-    double *value = place_of(reader, key);
-    const char *unit = sf_quantity_unit(key->quantity);
-    const char *text = config_setting_get_string(setting);
+static sf_status read_quantity(const slot *s) {
+    double *value = s->at;
+    const sf_key *key = s->key;
+    const char *unit = sf_quantity_unit(key->quantity), *text = config_setting_get_string(s->setting);
+    sf_error inner = SF_ERROR_INIT;
     if (!text)
-        return FAIL_AT(reader, key, setting, err,
-                       "the value is %s; expected %s as a text with its unit, for example \"%s\"",
-                       type_phrase(setting), sf_quantity_phrase(key->quantity),
-                       sf_quantity_example(key->quantity));
+        return REFUSE(s, "the value is %s; expected %s as a text with its unit, for example \"%s\"",
+                      type_phrase(s->setting), sf_quantity_phrase(key->quantity),
+                      sf_quantity_example(key->quantity));
     if (key->words && strcmp(text, key->words) == 0) {
         *value = key->word_value;
-        snprintf(detail, size, "-");
         return SF_OK;
     }
-    sf_error inner = SF_ERROR_INIT;
-    if (sf_units_parse(reader->units, text, key->quantity, value, &inner) != SF_OK)
-        return FAIL_AT(reader, key, setting, err, "%s%s%s%s", inner.text, key->words ? " or \"" : "",
-                       key->words ? key->words : "", key->words ? "\"" : "");
-    snprintf(detail, size, "%.12g %s", *value, unit);
-    return check_bounds(reader, key, setting, *value, unit, err);
+    if (sf_units_parse(s->reader->units, text, key->quantity, value, &inner) != SF_OK)
+        return REFUSE(s, "%s%s%s%s", inner.text, key->words ? " or \"" : "", key->words ? key->words : "",
+                      key->words ? "\"" : "");
+    snprintf(s->detail, s->size, "%.12g %s", *value, unit);
+    return check_bounds(s, *value, unit);
 }
 
-static sf_status read_unit(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                           char *detail, size_t size, sf_error *err) {
-    double *value = (double *)((char *)reader->out + key->offset);
-    const char *text = config_setting_get_string(setting);
+static sf_status read_unit(const slot *s) {
+    double *value = s->at;
+    const char *text = config_setting_get_string(s->setting);
     char one[SF_CASE_NAME_SIZE];
     sf_error inner = SF_ERROR_INIT;
     if (!text)
-        return FAIL_AT(reader, key, setting, err,
-                       "the value is %s; expected a unit of length, for example \"mm\"",
-                       type_phrase(setting));
+        return REFUSE(s, "the value is %s; expected a unit of length, for example \"mm\"",
+                      type_phrase(s->setting));
     snprintf(one, sizeof one, "1 %s", text);
-    if (sf_units_parse(reader->units, one, SF_LENGTH, value, &inner) != SF_OK)
-        return FAIL_AT(reader, key, setting, err, "\"%s\" is not a unit of length, for example \"mm\"", text);
-    snprintf(detail, size, "%.12g m", *value);
+    if (sf_units_parse(s->reader->units, one, SF_LENGTH, value, &inner) != SF_OK)
+        return REFUSE(s, "\"%s\" is not a unit of length, for example \"mm\"", text);
+    snprintf(s->detail, s->size, "%.12g m", *value);
     return SF_OK;
 }
 
-static sf_status read_number(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                             char *detail, size_t size, sf_error *err) {
-    double *value = place_of(reader, key);
-    if (!config_setting_is_number(setting))
-        return FAIL_AT(reader, key, setting, err, "the value is %s; expected a plain number without a unit",
-                       type_phrase(setting));
-    *value = number_of(setting);
+static sf_status read_number(const slot *s) {
+    double *value = s->at;
+    if (!config_setting_is_number(s->setting))
+        return REFUSE(s, "the value is %s; expected a plain number without a unit", type_phrase(s->setting));
+    *value = number_of(s->setting);
     if (!isfinite(*value))
-        return FAIL_AT(reader, key, setting, err, "the number is not finite");
-    snprintf(detail, size, "%.12g", *value);
-    return check_bounds(reader, key, setting, *value, "", err);
+        return REFUSE(s, "the number is not finite");
+    snprintf(s->detail, s->size, "%.12g", *value);
+    return check_bounds(s, *value, "");
 }
 
-static sf_status read_bool(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                           char *detail, size_t size, sf_error *err) {
-    if (config_setting_type(setting) != CONFIG_TYPE_BOOL)
-        return FAIL_AT(reader, key, setting, err, "the value is %s; expected true or false",
-                       type_phrase(setting));
-    int value = config_setting_get_bool(setting);
-    *(int64_t *)((char *)reader->out + key->offset) = value != 0;
-    snprintf(detail, size, "%d", value != 0);
+static sf_status read_bool(const slot *s) {
+    if (config_setting_type(s->setting) != CONFIG_TYPE_BOOL)
+        return REFUSE(s, "the value is %s; expected true or false", type_phrase(s->setting));
+    *(int64_t *)s->at = config_setting_get_bool(s->setting) != 0;
+    snprintf(s->detail, s->size, "%d", (int)*(int64_t *)s->at);
     return SF_OK;
 }
 
-static sf_status copy_name(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                           char *name, sf_error *err) {
-    const char *text = config_setting_get_string(setting);
+static sf_status copy_name(const slot *s, const config_setting_t *item, char *name) {
+    const char *text = config_setting_get_string(item);
     if (!text)
-        return FAIL_AT(reader, key, setting, err, "%s stands where a name is expected, for example \"top\"",
-                       type_phrase(setting));
+        return REFUSE(s, "%s stands where a name is expected, for example \"top\"", type_phrase(item));
     if (*text == '\0')
-        return FAIL_AT(reader, key, setting, err, "the name is empty");
+        return REFUSE(s, "the name is empty");
     for (const char *c = text; *c; c++)
         if (iscntrl((unsigned char)*c))
-            return FAIL_AT(reader, key, setting, err,
-                           "the name holds a line end or another control character");
+            return REFUSE(s, "the name holds a line end or another control character");
     if (strlen(text) >= SF_CASE_NAME_SIZE)
-        return FAIL_AT(reader, key, setting, err, "the name is longer than %d characters",
-                       SF_CASE_NAME_SIZE - 1);
+        return REFUSE(s, "the name is longer than %d characters", SF_CASE_NAME_SIZE - 1);
     memcpy(name, text, strlen(text) + 1);
     return SF_OK;
+}
+
+static sf_status read_name(const slot *s) {
+    return copy_name(s, s->setting, s->at);
 }
 
 static bool is_sequence(const config_setting_t *setting) {
     return config_setting_is_array(setting) || config_setting_is_list(setting);
 }
 
-static sf_status read_names(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                            char *detail, size_t size, sf_error *err) {
-    char(*name)[SF_CASE_NAME_SIZE] = (char(*)[SF_CASE_NAME_SIZE])((char *)reader->out + key->offset);
-    int *count = (int *)((char *)reader->out + key->count_offset);
-    if (!is_sequence(setting))
-        return FAIL_AT(reader, key, setting, err,
-                       "the value is %s; expected an array of names, for example [\"base\"]",
-                       type_phrase(setting));
-    int length = config_setting_length(setting);
+static sf_status read_names(const slot *s) {
+    char(*name)[SF_CASE_NAME_SIZE] = s->at;
+    int *count = s->count, length = config_setting_length(s->setting);
+    if (!is_sequence(s->setting))
+        return REFUSE(s, "the value is %s; expected an array of names, for example [\"base\"]",
+                      type_phrase(s->setting));
     if (length > SF_CASE_MAX_GROUPS)
-        return FAIL_AT(reader, key, setting, err, "%d names; at most %d are allowed", length,
-                       SF_CASE_MAX_GROUPS);
+        return REFUSE(s, "%d names; at most %d are allowed", length, SF_CASE_MAX_GROUPS);
     for (*count = 0; *count < length; ++*count) {
-        if (copy_name(reader, key, config_setting_get_elem(setting, (unsigned)*count), name[*count], err) !=
-            SF_OK)
-            return err->status;
+        SF_TRY(copy_name(s, config_setting_get_elem(s->setting, (unsigned)*count), name[*count]));
         for (int i = 0; i < *count; i++)
             if (strcmp(name[i], name[*count]) == 0)
-                return FAIL_AT(reader, key, setting, err, "\"%s\" is named twice", name[i]);
+                return REFUSE(s, "\"%s\" is named twice", name[i]);
     }
-    snprintf(detail, size, "-");
     return SF_OK;
 }
 
-/* Index of `text` among the words "a|b|c"; -1 if it is none of them. */
-static int word_index(const char *words, const char *text) {
-    size_t length = strlen(text);
-    for (int k = 0; words; k++) {
-        size_t word = strcspn(words, "|");
-        if (word == length && strncmp(words, text, length) == 0)
-            return k;
-        words = words[word] ? words + word + 1 : NULL;
-    }
-    return -1;
-}
-
-/* "a|b|c" as "a, b, c". */
-static const char *word_list(const char *words, char *out, size_t size) {
-    size_t used = 0;
-    for (const char *w = words; *w && used + 3 < size; w++) {
-        if (*w == '|') {
-            out[used++] = ',';
-            out[used++] = ' ';
-        } else {
-            out[used++] = *w;
-        }
-    }
-    out[used] = '\0';
-    return out;
-}
-
-static sf_status find_word(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                           int *index, sf_error *err) {
-    const char *text = config_setting_get_string(setting);
+static sf_status find_word(const slot *s, const config_setting_t *item, int *index) {
+    const char *text = config_setting_get_string(item), *words = s->key->words;
     char list[256];
-    *index = text ? word_index(key->words, text) : -1;
+    size_t used = 0;
+    *index = text ? sf_word_find(words, text) : -1;
     if (*index >= 0)
         return SF_OK;
-    return FAIL_AT(reader, key, setting, err, "%s%s%s is none of: %s", text ? "\"" : "",
-                   text ? text : type_phrase(setting), text ? "\"" : "",
-                   word_list(key->words, list, sizeof list));
+    for (; *words && used < sizeof list; words++)
+        used += (size_t)snprintf(list + used, sizeof list - used, *words == '|' ? ", " : "%c", *words);
+    return REFUSE(s, "%s%s%s is none of: %s", text ? "\"" : "", text ? text : type_phrase(item),
+                  text ? "\"" : "", list);
 }
 
-static sf_status read_choice(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                             char *detail, size_t size, sf_error *err) {
+static sf_status read_choice(const slot *s) {
     int index = 0;
-    snprintf(detail, size, "-");
-    if (find_word(reader, key, setting, &index, err) != SF_OK)
-        return err->status;
-    if (key->in_card)
-        *(int64_t *)place_of(reader, key) = index;
+    SF_TRY(find_word(s, s->setting, &index));
+    if (s->key->in_card)
+        *(int64_t *)s->at = index;
     else
-        *(int *)place_of(reader, key) = index;
+        *(int *)s->at = index;
     return SF_OK;
 }
 
-static sf_status read_fields(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                             char *detail, size_t size, sf_error *err) {
-    int64_t *bits = (int64_t *)((char *)reader->out + key->offset);
-    if (!is_sequence(setting))
-        return FAIL_AT(reader, key, setting, err, "the value is %s; expected an array of field names",
-                       type_phrase(setting));
+static sf_status read_fields(const slot *s) {
+    int64_t *bits = s->at;
+    if (!is_sequence(s->setting))
+        return REFUSE(s, "the value is %s; expected an array of field names", type_phrase(s->setting));
     *bits = 0;
-    for (int i = 0; i < config_setting_length(setting); i++) {
+    for (int i = 0; i < config_setting_length(s->setting); i++) {
         int k = 0;
-        if (find_word(reader, key, config_setting_get_elem(setting, (unsigned)i), &k, err) != SF_OK)
-            return err->status;
+        SF_TRY(find_word(s, config_setting_get_elem(s->setting, (unsigned)i), &k));
         *bits |= (int64_t)1 << k;
     }
-    snprintf(detail, size, "-");
+    return SF_OK;
+}
+
+/* Reads an array of texts with units; `phrase` and `example` of an item, for sentences. */
+static sf_status read_items(const slot *s, const char *phrase, const char *example) {
+    double *value = s->at;
+    for (int i = 0; i < config_setting_length(s->setting); i++) {
+        const config_setting_t *item = config_setting_get_elem(s->setting, (unsigned)i);
+        const char *text = config_setting_get_string(item);
+        sf_error inner = SF_ERROR_INIT;
+        if (!text)
+            return REFUSE(s, "item %d is %s; expected %s such as \"%s\"", i + 1, type_phrase(item), phrase,
+                          example);
+        if (sf_units_parse(s->reader->units, text, s->key->quantity, &value[i], &inner) != SF_OK)
+            return REFUSE(s, "%s", inner.text);
+        SF_TRY(check_bounds(s, value[i], sf_quantity_unit(s->key->quantity)));
+    }
     return SF_OK;
 }
 
@@ -274,194 +234,131 @@ static int by_time(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static sf_status read_times(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                            char *detail, size_t size, sf_error *err) {
-    double *value = (double *)((char *)reader->out + key->offset);
-    int *count = (int *)((char *)reader->out + key->count_offset);
-    if (!is_sequence(setting) || config_setting_length(setting) > SF_CASE_MAX_TIMES)
-        return FAIL_AT(reader, key, setting, err,
-                       "expected an array of at most %d times, for example [\"12 ms\", \"20 ms\"]",
-                       SF_CASE_MAX_TIMES);
-    *count = config_setting_length(setting);
-    for (int i = 0; i < *count; i++) {
-        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
-        const char *text = config_setting_get_string(item);
-        sf_error inner = SF_ERROR_INIT;
-        if (!text)
-            return FAIL_AT(reader, key, setting, err, "item %d is %s; expected a time such as \"12 ms\"",
-                           i + 1, type_phrase(item));
-        if (sf_units_parse(reader->units, text, key->quantity, &value[i], &inner) != SF_OK)
-            return FAIL_AT(reader, key, setting, err, "%s", inner.text);
-        if (check_bounds(reader, key, setting, value[i], "s", err) != SF_OK)
-            return err->status;
-    }
-    qsort(value, (size_t)*count, sizeof *value, by_time);
-    snprintf(detail, size, "-");
+static sf_status read_times(const slot *s) {
+    if (!is_sequence(s->setting) || config_setting_length(s->setting) > SF_CASE_MAX_TIMES)
+        return REFUSE(s, "expected an array of at most %d times, for example [\"12 ms\", \"20 ms\"]",
+                      SF_CASE_MAX_TIMES);
+    *s->count = config_setting_length(s->setting);
+    SF_TRY(read_items(s, "a time", "12 ms"));
+    qsort(s->at, (size_t)*s->count, sizeof(double), by_time);
     return SF_OK;
 }
 
-static sf_status read_quantities(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                                 char *detail, size_t size, sf_error *err) {
-    double *value = (double *)((char *)reader->out + key->offset);
-    int *count = (int *)((char *)reader->out + key->count_offset), length = 0;
+static sf_status read_quantities(const slot *s) {
+    const int *lengths = s->key->lengths;
+    const char *phrase = sf_quantity_phrase(s->key->quantity),
+               *example = sf_quantity_example(s->key->quantity);
+    int length = is_sequence(s->setting) ? config_setting_length(s->setting) : 0;
     char other[24] = "";
-    if (is_sequence(setting))
-        length = config_setting_length(setting);
-    if (key->lengths[1])
-        snprintf(other, sizeof other, " or %d", key->lengths[1]);
-    if (length == 0 || (length != key->lengths[0] && length != key->lengths[1]))
-        return FAIL_AT(reader, key, setting, err, "expected an array of %d%s values, each %s such as \"%s\"",
-                       key->lengths[0], other, sf_quantity_phrase(key->quantity),
-                       sf_quantity_example(key->quantity));
-    for (*count = 0; *count < length; ++*count) {
-        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)*count);
-        const char *text = config_setting_get_string(item);
-        sf_error inner = SF_ERROR_INIT;
-        if (!text)
-            return FAIL_AT(reader, key, setting, err, "item %d is %s; expected %s such as \"%s\"", *count + 1,
-                           type_phrase(item), sf_quantity_phrase(key->quantity),
-                           sf_quantity_example(key->quantity));
-        if (sf_units_parse(reader->units, text, key->quantity, &value[*count], &inner) != SF_OK)
-            return FAIL_AT(reader, key, setting, err, "%s", inner.text);
-        if (check_bounds(reader, key, setting, value[*count], sf_quantity_unit(key->quantity), err) != SF_OK)
-            return err->status;
-    }
-    snprintf(detail, size, "-");
-    return SF_OK;
+    if (lengths[1])
+        snprintf(other, sizeof other, " or %d", lengths[1]);
+    if (length == 0 || (length != lengths[0] && length != lengths[1]))
+        return REFUSE(s, "expected an array of %d%s values, each %s such as \"%s\"", lengths[0], other,
+                      phrase, example);
+    *s->count = length;
+    return read_items(s, phrase, example);
 }
 
-static sf_status read_vector(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                             char *detail, size_t size, sf_error *err) {
-    double *value = (double *)((char *)reader->out + key->offset);
-    bool fits = is_sequence(setting) && config_setting_length(setting) == 3;
+static sf_status read_vector(const slot *s) {
+    double *value = s->at;
+    bool fits = is_sequence(s->setting) && config_setting_length(s->setting) == 3;
     for (int i = 0; fits && i < 3; i++) {
-        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
-        fits = config_setting_is_number(item) && isfinite(number_of(item));
+        const config_setting_t *item = config_setting_get_elem(s->setting, (unsigned)i);
+        fits = is_finite_number(item);
         value[i] = number_of(item);
     }
-    if (!fits)
-        return FAIL_AT(
-            reader, key, setting, err,
-            "expected three plain numbers, all with a decimal point or all without, for example [0.0, 0.0, -1.0]");
-    snprintf(detail, size, "-");
+    return fits ? SF_OK
+                : REFUSE(s, "expected three plain numbers, all with a decimal point or all without, for "
+                            "example [0.0, 0.0, -1.0]");
+}
+
+static sf_status read_place(const slot *s) {
+    const double *value = s->at;
+    if (!is_sequence(s->setting) || config_setting_length(s->setting) != 2)
+        return REFUSE(s, "expected an array of two lengths, x and y, for example [\"20 mm\", \"0 mm\"]");
+    SF_TRY(read_items(s, "a length", "20 mm"));
+    snprintf(s->detail, s->size, "%.12g %.12g %s", value[0], value[1], sf_quantity_unit(s->key->quantity));
     return SF_OK;
 }
 
-static sf_status read_place(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                            char *detail, size_t size, sf_error *err) {
-    double *value = (double *)((char *)reader->out + key->offset);
-    const char *unit = sf_quantity_unit(key->quantity);
-    if (!is_sequence(setting) || config_setting_length(setting) != 2)
-        return FAIL_AT(reader, key, setting, err,
-                       "expected an array of two lengths, x and y, for example [\"20 mm\", \"0 mm\"]");
-    for (int i = 0; i < 2; i++) {
-        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
-        const char *text = config_setting_get_string(item);
-        sf_error inner = SF_ERROR_INIT;
-        if (!text)
-            return FAIL_AT(reader, key, setting, err, "item %d is %s; expected a length such as \"20 mm\"",
-                           i + 1, type_phrase(item));
-        if (sf_units_parse(reader->units, text, key->quantity, &value[i], &inner) != SF_OK)
-            return FAIL_AT(reader, key, setting, err, "%s", inner.text);
-        if (check_bounds(reader, key, setting, value[i], unit, err) != SF_OK)
-            return err->status;
-    }
-    snprintf(detail, size, "%.12g %.12g %s", value[0], value[1], unit);
-    return SF_OK;
-}
-
-static sf_status read_path(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                           char *detail, size_t size, sf_error *err) {
-    char **path = (char **)((char *)reader->out + key->offset);
-    const char *text = config_setting_get_string(setting);
-    if (!text || !*text)
-        return FAIL_AT(reader, key, setting, err, "%s stands where a file name is expected",
-                       text ? "an empty text" : type_phrase(setting));
-    *path = sf_case_resolve(reader, setting, text, err);
-    if (!*path)
-        return err->status;
+static sf_status read_path(const slot *s) {
+    char **path = s->at;
+    const char *text = config_setting_get_string(s->setting);
     sf_error inner = SF_ERROR_INIT;
-    if (sf_plain_check(*path, NULL, &inner) != SF_OK)
-        return FAIL_AT(reader, key, setting, err, "\"%s\": %s", text, inner.text);
-    snprintf(detail, size, "-");
-    return SF_OK;
+    if (!text || !*text)
+        return REFUSE(s, "%s stands where a file name is expected",
+                      text ? "an empty text" : type_phrase(s->setting));
+    *path = sf_case_resolve(s->reader, s->setting, text, s->err);
+    if (!*path)
+        return s->err->status;
+    return sf_plain_check(*path, NULL, &inner) == SF_OK ? SF_OK : REFUSE(s, "\"%s\": %s", text, inner.text);
 }
 
-static sf_status read_parameters(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                                 char *detail, size_t size, sf_error *err) {
-    sf_geo_source *source = (sf_geo_source *)((char *)reader->out + key->offset);
-    if (!config_setting_is_group(setting))
-        return FAIL_AT(reader, key, setting, err,
-                       "the value is %s; expected a group such as { side = 400.0; }", type_phrase(setting));
-    int count = config_setting_length(setting);
+static sf_status read_parameters(const slot *s) {
+    sf_geo_source *source = s->at;
+    int count = config_setting_length(s->setting);
+    if (!config_setting_is_group(s->setting))
+        return REFUSE(s, "the value is %s; expected a group such as { side = 400.0; }",
+                      type_phrase(s->setting));
     if (count > SF_CASE_MAX_PARAMETERS)
-        return FAIL_AT(reader, key, setting, err, "%d parameters; at most %d are allowed", count,
-                       SF_CASE_MAX_PARAMETERS);
+        return REFUSE(s, "%d parameters; at most %d are allowed", count, SF_CASE_MAX_PARAMETERS);
     for (int i = 0; i < count; i++) {
-        const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
-        const char *name = config_setting_name(item);
+        slot own = *s;
+        own.setting = config_setting_get_elem(s->setting, (unsigned)i);
+        const char *name = config_setting_name(own.setting);
         sf_geo_parameter *parameter = &source->parameter[i];
         if (strlen(name) >= sizeof parameter->name)
-            return FAIL_AT(reader, key, item, err, "the name \"%s\" is longer than %d characters", name,
-                           SF_CASE_NAME_SIZE - 1);
+            return REFUSE(&own, "the name \"%s\" is longer than %d characters", name, SF_CASE_NAME_SIZE - 1);
         memcpy(parameter->name, name, strlen(name) + 1);
-        if (config_setting_type(item) == CONFIG_TYPE_BOOL)
-            parameter->value = config_setting_get_bool(item);
-        else if (config_setting_is_number(item) && isfinite(number_of(item)))
-            parameter->value = number_of(item);
+        if (config_setting_type(own.setting) == CONFIG_TYPE_BOOL)
+            parameter->value = config_setting_get_bool(own.setting);
+        else if (is_finite_number(own.setting))
+            parameter->value = number_of(own.setting);
         else
-            return FAIL_AT(reader, key, item, err,
-                           "\"%s\" is not a finite plain number (in the geometry's own unit)", name);
+            return REFUSE(&own, "\"%s\" is not a finite plain number (in the geometry's own unit)", name);
         if (fabs(parameter->value) > LARGEST_PARAMETER)
-            return FAIL_AT(reader, key, item, err, "%s = %g is out of bounds; it must be between -%g and %g",
-                           name, parameter->value, LARGEST_PARAMETER, LARGEST_PARAMETER);
+            return REFUSE(&own, "%s = %g is out of bounds; it must be between -%g and %g", name,
+                          parameter->value, LARGEST_PARAMETER, LARGEST_PARAMETER);
     }
     source->parameter_count = count;
-    snprintf(detail, size, "-");
     return SF_OK;
 }
+
+static sf_status read_motion(const slot *s) {
+    return sf_case_read_motion(s->reader, s->setting, s->detail, s->size, s->err);
+}
+
+static sf_status read_curves(const slot *s) {
+    return sf_case_read_curves(s->reader, s->setting, s->detail, s->size, s->err);
+}
+
+static sf_status (*const readers[])(const slot *s) = {
+    [SF_KEY_QUANTITY] = read_quantity,
+    [SF_KEY_UNIT] = read_unit,
+    [SF_KEY_NUMBER] = read_number,
+    [SF_KEY_BOOL] = read_bool,
+    [SF_KEY_NAME] = read_name,
+    [SF_KEY_NAMES] = read_names,
+    [SF_KEY_CHOICE] = read_choice,
+    [SF_KEY_FIELDS] = read_fields,
+    [SF_KEY_TIMES] = read_times,
+    [SF_KEY_QUANTITIES] = read_quantities,
+    [SF_KEY_VECTOR] = read_vector,
+    [SF_KEY_PLACE] = read_place,
+    [SF_KEY_PATH] = read_path,
+    [SF_KEY_PARAMETERS] = read_parameters,
+    [SF_KEY_LAW] = NULL,
+    [SF_KEY_CURVE] = read_curves,
+    [SF_KEY_MOTION] = read_motion,
+    [SF_KEY_CURVES] = read_curves,
+};
 
 sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                              char *detail, size_t size, sf_error *err) {
-    switch (key->kind) {
-    case SF_KEY_QUANTITY:
-        return read_quantity(reader, key, setting, detail, size, err);
-    case SF_KEY_UNIT:
-        return read_unit(reader, key, setting, detail, size, err);
-    case SF_KEY_NUMBER:
-        return read_number(reader, key, setting, detail, size, err);
-    case SF_KEY_BOOL:
-        return read_bool(reader, key, setting, detail, size, err);
-    case SF_KEY_NAME:
-        snprintf(detail, size, "-");
-        return copy_name(reader, key, setting, (char *)reader->out + key->offset, err);
-    case SF_KEY_NAMES:
-        return read_names(reader, key, setting, detail, size, err);
-    case SF_KEY_CHOICE:
-        return read_choice(reader, key, setting, detail, size, err);
-    case SF_KEY_FIELDS:
-        return read_fields(reader, key, setting, detail, size, err);
-    case SF_KEY_TIMES:
-        return read_times(reader, key, setting, detail, size, err);
-    case SF_KEY_QUANTITIES:
-        return read_quantities(reader, key, setting, detail, size, err);
-    case SF_KEY_VECTOR:
-        return read_vector(reader, key, setting, detail, size, err);
-    case SF_KEY_PLACE:
-        return read_place(reader, key, setting, detail, size, err);
-    case SF_KEY_PATH:
-        return read_path(reader, key, setting, detail, size, err);
-    case SF_KEY_PARAMETERS:
-        return read_parameters(reader, key, setting, detail, size, err);
-    case SF_KEY_MOTION:
-        return sf_case_read_motion(reader, setting, detail, size, err);
-    case SF_KEY_LAW: /* taken before all others */
-        return SF_OK;
-    case SF_KEY_CURVE:
-    case SF_KEY_CURVES:
-        return sf_case_read_curves(reader, setting, detail, size, err);
-    }
-    return SF_FAIL(err, SF_ERR_INPUT, "%s.%s: unknown kind of key", key->group, key->name);
+    char *whole = key->in_card ? reader->material->card : (char *)reader->out;
+    const slot s = {reader, key,  setting, whole + key->offset, (int *)(void *)(whole + key->count_offset),
+                    detail, size, err};
+    return readers[key->kind] ? readers[key->kind](&s) : SF_OK; /* the law is taken before all others */
 }
 
 static const double LARGEST = 1; /* of ln(number) */
@@ -487,17 +384,15 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
                              sf_error *err) {
 #define KEYS(name, key, error_key, ...) ", " error_key ", " SF_DROP_SD(error_key)
     static const char keys[] = SF_DROP_KINDS(KEYS);
-    char where[SF_CASE_WHERE_SIZE];
     if (!config_setting_is_group(group))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %s must be a group: " SF_RESPONSE_ERROR " = { %s = 0.01; %s = 0.02; }",
-                       sf_case_where(reader, group, where), path, sf_drop_kind_get(SF_FIT_HIC)->error_key,
-                       sf_drop_kind_get(SF_FIT_HIC)->sd_key);
+        return SF_REFUSE_AT(reader, group, err,
+                            "%s must be a group: " SF_RESPONSE_ERROR " = { %s = 0.01; %s = 0.02; }", path,
+                            sf_drop_kind_get(SF_FIT_HIC)->error_key, sf_drop_kind_get(SF_FIT_HIC)->sd_key);
     for (int k = 0; k < config_setting_length(group); k++) {
         const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
         if (find_kind(config_setting_name(item)) < 0)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: unknown key \"%.80s\" in group %s; its keys are %s",
-                           sf_case_where(reader, item, where), config_setting_name(item), path, keys + 2);
+            return SF_REFUSE_AT(reader, item, err, "unknown key \"%.80s\" in group %s; its keys are %s",
+                                config_setting_name(item), path, keys + 2);
     }
     return SF_OK;
 }
@@ -517,16 +412,15 @@ static sf_status read_deviation(sf_case_reader *reader, const config_setting_t *
 
 static sf_status read_kind(sf_case_reader *reader, const config_setting_t *group, const char *path, int kind,
                            sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE];
     const sf_drop_kind_info *about = sf_drop_kind_get(kind);
     const config_setting_t *shared = config_setting_get_member(group, about->error_key),
                            *own = config_setting_get_member(group, about->sd_key);
     if (!shared && !own)
         return SF_OK;
     if (!shared || !own)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s.%s is given without %s",
-                       sf_case_where(reader, shared ? shared : own, where), path,
-                       shared ? about->error_key : about->sd_key, shared ? about->sd_key : about->error_key);
+        return SF_REFUSE_AT(reader, shared ? shared : own, err, "%s.%s is given without %s", path,
+                            shared ? about->error_key : about->sd_key,
+                            shared ? about->sd_key : about->error_key);
     reader->out->response_error.given[kind] = true;
     if (read_deviation(reader, shared, path, -LARGEST, SHARED + (size_t)kind * sizeof(double), err) == SF_OK)
         read_deviation(reader, own, path, 0, OWN + (size_t)kind * sizeof(double), err);

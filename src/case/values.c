@@ -149,3 +149,30 @@ void sf_case_print_keys(FILE *file) {
     fputs("\n### Units\n\n", file);
     sf_unit_text_print(file);
 }
+
+/* The key "group.name" of that length; NULL if there is none. */
+static const sf_key *key_at(const sf_key_list *list, const char *path, size_t length) {
+    char group[SF_KEY_GROUP_SIZE];
+    snprintf(group, sizeof group, "%.*s", (int)length, path);
+    char *dot = strrchr(group, '.');
+    if (!dot)
+        return NULL;
+    *dot = '\0';
+    return sf_case_find_key(list, group, dot + 1);
+}
+
+bool sf_case_key_is_file(const char *path) {
+    sf_key_list list;
+    char text[SF_KEY_GROUP_SIZE];
+    const char *layer = strncmp(path, "materials.", 10) == 0 ? strchr(path + 10, '.') : NULL;
+    snprintf(text, sizeof text, "%s%s", layer ? "material" : "", layer ? layer : path);
+    size_t length = strlen(text), entry = length > 5 && strcmp(text + length - 5, ".file") == 0 ? 5 : 0;
+    for (int law = 0; sf_law_get(law); law++) {
+        sf_case_list_keys(sf_law_get(law), &list);
+        const sf_key *key = key_at(&list, text, length), *of_list = key_at(&list, text, length - entry);
+        if ((key && (key->kind == SF_KEY_PATH || key->kind == SF_KEY_CURVE || key->kind == SF_KEY_MOTION)) ||
+            (entry && of_list && of_list->kind == SF_KEY_CURVES))
+            return true;
+    }
+    return false;
+}

@@ -40,6 +40,9 @@ typedef struct sf_case_listener {
 sf_status sf_case_read_values(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                               const sf_case_listener *listener, sf_case *out, sf_error *err);
 
+/* True if the value of "group.key" is the name of a file, of some law; also of a file in a list of curves. */
+bool sf_case_key_is_file(const char *path);
+
 /* Settings in libconfig syntax. Internal to src/case; the list of keys is printed by case.h's
  * sf_case_print_keys. */
 

@@ -58,10 +58,9 @@ sf_status sf_folder_check(int handle, const char *path, bool (*known)(const char
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be read: %s", path, strerror(errno));
     while (err->status == SF_OK && (entry = readdir(list)) != NULL)
         if (known(entry->d_name) && was_read(handle, entry->d_name))
-            SF_FAIL(err, SF_ERR_INPUT, "the output %s/%s would replace an input: give another name", path,
-                    entry->d_name);
+            SF_REFUSE(err, "the output %s/%s would replace an input: give another name", path, entry->d_name);
         else if (known(entry->d_name) && !sf_replace_is_ours(handle, entry->d_name))
-            SF_FAIL(err, SF_ERR_INPUT, "%s/%s is not a file of softfall: move it away", path, entry->d_name);
+            SF_REFUSE(err, "%s/%s is not a file of softfall: move it away", path, entry->d_name);
     closedir(list);
     return err->status;
 }
@@ -106,8 +105,8 @@ static sf_status take(int handle, const char *path, sf_error *err) {
     if (sf_folder_is_own(handle))
         return SF_OK;
     if (count_others(handle) != 0 && !sf_folder_is_own(handle)) /* nor by another process meanwhile */
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "the folder %s holds files and was not made by softfall: move it away, or give another "
             "output",
             path);
@@ -159,8 +158,7 @@ sf_status sf_folder_lock(const char *path, int *handle, sf_error *err) {
         return SF_OK;
     close(*handle);
     *handle = -1;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "another campaign is at work in %s: wait for it, or give another directory", path);
+    return SF_REFUSE(err, "another campaign is at work in %s: wait for it, or give another directory", path);
 }
 
 void sf_folder_leave(const char *path) {
@@ -173,35 +171,31 @@ void sf_folder_leave(const char *path) {
     rmdir(path);
 }
 
-int64_t sf_folder_count(const char *path, const char *prefix) {
+/* Names in the folder that begin with `prefix`, and the bytes of the plain files among them. */
+static int64_t count_names(const char *path, const char *prefix, uint64_t *bytes) {
     int handle = sf_folder_open(path);
-    DIR *list = handle >= 0 ? list_folder(handle) : NULL;
+    DIR *list = handle >= 0 ? fdopendir(handle) : NULL;
     struct dirent *entry;
+    struct stat info;
     int64_t count = 0;
-    while (list && (entry = readdir(list)) != NULL)
-        count += strncmp(entry->d_name, prefix, strlen(prefix)) == 0;
+    *bytes = 0;
+    while (list && (entry = readdir(list)) != NULL) {
+        if (strncmp(entry->d_name, prefix, strlen(prefix)) != 0)
+            continue;
+        count++;
+        if (fstatat(handle, entry->d_name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(info.st_mode))
+            *bytes += (uint64_t)info.st_size;
+    }
     if (list)
         closedir(list);
-    if (handle >= 0)
+    else if (handle >= 0)
         close(handle);
     return count;
 }
 
-/* Bytes of the files in the folder. */
-static uint64_t folder_bytes(const char *path) {
-    int handle = sf_folder_open(path);
-    DIR *list = handle >= 0 ? list_folder(handle) : NULL;
-    struct dirent *entry;
-    struct stat info;
-    uint64_t sum = 0;
-    while (list && (entry = readdir(list)) != NULL)
-        if (fstatat(handle, entry->d_name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(info.st_mode))
-            sum += (uint64_t)info.st_size;
-    if (list)
-        closedir(list);
-    if (handle >= 0)
-        close(handle);
-    return sum;
+int64_t sf_folder_count(const char *path, const char *prefix) {
+    uint64_t bytes;
+    return count_names(path, prefix, &bytes);
 }
 
 void sf_folder_remove_file(const char *path) {
@@ -262,8 +256,10 @@ void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count
     size_t size;
     if (!name_file(folder, kind, key, path) || sf_folder_own(folder, &none) != SF_OK)
         return;
+    uint64_t bytes;
     char *all = join(count, part, &size);
-    if (all && folder_bytes(folder) + size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
+    count_names(folder, "", &bytes);
+    if (all && bytes + size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
         head h = {.key = key, .size = size, .hash = sf_hash(SF_HASH_START, all, size)};
         memcpy(h.magic, MAGIC, sizeof MAGIC);
         fwrite(&h, sizeof h, 1, file.file);

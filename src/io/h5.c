@@ -252,23 +252,42 @@ sf_status sf_h5_group_member(const sf_h5 *file, const char *path, int64_t index,
     return SF_OK;
 }
 
-static sf_status string_attribute(const sf_h5 *file, hid_t object, const char *name, const char *text,
-                                  sf_error *err) {
-    if (H5Aexists(object, name) > 0)
-        H5Adelete(object, name);
+/* The type of a text. */
+static hid_t text_type(const char *text) {
     hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, strlen(text) + 1);
     H5Tset_cset(type, H5T_CSET_UTF8);
-    hid_t space = H5Screate(H5S_SCALAR);
+    return type;
+}
+
+static hid_t make_space(int rank, const int64_t *dims) {
+    hsize_t extent[SF_H5_MAX_RANK] = {0};
+    for (int k = 0; k < rank; k++)
+        extent[k] = (hsize_t)dims[k];
+    return rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
+}
+
+/* Replaces an attribute of an open object. */
+static sf_status put_attribute(const sf_h5 *file, hid_t object, const char *name, hid_t type,
+                               const void *value, sf_error *err) {
+    hid_t space = make_space(0, NULL);
+    if (H5Aexists(object, name) > 0)
+        H5Adelete(object, name);
     hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    herr_t result = attribute < 0 ? -1 : H5Awrite(attribute, type, text);
+    herr_t result = attribute < 0 ? -1 : H5Awrite(attribute, type, value);
     if (attribute >= 0)
         H5Aclose(attribute);
     H5Sclose(space);
+    return result < 0 ? SF_FAIL(err, SF_ERR_IO, "%s: attribute %s cannot be written", file->path, name)
+                      : SF_OK;
+}
+
+static sf_status string_attribute(const sf_h5 *file, hid_t object, const char *name, const char *text,
+                                  sf_error *err) {
+    hid_t type = text_type(text);
+    put_attribute(file, object, name, type, text, err);
     H5Tclose(type);
-    if (result < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s: attribute %s cannot be written", file->path, name);
-    return SF_OK;
+    return err->status;
 }
 
 /* Links that are made with the groups above them. */
@@ -318,11 +337,7 @@ static bool move_rows(hid_t set, hid_t type, int64_t first, int64_t rows, void *
 
 sf_status sf_h5_rows_begin(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank,
                            const int64_t *dims, sf_h5_rows *rows, sf_error *err) {
-    hsize_t extent[SF_H5_MAX_RANK];
-    hid_t set = -1;
-    for (int k = 0; k < rank; k++)
-        extent[k] = (hsize_t)dims[k];
-    hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
+    hid_t set = -1, space = make_space(rank, dims);
     sf_status status = create_dataset(file, info, native_type(type), space, H5P_DEFAULT, &set, err);
     H5Sclose(space);
     *rows = (sf_h5_rows){
@@ -378,11 +393,8 @@ static hid_t packed_storage(int rank, const int64_t *dims, size_t item_size) {
 
 sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, bool single, int rank,
                              const int64_t *dims, const void *data, sf_error *err) {
-    hsize_t extent[SF_H5_MAX_RANK] = {0};
-    hid_t stored = single && type == SF_H5_F64 ? H5T_NATIVE_FLOAT : native_type(type), set = -1;
-    for (int k = 0; k < rank; k++)
-        extent[k] = (hsize_t)dims[k];
-    hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, extent, NULL);
+    hid_t stored = single && type == SF_H5_F64 ? H5T_NATIVE_FLOAT : native_type(type), set = -1,
+          space = make_space(rank, dims);
     hid_t storage = packed_storage(rank, dims, H5Tget_size(stored));
     create_dataset(file, info, stored, space, storage, &set, err);
     bool written = set < 0 || H5Sget_simple_extent_npoints(space) == 0 ||
@@ -399,11 +411,7 @@ sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, 
 }
 
 sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text, sf_error *err) {
-    hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, strlen(text) + 1);
-    H5Tset_cset(type, H5T_CSET_UTF8);
-    hid_t space = H5Screate(H5S_SCALAR);
-    hid_t set = -1;
+    hid_t type = text_type(text), space = make_space(0, NULL), set = -1;
     sf_status status = create_dataset(file, info, type, space, H5P_DEFAULT, &set, err);
     if (status == SF_OK && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0)
         status = SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
@@ -555,14 +563,27 @@ sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_e
     return err->status;
 }
 
-sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text,
-                              sf_error *err) {
+static sf_status set_attribute(sf_h5 *file, const char *object, const char *name, hid_t type,
+                               const void *value, sf_error *err) {
     hid_t id = H5Oopen(file->id, object, H5P_DEFAULT);
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s has no object %s", file->path, object);
-    sf_status status = string_attribute(file, id, name, text, err);
+    put_attribute(file, id, name, type, value, err);
     H5Oclose(id);
-    return status;
+    return err->status;
+}
+
+sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text,
+                              sf_error *err) {
+    hid_t type = text_type(text);
+    set_attribute(file, object, name, type, text, err);
+    H5Tclose(type);
+    return err->status;
+}
+
+sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value,
+                                  sf_error *err) {
+    return set_attribute(file, object, name, H5T_NATIVE_INT64, &value, err);
 }
 
 static sf_status open_attribute(const sf_h5 *file, const char *object, const char *name, hid_t *id,
@@ -591,24 +612,6 @@ sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char 
     H5Sclose(space);
     H5Tclose(type);
     H5Aclose(id);
-    return err->status;
-}
-
-sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value,
-                                  sf_error *err) {
-    hid_t id = H5Oopen(file->id, object, H5P_DEFAULT);
-    if (id < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s has no object %s", file->path, object);
-    if (H5Aexists(id, name) > 0)
-        H5Adelete(id, name);
-    hid_t space = H5Screate(H5S_SCALAR);
-    hid_t attribute = H5Acreate2(id, name, H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT);
-    if (attribute < 0 || H5Awrite(attribute, H5T_NATIVE_INT64, &value) < 0)
-        SF_FAIL(err, SF_ERR_IO, "%s: attribute %s of %s cannot be written", file->path, name, object);
-    if (attribute >= 0)
-        H5Aclose(attribute);
-    H5Sclose(space);
-    H5Oclose(id);
     return err->status;
 }
 
@@ -697,4 +700,30 @@ sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error
 
 const char *sf_h5_version(void) {
     return &H5_VERS_INFO[sizeof "HDF5 library version: " - 1];
+}
+
+sf_status sf_members_write(sf_h5 *file, const char *group, const sf_member *member, size_t count,
+                           const void *base, sf_error *err) {
+    for (size_t k = 0; k < count && err->status == SF_OK; k++) {
+        char path[128];
+        int64_t items = member[k].count;
+        snprintf(path, sizeof path, "%s/%s", group, member[k].name);
+        sf_h5_info info = {path, member[k].units, member[k].description};
+        sf_h5_write(file, &info, member[k].type, 1, &items, (const char *)base + member[k].offset, err);
+    }
+    return err->status;
+}
+
+sf_status sf_members_read(const sf_h5 *file, const char *group, const sf_member *member, size_t count,
+                          void *base, sf_error *err) {
+    for (size_t k = 0; k < count && err->status == SF_OK; k++) {
+        char path[128];
+        void *data = NULL;
+        int64_t items = member[k].count;
+        snprintf(path, sizeof path, "%s/%s", group, member[k].name);
+        if (sf_h5_read(file, path, member[k].type, 1, &items, &data, err) == SF_OK)
+            memcpy((char *)base + member[k].offset, data, (size_t)items * 8);
+        free(data);
+    }
+    return err->status;
 }

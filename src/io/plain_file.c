@@ -144,8 +144,7 @@ static bool is_made_up(long type) {
 
 static sf_status refuse_kind(const char *path, const char *what, const struct stat *info, sf_error *err) {
     const char *kind = other_kind(info->st_mode);
-    return kind ? SF_FAIL(err, SF_ERR_INPUT, NAMED " is not a plain file: it is %s", NAME(what, path), kind)
-                : SF_OK;
+    return kind ? SF_REFUSE(err, NAMED " is not a plain file: it is %s", NAME(what, path), kind) : SF_OK;
 }
 
 static sf_status fail_reading(const char *path, const char *what, sf_status status, sf_error *err) {
@@ -165,7 +164,7 @@ static sf_status pass(const char *path, const char *what, int *handle, struct st
     if (fstat(file, info) != 0 || fstatfs(file, &system) != 0)
         fail_reading(path, what, SF_ERR_IO, err);
     else if (refuse_kind(path, what, info, err) == SF_OK && is_made_up(system.f_type))
-        SF_FAIL(err, SF_ERR_INPUT, NAMED " is not a plain file: the system makes it up", NAME(what, path));
+        SF_REFUSE(err, NAMED " is not a plain file: the system makes it up", NAME(what, path));
     if (err->status != SF_OK)
         close(file);
     else
@@ -206,8 +205,7 @@ typedef struct reading {
 } reading;
 
 static sf_status refuse_size(const reading *r, sf_error *err) {
-    return SF_FAIL(err, SF_ERR_INPUT, NAMED " is larger than %.4g MB", NAME(r->what, r->path),
-                   1e-6 * (double)r->largest);
+    return SF_REFUSE(err, NAMED " is larger than %.4g MB", NAME(r->what, r->path), 1e-6 * (double)r->largest);
 }
 
 static sf_status make_room(reading *r, size_t room, sf_error *err) {

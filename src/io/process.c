@@ -277,9 +277,8 @@ static _Noreturn void become(const char *const *arguments, int input, int output
     if (dup2(input, 0) >= 0 && (output < 0 || (dup2(output, 1) >= 0 && dup2(output, 2) >= 0)))
         execvp(arguments[0], (char *const *)arguments);
     int reason = errno;
-    if (write(failure, &reason, sizeof reason) < 0)
-        _exit(CANNOT_RUN);
-    _exit(CANNOT_RUN);
+    ssize_t told = write(failure, &reason, sizeof reason);
+    _exit(told < 0 ? SF_ERR_IO : CANNOT_RUN);
 }
 
 /* The copy tells through a pipe that closes by itself when the program begins why it could not. */
@@ -310,8 +309,7 @@ static sf_status launch(const char *const *arguments, int output, bool bound, pi
 }
 
 sf_status sf_child_start(sf_child *child, const char *const *arguments, FILE *log, sf_error *err) {
-    const struct sigaction action = {.sa_handler = SIG_DFL};
-    sigaction(SIGCHLD, &action, NULL); /* or none could be waited for */
+    notice_children();
     fflush(log);
     return launch(arguments, fileno(log), true, &child->process, err);
 }

@@ -36,7 +36,7 @@ static unsigned token(void) {
 sf_status sf_replace_begin(const char *path, char partial[SF_PATH_SIZE], sf_error *err) {
     if ((size_t)snprintf(partial, SF_PATH_SIZE, "%s" PARTIAL "%d-%0*x", path, (int)getpid(), TOKEN_DIGITS,
                          token()) >= SF_PATH_SIZE)
-        return SF_FAIL(err, SF_ERR_INPUT, "the path of an output file is longer than %d bytes", SF_PATH_SIZE);
+        return SF_REFUSE(err, "the path of an output file is longer than %d bytes", SF_PATH_SIZE);
     return SF_OK;
 }
 
@@ -76,11 +76,9 @@ static const char *kind(mode_t mode) {
 static sf_status check_present(const char *path, const struct stat *info, sf_error *err) {
     const char *input = sf_plain_name(info->st_dev, info->st_ino);
     if (!S_ISREG(info->st_mode))
-        return SF_FAIL(err, SF_ERR_INPUT, "the output %s cannot be written: it is %s", path,
-                       kind(info->st_mode));
+        return SF_REFUSE(err, "the output %s cannot be written: it is %s", path, kind(info->st_mode));
     if (input)
-        return SF_FAIL(err, SF_ERR_INPUT, "the output %s would replace an input, %s: give another name", path,
-                       input);
+        return SF_REFUSE(err, "the output %s would replace an input, %s: give another name", path, input);
     return SF_OK;
 }
 
@@ -100,19 +98,19 @@ sf_status sf_replace_check(const char *path, sf_error *err) {
     char partial[SF_PATH_SIZE], folder[SF_PATH_SIZE];
     struct stat info;
     if (!*path)
-        return SF_FAIL(err, SF_ERR_INPUT, "the name of the output is empty");
+        return SF_REFUSE(err, "the name of the output is empty");
     SF_TRY(sf_replace_begin(path, partial, err));
     if (!*split(path, folder))
-        return SF_FAIL(err, SF_ERR_INPUT, "the output %s cannot be written: it is a folder", path);
+        return SF_REFUSE(err, "the output %s cannot be written: it is a folder", path);
     if (stat(path, &info) == 0)
         SF_TRY(check_present(path, &info, err));
     else if (lstat(path, &info) == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "the output %s cannot be written: it is a link to nothing", path);
+        return SF_REFUSE(err, "the output %s cannot be written: it is a link to nothing", path);
     if (lstat(partial, &info) != 0 && errno == ENAMETOOLONG)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "the output %s cannot be written: its name is too long, as it is written under a "
-                       "longer name first",
-                       path);
+        return SF_REFUSE(err,
+                         "the output %s cannot be written: its name is too long, as it is written under a "
+                         "longer name first",
+                         path);
     return sf_replace_check_folder(path, err);
 }
 

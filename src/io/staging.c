@@ -42,9 +42,8 @@ static sf_status check_files(const char *directory, const char *const *names, bo
     for (; *names && err->status == SF_OK; names++) {
         char *path = join(directory, *names, err);
         if (path && sf_replace_check(path, err) == SF_OK && !force && sf_replace_exists(path))
-            SF_FAIL(err, SF_ERR_INPUT,
-                    "%s already holds %s: give another directory, or --force to replace it", directory,
-                    *names);
+            SF_REFUSE(err, "%s already holds %s: give another directory, or --force to replace it", directory,
+                      *names);
         free(path);
     }
     return err->status;
@@ -53,13 +52,12 @@ static sf_status check_files(const char *directory, const char *const *names, bo
 sf_status sf_staging_check(const char *directory, const char *const *names, bool force, sf_error *err) {
     struct stat info;
     if (!*directory)
-        return SF_FAIL(err, SF_ERR_INPUT, "the name of the output directory is empty");
+        return SF_REFUSE(err, "the name of the output directory is empty");
     if (stat(directory, &info) == 0)
-        return S_ISDIR(info.st_mode)
-                   ? check_files(directory, names, force, err)
-                   : SF_FAIL(err, SF_ERR_INPUT, "%s exists and is not a directory", directory);
+        return S_ISDIR(info.st_mode) ? check_files(directory, names, force, err)
+                                     : SF_REFUSE(err, "%s exists and is not a directory", directory);
     if (errno != ENOENT || lstat(directory, &info) == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "the directory %s cannot be made: %s", directory, strerror(errno));
+        return SF_REFUSE(err, "the directory %s cannot be made: %s", directory, strerror(errno));
     return sf_replace_check_folder(directory, err);
 }
 
@@ -179,8 +177,7 @@ sf_status sf_staging_commit(sf_staging *output, sf_error *err) {
         free(from);
         free(to);
     }
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     if (output->created)
         sf_replace_sync_name(output->directory);
     output->created = false;
@@ -216,16 +213,16 @@ static bool is_empty(const char *path) {
 static sf_status check_place(const char *path, bool *there, sf_error *err) {
     struct stat info;
     if (!*path)
-        return SF_FAIL(err, SF_ERR_INPUT, "the name of the new folder is empty");
+        return SF_REFUSE(err, "the name of the new folder is empty");
     *there = lstat(path, &info) == 0;
     if (*there && (stat(path, &info) != 0 || !S_ISDIR(info.st_mode)))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s exists and is not a folder: give another name", path);
+        return SF_REFUSE(err, "%s exists and is not a folder: give another name", path);
     if (*there && access(path, W_OK | X_OK) != 0)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be written in: %s", path, strerror(errno));
     if (*there)
-        return is_empty(path) ? SF_OK
-                              : SF_FAIL(err, SF_ERR_INPUT,
-                                        "the folder %s exists and is not empty: give another name", path);
+        return is_empty(path)
+                   ? SF_OK
+                   : SF_REFUSE(err, "the folder %s exists and is not empty: give another name", path);
     return sf_replace_check_folder(path, err);
 }
 
@@ -267,7 +264,7 @@ sf_status sf_tree_begin(const char *path, sf_tree *tree, sf_error *err) {
 static sf_status path_in(const char *folder, const char *name, char path[PATH_MAX], sf_error *err) {
     if (snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT, "the path of %.200s is longer than %d characters", name, PATH_MAX - 1);
+    return SF_REFUSE(err, "the path of %.200s is longer than %d characters", name, PATH_MAX - 1);
 }
 
 static bool is_made(const sf_tree *tree, const char *name) {
@@ -329,7 +326,7 @@ static sf_status move_one(const char *from, const char *to, sf_error *err) {
         ((errno == EINVAL || errno == ENOSYS) && access(to, F_OK) != 0 && rename(from, to) == 0))
         return SF_OK;
     if (errno == EEXIST || errno == ENOTEMPTY || errno == ENOTDIR)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has come to be meanwhile: give another name", to);
+        return SF_REFUSE(err, "%s has come to be meanwhile: give another name", to);
     return SF_FAIL(err, SF_ERR_IO, "%s cannot be moved to %s: %s", from, to, strerror(errno));
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/table_csv.h"
 
+#include "base/text.h"
 #include "io/table_heading.h"
 #include <ctype.h>
 #include <math.h>
@@ -88,18 +89,9 @@ static char *copy_content(const char *rest) {
 /* ---- heading ---- */
 
 static bool is_utf8(const char *text) {
-    for (const unsigned char *c = (const unsigned char *)text; *c;) {
-        int more = *c < 0x80                 ? 0
-                   : *c >= 0xC2 && *c < 0xE0 ? 1
-                   : *c >= 0xE0 && *c < 0xF0 ? 2
-                   : *c >= 0xF0 && *c < 0xF5 ? 3
-                                             : -1;
-        if (more < 0)
+    for (int length = 1; *text && length > 0; text += length)
+        if ((length = sf_utf8_length((const unsigned char *)text)) == 0)
             return false;
-        for (c++; more > 0; more--, c++)
-            if ((*c & 0xC0) != 0x80)
-                return false;
-    }
     return true;
 }
 
@@ -161,6 +153,10 @@ static sf_status try_heading(csv *file, const char *line, const char *below, cha
     return err->status;
 }
 
+static bool is_good(const sf_table_heading *heading) {
+    return heading->found == 2 && !heading->problem[0];
+}
+
 /* The best heading that the line can be, of any layout and separator; `rest` is the text below it. */
 static sf_status try_line(csv *file, const char *line, const char *rest, const sf_table_layout *layouts,
                           int count, int *which, sf_table_heading *best, char *separator, sf_error *err) {
@@ -173,9 +169,8 @@ static sf_status try_line(csv *file, const char *line, const char *rest, const s
                 continue;
             if (try_heading(file, line, below, *s, &layouts[k], &heading, err) != SF_OK)
                 break;
-            bool good = heading.found == 2 && !heading.problem[0];
-            bool best_good = best->found == 2 && !best->problem[0];
-            if (heading.found > best->found || (heading.found == best->found && good && !best_good)) {
+            if (heading.found > best->found ||
+                (heading.found == best->found && is_good(&heading) && !is_good(best))) {
                 *best = heading;
                 *which = k;
                 *separator = *s;
@@ -183,10 +178,6 @@ static sf_status try_line(csv *file, const char *line, const char *rest, const s
         }
     free(below);
     return err->status;
-}
-
-static bool is_good(const sf_table_heading *heading) {
-    return heading->found == 2 && !heading->problem[0];
 }
 
 /* Every cell is as short as a unit. */
@@ -203,11 +194,12 @@ static bool is_short(const char *line) {
 
 static sf_status refuse_headless(const csv *file, sf_error *err) {
     const char *option = file->layout->heading_option;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s:%d: numbers begin here without a heading, which names the columns %s and %s and their "
-                   "units: write one above them%s%s",
-                   file->path, file->line, file->layout->column[0], file->layout->column[1],
-                   option ? ", or give it with " : "", option ? option : "");
+    return SF_REFUSE(
+        err,
+        "%s:%d: numbers begin here without a heading, which names the columns %s and %s and their "
+        "units: write one above them%s%s",
+        file->path, file->line, file->layout->column[0], file->layout->column[1],
+        option ? ", or give it with " : "", option ? option : "");
 }
 
 /* The first line that is a heading; a table of results may stand above it, with an empty line between. Else
@@ -242,7 +234,7 @@ static sf_status find_heading(csv *file, const sf_table_layout *layouts, int cou
         }
         below_data = data && file->next && !strchr("\r\n", *file->next);
     }
-    return best_line ? SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", file->path, best_line, best.problem) : SF_OK;
+    return best_line ? SF_REFUSE(err, "%s:%d: %s", file->path, best_line, best.problem) : SF_OK;
 }
 
 /* The user's heading, of a file that begins with numbers after lines that are none. */
@@ -251,8 +243,8 @@ static sf_status take_heading(csv *file, const sf_table_layout *layouts, int cou
     const char *text = layouts[0].heading, *option = layouts[0].heading_option, *at = file->next;
     SF_TRY(try_line(file, text, NULL, layouts, count, which, &file->heading, &file->separator, err));
     if (!is_good(&file->heading))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s \"%.200s\": %s", option, text,
-                       file->heading.found < 0 ? "names no columns" : file->heading.problem);
+        return SF_REFUSE(err, "%s \"%.200s\": %s", option, text,
+                         file->heading.found < 0 ? "names no columns" : file->heading.problem);
     file->layout = &layouts[*which];
     char *copy;
     for (int lines = 0; lines < PREAMBLE; lines++) {
@@ -270,18 +262,18 @@ static sf_status take_heading(csv *file, const sf_table_layout *layouts, int cou
             sf_table_split(copy, file->separator, false, &cells);
         free(copy);
         if (separator && is_good(&own))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: the file has a heading of its own: leave %s out",
-                           file->path, file->line + 1, option);
+            return SF_REFUSE(err, "%s:%d: the file has a heading of its own: leave %s out", file->path,
+                             file->line + 1, option);
         if (file->separator && cells.count != file->heading.columns)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %d values where %s names %d columns", file->path,
-                           file->line + 1, cells.count, option, file->heading.columns);
+            return SF_REFUSE(err, "%s:%d: %d values where %s names %d columns", file->path, file->line + 1,
+                             cells.count, option, file->heading.columns);
         if (file->separator) {
             file->next = file->text + (line - file->text);
             return SF_OK;
         }
         file->line++;
     }
-    return SF_FAIL(err, SF_ERR_INPUT, "%s: no line begins with numbers", file->path);
+    return SF_REFUSE(err, "%s: no line begins with numbers", file->path);
 }
 
 /* ---- parts of a file that holds several ---- */
@@ -332,12 +324,12 @@ static sf_status choose_table(csv *file, const sf_table_layout *layouts, int cou
     if (tables == 1)
         return SF_OK;
     if (!chosen)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: another table begins here, the file holds %d: %s%s",
-                       file->path, second, tables,
-                       option ? "choose one with " : "give each a file of its own", option ? option : "");
+        return SF_REFUSE(err, "%s:%d: another table begins here, the file holds %d: %s%s", file->path, second,
+                         tables, option ? "choose one with " : "give each a file of its own",
+                         option ? option : "");
     if (wanted < 1 || wanted > tables || number != wanted)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: specimen %s was asked for; the file holds %d tables",
-                       file->path, chosen, tables);
+        return SF_REFUSE(err, "%s: specimen %s was asked for; the file holds %d tables", file->path, chosen,
+                         tables);
     file->next = file->text + (start - file->text);
     file->table->part_taken[SF_TABLE_SPECIMEN] = true;
     return SF_OK;
@@ -407,11 +399,12 @@ static sf_status choose_rows(csv *file, sf_error *err) {
                 used += (size_t)snprintf(line + used, sizeof line - used, "%s%s", i ? ", " : "", list[i]);
         }
         if (listed > 1 && !chosen)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s holds the %s %s: %s%s", file->path, names[k], line,
-                           option ? "choose one with " : "give each a file of its own", option ? option : "");
+            return SF_REFUSE(err, "%s holds the %s %s: %s%s", file->path, names[k], line,
+                             option ? "choose one with " : "give each a file of its own",
+                             option ? option : "");
         if (listed > 0 && chosen && !there)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %s \"%.40s\" was asked for; it holds the %s %s",
-                           file->path, k == SF_TABLE_CYCLE ? "cycle" : "specimen", chosen, names[k], line);
+            return SF_REFUSE(err, "%s: %s \"%.40s\" was asked for; it holds the %s %s", file->path,
+                             k == SF_TABLE_CYCLE ? "cycle" : "specimen", chosen, names[k], line);
         file->table->part_taken[k] = file->table->part_taken[k] || (listed > 0 && chosen);
     }
     return SF_OK;
@@ -430,20 +423,20 @@ static sf_status check_mark(csv *file, const char *name, const char *text, sf_er
     file->point = file->point || strchr(text, '.');
     if (!strchr(text, ','))
         return file->point && file->comma
-                   ? SF_FAIL(err, SF_ERR_INPUT,
-                             "%s:%d: %s \"%s\" has a decimal point after numbers with a "
-                             "decimal comma (line %d, \"%s\")",
-                             file->path, file->line, name, text, file->comma_line, file->comma_text)
+                   ? SF_REFUSE(err,
+                               "%s:%d: %s \"%s\" has a decimal point after numbers with a "
+                               "decimal comma (line %d, \"%s\")",
+                               file->path, file->line, name, text, file->comma_line, file->comma_text)
                    : SF_OK;
     if (file->separator == ',')
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s:%d: %s \"%s\" holds a comma, which separates the columns here: write a decimal point, "
             "or separate by semicolons",
             file->path, file->line, name, text);
     if (file->point)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s:%d: %s \"%s\" has a comma where the file has decimal points: it could be a decimal "
             "comma or a mark of thousands",
             file->path, file->line, name, text);
@@ -486,12 +479,11 @@ static sf_status read_number(csv *file, const char *name, const char *text, doub
     if (has_thousands(file, text, plain, sizeof plain))
         text = plain;
     if (!sf_table_number(text, value))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not a number%s", file->path, file->line, name,
-                       text, *text ? " (a number such as 12.5 is expected)" : " (the cell is empty)");
+        return SF_REFUSE(err, "%s:%d: %s \"%s\" is not a number%s", file->path, file->line, name, text,
+                         *text ? " (a number such as 12.5 is expected)" : " (the cell is empty)");
     SF_TRY(check_mark(file, name, text, err));
     if (!isfinite(*value))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s \"%s\" is not finite", file->path, file->line, name,
-                       text);
+        return SF_REFUSE(err, "%s:%d: %s \"%s\" is not finite", file->path, file->line, name, text);
     return SF_OK;
 }
 
@@ -540,11 +532,11 @@ static sf_status check_count(const csv *file, int count, sf_error *err) {
     if (count == file->heading.columns ||
         (file->layout->ragged && count > needed && count < file->heading.columns))
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %d values where the header has %d columns%s", file->path,
-                   file->line, count, file->heading.columns,
-                   file->separator == ',' && count > file->heading.columns
-                       ? " (with decimal commas, separate the columns by semicolons)"
-                       : "");
+    return SF_REFUSE(err, "%s:%d: %d values where the header has %d columns%s", file->path, file->line, count,
+                     file->heading.columns,
+                     file->separator == ',' && count > file->heading.columns
+                         ? " (with decimal commas, separate the columns by semicolons)"
+                         : "");
 }
 
 static sf_status read_point(csv *file, char *line, sf_error *err) {
@@ -646,8 +638,8 @@ static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, 
     }
     int footer = line ? file->line : 0;
     if (file->comma && !file->decimal)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s:%d: \"%s\" and every other number with a comma could hold a decimal comma or a mark of "
             "thousands: write decimal points",
             file->path, file->comma_line, file->comma_text);

@@ -27,8 +27,7 @@ static sf_status convert_utf16(const char *path, const char *what, char **whole_
     size_t left = *length - 2, room = 2 * *length + 4, whole = room;
     char *from = *whole_text + 2, *text = malloc(room + 1), *to = text;
     if (!text || converter == (iconv_t)-1 || iconv(converter, &from, &left, &to, &room) == (size_t)-1) {
-        SF_FAIL(err, SF_ERR_INPUT, "the %s %s begins like UTF-16, but is not: save it as CSV UTF-8", what,
-                path);
+        SF_REFUSE(err, "the %s %s begins like UTF-16, but is not: save it as CSV UTF-8", what, path);
         free(text);
     } else {
         *length = whole - room;
@@ -101,8 +100,8 @@ static sf_status convert_mme(const char *path, const char *what, char **text, sf
     if (!whole)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", what, path);
     if (!(step > 0) || !unit[0] || said != (double)samples)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s: its ISO-MME header gives a sampling interval of %g s, the unit \"%s\" and %g samples; it "
             "holds %lld samples",
             path, step, unit, said, (long long)samples);
@@ -113,8 +112,8 @@ sf_status sf_table_text_read(const char *path, const char *what, char **text, sf
     size_t length = 0;
     SF_TRY(sf_plain_read(path, what, SF_PLAIN_TEXT, text, &length, err));
     if (convert_utf16(path, what, text, &length, err) == SF_OK && strlen(*text) < length)
-        SF_FAIL(err, SF_ERR_INPUT,
-                "the %s %s holds zero bytes: it is not a text in UTF-8 (save it as CSV UTF-8)", what, path);
+        SF_REFUSE(err, "the %s %s holds zero bytes: it is not a text in UTF-8 (save it as CSV UTF-8)", what,
+                  path);
     if (err->status == SF_OK)
         convert_mme(path, what, text, err);
     if (err->status != SF_OK) {

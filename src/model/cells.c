@@ -6,49 +6,34 @@
 
 #include "model/model.h"
 
+/* clang-format off */
+static const struct {
+    int vertices, tetrahedra, faces, tetrahedron[6][4], face[6][4];
+} shapes[] = {
+    [SF_CELL_TETRAHEDRON] = {4, 1, 4, {{0, 1, 2, 3}},
+        {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}}},
+    [SF_CELL_PYRAMID] = {5, 2, 5, {{0, 1, 2, 4}, {0, 2, 3, 4}},
+        {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}}},
+    [SF_CELL_PRISM] = {6, 3, 5, {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 4, 3, 5}},
+        {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}},
+    [SF_CELL_HEXAHEDRON] = {8, 6, 6,
+        {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}},
+        {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}},
+};
+/* clang-format on */
+
+int sf_cell_vertices(int type) {
+    return type >= SF_CELL_TETRAHEDRON && type <= SF_CELL_HEXAHEDRON ? shapes[type].vertices : 0;
+}
+
 int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]) {
-    static const int simple[1][4] = {{0, 1, 2, 3}};
-    static const int pyramid[2][4] = {{0, 1, 2, 4}, {0, 2, 3, 4}};
-    static const int prism[3][4] = {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 4, 3, 5}};
-    static const int hexahedron[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
-                                         {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
-    switch (type) {
-    case SF_CELL_PYRAMID:
-        *tetrahedra = pyramid;
-        return 2;
-    case SF_CELL_PRISM:
-        *tetrahedra = prism;
-        return 3;
-    case SF_CELL_HEXAHEDRON:
-        *tetrahedra = hexahedron;
-        return 6;
-    default:
-        *tetrahedra = simple;
-        return 1;
-    }
+    *tetrahedra = shapes[type].tetrahedron;
+    return shapes[type].tetrahedra;
 }
 
 int sf_cell_faces(int type, const int (**faces)[4]) {
-    static const int tetrahedron[4][4] = {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}};
-    static const int pyramid[5][4] = {
-        {0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}};
-    static const int prism[5][4] = {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
-    static const int hexahedron[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
-                                         {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-    switch (type) {
-    case SF_CELL_PYRAMID:
-        *faces = pyramid;
-        return 5;
-    case SF_CELL_PRISM:
-        *faces = prism;
-        return 5;
-    case SF_CELL_HEXAHEDRON:
-        *faces = hexahedron;
-        return 6;
-    default:
-        *faces = tetrahedron;
-        return 4;
-    }
+    *faces = shapes[type].face;
+    return shapes[type].faces;
 }
 
 /* ---- the skin ---- */

@@ -6,6 +6,9 @@
 #include "base/error.h"
 #include <stdint.h>
 
+/* Vertices of a cell of this type; 0: there is no such type. */
+int sf_cell_vertices(int type);
+
 /* Tetrahedra that fill a cell of this type (SF_CELL_*), static storage; returns how many. */
 int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]);
 

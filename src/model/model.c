@@ -266,8 +266,7 @@ sf_status sf_model_take_materials(sf_model *model, sf_material *material, int co
     if (!model->node_material)
         model->node_material = sf_alloc(err, (unsigned long)model->node_count, 1, "materials of the nodes");
     model->material = sf_alloc(err, (unsigned long)count, sizeof *model->material, "materials");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     model->material_count = count;
     memcpy(model->material, material, (size_t)count * sizeof *material);
     memset(material, 0, (size_t)count * sizeof *material);

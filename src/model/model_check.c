@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "base/mat3.h"
+#include "model/cells.h"
 #include "model/flight.h"
 #include "model/model.h"
 
@@ -68,8 +69,7 @@ static sf_status check_materials(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld materials; 1 to %d are possible",
                        (long long)m->material_count, SF_MATERIAL_MAX);
     for (int64_t k = 0; k < m->material_count; k++)
-        if (sf_material_check(&m->material[k], k, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_material_check(&m->material[k], k, err));
     for (int64_t i = 0; i < m->node_count; i++) {
         if (m->node_material[i] >= m->material_count)
             return SF_FAIL(err, SF_ERR_MODEL, "node %lld is of material %d, of 0 to %lld", (long long)i,
@@ -167,8 +167,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"number of frames", m->run.end_time / m->run.frame_interval, 0, SF_MOST_FRAMES},
     };
     for (size_t k = 0; k < sizeof bound / sizeof bound[0]; k++)
-        if (check_bound(bound[k].name, bound[k].value, bound[k].low, bound[k].high, err) != SF_OK)
-            return err->status;
+        SF_TRY(check_bound(bound[k].name, bound[k].value, bound[k].low, bound[k].high, err));
     if (m->symmetry_factor == 3)
         return SF_FAIL(err, SF_ERR_MODEL, "the symmetry factor is 3; 1, 2 and 4 are possible");
     double length = 0;
@@ -188,24 +187,26 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
     return check_materials(m, err);
 }
 
+static sf_status check_surface(const char *name, int64_t count, const int32_t *triangle, int64_t nodes,
+                               sf_error *err) {
+    for (int64_t k = 0; k < 3 * count; k++)
+        if (triangle[k] < 0 || triangle[k] >= nodes)
+            return SF_FAIL(err, SF_ERR_MODEL, "%s triangle %lld refers to node %d, of 0 to %lld", name,
+                           (long long)k / 3, triangle[k], (long long)nodes - 1);
+    return SF_OK;
+}
+
 static sf_status check_mesh(const sf_model *m, sf_error *err) {
-    if (check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count,
-                  false, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count,
+                     false, err));
     for (int64_t c = 0; c < m->cell_count; c++) {
-        static const int vertices[] = {
-            [SF_CELL_TETRAHEDRON] = 4, [SF_CELL_PYRAMID] = 5, [SF_CELL_PRISM] = 6, [SF_CELL_HEXAHEDRON] = 8};
         uint8_t type = m->cell_type[c];
-        if (type < SF_CELL_TETRAHEDRON || type > SF_CELL_HEXAHEDRON ||
-            m->cell_ptr[c + 1] - m->cell_ptr[c] != vertices[type])
+        if (sf_cell_vertices(type) == 0 || m->cell_ptr[c + 1] - m->cell_ptr[c] != sf_cell_vertices(type))
             return SF_FAIL(err, SF_ERR_MODEL, "background cell %lld has type %d and %lld vertices",
                            (long long)c, type, (long long)(m->cell_ptr[c + 1] - m->cell_ptr[c]));
     }
-    for (int64_t k = 0; k < 3 * m->surface_triangle_count; k++)
-        if (m->surface_triangle[k] < 0 || m->surface_triangle[k] >= m->surface_node_count)
-            return SF_FAIL(err, SF_ERR_MODEL, "missile triangle %lld refers to node %d, of 0 to %lld",
-                           (long long)k / 3, m->surface_triangle[k], (long long)m->surface_node_count - 1);
-    return SF_OK;
+    return check_surface("missile", m->surface_triangle_count, m->surface_triangle, m->surface_node_count,
+                         err);
 }
 
 /* Triangles of three different nodes of the cloud. */
@@ -219,14 +220,6 @@ static sf_status check_triangles(const char *name, const sf_model *m, int64_t co
                            "triangle %lld of the %s has the nodes %d, %d, %d: three of 0 to %lld are needed",
                            (long long)k / 3, name, node[0], node[1], node[2], (long long)m->node_count - 1);
     }
-    return SF_OK;
-}
-
-static sf_status check_support(const sf_model *m, sf_error *err) {
-    for (int64_t k = 0; k < 3 * m->support_triangle_count; k++)
-        if (m->support_triangle[k] < 0 || m->support_triangle[k] >= m->support_node_count)
-            return SF_FAIL(err, SF_ERR_MODEL, "support triangle %lld refers to node %d, of 0 to %lld",
-                           (long long)k / 3, m->support_triangle[k], (long long)m->support_node_count - 1);
     return SF_OK;
 }
 
@@ -334,7 +327,8 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
     if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
         check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
         check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
-        check_support(m, err) != SF_OK)
+        check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count,
+                      err) != SF_OK)
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
         return err->status;

@@ -102,8 +102,7 @@ static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, 
 
 static sf_status read_scalar(const sf_h5 *h5, const char *path, sf_h5_type type, void *to, sf_error *err) {
     void *data = NULL;
-    if (sf_h5_read(h5, path, type, 0, NULL, &data, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read(h5, path, type, 0, NULL, &data, err));
     memcpy(to, data, 8);
     free(data);
     return SF_OK;
@@ -147,8 +146,7 @@ static sf_status read_material_name(const sf_h5 *h5, int64_t index, char name[SF
 static sf_status read_material(const sf_h5 *h5, sf_material *m, int64_t index, sf_error *err) {
     char path[PATH_SIZE], *name = NULL;
     snprintf(path, sizeof path, "/material/%lld/law", (long long)index);
-    if (sf_h5_read_text(h5, path, &name, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_read_text(h5, path, &name, err));
     const sf_law *law = sf_law_find(name);
     if (!law)
         SF_FAIL(err, SF_ERR_MODEL, "%s: \"%.80s\" is not a law that this program has", path, name);
@@ -190,8 +188,7 @@ static void write_content_hash(sf_h5 *h5, const sf_model *model, sf_error *err) 
 /* A flipped bit may give another valid model: only the hash tells. */
 static sf_status check_content_hash(const sf_h5 *h5, const sf_model *model, sf_error *err) {
     char stored[64], hash[SF_MODEL_HASH_SIZE];
-    if (sf_h5_get_attribute(h5, "/", "content_hash", stored, sizeof stored, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_get_attribute(h5, "/", "content_hash", stored, sizeof stored, err));
     sf_model_hash(model, hash);
     if (strcmp(stored, hash) != 0)
         return SF_FAIL(err, SF_ERR_MODEL, "is damaged or was changed: the hash of its content is %s, not %s",
@@ -246,8 +243,7 @@ sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_erro
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);
     memset(model, 0, sizeof *model);
-    if (sf_h5_open(path, &h5, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_open(path, &h5, err));
     sf_status status = sf_provenance_check(h5, path, "softfall-model", &inner);
     for (size_t k = 0; k < count && status == SF_OK; k++)
         status = read_field(h5, &field[k], model, &inner);

@@ -33,12 +33,9 @@ static void take_mesh(sf_mesh *mesh, sf_model *m, sf_build_report *report) {
     for (int64_t k = 0; k < mesh->cell_count; k++)
         report->cells[mesh->cell_type[k]]++;
     report->orphan_count = mesh->orphan_count;
-    double low = INFINITY, high = -INFINITY;
-    for (int64_t i = 0; i < mesh->node_count; i++) {
-        low = fmin(low, mesh->position[3 * i + 2]);
-        high = fmax(high, mesh->position[3 * i + 2]);
-    }
-    m->thickness = high - low;
+    double low[3], high[3];
+    sf_box3(mesh->node_count, mesh->position, low, high);
+    m->thickness = high[2] - low[2];
     m->node_count = mesh->node_count;
     m->cell_count = mesh->cell_count;
     m->cell_nnz = mesh->cell_ptr[mesh->cell_count];
@@ -54,18 +51,18 @@ static void take_mesh(sf_mesh *mesh, sf_model *m, sf_build_report *report) {
 }
 
 /* The worst of all layers. */
-static void report_domains(const sf_domains *d, sf_build_report *report) {
-    report->enlarged_count += d->enlarged_count;
-    report->largest_enlargement = fmax(report->largest_enlargement, d->largest_enlargement);
-    if (d->worst_condition > report->worst_condition) {
-        report->worst_condition = d->worst_condition;
-        memcpy(report->worst_position, d->worst_position, sizeof d->worst_position);
+static void report_domains(const sf_domain_figures *d, sf_domain_figures *worst) {
+    worst->enlarged_count += d->enlarged_count;
+    worst->largest_enlargement = fmax(worst->largest_enlargement, d->largest_enlargement);
+    if (d->worst_condition > worst->worst_condition) {
+        worst->worst_condition = d->worst_condition;
+        memcpy(worst->worst_position, d->worst_position, sizeof d->worst_position);
     }
-    if (d->hidden_count > 0 && (report->hidden_count == 0 || d->hidden_distance < report->hidden_distance)) {
-        report->hidden_distance = d->hidden_distance;
-        memcpy(report->hidden_position, d->hidden_position, sizeof d->hidden_position);
+    if (d->hidden_count > 0 && (worst->hidden_count == 0 || d->hidden_distance < worst->hidden_distance)) {
+        worst->hidden_distance = d->hidden_distance;
+        memcpy(worst->hidden_position, d->hidden_position, sizeof d->hidden_position);
     }
-    report->hidden_count += d->hidden_count;
+    worst->hidden_count += d->hidden_count;
 }
 
 /* Puts a layer's array of `count` items behind the `used` items in *array, and releases it: the first one is
@@ -116,11 +113,10 @@ static sf_status check_facing(const sf_case *c, const sf_mesh *mesh, const sf_du
                               const sf_node_set *contact, sf_error *err) {
     static const double LEAST = 1e-3; /* of the area */
     sf_surface_sides sides;
-    if (sf_surface_find_sides(mesh, dual, contact, c->missile_card.direction, &sides, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_surface_find_sides(mesh, dual, contact, c->missile_card.direction, &sides, err));
     if (!(sides.facing > LEAST * sides.area))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "pad.contact: the surface group \"%s\" does not face the missile, which moves along (%g, "
             "%g, %g): are pad.contact and pad.fixed exchanged, or is the pad upside down?",
             contact->name, c->missile_card.direction[0], c->missile_card.direction[1],
@@ -161,8 +157,9 @@ static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dua
         for (int64_t i = 0; i < n; i++)
             m->mass[first + i] = sf_material_density(material) * domains.volume[i];
         report_invariants(&invariants, &report->invariants);
-        domains.hidden_count = c->layer_count > 1 ? 0 : domains.hidden_count; /* report_gaps */
-        report_domains(&domains, report);
+        domains.figures.hidden_count =
+            c->layer_count > 1 ? 0 : domains.figures.hidden_count; /* report_gaps */
+        report_domains(&domains.figures, &report->domains);
         take_domains(&domains, dual, first, n, m, err);
     }
     sf_domains_free(&domains);
@@ -178,9 +175,9 @@ static sf_status report_gaps(const sf_mesh *mesh, const sf_dual *dual, const sf_
     for (int64_t i = 0; support && i < layers->first[layers->count]; i++)
         support[layers->origin[i]] = fmax(support[layers->origin[i]], m->support[i]);
     if (support && sf_domains_find_gaps(mesh, dual, support, &gaps, err) == SF_OK)
-        report_domains(&gaps, report);
+        report_domains(&gaps.figures, &report->domains);
     free(support);
-    m->slit_fraction = (double)report->hidden_count / (double)mesh->node_count;
+    m->slit_fraction = (double)report->domains.hidden_count / (double)mesh->node_count;
     return err->status;
 }
 
@@ -244,7 +241,7 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
                            report, err) != SF_OK) {
         goto done;
     } else {
-        m->slit_fraction = (double)report->hidden_count / (double)mesh->node_count;
+        m->slit_fraction = (double)report->domains.hidden_count / (double)mesh->node_count;
     }
     take_mesh(mesh, m, report);
     sf_membrane_weigh(m);
@@ -265,16 +262,15 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
             return err->status;
         int axis = sf_group_plane_axis(m, set);
         if (axis != 0 && axis != 1)
-            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is not a plane normal to x or y",
-                           set->name);
+            return SF_REFUSE(err, "the symmetry group \"%s\" is not a plane normal to x or y", set->name);
         if (fabs(c->missile_card.direction[axis]) > 1e-12)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "missile.direction has the component %g normal to the symmetry plane \"%s\": an "
-                           "oblique impact needs a model without that plane",
-                           c->missile_card.direction[axis], set->name);
+            return SF_REFUSE(err,
+                             "missile.direction has the component %g normal to the symmetry plane \"%s\": an "
+                             "oblique impact needs a model without that plane",
+                             c->missile_card.direction[axis], set->name);
         if (seen & (1 << axis))
-            return SF_FAIL(err, SF_ERR_INPUT, "the symmetry group \"%s\" is a second plane normal to %c",
-                           set->name, 'x' + axis);
+            return SF_REFUSE(err, "the symmetry group \"%s\" is a second plane normal to %c", set->name,
+                             'x' + axis);
         seen |= 1 << axis;
         m->symmetry_factor *= 2;
         for (int64_t k = 0; k < set->count; k++)
@@ -388,10 +384,7 @@ done:
 
 /* Height (m) of the missile's lowest point above the pad's highest. */
 static double find_clearance(const sf_model *m) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_surface_of_missile(m);
     double lowest[3];
     sf_impact_lowest(&missile, &m->missile, lowest);
     return lowest[2] - sf_impact_top(m);
@@ -401,10 +394,11 @@ static double find_clearance(const sf_model *m) {
 static sf_status check_freedom(const sf_case *c, const sf_model *m, sf_error *err) {
     if (c->freedom == SF_MISSILE_GUIDED || m->symmetry_factor == 1)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "missile.freedom: a free missile needs the whole pad and the whole missile; this model is "
-                   "1/%lld of them",
-                   (long long)m->symmetry_factor);
+    return SF_REFUSE(
+        err,
+        "missile.freedom: a free missile needs the whole pad and the whole missile; this model is "
+        "1/%lld of them",
+        (long long)m->symmetry_factor);
 }
 
 static double across(const double direction[3], const double a[3], const double b[3]) {
@@ -504,14 +498,13 @@ static sf_status check_depth(const sf_model *m, sf_error *err) {
         depth < m->thickness * (1 - 1e-9) * limit) /* a difference of coordinates */
         return SF_OK;
     if (depth < m->thickness * (1 - 1e-9))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "missile.motion compresses the pad by %.4g mm of %.4g mm, a strain of %.4g: its foam cannot be "
             "compressed beyond %.4g, the limit of its densification",
             1e3 * depth, 1e3 * m->thickness, depth / m->thickness, limit);
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
-                   1e3 * depth, 1e3 * m->thickness);
+    return SF_REFUSE(err, "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
+                     1e3 * depth, 1e3 * m->thickness);
 }
 
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
@@ -580,8 +573,7 @@ static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double c
            start = fmin(m->run.step_limit, m->run.step_safety * first);
     sf_law_batch batch;
     sf_material_law law;
-    if (sf_material_law_build(material, &law, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_material_law_build(material, &law, err));
     memset(&batch, 0, sizeof batch);
     set_stretch(batch.f, 1);
     for (int l = 0; l < SF_LANES; l++)
@@ -625,11 +617,11 @@ static sf_status check_first_step(const sf_model *m, double first, int64_t criti
     double step = m->run.step_safety * first, least = SF_SMALLEST_STEP * m->run.end_time;
     if (step >= least)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "the first stable time step is %.3g s, below %g of solver.end_time (%g s), where a run "
-                   "stops: the foam is too stiff or too viscous (%s%s: %s, ED, eta, DAMP), or too light",
-                   step, SF_SMALLEST_STEP, m->run.end_time, material->name[0] ? "materials." : "material",
-                   material->name, material->law->stiffness_keys);
+    return SF_REFUSE(err,
+                     "the first stable time step is %.3g s, below %g of solver.end_time (%g s), where a run "
+                     "stops: the foam is too stiff or too viscous (%s%s: %s, ED, eta, DAMP), or too light",
+                     step, SF_SMALLEST_STEP, m->run.end_time, material->name[0] ? "materials." : "material",
+                     material->name, material->law->stiffness_keys);
 }
 
 /* Faces of a slit that touch each other do not pass through each other. */
@@ -644,13 +636,13 @@ static sf_status find_skin(const sf_case *c, sf_model *m, sf_build_report *repor
 
 /* Faces of a pad without contact with itself pass through each other. */
 static void tell_slits(const sf_model *m, const sf_build_report *r, const sf_sink *sink) {
-    if (r->hidden_count > 0 && (m->skin_count == 0 || m->skin_alone))
+    if (r->domains.hidden_count > 0 && (m->skin_count == 0 || m->skin_alone))
         sf_sink_tell(
             sink, SF_WARNING,
             "the pad has a slit, hole or gap narrower than the supports: nodes %.3g mm apart at (%.4g, %.4g, "
             "%.4g) mm do not act on each other; its faces pass through each other where they meet",
-            1e3 * r->hidden_distance, 1e3 * r->hidden_position[0], 1e3 * r->hidden_position[1],
-            1e3 * r->hidden_position[2]);
+            1e3 * r->domains.hidden_distance, 1e3 * r->domains.hidden_position[0],
+            1e3 * r->domains.hidden_position[1], 1e3 * r->domains.hidden_position[2]);
     if (!isnan(r->unheld[0]))
         sf_sink_tell(
             sink, SF_WARNING,

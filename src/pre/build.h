@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "model/model.h"
 #include "case/case.h"
-#include "pre/cloud/invariants.h"
+#include "pre/cloud/domains.h"
 #include "pre/mesh/mesh.h"
 #include "pre/hold.h"
 #include "pre/drop_check.h"
@@ -17,17 +17,12 @@ typedef struct sf_build_report {
     char mesh_hash[17];
     int64_t cells[10]; /* by SF_CELL_* */
     int64_t orphan_count;
-    double mesh_volume; /* m3 */
-    double largest_enlargement;
-    int64_t enlarged_count;
-    double worst_condition;
-    double worst_position[3]; /* m */
-    int64_t hidden_count;     /* as in sf_domains */
-    double hidden_distance, hidden_position[3];
-    double unheld[3];  /* m, a face that will pass through another one or the anvil; NaN: none */
-    double first_step; /* s, before any safety factor */
-    double slowdown;   /* -, first step over the mean one of a compression (estimate_slowdown) */
-    bool contact_held; /* every contact point is held along z: nothing to drop on */
+    double mesh_volume;        /* m3 */
+    sf_domain_figures domains; /* of all layers */
+    double unheld[3];          /* m, a face that will pass through another one or the anvil; NaN: none */
+    double first_step;         /* s, before any safety factor */
+    double slowdown;           /* -, first step over the mean one of a compression (estimate_slowdown) */
+    bool contact_held;         /* every contact point is held along z: nothing to drop on */
     sf_hold hold;
     sf_contact_zone zone;
     sf_error between; /* a part of the missile passes between the contact nodes (pre/foam_path.h) */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "base/triangle.h"
 #include "model/flight.h"
 #include "model/good_run.h"
 #include "model/model.h"
@@ -66,10 +67,7 @@ static double mean_spacing(const sf_model *m, const double centre[2], double rad
 /* The zone when the missile stands `part` of the thickness deep, by fine x fine points for each contact node.
  */
 static void measure_at(const sf_model *m, double part, int fine, sf_contact_zone *zone) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_surface_of_missile(m);
     double centre[2], wide, deepest = m->missile.gap - part * m->thickness / m->missile.direction[2];
     const bool plane[2] = {sf_symmetry_plane(m, 0, &centre[0]), sf_symmetry_plane(m, 1, &centre[1])};
     zone_sums sums = {0};
@@ -119,9 +117,9 @@ static const double SYMMETRIC = 1e-2; /* of the missile's extent: as far on one 
 static sf_status check_thickness(const sf_model *m, sf_error *err) {
     if (m->thickness >= THINNEST && m->thickness <= THICKEST)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "the pad is %g m thick, outside %g to %g m: is geometry.length_unit the geometry's unit?",
-                   m->thickness, THINNEST, THICKEST);
+    return SF_REFUSE(
+        err, "the pad is %g m thick, outside %g to %g m: is geometry.length_unit the geometry's unit?",
+        m->thickness, THINNEST, THICKEST);
 }
 
 static sf_status check_mass(const sf_model *m, sf_error *err) {
@@ -130,10 +128,10 @@ static sf_status check_mass(const sf_model *m, sf_error *err) {
         heaviest = fmax(heaviest, m->mass[m->contact_node[k]]);
     if (sf_missile_is_driven(m) || share > heaviest)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "missile.mass: %g kg, of which the model has 1/%lld, is not more than the heaviest node "
-                   "of the contact surface (%g kg)",
-                   m->missile.mass, (long long)m->symmetry_factor, heaviest);
+    return SF_REFUSE(err,
+                     "missile.mass: %g kg, of which the model has 1/%lld, is not more than the heaviest node "
+                     "of the contact surface (%g kg)",
+                     m->missile.mass, (long long)m->symmetry_factor, heaviest);
 }
 
 /* ---- the missile's place ---- */
@@ -143,10 +141,7 @@ static const double TOUCHING = 1e-3; /* of the thickness */
 /* The missile is placed at its gap from the contact group; no other part of the pad may be nearer. Only nodes
  * above the missile's leading point can be. */
 static sf_status check_outside(const sf_case *c, const sf_model *m, sf_error *err) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_surface_of_missile(m);
     const double *d = m->missile.direction, slack = TOUCHING * m->thickness;
     double lead = -INFINITY;
     for (int64_t k = 0; k < m->surface_node_count; k++)
@@ -159,8 +154,8 @@ static sf_status check_outside(const sf_case *c, const sf_model *m, sf_error *er
             continue;
         double travel = sf_missile_travel(&missile, &m->missile, x);
         if (travel < m->missile.gap - slack)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "the missile starts inside the pad: at its gap from the group \"%s\" it has passed the "
                 "pad's node at (%.4g, %.4g, %.4g) mm by %.4g mm: is every surface that it meets in "
                 "pad.contact?",
@@ -193,9 +188,7 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
     double rate = sqrt(sf_dot3(card.angular_velocity, card.angular_velocity)), flight = sf_flight_time(&card);
     if (!sf_missile_turns(m) || !(rate * flight > 0))
         return SF_OK;
-    sf_surface surface = {.node_count = m->surface_node_count,
-                          .triangle_count = m->surface_triangle_count,
-                          .triangle = m->surface_triangle};
+    sf_surface surface = sf_surface_of_missile(m);
     surface.position =
         sf_alloc(err, 3 * (unsigned long)surface.node_count, sizeof *surface.position, "missile's flight");
     card.shape = SF_SHAPE_SURFACE;
@@ -206,8 +199,8 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
         if (sf_missile_distance(&surface, &card, m->position, m->contact_count, m->contact_node, &distance,
                                 &miss) == SF_OK &&
             distance < -TOUCHING * m->thickness)
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "missile.angular_velocity: the missile turns so fast that another part of it is %.3g mm "
                 "inside the pad %.3g ms before it arrives in the pose of its geometry: draw it as it first "
                 "touches the pad",
@@ -218,15 +211,6 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
 }
 
 /* ---- symmetry ---- */
-
-static void range(const sf_model *m, int axis, double *low, double *high) {
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (int64_t k = 0; k < m->surface_node_count; k++) {
-        *low = fmin(*low, m->surface_position[3 * k + axis]);
-        *high = fmax(*high, m->surface_position[3 * k + axis]);
-    }
-}
 
 /* The plane x or y = `place` of a held symmetry group: -1 axis if there is none of that axis. */
 static int find_plane(const sf_case *c, const sf_mesh *mesh, const sf_model *m, int axis, double *place,
@@ -255,32 +239,13 @@ static double side_of_pad(const sf_model *m, int axis, double place) {
     return sum < 0 ? -1 : 1;
 }
 
-static double segment_distance(const double x[3], const double a[3], const double b[3]) {
-    double along[3], r[3];
-    for (int k = 0; k < 3; k++) {
-        along[k] = b[k] - a[k];
-        r[k] = x[k] - a[k];
-    }
-    double square = sf_dot3(along, along), t = square > 0 ? sf_dot3(r, along) / square : 0;
-    for (int k = 0; k < 3; k++)
-        r[k] -= fmin(fmax(t, 0), 1) * along[k];
-    return sqrt(sf_dot3(r, r));
-}
-
 static double triangle_distance(const double x[3], const double a[3], const double b[3], const double c[3]) {
-    double u[3], v[3], normal[3], r[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-        r[k] = x[k] - a[k];
-    }
-    sf_cross3(u, v, normal);
-    double size = sqrt(sf_dot3(normal, normal));
-    for (int k = 0; k < 3 && size > 0; k++)
-        normal[k] /= size;
-    if (size > 0 && isfinite(sf_triangle_travel(a, b, c, normal, x)))
-        return fabs(sf_dot3(normal, r));
-    return fmin(segment_distance(x, a, b), fmin(segment_distance(x, b, c), segment_distance(x, c, a)));
+    double nearest[3];
+    int feature;
+    sf_triangle_nearest(a, b, c, x, nearest, &feature);
+    for (int k = 0; k < 3; k++)
+        nearest[k] -= x[k];
+    return sqrt(sf_dot3(nearest, nearest));
 }
 
 /* A missile that is drawn on both sides of the plane is its own mirror image: the model has one side alone.
@@ -308,8 +273,8 @@ static sf_status check_mirror(const sf_model *m, int axis, double place, double 
                                                       &m->surface_position[3 * (int64_t)n[2]]));
         }
         if (nearest > slack)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "the missile is not symmetric about the plane \"%s\" (%c = %g mm), of which the model "
                 "has one side: its point at (%.4g, %.4g, %.4g) mm has its mirror image %.4g mm beside "
                 "the surface; model the whole pad and the whole missile",
@@ -321,27 +286,29 @@ static sf_status check_mirror(const sf_model *m, int axis, double place, double 
 /* The contact sees what stands over the modelled part of the pad: that must be half of a symmetric missile,
  * which may be modelled as a half or as a whole. */
 static sf_status check_plane(const sf_model *m, int axis, double place, const char *name, sf_error *err) {
-    double low, high, extent;
-    range(m, axis, &low, &high);
-    extent = high - low;
+    double lows[3], highs[3];
+    sf_box3(m->surface_node_count, m->surface_position, lows, highs);
+    double low = lows[axis], high = highs[axis], extent = high - low;
     if (m->missile.shape == SF_SHAPE_SPHERE) {
         double off = m->missile.sphere_centre[axis] - place;
         if (fabs(off) <= AT_PLANE * m->missile.sphere_radius)
             return SF_OK;
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "the centre of the missile's sphere lies %g mm off the symmetry plane \"%s\" (%c = %g "
-                       "mm): it must lie on it",
-                       1e3 * off, name, 'x' + axis, 1e3 * place);
+        return SF_REFUSE(
+            err,
+            "the centre of the missile's sphere lies %g mm off the symmetry plane \"%s\" (%c = %g "
+            "mm): it must lie on it",
+            1e3 * off, name, 'x' + axis, 1e3 * place);
     }
     double before = side_of_pad(m, axis, place) > 0 ? place - low : high - place, behind = extent - before;
     if (fabs(before) <= AT_PLANE * extent)
         return SF_OK;
     if (fabs(before - behind) <= SYMMETRIC * extent)
         return check_mirror(m, axis, place, extent, name, err);
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "the missile spans %c = %g to %g mm, neither one side of the symmetry plane \"%s\" (%c = "
-                   "%g mm) from that plane on nor both sides alike",
-                   'x' + axis, 1e3 * low, 1e3 * high, name, 'x' + axis, 1e3 * place);
+    return SF_REFUSE(
+        err,
+        "the missile spans %c = %g to %g mm, neither one side of the symmetry plane \"%s\" (%c = "
+        "%g mm) from that plane on nor both sides alike",
+        'x' + axis, 1e3 * low, 1e3 * high, name, 'x' + axis, 1e3 * place);
 }
 
 typedef struct edge {
@@ -390,15 +357,16 @@ static double round_off(double place, double extent) {
 
 /* Without a symmetry plane of this axis the missile must be whole. */
 static sf_status check_whole(const sf_model *m, const edge *list, int axis, sf_error *err) {
-    double low, high;
-    range(m, axis, &low, &high);
-    bool below = is_cut(m, list, axis, low, high - low);
-    if (!below && !is_cut(m, list, axis, high, high - low))
+    double low[3], high[3];
+    sf_box3(m->surface_node_count, m->surface_position, low, high);
+    double extent = high[axis] - low[axis];
+    bool below = is_cut(m, list, axis, low[axis], extent);
+    if (!below && !is_cut(m, list, axis, high[axis], extent))
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: "
-                   "half a missile over a whole pad",
-                   'x' + axis, 1e3 * round_off(below ? low : high, high - low));
+    return SF_REFUSE(err,
+                     "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: "
+                     "half a missile over a whole pad",
+                     'x' + axis, 1e3 * round_off(below ? low[axis] : high[axis], extent));
 }
 
 /* ---- edges that point at the pad ---- */
@@ -433,20 +401,11 @@ static bool is_rim(const sf_model *m, const edge *list, int64_t t, int k) {
 
 /* Can the pad meet the edge before any other part of the missile? */
 static bool leads(const sf_model *m, const double middle[3]) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_surface_of_missile(m);
     double ahead = 2 * m->thickness + m->missile.gap, x[3], low[3], high[3];
-    for (int i = 0; i < 3; i++) {
-        low[i] = INFINITY;
-        high[i] = -INFINITY;
+    for (int i = 0; i < 3; i++)
         x[i] = middle[i] + ahead * m->missile.direction[i];
-    }
-    for (int64_t k = 0; k < 3 * m->node_count; k++) {
-        low[k % 3] = fmin(low[k % 3], m->position[k]);
-        high[k % 3] = fmax(high[k % 3], m->position[k]);
-    }
+    sf_box3(m->node_count, m->position, low, high);
     bool over = x[2] < low[2]; /* it comes as far as the base within twice the thickness */
     for (int i = 0; i < 2; i++)
         over = over && middle[i] > low[i] && middle[i] < high[i];
@@ -460,8 +419,8 @@ static sf_status check_blades(const sf_model *m, const edge *list, sf_error *err
             double middle[3], slope = edge_slope(m, t, k, middle);
             if (slope < STEEP || !is_rim(m, list, t, k) || !leads(m, middle))
                 continue;
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "missile.group: the surface ends in an edge at (%.4g, %.4g, %.4g) mm that points at the pad, "
                 "in a sheet %.3g degrees steep: the pad would pass beside it; close the missile below, or "
                 "leave that part out of the group",
@@ -555,9 +514,8 @@ static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_con
     if (m->expected_mesh_error <= c->mesh_error_limit)
         return SF_OK;
     describe_spacing(m, zone, reason);
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s, over pad.mesh_error_limit (%.3g %%): take a finer mesh, or raise that key", reason,
-                   100 * c->mesh_error_limit);
+    return SF_REFUSE(err, "%s, over pad.mesh_error_limit (%.3g %%): take a finer mesh, or raise that key",
+                     reason, 100 * c->mesh_error_limit);
 }
 
 sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,

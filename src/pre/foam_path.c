@@ -4,6 +4,7 @@
 #include "base/mat3.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/free_faces.h"
+#include "pre/impact.h"
 #include "pre/rigid_support.h"
 #include <math.h>
 #include <stdlib.h>
@@ -104,7 +105,7 @@ static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8
                        double slack) {
     hit hits[MOST_HITS];
     int count = 0;
-    double from[3], sum = 0, begin = 0, end = 0, top = -INFINITY;
+    double from[3], sum = 0, begin = 0, end = 0;
     bool inside = true, held = false;
     find_centroid(m, &pad->list[first], from);
     for (int64_t i = 0; i < pad->count && count < MOST_HITS; i++) {
@@ -132,9 +133,7 @@ static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8
         }
         inside = !hits[k].leaves;
     }
-    for (int64_t i = 0; i < m->node_count; i++)
-        top = fmax(top, m->position[3 * i + 2]);
-    double fall = -m->missile.direction[2], floor = top - m->anvil.depth,
+    double fall = -m->missile.direction[2], floor = sf_impact_top(m) - m->anvil.depth,
            anvil = m->anvil.depth > 0 ? (from[2] - floor) / fall : INFINITY, ground = fmin(anvil, support),
            below = isfinite(ground) && !held ? fmax(0, ground - end) : 0;
     return (path){sum, isfinite(ground) ? end - sum + below : 0};
@@ -144,10 +143,7 @@ static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8
 
 /* Sets the travel of each face that the missile may touch; returns the first touched, or -1. */
 static int64_t find_touched(const sf_model *m, const surface_of_pad *pad, const uint8_t *mark) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_surface_of_missile(m);
     int64_t first = -1;
     for (int64_t i = 0; i < pad->count; i++) {
         triangle *t = &pad->list[i];
@@ -212,8 +208,8 @@ static sf_status check_between(const sf_model *m, const surface_of_pad *pad, sf_
         const double *x = &m->surface_position[3 * v];
         double depth = sf_dot3(x, d) + m->missile.gap > start ? depth_inside(m, pad, x) : 0;
         if (depth > 0)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "a part of the missile passes between the contact nodes: when the first of them is "
                 "touched, its point at (%.4g, %.4g) mm is %.4g mm inside the foam; take a mesh whose "
                 "spacing there is below the width of that part",

@@ -105,7 +105,7 @@ static void faces_free(faces *f) {
 static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
     int64_t all = 0;
     uint8_t *mark = mark_nodes(m, err);
-    *f = (faces){.low = {INFINITY, INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY, -INFINITY}};
+    *f = (faces){0};
     if (mark && sf_skin_triangles(m, &all, &f->node, err) == SF_OK) {
         f->shape = sf_alloc(err, (unsigned long)all, sizeof *f->shape, "skin of the pad");
         f->position = sf_alloc(err, 3 * (unsigned long)all, sizeof(double), "skin of the pad");
@@ -122,10 +122,7 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
         f->largest = fmax(f->largest, s.radius);
         memcpy(&f->position[3 * k], s.centroid, sizeof s.centroid);
     }
-    for (int64_t i = 0; i < 3 * m->node_count; i++) {
-        f->low[i % 3] = fmin(f->low[i % 3], m->position[i]);
-        f->high[i % 3] = fmax(f->high[i % 3], m->position[i]);
-    }
+    sf_box3(m->node_count, m->position, f->low, f->high);
     free(mark);
     if (err->status == SF_OK && f->count > 0)
         sf_grid_build(&f->grid, f->count, f->position, f->radius, err);
@@ -209,8 +206,7 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
     faces f;
     int64_t first = -1;
     unheld[0] = NAN;
-    if (faces_find(m, &f, err) != SF_OK)
-        return err->status;
+    SF_TRY(faces_find(m, &f, err));
     if (f.count > 0 && c->loose_count > 0)
         first = 0;
     else if (f.count > 0)

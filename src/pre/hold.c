@@ -6,46 +6,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mat3.h"
+#include "base/sets.h"
 #include "pre/mesh/mesh.h"
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
+
+/* The connected parts of a pad of layers: cells that share a face, within a layer or where all the nodes of
+ * the face are tied in all components. Parts move rigidly against each other unless ties or supports hold
+ * them. */
+typedef struct body_list {
+    int64_t count;
+    int64_t *cell;  /* [cell_count] owned */
+    int32_t *node;  /* [node_count] owned; of a node where several bodies meet one of them */
+    int32_t *first; /* [count] owned; the first node of each, ascending */
+} body_list;
 
 typedef struct cell_face {
     int32_t key[4]; /* ascending; the first is -1 for a triangle */
     int32_t cell;
 } cell_face;
 
-/* Returns the lowest of those joined to `k` so far, which represents them. */
-static int32_t leader(int32_t *parent, int32_t k) {
-    while (parent[k] != k)
-        k = parent[k] = parent[parent[k]];
-    return k;
-}
-
-static void join(int32_t *parent, int32_t a, int32_t b) {
-    a = leader(parent, a);
-    b = leader(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
-
-static int32_t *all_alone(int64_t count, sf_error *err) {
-    int32_t *parent = sf_alloc(err, (unsigned long)count, sizeof *parent, "parts of the pad");
-    for (int32_t k = 0; parent && k < (int32_t)count; k++)
-        parent[k] = k;
-    return parent;
-}
-
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
-
 static int by_key(const void *a, const void *b) {
     const cell_face *x = a, *y = b;
-    for (int k = 0; k < 4; k++)
-        if (x->key[k] != y->key[k])
-            return x->key[k] < y->key[k] ? -1 : 1;
-    return (x->cell > y->cell) - (x->cell < y->cell);
+    int keys = sf_face_compare(x->key, y->key);
+    return keys ? keys : (x->cell > y->cell) - (x->cell < y->cell);
 }
 
 static int64_t count_faces(const sf_model *m) {
@@ -56,35 +41,36 @@ static int64_t count_faces(const sf_model *m) {
 }
 
 /* Faces of all cells; `place` [node_count]: the same for nodes that are tied altogether. */
-static void list_faces(const sf_model *m, int32_t *place, cell_face *face) {
+static void list_faces(const sf_model *m, int64_t *place, cell_face *face) {
     for (int32_t c = 0; c < (int32_t)m->cell_count; c++) {
         const sf_cell_topology *topology = sf_cell_topology_of(m->cell_type[c]);
         const int32_t *v = &m->cell_node[m->cell_ptr[c]];
         for (int f = 0; f < topology->faces; f++, face++) {
             *face = (cell_face){{-1, -1, -1, -1}, c};
             for (int p = 0; p < topology->face_size[f]; p++)
-                face->key[p] = leader(place, v[topology->face[f][p]]);
-            qsort(face->key, 4, sizeof face->key[0], by_value);
+                face->key[p] = (int32_t)sf_sets_find(place, v[topology->face[f][p]]);
+            sf_face_sort(face->key);
         }
     }
 }
 
 /* [cell_count] the lowest cell of each one's body; owned by the caller. */
-static int32_t *join_cells(const sf_model *m, sf_error *err) {
+static int64_t *join_cells(const sf_model *m, sf_error *err) {
     int64_t count = count_faces(m);
-    int32_t *place = all_alone(m->node_count, err), *parent = all_alone(m->cell_count, err);
+    int64_t *place = sf_sets_alone(m->node_count, "parts of the pad", err),
+            *parent = sf_sets_alone(m->cell_count, "parts of the pad", err);
     cell_face *face = sf_alloc(err, (unsigned long)count, sizeof *face, "faces of the cells");
     if (err->status == SF_OK) {
         for (int64_t k = 0; k < m->tie_count; k++)
             if (m->tie_mask[k] == ALL)
-                join(place, m->tie_node[k], m->tie_other[k]);
+                sf_sets_join(place, m->tie_node[k], m->tie_other[k]);
         list_faces(m, place, face);
         qsort(face, (size_t)count, sizeof *face, by_key);
         for (int64_t k = 1; k < count; k++)
             if (memcmp(face[k].key, face[k - 1].key, sizeof face[k].key) == 0)
-                join(parent, face[k].cell, face[k - 1].cell);
-        for (int32_t c = 0; c < (int32_t)m->cell_count; c++)
-            parent[c] = leader(parent, c);
+                sf_sets_join(parent, face[k].cell, face[k - 1].cell);
+        for (int64_t c = 0; c < m->cell_count; c++)
+            parent[c] = sf_sets_find(parent, c);
     }
     free(place);
     free(face);
@@ -96,14 +82,14 @@ static int32_t *join_cells(const sf_model *m, sf_error *err) {
 
 /* Bodies in the order of their first nodes; b->cell holds the lowest cells and becomes the numbers. `number`
  * [cell_count] is room. */
-static void number_bodies(const sf_model *m, int32_t *number, sf_bodies *b) {
+static void number_bodies(const sf_model *m, int32_t *number, body_list *b) {
     for (int64_t i = 0; i < m->node_count; i++)
         b->node[i] = -1;
     for (int64_t c = 0; c < m->cell_count; c++) {
         number[c] = -1;
         for (int64_t k = m->cell_ptr[c]; k < m->cell_ptr[c + 1]; k++)
             if (b->node[m->cell_node[k]] < 0)
-                b->node[m->cell_node[k]] = b->cell[c];
+                b->node[m->cell_node[k]] = (int32_t)b->cell[c];
     }
     for (int32_t i = 0; i < (int32_t)m->node_count; i++) {
         int32_t body = b->node[i] < 0 ? 0 : b->node[i];
@@ -117,7 +103,7 @@ static void number_bodies(const sf_model *m, int32_t *number, sf_bodies *b) {
         b->cell[c] = number[b->cell[c]];
 }
 
-static sf_status find_parts(const sf_model *m, sf_bodies *b, sf_error *err) {
+static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
     unsigned long cells = (unsigned long)m->cell_count;
     int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
     b->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *b->node, "parts of the pad");
@@ -128,8 +114,16 @@ static sf_status find_parts(const sf_model *m, sf_bodies *b, sf_error *err) {
     return err->status;
 }
 
-sf_status sf_bodies_find(const sf_model *m, sf_bodies *b, sf_error *err) {
-    *b = (sf_bodies){0};
+static void free_bodies(body_list *b) {
+    free(b->cell);
+    free(b->node);
+    free(b->first);
+    *b = (body_list){0};
+}
+
+/* A pad of one material and without ties is one body. On failure `*b` is empty. */
+static sf_status find_bodies(const sf_model *m, body_list *b, sf_error *err) {
+    *b = (body_list){0};
     if (m->node_material[m->node_count - 1] > 0) {
         find_parts(m, b, err);
     } else {
@@ -139,15 +133,8 @@ sf_status sf_bodies_find(const sf_model *m, sf_bodies *b, sf_error *err) {
         b->first = sf_alloc(err, 1, sizeof *b->first, "parts of the pad");
     }
     if (err->status != SF_OK)
-        sf_bodies_free(b);
+        free_bodies(b);
     return err->status;
-}
-
-void sf_bodies_free(sf_bodies *b) {
-    free(b->cell);
-    free(b->node);
-    free(b->first);
-    *b = (sf_bodies){0};
 }
 
 enum {
@@ -162,15 +149,12 @@ static const double UNDERSIDE = 1e-3; /* of the thickness */
 
 /* Middle and half size of the pad. */
 static void find_box(const sf_model *m, double middle[3], double *size) {
+    double low[3], high[3];
+    sf_box3(m->node_count, m->position, low, high);
     *size = 0;
     for (int c = 0; c < 3; c++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t i = 0; i < m->node_count; i++) {
-            low = fmin(low, m->position[3 * i + c]);
-            high = fmax(high, m->position[3 * i + c]);
-        }
-        middle[c] = 0.5 * (low + high);
-        *size = fmax(*size, 0.5 * (high - low));
+        middle[c] = 0.5 * (low[c] + high[c]);
+        *size = fmax(*size, 0.5 * (high[c] - low[c]));
     }
 }
 
@@ -186,7 +170,7 @@ static void motion_row(const double r[3], int c, double row[MOTIONS]) {
 /* The sum of squares of what is forbidden. */
 typedef struct holder {
     const sf_model *model;
-    const sf_bodies *bodies;
+    const body_list *bodies;
     double middle[3], size;
     gsl_matrix *sum;   /* [6 bodies][6 bodies] */
     double *row_count; /* [bodies] */
@@ -244,12 +228,12 @@ static void add_rows(holder *h, sf_hold *hold) {
 /* Parts of a layer that share an edge or a point only are joined there. */
 static void add_hinges(holder *h) {
     const sf_model *m = h->model;
-    const sf_bodies *b = h->bodies;
+    const body_list *b = h->bodies;
     for (int64_t cell = 0; cell < m->cell_count; cell++)
         for (int64_t k = m->cell_ptr[cell]; k < m->cell_ptr[cell + 1]; k++) {
             int32_t node = m->cell_node[k];
             for (int c = 0; c < 3 && b->node[node] != b->cell[cell]; c++)
-                add_row(h, node, b->node[node], b->cell[cell], c);
+                add_row(h, node, b->node[node], (int32_t)b->cell[cell], c);
         }
 }
 
@@ -264,7 +248,7 @@ static void scale_sum(holder *h) {
 }
 
 /* The middle of a part, m; `alone`: it is the whole of its layer. */
-static void place_part(const sf_model *m, const sf_bodies *b, int64_t body, double middle[3], bool *alone) {
+static void place_part(const sf_model *m, const body_list *b, int64_t body, double middle[3], bool *alone) {
     double count = 0;
     uint8_t layer = m->node_material[b->first[body]];
     *alone = true;
@@ -298,19 +282,16 @@ static void name_motion(const holder *h, const gsl_matrix *vector, size_t k, siz
 }
 
 static void find_underside(const sf_model *m, sf_hold *hold) {
-    double low = INFINITY, high = -INFINITY;
+    double low[3], high[3];
     int64_t nodes = 0, held = m->rest_count; /* which are the lowest nodes */
-    for (int64_t i = 0; i < m->node_count; i++) {
-        low = fmin(low, m->position[3 * i + 2]);
-        high = fmax(high, m->position[3 * i + 2]);
-    }
-    double top = low + UNDERSIDE * (high - low);
+    sf_box3(m->node_count, m->position, low, high);
+    double top = low[2] + UNDERSIDE * (high[2] - low[2]);
     for (int64_t i = 0; i < m->node_count; i++)
         nodes += m->position[3 * i + 2] <= top;
     for (int64_t k = 0; k < m->fixed_count; k++)
         held += m->position[3 * (int64_t)m->fixed_node[k] + 2] <= top && (m->fixed_mask[k] & SF_FIX_Z);
     hold->underside = (double)held / (double)nodes;
-    hold->underside_low = low;
+    hold->underside_low = low[2];
 }
 
 /* The null space of the sum is free. */
@@ -342,19 +323,19 @@ static sf_status find_motions(holder *h, sf_hold *hold, sf_error *err) {
 }
 
 sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
-    sf_bodies bodies;
+    body_list bodies;
     *hold = (sf_hold){0};
-    if (sf_bodies_find(m, &bodies, err) != SF_OK)
-        return err->status;
+    SF_TRY(find_bodies(m, &bodies, err));
     holder h = {.model = m, .bodies = &bodies};
     if (bodies.count > MOST_BODIES)
-        SF_FAIL(err, SF_ERR_INPUT,
-                "the layers fall into %lld parts that are not tied to each other altogether; at most %d are "
-                "supported",
-                (long long)bodies.count, MOST_BODIES);
+        SF_REFUSE(
+            err,
+            "the layers fall into %lld parts that are not tied to each other altogether; at most %d are "
+            "supported",
+            (long long)bodies.count, MOST_BODIES);
     else if (find_motions(&h, hold, err) == SF_OK)
         find_underside(m, hold);
-    sf_bodies_free(&bodies);
+    free_bodies(&bodies);
     return err->status;
 }
 
@@ -363,25 +344,25 @@ sf_status sf_hold_check(const sf_hold *hold, const sf_model *m, sf_error *err) {
         return SF_OK;
     const double *x = hold->lifted_middle;
     if (m->material_count > 1 && hold->rows[2] > 0 && !hold->lifted_whole)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the part of the layer \"%s\" about "
             "(%.4g, %.4g, %.4g) mm from being lifted or tilted: what holds it along z lies at a point or on a "
             "line, or is nothing",
             m->material[hold->lifted].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     if (m->material_count > 1 && hold->rows[2] > 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the layer \"%s\" from being lifted or "
             "tilted: what holds it along z lies at a point or on a line, or is nothing",
             m->material[hold->lifted].name);
     if (hold->rows[2] == 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "pad.fixed, pad.sliding: nothing holds the pad along z: the missile would push it away whole; name "
             "its underside in one of them");
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "pad.fixed, pad.sliding: the %lld nodes that are held along z lie at a point or on a line: the pad "
         "can tilt; name its underside in one of them",
         (long long)hold->rows[2]);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/impact.h"
+#include "pre/mesh/missile_shape.h"
 
 #include "model/model.h"
 #include <math.h>
@@ -110,10 +111,10 @@ static sf_status check_planes(const sf_model *m, const double at[2], sf_error *e
     for (int axis = 0; axis < 2; axis++) {
         double place;
         if (sf_symmetry_plane(m, axis, &place) && !(fabs(at[axis] - place) <= ON_PLANE * m->thickness))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "missile.position: %c = %g mm lies off the symmetry plane %c = %g mm: an impact "
-                           "beside it needs a model without that plane",
-                           'x' + axis, 1e3 * at[axis], 'x' + axis, 1e3 * place);
+            return SF_REFUSE(err,
+                             "missile.position: %c = %g mm lies off the symmetry plane %c = %g mm: an impact "
+                             "beside it needs a model without that plane",
+                             'x' + axis, 1e3 * at[axis], 'x' + axis, 1e3 * place);
     }
     return SF_OK;
 }
@@ -125,9 +126,8 @@ static sf_status check_inside(const sf_case *c, const sf_model *m, sf_error *err
     SF_TRY(widest_gap(m, at, &gap, err));
     if (gap <= STRAIGHT)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "missile.position: (%g, %g) mm lies outside the pad's top, the group \"%s\"", 1e3 * at[0],
-                   1e3 * at[1], c->contact_group);
+    return SF_REFUSE(err, "missile.position: (%g, %g) mm lies outside the pad's top, the group \"%s\"",
+                     1e3 * at[0], 1e3 * at[1], c->contact_group);
 }
 
 double sf_impact_top(const sf_model *m) {
@@ -165,10 +165,7 @@ sf_status sf_impact_place(const sf_case *c, const sf_model *m, sf_surface *surfa
 }
 
 void sf_impact_point(const sf_model *m, double point[3]) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_surface_of_missile(m);
     double place;
     sf_impact_lowest(&missile, &m->missile, point);
     follow(&m->missile, sf_impact_top(m), point);

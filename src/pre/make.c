@@ -42,8 +42,8 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface, s
                                char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
     sf_gmsh *session = NULL;
     if (sf_gmsh_begin(&session, err) == SF_OK) {
-        sf_gmsh_share(session, c->store);
-        sf_gmsh_limit(session, c->mesh_time_limit, sink);
+        session->store = c->store;
+        session->limits = (sf_mesher_limits){c->mesh_time_limit, sink};
     }
     if (session && sf_gmsh_load(session, &c->pad, err) == SF_OK && read_pad(session, c, mesh, err) == SF_OK &&
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK))
@@ -57,10 +57,10 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface, s
     mesh->support = c->support.path ? support : NULL;
     free(c->geometry_files);
     c->geometry_files = NULL;
-    if (err->status == SF_OK && !(c->geometry_files = strdup(sf_gmsh_files(session))))
+    if (err->status == SF_OK && !(c->geometry_files = strdup(session->files)))
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
     if (session)
-        snprintf(libraries, SF_LIBRARIES_SIZE, "gmsh %s, HDF5 %s", sf_gmsh_version(session), sf_h5_version());
+        snprintf(libraries, SF_LIBRARIES_SIZE, "gmsh %s, HDF5 %s", session->version, sf_h5_version());
     sf_gmsh_end(&session);
     return err->status;
 }
@@ -73,9 +73,10 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
     if (read_geometry(c, &mesh, &surface, &support, libraries, sink, err) == SF_OK &&
         sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
         if (sf_hold_check(&report->hold, model, err) == SF_OK && report->contact_held)
-            SF_FAIL(err, SF_ERR_INPUT,
-                    "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or pad.sliding",
-                    c->contact_group);
+            SF_REFUSE(
+                err,
+                "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or pad.sliding",
+                c->contact_group);
         if (err->status != SF_OK)
             sf_model_free(model);
     }

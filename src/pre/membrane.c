@@ -31,15 +31,13 @@ static sf_status add_group(const sf_mesh *mesh, const sf_dual *dual, const sf_la
         for (int k = 0; k < face->size; k++)
             inside = inside && member[face->node[k]];
         if (inside && taken[f]++)
-            SF_FAIL(err, SF_ERR_INPUT, "membrane.faces: a face of the group \"%s\" is in another one, too",
-                    set->name);
+            SF_REFUSE(err, "membrane.faces: a face of the group \"%s\" is in another one, too", set->name);
         else if (inside)
             add_face(mesh, l, face, m);
     }
     free(member);
     if (err->status == SF_OK && m->membrane_count == before)
-        SF_FAIL(err, SF_ERR_INPUT, "membrane.faces: no face of the group \"%s\" is on the surface of the pad",
-                set->name);
+        SF_REFUSE(err, "membrane.faces: no face of the group \"%s\" is on the surface of the pad", set->name);
     return err->status;
 }
 

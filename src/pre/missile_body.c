@@ -63,14 +63,10 @@ done:
 
 /* The middle of the box: the sums are taken about it, so that a place far from the origin costs no digits. */
 static void find_middle(int64_t count, const double *position, double middle[3]) {
-    for (int c = 0; c < 3; c++) {
-        double low = position[c], high = position[c];
-        for (int64_t i = 1; i < count; i++) {
-            low = fmin(low, position[3 * i + c]);
-            high = fmax(high, position[3 * i + c]);
-        }
-        middle[c] = 0.5 * (low + high);
-    }
+    double low[3], high[3];
+    sf_box3(count, position, low, high);
+    for (int c = 0; c < 3; c++)
+        middle[c] = 0.5 * (low[c] + high[c]);
 }
 
 /* Adds the tetrahedron of the triangle x and the origin: for its volume V and the sum s of its corners, the
@@ -224,8 +220,8 @@ static sf_status check_inertia(const double inertia[6], sf_error *err) {
     double p[3];
     if (sf_missile_inertia_is_possible(inertia, p))
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "missile.inertia: no body has the principal moments %.4g, %.4g and %.4g kg m2: they must be "
         "positive, and none larger than the sum of the others",
         p[0], p[1], p[2]);
@@ -239,8 +235,8 @@ sf_status sf_missile_take_body(const sf_case *c, const sf_surface *s, sf_missile
     if (card->freedom == SF_MISSILE_GUIDED)
         return SF_OK;
     if (!(given && placed) && !find_solid(s, card, &solid, &reason))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "missile.freedom: the missile's %s is not given, and its geometry is no solid that tells it "
             "(%.300s): close its surface, mesh its volume, or give missile.inertia and missile.centre",
             given ? "centre" : "inertia", reason.text);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/model_report.h"
+#include "pre/mesh/missile_shape.h"
 
+#include "base/mat3.h"
 #include "model/flight.h"
 #include "model/model.h"
 #include "pre/missile_body.h"
@@ -63,14 +65,10 @@ static void add_neighbours(sf_model_report *out, const sf_model *m) {
 
 /* The lengths of the box that holds the points [count][3] (mm). */
 static void find_size(int64_t count, const double *x, double size[3]) {
-    for (int k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t i = 0; i < count; i++) {
-            low = fmin(low, x[3 * i + k]);
-            high = fmax(high, x[3 * i + k]);
-        }
-        size[k] = 1e3 * (high - low);
-    }
+    double low[3], high[3];
+    sf_box3(count, x, low, high);
+    for (int k = 0; k < 3; k++)
+        size[k] = 1e3 * (high[k] - low[k]);
 }
 
 static void add_size(sf_model_report *out, const sf_model *m) {
@@ -124,10 +122,7 @@ static void add_body(sf_model_report *out, const sf_model *m) {
     sf_solid solid;
     sf_error open = SF_ERROR_INIT;
     double lowest[3];
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_surface_of_missile(m);
     if (sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
                          m->surface_triangle, &solid, &open) != SF_OK)
         return;
@@ -216,14 +211,15 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
     add_size(out, m);
     add_spacing(out, m);
     add_neighbours(out, m);
-    add(out, "conditioning", "worst conditioning", "%.3g at (%.4g, %.4g, %.4g) mm", r->worst_condition,
-        1e3 * r->worst_position[0], 1e3 * r->worst_position[1], 1e3 * r->worst_position[2]);
-    if (r->enlarged_count > 0)
+    add(out, "conditioning", "worst conditioning", "%.3g at (%.4g, %.4g, %.4g) mm",
+        r->domains.worst_condition, 1e3 * r->domains.worst_position[0], 1e3 * r->domains.worst_position[1],
+        1e3 * r->domains.worst_position[2]);
+    if (r->domains.enlarged_count > 0)
         add(out, "support_enlarged", "support enlarged", "at %lld nodes, by up to %.2f",
-            (long long)r->enlarged_count, r->largest_enlargement);
-    if (r->hidden_count > 0)
+            (long long)r->domains.enlarged_count, r->domains.largest_enlargement);
+    if (r->domains.hidden_count > 0)
         add(out, "hidden_nodes", "across slits and gaps", "%lld nodes, the nearest %.3g mm apart",
-            (long long)r->hidden_count, 1e3 * r->hidden_distance);
+            (long long)r->domains.hidden_count, 1e3 * r->domains.hidden_distance);
     add(out, "invariants", "invariants", "sum B %.1e, sum X B %.1e, volume %.1e, telescoping %.1e, phi %.1e",
         r->invariants.unity, r->invariants.linear, r->invariants.volume, r->invariants.telescope,
         r->invariants.shape);

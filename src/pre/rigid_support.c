@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "base/triangle.h"
 #include "pre/free_faces.h"
 #include "pre/mesh/missile_shape.h"
@@ -48,18 +49,6 @@ static int by_ends(const void *a, const void *b) {
     return low ? low : high ? high : (x->at_low > y->at_low) - (x->at_low < y->at_low);
 }
 
-static int64_t leader(int64_t *parent, int64_t k) {
-    while (parent[k] != k)
-        k = parent[k] = parent[parent[k]];
-    return k;
-}
-
-static void join(int64_t *parent, int64_t a, int64_t b) {
-    a = leader(parent, a);
-    b = leader(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
-
 /* Joins the corners at the ends of the edges that are not sharp. */
 static void join_corners(const triangles *s, half_edge *edge, int64_t *parent) {
     int64_t count = 3 * s->count;
@@ -68,7 +57,6 @@ static void join_corners(const triangles *s, half_edge *edge, int64_t *parent) {
         bool rises = s->node[k] < s->node[next];
         edge[k] = (half_edge){s->node[rises ? k : next], s->node[rises ? next : k], rises ? k : next,
                               rises ? next : k};
-        parent[k] = k;
     }
     qsort(edge, (size_t)count, sizeof *edge, by_ends);
     for (int64_t k = 1; k < count; k++) {
@@ -79,8 +67,8 @@ static void join_corners(const triangles *s, half_edge *edge, int64_t *parent) {
         find_normal(s, edge[k - 1].at_low / 3, true, other);
         if (sf_dot3(one, other) < SHARP)
             continue;
-        join(parent, edge[k].at_low, edge[k - 1].at_low);
-        join(parent, edge[k].at_high, edge[k - 1].at_high);
+        sf_sets_join(parent, edge[k].at_low, edge[k - 1].at_low);
+        sf_sets_join(parent, edge[k].at_high, edge[k - 1].at_high);
     }
 }
 
@@ -88,13 +76,13 @@ static void join_corners(const triangles *s, half_edge *edge, int64_t *parent) {
 static sf_status split_edges(const triangles *s, sf_model *m, sf_error *err) {
     unsigned long corners = 3 * (unsigned long)s->count;
     half_edge *edge = sf_alloc(err, corners, sizeof *edge, "edges of the support");
-    int64_t *parent = sf_alloc(err, corners, sizeof *parent, "edges of the support");
+    int64_t *parent = sf_sets_alone((int64_t)corners, "edges of the support", err);
     m->support_position = sf_alloc(err, 3 * corners, sizeof *m->support_position, "support");
     m->support_triangle = sf_alloc(err, corners, sizeof *m->support_triangle, "support");
     if (err->status == SF_OK) {
         join_corners(s, edge, parent);
         for (int64_t k = 0; k < (int64_t)corners; k++) { /* a leader is the first of its corners */
-            int64_t first = leader(parent, k);
+            int64_t first = sf_sets_find(parent, k);
             m->support_triangle[k] =
                 first < k ? m->support_triangle[first] : (int32_t)m->support_node_count++;
             memcpy(&m->support_position[3 * (int64_t)m->support_triangle[k]], corner(s, k / 3, (int)(k % 3)),
@@ -150,15 +138,6 @@ typedef struct box {
     double low[3], high[3];
 } box;
 
-static box box_of(int64_t count, const double *position) {
-    box b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (int64_t k = 0; k < 3 * count; k++) {
-        b.low[k % 3] = fmin(b.low[k % 3], position[k]);
-        b.high[k % 3] = fmax(b.high[k % 3], position[k]);
-    }
-    return b;
-}
-
 static bool is_in_box(const box *b, const double x[3]) {
     bool in = true;
     for (int r = 0; r < 3; r++)
@@ -185,8 +164,9 @@ static double deepest_behind(const triangles *s, const box *around, int64_t coun
 static sf_status check_apart(const sf_model *m, const triangles *pad, sf_error *err) {
     static const double BETWEEN = 0.5; /* of the spacing */
     const triangles support = support_of(m);
-    const box of_pad = box_of(m->node_count, m->position),
-              of_support = box_of(m->support_node_count, m->support_position);
+    box of_pad, of_support;
+    sf_box3(m->node_count, m->position, of_pad.low, of_pad.high);
+    sf_box3(m->support_node_count, m->support_position, of_support.low, of_support.high);
     double x[3], spacing = least_spacing(m),
                  node = deepest_behind(&support, &of_support, m->node_count, m->position, x);
     bool pierced = node <= SF_CONTACT_ENTRY * spacing;
@@ -194,8 +174,8 @@ static sf_status check_apart(const sf_model *m, const triangles *pad, sf_error *
         pierced ? deepest_behind(pad, &of_pad, m->support_node_count, m->support_position, x) : node;
     if (depth <= (pierced ? BETWEEN : SF_CONTACT_ENTRY) * spacing)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "geometry.support_file: pad and support overlap at the start: at (%.4g, %.4g, %.4g) mm the %s "
         "is %.4g mm inside the %s; move the support, or turn its surface outwards (close it)",
         1e3 * x[0], 1e3 * x[1], 1e3 * x[2], pierced ? "support" : "pad", 1e3 * depth,
@@ -228,8 +208,8 @@ static sf_status check_reach(const sf_model *m, const triangles *pad, sf_error *
     }
     if (nearest <= m->thickness)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "geometry.support_file: no face of the pad has the support before it within the pad's thickness "
         "of %.4g mm%s: check its place and the unit of length",
         1e3 * m->thickness, isfinite(nearest) ? ", the nearest is farther" : "");
@@ -246,8 +226,8 @@ static sf_status check_size(const sf_model *m, const triangles *s, sf_error *err
     double side = sqrt(area / (double)s->count);
     if (side >= LEAST * spacing)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "geometry.support_file: the triangles of the support are %.3g mm wide, the pad's spacing is %.3g mm: "
         "mesh the support coarser, with at least %.3g mm",
         1e3 * side, 1e3 * spacing, 1e3 * LEAST * spacing);
@@ -276,19 +256,16 @@ sf_status sf_support_take(const sf_case *c, sf_surface *surface, sf_model *m, sf
 
 /* Compares vertices with triangles, both ways; the missile does not turn. */
 sf_status sf_support_find_travel(sf_model *m, sf_error *err) {
-    const sf_surface missile = {.node_count = m->surface_node_count,
-                                .position = m->surface_position,
-                                .triangle_count = m->surface_triangle_count,
-                                .triangle = m->surface_triangle};
+    const sf_surface missile = sf_surface_of_missile(m);
     double travel = INFINITY;
     for (int64_t k = 0; k < m->support_node_count; k++)
         travel = fmin(travel, sf_missile_travel(&missile, &m->missile, &m->support_position[3 * k]));
     for (int64_t k = 0; k < m->surface_node_count && m->support_triangle_count > 0; k++)
         travel = fmin(travel, sf_support_distance(m, &m->surface_position[3 * k], m->missile.direction));
     if (travel <= m->missile.gap)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "geometry.support_file: the missile meets the support %.4g mm before it meets the pad",
-                       1e3 * (m->missile.gap - travel));
+        return SF_REFUSE(
+            err, "geometry.support_file: the missile meets the support %.4g mm before it meets the pad",
+            1e3 * (m->missile.gap - travel));
     m->support_travel = isfinite(travel) ? travel : 0;
     return SF_OK;
 }

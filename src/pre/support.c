@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "pre/impact.h"
+
 const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {
     const sf_node_set *set = sf_mesh_find_set(mesh, name);
     if (set)
@@ -14,8 +16,8 @@ const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const cha
     for (int k = 0; k < mesh->set_count && used < sizeof known; k++)
         used +=
             (size_t)snprintf(known + used, sizeof known - used, "%s\"%s\"", k ? ", " : "", mesh->set[k].name);
-    SF_FAIL(err, SF_ERR_INPUT, "%s names the surface group \"%s\", which the pad does not have; it has %s",
-            key, name, mesh->set_count ? known : "none");
+    SF_REFUSE(err, "%s names the surface group \"%s\", which the pad does not have; it has %s", key, name,
+              mesh->set_count ? known : "none");
     return NULL;
 }
 
@@ -38,8 +40,7 @@ static sf_status mark_smooth(const char *key, const sf_node_set *set, const sf_m
                              const sf_base_marks *marks, sf_error *err) {
     int axis = sf_group_plane_axis(m, set);
     if (axis < 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: the group \"%s\" is not a plane normal to x, y or z", key,
-                       set->name);
+        return SF_REFUSE(err, "%s: the group \"%s\" is not a plane normal to x, y or z", key, set->name);
     for (int64_t k = 0; k < set->count; k++) {
         marks->mask[set->node[k]] |= (uint8_t)(1 << axis);
         marks->base[set->node[k]] = 1;
@@ -68,8 +69,8 @@ static sf_status mark_resting(const sf_node_set *set, const sf_model *m, const s
     for (int64_t k = 0; k < set->count; k++) {
         const double *x = &m->position[3 * (int64_t)set->node[k]];
         if (x[2] > low + LOWEST * m->thickness)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "pad.fixed: the group \"%s\" cannot rest on the anvil (pad.base = \"resting\"): it "
                 "must lie in the plane of the pad's lowest nodes, z = %.6g mm, and has a node at "
                 "(%.4g, %.4g, %.4g) mm",
@@ -90,8 +91,8 @@ static sf_status check_whole_base(const sf_model *m, const sf_base_marks *marks,
         }
     if (count == 0)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "pad.fixed: %lld nodes in the plane of the anvil, the first at (%.4g, %.4g, %.4g) mm, are in "
         "none of its groups: a resting pad (pad.base = \"resting\") would pass through the anvil there; "
         "name its whole underside",
@@ -103,11 +104,11 @@ static sf_status check_whole_base(const sf_model *m, const sf_base_marks *marks,
 static sf_status check_resting(const sf_model *m, const sf_base_marks *marks, sf_error *err) {
     for (int64_t i = 0; i < m->node_count; i++)
         if (marks->rest[i] && (marks->mask[i] & SF_FIX_Z))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "pad.base: the pad cannot rest on the anvil at (%.4g, %.4g, %.4g) mm, where "
-                           "pad.sliding holds it along z",
-                           1e3 * m->position[3 * i], 1e3 * m->position[3 * i + 1],
-                           1e3 * m->position[3 * i + 2]);
+            return SF_REFUSE(err,
+                             "pad.base: the pad cannot rest on the anvil at (%.4g, %.4g, %.4g) mm, where "
+                             "pad.sliding holds it along z",
+                             1e3 * m->position[3 * i], 1e3 * m->position[3 * i + 1],
+                             1e3 * m->position[3 * i + 2]);
     return SF_OK;
 }
 
@@ -123,8 +124,7 @@ sf_status sf_base_mark(const sf_case *c, const sf_mesh *mesh, const sf_model *m,
             mark_smooth("pad.fixed", set, m, marks, err);
         else
             mark_resting(set, m, marks, err);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(err->status);
     }
     for (int g = 0; g < c->sliding_count; g++) {
         const sf_node_set *set = sf_group_need(mesh, "pad.sliding", c->sliding_group[g], err);
@@ -199,12 +199,13 @@ static sf_status set_loads(sf_model *m, double gravity, int planes, sf_error *er
                        (1 + slope[0] * (m->position[3 * i] - centre[0]) +
                         slope[1] * (m->position[3 * i + 1] - centre[1]));
         if (share < 0)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "pad.base: the pad does not rest on the whole of its base: its centre of mass is "
-                           "above (%.4g, %.4g) mm, the middle of the base at (%.4g, %.4g) mm, and it would "
-                           "lift off at (%.4g, %.4g) mm",
-                           1e3 * (centre[0] + offset[0]), 1e3 * (centre[1] + offset[1]), 1e3 * centre[0],
-                           1e3 * centre[1], 1e3 * m->position[3 * i], 1e3 * m->position[3 * i + 1]);
+            return SF_REFUSE(
+                err,
+                "pad.base: the pad does not rest on the whole of its base: its centre of mass is "
+                "above (%.4g, %.4g) mm, the middle of the base at (%.4g, %.4g) mm, and it would "
+                "lift off at (%.4g, %.4g) mm",
+                1e3 * (centre[0] + offset[0]), 1e3 * (centre[1] + offset[1]), 1e3 * centre[0],
+                1e3 * centre[1], 1e3 * m->position[3 * i], 1e3 * m->position[3 * i + 1]);
         m->rest_load[k] = isnan(share) ? 0 : gravity * mass.sum * share;
     }
     return SF_OK;
@@ -220,8 +221,7 @@ sf_status sf_base_rest(const sf_case *c, const sf_base_marks *marks, sf_model *m
         return SF_OK;
     m->rest_node = sf_alloc(err, (unsigned long)m->rest_count, sizeof *m->rest_node, "resting nodes");
     m->rest_load = sf_alloc(err, (unsigned long)m->rest_count, sizeof *m->rest_load, "resting nodes");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     int64_t used = 0;
     for (int64_t i = 0; i < m->node_count; i++)
         if (marks->rest[i])
@@ -231,9 +231,6 @@ sf_status sf_base_rest(const sf_case *c, const sf_base_marks *marks, sf_model *m
 }
 
 void sf_base_place_anvil(const sf_case *c, const sf_hold *hold, sf_model *m) {
-    double high = -INFINITY;
-    for (int64_t i = 0; i < m->node_count; i++)
-        high = fmax(high, m->position[3 * i + 2]);
     bool there = c->base_rule == SF_BASE_RESTING || hold->underside >= SF_HOLD_MOST;
-    m->anvil.depth = there ? high - hold->underside_low : 0;
+    m->anvil.depth = there ? sf_impact_top(m) - hold->underside_low : 0;
 }

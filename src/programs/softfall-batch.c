@@ -39,7 +39,7 @@ static sf_status find_group(const sf_manifest *m, const options *o, int *first, 
         ++*first;
     *last = *first < m->count ? sf_manifest_group_end(m, *first) : *first;
     if (*first == *last)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has no group %s", o->manifest, o->group);
+        return SF_REFUSE(err, "%s has no group %s", o->manifest, o->group);
     return SF_OK;
 }
 
@@ -47,10 +47,10 @@ static sf_status find_group(const sf_manifest *m, const options *o, int *first, 
 static sf_status check_keys(int count, const sf_manifest_run *run, const uint64_t *key, sf_error *err) {
     for (int k = 0; k < count; k++)
         if (run[k].key != 0 && run[k].key != key[k])
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "the drop %s is not the one of the manifest: its inputs or the programs are "
-                           "others here",
-                           run[k].drop.label);
+            return SF_REFUSE(err,
+                             "the drop %s is not the one of the manifest: its inputs or the programs are "
+                             "others here",
+                             run[k].drop.label);
     return SF_OK;
 }
 
@@ -120,10 +120,9 @@ static sf_status run(const options *o, sf_error *err) {
     char outcome[SF_PATH_SIZE + 64], file[PATH_MAX];
     sf_manifest m = {0};
     if (!realpath(o->manifest, file))
-        SF_FAIL(err, SF_ERR_INPUT, "the manifest %s cannot be read: %s", o->manifest, strerror(errno));
+        SF_REFUSE(err, "the manifest %s cannot be read: %s", o->manifest, strerror(errno));
     else if (sf_manifest_read(file, &m, err) == SF_OK && chdir(m.folder) != 0)
-        SF_FAIL(err, SF_ERR_INPUT, "the folder of the campaign, %s, cannot be entered: %s", m.folder,
-                strerror(errno));
+        SF_REFUSE(err, "the folder of the campaign, %s, cannot be entered: %s", m.folder, strerror(errno));
     else if (err->status == SF_OK && o->group) {
         sf_manifest_outcome_path(file, o->group, outcome, sizeof outcome);
         run_group(o, &m, outcome, err);

@@ -44,11 +44,10 @@ static sf_status read_override(const char *option, const char *text, void *value
     static const char speed[] = "missile.velocity";
     options *o = values;
     if (strncmp(text + strspn(text, " \t"), speed, strlen(speed)) == 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s %s: the drop height decides the speed; --height gives the first one", option,
-                       text);
+        return SF_REFUSE(err, "%s %s: the drop height decides the speed; --height gives the first one",
+                         option, text);
     if (o->override_count == SF_RUNNER_OVERRIDES - 1)
-        return SF_FAIL(err, SF_ERR_INPUT, "at most %d %s options", SF_RUNNER_OVERRIDES - 1, option);
+        return SF_REFUSE(err, "at most %d %s options", SF_RUNNER_OVERRIDES - 1, option);
     o->overrides[o->override_count++] = text;
     return SF_OK;
 }
@@ -59,8 +58,8 @@ static sf_status parse_height(const sf_units *units, const char *option, const c
     if (sf_units_parse(units, text, SF_LENGTH, height, &reason) != SF_OK)
         return SF_FAIL(err, reason.status, "%s: %.900s", option, reason.text);
     if (!(*height >= LOWEST_HEIGHT && *height <= GREATEST_HEIGHT))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: a drop height of %s is not between 1 cm and %g m", option,
-                       text, GREATEST_HEIGHT);
+        return SF_REFUSE(err, "%s: a drop height of %s is not between 1 cm and %g m", option, text,
+                         GREATEST_HEIGHT);
     return SF_OK;
 }
 
@@ -77,16 +76,15 @@ static sf_status parse_list(const sf_units *units, const char *option, char *lis
     const char *item;
     while (err->status == SF_OK && (item = strsep(&list, ",")) != NULL) {
         if (o->list_count == SF_CFH_MAX_POINTS)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: at most %d heights", option, SF_CFH_MAX_POINTS);
+            return SF_REFUSE(err, "%s: at most %d heights", option, SF_CFH_MAX_POINTS);
         parse_height(units, option, item + strspn(item, " \t"), &o->list[o->list_count++], err);
     }
     if (err->status == SF_OK && o->list_count < SF_CFH_MIN_POINTS)
-        SF_FAIL(err, SF_ERR_INPUT, "%s: %d heights, at least %d are needed", option, o->list_count,
-                SF_CFH_MIN_POINTS);
+        SF_REFUSE(err, "%s: %d heights, at least %d are needed", option, o->list_count, SF_CFH_MIN_POINTS);
     gsl_sort(o->list, 1, (size_t)o->list_count);
     for (int k = 1; k < o->list_count; k++)
         if (o->list[k] < o->list[k - 1] * (1 + 1e-6))
-            SF_FAIL(err, SF_ERR_INPUT, "%s: %g m stands twice in the list", option, o->list[k]);
+            SF_REFUSE(err, "%s: %g m stands twice in the list", option, o->list[k]);
     return err->status;
 }
 
@@ -106,21 +104,21 @@ static sf_status read_heights(const char *option, const char *text, void *values
 
 static sf_status read_checks(const char *option, const char *text, void *checks, sf_error *err) {
     if (!sf_whole_is(text, 0, SF_CFH_CHECKS, checks))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a number from 0 to %d", option, text, SF_CFH_CHECKS);
+        return SF_REFUSE(err, "%s %s: not a number from 0 to %d", option, text, SF_CFH_CHECKS);
     return SF_OK;
 }
 
 /* Refuses options that contradict each other. */
 static sf_status check_options(const options *o, sf_error *err) {
     if (o->checks_given && !o->posterior)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "--check-drops %d: there are no draws to simulate without --posterior", o->checks);
+        return SF_REFUSE(err, "--check-drops %d: there are no draws to simulate without --posterior",
+                         o->checks);
     if (o->list_count && (o->height > 0 || o->max_given))
-        return SF_FAIL(err, SF_ERR_INPUT, "--heights is the whole list: %s does not go with it",
-                       o->height > 0 ? "--height" : "--max-height");
+        return SF_REFUSE(err, "--heights is the whole list: %s does not go with it",
+                         o->height > 0 ? "--height" : "--max-height");
     if (o->height > o->max_height)
-        return SF_FAIL(err, SF_ERR_INPUT, "--height of %g m is above the greatest height of %g m", o->height,
-                       o->max_height);
+        return SF_REFUSE(err, "--height of %g m is above the greatest height of %g m", o->height,
+                         o->max_height);
     return SF_OK;
 }
 
@@ -183,9 +181,9 @@ static void list_foams(const sf_case *c, sf_cfh_foams *out) {
 static sf_status read_posterior(const char *case_path, sf_case *c, setting *out, sf_error *err) {
     const options *o = &out->options;
     if (c->layer_count > 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "--posterior: its draws are of one material, the pad of %s has layers (materials.%s)",
-                       case_path, c->layer[0].name);
+        return SF_REFUSE(
+            err, "--posterior: its draws are of one material, the pad of %s has layers (materials.%s)",
+            case_path, c->layer[0].name);
     out->material = c->material;
     c->material = (sf_material){0}; /* moved */
     if (sf_material_law_build(&out->material, &out->law, err) == SF_OK)
@@ -215,8 +213,7 @@ static sf_status read_setting(const sf_study *study, setting *out, sf_error *err
         list_foams(&c, &out->foams);
         c.text = c.parameters = NULL; /* moved */
         if (!sf_missile_card_is_vertical(&c.missile_card))
-            SF_FAIL(err, SF_ERR_INPUT,
-                    "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");
+            SF_REFUSE(err, "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");
         else if (o->posterior)
             read_posterior(study->input, &c, out, err);
         sf_case_free(&c);

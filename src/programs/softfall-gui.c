@@ -53,16 +53,16 @@ static sf_status begin_wait(script_state *s, char *rest, sf_error *err) {
             s->deadline = sf_process_now() + (patience > 0 ? patience : 60);
             return SF_OK;
         }
-    return SF_FAIL(err, SF_ERR_INPUT, "line %d: \"%s\" is no activity", s->line, rest);
+    return SF_REFUSE(err, "line %d: \"%s\" is no activity", s->line, rest);
 }
 
 static sf_status look_wait(script_state *s, const sf_session *session, sf_error *err) {
     if (session->activity == s->awaited && session->pictures.frames >= s->frames)
         s->deadline = 0;
     else if (sf_process_now() > s->deadline)
-        return SF_FAIL(err, SF_ERR_INPUT, "line %d: it is \"%s\" with %d frames, not \"%s\": %s", s->line,
-                       sf_activity_name(session->activity), session->pictures.frames,
-                       sf_activity_name(s->awaited), session->sentence);
+        return SF_REFUSE(err, "line %d: it is \"%s\" with %d frames, not \"%s\": %s", s->line,
+                         sf_activity_name(session->activity), session->pictures.frames,
+                         sf_activity_name(s->awaited), session->sentence);
     return SF_OK;
 }
 
@@ -85,10 +85,10 @@ static void print_value(const sf_session *session, const char *name, FILE *out) 
 static sf_status enter(script_state *s, sf_session *session, char *rest, sf_error *err) {
     char *equals = strchr(rest, '=');
     if (!equals)
-        return SF_FAIL(err, SF_ERR_INPUT, "line %d: set KEY=VALUE", s->line);
+        return SF_REFUSE(err, "line %d: set KEY=VALUE", s->line);
     *equals = '\0';
     if (!sf_fields_enter(&session->fields, rest, equals + 1))
-        return SF_FAIL(err, SF_ERR_INPUT, "line %d: there is no field \"%s\"", s->line, rest);
+        return SF_REFUSE(err, "line %d: there is no field \"%s\"", s->line, rest);
     sf_session_act(session, "check");
     return SF_OK;
 }
@@ -113,7 +113,7 @@ static sf_status act(script_state *s, sf_session *session, char *word, char *res
     else if (strcmp(word, "quit") == 0)
         s->ended = true;
     else
-        return SF_FAIL(err, SF_ERR_INPUT, "line %d: there is no word \"%s\"", s->line, word);
+        return SF_REFUSE(err, "line %d: there is no word \"%s\"", s->line, word);
     fflush(out);
     return SF_OK;
 }

@@ -21,100 +21,67 @@
 typedef struct example_list {
     char *folder;
     int count;
-    char **name; /* [count] ascending; owned */
+    struct dirent **entry; /* [count] ascending */
 } example_list;
 
 static void free_examples(example_list *e) {
     for (int k = 0; k < e->count; k++)
-        free(e->name[k]);
-    free(e->name);
+        free(e->entry[k]);
+    free(e->entry);
     free(e->folder);
-    *e = (example_list){0};
 }
 
-static char *case_of(const example_list *e, const char *name, sf_error *err) {
-    char *path = NULL;
-    if (asprintf(&path, "%s/%s/case.cfg", e->folder, name) >= 0)
-        return path;
-    SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the examples");
-    return NULL;
-}
-
-static int compare(const void *a, const void *b) {
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-static sf_status add(example_list *e, const char *name, sf_error *err) {
-    char **grown = realloc(e->name, (size_t)(e->count + 1) * sizeof *grown);
-    if (grown)
-        e->name = grown;
-    if (!grown || !(e->name[e->count] = strdup(name)))
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the examples");
-    e->count++;
-    return SF_OK;
-}
-
-/* Lists the examples that have a case. */
-static sf_status list(example_list *e, sf_error *err) {
-    DIR *folder = opendir(e->folder);
-    const struct dirent *entry;
-    if (!folder)
-        return SF_FAIL(err, SF_ERR_IO, "the folder of the examples, %s, cannot be read: %s", e->folder,
-                       strerror(errno));
-    while (err->status == SF_OK && (entry = readdir(folder)) != NULL) {
-        char *path = *entry->d_name == '.' ? NULL : case_of(e, entry->d_name, err);
-        if (path && access(path, R_OK) == 0)
-            add(e, entry->d_name, err);
-        free(path);
-    }
-    closedir(folder);
-    if (e->count > 0)
-        qsort(e->name, (size_t)e->count, sizeof *e->name, compare);
-    return err->status;
+static void write_path(const example_list *e, int k, char path[PATH_MAX]) {
+    snprintf(path, PATH_MAX, "%s/%s/case.cfg", e->folder, e->entry[k]->d_name);
 }
 
 /* SF_ERR_IO: the folder is missing. Release with free_examples, also on failure. */
 static sf_status find_examples(example_list *e, sf_error *err) {
-    char folder[PATH_MAX];
-    *e = (example_list){0};
+    char folder[PATH_MAX], path[PATH_MAX];
     SF_TRY(sf_process_find_shared("examples", folder, sizeof folder, err));
-    if (!(e->folder = realpath(folder, NULL)))
+    e->folder = realpath(folder, NULL);
+    int found = e->folder ? scandir(e->folder, &e->entry, NULL, alphasort) : -1;
+    if (found < 0)
         return SF_FAIL(err, SF_ERR_IO, "the folder of the examples, %s: %s", folder, strerror(errno));
-    return list(e, err);
-}
-
-static sf_status print_line(const example_list *e, const char *name, int width, FILE *out, sf_error *err) {
-    char *path = case_of(e, name, err), *text = NULL;
-    if (path && sf_plain_read(path, "example", SF_PLAIN_TEXT, &text, NULL, err) == SF_OK) {
-        const char *line = text + strspn(text, "# ");
-        fprintf(out, "%-*s  %.*s\n", width, name, (int)strcspn(line, "\r\n"), *text == '#' ? line : "");
+    for (int k = 0; k < found; k++) {
+        e->entry[e->count] = e->entry[k];
+        write_path(e, e->count, path);
+        if (*e->entry[k]->d_name != '.' && access(path, R_OK) == 0)
+            e->count++;
+        else
+            free(e->entry[k]);
     }
-    free(path);
-    free(text);
-    return err->status;
-}
-
-/* A line for each: its name and the first line of its case, a comment. */
-static sf_status print_examples(const example_list *e, FILE *out, sf_error *err) {
-    int width = 0;
-    for (int k = 0; k < e->count; k++)
-        width = (int)strlen(e->name[k]) > width ? (int)strlen(e->name[k]) : width;
-    for (int k = 0; k < e->count; k++)
-        SF_TRY(print_line(e, e->name[k], width, out, err));
     return SF_OK;
 }
 
-/* The case of the example of this name; from malloc. NULL: SF_ERR_INPUT with the names that exist. */
-static char *case_of_example(const example_list *e, const char *name, sf_error *err) {
+/* A line for each: its name and the first line of its case, a comment. */
+static sf_status print_examples(const example_list *e, sf_error *err) {
+    int width = 0;
+    for (int k = 0; k < e->count; k++)
+        width = (int)strlen(e->entry[k]->d_name) > width ? (int)strlen(e->entry[k]->d_name) : width;
+    for (int k = 0; k < e->count; k++) {
+        char path[PATH_MAX], *text = NULL;
+        write_path(e, k, path);
+        SF_TRY(sf_plain_read(path, "example", SF_PLAIN_TEXT, &text, NULL, err));
+        const char *line = text + strspn(text, "# ");
+        printf("%-*s  %.*s\n", width, e->entry[k]->d_name, (int)strcspn(line, "\r\n"),
+               *text == '#' ? line : "");
+        free(text);
+    }
+    return SF_OK;
+}
+
+/* Finds the case of the example of this name. */
+static sf_status find_case(const example_list *e, const char *name, char path[PATH_MAX], sf_error *err) {
     char names[700] = "";
     for (int k = 0; k < e->count; k++) {
         size_t used = strlen(names);
-        if (strcmp(e->name[k], name) == 0)
-            return case_of(e, name, err);
-        snprintf(names + used, sizeof names - used, "%s%s", k ? ", " : "", e->name[k]);
+        write_path(e, k, path);
+        if (strcmp(e->entry[k]->d_name, name) == 0)
+            return SF_OK;
+        snprintf(names + used, sizeof names - used, "%s%s", k ? ", " : "", e->entry[k]->d_name);
     }
-    SF_FAIL(err, SF_ERR_INPUT, "there is no example \"%.80s\"; the examples are %s", name, names);
-    return NULL;
+    return SF_REFUSE(err, "there is no example \"%.80s\"; the examples are %s", name, names);
 }
 
 /* ---- the program ---- */
@@ -162,17 +129,16 @@ static sf_status make(const options *o, const char *path, const char *origin, sf
 
 static sf_status run(const options *o, sf_error *err) {
     const char *from = o->from ? o->from : USUAL;
-    char origin[200], *path = NULL;
+    char origin[200], path[PATH_MAX];
     example_list examples = {0};
     bool file = strchr(from, '/') || (strlen(from) > 4 && strcmp(from + strlen(from) - 4, ".cfg") == 0);
     if (file && !o->list)
         return make(o, from, from, err);
     snprintf(origin, sizeof origin, "the example %.100s", from);
     if (find_examples(&examples, err) == SF_OK && o->list)
-        print_examples(&examples, stdout, err);
-    else if (err->status == SF_OK && (path = case_of_example(&examples, from, err)))
+        print_examples(&examples, err);
+    else if (err->status == SF_OK && find_case(&examples, from, path, err) == SF_OK)
         make(o, path, origin, err);
-    free(path);
     free_examples(&examples);
     return err->status;
 }

@@ -63,8 +63,8 @@ static sf_status read_filter(const char *option, const char *text, void *cfc, sf
     for (size_t k = 0; k < sizeof classes / sizeof classes[0]; k++)
         if (number && *(double *)cfc == classes[k])
             return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the channel frequency classes are 60, 180, 600 and 1000%s",
-                   option, text, strcmp(option, "--filter") == 0 ? "" : " (none: not filtered)");
+    return SF_REFUSE(err, "%s %s: the channel frequency classes are 60, 180, 600 and 1000%s", option, text,
+                     strcmp(option, "--filter") == 0 ? "" : " (none: not filtered)");
 }
 
 static sf_status read_reference_filter(const char *option, const char *text, void *cfc, sf_error *err) {
@@ -75,7 +75,7 @@ static sf_status read_reference_filter(const char *option, const char *text, voi
 static sf_status read_ms(const char *option, const char *text, void *time, sf_error *err) {
     double ms = NAN;
     if (!sf_decimal_is(text, &ms))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a time in ms", option, text);
+        return SF_REFUSE(err, "%s %s: not a time in ms", option, text);
     *(double *)time = ms * 1e-3;
     return SF_OK;
 }
@@ -83,8 +83,8 @@ static sf_status read_ms(const char *option, const char *text, void *time, sf_er
 static sf_status read_impact(const char *option, const char *text, void *impact, sf_error *err) {
     double value = 0;
     if (!sf_decimal_is(text, &value) || value != floor(value) || value < 1 || value > SF_RECORD_IMPACTS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: the number of an impact is expected, from 1 to %d", option,
-                       text, SF_RECORD_IMPACTS);
+        return SF_REFUSE(err, "%s %s: the number of an impact is expected, from 1 to %d", option, text,
+                         SF_RECORD_IMPACTS);
     *(int *)impact = (int)value;
     return SF_OK;
 }
@@ -92,8 +92,7 @@ static sf_status read_impact(const char *option, const char *text, void *impact,
 static sf_status read_view(const char *option, const char *text, void *view, sf_error *err) {
     double *size = view;
     if (!sf_decimal_is(text, size) || !(*size >= 0 && *size <= SF_BROWSER_MOST_MB))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: a size from 0 to %d MB is expected", option, text,
-                       SF_BROWSER_MOST_MB);
+        return SF_REFUSE(err, "%s %s: a size from 0 to %d MB is expected", option, text, SF_BROWSER_MOST_MB);
     return SF_OK;
 }
 
@@ -225,13 +224,12 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
     sf_command_parse(&command, argc, argv, err);
     o->compare.regions = o->regions;
     if (!(o->compare.reference.from < o->compare.reference.to))
-        SF_FAIL(err, SF_ERR_INPUT, "--from %g and --to %g: the part of the measured curve has no length",
-                1e3 * o->compare.reference.from, 1e3 * o->compare.reference.to);
+        SF_REFUSE(err, "--from %g and --to %g: the part of the measured curve has no length",
+                  1e3 * o->compare.reference.from, 1e3 * o->compare.reference.to);
     if (isnan(o->compare.reference.cfc))
         o->compare.reference.cfc = o->cfc;
     if (o->tuned && !o->comparing)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "--window, --regions, --shift and --reference-... need --reference");
+        return SF_REFUSE(err, "--window, --regions, --shift and --reference-... need --reference");
     return err->status;
 }
 
@@ -309,12 +307,10 @@ static void print_warnings(const job *j) {
         fprintf(
             stderr,
             "softfall-post: warning: the run ended in contact: no rebound speed, the peak may lie ahead\n");
-    if (j->plot_warning[0])
-        fprintf(stderr, "softfall-post: warning: %s\n", j->plot_warning);
-    if (j->state_warning[0])
-        fprintf(stderr, "softfall-post: warning: %s\n", j->state_warning);
-    if (j->view_warning[0])
-        fprintf(stderr, "softfall-post: warning: %s\n", j->view_warning);
+    const char *const warnings[] = {j->plot_warning, j->state_warning, j->view_warning};
+    for (int k = 0; k < 3; k++)
+        if (*warnings[k])
+            fprintf(stderr, "softfall-post: warning: %s\n", warnings[k]);
 }
 
 static void print_files(const job *j) {
@@ -353,11 +349,9 @@ static sf_status run(const options *o, job *j, sf_error *err) {
         sf_figures_compute_through(&j->results, o->cfc, &o->chain, &j->figures, err) != SF_OK)
         return err->status;
     if (o->comparing && j->figures.driven)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile's motion was prescribed",
-                       o->results_path);
+        return SF_REFUSE(err, "%s cannot be compared: the missile's motion was prescribed", o->results_path);
     if (o->comparing && !j->figures.touched)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: the missile never touched the pad",
-                       o->results_path);
+        return SF_REFUSE(err, "%s cannot be compared: the missile never touched the pad", o->results_path);
     sf_compare_options compare = o->compare;
     compare.left = j->figures.rebounded;
     compare.flight = j->figures.free_flight;

@@ -47,7 +47,7 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
     const sf_sink sink = sf_program_sink("softfall-pre");
     SF_TRY(sf_replace_check(o->output, err));
     if (!o->force && sf_replace_exists(o->output))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it", o->output);
+        return SF_REFUSE(err, "%s exists; --force replaces it", o->output);
     if (sf_case_read(o->case_path, o->overrides.count, o->overrides.text, &sink, &c, err) != SF_OK)
         goto done;
     c.store = o->store;

@@ -53,7 +53,7 @@ static sf_status read_time(const char *option, const char *text, void *time, sf_
 static sf_status read_on_failure(const char *option, const char *text, void *remove, sf_error *err) {
     *(bool *)remove = strcmp(text, "remove") == 0;
     if (strcmp(text, "remove") != 0 && strcmp(text, "keep") != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s takes keep or remove, not \"%s\"", option, text);
+        return SF_REFUSE(err, "%s takes keep or remove, not \"%s\"", option, text);
     return SF_OK;
 }
 
@@ -166,11 +166,11 @@ static sf_status check_output(const options *o, const sf_output *output, sf_erro
     if (o->force)
         return SF_OK;
     if (sf_replace_exists(output->results))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --force replaces it%s", output->results,
-                       sf_replace_exists(output->checkpoint) ? ", --restart resumes it" : "");
+        return SF_REFUSE(err, "%s exists; --force replaces it%s", output->results,
+                         sf_replace_exists(output->checkpoint) ? ", --restart resumes it" : "");
     if (sf_replace_exists(output->checkpoint))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s exists; --restart %s resumes from it, --force starts a new run",
-                       output->checkpoint, output->results);
+        return SF_REFUSE(err, "%s exists; --restart %s resumes from it, --force starts a new run",
+                         output->checkpoint, output->results);
     return SF_OK;
 }
 
@@ -185,16 +185,16 @@ static sf_status read_model(const options *o, const sf_checkpoint *from, sf_mode
                                                : "");
     sf_model_hash(model, hash);
     if (o->restart && strcmp(hash, from->model_hash) != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s is not the model of %s: its hash is %s, that of the run %s",
-                       path, from->path, hash, from->model_hash);
+        return SF_REFUSE(err, "%s is not the model of %s: its hash is %s, that of the run %s", path,
+                         from->path, hash, from->model_hash);
     return SF_OK;
 }
 
 static sf_status set_end_time(const options *o, const sf_checkpoint *from, sf_model *model, sf_error *err) {
     model->run.end_time = o->end_time > 0 ? o->end_time : o->restart ? from->end_time : model->run.end_time;
     if (o->restart && from->time_before >= model->run.end_time)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s is past %.6g s already, beyond the end time %.6g s", from->path,
-                       from->time_before, model->run.end_time);
+        return SF_REFUSE(err, "%s is past %.6g s already, beyond the end time %.6g s", from->path,
+                         from->time_before, model->run.end_time);
     return sf_model_check(model, err);
 }
 
@@ -251,9 +251,10 @@ static sf_status check_series(const options *o, const series *all, sf_error *err
     if (all->drops == 1)
         return SF_OK;
     if (o->no_checkpoint || (o->restart && o->end_time > 0))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "a series of drops is solved without %s: each drop begins with the pad at the end of the one before",
-                       o->no_checkpoint ? "--no-checkpoint" : "--restart and --end-time");
+        return SF_REFUSE(
+            err,
+            "a series of drops is solved without %s: each drop begins with the pad at the end of the one before",
+            o->no_checkpoint ? "--no-checkpoint" : "--restart and --end-time");
     for (int64_t k = 2; k <= all->drops && !o->restart; k++) {
         char path[SF_PATH_SIZE];
         sf_output output;

@@ -16,10 +16,10 @@
 #define SF_SOLVER_MISSILE_H
 
 #include "model/model.h"
-#include "io/h5_members.h"
+#include "io/h5.h"
 #include "solver/contact/rigid_surface.h"
 
-/* The numbers of the missile in a checkpoint (io/h5_members.h). */
+/* The numbers of the missile in a checkpoint (io/h5.h). */
 /* clang-format off */
 #define SF_MISSILE_NUMBERS(X)                                                                                          \
     X(double, displacement, , "m", "along, since t = 0")                                                               \

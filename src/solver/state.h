@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "base/error.h"
-#include "io/h5_members.h"
+#include "io/h5.h"
 #include "material/laws.h"
 #include "model/model.h"
 #include "solver/field/membrane.h"

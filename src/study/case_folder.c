@@ -4,7 +4,8 @@
 #include "build_info.h"
 #include "study/run_folder.h"
 #include "case/case.h"
-#include "case/parts.h"
+#include "case/edit.h"
+#include "case/grammar.h"
 #include "base/hash.h"
 #include "io/plain_file.h"
 #include "io/process.h"
@@ -21,19 +22,27 @@ enum { PATH_SIZE = 4096 };
 /* A file of the new folder. Strings are owned. */
 typedef struct folder_file {
     char *name; /* from the new folder */
-    char *path; /* where it stands, from /; "" of one that is written here */
-    char *text; /* what becomes of it; NULL: nothing is copied, it is a part of the case */
-    size_t size;
-    bool is_text;
+    char *path; /* where it stands, from / */
+    char *text; /* of an included file, as it was before its files had new names; else NULL */
 } folder_file;
+
+/* A file that gmsh read for a geometry. Both paths begin at /; owned. */
+typedef struct geometry_file {
+    char *geometry, *path;
+    uint64_t hash;
+} geometry_file;
 
 typedef struct folder {
     const sf_case_folder_request *request;
     sf_case c;
     uint64_t hash; /* of the case */
     sf_meshed mesh[SF_GEOMETRIES];
-    sf_case_parts parts;
-    int count, capacity;
+    int read_count;
+    geometry_file *read;    /* [read_count] */
+    char *case_folder;      /* from / */
+    char *text;             /* of the case (case/edit.h) */
+    sf_edit_settings named; /* the settings in it that name files */
+    int count;
     folder_file *file; /* [count] */
     sf_tree tree;
 } folder;
@@ -51,301 +60,262 @@ static const folder_file *find_name(const folder *f, const char *name) {
     return NULL;
 }
 
-/* NULL on failure. The path and the name are copied, the text is taken. */
-static folder_file *add_file(folder *f, const char *name, const char *path, char *text, size_t size,
-                             sf_error *err) {
-    if (f->count == f->capacity) {
-        int capacity = f->capacity ? 2 * f->capacity : 16;
-        folder_file *grown = realloc(f->file, (size_t)capacity * sizeof *grown);
-        if (grown) {
-            f->file = grown;
-            f->capacity = capacity;
-        }
+/* `text`: of an included file, else NULL; taken. */
+static sf_status add_file(folder *f, const char *name, const char *path, char *text, sf_error *err) {
+    folder_file *grown = realloc(f->file, (size_t)(f->count + 1) * sizeof *grown);
+    if (grown)
+        f->file = grown;
+    folder_file file = {strdup(name), strdup(path), text};
+    if (grown && file.name && file.path) {
+        f->file[f->count++] = file;
+        return SF_OK;
     }
-    char *own_name = strdup(name), *own_path = strdup(path);
-    if (f->count == f->capacity || !own_name || !own_path) {
-        free(own_name);
-        free(own_path);
-        free(text);
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of %s", f->request->folder);
-        return NULL;
-    }
-    f->file[f->count] = (folder_file){own_name, own_path, text, size, text && !memchr(text, '\0', size)};
-    return &f->file[f->count++];
+    free(file.name);
+    free(file.path);
+    free(text);
+    return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of %s", f->request->folder);
 }
 
-/* The content of the file at `path`, added as `name`. */
-static const char *copy_file(folder *f, const char *name, const char *path, const char *what, sf_error *err) {
+/* Adds the file at `path` as `name`; `hash`: of what was read of it, NULL: anything. */
+static sf_status copy_file(folder *f, const char *name, const char *path, const uint64_t *hash,
+                           sf_error *err) {
     char *text = NULL;
     size_t size = 0;
-    if (sf_plain_read(path, what, SF_PLAIN_ANY, &text, &size, err) != SF_OK)
-        return NULL;
-    const folder_file *file = add_file(f, name, path, text, size, err);
-    return file ? file->name : NULL;
+    if (sf_process_stopped())
+        return SF_FAIL(err, SF_INTERRUPTED, "interrupted; %s was not made", f->request->folder);
+    SF_TRY(sf_plain_read(path, NULL, SF_PLAIN_ANY, &text, &size, err));
+    if (hash && sf_hash_bytes(SF_HASH_START, text, size) != *hash)
+        SF_FAIL(err, SF_ERR_IO, "%s has changed while it was read", path);
+    else if (add_file(f, name, path, NULL, err) == SF_OK)
+        sf_tree_put(&f->tree, name, text, size, err);
+    free(text);
+    return err->status;
 }
 
-/* `name`, or the first of NAME-2.END and so on that nothing else has. `text`: of a part, whose name another
- * part of the same path and text shares; NULL: any file of the same path shares it. */
-static const char *free_name(const folder *f, const char *name, const char *path, const char *text,
-                             char out[PATH_SIZE]) {
-    const char *end = strrchr(sf_path_name(name), '.');
-    int stem = end && end != sf_path_name(name) ? (int)(end - name) : (int)strlen(name);
-    snprintf(out, PATH_SIZE, "%s", name);
-    for (int number = 2;; number++) {
-        const folder_file *other = find_name(f, out);
-        bool same = other && strcmp(other->path, path) == 0;
-        if (!other || (same && (!text || (other->text && strcmp(other->text, text) == 0))))
-            return out;
-        snprintf(out, PATH_SIZE, "%.*s-%d%s", stem, name, number, name + stem);
+/* Returns the place in the new folder of the file that its file `from` calls `name`; NULL: outside of it, or
+ * err says why not. From malloc. */
+static char *place_beside(const char *from, const char *name, sf_error *err) {
+    static const char root[] = "/\001"; /* no folder's name */
+    char beside[PATH_SIZE];
+    snprintf(beside, sizeof beside, "%s/%.*s", root, (int)sf_path_folder_length(from), from);
+    char *whole = *name == '/' ? NULL : sf_path_whole(beside, name, err);
+    const char *below = whole ? sf_path_below(root, whole) : NULL;
+    if (below)
+        memmove(whole, below, strlen(below) + 1);
+    else
+        free(whole);
+    return below ? whole : NULL;
+}
+
+/* Writes the place in the new folder of the file at `path`, which its file `from` calls `name`: there, or in
+ * the folder `aside`; the first of NAME-2.END and so on that no file of another path has. `text`: of an
+ * included file, whose place only one of the same text shares. */
+static sf_status find_place(const folder *f, const char *from, const char *name, const char *path,
+                            const char *aside, const char *text, char out[PATH_SIZE], sf_error *err) {
+    char first[PATH_SIZE], *beside = place_beside(from, name, err);
+    snprintf(first, sizeof first, "%s%s%s", beside ? "" : aside, beside ? "" : "/",
+             beside ? beside : sf_path_name(path));
+    free(beside);
+    const char *end = strrchr(sf_path_name(first), '.');
+    int stem = end && end != sf_path_name(first) ? (int)(end - first) : (int)strlen(first);
+    const folder_file *other;
+    strcpy(out, first);
+    for (int number = 2; (other = find_name(f, out)); number++) {
+        if (strcmp(other->path, path) == 0 && (!text || (other->text && strcmp(other->text, text) == 0)))
+            break;
+        snprintf(out, PATH_SIZE, "%.*s-%d%s", stem, first, number, first + stem);
     }
+    return err->status;
 }
 
 /* ---- geometries ---- */
 
-/* True if a text of the geometry names the file by this very path. */
-static bool is_named_whole(const sf_broker *read, const char *path) {
-    char quoted[PATH_SIZE + 2];
-    snprintf(quoted, sizeof quoted, "\"%s\"", path);
-    for (size_t k = 0; *path == '/' && k < read->count; k++)
-        if (read->file[k].is_text && strstr(read->file[k].text, quoted))
-            return true;
-    return false;
-}
-
-/* The files that the geometries at `path` read, from /; a name of its own for what they ask for by its place
- * from / (`whole`), where it stands with the others else. */
-typedef struct reading {
-    int count;
-    struct {
-        char *path;
-        char name[PATH_SIZE];
-        const char *asked;
-        uint64_t hash;
-        bool whole;
-    } * file;
-} reading;
-
-static void free_reading(reading *r) {
-    for (int k = 0; k < r->count; k++)
-        free(r->file[k].path);
-    free(r->file);
-}
-
-static sf_status list_reading(const folder *f, const char *path, reading *r, sf_error *err) {
+/* Lists the files that gmsh read for each geometry. */
+static sf_status list_reading(folder *f, sf_error *err) {
     size_t most = 0;
     for (int k = 0; k < SF_GEOMETRIES; k++)
         most += f->mesh[k].broker.count;
-    r->file = sf_alloc(err, most, sizeof *r->file, "the files of a geometry");
-    for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++) {
-        const sf_geo_source *source = geometry(&f->c, k);
-        const sf_broker *read = &f->mesh[k].broker;
-        char *own = source->path ? sf_path_whole(NULL, source->path, err) : NULL;
-        for (size_t i = 0; own && strcmp(own, path) == 0 && i < read->count && err->status == SF_OK; i++) {
-            const char *asked = read->file[i].path;
-            r->file[r->count].path = sf_path_whole(NULL, asked, err);
-            r->file[r->count].asked = asked;
-            r->file[r->count].hash = read->file[i].hash;
-            r->file[r->count].whole = is_named_whole(read, asked);
-            r->count += err->status == SF_OK;
+    f->read = sf_alloc(err, most, sizeof *f->read, "the files of a geometry");
+    for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
+        for (size_t i = 0; i < f->mesh[k].broker.count && err->status == SF_OK; i++) {
+            const sf_broker_file *file = &f->mesh[k].broker.file[i];
+            f->read[f->read_count++] = (geometry_file){sf_path_whole(NULL, geometry(&f->c, k)->path, err),
+                                                       sf_path_whole(NULL, file->path, err), file->hash};
         }
-        free(own);
-    }
     return err->status;
 }
 
-/* The folder that holds all files but those named from /: its length in `path`, 0: the root. */
-static size_t common_folder(const reading *r, const char *path) {
+/* The length in `path` of the folder that holds all that gmsh read for this geometry; 0: the root. */
+static size_t common_folder(const folder *f, const char *path) {
     size_t length = sf_path_folder_length(path);
-    for (int k = 0; k < r->count; k++)
-        while (length > 0 && !r->file[k].whole &&
-               !(strncmp(r->file[k].path, path, length) == 0 && r->file[k].path[length] == '/')) {
+    for (int k = 0; k < f->read_count; k++)
+        while (length > 0 && strcmp(f->read[k].geometry, path) == 0 &&
+               !(strncmp(f->read[k].path, path, length) == 0 && f->read[k].path[length] == '/'))
             do
                 length--;
             while (length > 0 && path[length] != '/');
-        }
     return length <= 1 ? 0 : length;
 }
 
-/* Names all files below the folder `root` ("": the new folder); false: one of the names is taken. */
-static bool try_root(const folder *f, reading *r, const char *path, size_t common, const char *root) {
-    bool fits = true;
-    for (int k = 0; k < r->count; k++) {
-        const char *own = r->file[k].path;
-        bool below = strncmp(own, path, common) == 0 && own[common] == '/';
-        int length = snprintf(r->file[k].name, PATH_SIZE, "%s%s%s", root, *root ? "/" : "",
-                              below ? own + common + 1 : sf_path_name(own));
-        const folder_file *other = find_name(f, r->file[k].name);
-        fits = fits && length < PATH_SIZE && !(other && strcmp(other->path, own) != 0);
-        for (int i = 0; i < k; i++)
-            fits =
-                fits && (strcmp(r->file[i].name, r->file[k].name) != 0 || strcmp(r->file[i].path, own) == 0);
+/* Copies what gmsh read for the geometry from below its common folder to below `root` ("": the new folder).
+ * False: other files have these names. */
+static bool copy_reading(folder *f, const char *path, size_t common, const char *root, bool copy,
+                         sf_error *err) {
+    for (int k = 0; k < f->read_count && err->status == SF_OK; k++) {
+        const geometry_file *r = &f->read[k];
+        char name[PATH_SIZE];
+        if (strcmp(r->geometry, path) != 0)
+            continue;
+        snprintf(name, sizeof name, "%s%s%s", root, *root ? "/" : "", r->path + common + 1);
+        const folder_file *other = find_name(f, name);
+        if (other && strcmp(other->path, r->path) != 0)
+            return false;
+        if (copy && !other)
+            copy_file(f, name, r->path, &r->hash, err);
     }
-    return fits;
+    return true;
 }
 
-static void name_reading(const folder *f, reading *r, const char *path, const char *wanted) {
-    size_t common = common_folder(r, path);
+/* Places the geometry with everything that gmsh reads for it, in the same places to each other. */
+static sf_status place_geometry(folder *f, const char *from, const char *name, const char *path,
+                                char out[PATH_SIZE], sf_error *err) {
+    char root[PATH_SIZE] = "geo", *wanted = place_beside(from, name, err);
+    size_t common = common_folder(f, path), length = wanted ? strlen(wanted) : 0;
     const char *inner = path + common + 1;
-    char root[PATH_SIZE] = "geo";
-    size_t length = wanted ? strlen(wanted) : 0, tail = strlen(inner);
+    size_t tail = strlen(inner);
     if (length >= tail && strcmp(wanted + length - tail, inner) == 0 &&
         (length == tail || wanted[length - tail - 1] == '/'))
         snprintf(root, sizeof root, "%.*s", (int)(length - tail - (length > tail)), wanted);
-    for (int number = 1; !try_root(f, r, path, common, root) && number < 1000; number++)
+    free(wanted);
+    for (int number = 1; !copy_reading(f, path, common, root, false, err); number++)
         snprintf(root, sizeof root, number > 1 ? "geo-%d" : "geo", number);
-}
-
-/* In a text, in place of the name from /. */
-static sf_status rename_in(folder_file *file, const char *asked, const char *name, sf_error *err) {
-    char *between = sf_path_between(file->name, name, err), *out = NULL;
-    size_t size = 0, length = strlen(asked);
-    FILE *changed = between ? open_memstream(&out, &size) : NULL;
-    for (const char *at = file->text, *found; changed && *at; at = found) {
-        for (found = at; (found = strstr(found, asked)); found++)
-            if (found > file->text && found[-1] == '"' && found[length] == '"')
-                break;
-        fprintf(changed, "%.*s%s", found ? (int)(found - at) : (int)strlen(at), at, found ? between : "");
-        found = found ? found + length : at + strlen(at);
-    }
-    free(between);
-    if (!changed || fclose(changed) != 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of %s", file->path);
-    free(file->text);
-    file->text = out;
-    file->size = size;
-    return SF_OK;
-}
-
-static sf_status add_reading(folder *f, const reading *r, sf_error *err) {
-    int first = f->count;
-    for (int k = 0; k < r->count && err->status == SF_OK; k++) {
-        uint64_t hash = 0;
-        if (find_name(f, r->file[k].name))
-            continue;
-        if (!copy_file(f, r->file[k].name, r->file[k].path, NULL, err))
-            return err->status;
-        const folder_file *file = &f->file[f->count - 1];
-        hash = sf_hash_bytes(SF_HASH_START, file->text, file->size);
-        if (hash != r->file[k].hash)
-            SF_FAIL(err, SF_ERR_IO, "%s has changed while it was read", file->path);
-    }
-    for (int k = 0; k < r->count; k++)
-        for (int i = first; r->file[k].whole && i < f->count && err->status == SF_OK; i++)
-            if (f->file[i].is_text)
-                rename_in(&f->file[i], r->file[k].asked, r->file[k].name, err);
+    copy_reading(f, path, common, root, true, err);
+    snprintf(out, PATH_SIZE, "%s%s%s", root, *root ? "/" : "", inner);
     return err->status;
 }
 
-/* With everything that gmsh reads for it, in the same places to each other. */
-static const char *place_geometry(folder *f, const sf_case_file *asked, sf_error *err) {
-    reading r = {0};
-    const char *name = NULL;
-    if (list_reading(f, asked->path, &r, err) == SF_OK) {
-        name_reading(f, &r, asked->path, asked->wanted);
-        add_reading(f, &r, err);
+/* ---- texts ---- */
+
+/* A file of the case's text on its way to the new folder. */
+typedef struct part {
+    folder *f;
+    const char *path, *name; /* from /, and in the new folder */
+} part;
+
+/* Copies the file that a setting names; its new name is relative to that of the part. */
+static char *place_file(void *context, const char *setting, const char *name, sf_error *err) {
+    const part *p = context;
+    char place[PATH_SIZE], *beside = sf_case_folder_of(p->path, err),
+                           *path = beside ? sf_path_whole(beside, name, err) : NULL;
+    free(beside);
+    if (path && strncmp(setting, "geometry.", 9) == 0)
+        place_geometry(p->f, p->name, name, path, place, err);
+    else if (path && find_place(p->f, p->name, name, path, "data", NULL, place, err) == SF_OK &&
+             !find_name(p->f, place))
+        copy_file(p->f, place, path, NULL, err);
+    free(path);
+    return err->status == SF_OK ? sf_path_between(p->name, place, err) : NULL;
+}
+
+static void write_part(const part *p, const char *at, sf_error *err);
+
+/* Returns the place behind the mark that ends the included file at `at`, or the end of the text. */
+static const char *pass_part(const char *at) {
+    for (int depth = 1; depth > 0 && (at = strpbrk(at, SF_CASE_MARKS)); at++)
+        depth += *at == SF_CASE_BEGIN ? 1 : -1;
+    return at;
+}
+
+/* Writes the line of an include, which stands at `at` behind its mark, and the file. */
+static const char *write_include(const part *p, const char *at, FILE *out, sf_error *err) {
+    const char *name = strchr(at, '"') + 1, *end = strchr(name, '"'), *text = strchr(end, '\n') + 1,
+               *behind = pass_part(text);
+    char place[PATH_SIZE], *asked = strndup(name, (size_t)(end - name)),
+                           *own = strndup(text, (size_t)(behind - text)),
+                           *path = asked && own ? sf_path_whole(p->f->case_folder, asked, err) : NULL;
+    if (!asked || !own)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of a case");
+    if (path && find_place(p->f, CASE_NAME, asked, path, "materials", own, place, err) == SF_OK) {
+        fprintf(out, "%.*s@include \"%s%.*s", (int)strspn(at, " \t"), at, place, (int)(text - end), end);
+        const part inner = {p->f, path, place};
+        if (!find_name(p->f, place) && add_file(p->f, place, path, own, err) == SF_OK)
+            write_part(&inner, text, err);
+        else
+            free(own);
     }
-    for (int k = 0; err->status == SF_OK && k < r.count && !name; k++)
-        if (strcmp(r.file[k].path, asked->path) == 0)
-            name = find_name(f, r.file[k].name)->name;
-    free_reading(&r);
-    if (!name)
-        SF_FAIL(err, SF_ERR_INPUT, "%s: gmsh did not read this geometry", asked->path);
-    return name;
+    free(asked);
+    free(path);
+    return behind + 1;
 }
 
-/* ---- texts and data ---- */
-
-static const char *place(void *context, const sf_case_file *asked, sf_error *err) {
-    folder *f = context;
-    char name[PATH_SIZE], wanted[PATH_SIZE];
-    bool part = asked->kind == SF_CASE_FILE_PART;
-    if (asked->kind == SF_CASE_FILE_GEOMETRY)
-        return place_geometry(f, asked, err);
-    if (asked->wanted)
-        snprintf(wanted, sizeof wanted, "%s", asked->wanted);
-    else
-        snprintf(wanted, sizeof wanted, "%s/%s", part ? "materials" : "data", sf_path_name(asked->path));
-    free_name(f, wanted, asked->path, asked->text, name);
-    const folder_file *there = find_name(f, name);
-    if (there)
-        return there->name;
-    if (!part)
-        return copy_file(f, name, asked->path, NULL, err);
-    char *text = strdup(asked->text);
-    const folder_file *added = add_file(f, name, asked->path, text, text ? strlen(text) : 0, err);
-    return added ? added->name : NULL;
-}
-
-/* The first comment of the case, or something to say. */
-static void find_title(const char *text, char *out, size_t size) {
-    const char *from = text + strspn(text, "# \t");
-    int length = (int)strcspn(from, "\r\n");
-    if (*text == '#' && length > 0)
-        snprintf(out, size, "%.*s", length, from);
-    else
-        snprintf(out, size, "A drop test");
-}
-
-/* " with --set a=1 --set b=2", or "": the title may be true of the original only. */
-static char *list_overrides(const sf_case_folder_request *q) {
+/* Writes the file whose text begins at `at`, with those that it names. */
+static void write_part(const part *p, const char *at, sf_error *err) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    for (int k = 0; out && k < q->override_count; k++)
-        fprintf(out, "%s--set '%.200s'", k ? " " : " with ", q->overrides[k]);
-    if (out)
-        fclose(out);
-    return text;
+    for (bool open = out; open && err->status == SF_OK;) {
+        const char *mark = strpbrk(at, SF_CASE_MARKS), *end = mark ? mark - 1 : at + strlen(at);
+        sf_case_edit_write(p->f->text, (size_t)(at - p->f->text), (size_t)(end - p->f->text), &p->f->named,
+                           place_file, (void *)p, out, err);
+        open = mark && *mark == SF_CASE_BEGIN && err->status == SF_OK;
+        at = open ? write_include(p, mark + 1, out, err) : end;
+    }
+    if (!out || fclose(out) != 0)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of %s", p->path);
+    if (err->status == SF_OK)
+        sf_tree_put(&p->f->tree, p->name, text, size, err);
+    free(text);
 }
 
+/* The README: the first comment of the case, and what the folder was made of; the title may be true of the
+ * case without its --set texts only. */
 static sf_status write_readme(folder *f, sf_error *err) {
-    char title[PATH_SIZE], *text = NULL, *overrides = list_overrides(f->request);
-    const char *origin = f->request->origin ? f->request->origin : f->request->case_path;
-    find_title(f->parts.part[0].text, title, sizeof title);
-    int length = asprintf(
-        &text,
-        "%s\n\n"
+    const sf_case_folder_request *q = f->request;
+    const char *title = f->text + strspn(f->text, "# \t");
+    int length = *f->text == '#' ? (int)strcspn(title, "\r\n") : 0;
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", q->folder);
+    if (length > 0)
+        fprintf(out, "%.*s\n\n", length, title);
+    else
+        fputs("A drop test\n\n", out);
+    fprintf(
+        out,
         "This folder holds all that the case needs; it may be moved, packed and sent. softfall " SF_VERSION
-        " made it from %s%s.\n\n"
+        " made it from %s",
+        q->origin ? q->origin : q->case_path);
+    for (int k = 0; k < q->override_count; k++)
+        fprintf(out, "%s--set '%.200s'", k ? " " : " with ", q->overrides[k]);
+    fputs(
+        ".\n\n"
         "    softfall-pre case.cfg -o model.h5       # mesh the geometry, build and check the model\n"
         "    softfall-solve model.h5 -o results.h5   # the drop\n"
         "    softfall-post results.h5 -o out         # figures, out/report.html, files for ParaView\n\n"
         "Edit case.cfg and run the three again, each with --force. softfall-pre --keys explains every key.\n",
-        title, origin, overrides ? overrides : "");
-    free(overrides);
-    if (length < 0 || !add_file(f, README_NAME, "", text, (size_t)length, err))
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", f->request->folder);
-    return SF_OK;
+        out);
+    fclose(out);
+    if (add_file(f, README_NAME, "", NULL, err) == SF_OK)
+        sf_tree_put(&f->tree, README_NAME, text, size, err);
+    free(text);
+    return err->status;
 }
 
-/* Collects every file: first their names, then their texts. */
-static sf_status collect(folder *f, sf_error *err) {
-    const sf_case_folder_request *q = f->request;
-    SF_TRY(sf_case_parts_read(q->case_path, &f->parts, err));
-    for (int k = 0; k < q->override_count; k++)
-        SF_TRY(sf_case_parts_set(&f->parts, q->overrides[k], err));
-    if (!(f->parts.part[0].name = strdup(CASE_NAME)))
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of %s", q->folder);
-    if (!add_file(f, CASE_NAME, f->parts.part[0].path, NULL, 0, err))
-        return err->status;
-    SF_TRY(write_readme(f, err));
-    return sf_case_parts_finish(&f->parts, place, f, err);
-}
-
-/* ---- writing ---- */
-
+/* Writes the files of the new folder, the case with its --set texts first. */
 static sf_status write_files(folder *f, sf_error *err) {
-    for (int k = 0; k < f->count && err->status == SF_OK; k++) {
-        const folder_file *file = &f->file[k];
-        const sf_case_part *part = NULL;
-        for (int i = 0; i < f->parts.count && !part; i++)
-            if (f->parts.part[i].name && strcmp(f->parts.part[i].name, file->name) == 0)
-                part = &f->parts.part[i];
-        if (sf_process_stopped())
-            return SF_FAIL(err, SF_INTERRUPTED, "interrupted; %s was not made", f->request->folder);
-        sf_tree_put(&f->tree, file->name, part ? part->text : file->text,
-                    part ? strlen(part->text) : file->size, err);
-    }
+    const sf_case_folder_request *q = f->request;
+    char *path = sf_path_whole(NULL, q->case_path, err);
+    part whole = {f, path, CASE_NAME};
+    f->case_folder = path ? sf_case_folder_of(path, err) : NULL;
+    f->text = f->case_folder ? sf_case_load_marked(q->case_path, false, err) : NULL;
+    for (int k = 0; k < q->override_count && err->status == SF_OK; k++)
+        sf_case_edit_set(&f->text, q->case_path, q->overrides[k], err);
+    if (err->status == SF_OK && sf_case_edit_find(f->text, true, &f->named, err) == SF_OK &&
+        add_file(f, CASE_NAME, path, NULL, err) == SF_OK && write_readme(f, err) == SF_OK)
+        write_part(&whole, f->text, err);
+    free(path);
     return err->status;
 }
 
@@ -362,10 +332,11 @@ static sf_status check_reading(const folder *f, const sf_broker *read, const cha
     for (size_t k = 0; k < read->count && err->status == SF_OK; k++) {
         char *whole = sf_path_whole(NULL, read->file[k].path, err);
         if (whole && !sf_path_below(root, whole))
-            SF_FAIL(err, SF_ERR_INPUT,
-                    "%s has no folder of its own: its geometry reads %s by a path from / that does not stand "
-                    "in quotes in its text; name it relative to the geometry",
-                    f->request->case_path, whole);
+            SF_REFUSE(
+                err,
+                "%s has no folder of its own: its geometry reads %s by a path from /; name it relative to "
+                "the geometry",
+                f->request->case_path, whole);
         free(whole);
     }
     return err->status;
@@ -380,8 +351,8 @@ static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) 
         if (check_reading(f, &mesh[k].broker, root, err) == SF_OK &&
             (mesh[k].size != f->mesh[k].size ||
              (mesh[k].size > 0 && memcmp(mesh[k].stream, f->mesh[k].stream, mesh[k].size) != 0)))
-            SF_FAIL(err, SF_ERR_INPUT, "%s has no folder of its own: in another folder %s gives another mesh",
-                    f->request->case_path, geometry(&f->c, k)->path);
+            SF_REFUSE(err, "%s has no folder of its own: in another folder %s gives another mesh",
+                      f->request->case_path, geometry(&f->c, k)->path);
     for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&mesh[k]);
     free(root);
@@ -415,9 +386,16 @@ static void release(folder *f) {
         free(f->file[k].text);
     }
     free(f->file);
+    for (int k = 0; k < f->read_count; k++) {
+        free(f->read[k].geometry);
+        free(f->read[k].path);
+    }
+    free(f->read);
     for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&f->mesh[k]);
-    sf_case_parts_free(&f->parts);
+    free(f->named.setting);
+    free(f->text);
+    free(f->case_folder);
     sf_case_free(&f->c);
 }
 
@@ -427,11 +405,11 @@ sf_status sf_case_folder_make(const sf_case_folder_request *q, const sf_sink *si
         sf_case_read(q->case_path, q->override_count, q->overrides, sink, &f.c, err) == SF_OK) {
         f.hash = sf_campaign_case_hash(&f.c);
         if (f.c.run.drops > 1)
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "%s: series.drops = %g: studies run single drops; leave the series out, and run it by softfall-solve",
                 q->case_path, f.c.run.drops);
-        else if (mesh_each(&f.c, f.mesh, err) == SF_OK && collect(&f, err) == SF_OK &&
+        else if (mesh_each(&f.c, f.mesh, err) == SF_OK && list_reading(&f, err) == SF_OK &&
                  write_files(&f, err) == SF_OK && check(&f, err) == SF_OK)
             sf_tree_commit(&f.tree, err);
     }

@@ -31,8 +31,7 @@ static int parse_region(const char **text, const char *separators, sf_region *re
 sf_status sf_region_parse(const char *text, sf_region *region, sf_error *err) {
     const char *rest = text;
     if (!parse_region(&rest, ",-", region) || *rest != '\0')
-        return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" is not a window: write two times in ms, e.g. 10.5,25",
-                       text);
+        return SF_REFUSE(err, "\"%s\" is not a window: write two times in ms, e.g. 10.5,25", text);
     return SF_OK;
 }
 
@@ -42,7 +41,7 @@ sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count
     for (const char *c = text; *c; c++)
         most += *c == ',';
     if (most > MOST_REGIONS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%lu regions; at most %d are compared", most, MOST_REGIONS);
+        return SF_REFUSE(err, "%lu regions; at most %d are compared", most, MOST_REGIONS);
     *regions = sf_alloc(err, most, sizeof **regions, "the regions");
     if (!*regions)
         return err->status;
@@ -57,9 +56,8 @@ sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count
     free(*regions);
     *regions = NULL;
     *count = 0;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "\"%s\" is not a list of regions: write ascending times in ms, e.g. 0-10,10-16,16-30",
-                   text);
+    return SF_REFUSE(
+        err, "\"%s\" is not a list of regions: write ascending times in ms, e.g. 0-10,10-16,16-30", text);
 }
 
 /* Last instant before point `peak` at which the curve rises through `level`; its first point if it is never
@@ -81,16 +79,15 @@ sf_status sf_contact_instant(const sf_series *curve, const char *name, double ze
     int64_t peak = sf_series_peak(curve);
     double a_max = curve->value[peak] - zero, low = 0, high = 0;
     if (!(a_max > 0))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s has no positive acceleration (largest value %g g): positive means that the "
-                       "missile is slowed down",
-                       name, a_max);
+        return SF_REFUSE(err,
+                         "%s has no positive acceleration (largest value %g g): positive means that the "
+                         "missile is slowed down",
+                         name, a_max);
     double t_low = last_rise(curve, peak, zero + 0.02 * a_max, &low);
     double t_high = last_rise(curve, peak, zero + 0.10 * a_max, &high);
     if (!(t_high > t_low) || !(high > low))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s begins at %g g, above 10 %% of its peak %g g: its contact cannot be found, give --shift",
+        return SF_REFUSE(
+            err, "%s begins at %g g, above 10 %% of its peak %g g: its contact cannot be found, give --shift",
             name, curve->value[0], a_max);
     *instant = t_low - (low - zero) * (t_high - t_low) / (high - low);
     return SF_OK;
@@ -104,17 +101,15 @@ static sf_status check_region(const sf_series *measured, const sf_series *model,
     double begin = measured->time[0], end = measured->time[measured->count - 1];
     double model_begin = model->time[0] - shift, model_end = model->time[model->count - 1] - shift;
     if (!(region.end > region.begin) || region.begin < begin - SLACK || region.end > end + SLACK)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "the region %g to %g ms does not lie within the measured curve (%g to %g ms)",
-                       region.begin * 1e3, region.end * 1e3, begin * 1e3, end * 1e3);
+        return SF_REFUSE(err, "the region %g to %g ms does not lie within the measured curve (%g to %g ms)",
+                         region.begin * 1e3, region.end * 1e3, begin * 1e3, end * 1e3);
     if (region.end <= model_begin || region.begin >= model_end)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "the region %g to %g ms lies outside the model's curve (%g to %g ms of the measured time)",
+        return SF_REFUSE(
+            err, "the region %g to %g ms lies outside the model's curve (%g to %g ms of the measured time)",
             region.begin * 1e3, region.end * 1e3, model_begin * 1e3, model_end * 1e3);
     if (!left && region.end > model_end + SLACK)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "the region %g to %g ms goes beyond the model's curve, which ends in contact at %g ms of the "
             "measured time: compare a shorter one (--window), or continue the run (softfall-solve "
             "--restart --end-time)",
@@ -138,9 +133,8 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
     double sum = 0, squares = 0, residual = 0, origin = 0, slack = 1e-9;
     double intervals = floor((region.end - region.begin) / interval + slack);
     if (!(intervals < MOST_SAMPLES))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "the region %g to %g ms would be sampled %.3g times, every %g ms; at most %d are possible",
+        return SF_REFUSE(
+            err, "the region %g to %g ms would be sampled %.3g times, every %g ms; at most %d are possible",
             region.begin * 1e3, region.end * 1e3, intervals, interval * 1e3, MOST_SAMPLES);
     int64_t samples = (int64_t)intervals + 1;
     for (int64_t k = 0; k < samples; k++) {
@@ -238,8 +232,8 @@ sf_status sf_compare_run(const sf_compare_options *options, const sf_series *mod
     if (read_measured(options, c, err) != SF_OK)
         goto done;
     if (!(c->injury.a_max_g > 0)) {
-        SF_FAIL(err, SF_ERR_INPUT,
-                "%s has no positive acceleration: positive means that the missile is slowed down", path);
+        SF_REFUSE(err, "%s has no positive acceleration: positive means that the missile is slowed down",
+                  path);
         goto done;
     }
     if (!c->shift_given) {

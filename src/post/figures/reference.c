@@ -47,8 +47,7 @@ sf_status sf_reference_parse_sensitivity(const char *text, double *sensitivity, 
         sf_units_parse(units, text, SF_SENSITIVITY, sensitivity, err);
     sf_units_close(&units);
     if (err->status == SF_OK && !(*sensitivity > 0))
-        SF_FAIL(err, SF_ERR_INPUT, "the sensitivity %s is not above 0 (--reference-invert changes a sign)",
-                text);
+        SF_REFUSE(err, "the sensitivity %s is not above 0 (--reference-invert changes a sign)", text);
     return err->status;
 }
 
@@ -64,7 +63,7 @@ sf_status sf_reference_parse_rate(const char *text, double *rate, sf_error *err)
             *rate *= known[k].value;
             return SF_OK;
         }
-    return SF_FAIL(err, SF_ERR_INPUT, "\"%s\" is not a sampling rate: write for example \"20 kHz\"", text);
+    return SF_REFUSE(err, "\"%s\" is not a sampling rate: write for example \"20 kHz\"", text);
 }
 
 /* ---- the file ---- */
@@ -80,8 +79,8 @@ static const sf_table_name names[] = {
 
 static sf_status check_point(const sf_table_point *p, sf_error *err) {
     if (p->index > 0 && !(p->value[0] > p->before[0]))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: time %g ms does not follow %g ms of the row before",
-                       p->path, p->line, p->value[0] * 1e3, p->before[0] * 1e3);
+        return SF_REFUSE(err, "%s:%d: time %g ms does not follow %g ms of the row before", p->path, p->line,
+                         p->value[0] * 1e3, p->before[0] * 1e3);
     return SF_OK;
 }
 
@@ -126,7 +125,7 @@ static sf_status read_column(const sf_reference_options *o, const char *column, 
     sf_error inner = SF_ERROR_INIT;
     if (sf_table_read(o->path, layouts, table, &inner) == SF_OK) {
         sf_table_free(table);
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has a column of time: leave its sampling rate out", o->path);
+        return SF_REFUSE(err, "%s has a column of time: leave its sampling rate out", o->path);
     }
     layouts[1].counted = true;
     layouts[1].column[0] = "sample";
@@ -177,12 +176,12 @@ static sf_status read_axes(record *r, sf_error *err) {
     if (!o->columns)
         return read_axis(r, o->column, err);
     if (snprintf(list, sizeof list, "%s", o->columns) >= (int)sizeof list)
-        return SF_FAIL(err, SF_ERR_INPUT, "the list of columns \"%.40s...\" is too long", o->columns);
+        return SF_REFUSE(err, "the list of columns \"%.40s...\" is too long", o->columns);
     while ((name = strsep(&rest, ","))) {
         if (r->axes == SF_REFERENCE_AXES || !name[strspn(name, " ")] || (r->axes == 0 && !rest))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "\"%s\" is not a list of two or three columns: write their headings, \"x,y,z\"",
-                           o->columns);
+            return SF_REFUSE(err,
+                             "\"%s\" is not a list of two or three columns: write their headings, \"x,y,z\"",
+                             o->columns);
         SF_TRY(read_axis(r, name + strspn(name, " "), err));
     }
     return SF_OK;
@@ -219,10 +218,9 @@ static sf_status cut_out(record *r, sf_reference *reference, double from, double
         last--;
     int64_t count = last - first + 1;
     if (count < FEWEST_POINTS)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: fewer than %d samples lie from %g to %g ms; it has %g to %g ms", r->options->path,
-                       FEWEST_POINTS, 1e3 * from, 1e3 * to, 1e3 * raw->time[0],
-                       1e3 * raw->time[raw->count - 1]);
+        return SF_REFUSE(err, "%s: fewer than %d samples lie from %g to %g ms; it has %g to %g ms",
+                         r->options->path, FEWEST_POINTS, 1e3 * from, 1e3 * to, 1e3 * raw->time[0],
+                         1e3 * raw->time[raw->count - 1]);
     for (int k = 0; k < r->axes; k++)
         cut_series(&r->axis[k], first, count);
     cut_series(&reference->raw, first, count);
@@ -252,8 +250,8 @@ static sf_status choose_part(record *r, sf_reference *reference, sf_error *err) 
     if (count < 2 && o->impact <= count)
         return SF_OK;
     if (o->impact > count)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: impact %d was asked for; it has %d%s%s", o->path, o->impact,
-                       count, count > 1 ? ": " : "", list);
+        return SF_REFUSE(err, "%s: impact %d was asked for; it has %d%s%s", o->path, o->impact, count,
+                         count > 1 ? ": " : "", list);
     return cut_out(r, reference, impact[chosen - 1].begin, impact[chosen - 1].end, err);
 }
 
@@ -278,8 +276,8 @@ static sf_status take_zero_away(record *r, sf_reference *reference, sf_error *er
         double offset = 0;
         SF_TRY(sf_record_offset(&pulse, &r->axis[k], &offset, err));
         if (isnan(offset))
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "%s: too few samples before contact to take the zero line from: leave --reference-zero out",
                 r->options->path);
         for (int64_t i = 0; i < pulse.count; i++)
@@ -313,8 +311,8 @@ static sf_status check_sampling(const record *r, const sf_series *raw, sf_error 
         coarse += gap_before(raw, i) > ROUNDING * most;
     for (int64_t i = 1; (double)coarse > SHARE * (double)raw->count && i < raw->count; i++)
         if (gap_before(raw, i) > ROUNDING * most)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "%s:%d: samples %.4g ms apart are too coarse for CFC %g, which needs %.4g ms (%g kHz) or "
                 "less: choose a lower class, or %s if the curve is filtered already",
                 o->path, r->line[i], gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
@@ -348,13 +346,13 @@ static sf_status check_sign(const sf_reference_options *o, const sf_series *curv
     if (high >= -low)
         return SF_OK;
     if (o->invert)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s: inverted, the channel's largest magnitude is negative (%.4g g, against %.4g g): the "
             "file has the right sign, leave %s out",
             o->path, low, high, o->invert_option);
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "%s: the channel looks inverted: its largest magnitude is negative (%.4g g, against %.4g g), but "
         "a missile that is slowed down has a positive acceleration; if so, give %s",
         o->path, low, high, o->invert_option);
@@ -403,14 +401,14 @@ static void describe(const record *r, sf_reference *reference) {
 static sf_status make(record *r, sf_reference *reference, sf_error *err) {
     const sf_reference_options *o = r->options;
     if (o->columns && (o->column || o->invert))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: columns of axes have a resultant, which has no sign and is the "
-                       "only acceleration: leave %s out",
-                       o->path, o->column ? o->column_option : o->invert_option);
+        return SF_REFUSE(err,
+                         "%s: columns of axes have a resultant, which has no sign and is the "
+                         "only acceleration: leave %s out",
+                         o->path, o->column ? o->column_option : o->invert_option);
     SF_TRY(read_axes(r, err));
     if (r->axis[0].count < FEWEST_POINTS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has %lld points, at least %d are needed", o->path,
-                       (long long)r->axis[0].count, FEWEST_POINTS);
+        return SF_REFUSE(err, "%s has %lld points, at least %d are needed", o->path,
+                         (long long)r->axis[0].count, FEWEST_POINTS);
     for (int64_t i = 0; o->invert && i < r->axis[0].count; i++)
         r->axis[0].value[i] = 0 - r->axis[0].value[i];
     SF_TRY(make_resultant(r->axis, r->axes, &reference->raw, err));

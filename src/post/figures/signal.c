@@ -29,14 +29,13 @@ void sf_series_free(sf_series *series) {
 
 sf_status sf_series_check(const sf_series *series, const char *name, sf_error *err) {
     if (series->count < 2)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has %lld points, at least 2 are needed", name,
-                       (long long)series->count);
+        return SF_REFUSE(err, "%s has %lld points, at least 2 are needed", name, (long long)series->count);
     for (int64_t i = 0; i < series->count; i++) {
         if (!isfinite(series->time[i]) || !isfinite(series->value[i]))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: point %lld is not finite", name, (long long)i + 1);
+            return SF_REFUSE(err, "%s: point %lld is not finite", name, (long long)i + 1);
         if (i > 0 && !(series->time[i] > series->time[i - 1]))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: time %.9g s of point %lld does not follow %.9g s", name,
-                           series->time[i], (long long)i + 1, series->time[i - 1]);
+            return SF_REFUSE(err, "%s: time %.9g s of point %lld does not follow %.9g s", name,
+                             series->time[i], (long long)i + 1, series->time[i - 1]);
     }
     return SF_OK;
 }
@@ -112,9 +111,8 @@ sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *un
     double span = series->time[series->count - 1] - start;
     double intervals = floor(span * rate * (1 + 1e-12) + 1e-9);
     if (!(intervals >= 1) || intervals > MOST_SAMPLES)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "a curve of %.3g s cannot be sampled at %.3g Hz: 2 to %g samples are possible", span,
-                       rate, MOST_SAMPLES);
+        return SF_REFUSE(err, "a curve of %.3g s cannot be sampled at %.3g Hz: 2 to %g samples are possible",
+                         span, rate, MOST_SAMPLES);
     SF_TRY(sf_series_create((int64_t)intervals + 1, uniform, err));
     int64_t segment = 0, last = uniform->count - 1;
     while (segment < series->count - 2 && series->time[segment + 1] <= start + 0.5 / rate)
@@ -176,9 +174,8 @@ static sf_status check_uniform(const sf_series *series, double *step, sf_error *
     for (int64_t i = 1; i < series->count; i++) {
         double gap = series->time[i] - series->time[i - 1];
         if (fabs(gap - *step) > 1e-4 * *step)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
-                "the CFC filter needs uniform samples: interval %lld is %.9g s, the mean is %.9g s",
+            return SF_REFUSE(
+                err, "the CFC filter needs uniform samples: interval %lld is %.9g s, the mean is %.9g s",
                 (long long)i, gap, *step);
     }
     return SF_OK;
@@ -192,10 +189,9 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     SF_TRY(check_uniform(uniform, &step, err));
     double pole = 2 * M_PI * cfc * 2.0775;
     if (!(cfc > 0) || pole * step / 2 > 0.45 * M_PI)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "CFC %g cannot be applied to samples at %.6g Hz: the class must be above 0 and at most %.0f", cfc,
-            1 / step, 0.45 / (2.0775 * step));
+        return SF_REFUSE(
+            err, "CFC %g cannot be applied to samples at %.6g Hz: the class must be above 0 and at most %.0f",
+            cfc, 1 / step, 0.45 / (2.0775 * step));
     /* The impulse response fades as exp(-pole t / sqrt 2): to 1e-9 in 30 / pole. */
     int64_t pad = (int64_t)ceil(30 / (pole * step)) + 2;
     int64_t total = uniform->count + 2 * pad;
@@ -283,10 +279,10 @@ sf_status sf_signal_parse_mount(const char *text, sf_signal_chain *chain, sf_err
     int count = sscanf(text, " f = %lf %3[A-Za-z] , damping = %lf %c", &f, unit, &damping, &rest);
     f *= strcmp(unit, "kHz") == 0 ? 1e3 : strcmp(unit, "Hz") == 0 ? 1 : 0;
     if (count != 3 || !(f >= LEAST && f <= MOST) || !(damping > 0 && damping < 1))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "\"%s\" is not a mount: write for example \"f = 420 Hz, damping = 0.05\", with a "
-                       "frequency of %g Hz to %g kHz and a damping above 0 and below 1",
-                       text, LEAST, 1e-3 * MOST);
+        return SF_REFUSE(err,
+                         "\"%s\" is not a mount: write for example \"f = 420 Hz, damping = 0.05\", with a "
+                         "frequency of %g Hz to %g kHz and a damping above 0 and below 1",
+                         text, LEAST, 1e-3 * MOST);
     chain->mount_frequency = f;
     chain->mount_damping = damping;
     return SF_OK;
@@ -299,6 +295,6 @@ sf_status sf_signal_parse_coupling(const char *text, sf_signal_chain *chain, sf_
     sf_units_parse(units, text, SF_TIME, &chain->coupling, err);
     sf_units_close(&units);
     if (err->status == SF_OK && !(chain->coupling >= LEAST && chain->coupling <= MOST))
-        SF_FAIL(err, SF_ERR_INPUT, "the time constant %s is not between 1 ms and 1000 s", text);
+        SF_REFUSE(err, "the time constant %s is not between 1 ms and 1000 s", text);
     return err->status;
 }

@@ -4,6 +4,7 @@
 #include "base/mat3.h"
 #include "io/provenance.h"
 #include "io/replace.h"
+#include "model/cells.h"
 #include "model/model.h"
 
 #include <math.h>
@@ -48,21 +49,6 @@ static sf_status check_finite(const double *values, int64_t count, const char *p
     return SF_OK;
 }
 
-static int vertices_of(int type) {
-    switch (type) {
-    case SF_CELL_TETRAHEDRON:
-        return 4;
-    case SF_CELL_PYRAMID:
-        return 5;
-    case SF_CELL_PRISM:
-        return 6;
-    case SF_CELL_HEXAHEDRON:
-        return 8;
-    default:
-        return 0;
-    }
-}
-
 static sf_status check_indices(const int32_t *index, int64_t count, int64_t limit, const char *path,
                                sf_error *err) {
     for (int64_t i = 0; i < count; i++)
@@ -78,7 +64,7 @@ static sf_status check_cells(const sf_results *r, sf_error *err) {
             err, SF_ERR_IO, "/model/cell_ptr runs from %lld to %lld, /model/cell_node has %lld entries",
             (long long)r->cell_ptr[0], (long long)r->cell_ptr[r->cell_count], (long long)r->cell_nnz);
     for (int64_t c = 0; c < r->cell_count; c++) {
-        int vertices = vertices_of(r->cell_type[c]);
+        int vertices = sf_cell_vertices(r->cell_type[c]);
         if (vertices == 0)
             return SF_FAIL(err, SF_ERR_IO, "/model/cell_type: cell %lld has type %d, known are 6, 7, 8 and 9",
                            (long long)c, r->cell_type[c]);
@@ -217,13 +203,11 @@ double sf_results_whole(const sf_results *r) {
 }
 
 double sf_results_cross_section(const sf_results *r) {
-    double volume = 0, low = INFINITY, high = -INFINITY;
-    for (int64_t i = 0; i < r->node_count; i++) {
+    double volume = 0, low[3], high[3];
+    for (int64_t i = 0; i < r->node_count; i++)
         volume += r->volume[i];
-        low = fmin(low, r->position[3 * i + 2]);
-        high = fmax(high, r->position[3 * i + 2]);
-    }
-    return sf_results_whole(r) * volume / (high - low);
+    sf_box3(r->node_count, r->position, low, high);
+    return sf_results_whole(r) * volume / (high[2] - low[2]);
 }
 
 bool sf_results_touched(const sf_results *results) {

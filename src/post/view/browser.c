@@ -10,7 +10,7 @@
 #include "model/cells.h"
 #include "model/model.h"
 #include "post/view/paraview.h"
-#include "post/view/picture.h"
+#include "post/view/cut.h"
 #include "report/row.h"
 
 static const char PAGE[] = "view.html", FACTS[] = "id=\"drop\">{}";

@@ -9,6 +9,7 @@
 #include "io/provenance.h"
 #include "post/figures/figures.h"
 #include "post/figures/verdict.h"
+#include "post/view/report.h"
 #include <argp.h>
 #include <limits.h>
 #include <math.h>
@@ -95,7 +96,7 @@ static sf_status name_results(overlay_run *r, sf_error *err) {
     bool folder = stat(r->name, &info) == 0 && S_ISDIR(info.st_mode);
     if ((size_t)snprintf(r->path, sizeof r->path, "%s%s", r->name, folder ? "/results.h5" : "") >=
         sizeof r->path)
-        return SF_FAIL(err, SF_ERR_INPUT, "the name %.100s... is too long", r->name);
+        return SF_REFUSE(err, "the name %.100s... is too long", r->name);
     return SF_OK;
 }
 
@@ -104,12 +105,11 @@ static sf_status read_run(overlay_run *r, sf_error *err) {
     if (name_results(r, err) != SF_OK || sf_results_open(r->path, &r->results, err) != SF_OK)
         return err->status;
     r->open = true;
-    if (sf_figures_compute(&r->results, 1000, &r->figures, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_figures_compute(&r->results, 1000, &r->figures, err));
     if (r->figures.driven || !r->figures.touched)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s cannot be compared: %s", r->path,
-                       r->figures.driven ? "the missile's motion was prescribed"
-                                         : "the missile never touched the pad");
+        return SF_REFUSE(err, "%s cannot be compared: %s", r->path,
+                         r->figures.driven ? "the missile's motion was prescribed"
+                                           : "the missile never touched the pad");
     sf_verdict_compute(&r->results, &r->figures, &limits, &r->verdict);
     return SF_OK;
 }
@@ -131,8 +131,8 @@ static sf_status name_drops(overlay *o, sf_error *err) {
     int64_t drops = 0;
     SF_TRY(read_count(o->run[0].results.file, "/summary/drops", &drops, err));
     if (drops < 2 || drops > MOST_RUNS)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s is no series of 2 to %d drops (series.drops); name the files of drops that were run one by one",
             o->run[0].path, MOST_RUNS);
     for (o->count = 1; o->count < drops; o->count++) {
@@ -149,8 +149,8 @@ static sf_status read_drop(overlay_run *r, int64_t number, sf_error *err) {
     SF_TRY(read_count(r->results.file, "/summary/drop", &r->drop, err));
     r->drop = r->drop > 0 ? r->drop : 1;
     if (r->drop != number)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s is drop %lld on its pad, not drop %lld of this series", r->path,
-                       (long long)r->drop, (long long)number);
+        return SF_REFUSE(err, "%s is drop %lld on its pad, not drop %lld of this series", r->path,
+                         (long long)r->drop, (long long)number);
     return number > 1 ? sf_h5_read_scalar(r->results.file, "/summary/pause", &r->pause, err) : SF_OK;
 }
 
@@ -164,9 +164,9 @@ static sf_status read_series(overlay *o, sf_error *err) {
         o->mean[0] = 2;
         o->mean[1] = o->count;
     }
-    return o->mean[1] <= o->count ? SF_OK
-                                  : SF_FAIL(err, SF_ERR_INPUT, "--mean %d-%d: the series has %d drops",
-                                            o->mean[0], o->mean[1], o->count);
+    return o->mean[1] <= o->count
+               ? SF_OK
+               : SF_REFUSE(err, "--mean %d-%d: the series has %d drops", o->mean[0], o->mean[1], o->count);
 }
 
 static const char *const of_series[] = {"a_max_g", "hic", "v_rebound_m_s", "max_indentation_mm",
@@ -356,12 +356,8 @@ static sf_status write_page(const overlay *o, sf_error *err) {
         return err->status;
     for (int k = 0; k < o->count; k++)
         worst = o->run[k].verdict.grade > worst ? o->run[k].verdict.grade : worst;
-    sf_html_banner(page,
-                   worst == SF_GRADE_VALID     ? "good"
-                   : worst == SF_GRADE_REMARKS ? "fair"
-                                               : "bad",
-                   sf_verdict_phrase(worst), "The worst verdict of %d runs. Indicative, not a certification.",
-                   o->count);
+    sf_html_banner(page, sf_report_kind(worst), sf_verdict_phrase(worst),
+                   "The worst verdict of %d runs. Indicative, not a certification.", o->count);
     char *svg = sf_chart_svg(&o->output, "compare", "softfall-post", warning, sizeof warning);
     sf_html_figure(page, svg, "%s.",
                    svg ? "Deceleration from first contact on, filtered with CFC 1000" : warning);
@@ -379,8 +375,7 @@ static sf_status write_page(const overlay *o, sf_error *err) {
 
 static sf_status run(overlay *o, sf_error *err) {
     char warning[320] = "";
-    if (sf_staging_check(o->directory, names, o->force, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_staging_check(o->directory, names, o->force, err));
     for (int k = 0; k < o->count && !o->series; k++)
         SF_TRY(read_run(&o->run[k], err));
     if (o->series)

@@ -131,11 +131,11 @@ sf_status sf_paraview_check_film(const char *kind, const char **film, sf_error *
         {"xvfb-run", "the packages xvfb and xauth", "stands in for a display, as there is none here"}};
     *film = !kind || strcmp(kind, "mp4") == 0 ? "pad.mp4" : strcmp(kind, "gif") == 0 ? "pad.gif" : NULL;
     if (!*film)
-        return SF_FAIL(err, SF_ERR_INPUT, "--film=%s: a film is mp4 or gif", kind);
+        return SF_REFUSE(err, "--film=%s: a film is mp4 or gif", kind);
     for (size_t k = 0; k < sizeof needed / sizeof needed[0]; k++)
         if (!(k == 2 && uses_display()) && !sf_process_is_in_path(needed[k].program))
-            return SF_FAIL(err, SF_ERR_INPUT, "--film needs %s, which %s: install %s of Debian",
-                           needed[k].program, needed[k].use, needed[k].package);
+            return SF_REFUSE(err, "--film needs %s, which %s: install %s of Debian", needed[k].program,
+                             needed[k].use, needed[k].package);
     return SF_OK;
 }
 
@@ -194,7 +194,7 @@ sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error 
     sf_process_handle_signals(); /* else its programs would outlive this one */
     int problem = sf_staging_has(output, STATE) ? sf_process_run(&process, &code) : 0;
     if (!sf_staging_has(output, STATE))
-        SF_FAIL(err, SF_ERR_INPUT, "there are no frames or no %s to make a film of", STATE);
+        SF_REFUSE(err, "there are no frames or no %s to make a film of", STATE);
     else if (sf_process_stopped())
         SF_FAIL(err, SF_INTERRUPTED, "interrupted while the film was made; nothing was written");
     else if (problem != 0)

@@ -48,14 +48,18 @@ static void put_given(sf_html_table *table, const char *parameters, const char *
             sf_html_fact(table, key.name + strlen(group), "%s", key.value);
 }
 
+static void begin_block(FILE *page, const char *heading) {
+    sf_html_block_begin(page);
+    sf_html_heading(page, heading);
+}
+
 /* `layer` NULL: of a pad of one material. */
 static void put_material(FILE *page, const char *case_text, const char *parameters, const char *layer) {
     char *origin = sf_origin_material(case_text, layer), heading[SF_ORIGIN_NAME_SIZE + 32],
          group[SF_ORIGIN_NAME_SIZE + 16];
     snprintf(heading, sizeof heading, "Material%s%s", layer ? " of the layer " : "", layer ? layer : "");
     snprintf(group, sizeof group, "material%s%s.", layer ? "s." : "", layer ? layer : "");
-    sf_html_block_begin(page);
-    sf_html_heading(page, heading);
+    begin_block(page, heading);
     sf_html_columns_begin(page, "narrow");
     sf_html_table table = sf_html_table_begin(page, "dense", NULL);
     put_given(&table, parameters, group);
@@ -236,12 +240,10 @@ static void put_test(const page *p) {
 
 static void put_bodies(const page *p) {
     sf_html_columns_begin(p->file, "");
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Missile");
+    begin_block(p->file, "Missile");
     put_missile(p);
     sf_html_block_end(p->file);
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Pad");
+    begin_block(p->file, "Pad");
     put_pad(p);
     sf_html_block_end(p->file);
     sf_html_columns_end(p->file);
@@ -286,19 +288,16 @@ static void put_link(const page *p, const sf_staging *output) {
 
 static void put_pictures(const page *p, const sf_staging *output) {
     const sf_report_pictures *q = p->pictures;
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "The pad at the peak");
+    begin_block(p->file, "The pad at the peak");
     sf_html_figure(p->file, q->pad, "%s", q->pad_text);
     put_scene(p, output);
     put_link(p, output);
     sf_html_block_end(p->file);
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Mid-section");
+    begin_block(p->file, "Mid-section");
     sf_html_figure(p->file, q->instants, "%s", q->instants_text);
     sf_html_block_end(p->file);
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, p->figures->driven ? "Stress and strain"
-                                                : "Acceleration, and stress through the thickness");
+    begin_block(p->file,
+                p->figures->driven ? "Stress and strain" : "Acceleration, and stress through the thickness");
     sf_html_columns_begin(p->file, "wide");
     put_curve(p, output);
     sf_html_figure(p->file, q->profile, "%s", q->profile_text);
@@ -348,8 +347,7 @@ static void put_verdict(const page *p) {
     sf_html_block_begin(p->file);
     put_checks(p);
     sf_html_block_end(p->file);
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Force and indentation");
+    begin_block(p->file, "Force and indentation");
     sf_html_figure(p->file, p->pictures->force, "%s", p->pictures->force_text);
     sf_html_block_end(p->file);
     sf_html_columns_end(p->file);
@@ -379,8 +377,7 @@ static void put_figures(const page *p) {
     const sf_figure *figure = sf_figure_list(&count);
     for (size_t k = 0; k < count; k++)
         defined += is_defined(p, &figure[k]) ? 1 : 0;
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Figures");
+    begin_block(p->file, "Figures");
     sf_html_columns_begin(p->file, "");
     for (size_t c = 0; c < COLUMNS; c++) {
         sf_html_table table = sf_html_table_begin(p->file, "dense", "figure|>value");
@@ -403,8 +400,7 @@ static void put_comparison(const page *p) {
     const sf_comparison *c = p->report->summary->comparison;
     if (!c)
         return;
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Comparison with a measured curve");
+    begin_block(p->file, "Comparison with a measured curve");
     sf_html_paragraph(
         p->file, "%s: a_max %.1f g (model %+.1f %%), HIC %.1f. Model time = measured time %+.3f ms (%s).",
         p->report->summary->reference_path, c->injury.a_max_g, 100 * c->peak_error, c->injury.hic.value,
@@ -492,8 +488,7 @@ static void put_command(const page *p) {
 /* Mesh and versions, and the energies beside them. */
 static void put_provenance(const page *p) {
     sf_html_columns_begin(p->file, "");
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Mesh and versions");
+    begin_block(p->file, "Mesh and versions");
     sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
     put_mesh(p, &table);
     put_version(p, &table, "softfall-pre", "/provenance/model");
@@ -503,8 +498,7 @@ static void put_provenance(const page *p) {
     put_text_fact(p, &table, "libraries", "/provenance/libraries");
     sf_html_table_end(&table);
     sf_html_block_end(p->file);
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Energies");
+    begin_block(p->file, "Energies");
     sf_html_figure(p->file, p->pictures->energies, "%s", p->pictures->energies_text);
     sf_html_block_end(p->file);
     sf_html_columns_end(p->file);
@@ -515,8 +509,7 @@ static void put_layers(const page *p) {
     const sf_layer_figures *layers = p->figures->layers;
     if (!layers)
         return;
-    sf_html_block_begin(p->file);
-    sf_html_heading(p->file, "Layers");
+    begin_block(p->file, "Layers");
     sf_rows_html_table(p->file, "dense", sf_layer_figure_rows(),
                        (sf_records){layers, sizeof *layers, p->results->layer_count});
     sf_html_note(p->file,
@@ -546,8 +539,7 @@ static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
 
 static sf_status write_page(page *p, const sf_staging *output, sf_error *err) {
     char foot[512];
-    if (begin_page(p, output, err) != SF_OK)
-        return err->status;
+    SF_TRY(begin_page(p, output, err));
     put_verdict_line(p);
     put_tiles(p);
     put_test(p);

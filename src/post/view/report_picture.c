@@ -4,7 +4,6 @@
 #include "base/units.h"
 #include "report/chart.h"
 #include "post/view/cut.h"
-#include "post/view/picture.h"
 #include "post/view/plot.h"
 #include "post/view/csv.h"
 #include <math.h>

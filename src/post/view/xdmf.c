@@ -16,16 +16,22 @@
 #include "post/figures/figures.h"
 #include "post/results/results.h"
 
-const sf_missile_array sf_missile_arrays[SF_MISSILE_ARRAYS] = {
-    [SF_MISSILE_SPEED] = {"speed_m_s", "m s-1", "speed of the missile along its direction of motion", 1},
-    [SF_MISSILE_ACCELERATION] = {"acceleration_g", "9.80665 m s-2",
-                                 "the acceleration that a_max is of, not filtered", 1},
-    [SF_MISSILE_FORCE] = {"contact_force_N", "N", "on the missile, against its direction of motion", 1},
-    [SF_MISSILE_CENTRE] = {"sphere_centre_m", "m", "centre of the missile's exact sphere", 3},
+enum { SPEED, ACCELERATION, FORCE, CENTRE /* only of an exact sphere: the last */, MISSILE_ARRAYS };
+
+/* The arrays of the missile in each frame: of all its nodes, as it is rigid. */
+static const struct missile_array {
+    const char *name, *units, *description;
+    int components;
+} missile_arrays[MISSILE_ARRAYS] = {
+    [SPEED] = {"speed_m_s", "m s-1", "speed of the missile along its direction of motion", 1},
+    [ACCELERATION] = {"acceleration_g", "9.80665 m s-2", "the acceleration that a_max is of, not filtered",
+                      1},
+    [FORCE] = {"contact_force_N", "N", "on the missile, against its direction of motion", 1},
+    [CENTRE] = {"sphere_centre_m", "m", "centre of the missile's exact sphere", 3},
 };
 
-int sf_missile_array_count(const sf_results *r) {
-    return r->sphere_radius > 0 ? SF_MISSILE_ARRAYS : SF_MISSILE_CENTRE;
+static int missile_array_count(const sf_results *r) {
+    return r->sphere_radius > 0 ? MISSILE_ARRAYS : CENTRE;
 }
 
 /* ---- which frames ---- */
@@ -44,18 +50,16 @@ sf_status sf_shown_find(const sf_results *r, sf_shown *s, sf_error *err) {
     *s = (sf_shown){.peak = -1};
     s->head = sf_alloc(err, room, sizeof *s->head, "the frames for ParaView");
     s->fields = sf_alloc(err, room, sizeof *s->fields, "the fields of the frames");
-    for (int64_t k = 0; k < r->frame_count && err->status == SF_OK; k++) {
-        if (peak && s->peak < 0 && r->peak.time < r->frames[k].time) {
+    for (int64_t k = 0; k <= r->frame_count && err->status == SF_OK; k++) {
+        if (peak && s->peak < 0 && (k == r->frame_count || r->peak.time < r->frames[k].time)) {
             s->peak = s->count;
             s->head[s->count++] = &r->peak;
         }
+        if (k == r->frame_count)
+            break;
         if (r->has_peak && r->frames[k].time == r->peak.time)
             s->peak = s->count;
         s->head[s->count++] = &r->frames[k];
-    }
-    if (err->status == SF_OK && peak && s->peak < 0) {
-        s->peak = s->count;
-        s->head[s->count++] = &r->peak;
     }
     return err->status;
 }
@@ -142,28 +146,20 @@ static sf_status write_materials(const store *s, sf_error *err) {
     return err->status;
 }
 
-static sf_status write_pad(const store *s, const sf_h5_info *info, const double *displacement,
-                           sf_error *err) {
-    const sf_results *r = s->results;
-    double *moved = sf_alloc(err, 3 * (unsigned long)r->node_count, sizeof *moved, info->description);
+/* Writes points where they are in a frame: the pad's by their displacement (NULL: at rest), the missile's
+ * surface, `head`, by the missile's place. */
+static sf_status write_points(const store *s, const sf_h5_info *info, int64_t count, const double *position,
+                              const double *displacement, const sf_frame_head *head, sf_error *err) {
+    double *moved = sf_alloc(err, 3 * (unsigned long)count, sizeof *moved, info->description);
     if (!moved)
         return err->status;
-    for (int64_t i = 0; i < 3 * r->node_count; i++)
-        moved[i] = r->position[i] + (displacement ? displacement[i] : 0);
-    put(s, info, r->node_count, 3, moved, err);
-    free(moved);
-    return err->status;
-}
-
-static sf_status write_missile(const store *s, const sf_h5_info *info, const sf_frame_head *head,
-                               sf_error *err) {
-    const sf_results *r = s->results;
-    double *moved = sf_alloc(err, 3 * (unsigned long)r->surface_node_count, sizeof *moved, info->description);
-    if (!moved)
-        return err->status;
-    for (int64_t i = 0; i < r->surface_node_count; i++)
-        sf_results_place(r, head, &r->surface_position[3 * i], &moved[3 * i]);
-    put(s, info, r->surface_node_count, 3, moved, err);
+    for (int64_t i = 0; i < count; i++)
+        if (head)
+            sf_results_place(s->results, head, &position[3 * i], &moved[3 * i]);
+        else
+            for (int64_t k = 3 * i; k < 3 * i + 3; k++)
+                moved[k] = position[k] + (displacement ? displacement[k] : 0);
+    put(s, info, count, 3, moved, err);
     free(moved);
     return err->status;
 }
@@ -185,13 +181,13 @@ static sf_status write_missile_arrays(const store *s, const sf_frame_head *head,
                                       sf_error *err) {
     const sf_results *r = s->results;
     int64_t row = row_at(&r->history, head->time), n = r->surface_node_count;
-    double value[SF_MISSILE_ARRAYS][3] = {[SF_MISSILE_SPEED] = {r->history.velocity[row]},
-                                          [SF_MISSILE_ACCELERATION] = {sf_figures_reading(r, row)},
-                                          [SF_MISSILE_FORCE] = {r->history.contact_force[row]}};
-    sf_results_place(r, head, r->sphere_centre, value[SF_MISSILE_CENTRE]);
+    double value[MISSILE_ARRAYS][3] = {[SPEED] = {r->history.velocity[row]},
+                                       [ACCELERATION] = {sf_figures_reading(r, row)},
+                                       [FORCE] = {r->history.contact_force[row]}};
+    sf_results_place(r, head, r->sphere_centre, value[CENTRE]);
     double *all = sf_alloc(err, 3 * (unsigned long)n, sizeof *all, "arrays of the missile");
-    for (int k = 0; k < sf_missile_array_count(r) && err->status == SF_OK; k++) {
-        const sf_missile_array *a = &sf_missile_arrays[k];
+    for (int k = 0; k < missile_array_count(r) && err->status == SF_OK; k++) {
+        const struct missile_array *a = &missile_arrays[k];
         char path[96];
         snprintf(path, sizeof path, "/frames/%06lld/%s", (long long)index, a->name);
         for (int64_t i = 0; i < n * a->components; i++)
@@ -225,16 +221,15 @@ static sf_status write_fields(const store *s, sf_frame *frame, int64_t index, sf
 
 static sf_status write_frame(const store *s, const sf_frame_head *head, sf_frame *frame, int64_t index,
                              sf_error *err) {
+    const sf_results *r = s->results;
     char path[96];
     snprintf(path, sizeof path, "/frames/%06lld/pad_position", (long long)index);
-    if (write_pad(s, &(sf_h5_info){path, "m", "positions of the pad's nodes, deformed"},
-                  frame->field[SF_FRAME_DISPLACEMENT], err) != SF_OK)
-        return err->status;
+    SF_TRY(write_points(s, &(sf_h5_info){path, "m", "positions of the pad's nodes, deformed"}, r->node_count,
+                        r->position, frame->field[SF_FRAME_DISPLACEMENT], NULL, err));
     snprintf(path, sizeof path, "/frames/%06lld/missile_position", (long long)index);
-    if (write_missile(s, &(sf_h5_info){path, "m", "positions of the missile's surface nodes"}, head, err) !=
-            SF_OK ||
-        write_missile_arrays(s, head, index, err) != SF_OK)
-        return err->status;
+    SF_TRY(write_points(s, &(sf_h5_info){path, "m", "positions of the missile's surface nodes"},
+                        r->surface_node_count, r->surface_position, NULL, head, err));
+    SF_TRY(write_missile_arrays(s, head, index, err));
     return write_fields(s, frame, index, err);
 }
 
@@ -280,21 +275,20 @@ static sf_status write_frames(const store *s, sf_results *r, sf_shown *shown, sf
         note_largest(r, &frame, shown->largest);
         write_frame(s, head, &frame, k, err);
         sf_frame_free(&frame);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(err->status);
     }
     if (!moved)
         sf_results_note(r, "the frames hold no displacement: ParaView shows the pad undeformed");
     return SF_OK;
 }
 
-sf_status sf_xdmf_write_data(const char *path, sf_results *r, const sf_xdmf_options *options, sf_shown *shown,
-                             sf_error *err) {
+/* Writes the file; `shown` is cut at the first frame that cannot be read. */
+static sf_status write_data(const char *path, sf_results *r, const sf_xdmf_options *options, sf_shown *shown,
+                            sf_error *err) {
     const sf_provenance provenance = {.program = "softfall-post", .command_line = options->command_line};
     sf_error ignored = SF_ERROR_INIT;
     store s = {.results = r, .full = options->full};
-    if (sf_h5_create(path, &s.file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_create(path, &s.file, err));
     if (sf_provenance_write(s.file, "softfall-paraview", &provenance, err) == SF_OK &&
         write_topology(&s, err) == SF_OK && write_materials(&s, err) == SF_OK)
         write_frames(&s, r, shown, err);
@@ -371,9 +365,8 @@ static void put_missile(const scene *x, const sf_results *r, double time, int64_
             (long long)r->surface_triangle_count, (long long)r->surface_triangle_count, x->data);
     put_float_item(x, index, "missile_position", r->surface_node_count, 3);
     fputs("</Geometry>\n", x->file);
-    for (int k = 0; k < sf_missile_array_count(r); k++)
-        put_attribute(x, index, sf_missile_arrays[k].name, r->surface_node_count,
-                      sf_missile_arrays[k].components);
+    for (int k = 0; k < missile_array_count(r); k++)
+        put_attribute(x, index, missile_arrays[k].name, r->surface_node_count, missile_arrays[k].components);
     fputs("        </Grid>\n", x->file);
 }
 
@@ -408,8 +401,7 @@ static const char NEW_DATA[] = "pad.h5"; /* before it has its name */
 static sf_status name_data(const sf_staging *output, const char *path, char data[SF_XDMF_NAME_SIZE],
                            sf_error *err) {
     uint64_t hash = 0;
-    if (sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, err));
     snprintf(data, SF_XDMF_NAME_SIZE, "pad-%016llx.h5", (unsigned long long)hash);
     char *named = sf_staging_path(output, data, err);
     if (named && rename(path, named) != 0)
@@ -435,7 +427,7 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_
     sf_shown shown = {0};
     char *path = sf_staging_path(output, NEW_DATA, err);
     if (path && sf_shown_find(results, &shown, err) == SF_OK)
-        sf_xdmf_write_data(path, results, options, &shown, err);
+        write_data(path, results, options, &shown, err);
     if (path && shown.count == 0)
         remove(path);
     else if (err->status == SF_OK && name_data(output, path, data, err) == SF_OK)

@@ -25,29 +25,9 @@ typedef struct sf_shown {
     int *fields;                     /* [count] SF_FIELD_* bits; known once the data are written; owned */
 } sf_shown;
 
-/* An array of the missile, in each frame: of all its nodes, as it is rigid. */
-typedef struct sf_missile_array {
-    const char *name, *units, *description;
-    int components;
-} sf_missile_array;
-enum {
-    SF_MISSILE_SPEED,
-    SF_MISSILE_ACCELERATION,
-    SF_MISSILE_FORCE,
-    SF_MISSILE_CENTRE, /* only of a missile that is an exact sphere: the last */
-    SF_MISSILE_ARRAYS
-};
-extern const sf_missile_array sf_missile_arrays[SF_MISSILE_ARRAYS];
-/* Returns the number of arrays that the missile of these results has. */
-int sf_missile_array_count(const sf_results *results);
-
 /* Release with sf_shown_free. */
 sf_status sf_shown_find(const sf_results *results, sf_shown *shown, sf_error *err);
 void sf_shown_free(sf_shown *shown);
-
-/* Writes the file; `shown` is cut at the first frame that cannot be read, see sf_xdmf_write. */
-sf_status sf_xdmf_write_data(const char *path, sf_results *results, const sf_xdmf_options *options,
-                             sf_shown *shown, sf_error *err);
 
 /* pad.xdmf and its data, pad-HASH.h5: the deformed pad with its cells, materials and fields, and the
  * missile's surface with its speed, deceleration and contact force, at every frame and at the peak, for

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/grid.h"
+#include "base/sets.h"
 #include "pre/cloud/connectivity.h"
 
 #include <math.h>
@@ -130,8 +131,8 @@ static sf_status check_cell(const sf_mesh *mesh, const sf_grid *grid, const prob
         const double *x = &p->position[3 * (int64_t)probe];
         if ((probe < p->nodes && has_node(mesh, cell, p->node[probe])) || !holds_point(mesh, cell, centre, x))
             continue;
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "the pad overlaps itself: its surface at (%.4g, %.4g, %.4g) mm lies inside the cell at (%.4g, "
             "%.4g, %.4g) mm: " ADVICE,
             1e3 * x[0], 1e3 * x[1], 1e3 * x[2], 1e3 * centre[0], 1e3 * centre[1], 1e3 * centre[2]);
@@ -154,27 +155,6 @@ static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_erro
 
 /* ---- parts ---- */
 
-/* Root of an item; the paths are halved on the way. */
-static int64_t find(int64_t *parent, int64_t item) {
-    while (parent[item] != item)
-        item = parent[item] = parent[parent[item]];
-    return item;
-}
-
-static void join(int64_t *parent, int64_t a, int64_t b) {
-    a = find(parent, a);
-    b = find(parent, b);
-    parent[a < b ? b : a] = a < b ? a : b;
-}
-
-/* [count] each its own root; owned by the caller. */
-static int64_t *start_sets(int64_t count, sf_error *err) {
-    int64_t *parent = sf_alloc(err, (unsigned long)count, sizeof *parent, "connected cells");
-    for (int64_t k = 0; parent && k < count; k++)
-        parent[k] = k;
-    return parent;
-}
-
 /* The smallest of several parts, with its place. */
 static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *err) {
     int64_t parts = 0, least = 0;
@@ -183,21 +163,22 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
     if (!cells)
         return err->status;
     for (int64_t c = 0; c < mesh->cell_count; c++)
-        cells[find(parent, c)]++;
+        cells[sf_sets_find(parent, c)]++;
     for (int64_t c = 0; c < mesh->cell_count; c++) {
         parts += cells[c] > 0;
         least = cells[c] > 0 && (cells[least] == 0 || cells[c] <= cells[least]) ? c : least;
     }
     for (int64_t c = 0; c < mesh->cell_count; c++)
-        for (int64_t k = mesh->cell_ptr[c]; find(parent, c) == least && k < mesh->cell_ptr[c + 1]; k++) {
+        for (int64_t k = mesh->cell_ptr[c]; sf_sets_find(parent, c) == least && k < mesh->cell_ptr[c + 1];
+             k++) {
             const double *x = &mesh->position[3 * (int64_t)mesh->cell_node[k]];
             for (int i = 0; i < 3; i++) {
                 low[i] = fmin(low[i], 1e3 * x[i]);
                 high[i] = fmax(high[i], 1e3 * x[i]);
             }
         }
-    SF_FAIL(
-        err, SF_ERR_INPUT,
+    SF_REFUSE(
+        err,
         "the pad is in %lld parts that share no faces of cells: the smallest, of %lld cells, lies between (%.4g, "
         "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm: " ADVICE,
         (long long)parts, (long long)cells[least], low[0], low[1], low[2], high[0], high[1], high[2]);
@@ -206,13 +187,13 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
 }
 
 static sf_status check_parts(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    int64_t *parent = start_sets(mesh->cell_count, err);
+    int64_t *parent = sf_sets_alone(mesh->cell_count, "connected cells", err);
     if (!parent)
         return err->status;
     for (int64_t f = 0; f < dual->inner_count; f++)
-        join(parent, dual->inner[f].cell[0], dual->inner[f].cell[1]);
+        sf_sets_join(parent, dual->inner[f].cell[0], dual->inner[f].cell[1]);
     for (int64_t c = 0; c < mesh->cell_count && err->status == SF_OK; c++)
-        if (find(parent, c) != 0)
+        if (sf_sets_find(parent, c) != 0)
             refuse_parts(mesh, parent, err);
     free(parent);
     return err->status;
@@ -229,7 +210,8 @@ static int64_t corner(const sf_mesh *mesh, int64_t cell, int32_t node) {
 /* Around every node the corners of cells are joined through the faces: bodies that only touch at a point or
  * along an edge would be a hinge. */
 static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    int64_t corners = mesh->cell_ptr[mesh->cell_count], *parent = start_sets(corners, err);
+    int64_t corners = mesh->cell_ptr[mesh->cell_count],
+            *parent = sf_sets_alone(corners, "connected cells", err);
     int64_t *root = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *root, "connected cells");
     if (err->status != SF_OK)
         goto done;
@@ -237,17 +219,17 @@ static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error
         for (int k = 0; k < 4; k++) {
             const sf_inner_face *face = &dual->inner[f];
             if (face->node[k] >= 0)
-                join(parent, corner(mesh, face->cell[0], face->node[k]),
-                     corner(mesh, face->cell[1], face->node[k]));
+                sf_sets_join(parent, corner(mesh, face->cell[0], face->node[k]),
+                             corner(mesh, face->cell[1], face->node[k]));
         }
     for (int64_t k = 0; k < corners; k++) { /* roots from 1 on */
         int32_t node = mesh->cell_node[k];
         const double *x = &mesh->position[3 * (int64_t)node];
         if (root[node] == 0)
-            root[node] = find(parent, k) + 1;
-        else if (root[node] != find(parent, k) + 1) {
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            root[node] = sf_sets_find(parent, k) + 1;
+        else if (root[node] != sf_sets_find(parent, k) + 1) {
+            SF_REFUSE(
+                err,
                 "two regions of the pad hang together at an edge or a point only, at (%.4g, %.4g, %.4g) mm: let "
                 "them share faces of cells, or part them",
                 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
@@ -273,16 +255,7 @@ typedef struct face_key {
 } face_key;
 
 static int compare_key(const void *a, const void *b) {
-    const face_key *p = a, *q = b;
-    for (int k = 0; k < 4; k++)
-        if (p->node[k] != q->node[k])
-            return p->node[k] < q->node[k] ? -1 : 1;
-    return 0;
-}
-
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
+    return sf_face_compare(((const face_key *)a)->node, ((const face_key *)b)->node);
 }
 
 /* The faces of one cell and those of two, each ascending; owned. */
@@ -298,7 +271,7 @@ static sf_status list_faces(const sf_dual *dual, face_lists *lists, sf_error *er
     lists->inner = sf_alloc(err, (unsigned long)dual->inner_count, sizeof *lists->inner, "inner faces");
     for (int64_t f = 0; lists->outer && f < dual->face_count; f++) {
         memcpy(lists->outer[f].node, dual->face[f].node, sizeof dual->face[f].node);
-        qsort(lists->outer[f].node, 4, sizeof(int32_t), by_value);
+        sf_face_sort(lists->outer[f].node);
     }
     for (int64_t f = 0; lists->inner && f < dual->inner_count; f++)
         memcpy(lists->inner[f].node, dual->inner[f].node, sizeof dual->inner[f].node);
@@ -335,21 +308,21 @@ static sf_status check_faces(const sf_case *c, const sf_mesh *mesh, const face_l
         }
     }
     if (bare > 0 && !bare_at)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s: %lld of the %lld faces of the surface group \"%s\" lie on no cell of the volume group "
             "\"%s\": does it lack a volume, or has the group faces of the missile?",
             key, (long long)bare, (long long)all, set->name, c->pad_group);
     if (bare > 0)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s: %lld of the %lld faces of the surface group \"%s\" lie on no cell of the volume group "
             "\"%s\", one at (%.4g, %.4g, %.4g) mm: cells of the pad are missing there",
             key, (long long)bare, (long long)all, set->name, c->pad_group, 1e3 * bare_at[0], 1e3 * bare_at[1],
             1e3 * bare_at[2]);
     if (within > 0 && !inside)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s: %lld of the %lld faces of the surface group \"%s\" lie inside the pad, one at (%.4g, %.4g, "
             "%.4g) mm: it may hold the pad's surface only",
             key, (long long)within, (long long)all, set->name, 1e3 * within_at[0], 1e3 * within_at[1],
@@ -395,8 +368,8 @@ static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dua
         }
         const double *x = &mesh->position[3 * (int64_t)face->node[0]];
         if (in_plane && !in_set)
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "pad.symmetry: the pad's surface at (%.4g, %.4g, %.4g) mm lies in the plane of the group \"%s\" but "
                 "in none of these groups: it would be free (a crack in a symmetry plane cannot be modelled)",
                 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], set->name);

@@ -13,11 +13,7 @@ enum { PARTS = 9 };
 /* The numbers of the store beside its arrays. */
 typedef struct numbers {
     int64_t nodes, count, phi_count; /* count: of entries of B */
-    double worst_condition, worst_position[3];
-    int64_t enlarged_count;
-    double largest_enlargement;
-    int64_t hidden_count;
-    double hidden_distance, hidden_position[3];
+    sf_domain_figures figures;
 } numbers;
 
 /* False: this program cannot be read. */
@@ -74,13 +70,7 @@ static bool take(const sf_stored *found, int64_t nodes, double *support, sf_doma
     bool whole = total == found->size && none.status == SF_OK;
     if (whole) {
         memcpy(support, supports, (size_t)nodes * sizeof *support);
-        out->worst_condition = h.worst_condition;
-        memcpy(out->worst_position, h.worst_position, sizeof h.worst_position);
-        out->enlarged_count = h.enlarged_count;
-        out->largest_enlargement = h.largest_enlargement;
-        out->hidden_count = h.hidden_count;
-        out->hidden_distance = h.hidden_distance;
-        memcpy(out->hidden_position, h.hidden_position, sizeof h.hidden_position);
+        out->figures = h.figures;
     } else {
         sf_domains_free(out);
         memset(out, 0, sizeof *out);
@@ -90,21 +80,10 @@ static bool take(const sf_stored *found, int64_t nodes, double *support, sf_doma
 }
 
 static void keep(const char *folder, uint64_t key, int64_t nodes, double *support, sf_domains *d) {
-    numbers h;
+    const numbers h = {nodes, d->ptr[nodes], d->phi_ptr[nodes], d->figures};
     void **array[PARTS - 1];
     size_t size[PARTS - 1];
     sf_store_part part[PARTS] = {{&h, sizeof h}};
-    memset(&h, 0, sizeof h);
-    h.nodes = nodes;
-    h.count = d->ptr[nodes];
-    h.phi_count = d->phi_ptr[nodes];
-    h.worst_condition = d->worst_condition;
-    memcpy(h.worst_position, d->worst_position, sizeof h.worst_position);
-    h.enlarged_count = d->enlarged_count;
-    h.largest_enlargement = d->largest_enlargement;
-    h.hidden_count = d->hidden_count;
-    h.hidden_distance = d->hidden_distance;
-    memcpy(h.hidden_position, d->hidden_position, sizeof h.hidden_position);
     list_parts(&h, d, &support, array, size);
     for (int k = 0; k < PARTS - 1; k++)
         part[k + 1] = (sf_store_part){*array[k], size[k]};

@@ -30,19 +30,8 @@ static int by_edge(const void *a, const void *b) {
 
 static int by_face(const void *a, const void *b) {
     const raw_face *x = a, *y = b;
-    for (int k = 0; k < 4; k++)
-        if (x->key[k] != y->key[k])
-            return x->key[k] < y->key[k] ? -1 : 1;
-    return (x->cell > y->cell) - (x->cell < y->cell);
-}
-
-static void sort4(int32_t key[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && key[j] < key[j - 1]; j--) {
-            int32_t swap = key[j];
-            key[j] = key[j - 1];
-            key[j - 1] = swap;
-        }
+    int keys = sf_face_compare(x->key, y->key);
+    return keys ? keys : (x->cell > y->cell) - (x->cell < y->cell);
 }
 
 static int64_t count_parts(const sf_mesh *mesh, bool edges) {
@@ -118,8 +107,8 @@ static sf_status add_inner(const sf_mesh *mesh, const raw_face *raw, sf_dual *du
     if (!is_same_side(mesh, &raw[0], &raw[1]))
         return SF_OK;
     const double *x = &mesh->position[3 * (int64_t)raw->key[3]];
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "the pad's cells overlap: two that share a face at (%.4g, %.4g, %.4g) mm lie on the same side of it",
         1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
 }
@@ -141,7 +130,7 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
             raw[k] = (raw_face){{-1, -1, -1, -1}, (int32_t)c, (int8_t)f};
             for (int p = 0; p < topology->face_size[f]; p++)
                 raw[k].key[p] = v[topology->face[f][p]];
-            sort4(raw[k].key);
+            sf_face_sort(raw[k].key);
         }
     }
     qsort(raw, (size_t)count, sizeof *raw, by_face);
@@ -151,8 +140,8 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
             end++;
         if (end - k > 2) {
             const double *x = &mesh->position[3 * (int64_t)raw[k].key[3]];
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "the pad's cells overlap: %lld of them share one face at (%.4g, %.4g, %.4g) mm; no more than two "
                 "can",
                 (long long)(end - k), 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
@@ -174,8 +163,7 @@ static sf_status build_adjacency(const sf_mesh *mesh, sf_dual *dual, sf_error *e
         sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_node, "edge adjacency");
     dual->edge_id =
         sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_id, "edge adjacency");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < 2 * dual->edge_count; k++)
         dual->edge_ptr[dual->edge[k] + 2]++;
     for (int64_t i = 0; i < n; i++)

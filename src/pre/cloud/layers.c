@@ -2,6 +2,7 @@
 #include "pre/cloud/layers.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "pre/cloud/dual.h"
 #include <math.h>
 #include <stdbool.h>
@@ -37,8 +38,7 @@ static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layer
         l->first[k + 1] += l->first[k];
     unsigned long all = err->status == SF_OK ? (unsigned long)l->first[l->count] : 0;
     if (all > INT32_MAX)
-        return SF_FAIL(err, SF_ERR_INPUT, "the layers have %lu nodes; at most %d are supported", all,
-                       INT32_MAX);
+        return SF_REFUSE(err, "the layers have %lu nodes; at most %d are supported", all, INT32_MAX);
     l->origin = sf_alloc(err, all, sizeof *l->origin, "layers");
     l->copy = sf_alloc(err, all, sizeof *l->copy, "layers");
     int64_t *next = sf_alloc(err, (unsigned long)l->count, sizeof *next, "layers"), copies = 0;
@@ -85,11 +85,11 @@ static sf_status check_pairs(const sf_case *c, const pair_table *pairs, sf_error
         const int *layer =
             k < c->interface_count ? c->interface_layer[k] : c->loose_layer[k - c->interface_count];
         if (!pairs->touch[layer[0]][layer[1]])
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "pad.%s_interfaces: the layers \"%s\" and \"%s\" do not touch: they share no "
-                           "face of the mesh",
-                           k < c->interface_count ? "sliding" : "loose", c->layer[layer[0]].name,
-                           c->layer[layer[1]].name);
+            return SF_REFUSE(err,
+                             "pad.%s_interfaces: the layers \"%s\" and \"%s\" do not touch: they share no "
+                             "face of the mesh",
+                             k < c->interface_count ? "sliding" : "loose", c->layer[layer[0]].name,
+                             c->layer[layer[1]].name);
     }
     return SF_OK;
 }
@@ -126,8 +126,8 @@ static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_
     uint8_t mask = pairs->slides[low][high] ? normal_component(mesh, face) : ALL;
     if (mask == 0) {
         const double *x = &mesh->position[3 * (int64_t)face->node[3]];
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "pad.sliding_interfaces, pad.loose_interfaces: the interface of \"%s\" and \"%s\" at (%.4g, %.4g, "
             "%.4g) mm is not normal to x, y or z: an interface that slides must be",
             c->layer[low].name, c->layer[high].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
@@ -163,33 +163,17 @@ static sf_status find_ties(const sf_case *c, const sf_mesh *mesh, const sf_dual 
     for (int64_t f = 0; err->status == SF_OK && f < dual->inner_count; f++)
         if (layer_of(mesh, dual->inner[f].cell[0]) != layer_of(mesh, dual->inner[f].cell[1]))
             tie_face(c, mesh, &dual->inner[f], &pairs, l, err);
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     merge_ties(l);
     return check_pairs(c, &pairs, err);
-}
-
-/* The node that stands for those joined to `node` so far. */
-static int32_t leader(int32_t *parent, int32_t node) {
-    while (parent[node] != node)
-        node = parent[node] = parent[parent[node]];
-    return node;
-}
-
-/* [n] every node alone; owned by the caller. */
-static int32_t *nodes_alone(int64_t n, sf_error *err) {
-    int32_t *parent = sf_alloc(err, (unsigned long)n, sizeof *parent, "ties between layers");
-    for (int32_t i = 0; parent && i < (int32_t)n; i++)
-        parent[i] = i;
-    return parent;
 }
 
 static void find_together(sf_layers *l) {
     for (int64_t k = 0; k < l->tie_count; k++)
         if (l->tie[k].mask == ALL)
-            l->together[leader(l->together, l->tie[k].other)] = leader(l->together, l->tie[k].node);
-    for (int32_t i = 0; i < (int32_t)l->first[l->count]; i++)
-        l->together[i] = leader(l->together, i);
+            sf_sets_join(l->together, l->tie[k].other, l->tie[k].node);
+    for (int64_t i = 0; i < l->first[l->count]; i++)
+        l->together[i] = sf_sets_find(l->together, i);
 }
 
 sf_status sf_layers_build(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual, sf_layers *l,
@@ -198,7 +182,7 @@ sf_status sf_layers_build(const sf_case *c, const sf_mesh *mesh, const sf_dual *
     uint8_t *used = mark_layers(mesh, l->count, err);
     if (used && number_nodes(mesh, used, l, err) == SF_OK)
         find_ties(c, mesh, dual, l, err);
-    if (err->status == SF_OK && (l->together = nodes_alone(l->first[l->count], err)))
+    if (err->status == SF_OK && (l->together = sf_sets_alone(l->first[l->count], "ties between layers", err)))
         find_together(l);
     free(used);
     if (err->status != SF_OK)
@@ -318,8 +302,7 @@ sf_status sf_layers_split(sf_mesh *mesh, const sf_dual *dual, const sf_layers *l
     for (int s = 0; s < mesh->set_count && err->status == SF_OK; s++)
         split_set(mesh, dual, l, &mesh->set[s], err);
     double *position = sf_alloc(err, 3 * (unsigned long)n, sizeof *position, "positions");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t i = 0; i < n; i++)
         memcpy(&position[3 * i], &mesh->position[3 * (int64_t)l->origin[i]], 3 * sizeof *position);
     for (int64_t k = 0; k < mesh->cell_count; k++)
@@ -351,15 +334,14 @@ static void spread_held(const sf_layers *l, uint8_t *mask, uint8_t *base) {
 }
 
 /* The components of a tie that are not held and do not follow from earlier ties. */
-static uint8_t join(const sf_layer_tie *t, uint8_t held, int32_t *const parent[3]) {
+static uint8_t join(const sf_layer_tie *t, uint8_t held, int64_t *const parent[3]) {
     uint8_t mask = 0;
     for (int c = 0; c < 3; c++) {
         if (!(t->mask & ~held & 1 << c))
             continue;
-        int32_t a = leader(parent[c], t->node), b = leader(parent[c], t->other);
-        if (a != b)
+        if (sf_sets_find(parent[c], t->node) != sf_sets_find(parent[c], t->other))
             mask |= (uint8_t)(1 << c);
-        parent[c][b] = a;
+        sf_sets_join(parent[c], t->node, t->other);
     }
     return mask;
 }
@@ -383,12 +365,12 @@ void sf_layers_loosen(const sf_case *c, sf_model *m) {
 
 sf_status sf_layers_hold(const sf_layers *l, uint8_t *mask, uint8_t *base, sf_model *m, sf_error *err) {
     unsigned long ties = (unsigned long)l->tie_count;
-    int32_t *parent[3] = {NULL, NULL, NULL};
+    int64_t *parent[3] = {NULL, NULL, NULL};
     if (l->tie_count == 0)
         return SF_OK;
     spread_held(l, mask, base);
     for (int c = 0; c < 3; c++)
-        parent[c] = nodes_alone(l->first[l->count], err);
+        parent[c] = sf_sets_alone(l->first[l->count], "ties between layers", err);
     m->tie_node = sf_alloc(err, ties, sizeof *m->tie_node, "ties between layers");
     m->tie_other = sf_alloc(err, ties, sizeof *m->tie_other, "ties between layers");
     m->tie_mask = sf_alloc(err, ties, 1, "ties between layers");

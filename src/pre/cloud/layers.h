@@ -25,7 +25,7 @@ typedef struct sf_layers {
     int32_t *copy;     /* [first[count]] the nodes at a node of the whole mesh, ascending */
     int64_t tie_count; /* ascending by node and other; some may follow from others */
     sf_layer_tie *tie;
-    int32_t *together; /* [first[count]] the same for nodes that are tied in all components */
+    int64_t *together; /* [first[count]] the same for nodes that are tied in all components */
 } sf_layers;
 
 /* `mesh`, whole, with its dual; the case's layers and interfaces. SF_ERR_INPUT with the place: an interface

@@ -9,6 +9,16 @@
 
 #include "io/plain_file.h"
 
+/* The text of a .geo file, cut as gmsh cuts it. */
+
+typedef enum token_kind { END, WORD, TEXT, MARK } token_kind;
+
+typedef struct token {
+    token_kind kind;
+    const char *begin; /* in the text; of a quoted one without its quotes */
+    size_t length;
+} token;
+
 static const char *skip_blank(const char *p) {
     for (;;) {
         if (isspace((unsigned char)*p)) {
@@ -28,17 +38,18 @@ static bool is_word(char c) {
     return isalnum((unsigned char)c) || c == '_' || c == '.';
 }
 
-sf_geo_token sf_geo_next(const char **text) {
+/* Words (names and numbers), texts in quotes, and single marks; comments vanish. Moves `*text` on. */
+static token next_token(const char **text) {
     const char *p = skip_blank(*text);
-    sf_geo_token t = {SF_GEO_MARK, p, 1};
+    token t = {MARK, p, 1};
     if (*p == '\0') {
-        t = (sf_geo_token){SF_GEO_END, p, 0};
+        t = (token){END, p, 0};
     } else if (*p == '"' || *p == '\'') {
         size_t length = strcspn(p + 1, *p == '"' ? "\"" : "'");
         *text = p + 1 + length + (p[1 + length] != '\0');
-        return (sf_geo_token){SF_GEO_TEXT, p + 1, length};
+        return (token){TEXT, p + 1, length};
     } else if (is_word(*p)) {
-        t.kind = SF_GEO_WORD;
+        t.kind = WORD;
         while (is_word(p[t.length]))
             t.length++;
     }
@@ -46,7 +57,7 @@ sf_geo_token sf_geo_next(const char **text) {
     return t;
 }
 
-bool sf_geo_is(sf_geo_token t, const char *text) {
+static bool is_text(token t, const char *text) {
     return t.length == strlen(text) && strncmp(t.begin, text, t.length) == 0;
 }
 
@@ -57,7 +68,7 @@ typedef struct name_list {
     char name[MAX_NAMES][SF_CASE_NAME_SIZE];
 } name_list;
 
-static void add_name(name_list *list, sf_geo_token t) {
+static void add_name(name_list *list, token t) {
     if (t.length >= SF_CASE_NAME_SIZE || list->count == MAX_NAMES)
         return;
     memcpy(list->name[list->count], t.begin, t.length);
@@ -70,16 +81,16 @@ static void read_constants(const char **text, name_list *list) {
     int depth = 0;
     bool expecting = false;
     do {
-        sf_geo_token t = sf_geo_next(text);
-        if (t.kind == SF_GEO_END)
+        token t = next_token(text);
+        if (t.kind == END)
             return;
-        if (t.kind == SF_GEO_MARK && strchr("[({", *t.begin)) {
+        if (t.kind == MARK && strchr("[({", *t.begin)) {
             expecting = depth++ == 0;
-        } else if (t.kind == SF_GEO_MARK && strchr("])}", *t.begin)) {
+        } else if (t.kind == MARK && strchr("])}", *t.begin)) {
             depth--;
-        } else if (t.kind == SF_GEO_MARK && *t.begin == ',') {
+        } else if (t.kind == MARK && *t.begin == ',') {
             expecting = depth == 1;
-        } else if (t.kind == SF_GEO_WORD && expecting && depth == 1) {
+        } else if (t.kind == WORD && expecting && depth == 1) {
             add_name(list, t);
             expecting = false;
         }
@@ -87,9 +98,9 @@ static void read_constants(const char **text, name_list *list) {
 }
 
 static void scan(const char *text, name_list *list) {
-    for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; t.kind != SF_GEO_END;) {
-        t = sf_geo_next(&text);
-        if (t.kind == SF_GEO_WORD && sf_geo_is(t, "DefineConstant"))
+    for (token t = {MARK, NULL, 0}; t.kind != END;) {
+        t = next_token(&text);
+        if (t.kind == WORD && is_text(t, "DefineConstant"))
             read_constants(&text, list);
     }
 }
@@ -124,8 +135,8 @@ static sf_status refuse_missing(const sf_geo_source *source, const name_list *li
         names[0] = '\0';
         for (int i = 0; i < list->count && used < sizeof names; i++)
             used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", list->name[i]);
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
-                       source->path, source->parameter[k].name, list->count ? names : "none");
+        return SF_REFUSE(err, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
+                         source->path, source->parameter[k].name, list->count ? names : "none");
     }
     return SF_OK;
 }
@@ -142,8 +153,8 @@ sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *
 }
 
 static bool reads_others(const char *text) {
-    for (sf_geo_token t = sf_geo_next(&text); t.kind != SF_GEO_END; t = sf_geo_next(&text))
-        if (t.kind == SF_GEO_WORD && (sf_geo_is(t, "Include") || sf_geo_is(t, "Merge")))
+    for (token t = next_token(&text); t.kind != END; t = next_token(&text))
+        if (t.kind == WORD && (is_text(t, "Include") || is_text(t, "Merge")))
             return true;
     return false;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/gmsh_session.h"
 
-#include "pre/mesh/mesher.h"
 #include "pre/mesh/mesh_raw.h"
 #include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesher_protocol.h"
@@ -16,34 +15,9 @@
  * (docs/reliability.md). */
 static const double BYTES_PER_NODE = 4500;
 
-struct sf_gmsh {
-    sf_mesher_limits limits;
-    sf_meshed open;
-    char version[64];
-    char file[512];
-    char *files; /* lines of what all geometries read */
-    const char *store;
-};
-
-const char *sf_gmsh_version(const sf_gmsh *session) {
-    return session->version;
-}
-
-const char *sf_gmsh_files(const sf_gmsh *session) {
-    return session->files;
-}
-
 sf_status sf_gmsh_begin(sf_gmsh **session, sf_error *err) {
     *session = sf_alloc(err, 1, sizeof **session, "the gmsh session");
     return err->status;
-}
-
-void sf_gmsh_limit(sf_gmsh *session, double seconds, const sf_sink *sink) {
-    session->limits = (sf_mesher_limits){seconds, sink};
-}
-
-void sf_gmsh_share(sf_gmsh *session, const char *folder) {
-    session->store = folder;
 }
 
 void sf_gmsh_end(sf_gmsh **session) {
@@ -191,13 +165,12 @@ static sf_status check_groups(const sf_gmsh *session, int dimension, sf_error *e
           *entity = list_claims(&session->open.data, dimension, false, &entities, err);
     for (size_t i = 1; name && i < names && err->status == SF_OK; i++)
         if (strcmp(name[i - 1].group->name, name[i].group->name) == 0)
-            SF_FAIL(err, SF_ERR_INPUT, "%s has two %s groups called \"%s\" (physical tags %d and %d)",
-                    session->file, kind_of(dimension), name[i].group->name, name[i - 1].group->tag,
-                    name[i].group->tag);
+            SF_REFUSE(err, "%s has two %s groups called \"%s\" (physical tags %d and %d)", session->file,
+                      kind_of(dimension), name[i].group->name, name[i - 1].group->tag, name[i].group->tag);
     for (size_t i = 1; entity && i < entities && err->status == SF_OK; i++)
         if (entity[i - 1].entity == entity[i].entity && entity[i - 1].group != entity[i].group)
-            SF_FAIL(err, SF_ERR_INPUT, "%s: %s %d belongs to two groups, \"%s\" and \"%s\"", session->file,
-                    kind_of(dimension), entity[i].entity, entity[i - 1].group->name, entity[i].group->name);
+            SF_REFUSE(err, "%s: %s %d belongs to two groups, \"%s\" and \"%s\"", session->file,
+                      kind_of(dimension), entity[i].entity, entity[i - 1].group->name, entity[i].group->name);
     free(name);
     free(entity);
     return err->status;
@@ -219,10 +192,10 @@ static sf_status find_group(const sf_gmsh *session, int dimension, const char *n
     bool shape = false;
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++)
         shape = shape || sf_mesher_has_suffix(session->file, shapes[k]);
-    return SF_FAIL(
-        err, SF_ERR_INPUT, "%s has no %s group \"%s\"; its volume groups: %s; its surface groups: %s%s",
-        session->file, kind_of(dimension), name, volumes, surfaces,
-        shape ? "; gmsh reads no groups from such a file: name them in a .geo that merges it" : "");
+    return SF_REFUSE(err, "%s has no %s group \"%s\"; its volume groups: %s; its surface groups: %s%s",
+                     session->file, kind_of(dimension), name, volumes, surfaces,
+                     shape ? "; gmsh reads no groups from such a file: name them in a .geo that merges it"
+                           : "");
 }
 
 /* softfall's code and the vertex count of gmsh's linear element types; 0 for every other type. */
@@ -264,13 +237,14 @@ static sf_status add_elements(const sf_gmsh *session, const destination *to, con
     else
         vertices = face_vertices(block->type);
     if (vertices == 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %s %d has elements of the type \"%s\"; only linear tetrahedra, pyramids, prisms, "
-                       "hexahedra, triangles and quadrangles are supported",
-                       session->file, kind_of(block->dimension), block->entity, block->type_name);
+        return SF_REFUSE(
+            err,
+            "%s: %s %d has elements of the type \"%s\"; only linear tetrahedra, pyramids, prisms, "
+            "hexahedra, triangles and quadrangles are supported",
+            session->file, kind_of(block->dimension), block->entity, block->type_name);
     if (block->length % (size_t)vertices != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s %d has an element without all of its nodes", session->file,
-                       kind_of(block->dimension), block->entity);
+        return SF_REFUSE(err, "%s: %s %d has an element without all of its nodes", session->file,
+                         kind_of(block->dimension), block->entity);
     for (size_t k = 0; k < block->length && err->status == SF_OK; k += (size_t)vertices) {
         if (block->dimension == 3)
             sf_raw_mesh_add_cell(to->raw, code, to->chosen, block->node + k, vertices, err);
@@ -286,8 +260,8 @@ static sf_status read_nodes(const sf_gmsh *session, sf_raw_mesh *raw, sf_error *
     const sf_geo_data *data = &session->open.data;
     double need = BYTES_PER_NODE * (double)data->node_count, available = sf_memory_available();
     if (need > available)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s: a mesh of %zu nodes needs %.3g GB of memory, of which %.3g GB are available: take a coarser one, or "
             "set SOFTFALL_MEMORY_MB",
             session->file, data->node_count, 1e-9 * need, 1e-9 * available);
@@ -328,12 +302,11 @@ static sf_status check_cells(const sf_gmsh *session, const sf_geo_group *chosen,
     for (size_t i = 0; i < chosen->count; i++) {
         size_t end, begin = sf_geo_data_blocks(&session->open.data, 3, chosen->entity[i], &end);
         if (begin == end)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: volume %d of the group \"%s\" holds no cells",
-                           session->file, chosen->entity[i], chosen->name);
+            return SF_REFUSE(err, "%s: volume %d of the group \"%s\" holds no cells", session->file,
+                             chosen->entity[i], chosen->name);
     }
     if (chosen->count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: the volume group \"%s\" is empty", session->file,
-                       chosen->name);
+        return SF_REFUSE(err, "%s: the volume group \"%s\" is empty", session->file, chosen->name);
     return SF_OK;
 }
 
@@ -389,8 +362,8 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
             if (data->group[g].dimension == 3 && sf_geo_group_has(&data->group[g], block->entity))
                 name = data->group[g].name;
         if (at)
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "%s: volume %d%s%s%s, at (%.4g, %.4g, %.4g) mm, has no material: the case has no group of "
                 "this name in materials",
                 session->file, block->entity, *name ? " of the group \"" : " (of no named group)", name,
@@ -418,8 +391,8 @@ static sf_status read_faces(const sf_gmsh *session, const sf_geo_group *g, sf_ra
             add_elements(session, &to, &data->block[k], err);
     }
     if (err->status == SF_OK && raw->face_count == before)
-        SF_FAIL(err, SF_ERR_INPUT, "%s: the surface group \"%s\" is empty: it holds no mesh faces",
-                session->file, g->name);
+        SF_REFUSE(err, "%s: the surface group \"%s\" is empty: it holds no mesh faces", session->file,
+                  g->name);
     return err->status;
 }
 
@@ -428,14 +401,12 @@ static sf_status read_volumes(const sf_gmsh *session, const sf_pad_volumes *volu
                               const sf_geo_group **chosen, sf_raw_mesh *raw, sf_error *err) {
     int count = volumes->count;
     for (int k = 0; k < count; k++)
-        if (find_group(session, 3, volumes->group[k], &chosen[k], err) != SF_OK)
-            return err->status;
+        SF_TRY(find_group(session, 3, volumes->group[k], &chosen[k], err));
     if (check_groups(session, 3, err) != SF_OK || check_groups(session, 2, err) != SF_OK ||
         read_nodes(session, raw, err) != SF_OK || read_cells(session, chosen, count, raw, err) != SF_OK)
         return err->status;
     for (int k = 0; k < count; k++)
-        if (check_cells(session, chosen[k], err) != SF_OK)
-            return err->status;
+        SF_TRY(check_cells(session, chosen[k], err));
     return volumes->layers ? check_volumes(session, chosen, volumes, unit, raw, err) : SF_OK;
 }
 

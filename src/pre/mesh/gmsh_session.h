@@ -9,19 +9,25 @@
 #include "case/case.h"
 #include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesh.h"
+#include "pre/mesh/mesher.h"
 #include <stdbool.h>
 
-typedef struct sf_gmsh sf_gmsh;
+typedef struct sf_gmsh {
+    sf_mesher_limits limits; /* for each geometry; zeros: those of mesher.h */
+    const char *store;       /* folder from which meshes are taken if they are there, and where they are kept
+                                (pre/mesh/mesh_store.h); borrowed; NULL: none */
+    char version[64];        /* of the gmsh that meshed the last geometry: "4.8.4", "4.8.4 (unconfined)" */
+    /* Every file that the geometries so far read; owned, NULL: no geometry. A line SF_GMSH_FILES_OF for each
+     * geometry, then a line for each file: hash of its content (16 hexadecimal digits), blank, path as it was
+     * asked for, from the folder of that geometry or absolute. The line SF_GMSH_UNKNOWN_FILES stands for
+     * files that are not known, because gmsh was not confined. */
+    char *files;
+    sf_meshed open; /* the last geometry */
+    char file[512]; /* its path, for sentences */
+} sf_gmsh;
 
 sf_status sf_gmsh_begin(sf_gmsh **session, sf_error *err);
 void sf_gmsh_end(sf_gmsh **session);
-
-/* Processor time that gmsh may take for a geometry (0: SF_MESHER_SECONDS), and a sink (borrowed, may be NULL)
- * that hears of long meshing. */
-void sf_gmsh_limit(sf_gmsh *session, double seconds, const sf_sink *sink);
-
-/* Meshes are taken from this folder (pre/mesh/mesh_store.h; borrowed) if they are there, and kept there. */
-void sf_gmsh_share(sf_gmsh *session, const char *folder);
 
 /* Opens a geometry with its parameters and meshes it. Errors: those of sf_mesher_run. Replaces the mesh that
  * was open. */
@@ -53,15 +59,5 @@ sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, doub
 /* Adds to the surface that was read last the hull of the cells behind it. */
 sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                             sf_error *err);
-
-/* The version of gmsh that meshed the last geometry, for example "4.8.4", or "4.8.4 (unconfined)"; valid as
- * long as the session. */
-const char *sf_gmsh_version(const sf_gmsh *session);
-
-/* Every file that the geometries so far read. A line SF_GMSH_FILES_OF for each geometry, then a line for each
- * file: hash of its content (16 hexadecimal digits), blank, path as it was asked for, from the folder of that
- * geometry or absolute. The line SF_GMSH_UNKNOWN_FILES stands for files that are not known, because gmsh was
- * not confined. Valid until the next load; NULL: no geometry. */
-const char *sf_gmsh_files(const sf_gmsh *session);
 
 #endif

@@ -9,59 +9,75 @@
 #include "base/mat3.h"
 #include "model/model.h"
 
-static const sf_cell_topology tetrahedron = {
-    4,
-    6,
-    4,
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
-    {3, 3, 3, 3},
-    {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}},
-    {{1, 0}, {2, 0}, {3, 0}, {3, 1}, {1, 2}, {2, 3}},
-};
+enum { MAX_VERTICES = 8 };
 
-static const sf_cell_topology pyramid = {
-    5,
-    8,
-    5,
-    {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}},
-    {4, 3, 3, 3, 3},
-    {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}},
-    {{1, 0}, {2, 0}, {3, 0}, {4, 0}, {4, 1}, {1, 2}, {2, 3}, {3, 4}},
-};
+/* A cell type. Corners are (corner, three neighbours) whose edges form a right-handed triad in a good cell.
+ * The apex of a pyramid has four edges and is left out: its base corners see the same volume. */
+typedef struct cell_shape {
+    const char *name;
+    sf_cell_topology topology;
+    int corner_count, corner[MAX_VERTICES][4];
+    int mirror[MAX_VERTICES]; /* the order of the vertices of its mirror image */
+} cell_shape;
 
-static const sf_cell_topology prism = {
-    6,
-    9,
-    5,
-    {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
-    {3, 3, 4, 4, 4},
-    {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}},
-    {{2, 0}, {3, 0}, {4, 0}, {1, 2}, {1, 3}, {1, 4}, {4, 2}, {2, 3}, {3, 4}},
+/* clang-format off */
+static const cell_shape shapes[] = {
+    [SF_CELL_TETRAHEDRON] = {
+        "tetrahedron",
+        {4, 6, 4,
+         {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
+         {3, 3, 3, 3},
+         {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}},
+         {{1, 0}, {2, 0}, {3, 0}, {3, 1}, {1, 2}, {2, 3}}},
+        1, {{0, 1, 2, 3}}, {1, 0, 2, 3}},
+    [SF_CELL_PYRAMID] = {
+        "pyramid",
+        {5, 8, 5,
+         {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}},
+         {4, 3, 3, 3, 3},
+         {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}},
+         {{1, 0}, {2, 0}, {3, 0}, {4, 0}, {4, 1}, {1, 2}, {2, 3}, {3, 4}}},
+        4, {{0, 1, 3, 4}, {1, 2, 0, 4}, {2, 3, 1, 4}, {3, 0, 2, 4}}, {0, 3, 2, 1, 4}},
+    [SF_CELL_PRISM] = {
+        "prism",
+        {6, 9, 5,
+         {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
+         {3, 3, 4, 4, 4},
+         {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}},
+         {{2, 0}, {3, 0}, {4, 0}, {1, 2}, {1, 3}, {1, 4}, {4, 2}, {2, 3}, {3, 4}}},
+        6, {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}},
+        {3, 4, 5, 0, 1, 2}},
+    [SF_CELL_HEXAHEDRON] = {
+        "hexahedron",
+        {8, 12, 6,
+         {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}},
+         {4, 4, 4, 4, 4, 4},
+         {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
+         {{2, 0}, {3, 0}, {4, 0}, {5, 0}, {1, 2}, {1, 3}, {1, 4}, {1, 5}, {5, 2}, {2, 3}, {3, 4}, {4, 5}}},
+        8, {{0, 1, 3, 4}, {1, 2, 0, 5}, {2, 3, 1, 6}, {3, 0, 2, 7},
+            {4, 7, 5, 0}, {5, 4, 6, 1}, {6, 5, 7, 2}, {7, 6, 4, 3}},
+        {4, 5, 6, 7, 0, 1, 2, 3}},
 };
-
-static const sf_cell_topology hexahedron = {
-    8,
-    12,
-    6,
-    {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}},
-    {4, 4, 4, 4, 4, 4},
-    {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
-    {{2, 0}, {3, 0}, {4, 0}, {5, 0}, {1, 2}, {1, 3}, {1, 4}, {1, 5}, {5, 2}, {2, 3}, {3, 4}, {4, 5}},
-};
+/* clang-format on */
 
 const sf_cell_topology *sf_cell_topology_of(int type) {
-    switch (type) {
-    case SF_CELL_TETRAHEDRON:
-        return &tetrahedron;
-    case SF_CELL_PYRAMID:
-        return &pyramid;
-    case SF_CELL_PRISM:
-        return &prism;
-    case SF_CELL_HEXAHEDRON:
-        return &hexahedron;
-    default:
-        return NULL;
-    }
+    return type >= SF_CELL_TETRAHEDRON && type <= SF_CELL_HEXAHEDRON ? &shapes[type].topology : NULL;
+}
+
+void sf_face_sort(int32_t node[4]) {
+    for (int i = 1; i < 4; i++)
+        for (int j = i; j > 0 && node[j] < node[j - 1]; j--) {
+            int32_t swap = node[j];
+            node[j] = node[j - 1];
+            node[j - 1] = swap;
+        }
+}
+
+int sf_face_compare(const int32_t a[4], const int32_t b[4]) {
+    for (int k = 0; k < 4; k++)
+        if (a[k] != b[k])
+            return a[k] < b[k] ? -1 : 1;
+    return 0;
 }
 
 void sf_mesh_free(sf_mesh *mesh) {
@@ -97,59 +113,10 @@ const sf_node_set *sf_mesh_find_set(const sf_mesh *mesh, const char *name) {
 
 /* Checks that the background mesh can carry smoothing domains. */
 
-enum { MAX_VERTICES = 8 };
-
 /* Cells smaller than this share of the mean make time steps useless and gradients meaningless. */
 static const double TINY_CELL = 1e-6;
 /* Nodes nearer than this share of the mesh's diagonal count as one point. */
 static const double SAME_POINT = 1e-10;
-
-/* Corners as (corner, three neighbours) whose edges form a right-handed triad in a good cell. The apex of a
- * pyramid has four edges and is left out: its base corners see the same volume. */
-typedef struct corner_table {
-    int count;
-    int corner[MAX_VERTICES][4];
-} corner_table;
-
-static const corner_table tetrahedron_corners = {1, {{0, 1, 2, 3}}};
-static const corner_table pyramid_corners = {4, {{0, 1, 3, 4}, {1, 2, 0, 4}, {2, 3, 1, 4}, {3, 0, 2, 4}}};
-static const corner_table prism_corners = {
-    6, {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}}};
-static const corner_table hexahedron_corners = {8,
-                                                {{0, 1, 3, 4},
-                                                 {1, 2, 0, 5},
-                                                 {2, 3, 1, 6},
-                                                 {3, 0, 2, 7},
-                                                 {4, 7, 5, 0},
-                                                 {5, 4, 6, 1},
-                                                 {6, 5, 7, 2},
-                                                 {7, 6, 4, 3}}};
-
-static const corner_table *corners_of(int type) {
-    switch (type) {
-    case SF_CELL_TETRAHEDRON:
-        return &tetrahedron_corners;
-    case SF_CELL_PYRAMID:
-        return &pyramid_corners;
-    case SF_CELL_PRISM:
-        return &prism_corners;
-    default:
-        return &hexahedron_corners;
-    }
-}
-
-static const char *type_name(int type) {
-    switch (type) {
-    case SF_CELL_TETRAHEDRON:
-        return "tetrahedron";
-    case SF_CELL_PYRAMID:
-        return "pyramid";
-    case SF_CELL_PRISM:
-        return "prism";
-    default:
-        return "hexahedron";
-    }
-}
 
 /* Positions of the cell's vertices relative to its first one: no digits are lost far from the origin. */
 static int local_vertices(const sf_mesh *mesh, int64_t cell, double x[MAX_VERTICES][3]) {
@@ -186,11 +153,11 @@ double sf_mesh_cell_volume(const sf_mesh *mesh, int64_t cell) {
 static void corner_range(const sf_mesh *mesh, int64_t cell, double *low, double *high) {
     double x[MAX_VERTICES][3];
     local_vertices(mesh, cell, x);
-    const corner_table *table = corners_of(mesh->cell_type[cell]);
+    const cell_shape *shape = &shapes[mesh->cell_type[cell]];
     *low = INFINITY;
     *high = -INFINITY;
-    for (int k = 0; k < table->count; k++) {
-        const int *v = table->corner[k];
+    for (int k = 0; k < shape->corner_count; k++) {
+        const int *v = shape->corner[k];
         double e[3][3];
         for (int a = 0; a < 3; a++)
             for (int i = 0; i < 3; i++)
@@ -211,45 +178,28 @@ static void centroid(const sf_mesh *mesh, int64_t cell, double c[3]) {
 }
 
 int64_t sf_mesh_orient(sf_mesh *mesh) {
-    static const int mirror_tetrahedron[] = {1, 0, 2, 3};
-    static const int mirror_pyramid[] = {0, 3, 2, 1, 4};
-    static const int mirror_prism[] = {3, 4, 5, 0, 1, 2};
-    static const int mirror_hexahedron[] = {4, 5, 6, 7, 0, 1, 2, 3};
     int64_t flipped = 0;
     for (int64_t k = 0; k < mesh->cell_count; k++) {
         double low, high;
         corner_range(mesh, k, &low, &high);
         if (!(high < 0.0))
             continue;
-        int type = mesh->cell_type[k];
-        const int *order = type == SF_CELL_TETRAHEDRON ? mirror_tetrahedron
-                           : type == SF_CELL_PYRAMID   ? mirror_pyramid
-                           : type == SF_CELL_PRISM     ? mirror_prism
-                                                       : mirror_hexahedron;
         int32_t *node = mesh->cell_node + mesh->cell_ptr[k], old[MAX_VERTICES] = {0};
         size_t count = (size_t)(mesh->cell_ptr[k + 1] - mesh->cell_ptr[k]);
         memcpy(old, node, count * sizeof *node);
         for (size_t a = 0; a < count; a++)
-            node[a] = old[order[a]];
+            node[a] = old[shapes[mesh->cell_type[k]].mirror[a]];
         flipped++;
     }
     return flipped;
 }
 
-static sf_status check_positions(const sf_mesh *mesh, double low[3], double high[3], sf_error *err) {
-    for (int i = 0; i < 3; i++) {
-        low[i] = INFINITY;
-        high[i] = -INFINITY;
-    }
+static sf_status check_positions(const sf_mesh *mesh, sf_error *err) {
     for (int64_t n = 0; n < mesh->node_count; n++) {
         const double *x = mesh->position + 3 * n;
         if (!isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]))
             return SF_FAIL(err, SF_ERR_MODEL, "node %lld has the position (%g, %g, %g) m", (long long)n, x[0],
                            x[1], x[2]);
-        for (int i = 0; i < 3; i++) {
-            low[i] = fmin(low[i], x[i]);
-            high[i] = fmax(high[i], x[i]);
-        }
     }
     return SF_OK;
 }
@@ -270,10 +220,11 @@ static int compare_along(const void *a, const void *b) {
 /* Coinciding nodes are an invisible crack: a mesh of parts that were not joined. Near nodes are near along
  * any direction; along an oblique one few others are, unlike along an axis, where a lattice has whole
  * planes. */
-static sf_status check_coinciding(const sf_mesh *mesh, const double low[3], const double high[3],
-                                  sf_error *err) {
+static sf_status check_coinciding(const sf_mesh *mesh, sf_error *err) {
     static const double direction[3] = {0.540302305868, 0.614787296915, 0.574617168265};
     size_t n = (size_t)mesh->node_count;
+    double low[3], high[3];
+    sf_box3(mesh->node_count, mesh->position, low, high);
     double tolerance = SAME_POINT * hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
     sorted_node *order = sf_alloc(err, n, sizeof *order, "sorted nodes");
     if (!order)
@@ -313,7 +264,7 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
             return SF_FAIL(err, SF_ERR_MODEL,
                            "cell %lld (%s) at (%g, %g, %g) m is inverted or flat: its volume is %g m3 and "
                            "its smallest corner Jacobian %g m3; both must be positive",
-                           (long long)k, type_name(mesh->cell_type[k]), c[0], c[1], c[2], v, low);
+                           (long long)k, shapes[mesh->cell_type[k]].name, c[0], c[1], c[2], v, low);
         }
         if (v < smallest) {
             smallest = v;
@@ -330,7 +281,7 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
         return SF_FAIL(
             err, SF_ERR_MODEL,
             "cell %lld (%s) at (%g, %g, %g) m is tiny: its volume %g m3 is below %g of the mean %g m3",
-            (long long)smallest_cell, type_name(mesh->cell_type[smallest_cell]), c[0], c[1], c[2], smallest,
+            (long long)smallest_cell, shapes[mesh->cell_type[smallest_cell]].name, c[0], c[1], c[2], smallest,
             TINY_CELL, mean);
     }
     *volume = sum;
@@ -338,12 +289,11 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
 }
 
 sf_status sf_mesh_check(const sf_mesh *mesh, double *volume, sf_error *err) {
-    double low[3], high[3];
     *volume = 0.0;
     if (mesh->cell_count <= 0 || mesh->node_count <= 0)
         return SF_FAIL(err, SF_ERR_MODEL, "the mesh has %lld cells and %lld nodes",
                        (long long)mesh->cell_count, (long long)mesh->node_count);
-    if (check_positions(mesh, low, high, err) != SF_OK || check_cells(mesh, volume, err) != SF_OK)
+    if (check_positions(mesh, err) != SF_OK || check_cells(mesh, volume, err) != SF_OK)
         return err->status;
-    return check_coinciding(mesh, low, high, err);
+    return check_coinciding(mesh, err);
 }

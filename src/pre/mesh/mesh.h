@@ -20,6 +20,10 @@ typedef struct sf_cell_topology {
 /* Table of a cell type (SF_CELL_*); NULL for any other code. Static storage. */
 const sf_cell_topology *sf_cell_topology_of(int type);
 
+/* Sorts the nodes of a face (-1: the fourth of a triangle), and compares sorted ones. */
+void sf_face_sort(int32_t node[4]);
+int sf_face_compare(const int32_t a[4], const int32_t b[4]);
+
 /* The background mesh of the pad and the missile's surface, as read from a geometry: metres, nodes renumbered
  * from 0 in gmsh's order without orphans. Everything is owned by the struct. */
 

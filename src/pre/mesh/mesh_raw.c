@@ -109,7 +109,8 @@ int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]
     return 0;
 }
 
-int sf_raw_mesh_face_size(const sf_raw_mesh *raw, size_t face) {
+/* 3 or 4. */
+static int face_size(const sf_raw_mesh *raw, size_t face) {
     return raw->face_node[SF_RAW_FACE * face + 3] != 0 ? 4 : 3;
 }
 
@@ -126,7 +127,7 @@ static sf_status number_nodes(const sf_raw_mesh *raw, const sf_tag_index *index,
             size_t tag = raw->cell_node[SF_RAW_CELL * k + (size_t)a];
             size_t place = sf_raw_mesh_find(raw, index, tag);
             if (place == SIZE_MAX)
-                return SF_FAIL(err, SF_ERR_INPUT, "a cell uses node %zu, which the mesh does not have", tag);
+                return SF_REFUSE(err, "a cell uses node %zu, which the mesh does not have", tag);
             if (raw->cell_chosen[k])
                 number[place] = 0;
             else if (number[place] == UNUSED)
@@ -154,8 +155,7 @@ static sf_status copy_cells(const sf_raw_mesh *raw, const sf_tag_index *index, c
     mesh->cell_node = sf_alloc(err, (size_t)entries, sizeof *mesh->cell_node, "cell vertices");
     if (layers > 1)
         mesh->cell_layer = sf_alloc(err, (size_t)mesh->cell_count, 1, "layers of the cells");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (size_t n = 0; n < raw->node_count; n++)
         for (size_t i = 0; number[n] >= 0 && i < 3; i++)
             mesh->position[3 * (size_t)number[n] + i] = unit * raw->xyz[3 * n + i];
@@ -176,15 +176,6 @@ static sf_status copy_cells(const sf_raw_mesh *raw, const sf_tag_index *index, c
     return SF_OK;
 }
 
-static void sort_face(int32_t node[SF_RAW_FACE]) {
-    for (int i = 1; i < SF_RAW_FACE; i++)
-        for (int j = i; j > 0 && node[j] < node[j - 1]; j--) {
-            int32_t swap = node[j];
-            node[j] = node[j - 1];
-            node[j - 1] = swap;
-        }
-}
-
 /* Marks the nodes of the group's faces that lie wholly in the chosen cells, and writes these faces to the
  * set; returns how many nodes. */
 static int64_t mark_group(const sf_raw_mesh *raw, const sf_tag_index *index, const int32_t *number, int group,
@@ -192,7 +183,7 @@ static int64_t mark_group(const sf_raw_mesh *raw, const sf_tag_index *index, con
     int64_t marked = 0;
     for (size_t f = 0; f < raw->face_count; f++) {
         int32_t node[SF_RAW_FACE] = {-1, -1, -1, -1};
-        int count = raw->face_group[f] == group ? sf_raw_mesh_face_size(raw, f) : 0;
+        int count = raw->face_group[f] == group ? face_size(raw, f) : 0;
         bool whole = count > 0;
         for (int a = 0; a < count; a++) {
             size_t place = sf_raw_mesh_find(raw, index, raw->face_node[SF_RAW_FACE * f + (size_t)a]);
@@ -204,7 +195,7 @@ static int64_t mark_group(const sf_raw_mesh *raw, const sf_tag_index *index, con
             marked += !mark[node[a]];
             mark[node[a]] = 1;
         }
-        sort_face(node);
+        sf_face_sort(node);
         if (whole)
             memcpy(&set->face[SF_RAW_FACE * set->face_count++], node, sizeof node);
     }
@@ -252,8 +243,7 @@ sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_m
     int32_t *number = NULL;
     sf_tag_index *index = NULL;
     if (raw->node_count > INT32_MAX)
-        return SF_FAIL(err, SF_ERR_INPUT, "the mesh has %zu nodes; at most %d are supported", raw->node_count,
-                       INT32_MAX);
+        return SF_REFUSE(err, "the mesh has %zu nodes; at most %d are supported", raw->node_count, INT32_MAX);
     index = sf_raw_mesh_index(raw, err);
     number = sf_alloc(err, raw->node_count, sizeof *number, "node numbers");
     if (err->status == SF_OK && number_nodes(raw, index, number, mesh, err) == SF_OK &&
@@ -303,14 +293,13 @@ static sf_status prepare(surface_builder *b, sf_error *err) {
     b->keys = sf_alloc(err, raw->face_count, sizeof *b->keys, "surface faces");
     b->known = sf_alloc(err, raw->face_count, 1, "face marks");
     b->outward = sf_alloc(err, 3 * raw->face_count, sizeof *b->outward, "outward vectors");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (size_t f = 0; f < raw->face_count; f++) {
         memcpy(b->keys[f].tag, raw->face_node + SF_RAW_FACE * f, sizeof b->keys[f].tag);
         for (int a = 0; a < SF_RAW_FACE; a++)
             if (b->keys[f].tag[a] != 0 && !node_position(b, b->keys[f].tag[a]))
-                return SF_FAIL(err, SF_ERR_INPUT, "a face uses node %zu, which the mesh does not have",
-                               b->keys[f].tag[a]);
+                return SF_REFUSE(err, "a face uses node %zu, which the mesh does not have",
+                                 b->keys[f].tag[a]);
         sf_raw_face_sort(b->keys[f].tag);
         b->keys[f].face = f;
     }
@@ -344,8 +333,8 @@ static sf_status match_cells(surface_builder *b, sf_error *err) {
                 continue;
             average(b, node, shape->vertices, found->centre);
             if (++found->behind > 1)
-                return SF_FAIL(
-                    err, SF_ERR_INPUT,
+                return SF_REFUSE(
+                    err,
                     "the surface of the missile or support has cells on both sides near (%g, %g, %g) in the "
                     "geometry's unit: it must be an outer surface",
                     found->centre[0], found->centre[1], found->centre[2]);
@@ -360,14 +349,14 @@ static void find_outward(surface_builder *b) {
     const sf_raw_mesh *raw = b->raw;
     double middle[3] = {0.0, 0.0, 0.0}, c[3];
     for (size_t f = 0; f < raw->face_count; f++) {
-        average(b, raw->face_node + SF_RAW_FACE * f, sf_raw_mesh_face_size(raw, f), c);
+        average(b, raw->face_node + SF_RAW_FACE * f, face_size(raw, f), c);
         for (int i = 0; i < 3; i++)
             middle[i] += c[i] / (double)raw->face_count;
     }
     for (size_t k = 0; k < raw->face_count; k++) {
         size_t f = b->keys[k].face;
         const double *inside = b->keys[k].behind ? b->keys[k].centre : middle;
-        average(b, raw->face_node + SF_RAW_FACE * f, sf_raw_mesh_face_size(raw, f), c);
+        average(b, raw->face_node + SF_RAW_FACE * f, face_size(raw, f), c);
         for (size_t i = 0; i < 3; i++)
             b->outward[3 * f + i] = c[i] - inside[i];
     }
@@ -379,7 +368,7 @@ static double side(const surface_builder *b, size_t face) {
     const double *p = node_position(b, tag[0]);
     const double *q = node_position(b, tag[1]);
     const double *r = node_position(b, tag[2]);
-    const double *s = sf_raw_mesh_face_size(b->raw, face) == 4 ? node_position(b, tag[3]) : p;
+    const double *s = face_size(b->raw, face) == 4 ? node_position(b, tag[3]) : p;
     double d[3], e[3];
     for (int i = 0; i < 3; i++) {
         d[i] = r[i] - p[i];
@@ -411,8 +400,8 @@ static sf_status write_surface(const surface_builder *b, const uint8_t *reverse,
     const sf_raw_mesh *raw = b->raw;
     int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "surface nodes");
     for (size_t f = 0; number && f < raw->face_count; f++) {
-        surface->triangle_count += sf_raw_mesh_face_size(raw, f) - 2;
-        for (int a = 0; a < sf_raw_mesh_face_size(raw, f); a++)
+        surface->triangle_count += face_size(raw, f) - 2;
+        for (int a = 0; a < face_size(raw, f); a++)
             number[(node_position(b, raw->face_node[SF_RAW_FACE * f + (size_t)a]) - raw->xyz) / 3] = 1;
     }
     for (size_t n = 0; number && n < raw->node_count; n++)
@@ -428,9 +417,9 @@ static sf_status write_surface(const surface_builder *b, const uint8_t *reverse,
             surface->position[3 * (size_t)number[n] + i] = unit * raw->xyz[3 * n + i];
     for (size_t f = 0; err->status == SF_OK && f < raw->face_count; f++) {
         int32_t node[SF_RAW_FACE] = {0};
-        for (int a = 0; a < sf_raw_mesh_face_size(raw, f); a++)
+        for (int a = 0; a < face_size(raw, f); a++)
             node[a] = number[(node_position(b, raw->face_node[SF_RAW_FACE * f + (size_t)a]) - raw->xyz) / 3];
-        for (int t = 0; t < sf_raw_mesh_face_size(raw, f) - 2; t++) {
+        for (int t = 0; t < face_size(raw, f) - 2; t++) {
             *out++ = node[0];
             *out++ = node[t + (reverse[f] ? 2 : 1)];
             *out++ = node[t + (reverse[f] ? 1 : 2)];

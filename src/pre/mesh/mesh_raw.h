@@ -49,8 +49,6 @@ size_t sf_raw_mesh_find(const sf_raw_mesh *raw, const sf_tag_index *index, size_
 /* The tags of a face in ascending order, and the order of two such faces: below, equal to or above 0. */
 void sf_raw_face_sort(size_t tag[SF_RAW_FACE]);
 int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]);
-/* 3 or 4. */
-int sf_raw_mesh_face_size(const sf_raw_mesh *raw, size_t face);
 
 /* The chosen cells with the nodes they use, in the order of `tag`, and for each group the nodes of its faces
  * that belong wholly to those cells (groups without such faces give no set). `layers`: groups asked for. On

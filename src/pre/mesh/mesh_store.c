@@ -87,7 +87,9 @@ static const char *name_of(const char *path) {
     return slash ? slash + 1 : path;
 }
 
-bool sf_mesh_store_key(const sf_geo_source *source, uint64_t *key) {
+/* Computes the key from the geometry's own file, its parameters and softfall-mesh. False: the key is not
+ * known, and nothing is shared. */
+static bool find_key(const sf_geo_source *source, uint64_t *key) {
     char mesher[PATH_MAX];
     uint64_t content[2];
     sf_error none = SF_ERROR_INIT;
@@ -127,7 +129,7 @@ bool sf_mesh_store_find(const char *folder, const sf_geo_source *source, sf_mesh
     uint64_t key, length;
     sf_error none = SF_ERROR_INIT;
     *files = NULL;
-    if (!folder || !sf_mesh_store_key(source, &key) || !sf_store_find(folder, KIND, key, &found))
+    if (!folder || !find_key(source, &key) || !sf_store_find(folder, KIND, key, &found))
         return false;
     const char *text = found.data + sizeof length;
     memcpy(&length, found.data, found.size >= sizeof length ? sizeof length : 0);
@@ -153,7 +155,7 @@ void sf_mesh_store_keep(const char *folder, const sf_geo_source *source, const s
                         const char *files) {
     static const char zeros[8];
     uint64_t key, length = strlen(files);
-    if (!folder || !meshed->confined || !sf_mesh_store_key(source, &key))
+    if (!folder || !meshed->confined || !find_key(source, &key))
         return;
     const sf_store_part part[] = {{&length, sizeof length},
                                   {files, length},

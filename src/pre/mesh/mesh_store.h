@@ -5,7 +5,7 @@
 
 #include "pre/mesh/mesher.h"
 
-/* The list of what geometries read (sf_gmsh_files), compared with the files as they are. */
+/* The list of what geometries read (sf_gmsh.files), compared with the files as they are. */
 
 #define SF_GMSH_FILES_OF "geometry"
 #define SF_GMSH_UNKNOWN_FILES "unknown"
@@ -18,11 +18,7 @@ bool sf_geometry_files_are_same(const char *const folder[SF_GEOMETRIES], const c
 /* The mesh of a geometry, kept in a store (io/folder.h) for the drops of a campaign: as gmsh made it, with
  * the list of what gmsh read. It is used again as long as these files are as they were. */
 
-/* Computes the key from the geometry's own file, its parameters and softfall-mesh. False: the key is not
- * known, and nothing is shared. */
-bool sf_mesh_store_key(const sf_geo_source *source, uint64_t *key);
-
-/* The mesh into the empty `*out`, and the geometry's part of sf_gmsh_files, from malloc. False: none. */
+/* The mesh into the empty `*out`, and the geometry's part of sf_gmsh.files, from malloc. False: none. */
 bool sf_mesh_store_find(const char *folder, const sf_geo_source *source, sf_meshed *out, char **files);
 /* Keeps the mesh of a confined gmsh. */
 void sf_mesh_store_keep(const char *folder, const sf_geo_source *source, const sf_meshed *meshed,

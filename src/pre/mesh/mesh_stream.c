@@ -76,8 +76,8 @@ static sf_status read_nodes(reader *r, const char *file, sf_geo_data *out, sf_er
         const double *x = &out->xyz[3 * n];
         r->bad = r->bad || out->tag[n] == 0;
         if (!isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: gmsh gives node %llu the position (%g, %g, %g)", file,
-                           (unsigned long long)out->tag[n], x[0], x[1], x[2]);
+            return SF_REFUSE(err, "%s: gmsh gives node %llu the position (%g, %g, %g)", file,
+                             (unsigned long long)out->tag[n], x[0], x[1], x[2]);
     }
     return SF_OK;
 }
@@ -90,8 +90,8 @@ static int compare_entities(const void *a, const void *b) {
 static sf_status read_groups(reader *r, const char *file, sf_geo_data *out, sf_error *err) {
     size_t count = take_count(r, 4);
     if (count > SF_GEO_MAX_GROUPS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has %zu physical groups; at most %d are read", file, count,
-                       SF_GEO_MAX_GROUPS);
+        return SF_REFUSE(err, "%s has %zu physical groups; at most %d are read", file, count,
+                         SF_GEO_MAX_GROUPS);
     out->group = sf_alloc(err, count, sizeof *out->group, "physical groups");
     for (size_t g = 0; out->group && !r->bad && g < count && err->status == SF_OK; g++) {
         sf_geo_group *group = &out->group[out->group_count++];
@@ -140,7 +140,7 @@ sf_status sf_geo_data_read(const void *data, size_t size, const char *file, sf_g
         read_blocks(&r, out, err);
     if (err->status == SF_OK &&
         (take(&r) != SF_MESH_STREAM_END || r.bad || r.left > 0 || size % sizeof(uint64_t) > 0))
-        SF_FAIL(err, SF_ERR_INPUT, "%s: the mesh that gmsh gave is cut or damaged", file);
+        SF_REFUSE(err, "%s: the mesh that gmsh gave is cut or damaged", file);
     if (err->status != SF_OK)
         sf_geo_data_free(out);
     return err->status;

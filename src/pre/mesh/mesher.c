@@ -15,12 +15,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/types.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "build_info.h"
 #include "io/plain_file.h"
+#include "io/process.h"
 #include "pre/mesh/broker.h"
 #include "pre/mesh/geo_parameters.h"
 #include "pre/mesh/mesher_protocol.h"
@@ -77,6 +79,11 @@ sf_status sf_mesher_find(char *path, size_t size, sf_error *err) {
                    SF_LIBEXEC_DIR);
 }
 
+typedef struct mesher_child {
+    pid_t process;
+    int control, data, print; /* this side of the child's files (mesher_protocol.h) */
+} mesher_child;
+
 /* The child's ends, out of the way of the numbers that they get there. */
 typedef struct ends {
     int control, data, print, parameters;
@@ -96,7 +103,7 @@ static void close_ends(const ends *e) {
             close(file[k]);
 }
 
-static bool make_ends(const char *parameters, sf_mesher_child *child, ends *e) {
+static bool make_ends(const char *parameters, mesher_child *child, ends *e) {
     int control[2] = {-1, -1}, data[2] = {-1, -1}, print[2] = {-1, -1};
     bool made = socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, control) == 0 &&
                 pipe2(data, O_CLOEXEC) == 0 && pipe2(print, O_CLOEXEC) == 0;
@@ -155,13 +162,13 @@ static int prepare_signals(posix_spawnattr_t *attributes) {
     return result == 0 ? posix_spawnattr_setsigmask(attributes, &none) : result;
 }
 
-sf_status sf_mesher_start(const char *parameters, sf_mesher_child *child, sf_error *err) {
+/* The child gets `parameters` as a file, a small environment and no other open files. */
+static sf_status start(const char *parameters, mesher_child *child, sf_error *err) {
     char path[PATH_MAX];
     ends e;
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
-    if (sf_mesher_find(path, sizeof path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_mesher_find(path, sizeof path, err));
     int result = make_ends(parameters, child, &e) ? 0 : errno;
     posix_spawn_file_actions_init(&actions);
     posix_spawnattr_init(&attributes);
@@ -188,7 +195,7 @@ typedef struct conversation {
     const sf_mesher_limits *limits;
     double seconds, bytes; /* limits of processor time and memory */
     bool confined;
-    sf_mesher_child child;
+    mesher_child child;
     sf_broker broker;
     char *stream;
     size_t size, capacity;
@@ -199,12 +206,6 @@ typedef struct conversation {
     double worked, idle; /* seconds of processor time; of waiting, less a hundred times those of work since */
     int no_filter, messages, status; /* errno value of the filter; count; of wait */
 } conversation;
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Units in which gmsh can hand out STEP and IGES files, which know their own; without a target it is mm. */
 static const struct {
@@ -263,8 +264,8 @@ static void answer(conversation *c, int error, int file, sf_error *err) {
     while (sent < 0 && errno == EINTR);
     if (sent >= 0 || errno == EPIPE || errno == ECONNRESET) /* it has ended: what it printed is still read */
         return;
-    SF_FAIL(err, SF_ERR_INPUT, "%s: gmsh asks for files without reading the answers (%s)", c->source->path,
-            strerror(errno));
+    SF_REFUSE(err, "%s: gmsh asks for files without reading the answers (%s)", c->source->path,
+              strerror(errno));
     stop(c);
 }
 
@@ -279,7 +280,7 @@ static bool hear_message(conversation *c, sf_error *err) {
         return false;
     ask.text[sizeof ask.text - 1] = '\0';
     if (++c->messages > MOST_MESSAGES) {
-        SF_FAIL(err, SF_ERR_INPUT, "%s: the geometry opens files without end", c->source->path);
+        SF_REFUSE(err, "%s: the geometry opens files without end", c->source->path);
         stop(c);
         return true;
     }
@@ -320,8 +321,8 @@ static bool hear_data(conversation *c, sf_error *err) {
         size_t capacity = c->capacity ? 2 * c->capacity : (size_t)1 << 20;
         char *grown = (double)capacity > c->bytes ? NULL : realloc(c->stream, capacity);
         if (!grown) {
-            SF_FAIL(err, SF_ERR_INPUT, "%s: its mesh does not fit into %.3g GB of memory", c->source->path,
-                    1e-9 * c->bytes);
+            SF_REFUSE(err, "%s: its mesh does not fit into %.3g GB of memory", c->source->path,
+                      1e-9 * c->bytes);
             stop(c);
             return false;
         }
@@ -388,10 +389,10 @@ static void watch(conversation *c, double step) {
 static void converse(conversation *c, sf_error *err) {
     struct pollfd channel[] = {
         {c->child.control, POLLIN, 0}, {c->child.data, POLLIN, 0}, {c->child.print, POLLIN, 0}};
-    double start = now(), told = 0, seen = 0;
+    double begin = sf_process_now(), told = 0, seen = 0;
     while (!c->stopped && (channel[0].fd >= 0 || channel[1].fd >= 0 || channel[2].fd >= 0)) {
         int ready = poll(channel, 3, 1000);
-        double elapsed = now() - start;
+        double elapsed = sf_process_now() - begin;
         if (elapsed > told + REPORT_SECONDS) {
             told = elapsed;
             tell_progress(c, elapsed);
@@ -421,7 +422,7 @@ static sf_status fail(const conversation *c, const char *what, sf_error *err) {
         snprintf(more, sizeof more, "; it tried to write %s, which a geometry may not", c->broker.written);
     else if (*c->broker.refused)
         snprintf(more, sizeof more, "; %s", c->broker.refused);
-    return SF_FAIL(err, SF_ERR_INPUT, "%s: %s%s", c->source->path, what, more);
+    return SF_REFUSE(err, "%s: %s%s", c->source->path, what, more);
 }
 
 static sf_status judge_ending(const conversation *c, sf_error *err) {
@@ -437,8 +438,7 @@ static sf_status judge_ending(const conversation *c, sf_error *err) {
             "it nevertheless, for geometries that you trust",
             c->source->path, strerror(c->no_filter));
     if (c->program || signal_number == SIGSYS) /* where signals are blocked, the trap kills */
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: the geometry tried to start a program, which it may not",
-                       c->source->path);
+        return SF_REFUSE(err, "%s: the geometry tried to start a program, which it may not", c->source->path);
     if (signal_number == SIGHUP || signal_number == SIGINT || signal_number == SIGQUIT ||
         signal_number == SIGTERM)
         return SF_FAIL(err, SF_INTERRUPTED, "%s: interrupted (%s) while gmsh was at work", c->source->path,
@@ -472,12 +472,10 @@ static sf_status judge_ending(const conversation *c, sf_error *err) {
 
 static sf_status judge(conversation *c, sf_meshed *out, sf_error *err) {
     bool ended = WIFEXITED(c->status) && WEXITSTATUS(c->status) == 0;
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     if (!ended || c->program || c->memory || c->late || c->waits || c->no_filter || c->size == 0)
         return judge_ending(c, err);
-    if (sf_geo_data_read(c->stream, c->size, c->source->path, &out->data, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_geo_data_read(c->stream, c->size, c->source->path, &out->data, err));
     if (*out->data.error) {
         char what[sizeof out->data.error + 8];
         snprintf(what, sizeof what, "gmsh, %s", out->data.error);
@@ -492,7 +490,7 @@ static void send_request(const conversation *c, sf_error *err) {
                                  .bytes = c->bytes < 1e15 ? (uint64_t)c->bytes : 0,
                                  .seconds = (uint64_t)ceil(c->seconds)};
     if (snprintf(request.path, sizeof request.path, "%s", c->source->path) >= (int)sizeof request.path)
-        SF_FAIL(err, SF_ERR_INPUT, "the name of the geometry is too long: %.100s...", c->source->path);
+        SF_REFUSE(err, "the name of the geometry is too long: %.100s...", c->source->path);
     else if (send(c->child.control, &request, sizeof request, MSG_NOSIGNAL) != (ssize_t)sizeof request)
         SF_FAIL(err, SF_ERR_IO, "softfall-mesh does not listen: %s", strerror(errno));
 }
@@ -538,7 +536,7 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
     c.broker.parameters = parameters;
     c.broker.most = c.bytes < 0x1p34 ? (uint64_t)(c.bytes / 4) : (uint64_t)1 << 32;
     if (err->status == SF_OK && sf_plain_check(source->path, "geometry", err) == SF_OK &&
-        sf_mesher_start(parameters, &c.child, err) == SF_OK) {
+        start(parameters, &c.child, err) == SF_OK) {
         send_request(&c, err);
         if (err->status != SF_OK)
             stop(&c);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "pre/mesh/mesh.h"
 #include "pre/mesh/mesh_raw.h"
 
@@ -94,8 +95,8 @@ static sf_status walk(orienter *o, int64_t seed, int64_t *count, sf_error *err) 
                 continue;
             if (o->part[next]) {
                 const double *x = vertex(o->surface, t, e);
-                return SF_FAIL(
-                    err, SF_ERR_INPUT,
+                return SF_REFUSE(
+                    err,
                     "the surface of the missile or support is one-sided, like a Moebius strip, near (%.4g, %.4g, "
                     "%.4g) m of its geometry: it has no outside for the pad to touch",
                     x[0], x[1], x[2]);
@@ -153,10 +154,11 @@ static sf_status check_facing(const sf_surface *s, const double direction[3], sf
     }
     if (facing > EDGE_ON * area)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "missile.group: no part of the missile's surface faces along its motion (%g, %g, %g): the "
-                   "cells lie on the pad's side of it, so the pad can never touch it",
-                   direction[0], direction[1], direction[2]);
+    return SF_REFUSE(
+        err,
+        "missile.group: no part of the missile's surface faces along its motion (%g, %g, %g): the "
+        "cells lie on the pad's side of it, so the pad can never touch it",
+        direction[0], direction[1], direction[2]);
 }
 
 sf_status sf_surface_turn(sf_surface *surface, const double direction[3], sf_error *err) {
@@ -204,26 +206,18 @@ typedef struct hull_builder {
     sf_tag_index *nodes;
     cell_face *list; /* [count] sorted */
     size_t count;
-    size_t *parent; /* [cell_count] union of cells joined by faces */
+    int64_t *parent; /* [cell_count] union of cells joined by faces */
     uint8_t *ours;  /* [cell_count] by parent: of the missile */
 } hull_builder;
-
-static size_t find_root(size_t *parent, size_t cell) {
-    while (parent[cell] != cell)
-        cell = parent[cell] = parent[parent[cell]];
-    return cell;
-}
 
 static sf_status list_faces(hull_builder *b, sf_error *err) {
     const sf_raw_mesh *raw = b->raw;
     b->list = sf_alloc(err, 6 * raw->cell_count, sizeof *b->list, "faces of the missile");
-    b->parent = sf_alloc(err, raw->cell_count, sizeof *b->parent, "cells of the missile");
+    b->parent = sf_sets_alone((int64_t)raw->cell_count, "cells of the missile", err);
     b->ours = sf_alloc(err, raw->cell_count, 1, "cells of the missile");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (size_t k = 0; k < raw->cell_count; k++) {
         const sf_cell_topology *shape = sf_cell_topology_of(raw->cell_type[k]);
-        b->parent[k] = k;
         for (int f = 0; f < shape->faces; f++) {
             cell_face *face = &b->list[b->count++];
             *face = (cell_face){.cell = k, .face = f};
@@ -247,7 +241,7 @@ static void find_cells(hull_builder *b) {
     const sf_raw_mesh *raw = b->raw;
     for (size_t i = 1; i < b->count; i++)
         if (sf_raw_face_compare(b->list[i - 1].tag, b->list[i].tag) == 0)
-            b->parent[find_root(b->parent, b->list[i].cell)] = find_root(b->parent, b->list[i - 1].cell);
+            sf_sets_join(b->parent, (int64_t)b->list[i].cell, (int64_t)b->list[i - 1].cell);
     for (size_t f = 0; f < raw->face_count; f++) {
         size_t wanted[SF_RAW_FACE], low = 0, high = b->count;
         memcpy(wanted, raw->face_node + SF_RAW_FACE * f, sizeof wanted);
@@ -260,12 +254,12 @@ static void find_cells(hull_builder *b) {
                 high = middle;
         }
         if (low < b->count && sf_raw_face_compare(b->list[low].tag, wanted) == 0)
-            b->ours[find_root(b->parent, b->list[low].cell)] = 1;
+            b->ours[sf_sets_find(b->parent, (int64_t)b->list[low].cell)] = 1;
     }
 }
 
 static bool is_hull(const hull_builder *b, size_t i) {
-    return is_outer(b, i) && b->ours[find_root(b->parent, b->list[i].cell)];
+    return is_outer(b, i) && b->ours[sf_sets_find(b->parent, (int64_t)b->list[i].cell)];
 }
 
 static const double *place_of(const hull_builder *b, size_t tag) {
@@ -520,4 +514,11 @@ sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *
                        "position over the pad and missile.direction",
                        card->direction[0], card->direction[1], card->direction[2]);
     return SF_OK;
+}
+
+sf_surface sf_surface_of_missile(const sf_model *m) {
+    return (sf_surface){.node_count = m->surface_node_count,
+                        .position = m->surface_position,
+                        .triangle_count = m->surface_triangle_count,
+                        .triangle = m->surface_triangle};
 }

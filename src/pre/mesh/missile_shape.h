@@ -38,4 +38,8 @@ double sf_triangle_travel(const double *a, const double *b, const double *c, con
 
 /* The same distance to one point; infinity if the path misses it. */
 double sf_missile_travel(const sf_surface *surface, const sf_missile_card *card, const double x[3]);
+
+/* The missile's surface of a model; borrowed. */
+sf_surface sf_surface_of_missile(const sf_model *model);
+
 #endif

@@ -4,6 +4,8 @@
 #include <errno.h>
 #include <gmshc.h>
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +33,8 @@ int sf_gmsh_adapter_initialize(void) {
     return ierr;
 }
 
-void sf_gmsh_adapter_version(char *out, size_t size) {
+/* Writes the version of the library that runs, for example "4.8.4", which may be newer than the header. */
+static void write_version(char *out, size_t size) {
     char *version = NULL;
     int ierr = 0;
     gmshOptionGetString("General.Version", &version, &ierr);
@@ -39,6 +42,8 @@ void sf_gmsh_adapter_version(char *out, size_t size) {
     gmshFree(version);
 }
 
+/* The mesh stream (pre/mesh/mesher_protocol.h) to SF_MESHER_DATA. A parent that does not listen ends this
+ * process. */
 enum { ROOM = 65536 };
 
 static char block[ROOM];
@@ -54,14 +59,15 @@ static void write_all(const char *data, size_t size) {
     }
 }
 
-void sf_stream_flush(void) {
+static void stream_flush(void) {
     write_all(block, used);
     used = 0;
 }
 
-void sf_stream_words(const void *data, size_t size) {
+/* `size` bytes, a multiple of 8. */
+static void stream_words(const void *data, size_t size) {
     if (used + size > ROOM)
-        sf_stream_flush();
+        stream_flush();
     if (size > ROOM) {
         write_all(data, size);
     } else if (size > 0) {
@@ -70,36 +76,36 @@ void sf_stream_words(const void *data, size_t size) {
     }
 }
 
-void sf_stream_word(uint64_t word) {
-    sf_stream_words(&word, sizeof word);
+static void stream_word(uint64_t word) {
+    stream_words(&word, sizeof word);
 }
 
-void sf_stream_int(int value) {
-    sf_stream_word((uint64_t)(int64_t)value);
+static void stream_int(int value) {
+    stream_word((uint64_t)(int64_t)value);
 }
 
-void sf_stream_text(const char *text) {
+static void stream_text(const char *text) {
     size_t length = strlen(text);
     uint64_t last = 0;
-    sf_stream_word(length);
-    sf_stream_words(text, length / 8 * 8);
+    stream_word(length);
+    stream_words(text, length / 8 * 8);
     memcpy(&last, text + length / 8 * 8, length % 8);
     if (length % 8 > 0)
-        sf_stream_word(last);
+        stream_word(last);
 }
 
 static void write_head(const char *error) {
     char version[32];
-    sf_gmsh_adapter_version(version, sizeof version);
-    sf_stream_word(SF_MESH_STREAM_BEGIN);
-    sf_stream_text(version);
-    sf_stream_text(error);
+    write_version(version, sizeof version);
+    stream_word(SF_MESH_STREAM_BEGIN);
+    stream_text(version);
+    stream_text(error);
 }
 
 static void write_error(const char *error) {
     write_head(error);
-    sf_stream_word(SF_MESH_STREAM_END);
-    sf_stream_flush();
+    stream_word(SF_MESH_STREAM_END);
+    stream_flush();
 }
 
 /* The first message of gmsh that begins with "Error" carries file and line, which `ierr` does not. True if
@@ -180,9 +186,9 @@ static void write_nodes(void) {
     gmshModelMeshGetNodes(&tags, &count, &xyz, &coordinates, &parameter, &parameters, -1, -1, 0, 0, &ierr);
     if (ierr)
         _exit(1); /* the stream has begun: the parent says that gmsh failed */
-    sf_stream_word(count);
-    sf_stream_words(tags, count * sizeof *tags);
-    sf_stream_words(xyz, 3 * count * sizeof *xyz);
+    stream_word(count);
+    stream_words(tags, count * sizeof *tags);
+    stream_words(xyz, 3 * count * sizeof *xyz);
     gmshFree(tags);
     gmshFree(xyz);
     gmshFree(parameter);
@@ -228,13 +234,13 @@ static void write_groups(int dimension, const int *pairs, size_t length, entity_
         gmshModelGetEntitiesForPhysicalGroup(dimension, tag, &member, &members, &ierr);
         if (ierr)
             members = 0;
-        sf_stream_int(dimension);
-        sf_stream_int(tag);
-        sf_stream_text(name ? name : "");
-        sf_stream_word(members);
+        stream_int(dimension);
+        stream_int(tag);
+        stream_text(name ? name : "");
+        stream_word(members);
         for (size_t i = 0; i < members; i++) {
             member[i] = abs(member[i]);
-            sf_stream_int(member[i]);
+            stream_int(member[i]);
         }
         if (named && name && *name && members > 0)
             append(named, member, members);
@@ -256,12 +262,12 @@ static void write_block(int dimension, int entity, int type, const size_t *node,
     size_t local_length = 0;
     gmshModelMeshGetElementProperties(type, &name, &type_dimension, &order, &vertices, &local, &local_length,
                                       &primary, &ierr);
-    sf_stream_int(dimension);
-    sf_stream_int(entity);
-    sf_stream_int(type);
-    sf_stream_text(name ? name : "unknown");
-    sf_stream_word(length);
-    sf_stream_words(node, length * sizeof *node);
+    stream_int(dimension);
+    stream_int(entity);
+    stream_int(type);
+    stream_text(name ? name : "unknown");
+    stream_word(length);
+    stream_words(node, length * sizeof *node);
     gmshFree(name);
     gmshFree(local);
 }
@@ -298,7 +304,7 @@ static void write_elements(const int *surface, size_t surfaces, const int *volum
         for (size_t i = 0; i < volumes; i++)
             list_entity(&list, 3, volume[i]);
         if (counting)
-            sf_stream_word(list.count);
+            stream_word(list.count);
     }
 }
 
@@ -310,7 +316,7 @@ static void write_mesh(void) {
     write_nodes();
     gmshModelGetPhysicalGroups(&pairs[0], &length[0], 2, &ierr);
     gmshModelGetPhysicalGroups(&pairs[1], &length[1], 3, &ierr);
-    sf_stream_word(length[0] / 2 + length[1] / 2);
+    stream_word(length[0] / 2 + length[1] / 2);
     write_groups(2, pairs[0], length[0], &surface);
     write_groups(3, pairs[1], length[1], NULL);
     surface.count = sort_entities(surface.entity, surface.count);
@@ -320,8 +326,8 @@ static void write_mesh(void) {
         volume[i] = volume[2 * i + 1];
     volumes = sort_entities(volume, volumes);
     write_elements(surface.entity, surface.count, volume, volumes);
-    sf_stream_word(SF_MESH_STREAM_END);
-    sf_stream_flush();
+    stream_word(SF_MESH_STREAM_END);
+    stream_flush();
     for (int k = 0; k < 2; k++)
         gmshFree(pairs[k]);
     gmshFree(volume);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/plan.h"
 
-#include "case/parts.h"
+#include "case/values.h"
 #include "case/values.h"
 #include "base/text.h"
 #include "io/plain_file.h"
