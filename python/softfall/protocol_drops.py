@@ -2,6 +2,7 @@
 """The drops of a protocol: simulated by the programs, or read from the files of a laboratory."""
 from __future__ import annotations
 
+import contextlib
 import csv
 import json
 import math
@@ -17,7 +18,7 @@ from . import programs
 from .case import Case
 from .curves import hic
 from .drop import read_results
-from .errors import Error, InputError
+from .errors import Error, InputError, NumericError
 from .protocol import Condition, Figure, Position, Protocol, length, speed
 from .record import read_record
 from .study import Table, sweep
@@ -49,6 +50,7 @@ class Drop:
     grade: str = ""
     note: str = ""
     curve: tuple[Any, Any] | None = None  # s, g
+    view: Path | None = None  # the folder of its report.html and view.html
     draws: dict[str, dict[str, float]] = field(default_factory=dict)
 
     @property
@@ -65,6 +67,7 @@ class Search:
     position: str
     folder: Path
     summary: dict[str, Any]
+    view: Path | None = None  # as that of a drop, at the critical height
 
 
 @dataclass
@@ -135,7 +138,8 @@ def _case(p: Protocol, pad: Case, condition: Condition, position: Position, miss
 def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None, draws: int | None = None, **options: Any) -> Drops:
     """Simulates the drops of a protocol on the pad of a case, below `output`. What is there is used again.
 
-    `posterior`: a folder of draws of the foam. `options` are those of softfall-sweep and softfall-cfh: jobs, threads, engine, profile.
+    `posterior`: a folder of draws of the foam. `options` are those of softfall-sweep and softfall-cfh: jobs, threads, engine, profile; `views` is
+    softfall-sweep's, and makes the view at a critical height.
     """
     made = Drops()
     output.mkdir(parents=True, exist_ok=True)
@@ -164,10 +168,17 @@ def _search(p: Protocol, case: Case, condition: Condition, position: Position, f
             options: Mapping[str, Any]) -> Search:
     limits = {figure.key: figure.limit for figure in p.figures}
     given = {"limit_g": limits.get("a_max_g") or 1e6, "limit_hic": limits.get("hic") or 1e9, "posterior": posterior,
-             "force": (folder / "cfh.json").exists(), **options}
+             "force": (folder / "cfh.json").exists(), **options, "views": None}
     programs.run("cfh", [str(case.path), f"--output={folder}", *(f"--set={key}={text}" for key, text in case.overrides.items()),
                          *programs.options(given)])
-    return Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
+    search = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
+    height = search.summary["critical_fall_height"].get("height_m")
+    if options.get("views") and height:
+        drop = case.copy()
+        drop["missile.velocity"] = f"{speed(height):.12g} m/s"
+        with contextlib.suppress(NumericError):  # a height between drops that worked may be one at which the foam locks up
+            search.view = drop.run(threads=options.get("threads"), output=folder / "view", force=True).report().parent
+    return search
 
 
 def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
@@ -189,6 +200,8 @@ def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, fo
 def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -> list[Drop]:
     """Returns the rows of runs.csv as drops; the draws of a posterior are one drop, whose curve is that of the first."""
     table = Table(folder / "runs.csv")
+    views = {view["id"]: folder / "views" / view["folder"]
+             for view in json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["views"] if view["folder"]}
     drops: dict[Spot, Drop] = {}
     for row in table.rows:
         cell = dict(zip(table.columns, row))
@@ -198,6 +211,7 @@ def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -
         results = folder / "runs" / cell["folder"] / "results.h5"
         usable = cell["run_status"] == "done" and cell["grade"] != "do not use"
         drop = drops.setdefault(spot, Drop(spot, 1, str(results), grade=cell["grade"] or "do not use", note=cell["message"]))
+        drop.view = drop.view or views.get(int(cell["id"]))
         if not usable:
             drop.note = cell["message"] or "do not use"
             drop.grade = "do not use"

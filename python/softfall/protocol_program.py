@@ -96,7 +96,7 @@ def perform(o: argparse.Namespace) -> str:
             if "=" not in text:
                 raise InputError(f"--set {text}: KEY=VALUE is expected")
         pad = Case(o.pad, dict(text.split("=", 1) for text in o.set))
-        options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile}
+        options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile, "views": o.views}
         output.mkdir(parents=True, exist_ok=True)
         parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, **options)
     outcomes = {what: judge(p, drops) for what, drops in parts.items()}
