@@ -39,6 +39,7 @@ typedef struct missile_surface {
     const int32_t *triangle;
     double radius; /* m; 0 or NaN: the triangles are the missile */
     const double *centre;
+    double plane[2]; /* m, of symmetry, normal to x and y; NaN: none */
 } missile_surface;
 
 /* The point `i` and `j` parts of `parts` from the first corner of a triangle to the others, on the sphere if
@@ -56,15 +57,41 @@ static void place_point(const missile_surface *m, int64_t triangle, int parts, i
         out[d] = m->centre[d] + m->radius / sqrt(length) * (out[d] - m->centre[d]);
 }
 
+/* Closes the missile in its symmetry planes, by a triangle from each edge there to the middle of its top: the
+ * foam behind a plane would be seen through the open half. Returns the number of triangles behind the `count`
+ * at `corner`. */
+static int64_t close_missile(const missile_surface *m, double *corner, int64_t count) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
+    int64_t made = 0;
+    for (int64_t k = 0; k < 9 * count; k++) {
+        low[k % 3] = fmin(low[k % 3], corner[k]);
+        high[k % 3] = fmax(high[k % 3], corner[k]);
+    }
+    for (int d = 0; d < 3; d++)
+        middle[d] = d == 2 ? high[d] : isfinite(m->plane[d]) ? m->plane[d] : 0.5 * (low[d] + high[d]);
+    for (int64_t k = 0; k < 3 * count; k++)
+        for (int d = 0; d < 2; d++) {
+            const double *a = &corner[3 * k], *b = &corner[3 * (k % 3 == 2 ? k - 2 : k + 1)];
+            const double near = 1e-6 * (high[2] - low[2]);
+            if (!(fabs(a[d] - m->plane[d]) < near && fabs(b[d] - m->plane[d]) < near) || made == count)
+                continue;
+            double *to = &corner[9 * (count + made++)];
+            memcpy(to, a, sizeof middle);
+            memcpy(to + 3, b, sizeof middle);
+            memcpy(to + 6, middle, sizeof middle);
+        }
+    return made;
+}
+
 /* Each triangle of a sphere becomes `parts` x `parts` smaller ones: the foam would be seen through coarse
  * ones. */
 static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *err) {
     int parts = m->radius > 0 ? 4 : 1;
-    int64_t pieces = m->triangles * parts * parts;
-    s->missile.position = sf_alloc(err, 9 * (unsigned long)pieces, sizeof(double), "the missile's picture");
-    s->missile_position = sf_alloc(err, 9 * (unsigned long)pieces, sizeof(double), "the missile's picture");
+    int64_t pieces = m->triangles * parts * parts, most = 2 * pieces;
+    s->missile.position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
+    s->missile_position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
     s->missile.face =
-        sf_alloc(err, 4 * (unsigned long)pieces, sizeof *s->missile.face, "the missile's picture");
+        sf_alloc(err, 4 * (unsigned long)most, sizeof *s->missile.face, "the missile's picture");
     if (err->status != SF_OK)
         return err->status;
     double *to = s->missile_position;
@@ -76,6 +103,7 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
                     place_point(m, t, parts, i + turned, j + 1, to + 3);
                     place_point(m, t, parts, i, j + turned, to + 6);
                 }
+    pieces += close_missile(m, s->missile_position, pieces);
     s->missile.node_count = 3 * pieces;
     s->missile.face_count = pieces;
     for (int64_t k = 0; k < 9 * pieces; k++)
@@ -89,10 +117,15 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
 static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
     const sf_cells cells = {m->node_count, m->cell_count, m->position,
                             m->cell_type,  m->cell_ptr,   m->cell_node};
+    double place;
     *s = (sf_shape){.unit = unit};
-    const missile_surface missile = {m->surface_triangle_count, m->surface_position, m->surface_triangle,
-                                     m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0,
-                                     m->missile.sphere_centre};
+    missile_surface missile = {
+        m->surface_triangle_count, m->surface_position,
+        m->surface_triangle,       m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0,
+        m->missile.sphere_centre,  {NAN, NAN}};
+    for (int d = 0; d < 2; d++)
+        if (sf_symmetry_plane(m, d, &place))
+            missile.plane[d] = place;
     if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
         sf_shape_free(s);
     return err->status;
@@ -102,8 +135,9 @@ sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_
     const sf_cells cells = {r->node_count, r->cell_count, r->position,
                             r->cell_type,  r->cell_ptr,   r->cell_node};
     *s = (sf_shape){.unit = unit};
-    const missile_surface missile = {r->surface_triangle_count, r->surface_position, r->surface_triangle,
-                                     r->sphere_radius, r->sphere_centre};
+    const missile_surface missile = {r->surface_triangle_count, r->surface_position,
+                                     r->surface_triangle,       r->sphere_radius,
+                                     r->sphere_centre,          {r->symmetry_place[0], r->symmetry_place[1]}};
     if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
         sf_shape_free(s);
     return err->status;
