@@ -173,7 +173,7 @@ static void every_button_is_pressed_by_a_click(void **state) {
         "# report, paraview, save\nwait saved 300\nactivity\nquit\n");
     do_shell(
         p,
-        "fake; rm -rf *-saved; click() { has clicks.txt \"$1\" && press_button $2 >>places; }; rm -f places; "
+        "export XDG_CACHE_HOME=$PWD/clicks; fake; rm -rf *-saved; click() { has clicks.txt \"$1\" && press_button $2 >>places; }; rm -f places; "
         "{ click ready mesh && click meshed run && click running stop && click '^again' run && click done report && "
         "has opened view.html && click done paraview && has opened pad_paraview.py && click done save; } & gui clicks; "
         "wait; cat clicks.err; ! test -s clicks.err");
@@ -193,7 +193,7 @@ static void a_monkey_leaves_no_orphan_and_no_lost_file(void **state) {
     program_write_text(p, "status.script", "status\n");
     do_shell(
         p,
-        "fake; find case.cfg geo foam -type f | sort | xargs md5sum >before; "
+        "export XDG_CACHE_HOME=$PWD/monkey; fake; find case.cfg geo foam -type f | sort | xargs md5sum >before; "
         "for hand in 'monkey 1 1000' 'wild 2 300'; do SCREEN_FOLDER=. python3 \"$SF_SOURCE_DIR/tests/mouse.py\" $hand "
         "\"$SF_BIN_DIR/softfall-gui\" -t 1 --script status.script case.cfg 2>monkey.err || exit 1; "
         "find case.cfg geo foam -type f | sort | xargs md5sum | diff before - && gone || exit 1; done");

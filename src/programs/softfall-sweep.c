@@ -51,8 +51,10 @@ static sf_status write_report(sf_study *study, job *j, sf_error *err) {
     char warning[320];
     const sf_sweep_report report = {&j->plan, &j->runs, &j->analysis, study->command, &j->views};
     SF_TRY(sf_analysis_make(&j->runs, &j->analysis, err));
-    if (j->view_words)
-        SF_TRY(sf_sweep_views_make(j->view_words, &j->runs, study->directory, study->threads, &j->views, err));
+    if (j->view_words && sf_sweep_views_choose(j->view_words, &j->plan, &j->runs, &j->views, err) == SF_OK)
+        sf_sweep_views_make(&j->plan, study->directory, study->threads, &j->views, err);
+    if (err->status != SF_OK)
+        return err->status;
     SF_TRY(sf_sweep_plot(&study->output, &j->analysis, study->runs, warning, sizeof warning, err));
     SF_TRY(sf_sweep_write_page(&study->output, &report, err));
     SF_TRY(sf_sweep_write_json(&study->output, &report, err));
@@ -67,7 +69,7 @@ static sf_status check(sf_study *study, job *j, sf_error *err) {
     bool known = false;
     SF_TRY(sf_plan_read(study->input, j->yes, &j->plan, err));
     if (j->view_words)
-        SF_TRY(sf_sweep_views_check(j->view_words, &j->plan, err));
+        SF_TRY(sf_sweep_views_choose(j->view_words, &j->plan, NULL, &j->views, err));
     SF_TRY(sf_sweep_check_inputs(&j->plan, &j->campaign.inputs, err));
     j->campaign.plan = &j->plan;
     j->campaign.look = sf_sweep_check_inputs;

@@ -14,16 +14,19 @@
 
 /* ---- which ---- */
 
-static void add(sf_sweep_views *v, int64_t row, const char *reason) {
+static sf_status add(sf_sweep_views *v, int64_t row, const char *reason, sf_error *err) {
     int k = 0;
     while (k < v->count && v->view[k].row != row)
         k++;
-    if (row < 0 || k == SF_SWEEP_VIEWS)
-        return;
+    if (row < 0)
+        return SF_OK;
+    if (k == SF_SWEEP_VIEWS)
+        return SF_FAIL(err, SF_ERR_INPUT, "--views: more than %d runs", SF_SWEEP_VIEWS);
     if (k == v->count)
         v->view[v->count++] = (sf_sweep_view){.row = row};
     size_t used = strlen(v->view[k].reason);
     snprintf(v->view[k].reason + used, sizeof v->view[k].reason - used, "%s%s", used ? ", " : "", reason);
+    return SF_OK;
 }
 
 /* The usable row of the largest figure; with `limit` the one that is nearest to it. -1: there is none. */
@@ -41,63 +44,50 @@ static int64_t find_row(const sf_runs *r, size_t figure, double limit) {
     return best;
 }
 
-static void add_found(sf_sweep_views *v, const sf_runs *r, bool by_limit) {
+/* For each figure of the plan; with `runs` NULL only counts those that have a limit. */
+static int add_found(const sf_plan *p, const sf_runs *runs, bool by_limit, sf_sweep_views *v, sf_error *err) {
     char reason[80];
-    for (int k = 0; k < r->plan->figure_count; k++) {
-        const sf_sweep_limit *f = &r->plan->figure[k];
+    int figures = 0;
+    for (int k = 0; k < p->figure_count; k++) {
+        const sf_sweep_limit *f = &p->figure[k];
         snprintf(reason, sizeof reason, by_limit ? "%s nearest to its limit" : "largest %s", f->figure);
-        if (!by_limit || !isnan(f->limit))
-            add(v, find_row(r, sf_runs_figure(f->figure), by_limit ? f->limit : NAN), reason);
+        if (by_limit && isnan(f->limit))
+            continue;
+        figures++;
+        if (runs)
+            add(v, find_row(runs, sf_runs_figure(f->figure), by_limit ? f->limit : NAN), reason, err);
     }
+    return figures;
 }
 
-static bool has_limit(const sf_plan *p) {
-    for (int k = 0; k < p->figure_count; k++)
-        if (!isnan(p->figure[k].limit))
-            return true;
-    return false;
-}
-
-/* Takes one word; with `runs` NULL it is only checked. */
 static sf_status take_word(const char *word, const sf_plan *p, const sf_runs *runs, sf_sweep_views *v,
                            sf_error *err) {
     char *end = NULL;
     long long id = strtoll(word, &end, 10);
     if (strcmp(word, "all") == 0) {
-        if (p->rows > SF_SWEEP_VIEWS)
-            return SF_FAIL(err, SF_ERR_INPUT, "--views all: the plan has %lld runs, %d can have views",
-                           (long long)p->rows, SF_SWEEP_VIEWS);
-        for (int64_t row = 0; runs && row < p->rows; row++)
-            add(v, row, "all");
+        for (int64_t row = 0; row < p->rows && err->status == SF_OK; row++)
+            add(v, row, "all", err);
     } else if (strcmp(word, "worst") == 0 || strcmp(word, "limit") == 0) {
-        if (*word == 'l' && !has_limit(p))
-            return SF_FAIL(err, SF_ERR_INPUT, "--views limit: no figure of the plan has a limit");
-        if (runs)
-            add_found(v, runs, *word == 'l');
+        if (add_found(p, runs, *word == 'l', v, err) == 0)
+            SF_FAIL(err, SF_ERR_INPUT, "--views limit: no figure of the plan has a limit");
     } else if (end == word || *end || id < 1 || id > p->rows) {
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "--views: \"%s\" is neither worst, limit, all nor the id of one of the %lld runs",
-                       word, (long long)p->rows);
+        SF_FAIL(err, SF_ERR_INPUT,
+                "--views: \"%s\" is neither worst, limit, all nor the id of one of the %lld runs", word,
+                (long long)p->rows);
     } else {
-        add(v, id - 1, "asked for");
+        add(v, id - 1, "asked for", err);
     }
-    return SF_OK;
+    return err->status;
 }
 
-static sf_status take_words(const char *words, const sf_plan *p, const sf_runs *runs, sf_sweep_views *v,
-                            sf_error *err) {
+sf_status sf_sweep_views_choose(const char *words, const sf_plan *p, const sf_runs *runs, sf_sweep_views *v,
+                                sf_error *err) {
     char *copy = strdup(words), *rest = copy;
-    if (!copy)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the views");
+    *v = (sf_sweep_views){0};
     for (char *word = strsep(&rest, ","); word && err->status == SF_OK; word = strsep(&rest, ","))
         take_word(word, p, runs, v, err);
     free(copy);
     return err->status;
-}
-
-sf_status sf_sweep_views_check(const char *words, const sf_plan *plan, sf_error *err) {
-    sf_sweep_views none = {0};
-    return take_words(words, plan, NULL, &none, err);
 }
 
 /* ---- their reports ---- */
@@ -105,7 +95,7 @@ sf_status sf_sweep_views_check(const char *words, const sf_plan *plan, sf_error 
 /* A drop that failed on its way has results, too. */
 static sf_status make_view(const sf_plan *p, const char *parent, int threads, sf_sweep_view *v,
                            sf_error *err) {
-    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE], page[SF_RUN_PATH_SIZE + 32];
     const char *overrides[SF_RUNNER_OVERRIDES];
     sf_run_folder at;
     sf_error failure = SF_ERROR_INIT, unreported = SF_ERROR_INIT;
@@ -114,32 +104,28 @@ static sf_status make_view(const sf_plan *p, const char *parent, int threads, sf
         overrides[k] = text[k];
     if (sf_run_folder_name(parent, SF_SWEEP_LABEL, p->case_path, count, overrides, &at, &failure) == SF_OK)
         sf_run_folder_simulate(&at, p->case_path, count, overrides, threads, &failure);
-    if (failure.status == SF_OK || (failure.status == SF_ERR_NUMERIC && sf_replace_exists(at.results)))
+    if (failure.status == SF_OK || (failure.status == SF_ERR_NUMERIC && sf_replace_exists(at.results))) {
         sf_run_folder_report(&at, &unreported);
-    if (failure.status == SF_INTERRUPTED || unreported.status == SF_INTERRUPTED)
-        return sf_run_folder_interrupted(err);
-    char page[SF_RUN_PATH_SIZE + 32];
-    snprintf(page, sizeof page, "%s/report/report.html", at.path);
-    if ((failure.status == SF_OK || failure.status == SF_ERR_NUMERIC) && sf_replace_exists(page))
+        snprintf(page, sizeof page, "%s/report/view.html", at.path);
+        v->has_view = sf_replace_exists(page);
         snprintf(v->folder, sizeof v->folder, "%.40s/report", sf_path_name(at.path));
-    snprintf(page, sizeof page, "%s/report/view.html", at.path);
-    v->has_view = sf_replace_exists(page);
-    snprintf(v->problem, sizeof v->problem, "%.500s",
-             failure.status != SF_OK      ? failure.text
-             : unreported.status != SF_OK ? unreported.text
-                                          : "");
-    return SF_OK;
+    }
+    if (failure.status == SF_OK)
+        failure = unreported;
+    if (unreported.status != SF_OK)
+        *v->folder = '\0';
+    snprintf(v->problem, sizeof v->problem, "%.500s", failure.status != SF_OK ? failure.text : "");
+    return failure.status == SF_INTERRUPTED ? sf_run_folder_interrupted(err) : SF_OK;
 }
 
-sf_status sf_sweep_views_make(const char *words, const sf_runs *runs, const char *directory, int threads,
-                              sf_sweep_views *views, sf_error *err) {
+sf_status sf_sweep_views_make(const sf_plan *plan, const char *directory, int threads, sf_sweep_views *views,
+                              sf_error *err) {
     char parent[PATH_MAX];
-    SF_TRY(take_words(words, runs->plan, runs, views, err));
     if (snprintf(parent, sizeof parent, "%s/views", directory) >= (int)sizeof parent)
         return SF_FAIL(err, SF_ERR_INPUT, "the name of the directory is too long: %.100s...", directory);
     SF_TRY(sf_folder_own(parent, err));
     for (int k = 0; k < views->count && err->status == SF_OK; k++)
-        make_view(runs->plan, parent, threads, &views->view[k], err);
+        make_view(plan, parent, threads, &views->view[k], err);
     return err->status;
 }
 

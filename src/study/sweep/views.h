@@ -21,14 +21,15 @@ typedef struct sf_sweep_views {
     sf_sweep_view view[SF_SWEEP_VIEWS];
 } sf_sweep_views;
 
-/* Checks `words` against the plan: "all", "worst" and "limit" and numbers of runs, with commas between them.
- */
-sf_status sf_sweep_views_check(const char *words, const sf_plan *plan, sf_error *err);
+/* Chooses rows by `words`: "all", "worst", "limit" and numbers of runs, with commas between them. With `runs`
+ * NULL the words are checked. SF_ERR_INPUT: one is none of these, or there are too many rows. */
+sf_status sf_sweep_views_choose(const char *words, const sf_plan *plan, const sf_runs *runs,
+                                sf_sweep_views *views, sf_error *err);
 
-/* Chooses the rows and makes their reports in `directory`/views, one after the other on this machine; what is
- * there is used again. The failure of a run is in its view. Errors: those of the folders; SF_INTERRUPTED. */
-sf_status sf_sweep_views_make(const char *words, const sf_runs *runs, const char *directory, int threads,
-                              sf_sweep_views *views, sf_error *err);
+/* Makes their reports in `directory`/views, one after the other on this machine; drops that are there are
+ * used again. The failure of a run is in its view. Errors: those of the folders; SF_INTERRUPTED. */
+sf_status sf_sweep_views_make(const sf_plan *plan, const char *directory, int threads, sf_sweep_views *views,
+                              sf_error *err);
 
 /* Parts of report.html, which is in the directory, and of sweep.json. */
 void sf_sweep_views_put(FILE *page, const sf_runs *runs, const sf_sweep_views *views);
