@@ -35,12 +35,17 @@ static const char tools[] =
     "  done; sleep 0.1; done; return 1; }\n"
     "# the button at the bottom of the tree\n"
     "click_run() { find_window && xdotool mousemove $((X + 338)) $((Y + HEIGHT - 38)) sleep 0.3 click 1; }\n"
+    "# a button of the tree; prints its place\n"
+    "press_button() { SCREEN_FOLDER=. python3 \"$SF_SOURCE_DIR/tests/mouse.py\" button $1; }\n"
     "press_key() { find_window && xdotool mousemove $((X + 800)) $((Y + 400)) sleep 0.3 key $1; }\n"
     "shoot() { test -z \"$SF_PICTURES\" || { sleep 2; ffmpeg -y -loglevel error -f x11grab -video_size 1300x980 -i $DISPLAY -frames:v 1 \"$SF_PICTURES/$1.png\"; }; }\n"
     "# programs of softfall that work in this folder\n"
     "left() { for p in /proc/[0-9]*; do test \"$(readlink $p/cwd)\" = \"$PWD\" && grep -l '^softfall' $p/comm; done "
     "2>/dev/null; true; }\n"
     "gone() { for k in $(seq 400); do test -z \"$(left)\" && return 0; sleep 0.1; done; left; return 1; }\n"
+    "# programs that the window opens note what they are told to open\n"
+    "fake() { mkdir -p fake; printf '#!/bin/sh\\necho $(basename $0) \"$@\" >>opened\\n' >fake/paraview; chmod +x fake/paraview; "
+    "for name in xdg-open emacs firefox; do cp fake/paraview fake/$name; done; PATH=$PWD/fake:$PATH; rm -f opened; }\n"
     "gui() { \"$SF_BIN_DIR/softfall-gui\" -t 1 --script $1.script case.cfg >$1.txt 2>$1.err; code=$?; "
     ": >$1.txt.ended; return $code; }\n";
 
@@ -56,7 +61,7 @@ static int set_up(void **state) {
     has_display =
         program_shell(
             p,
-            "command -v Xvfb xdotool >/dev/null && { Xvfb -displayfd 3 -screen 0 1300x980x24 -nolisten tcp "
+            "command -v Xvfb xdotool >/dev/null && { Xvfb -displayfd 3 -screen 0 1300x980x24 -fbdir . -nolisten tcp "
             "3>display >/dev/null 2>&1 & echo $! >xvfb.pid; for k in $(seq 100); do test -s display && "
             "exit 0; sleep 0.1; done; exit 1; }")
             .code == 0;
@@ -115,7 +120,7 @@ static void assert_figures(const program_place *p, const char *shown, const char
     snprintf(path, sizeof path, "%s/summary.json", name);
     snprintf(a_max, sizeof a_max, "%.*s g (limit", (int)strcspn(line_of(p, path, "\"a_max_g\": "), ","),
              line_of(p, path, "\"a_max_g\": "));
-    snprintf(hic, sizeof hic, "%.*s, window", (int)strcspn(line_of(p, path, "\"hic\": "), ","),
+    snprintf(hic, sizeof hic, "%.*s (limit", (int)strcspn(line_of(p, path, "\"hic\": "), ","),
              line_of(p, path, "\"hic\": "));
     assert_memory_equal(line_of(p, shown, "1Drop/71a_max = "), a_max, strlen(a_max));
     assert_memory_equal(line_of(p, shown, "1Drop/72HIC = "), hic, strlen(hic));
@@ -133,8 +138,7 @@ static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
         "press report\npress paraview\npress save\nwait saved 300\nquit\n");
     do_shell(
         p,
-        "mkdir fake; printf '#!/bin/sh\\necho $(basename $0) \"$@\" >>opened\\n' >fake/paraview; chmod +x fake/paraview; "
-        "cp fake/paraview fake/xdg-open; PATH=$PWD/fake:$PATH; "
+        "fake; "
         "find case.cfg geo foam home -type f | sort | xargs md5sum >before; "
         "{ has run.txt 'activity = ready' && shoot window-start && click_run && "
         "has run.txt 1Drop/70verdict && shoot window-results; } & gui run; wait; "
@@ -154,6 +158,46 @@ static void a_click_on_run_has_the_figures_of_the_command_line(void **state) {
     /* what was saved is the same drop */
     compute(p, "saved", "$(echo *-saved)/case.cfg", "");
     assert_figures(p, "run.txt", "saved");
+}
+
+/* Mesh, Run, Stop, Run again, Report, ParaView, Save case, each by a click in the tree, where it stands at
+ * the end as at the beginning. */
+static void every_button_is_pressed_by_a_click(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(
+        p, "clicks.script",
+        "set solver.step_limit=0.1 us\nactivity\n# mesh\nwait meshed 300\nactivity\n# run\n"
+        "wait running 300\nactivity\n# stop\nwait stopped 300\nset solver.step_limit=2 us\nprint again\n# run\n"
+        "wait done 900\nactivity\nprint 1Drop/70verdict\nprint 1Drop/71a_max\nprint 1Drop/72HIC\n"
+        "# report, paraview, save\nwait saved 300\nactivity\nquit\n");
+    do_shell(
+        p,
+        "export XDG_CACHE_HOME=$PWD/clicks; fake; rm -rf *-saved; click() { has clicks.txt \"$1\" && press_button $2 >>places; }; rm -f places; "
+        "{ click ready mesh && click meshed run && click running stop && click '^again' run && click done report && "
+        "has opened view.html && click done paraview && has opened pad_paraview.py && click done save; } & gui clicks; "
+        "wait; cat clicks.err; ! test -s clicks.err");
+    do_shell(p, "test $(sort -u places | wc -l) = 6 && test $(sort places | uniq -d | wc -l) = 1 && "
+                "grep -q 'xdg-open .*/report/report.html' opened && test -s \"$(echo *-saved)/case.cfg\"");
+    assert_string_equal(line_of(p, "clicks.txt", "1Drop/70verdict = "), "valid with remarks");
+    compute(p, "clicked", "case.cfg", "--set solver.step_limit='2 us'");
+    assert_figures(p, "clicks.txt", "clicked");
+}
+
+/* A thousand clicks, wheels, drags, keys and values by a random hand with a fixed seed: the window answers or
+ * was closed by it, no program is left, and the files of the case are as they were. So they are after 300
+ * more with the menus of gmsh, which may end the window. */
+static void a_monkey_leaves_no_orphan_and_no_lost_file(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(p, "status.script", "status\n");
+    do_shell(
+        p,
+        "export XDG_CACHE_HOME=$PWD/monkey; fake; find case.cfg geo foam -type f | sort | xargs md5sum >before; "
+        "for hand in 'monkey 1 1000' 'wild 2 300'; do SCREEN_FOLDER=. python3 \"$SF_SOURCE_DIR/tests/mouse.py\" $hand "
+        "\"$SF_BIN_DIR/softfall-gui\" -t 1 --script status.script case.cfg 2>monkey.err || exit 1; "
+        "find case.cfg geo foam -type f | sort | xargs md5sum | diff before - && gone || exit 1; done");
+    program_succeed(p, "pre", "case.cfg -o after.h5");
 }
 
 static void stop_in_the_middle_can_be_resumed(void **state) {
@@ -345,6 +389,8 @@ static void nothing_is_left_of_a_window_that_is_closed(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_click_on_run_has_the_figures_of_the_command_line),
+        cmocka_unit_test(every_button_is_pressed_by_a_click),
+        cmocka_unit_test(a_monkey_leaves_no_orphan_and_no_lost_file),
         cmocka_unit_test(stop_in_the_middle_can_be_resumed),
         cmocka_unit_test(a_wrong_value_has_the_sentence_of_the_command_line),
         cmocka_unit_test(a_run_is_that_of_its_values_and_files),

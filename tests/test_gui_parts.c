@@ -10,6 +10,7 @@
 #include "gui/fields.h"
 #include "io/process.h"
 #include <errno.h>
+#include <math.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -330,6 +331,46 @@ static void the_skin_has_the_faces_of_one_cell_only(void **state) {
     sf_shape_free(&s);
 }
 
+/* The area of the missile's triangles that lie in the plane normal to an axis. */
+static double area_in_plane(const sf_body *b, int axis) {
+    double area = 0;
+    for (int64_t t = 0; t < b->face_count; t++) {
+        const double *p = &b->position[9 * t];
+        double u[2], v[2];
+        if (!(fabs(p[axis]) < 1e-9 && fabs(p[3 + axis]) < 1e-9 && fabs(p[6 + axis]) < 1e-9))
+            continue;
+        for (int k = 0; k < 2; k++) {
+            int d = k == 0 ? 1 - axis : 2;
+            u[k] = p[3 + d] - p[d];
+            v[k] = p[6 + d] - p[d];
+        }
+        area += 0.5 * fabs(u[0] * v[1] - u[1] * v[0]);
+    }
+    return area;
+}
+
+/* A quarter of a hemisphere of one triangle: the section that the symmetry planes show is a quarter of a
+ * circle. */
+static void the_missile_is_closed_in_the_symmetry_planes(void **state) {
+    double corner[] = {0.1, 0, 0, 0, 0.1, 0, 0, 0, -0.1};
+    int32_t triangle[] = {0, 1, 2};
+    sf_results r = {.surface_triangle_count = 1,
+                    .surface_position = corner,
+                    .surface_triangle = triangle,
+                    .sphere_radius = 0.1};
+    sf_shape s;
+    sf_error err = SF_ERROR_INIT;
+    (void)state;
+    for (int planes = 0; planes < 2; planes++) {
+        r.symmetry_place[0] = r.symmetry_place[1] = planes ? 0 : NAN;
+        assert_int_equal(sf_shape_of_results(&r, 1e-3, &s, &err), SF_OK);
+        assert_int_equal(s.missile.face_count, planes ? 16 + 8 : 16);
+        for (int axis = 0; axis < 2; axis++)
+            assert_true(fabs(area_in_plane(&s.missile, axis) - (planes ? 7854 : 0)) < 250);
+        sf_shape_free(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(run_goes_through_its_programs),
@@ -348,6 +389,7 @@ int main(void) {
         cmocka_unit_test(every_value_of_a_case_is_told_as_it_can_be_set),
         cmocka_unit_test(without_a_place_for_runs_there_is_no_path),
         cmocka_unit_test(the_skin_has_the_faces_of_one_cell_only),
+        cmocka_unit_test(the_missile_is_closed_in_the_symmetry_planes),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

@@ -234,6 +234,47 @@ static void folders_that_are_not_of_the_plan_or_taken_are_refused(void **state) 
     assert_int_equal(program_shell(p, "test -e new").code, 1);
 }
 
+/* The worst run, and one whose missile reaches the anvil: report and view of each, with the figures of
+ * runs.csv. */
+static void runs_are_simulated_once_more_for_their_views(void **state) {
+    const program_place *p = *state;
+    char text[1024];
+    snprintf(
+        text, sizeof text,
+        "case = \"%s\";\nset = [\"geometry.parameters.fine_spacing=20.0\", "
+        "\"geometry.parameters.outer_spacing=40.0\", \"pad.mesh_error_limit=9.0\"];\n"
+        "factors = ( { key = \"missile.velocity\"; name = \"sp<ee>d\"; values = [\"3 m/s\", \"4 m/s\", \"30 m/s\"]; } );\n",
+        fixture_source("examples/eva50-v4.5/case.cfg"));
+    program_write_text(p, "views.cfg", text);
+    static const char *const bad[] = {"", "x", "4", "0", "worst,", "2x"};
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        program_result r = program_run(p, "sweep", "views.cfg -o seen --views '%s'", bad[k]);
+        assert_int_equal(r.code, SF_ERR_INPUT);
+        assert_non_null(strstr(r.err, "is neither worst, limit, all nor the id of one of the 3 runs"));
+    }
+    assert_int_equal(program_shell(p, "test -e seen").code, 1);
+    program_succeed(p, "sweep", "views.cfg -o seen --jobs 2");
+    assert_int_equal(
+        program_shell(p, "test -e seen/views || grep -q 'Runs to look at' seen/report.html").code, 1);
+    program_succeed(p, "sweep", "views.cfg -o seen --jobs 2 --views worst,limit,3");
+    program_assert_page(p, "seen/report.html",
+                        "Run 2 (largest a_max_g, largest hic, a_max_g nearest to its limit,");
+    program_assert_page(p, "seen/report.html", "Run 3 (asked for): sp<ee>d (m/s) 30; ");
+    program_write_text(
+        p, "seen.py",
+        "import csv, json, os, re\npage = open('seen/report.html').read()\nrows = list(csv.DictReader(open('seen/runs.csv')))\n"
+        "views = json.load(open('seen/sweep.json'))['views']\nassert [v['id'] for v in views] == [2, 3]\n"
+        "for v in views:\n    here = 'views/' + v['folder']\n"
+        "    for name in ('report.html', 'view.html'):\n"
+        "        assert '<a href=\"%s/%s\">' % (here, name) in page and os.path.getsize('seen/%s/%s' % (here, name)) > 50000\n"
+        "    told = json.load(open('seen/%s/summary.json' % here))\n"
+        "    if v['id'] == 2: assert all('%.9g' % told[k] == rows[1][k] for k in ('a_max_g', 'hic', 'max_indentation_mm')) and not v['problem']\n"
+        "    else: assert told['verdict']['grade'] == 'do not use' and 'anvil' in v['problem']\n");
+    program_result r = program_shell(p, "python3 seen.py");
+    if (r.code != 0)
+        fail_msg("%s", r.err);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dry_run_tells_the_table_and_the_cost_and_writes_nothing),
@@ -244,6 +285,7 @@ int main(void) {
         cmocka_unit_test(a_geometry_that_changes_meanwhile_ends_the_campaign),
         cmocka_unit_test(runs_are_overlaid),
         cmocka_unit_test(folders_that_are_not_of_the_plan_or_taken_are_refused),
+        cmocka_unit_test(runs_are_simulated_once_more_for_their_views),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

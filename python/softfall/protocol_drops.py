@@ -2,6 +2,7 @@
 """The drops of a protocol: simulated by the programs, or read from the files of a laboratory."""
 from __future__ import annotations
 
+import contextlib
 import csv
 import hashlib
 import json
@@ -50,6 +51,7 @@ class Drop:
     grade: str = ""
     note: str = ""
     curve: tuple[Any, Any] | None = None  # s, g
+    view: Path | None = None  # the folder of its report.html and view.html
     draws: dict[str, dict[str, float]] = field(default_factory=dict)
     mesh_error: float = 0.0  # expected of a_max, simulated; the figures fall short by it
 
@@ -67,6 +69,7 @@ class Search:
     position: str
     folder: Path
     summary: dict[str, Any]
+    view: Path | None = None  # as that of a drop, at the critical height
 
 
 @dataclass
@@ -148,7 +151,8 @@ def case_at(p: Protocol, pad: Case, condition: Condition, position: Position, mi
 def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None, draws: int | None = None, **options: Any) -> Drops:
     """Simulates the drops of a protocol on the pad of a case, below `output`. What is there is used again.
 
-    `posterior`: a folder of draws of the foam. `options` are those of softfall-sweep and softfall-cfh: jobs, threads, engine, profile.
+    `posterior`: a folder of draws of the foam. `options` are those of softfall-sweep and softfall-cfh: jobs, threads, engine, profile; `views` is
+    softfall-sweep's, and makes the view at a critical height.
     """
     made = Drops()
     output.mkdir(parents=True, exist_ok=True)
@@ -249,6 +253,8 @@ def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapp
             result.post(filter=int(p.filter))
             drops.append(Drop(spot, number, str(path), _take_figures(p.figures, result.figures, result.curve()), str(result.verdict),
                               "; ".join(result.verdict.remarks), result.curve(), mesh_error=_mesh_error(result.verdict)))
+            if options.get("views"):  # they have all fields
+                drops[-1].view = read_results(path, output=place / f"view-{number}").report().parent
     return drops
 
 
@@ -257,10 +263,17 @@ def search(p: Protocol, case: Case, condition: Condition, position: Position, fo
     folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
     given = {"limit_g": p.limit_of("a_max_g") or 1e6, "limit_hic": p.limit_of("hic") or 1e9, "posterior": posterior,
-             "force": (folder / "cfh.json").exists(), **options}
+             "force": (folder / "cfh.json").exists(), **options, "views": None}
     programs.run("cfh", [str(case.path), f"--output={folder}", *(f"--set={key}={text}" for key, text in case.overrides.items()),
                          *programs.options(given)])
-    return Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
+    found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
+    height = found.summary["critical_fall_height"].get("height_m")
+    if options.get("views") and height:
+        drop = case.copy()
+        drop["missile.velocity"] = f"{speed(height):.12g} m/s"
+        with contextlib.suppress(NumericError):  # a height between drops that worked may be one at which the foam locks up
+            found.view = drop.run(threads=options.get("threads"), output=folder / "view", force=True).report().parent
+    return found
 
 
 def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
@@ -284,6 +297,8 @@ def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, fo
 def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -> list[Drop]:
     """Returns the rows of runs.csv as drops; the draws of a posterior are one drop, whose curve is that of the first."""
     table = Table(folder / "runs.csv")
+    views = {view["id"]: folder / "views" / view["folder"]
+             for view in json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["views"] if view["folder"]}
     drops: dict[Spot, Drop] = {}
     for row in table.rows:
         cell = dict(zip(table.columns, row))
@@ -293,6 +308,7 @@ def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -
         results = folder / "runs" / cell["folder"] / "results.h5"
         usable = cell["run_status"] == "done" and cell["grade"] != "do not use"
         drop = drops.setdefault(spot, Drop(spot, 1, str(results), grade=cell["grade"] or "do not use", note=cell["message"]))
+        drop.view = drop.view or views.get(int(cell["id"]))
         if not usable:
             drop.note = cell["message"] or "do not use"
             drop.grade = "do not use"

@@ -114,7 +114,7 @@ def perform(o: argparse.Namespace) -> str:
         pad = Case(o.pad, dict(text.split("=", 1) for text in o.set))
         set_up = {"case": str(pad.path), **({"changed": ", ".join(o.set)} if o.set else {}), **{key: str(pad[key]) for key in SHOWN if pad.get(key) is not None},
                   **({"draws of the foam": str(o.posterior)} if o.posterior else {})}
-        options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile}
+        options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile, "views": o.views}
         output.mkdir(parents=True, exist_ok=True)
         if o.advise:
             required = length(o.required, "--required") if o.required else math.nan

@@ -7,8 +7,10 @@ import html
 import io
 import json
 import math
+import os
 from pathlib import Path
 from typing import Any, Mapping, Sequence
+from urllib.parse import quote
 
 import numpy as np
 
@@ -33,13 +35,27 @@ def _number(value: float, digits: int = 4) -> str:
     return "–" if math.isnan(value) else f"{value:.{digits}g}"
 
 
+class _Link(str):
+    """HTML that stands in a cell as it is."""
+
+
+def _escape(text: str) -> str:
+    return text if isinstance(text, _Link) else html.escape(text)
+
+
+def _links(view: Path | None, output: Path) -> str:
+    """Returns the links to report and view of a drop, relative to the page."""
+    names = [name for name in ("report", "view") if view is not None and (view / f"{name}.html").exists()]
+    return _Link(" ".join(f'<a href="{quote(os.path.relpath(view / f"{name}.html", output))}">{name}</a>' for name in names))  # type: ignore[operator]
+
+
 def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Returns a table without its empty columns; a heading that begins with > is of numbers."""
     used = [k for k, head in enumerate(heads) if any(row[k] not in ("", "–") for row in rows) or not rows]
     heads, rows = [heads[k] for k in used], [[row[k] for k in used] for row in rows]
     classes = [' class="n"' if head.startswith(">") else "" for head in heads]
     head = "".join(f"<th{kind}>{html.escape(text.lstrip('>'))}</th>" for kind, text in zip(classes, heads))
-    body = "".join("<tr>" + "".join(f"<td{kind}>{html.escape(text)}</td>" for kind, text in zip(classes, row)) + "</tr>" for row in rows)
+    body = "".join("<tr>" + "".join(f"<td{kind}>{_escape(text)}</td>" for kind, text in zip(classes, row)) + "</tr>" for row in rows)
     return f"<table><tr>{head}</tr>{body}</table>"
 
 
@@ -102,14 +118,17 @@ def _set_up(p: Protocol, told: Mapping[str, str]) -> str:
     return "<h2>Set-up</h2>" + _table(["", ""], rows)
 
 
-def _drop_table(p: Protocol, parts: Mapping[str, Drops]) -> str:
+def _drop_table(p: Protocol, parts: Mapping[str, Drops], output: Path) -> str:
     keys = [figure.label for figure in p.figures]
     rows = [[what, drop.spot.condition, drop.spot.position, f"{drop.spot.height:g}", drop.spot.mass, str(drop.number),
-             *(_number(drop.figures.get(key, math.nan)) for key in keys), drop.grade, drop.note]
+             *(_number(drop.figures.get(key, math.nan)) for key in keys), drop.grade, drop.note, _links(drop.view, output)]
             for what, drops in parts.items() for drop in drops.drops]
+    found = [[search.condition, search.position, _links(search.view, output)] for drops in parts.values() for search in drops.searches
+             if search.view]
+    searches = "<h2>Drops at the critical height</h2>" + _table(["condition", "position", "look"], found) if found else ""
     if not rows:
-        return ""
-    return "<h2>Drops</h2>" + _table(["", "condition", "position", ">height (m)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note"], rows)
+        return searches
+    return searches + "<h2>Drops</h2>" + _table(["", "condition", "position", ">height (m)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note", "look"], rows)
 
 
 def _choices(advice: Advice | None) -> str:
@@ -140,7 +159,7 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
         f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(p.title)}</title>'
         f"<style>{_STYLE}</style>", _header(p, laboratory, photo), *(_result(what, outcome) for what, outcome in outcomes.items()),
         "<h2>Notes, and what was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
-        _choices(advice), _set_up(p, told or {}), _drop_table(p, parts), _curves(parts), compared, _clauses(p),
+        _choices(advice), _set_up(p, told or {}), _drop_table(p, parts, output), _curves(parts), compared, _clauses(p),
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
     _replace(output / "report.html", page)
     _replace(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
@@ -174,7 +193,7 @@ def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Out
                                "probability": o.probability, "lines": lines(o), "notes": o.notes} for what, o in outcomes.items()},
             "drops": [{"kind": what, "condition": d.spot.condition, "position": d.spot.position, "height_m": d.spot.height, "mass": d.spot.mass,
                        "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "grade": d.grade, "note": d.note,
-                       "source": d.source} for what, drops in parts.items() for d in drops.drops],
+                       "source": d.source, "view": None if d.view is None else str(d.view)} for what, drops in parts.items() for d in drops.drops],
             "comparison": [{key: _plain(value) for key, value in pair.items()} for pair in pairs],
             "advice": advice and {"probability": _plain(advice.probability), "height_m": [_plain(h) for h in advice.height], "loss": _plain(advice.loss),
                                   "bound": advice.bound, "stop": advice.stop, "decision": advice.decision, "problem": advice.problem,

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/activity.h"
 
+#include "base/hash.h"
 #include "gui/fields.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/process.h"
+#include "io/replace.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,15 +109,17 @@ static bool is_watched(const sf_watch *w, const char *path) {
     return false;
 }
 
+void sf_watch_add(sf_watch *w, const char *path) {
+    if (w->count == SF_WATCHED || is_watched(w, path))
+        return;
+    snprintf(w->file[w->count].path, sizeof w->file[w->count].path, "%s", path);
+    w->file[w->count].stamp = sf_watch_stamp_of(path);
+    w->count++;
+}
+
 void sf_watch_register(sf_watch *w, size_t first) {
-    for (size_t k = first; k < sf_plain_count(); k++) {
-        const char *path = sf_plain_get(k).path;
-        if (w->count == SF_WATCHED || is_watched(w, path))
-            continue;
-        snprintf(w->file[w->count].path, sizeof w->file[w->count].path, "%s", path);
-        w->file[w->count].stamp = sf_watch_stamp_of(path);
-        w->count++;
-    }
+    for (size_t k = first; k < sf_plain_count(); k++)
+        sf_watch_add(w, sf_plain_get(k).path);
 }
 
 const char *sf_watch_changed(sf_watch *w) {
@@ -214,4 +219,21 @@ sf_status sf_cache_find(char *path, size_t size, sf_error *err) {
     if (find(path, size, err) != SF_OK)
         *path = '\0'; /* no run may go where it is not allowed to */
     return err->status;
+}
+
+void sf_cache_wrap(const char *cache, const char *geometry, char *wrap, size_t size) {
+    char whole[PATH_MAX];
+    sf_replacement out;
+    sf_error none = SF_ERROR_INIT;
+    *wrap = '\0';
+    if (!*cache || !realpath(geometry, whole) || strpbrk(whole, "\"\\\n"))
+        return;
+    uint64_t hash = sf_hash_bytes(SF_HASH_START, whole, strlen(whole));
+    snprintf(wrap, size, "%s/window-%016" PRIx64 ".geo", cache, hash);
+    if (sf_replace_open(wrap, &out, &none)) {
+        fprintf(out.file, "Merge \"%s\";\n", whole);
+        sf_replace_close(&out, &none);
+    }
+    if (none.status != SF_OK)
+        *wrap = '\0';
 }

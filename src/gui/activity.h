@@ -74,6 +74,7 @@ bool sf_watch_same(const sf_watch_stamp *a, const sf_watch_stamp *b);
 /* Watches what this process has read from entry `first` of the register on (io/plain_file.h), as it is now.
  */
 void sf_watch_register(sf_watch *watch, size_t first);
+void sf_watch_add(sf_watch *watch, const char *path);
 /* The first file that is not as it was; NULL: none. From now on it is watched as it is now. */
 const char *sf_watch_changed(sf_watch *watch);
 
@@ -98,5 +99,9 @@ sf_status sf_programs_save(sf_child *child, const char *case_path, const char *f
 /* Makes it if need be. SF_ERR_IO: there is no home folder, or it cannot be made; SF_ERR_INPUT: it is not
  * softfall's own (io/folder.h). On failure the path is "". */
 sf_status sf_cache_find(char *path, size_t size, sf_error *err);
+
+/* Writes the file that gmsh opens in place of a geometry, into that folder: it merges the geometry. What
+ * gmsh's menus rename, delete or append to is that file. `wrap` is "" if it cannot be written. */
+void sf_cache_wrap(const char *cache, const char *geometry, char *wrap, size_t size);
 
 #endif

@@ -39,6 +39,7 @@ typedef struct missile_surface {
     const int32_t *triangle;
     double radius; /* m; 0 or NaN: the triangles are the missile */
     const double *centre;
+    double plane[2]; /* m, of symmetry, normal to x and y; NaN: none */
 } missile_surface;
 
 /* The point `i` and `j` parts of `parts` from the first corner of a triangle to the others, on the sphere if
@@ -56,15 +57,41 @@ static void place_point(const missile_surface *m, int64_t triangle, int parts, i
         out[d] = m->centre[d] + m->radius / sqrt(length) * (out[d] - m->centre[d]);
 }
 
+/* Closes the missile in its symmetry planes, by a triangle from each edge there to the middle of its top: the
+ * foam behind a plane would be seen through the open half. Returns the number of triangles behind the `count`
+ * at `corner`. */
+static int64_t close_missile(const missile_surface *m, double *corner, int64_t count) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
+    int64_t made = 0;
+    for (int64_t k = 0; k < 9 * count; k++) {
+        low[k % 3] = fmin(low[k % 3], corner[k]);
+        high[k % 3] = fmax(high[k % 3], corner[k]);
+    }
+    for (int d = 0; d < 3; d++)
+        middle[d] = d == 2 ? high[d] : isfinite(m->plane[d]) ? m->plane[d] : 0.5 * (low[d] + high[d]);
+    for (int64_t k = 0; k < 3 * count; k++)
+        for (int d = 0; d < 2; d++) {
+            const double *a = &corner[3 * k], *b = &corner[3 * (k % 3 == 2 ? k - 2 : k + 1)];
+            const double near = 1e-6 * (high[2] - low[2]);
+            if (!(fabs(a[d] - m->plane[d]) < near && fabs(b[d] - m->plane[d]) < near) || made == count)
+                continue;
+            double *to = &corner[9 * (count + made++)];
+            memcpy(to, a, sizeof middle);
+            memcpy(to + 3, b, sizeof middle);
+            memcpy(to + 6, middle, sizeof middle);
+        }
+    return made;
+}
+
 /* Each triangle of a sphere becomes `parts` x `parts` smaller ones: the foam would be seen through coarse
  * ones. */
 static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *err) {
     int parts = m->radius > 0 ? 4 : 1;
-    int64_t pieces = m->triangles * parts * parts;
-    s->missile.position = sf_alloc(err, 9 * (unsigned long)pieces, sizeof(double), "the missile's picture");
-    s->missile_position = sf_alloc(err, 9 * (unsigned long)pieces, sizeof(double), "the missile's picture");
+    int64_t pieces = m->triangles * parts * parts, most = 2 * pieces;
+    s->missile.position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
+    s->missile_position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
     s->missile.face =
-        sf_alloc(err, 4 * (unsigned long)pieces, sizeof *s->missile.face, "the missile's picture");
+        sf_alloc(err, 4 * (unsigned long)most, sizeof *s->missile.face, "the missile's picture");
     if (err->status != SF_OK)
         return err->status;
     double *to = s->missile_position;
@@ -76,6 +103,7 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
                     place_point(m, t, parts, i + turned, j + 1, to + 3);
                     place_point(m, t, parts, i, j + turned, to + 6);
                 }
+    pieces += close_missile(m, s->missile_position, pieces);
     s->missile.node_count = 3 * pieces;
     s->missile.face_count = pieces;
     for (int64_t k = 0; k < 9 * pieces; k++)
@@ -88,11 +116,16 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
 /* The faces that belong to one cell only, in the length unit `unit`. Release with sf_shape_free. */
 static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
     const sf_cells cells = {m->node_count, m->cell_count, m->position,
-                             m->cell_type,  m->cell_ptr,   m->cell_node};
+                            m->cell_type,  m->cell_ptr,   m->cell_node};
+    double place;
     *s = (sf_shape){.unit = unit};
-    const missile_surface missile = {m->surface_triangle_count, m->surface_position, m->surface_triangle,
-                                     m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0,
-                                     m->missile.sphere_centre};
+    missile_surface missile = {
+        m->surface_triangle_count, m->surface_position,
+        m->surface_triangle,       m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0,
+        m->missile.sphere_centre,  {NAN, NAN}};
+    for (int d = 0; d < 2; d++)
+        if (sf_symmetry_plane(m, d, &place))
+            missile.plane[d] = place;
     if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
         sf_shape_free(s);
     return err->status;
@@ -100,10 +133,11 @@ static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_
 
 sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_error *err) {
     const sf_cells cells = {r->node_count, r->cell_count, r->position,
-                             r->cell_type,  r->cell_ptr,   r->cell_node};
+                            r->cell_type,  r->cell_ptr,   r->cell_node};
     *s = (sf_shape){.unit = unit};
-    const missile_surface missile = {r->surface_triangle_count, r->surface_position, r->surface_triangle,
-                                     r->sphere_radius, r->sphere_centre};
+    const missile_surface missile = {r->surface_triangle_count, r->surface_position,
+                                     r->surface_triangle,       r->sphere_radius,
+                                     r->sphere_centre,          {r->symmetry_place[0], r->symmetry_place[1]}};
     if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
         sf_shape_free(s);
     return err->status;
@@ -241,15 +275,16 @@ static const char *const names[] = {"1Drop/70verdict",
 enum { VERDICT, A_MAX, HIC, REBOUND, INDENTATION, STRAIN, ENTRIES };
 enum { FILTER = 1000 }; /* CFC of curve and figures */
 
-static void put(int which, const char *text, const char *colour) {
+/* `text` fits into the row; `help` has the rest. */
+static void put(int which, const char *text, const char *help, const char *colour) {
     sf_window_put(&(sf_entry){
-        .name = names[which], .kind = SF_ENTRY_SHOWN, .text = text, .help = text, .colour = colour});
+        .name = names[which], .kind = SF_ENTRY_SHOWN, .text = text, .help = help, .colour = colour});
 }
 
 /* Puts a dash into each row. */
 static void clear_outcome(void) {
     for (int k = 0; k < ENTRIES; k++)
-        put(k, "–", NULL);
+        put(k, "–", "not known yet", NULL);
 }
 
 static const char *limit_colour(const sf_limit *limit) {
@@ -258,43 +293,43 @@ static const char *limit_colour(const sf_limit *limit) {
 
 /* The digits are those that summary.json has, and more than a reader needs. */
 static void show_limits(const sf_figures *f, const sf_verdict *v) {
-    char text[160];
+    char text[80], help[200];
     if (v->limit_count < SF_LIMITS)
         return;
-    snprintf(text, sizeof text, "%.9g g (limit %g g: %s)", f->injury.a_max_g, v->limits[0].bound,
-             sf_limit_phrase(&v->limits[0]));
-    put(A_MAX, text, limit_colour(&v->limits[0]));
-    snprintf(text, sizeof text, "%.9g, window %.2f to %.2f ms (limit %g: %s)", f->injury.hic.value,
-             1e3 * f->injury.hic.t1, 1e3 * f->injury.hic.t2, v->limits[1].bound,
-             sf_limit_phrase(&v->limits[1]));
-    put(HIC, text, limit_colour(&v->limits[1]));
+    snprintf(text, sizeof text, "%.9g g (limit %g g)", f->injury.a_max_g, v->limits[0].bound);
+    put(A_MAX, text, sf_limit_phrase(&v->limits[0]), limit_colour(&v->limits[0]));
+    snprintf(text, sizeof text, "%.9g (limit %g)", f->injury.hic.value, v->limits[1].bound);
+    snprintf(help, sizeof help, "%s; window %.2f to %.2f ms", sf_limit_phrase(&v->limits[1]),
+             1e3 * f->injury.hic.t1, 1e3 * f->injury.hic.t2);
+    put(HIC, text, help, limit_colour(&v->limits[1]));
 }
 
 static void show_motion(const sf_figures *f) {
-    char text[160];
+    char text[80];
     if (f->rebounded)
-        snprintf(text, sizeof text, "%.9g m/s at %.2f ms", f->v_rebound, 1e3 * f->rebound_time);
+        snprintf(text, sizeof text, "%.4g m/s at %.2f ms", f->v_rebound, 1e3 * f->rebound_time);
     else
         snprintf(text, sizeof text, "not reached");
     if (!f->driven)
-        put(REBOUND, text, NULL);
+        put(REBOUND, text, text, NULL);
     snprintf(text, sizeof text, "%.4g mm", 1e3 * f->max_indentation);
-    put(INDENTATION, text, NULL);
+    put(INDENTATION, text, text, NULL);
     snprintf(text, sizeof text, "%.4g", f->max_local_strain);
-    put(STRAIN, text, NULL);
+    put(STRAIN, text, text, NULL);
 }
 
-/* Puts them into the rows below the buttons, coloured by pass and fail; returns the sentence of the verdict in
- * `line`. A run that has not ended or never touched has what is known. */
-static sf_status show_outcome(const sf_results *r, char *line, size_t size, sf_error *err) {
+/* Puts them into the rows below the buttons, coloured by pass and fail. A run that has not ended or never
+ * touched has what is known. */
+static sf_status show_outcome(const sf_results *r, sf_error *err) {
+    char line[SF_VERDICT_LINE_SIZE];
     sf_figures f = {0};
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS;
     clear_outcome();
     if (sf_figures_compute(r, FILTER, &f, err) == SF_OK) {
         sf_verdict_compute(r, &f, &limits, &verdict);
-        sf_verdict_line(&verdict, line, size);
-        put(VERDICT, line,
+        sf_verdict_line(&verdict, line, sizeof line);
+        put(VERDICT, sf_verdict_phrase(verdict.grade), line,
             verdict.grade == SF_GRADE_VALID     ? GOOD
             : verdict.grade == SF_GRADE_REMARKS ? FAIR
                                                 : BAD);
@@ -389,7 +424,7 @@ sf_status sf_pictures_show_geometry(sf_pictures *p, const sf_case *c, const sf_p
     sf_geometry_clear();
     if (c->missile.path && sf_geometry_read_surface(c->missile.path, &missile, err) != SF_OK)
         return err->status;
-    if (sf_geometry_show(c->pad.path, err) == SF_OK) {
+    if (sf_geometry_show(c->pad.path, p->opened, err) == SF_OK) {
         sf_fields_take_defaults(fields);
         sf_fields_lock_unknown(fields);
         if (missile.count > 0)
@@ -465,7 +500,6 @@ static void add_frames(sf_pictures *p, const sf_results *r, sf_error *err) {
 void sf_pictures_show_results(sf_pictures *p, const char *path, double length_unit, bool whole) {
     sf_error err = SF_ERROR_INIT;
     sf_results r;
-    char line[SF_VERDICT_LINE_SIZE] = "";
     sf_watch_stamp now = sf_watch_stamp_of(path);
     if (now.inode == 0 || (!whole && sf_watch_same(&now, &p->seen)))
         return;
@@ -482,7 +516,7 @@ void sf_pictures_show_results(sf_pictures *p, const char *path, double length_un
         show_frame(p, whole && err.status == SF_OK ? find_peak(&r) : p->frames - 1);
     plot_outcome(&r);
     if (whole && err.status == SF_OK)
-        show_outcome(&r, line, sizeof line, &err);
+        show_outcome(&r, &err);
     if (err.status == SF_OK)
         p->seen = now;
     sf_results_close(&r);

@@ -8,6 +8,7 @@
 #include "gui/gmsh/window.h"
 #include "model/model.h"
 #include "post/results/results.h"
+#include <limits.h>
 #include <stddef.h>
 
 /* Bodies that can be shown: the skin of the pad, and the missile. */
@@ -65,11 +66,12 @@ typedef struct sf_pictures_place {
 } sf_pictures_place;
 
 typedef struct sf_pictures {
-    sf_shape shape;      /* that is shown; pad.node_count 0: none */
-    sf_watch_stamp seen; /* of the results.h5 that is shown */
-    int frames;          /* of it that are shown */
-    int frame;           /* shown, as the tree has it */
-    bool fitted;         /* the picture shows pad and missile */
+    sf_shape shape;        /* that is shown; pad.node_count 0: none */
+    sf_watch_stamp seen;   /* of the results.h5 that is shown */
+    int frames;            /* of it that are shown */
+    int frame;             /* shown, as the tree has it */
+    bool fitted;           /* the picture shows pad and missile */
+    char opened[PATH_MAX]; /* what gmsh opens in place of the pad's geometry; "": that itself */
 } sf_pictures;
 
 /* Shows the geometries with the parameters of the tree: gmsh's own defaults are taken into `fields`. gmsh

@@ -134,6 +134,18 @@ static sf_status check_values(sf_session *s, sf_error *err) {
 
 static void show_finished(sf_session *s);
 
+/* gmsh's menus act on the file that is open: it is one of ours, and is written again when they have changed
+ * it. */
+static void wrap_geometry(sf_session *s, bool reread) {
+    char *wrap = s->pictures.opened;
+    sf_error none = SF_ERROR_INIT;
+    if (s->case_file.pad.path && (reread || !sf_replace_exists(wrap)) &&
+        sf_cache_find(s->cache, sizeof s->cache, &none) == SF_OK)
+        sf_cache_wrap(s->cache, s->case_file.pad.path, wrap, sizeof s->pictures.opened);
+    if (*wrap)
+        sf_watch_add(&s->watch, wrap);
+}
+
 /* After an edit of the window, or of the files if `reread`: gmsh reads the geometry again, even if the values
  * of the case are wrong. */
 static void begin_anew(sf_session *s, bool reread) {
@@ -151,6 +163,7 @@ static void begin_anew(sf_session *s, bool reread) {
     if (err.status == SF_OK)
         check_values(s, &err);
     sf_watch_register(&s->watch, 0); /* with the files that the values of the window name */
+    wrap_geometry(s, reread);
     if (s->case_file.pad.path)
         sf_pictures_show_geometry(&s->pictures, &s->case_file, &s->place, &s->fields, &geometry);
     if (err.status == SF_OK && geometry.status != SF_OK)

@@ -21,6 +21,8 @@ enum { LARGE_BLOCK = 16384 };
 
 typedef struct job {
     bool dry, yes; /* options */
+    const char *view_words;
+    sf_sweep_views views;
     sf_plan plan;
     sf_runs runs;
     sf_analysis analysis;
@@ -47,8 +49,12 @@ static void name_output(job *j) {
 
 static sf_status write_report(sf_study *study, job *j, sf_error *err) {
     char warning[320];
-    const sf_sweep_report report = {&j->plan, &j->runs, &j->analysis, study->command};
+    const sf_sweep_report report = {&j->plan, &j->runs, &j->analysis, study->command, &j->views};
     SF_TRY(sf_analysis_make(&j->runs, &j->analysis, err));
+    if (j->view_words && sf_sweep_views_choose(j->view_words, &j->plan, &j->runs, &j->views, err) == SF_OK)
+        sf_sweep_views_make(&j->plan, study->directory, study->threads, &j->views, err);
+    if (err->status != SF_OK)
+        return err->status;
     SF_TRY(sf_sweep_plot(&study->output, &j->analysis, study->runs, warning, sizeof warning, err));
     SF_TRY(sf_sweep_write_page(&study->output, &report, err));
     SF_TRY(sf_sweep_write_json(&study->output, &report, err));
@@ -62,6 +68,8 @@ static sf_status write_report(sf_study *study, job *j, sf_error *err) {
 static sf_status check(sf_study *study, job *j, sf_error *err) {
     bool known = false;
     SF_TRY(sf_plan_read(study->input, j->yes, &j->plan, err));
+    if (j->view_words)
+        SF_TRY(sf_sweep_views_choose(j->view_words, &j->plan, NULL, &j->views, err));
     SF_TRY(sf_sweep_check_inputs(&j->plan, &j->campaign.inputs, err));
     j->campaign.plan = &j->plan;
     j->campaign.look = sf_sweep_check_inputs;
@@ -157,6 +165,10 @@ static const sf_option options[] = {
     {"yes", 'y', NULL,
      "take a plan of more than a million runs, and begin although the estimate says that the disk is too small",
      .member = offsetof(job, yes), .group = 1},
+    {"views", 0, "RUNS",
+     "afterwards simulate some runs with all fields, and link their report.html and view.html: worst, limit (nearest "
+     "to it), all, or ids, with commas between them",
+     .member = offsetof(job, view_words), .group = 1},
     {0}};
 
 static const sf_study_program program = {

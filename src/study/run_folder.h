@@ -102,6 +102,9 @@ void sf_run_folder_clean(const sf_run_folder *folder);
 sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err);
 
+/* Writes report.html, view.html and what else softfall-post makes of the results into its folder `report`. */
+sf_status sf_run_folder_report(const sf_run_folder *folder, sf_error *err);
+
 /* Records SF_INTERRUPTED. */
 sf_status sf_run_folder_interrupted(sf_error *err);
 

@@ -5,7 +5,8 @@ import os
 import subprocess
 import sys
 
-NEEDED = {"pytest": "python3-pytest", "numpy": "python3-numpy", "h5py": "python3-h5py", "matplotlib": "python3-matplotlib"}
+NEEDED = {"pytest": "python3-pytest", "numpy": "python3-numpy", "h5py": "python3-h5py", "matplotlib": "python3-matplotlib",
+          "scipy": "python3-scipy"}
 missing = [package for module, package in NEEDED.items() if not importlib.util.find_spec(module)]
 if missing:
     print(f"the tests of the Python package need {', '.join(missing)} for {sys.executable}")

@@ -2,10 +2,12 @@
 """Drops: figures, history, frames, verdict, plot, report; HIC and filters."""
 import doctest
 import importlib
+import inspect
 import json
 import os
 import pathlib
 import pkgutil
+import typing
 
 import numpy as np
 import pytest
@@ -237,6 +239,23 @@ def test_doctests():
         assert outcome.failed == 0, module.name
         tried += outcome.attempted
     assert tried >= 10
+
+
+def test_all_that_is_public_has_type_hints_and_a_docstring():
+    count = 0
+    for name in softfall.__all__:
+        item = getattr(softfall, name)
+        members = vars(item).items() if inspect.isclass(item) else [(name, item)]
+        assert item.__doc__, name
+        for key, member in members:
+            code = member.fget if isinstance(member, property) else member
+            if key.startswith("_") or not inspect.isfunction(code):
+                continue
+            hints = typing.get_type_hints(code)
+            assert code.__doc__ and set(inspect.signature(code).parameters) - {"self"} | {"return"} <= set(hints), (name, key)
+            count += 1
+    assert count > 30
+    assert (pathlib.Path(softfall.__file__).parent / "py.typed").exists()
 
 
 def test_the_version_is_that_of_the_programs(place):

@@ -228,6 +228,7 @@ def test_a_pad_is_simulated_measured_and_compared(case, drop, tmp_path):
     assert first.returncode == 0, first.stderr
     told = json.loads((tmp_path / "out/protocol.json").read_text())
     assert [d["height_m"] for d in told["drops"]] == [0.6, 1.0] and "simulated" in told["results"]
+    assert "view.html" not in (tmp_path / "out/report.html").read_text() and not list(tmp_path.rglob("view.html"))
     (tmp_path / "lab").mkdir()
     rows = ["file,position,height,drop"]
     for k, entry in enumerate(told["drops"]):
@@ -235,13 +236,34 @@ def test_a_pad_is_simulated_measured_and_compared(case, drop, tmp_path):
         np.savetxt(tmp_path / f"lab/{k}.csv", np.column_stack([t, a]), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
         rows.append(f"{k}.csv,centre,{entry['height_m']} m,1")
     (tmp_path / "lab/list.csv").write_text("\n".join(rows) + "\n")
-    both = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force", *COARSE)
+    both = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force",
+                             "--views=worst", *COARSE)
     assert both.returncode == 0, both.stderr
     told = json.loads((tmp_path / "out/protocol.json").read_text())
     assert len(told["comparison"]) == 2
     for pair in told["comparison"]:  # the record is filtered once more
         assert abs(pair["a_max_difference"]) < 2e-3 and pair["r2"] > 0.999 and pair["rating"]["overall"] > 0.99
     assert told["results"]["measured"]["passed"] == told["results"]["simulated"]["passed"]
+    assert [entry["view"] is not None for entry in told["drops"] if entry["kind"] == "simulated"] == [False, True]
+    links = re.findall(r'<a href="([^"]*)">(?:report|view)</a>', (tmp_path / "out/report.html").read_text())
+    assert [pathlib.Path(link).name for link in links] == ["report.html", "view.html"]
+    assert all((tmp_path / "out" / link).stat().st_size > 50_000 for link in links)
+    same = json.loads((tmp_path / "out" / links[0]).with_name("summary.json").read_text())
+    assert same["a_max_g"] == next(entry for entry in told["drops"] if entry["view"])["figures"]["a_max_g"]
+    wrong = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "out", "--force", "--views=best", *COARSE)
+    assert wrong.returncode == 2 and "neither worst, limit, all" in wrong.stderr
+
+
+def test_a_critical_height_has_the_view_of_the_drop_from_there(case, tmp_path):
+    text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
+    text = text.replace('kind = "pass"  ', 'kind = "critical height"  ')
+    (tmp_path / "mine.toml").write_text(re.sub(r"heights = .*", "", text))
+    result = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "out", "--views=limit", *COARSE)
+    assert result.returncode == 0, result.stderr
+    links = re.findall(r'<a href="([^"]*)">(?:report|view)</a>', (tmp_path / "out/report.html").read_text())
+    assert [pathlib.Path(link).name for link in links] == ["report.html", "view.html"]
+    told = json.loads((tmp_path / "out" / links[0]).with_name("summary.json").read_text())
+    assert told["a_max_g"] == pytest.approx(80, rel=0.01)  # the limit of own.toml
 
 
 SERIES = ["--set", "geometry.parameters.fine_spacing=20", "--set", "geometry.parameters.outer_spacing=20", "--set",

@@ -6,6 +6,7 @@ import pathlib
 
 import numpy as np
 import pytest
+import scipy.optimize
 
 import softfall
 from softfall import study
@@ -77,6 +78,15 @@ def test_a_function_is_the_figure_of_the_drop(case, drop):
     both = g([[4.5, 50], [4.0, 50]])
     assert both.shape == (2, 2) and both[0].tolist() == [drop.figures["a_max_g"], drop.figures["hic"]] and both[1, 1] < both[0, 1]
     assert g.drop([4.5, 50]).results == g.drop([4.5, 50]).results
+
+
+def test_scipy_finds_the_speed_of_a_limit(case):
+    f = softfall.function(case, "missile.velocity [m/s]", "hic")
+    speed = scipy.optimize.brentq(lambda v: f(v) - 200, 3.5, 4.5, xtol=1e-3)
+    assert 3.5 < speed < 4.5 and f(speed) == pytest.approx(200, rel=2e-3)
+    g = softfall.function(case, ["missile.velocity [m/s]", "geometry.parameters.thickness"], ["a_max_g", "hic"])
+    slope = scipy.optimize.approx_fprime([4.0, 50.0], lambda x: g(x)[0], [1e-3, 1e-2])
+    assert slope[0] > 0 > slope[1]  # faster is harder, thicker is softer
 
 
 @pytest.mark.parametrize("x, sentence", [

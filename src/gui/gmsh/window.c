@@ -4,6 +4,7 @@
 #include "io/plain_file.h"
 #include "report/row.h"
 
+#include <dlfcn.h>
 #include <gmshc.h>
 #include <math.h>
 #include <stdbool.h>
@@ -30,11 +31,11 @@ static sf_status take_error(const char *path, sf_error *err) {
     return err->status;
 }
 
-sf_status sf_geometry_show(const char *path, sf_error *err) {
+sf_status sf_geometry_show(const char *path, const char *opened, sf_error *err) {
     int ierr = 0, failed = 0;
     SF_TRY(sf_plain_check(path, "geometry", err));
     gmshLoggerStart(&ierr);
-    gmshOpen(path, &failed);
+    gmshOpen(*opened ? opened : path, &failed);
     take_error(path, err);
     if (err->status == SF_OK && failed != 0)
         SF_FAIL(err, SF_ERR_INPUT, "gmsh cannot read the geometry %s", path);
@@ -90,7 +91,7 @@ static sf_status take_triangles(sf_triangles *out, sf_error *err) {
 sf_status sf_geometry_read_surface(const char *path, sf_triangles *surface, sf_error *err) {
     int ierr = 0;
     *surface = (sf_triangles){0};
-    SF_TRY(sf_geometry_show(path, err));
+    SF_TRY(sf_geometry_show(path, "", err));
     gmshModelMeshGenerate(2, &ierr);
     if (ierr == 0)
         take_triangles(surface, err);
@@ -165,6 +166,47 @@ sf_status sf_window_start(sf_error *err) {
     return SF_OK;
 }
 
+/* gmsh's window is made of FLTK, which handles clicks and keys wherever gmsh says or draws something: also
+ * while it rebuilds the tree that they are meant for, and then it crashes. So those that come while we call
+ * gmsh are dropped. Keys that nothing has taken are commands of gmsh: digits mesh in this window, for minutes
+ * perhaps, and with a menu open any of them may crash it. gmsh has no interface for that; in one without
+ * these names of FLTK all is as gmsh does it. */
+static struct {
+    int (*handle)(int event, void *window);
+    void **menu; /* that waits for a choice */
+    const int *key;
+    bool is_waiting; /* for events */
+} events;
+
+enum { PUSH = 1, KEY_DOWN = 8, CLOSE = 10, SHORTCUT = 12, WHEEL = 19 };
+
+static int dispatch(int event, void *window) {
+    bool input = event == PUSH || event == KEY_DOWN || event == CLOSE || event == SHORTCUT || event == WHEEL;
+    return input && !events.is_waiting ? 1 : events.handle(event, window);
+}
+
+static int take_shortcut(int event) {
+    return event == SHORTCUT && (*events.menu || (*events.key >= '0' && *events.key <= '9'));
+}
+
+/* A function or a variable; C has no pointer that can hold either. */
+static bool find_name(const char *name, void *place) {
+    void *found = dlsym(RTLD_DEFAULT, name);
+    memcpy(place, &found, sizeof found);
+    return found != NULL;
+}
+
+static void guard_events(void) {
+    void (*set_dispatch)(int (*)(int, void *)), (*add_handler)(int (*)(int));
+    if (find_name("_ZN2Fl7handle_EiP9Fl_Window", &events.handle) &&
+        find_name("_ZN2Fl5grab_E", &events.menu) && find_name("_ZN2Fl8e_keysymE", &events.key) &&
+        find_name("_ZN2Fl14event_dispatchEPFiiP9Fl_WindowE", &set_dispatch) &&
+        find_name("_ZN2Fl11add_handlerEPFiiE", &add_handler)) {
+        set_dispatch(dispatch);
+        add_handler(take_shortcut); /* the last one is asked first */
+    }
+}
+
 sf_status sf_window_open(sf_error *err) {
     int ierr = 0;
     const char *display = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
@@ -178,6 +220,7 @@ sf_status sf_window_open(sf_error *err) {
         "{\"type\":\"string\",\"name\":\"" ACTION "\",\"values\":[\"\"],\"visible\":false}]",
         "json", &ierr);
     gmshFltkInitialize(&ierr);
+    guard_events();
     if (ierr != 0)
         return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot open its window");
     return SF_OK;
@@ -187,7 +230,9 @@ bool sf_window_wait(double seconds) {
     int ierr = 0;
     if (gmshFltkIsAvailable(&ierr) != 1)
         return false;
+    events.is_waiting = true;
     gmshFltkWait(seconds, &ierr);
+    events.is_waiting = false;
     return gmshFltkIsAvailable(&ierr) == 1;
 }
 

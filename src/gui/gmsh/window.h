@@ -17,9 +17,10 @@ typedef struct sf_triangles {
     double low[3], high[3];
 } sf_triangles;
 
-/* Opens the file as the one model that is shown, with its parameters in the tree at the values that the tree
- * has. SF_ERR_INPUT: the first error that gmsh reports, with its file and line. */
-sf_status sf_geometry_show(const char *path, sf_error *err);
+/* Opens the file, or `opened` in its place unless that is "", as the one model that is shown, with its
+ * parameters in the tree at the values that the tree has. SF_ERR_INPUT: the first error that gmsh reports,
+ * with its file and line. */
+sf_status sf_geometry_show(const char *path, const char *opened, sf_error *err);
 /* Box of the model that is shown. */
 void sf_geometry_box(double low[3], double high[3]);
 /* Opens the file, meshes its surfaces and forgets it; its parameters stay in the tree. */

@@ -202,6 +202,7 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     sf_json_integer(&j, "predicted", a->predicted);
     sf_json_integer(&j, "do_not_use", a->unusable);
     json_factors(&j, r->plan);
+    sf_sweep_views_json(&j, r->views);
     sf_json_open(&j, "figures", '[');
     for (int k = 0; k < r->plan->figure_count; k++) {
         sf_json_open(&j, NULL, '{');
@@ -529,6 +530,7 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
     put_indices(page, r);
     put_surfaces(page, r);
     put_failures(page, r);
+    sf_sweep_views_put(page, r->runs, r->views);
     sf_html_heading(page, "The command that repeats this report");
     sf_html_pre(page, r->command_line);
     return sf_html_end(page, "softfall-sweep " SF_VERSION " (" SF_GIT_REVISION ")", err);

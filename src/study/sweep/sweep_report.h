@@ -5,6 +5,7 @@
 
 #include "io/staging.h"
 #include "study/sweep/analysis.h"
+#include "study/sweep/views.h"
 #include <stdio.h>
 
 typedef struct sf_sweep_report {
@@ -12,6 +13,7 @@ typedef struct sf_sweep_report {
     const sf_runs *runs;
     const sf_analysis *analysis;
     const char *command_line;
+    const sf_sweep_views *views;
 } sf_sweep_report;
 
 sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *report, sf_error *err);
