@@ -494,7 +494,7 @@ static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *
         return err->status;
     fputs("draw_1,height_m,a_max_height_m,hic_height_m\n", file);
     for (int d = 0; d < s->draws; d++) {
-        const double *crossing = &s->crossing[(size_t)d * (SF_CFH_FIRST + 1)];
+        const double *crossing = s->draw[d].crossing;
         fprintf(file, "%d", d + 1);
         for (int k = 0; k <= SF_CFH_FIRST; k++) { /* the first of them in front */
             double height = crossing[k == 0 ? SF_CFH_FIRST : k - 1];

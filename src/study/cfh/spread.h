@@ -108,10 +108,14 @@ typedef struct sf_cfh_band {
     double low, median, high; /* g, -; INFINITY: of draws whose columns collapse */
 } sf_cfh_band;
 
-/* Errors of ln(value) of a draw: the one that all drops share, the standard deviation of a drop's own. */
-typedef struct sf_cfh_response {
-    double shared[SF_CFH_CRITERIA], own_sd[SF_CFH_CRITERIA];
-} sf_cfh_response;
+/* A draw as columns. Its errors of ln(value) are zeros if it states none. */
+typedef struct sf_cfh_curve {
+    double value[SF_CFH_CRITERIA][SF_CFH_GRID]; /* ln, corrected; INFINITY where the columns collapse */
+    int reach;                                  /* heights before they do */
+    double crossing[SF_CFH_FIRST + 1];          /* m, foam alone; 0 or INFINITY: beyond the grid */
+    double shared[SF_CFH_CRITERIA];             /* error of the responses that all drops share */
+    double own_sd[SF_CFH_CRITERIA];             /* standard deviation of a drop's own */
+} sf_cfh_curve;
 
 typedef struct sf_cfh_spread {
     int draws, grid;
@@ -119,11 +123,8 @@ typedef struct sf_cfh_spread {
     double simulated[2]; /* m, the heights between which the correction is known */
     double correction[SF_CFH_CRITERIA][SF_CFH_GRID]; /* the bracket */
     sf_cfh_band band[SF_CFH_CRITERIA][SF_CFH_GRID];  /* of the draws, foam alone */
-    double *value;                                   /* [draws][SF_CFH_CRITERIA][SF_CFH_GRID] ln; owned */
-    int *reach;                                      /* [draws] heights before the columns collapse; owned */
-    double *crossing;   /* [draws][SF_CFH_FIRST + 1] m, foam alone; 0 or INFINITY: beyond the grid; owned */
-    bool with_response; /* the draws state errors of the responses */
-    sf_cfh_response *response; /* [draws] zeros if they do not; owned */
+    sf_cfh_curve *draw;                              /* [draws] owned */
+    bool with_response;                              /* the draws state errors of the responses */
     double limit[SF_CFH_CRITERIA];
     double own_height;                   /* m, of the case's own material; NaN: none was found */
     double mesh_error;                   /* -, expected of a_max; NaN: not known */
