@@ -166,13 +166,6 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *wa
 
 /* ---- the section about the interval ---- */
 
-static void put_share(sf_html_table *table, double share) {
-    if (isnan(share))
-        sf_html_cell(table, "–");
-    else
-        sf_html_cell(table, "%.0f", 100 * share);
-}
-
 /* The line of the interval that a single pad and drop have. */
 static const char *single_drop_text(const sf_cfh_spread *s) {
     return isnan(s->scatter[SF_CFH_A_MAX][0])
@@ -180,39 +173,33 @@ static const char *single_drop_text(const sf_cfh_spread *s) {
                : "of a single pad and drop, with the scatter of speed and thickness; not in the whole interval";
 }
 
+/* A line of the table: `i` of the first criterion that is met, and, unless NULL, of each. */
+static void put_part(sf_html_table *table, const sf_cfh_interval *i, const sf_cfh_interval *each,
+                     double share, const char *words, const char *more) {
+    char text[64];
+    sf_html_row(table);
+    sf_html_cell(table, "%s%s", words, more);
+    sf_html_number(table, 3, i->median);
+    sf_html_cell(table, "%s", sf_cfh_interval_text(i, text, sizeof text));
+    sf_html_number(table, 0, 100 * share);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        sf_html_cell(table, "%s", each ? sf_cfh_interval_text(&each[c], text, sizeof text) : "–");
+}
+
 static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
     static const char *const words[SF_CFH_PARTS] = {
         "foam alone (the draws: parameters and curve)", "and the errors of the responses",
         "and the error of the mesh", "and the points about their fit", "and the columns' own error"};
-    char text[64];
     sf_html_table table = sf_html_table_begin(
         page, "dense", "95 % interval with|>median (m)|>critical height|>share (%)|>a_max|>HIC");
-    for (int part = 0; part < SF_CFH_PARTS; part++) {
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s%s", words[part],
-                     part == SF_CFH_PART_RESPONSE && !s->with_response ? ": not known, not in it" : "");
-        sf_html_number(&table, 3, s->part[part][SF_CFH_FIRST].median);
-        sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][SF_CFH_FIRST], text, sizeof text));
-        put_share(&table, sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][c], text, sizeof text));
-    }
+    for (int part = 0; part < SF_CFH_PARTS; part++)
+        put_part(&table, &s->part[part][SF_CFH_FIRST], s->part[part],
+                 sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST), words[part],
+                 part == SF_CFH_PART_RESPONSE && !s->with_response ? ": not known, not in it" : "");
     const sf_cfh_interval *drop = s->part[SF_CFH_PARTS];
-    sf_html_row(&table);
-    sf_html_cell(&table, "%s", single_drop_text(s));
-    sf_html_number(&table, 3, drop[SF_CFH_FIRST].median);
-    sf_html_cell(&table, "%s", sf_cfh_interval_text(&drop[SF_CFH_FIRST], text, sizeof text));
-    sf_html_cell(&table, "–");
-    for (int c = 0; c < SF_CFH_CRITERIA; c++)
-        sf_html_cell(&table, "%s", sf_cfh_interval_text(&drop[c], text, sizeof text));
-    if (rig->pairs > 0) {
-        sf_html_row(&table);
-        sf_html_cell(&table, "without that, and g_eff: on the rig");
-        sf_html_number(&table, 3, s->rig.median);
-        sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->rig, text, sizeof text));
-        for (int k = 0; k < 1 + SF_CFH_CRITERIA; k++)
-            sf_html_cell(&table, "–");
-    }
+    put_part(&table, &drop[SF_CFH_FIRST], drop, NAN, single_drop_text(s), "");
+    if (rig->pairs > 0)
+        put_part(&table, &s->rig, NULL, NAN, "without that, and g_eff: on the rig", "");
     sf_html_table_end(&table);
     sf_html_note(page,
                  "Share: what the line adds to the squared length of the interval of ln(height). Below 0, "
@@ -273,24 +260,8 @@ static void put_checks(FILE *page, const sf_cfh_spread *s) {
                   "interval does not hold their error.");
         return;
     }
-    sf_html_table table = sf_html_table_begin(
-        page, "dense",
-        "simulated draw|>draws below (%)|>height (m)|limit|>a_max, columns (g)|>simulated (g)|>its height moves by "
-        "(%)|>HIC, columns|>simulated|>its height moves by (%)");
-    for (int k = 0; k < s->checks; k++) {
-        const sf_cfh_check *check = &s->check[k];
-        sf_html_row(&table);
-        sf_html_cell(&table, "%d", check->draw + 1);
-        sf_html_number(&table, 0, 100 * check->share);
-        sf_html_number(&table, 3, check->height);
-        sf_html_cell(&table, "%s", sf_cfh_name(check->first));
-        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            sf_html_number(&table, c == SF_CFH_A_MAX, check->columns[c]);
-            sf_html_number(&table, c == SF_CFH_A_MAX, check->failed ? NAN : check->simulated[c]);
-            sf_html_number(&table, 2, check->failed ? NAN : 100 * check->shift[c]);
-        }
-    }
-    sf_html_table_end(&table);
+    sf_rows_html_table(page, "dense", sf_cfh_check_rows(),
+                       (sf_records){s->check, sizeof s->check[0], s->checks});
     for (int k = 0; k < s->checks; k++)
         if (s->check[k].note[0])
             sf_html_paragraph(page, "Draw %d: %s.", s->check[k].draw + 1, s->check[k].note);
@@ -445,32 +416,6 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
         "and model are not in it.");
 }
 
-static void put_point_table(FILE *page, const sf_cfh_report *r) {
-    bool rig = r->rig->pairs > 0;
-    sf_html_table table = sf_html_table_begin(
-        page, "dense",
-        rig ? ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
-              "strain|>on the rig (m)|verdict"
-            : ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
-              "strain|verdict");
-    for (int k = 0; k < r->points->count; k++) {
-        const sf_cfh_point *p = &r->points->point[k];
-        sf_html_row(&table);
-        sf_html_number(&table, 3, p->height);
-        sf_html_number(&table, 3, p->speed);
-        sf_html_number(&table, 1, p->failed ? NAN : p->value[SF_CFH_A_MAX]);
-        sf_html_number(&table, 2, 100 * sf_cfh_residual(r, SF_CFH_A_MAX, p));
-        sf_html_number(&table, 0, p->failed ? NAN : p->value[SF_CFH_HIC]);
-        sf_html_number(&table, 2, 100 * sf_cfh_residual(r, SF_CFH_HIC, p));
-        sf_html_number(&table, 2, p->failed ? NAN : p->v_rebound);
-        sf_html_number(&table, 3, p->failed ? NAN : p->max_local_strain);
-        if (rig)
-            sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, p->height));
-        sf_html_cell(&table, "%s", p->failed ? "failed" : sf_verdict_phrase(p->grade));
-    }
-    sf_html_table_end(&table);
-}
-
 static void put_notes(FILE *page, const sf_cfh_report *r) {
     bool any = false;
     for (int k = 0; k < r->points->count; k++) {
@@ -526,13 +471,14 @@ static void describe_foams(const sf_cfh_foams *foams, char *text, size_t size) {
 
 static void put_drops(FILE *page, const sf_cfh_report *r) {
     char foams[SF_CASE_MAX_LAYERS * (SF_MATERIAL_NAME_SIZE + 64)];
+    sf_cfh_point_row points[SF_CFH_MAX_POINTS];
     describe_foams(r->foams, foams, sizeof foams);
     sf_html_heading(page, "Crossings of the limits");
     put_criteria_table(page, r);
     if (r->spread)
         put_spread(page, r->spread, r->rig);
     sf_html_heading(page, "Simulated drops");
-    put_point_table(page, r);
+    sf_rows_html_table(page, "dense", sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
     sf_html_note(
         page,
         "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: simulated value "

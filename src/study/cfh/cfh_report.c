@@ -181,18 +181,13 @@ void sf_cfh_rig_text(const sf_cfh_report *r, char *text, size_t size) {
              r->rig->gravity, r->rig->standard_error, r->rig->pairs);
 }
 
-static bool is_fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
+/* Value of the fit at a point; NaN for one that is not in the fit. */
+static double fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
     const sf_cfh_fit *fit = &r->result->crossing[c].fit;
-    int k = 0; /* index among the successes */
+    int k = -fit->first; /* place among the points of the fit */
     for (const sf_cfh_point *q = r->points->point; q < p; q++)
         k += !q->failed;
-    return !p->failed && fit->count > 0 && k >= fit->first && k < fit->first + fit->count;
-}
-
-/* ln(value / fit), NaN for a point that is not in the fit. */
-double sf_cfh_residual(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
-    return is_fitted(r, c, p) ? log(p->value[c] / sf_cfh_fit_at(&r->result->crossing[c].fit, p->height))
-                              : NAN;
+    return !p->failed && k >= 0 && k < fit->count ? sf_cfh_fit_at(fit, p->height) : NAN;
 }
 
 const char *sf_cfh_side_word(const sf_cfh_crossing *crossing) {
@@ -200,6 +195,84 @@ const char *sf_cfh_side_word(const sf_cfh_crossing *crossing) {
     return crossing->side == SF_CFH_CROSSED && isnan(crossing->height) ? "not determined"
                                                                        : words[crossing->side];
 }
+
+/* ---- rows ---- */
+
+#define AT(member) SF_ROW_OF(NUMBER, sf_cfh_point_row, member)
+
+sf_rows sf_cfh_point_rows(const sf_cfh_report *r) {
+    static const sf_row rows[] = {
+        {"height_m", "height", "m", "%.3f", AT(p.height)},
+        {"speed_m_s", "speed", "m/s", "%.3f", AT(p.speed)},
+        {"a_max_g", "a_max", "g", "%.1f", AT(p.value[SF_CFH_A_MAX])},
+        {"a_max_residual", "residual", "%", "%.2f", .shown = 100, AT(residual[SF_CFH_A_MAX])},
+        {"hic", "HIC", NULL, "%.0f", AT(p.value[SF_CFH_HIC])},
+        {"hic_residual", "residual", "%", "%.2f", .shown = 100, AT(residual[SF_CFH_HIC])},
+        {"v_rebound_m_s", "rebound", "m/s", "%.2f", AT(p.v_rebound)},
+        {"max_indentation_mm", .factor = 1e3, AT(p.max_indentation)},
+        {"max_local_strain", "largest local strain", NULL, "%.3f", AT(p.max_local_strain)},
+        {"energy_error", AT(p.energy_error)},
+        {"failed", SF_ROW_OF(FLAG, sf_cfh_point_row, p.failed)},
+        {"grade", SF_ROW_OF(STRING, sf_cfh_point_row, grade)},
+        {NULL, "verdict", SF_ROW_OF(STRING, sf_cfh_point_row, verdict)},
+        {"note", SF_ROW_OF(TEXT, sf_cfh_point_row, p.note)},
+        {"rig_height_m", "on the rig", "m", "%.3f", AT(rig_height)}, /* with a rig */
+    };
+    sf_rows list = SF_ROWS(rows);
+    list.count -= r->rig->pairs == 0;
+    return list;
+}
+
+sf_records sf_cfh_point_records(const sf_cfh_report *r, sf_cfh_point_row list[SF_CFH_MAX_POINTS]) {
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        const char *grade = sf_verdict_phrase(p->grade);
+        list[k] = (sf_cfh_point_row){.p = *p,
+                                     .rig_height = sf_cfh_rig_height(r->rig, p->height),
+                                     .grade = grade,
+                                     .verdict = p->failed ? "failed" : grade};
+        for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
+            list[k].residual[c] = log(p->value[c] / fitted(r, c, p));
+    }
+    return (sf_records){list, sizeof list[0], r->points->count};
+}
+
+static sf_value draw_number(const void *record) {
+    return sf_value_integer(((const sf_cfh_check *)record)->draw + 1);
+}
+
+static sf_value criterion_name(const void *record) {
+    return sf_value_text(sf_cfh_name(((const sf_cfh_check *)record)->first));
+}
+
+static sf_value deciding_shift(const void *record) {
+    const sf_cfh_check *check = record;
+    return sf_value_real(check->shift[check->first]);
+}
+
+#undef AT
+#define AT(member) SF_ROW_OF(NUMBER, sf_cfh_check, member)
+
+sf_rows sf_cfh_check_rows(void) {
+    static const sf_row rows[] = {
+        {"draw", "simulated draw", .value = draw_number},
+        {"share_below", "draws below", "%", "%.0f", .shown = 100, AT(share)},
+        {"height_m", "height", "m", "%.3f", AT(height)},
+        {"criterion", "limit", .value = criterion_name, .type = SF_ROW_STRING},
+        {"a_max_columns_g", "a_max, columns", "g", "%.1f", AT(columns[SF_CFH_A_MAX])},
+        {"a_max_g", "simulated", "g", "%.1f", AT(simulated[SF_CFH_A_MAX])},
+        {"a_max_height_shift", "its height moves by", "%", "%.2f", .shown = 100, AT(shift[SF_CFH_A_MAX])},
+        {"hic_columns", "HIC, columns", NULL, "%.0f", AT(columns[SF_CFH_HIC])},
+        {"hic", "simulated", NULL, "%.0f", AT(simulated[SF_CFH_HIC])},
+        {"hic_height_shift", "its height moves by", "%", "%.2f", .shown = 100, AT(shift[SF_CFH_HIC])},
+        {"height_shift", .value = deciding_shift},
+        {"failed", SF_ROW_OF(FLAG, sf_cfh_check, failed)},
+        {"note", SF_ROW_OF(TEXT, sf_cfh_check, note)},
+    };
+    return SF_ROWS(rows);
+}
+
+#undef AT
 
 /* ---- cfh.json ---- */
 
@@ -243,29 +316,6 @@ static void put_trends_json(sf_json *json, const sf_cfh_spread *s) {
     sf_json_close(json, ']');
 }
 
-static void put_checks_json(sf_json *json, const sf_cfh_spread *s) {
-    sf_json_open(json, "checks", '[');
-    for (int k = 0; k < s->checks; k++) {
-        const sf_cfh_check *check = &s->check[k];
-        sf_json_open(json, NULL, '{');
-        sf_json_integer(json, "draw", check->draw + 1);
-        sf_json_number(json, "share_below", check->share);
-        sf_json_number(json, "height_m", check->height);
-        sf_json_text(json, "criterion", sf_cfh_name(check->first));
-        sf_json_number(json, "a_max_columns_g", check->columns[SF_CFH_A_MAX]);
-        sf_json_number(json, "a_max_g", check->failed ? NAN : check->simulated[SF_CFH_A_MAX]);
-        sf_json_number(json, "hic_columns", check->columns[SF_CFH_HIC]);
-        sf_json_number(json, "hic", check->failed ? NAN : check->simulated[SF_CFH_HIC]);
-        sf_json_number(json, "height_shift", check->failed ? NAN : check->shift[check->first]);
-        sf_json_number(json, "a_max_height_shift", check->failed ? NAN : check->shift[SF_CFH_A_MAX]);
-        sf_json_number(json, "hic_height_shift", check->failed ? NAN : check->shift[SF_CFH_HIC]);
-        sf_json_bool(json, "failed", check->failed);
-        sf_json_text(json, "note", check->note[0] ? check->note : NULL);
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
-}
-
 /* The members of the object `posterior` of cfh.json. */
 static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     static const char *const names[SF_CFH_PARTS] = {"foam", "foam_response", "foam_response_mesh",
@@ -290,7 +340,8 @@ static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
         sf_json_number(json, shares[part], sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
     sf_json_close(json, '}');
     put_trends_json(json, s);
-    put_checks_json(json, s);
+    sf_rows_json_array(json, "checks", sf_cfh_check_rows(),
+                       (sf_records){s->check, sizeof s->check[0], s->checks});
 }
 
 /* Height of free fall and, if there is a rig, on the rig; `part` SF_CFH_FIRST or a criterion. */
@@ -361,31 +412,6 @@ static void put_criteria(sf_json *json, const sf_cfh_report *r) {
     sf_json_close(json, ']');
 }
 
-static void put_points(sf_json *json, const sf_cfh_report *r) {
-    sf_json_open(json, "points", '[');
-    for (int k = 0; k < r->points->count; k++) {
-        const sf_cfh_point *p = &r->points->point[k];
-        sf_json_open(json, NULL, '{');
-        sf_json_number(json, "height_m", p->height);
-        if (r->rig->pairs > 0)
-            sf_json_number(json, "rig_height_m", sf_cfh_rig_height(r->rig, p->height));
-        sf_json_number(json, "speed_m_s", p->speed);
-        sf_json_bool(json, "failed", p->failed);
-        sf_json_text(json, "grade", sf_verdict_phrase(p->grade));
-        sf_json_number(json, "a_max_g", p->failed ? NAN : p->value[SF_CFH_A_MAX]);
-        sf_json_number(json, "hic", p->failed ? NAN : p->value[SF_CFH_HIC]);
-        sf_json_number(json, "a_max_residual", sf_cfh_residual(r, SF_CFH_A_MAX, p));
-        sf_json_number(json, "hic_residual", sf_cfh_residual(r, SF_CFH_HIC, p));
-        sf_json_number(json, "v_rebound_m_s", p->failed ? NAN : p->v_rebound);
-        sf_json_number(json, "max_indentation_mm", p->failed ? NAN : p->max_indentation * 1e3);
-        sf_json_number(json, "max_local_strain", p->failed ? NAN : p->max_local_strain);
-        sf_json_number(json, "energy_error", p->failed ? NAN : p->energy_error);
-        sf_json_text(json, "note", p->note[0] ? p->note : NULL);
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
-}
-
 static void put_posterior(sf_json *json, const sf_cfh_report *r) {
     sf_json_open(json, "posterior", '{');
     sf_json_text(json, "folder", r->posterior);
@@ -403,6 +429,7 @@ static double least_end(const sf_cfh_foams *foams) {
 }
 
 sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
+    sf_cfh_point_row points[SF_CFH_MAX_POINTS];
     FILE *file = sf_staging_open(output, "cfh.json", err);
     if (!file)
         return err->status;
@@ -424,7 +451,7 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
     sf_json_close(&json, '}');
     put_posterior(&json, r);
     put_criteria(&json, r);
-    put_points(&json, r);
+    sf_rows_json_array(&json, "points", sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
     sf_json_close(&json, '}');
     return sf_staging_close(file, "cfh.json", err);
 }
@@ -450,13 +477,13 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
         const sf_cfh_point *p = &r->points->point[k];
         fprintf(file, "%.9g,%.9g", p->height, p->speed);
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, p->failed ? NAN : p->value[c]);
+            put_cell(file, p->value[c]);
         for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, is_fitted(r, c, p) ? sf_cfh_fit_at(&r->result->crossing[c].fit, p->height) : NAN);
-        put_cell(file, p->failed ? NAN : p->v_rebound);
-        put_cell(file, p->failed ? NAN : p->max_indentation * 1e3);
-        put_cell(file, p->failed ? NAN : p->max_local_strain);
-        put_cell(file, p->failed ? NAN : p->energy_error);
+            put_cell(file, fitted(r, c, p));
+        put_cell(file, p->v_rebound);
+        put_cell(file, p->max_indentation * 1e3);
+        put_cell(file, p->max_local_strain);
+        put_cell(file, p->energy_error);
         fprintf(file, ",%d", p->failed);
         if (r->rig->pairs > 0)
             put_cell(file, sf_cfh_rig_height(r->rig, p->height));

@@ -33,6 +33,17 @@ static void note_extrapolation(const sf_runner_result *r, const sf_cfh_foams *fo
     }
 }
 
+sf_cfh_point sf_cfh_point_at(double height) {
+    return (sf_cfh_point){.height = height,
+                          .speed = sf_cfh_speed(height),
+                          .value = {NAN, NAN},
+                          .scatter = {NAN, NAN},
+                          .v_rebound = NAN,
+                          .max_indentation = NAN,
+                          .max_local_strain = NAN,
+                          .energy_error = NAN};
+}
+
 void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf_cfh_point *p) {
     p->grade = r->grade;
     if (r->grade == SF_GRADE_DO_NOT_USE) {
@@ -85,7 +96,7 @@ static void add_drop(const sf_cfh_series *s, drops *d, const char *material, dou
     int k = d->count++;
     sf_runner_drop *drop = &d->drop[k];
     *drop = *s->base;
-    d->point[k] = (sf_cfh_point){.height = height, .speed = sf_cfh_speed(height)};
+    d->point[k] = sf_cfh_point_at(height);
     snprintf(d->velocity[k], sizeof d->velocity[k], "missile.velocity=%.12g m/s", d->point[k].speed);
     drop->label = d->label[k];
     drop->material = material ? material : drop->material;

@@ -29,6 +29,9 @@ typedef struct sf_cfh_series {
     sf_cfh_pad *pad; /* filled from the first drop that has results; NULL: not wanted */
 } sf_cfh_series;
 
+/* A point without figures. */
+sf_cfh_point sf_cfh_point_at(double height);
+
 /* The point at height and speed of `point` with the result of its drop: figures and, for one with remarks,
  * the verdict as a note; or, with a verdict of "do not use", a point that failed, with the reason. */
 void sf_cfh_take_result(const sf_runner_result *result, const sf_cfh_foams *foams, sf_cfh_point *point);

@@ -88,7 +88,7 @@ typedef struct sf_cfh_check {
     sf_cfh_criterion first;            /* which limit it meets first by the corrected columns */
     double columns[SF_CFH_CRITERIA];   /* g, -, corrected */
     bool failed;                       /* no figures: `note` says why */
-    double simulated[SF_CFH_CRITERIA]; /* g, - */
+    double simulated[SF_CFH_CRITERIA]; /* g, -; NaN if it failed, as the next */
     double shift[SF_CFH_CRITERIA];     /* of ln height, by the difference of each; NaN: not known */
     char note[SF_CFH_NOTE_SIZE];
 } sf_cfh_check;
