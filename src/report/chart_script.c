@@ -183,7 +183,7 @@ static void put_corner(FILE *g, double end) {
         fprintf(g, "graph %d", end > 0);
 }
 
-static void put_mark(FILE *g, const sf_chart_mark *m) {
+static void put_mark(FILE *g, const sf_chart_mark_data *m) {
     switch (m->kind) {
     case SF_MARK_LEVEL: /* its line is plotted, so that the axis reaches it */
         fputs("set label ", g);

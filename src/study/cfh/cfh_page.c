@@ -2,6 +2,7 @@
 /* The picture and the page of a critical fall height. */
 #include "study/cfh/cfh_report.h"
 
+#include "base/text.h"
 #include "build_info.h"
 #include "post/results/origin.h"
 #include "post/view/report.h"
@@ -349,9 +350,8 @@ static void put_tiles(FILE *page, const sf_cfh_report *r) {
     if (r->rig->pairs > 0) {
         height_text(r, sf_cfh_rig_height(r->rig, 1), value, sizeof value);
         tile_remark(r, r->spread ? &r->spread->rig : NULL, remark, sizeof remark);
-        size_t used = strlen(remark);
-        snprintf(remark + used, sizeof remark - used, "%sg_eff = %.3f ± %.3f m/s²", used ? "; " : "",
-                 r->rig->gravity, r->rig->standard_error);
+        sf_text_add(remark, sizeof remark, "%sg_eff = %.3f ± %.3f m/s²", *remark ? "; " : "", r->rig->gravity,
+                    r->rig->standard_error);
         sf_html_tile(page, banner_kind(r), "on the rig", value, remark);
     }
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
@@ -446,26 +446,14 @@ static void put_bodies(FILE *page, const sf_cfh_report *r) {
     sf_html_table_end(&table);
 }
 
-static void put_picture(FILE *page, const sf_staging *output, const sf_cfh_report *r) {
-    char warning[320];
-    char *svg = sf_chart_svg(output, "cfh", "softfall-cfh", warning, sizeof warning);
-    if (svg)
-        sf_html_figure(
-            page, svg, "a_max and HIC over the drop height%s.",
-            r->spread ? "; bands: 95 % of the draws of the foam, and the intervals of the crossings" : "");
-    else
-        sf_html_figure(page, NULL, "%s.", warning);
-    free(svg);
-}
-
 /* Writes the end of the data of each foam. */
 static void describe_foams(const sf_cfh_foams *foams, char *text, size_t size) {
-    size_t used = 0;
-    for (int k = 0; k < foams->count && used < size; k++) {
+    text[0] = '\0';
+    for (int k = 0; k < foams->count; k++) {
         const sf_cfh_foam *foam = &foams->foam[k];
-        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s %.3f", k ? "; " : "",
-                                 foams->count > 1 ? foam->name : "", foams->count > 1 ? ": " : "",
-                                 foam->words, foam->end);
+        bool many = foams->count > 1;
+        sf_text_add(text, size, "%s%s%s%s %.3f", k ? "; " : "", many ? foam->name : "", many ? ": " : "",
+                    foam->words, foam->end);
     }
 }
 
@@ -503,7 +491,11 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
                    verdict, rig[0] ? " " : "", rig, sf_cfh_caution);
     put_tiles(page, r);
     sf_html_columns_begin(page, "wide");
-    put_picture(page, output, r);
+    sf_chart_figure(page, output, "cfh", "softfall-cfh",
+                    r->spread
+                        ? "a_max and HIC over the drop height; bands: 95 % of the draws of the foam, and "
+                          "the intervals of the crossings"
+                        : "a_max and HIC over the drop height");
     sf_html_block_begin(page);
     put_bodies(page, r);
     sf_html_block_end(page);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/cfh/cfh_report.h"
 
+#include "base/text.h"
 #include "build_info.h"
 #include "report/row.h"
 
@@ -45,26 +46,23 @@ void sf_cfh_draws_text(const sf_cfh_spread *s, char *text, size_t size) {
         {s->beyond,
          "reach a limit outside of the simulated heights, where the correction of the columns is that "
          "of the nearest one"}};
-    size_t used = 0;
     int failed = 0;
     text[0] = '\0';
-    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && used < size; k++)
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
         if (kinds[k].count > 0)
-            used += (size_t)snprintf(text + used, size - used, "%s%d of the %d draws %s.", used ? " " : "",
-                                     kinds[k].count, s->draws, kinds[k].words);
+            sf_text_add(text, size, "%s%d of the %d draws %s.", *text ? " " : "", kinds[k].count, s->draws,
+                        kinds[k].words);
     for (int k = 0; k < s->checks; k++)
         failed += s->check[k].failed;
-    if (failed > 0 && used < size)
-        used +=
-            (size_t)snprintf(text + used, size - used,
-                             "%s%d of the %d simulated draws failed: there the columns are not confirmed.",
-                             used ? " " : "", failed, s->checks);
-    if (is_aside(s) && used < size)
-        snprintf(
-            text + used, size - used,
+    if (failed > 0)
+        sf_text_add(text, size, "%s%d of the %d simulated draws failed: there the columns are not confirmed.",
+                    *text ? " " : "", failed, s->checks);
+    if (is_aside(s))
+        sf_text_add(
+            text, size,
             "%sThe height of the case's own material, %.3g m, lies outside of 95 %% of the draws: it is not the foam "
             "that they describe.",
-            used ? " " : "", s->own_height);
+            *text ? " " : "", s->own_height);
 }
 
 const char *sf_cfh_response_text(const sf_cfh_spread *s) {
@@ -143,11 +141,10 @@ static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
 void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
     char uncertainty[SF_CFH_NOTE_SIZE + 100];
     simulated_text(r, text, size);
-    size_t used = strlen(text);
     if (r->result->verdict == SF_CFH_UNKNOWN && !r->spread)
         return;
     uncertainty_text(r, uncertainty, sizeof uncertainty);
-    snprintf(text + used, size - used, "%s", uncertainty);
+    sf_text_add(text, size, "%s", uncertainty);
 }
 
 /* Returns the upper bound of the height for the verdict SF_CFH_BELOW. */

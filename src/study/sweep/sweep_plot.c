@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/sweep_report.h"
 
+#include "base/text.h"
 #include "io/plain_file.h"
 #include "report/chart.h"
 #include <limits.h>
@@ -382,10 +383,8 @@ static void put_level_axis(sf_chart *chart, sf_axis *axis, const sf_plan *p, int
     }
     sf_axis_range(axis, -0.5, (double)b->rows - 0.5);
     sf_factor_heading(f, text, sizeof text);
-    size_t used = strlen(text);
-    for (int k = b->first + 1; k < b->first + b->count && used < sizeof text;
-         k++) /* those of a zip go along */
-        used += (size_t)snprintf(text + used, sizeof text - used, ", with %s", p->factor[k].name);
+    for (int k = b->first + 1; k < b->first + b->count; k++) /* those of a zip go along */
+        sf_text_add(text, sizeof text, ", with %s", p->factor[k].name);
     sf_axis_label(axis, "%s", text);
 }
 

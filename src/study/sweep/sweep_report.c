@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/sweep_report.h"
 
+#include "base/text.h"
 #include "build_info.h"
 #include "report/chart.h"
 #include "report/html.h"
@@ -40,13 +41,11 @@ static void factor_text(const sf_plan *p, int factor, char *text, size_t size) {
         sf_factor_distribution_text(f, text, size);
     else
         list_text(f, text, size);
-    size_t used = strlen(text);
-    if (b->kind == SF_BLOCK_ZIP && used < size)
-        snprintf(text + used, size - used, ", with %s",
-                 p->factor[b->first == factor ? b->first + b->count - 1 : b->first].name);
-    else if (b->kind == SF_BLOCK_SAMPLE && used < size)
-        snprintf(text + used, size - used, "; %s of %lld rows", sampling_words[b->method],
-                 (long long)b->rows);
+    if (b->kind == SF_BLOCK_ZIP)
+        sf_text_add(text, size, ", with %s",
+                    p->factor[b->first == factor ? b->first + b->count - 1 : b->first].name);
+    else if (b->kind == SF_BLOCK_SAMPLE)
+        sf_text_add(text, size, "; %s of %lld rows", sampling_words[b->method], (long long)b->rows);
 }
 
 void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
@@ -296,18 +295,11 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
-    char warning[320];
     for (const sf_sweep_picture *p = sf_sweep_pictures(); p->name; p++) {
         char script[64];
         snprintf(script, sizeof script, "%s.gp", p->name);
-        if (!sf_staging_has(output, script))
-            continue;
-        char *svg = sf_chart_svg(output, p->name, "softfall-sweep", warning, sizeof warning);
-        if (svg)
-            sf_html_figure(page, svg, "%s.", p->caption);
-        else
-            sf_html_figure(page, NULL, "%s.", warning);
-        free(svg);
+        if (sf_staging_has(output, script))
+            sf_chart_figure(page, output, p->name, "softfall-sweep", p->caption);
     }
 }
 
@@ -333,22 +325,20 @@ static void put_probability_row(sf_html_table *t, const sf_sweep_report *r, int6
 static void put_probability(FILE *page, const sf_sweep_report *r) {
     const sf_probabilities *q = &r->analysis->probability;
     char columns[4096] = "";
-    size_t used = 0;
     if (q->cells == 0)
         return;
     for (int f = 0; f < r->plan->factor_count; f++)
         if (sf_block_is_chosen(r->plan, r->plan->block_of[f])) {
             char text[SF_FACTOR_KEY_SIZE + SF_FACTOR_UNIT_SIZE + 8];
             sf_factor_heading(&r->plan->factor[f], text, sizeof text);
-            used += (size_t)snprintf(columns + used, sizeof columns - used, "%s%s", used ? "|" : "", text);
+            sf_text_add(columns, sizeof columns, "%s%s", *columns ? "|" : "", text);
         }
-    for (int k = 0; k < r->plan->figure_count && used < sizeof columns; k++)
+    for (int k = 0; k < r->plan->figure_count; k++)
         if (!isnan(r->plan->figure[k].limit))
-            used +=
-                (size_t)snprintf(columns + used, sizeof columns - used,
-                                 "%s>P(%s < %g), 95 %% interval|>below / above / unknown / within scatter",
-                                 used ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
-    if (used == 0)
+            sf_text_add(columns, sizeof columns,
+                        "%s>P(%s < %g), 95 %% interval|>below / above / unknown / within scatter",
+                        *columns ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
+    if (!*columns)
         return;
     sf_html_heading(page, "Probability of staying below the limits");
     sf_html_table t = sf_html_table_begin(page, "dense", columns);
