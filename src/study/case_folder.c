@@ -38,10 +38,6 @@ typedef struct folder {
     sf_tree tree;
 } folder;
 
-static const sf_geo_source *geometry(const sf_case *c, int k) {
-    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support;
-}
-
 /* ---- places ---- */
 
 static const folder_file *find_name(const folder *f, const char *name) {
@@ -137,7 +133,7 @@ static sf_status list_reading(const folder *f, const char *path, reading *r, sf_
         most += f->mesh[k].broker.count;
     r->file = sf_alloc(err, most, sizeof *r->file, "the files of a geometry");
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++) {
-        const sf_geo_source *source = geometry(&f->c, k);
+        const sf_geo_source *source = sf_campaign_geometry(&f->c, k);
         const sf_broker *read = &f->mesh[k].broker;
         char *own = source->path ? sf_path_whole(NULL, source->path, err) : NULL;
         for (size_t i = 0; own && strcmp(own, path) == 0 && i < read->count && err->status == SF_OK; i++) {
@@ -352,8 +348,8 @@ static sf_status write_files(folder *f, sf_error *err) {
 static sf_status mesh_each(const sf_case *c, sf_meshed mesh[SF_GEOMETRIES], sf_error *err) {
     const sf_mesher_limits limits = {c->mesh_time_limit, NULL};
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
-        if (geometry(c, k)->path)
-            sf_mesher_run(geometry(c, k), &limits, &mesh[k], err);
+        if (sf_campaign_geometry(c, k)->path)
+            sf_mesher_run(sf_campaign_geometry(c, k), &limits, &mesh[k], err);
     return err->status;
 }
 
@@ -381,7 +377,7 @@ static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) 
             (mesh[k].size != f->mesh[k].size ||
              (mesh[k].size > 0 && memcmp(mesh[k].stream, f->mesh[k].stream, mesh[k].size) != 0)))
             SF_FAIL(err, SF_ERR_INPUT, "%s has no folder of its own: in another folder %s gives another mesh",
-                    f->request->case_path, geometry(&f->c, k)->path);
+                    f->request->case_path, sf_campaign_geometry(&f->c, k)->path);
     for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&mesh[k]);
     free(root);

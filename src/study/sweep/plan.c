@@ -427,9 +427,9 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     sf_error inner = SF_ERROR_INIT;
     *own = 0;
     if (sf_sweep_read_case(p, row, &c, &inner) == SF_OK) {
-        if (sf_geo_parameters_check_alone(&c.pad, &inner) == SF_OK &&
-            sf_geo_parameters_check_alone(&c.missile, &inner) == SF_OK &&
-            sf_geo_parameters_check_alone(&c.support, &inner) == SF_OK)
+        for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
+            sf_geo_parameters_check_alone(sf_campaign_geometry(&c, k), &inner);
+        if (inner.status == SF_OK)
             sf_campaign_key(&c, own, &inner);
         sf_case_free(&c);
     }
