@@ -128,22 +128,18 @@ static void put_points(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion
 
 /* The verdict in a few words. */
 static void put_title(sf_chart *chart, const sf_cfh_report *r) {
-    const sf_cfh_result *v = r->result;
-    char height[96] = "not determined", rig[48] = "", interval[64], spread[96] = "";
-    if (v->verdict == SF_CFH_FOUND)
-        snprintf(height, sizeof height, "%.3f m of free fall", v->crossing[v->deciding].height);
-    else if (v->verdict == SF_CFH_ABOVE)
-        snprintf(height, sizeof height, "above %.3f m of free fall", v->highest);
-    else if (v->verdict == SF_CFH_BELOW)
-        snprintf(height, sizeof height, "below %.3f m of free fall", v->lowest);
-    if (v->verdict == SF_CFH_FOUND && r->rig->pairs > 0)
-        snprintf(rig, sizeof rig, ", %.3f m on the rig",
-                 sf_cfh_rig_height(r->rig, v->crossing[v->deciding].height));
+    char words[96] = "not determined", rig[48] = "", interval[64], spread[96] = "";
+    double height;
+    const char *side = sf_cfh_bound(r, &height);
+    if (side)
+        snprintf(words, sizeof words, "%s%.3f m of free fall", side, height);
+    if (side && !*side && r->rig->pairs > 0)
+        snprintf(rig, sizeof rig, ", %.3f m on the rig", sf_cfh_rig_height(r->rig, height));
     if (r->spread)
         snprintf(
             spread, sizeof spread, "; 95 %% interval %s",
             sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, SF_CFH_FIRST), interval, sizeof interval));
-    sf_chart_title(chart, "Critical fall height %s%s%s (indicative)", height, rig, spread);
+    sf_chart_title(chart, "Critical fall height %s%s%s (indicative)", words, rig, spread);
 }
 
 sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *warning, size_t size,
@@ -300,24 +296,15 @@ static const char *banner_kind(const sf_cfh_report *r) {
 
 /* "1.661 m", or a bound. */
 static void height_text(const sf_cfh_report *r, double scale, char *text, size_t size) {
+    static const char *const signs[] = {[SF_CFH_FOUND] = "", [SF_CFH_ABOVE] = "> ", [SF_CFH_BELOW] = "< "};
     const sf_cfh_result *v = r->result;
-    switch (v->verdict) {
-    case SF_CFH_FOUND:
-        snprintf(text, size, "%.3f m", scale * sf_cfh_deciding(r)->height);
-        break;
-    case SF_CFH_ABOVE:
-        if (isnan(v->anvil))
-            snprintf(text, size, "> %.3f m", scale * v->highest);
-        else
-            snprintf(text, size, "%.3f to %.3f m", scale * v->highest, scale * v->anvil);
-        break;
-    case SF_CFH_BELOW:
-        snprintf(text, size, "< %.3f m", scale * sf_cfh_upper_bound(v));
-        break;
-    case SF_CFH_UNKNOWN:
+    double height;
+    if (!sf_cfh_bound(r, &height))
         snprintf(text, size, "–");
-        break;
-    }
+    else if (v->verdict == SF_CFH_ABOVE && !isnan(v->anvil))
+        snprintf(text, size, "%.3f to %.3f m", scale * height, scale * v->anvil);
+    else
+        snprintf(text, size, "%s%.3f m", signs[v->verdict], scale * height);
 }
 
 static void put_limit_tile(FILE *page, const sf_cfh_report *r, sf_cfh_criterion c) {

@@ -75,8 +75,15 @@ const char *sf_cfh_response_text(const sf_cfh_spread *s) {
 const char sf_cfh_caution[] = "Indicative, not a certification: a computed height from one simulated impact "
                               "site, not the test of ASTM F1292 or EN 1177.";
 
-const sf_cfh_crossing *sf_cfh_deciding(const sf_cfh_report *r) {
-    return &r->result->crossing[r->result->deciding];
+const char *sf_cfh_bound(const sf_cfh_report *r, double *height) {
+    static const char *const words[] = {
+        [SF_CFH_FOUND] = "", [SF_CFH_ABOVE] = "above ", [SF_CFH_BELOW] = "below ", [SF_CFH_UNKNOWN] = NULL};
+    const sf_cfh_result *v = r->result;
+    *height = v->verdict == SF_CFH_FOUND   ? v->crossing[v->deciding].height
+              : v->verdict == SF_CFH_ABOVE ? v->highest
+              : v->verdict == SF_CFH_BELOW ? (isnan(v->lowest) ? v->anvil : v->lowest)
+                                           : NAN;
+    return words[v->verdict];
 }
 
 /* Writes the statement of the verdict about the uncertainty: a sentence after a blank. */
@@ -101,41 +108,31 @@ static void uncertainty_text(const sf_cfh_report *r, char *text, size_t size) {
 static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
     const sf_cfh_result *v = r->result;
     const char *name = sf_cfh_name(v->deciding), *unit = sf_cfh_unit(v->deciding);
-    double limit = r->plan->limit[v->deciding];
-    switch (v->verdict) {
-    case SF_CFH_FOUND:
-        snprintf(text, size, "Critical fall height %.3f m of free fall%s: %s reaches %g%s first.",
-                 sf_cfh_deciding(r)->height, r->spread ? " as simulated" : "", name, limit, unit);
-        break;
-    case SF_CFH_ABOVE:
-        if (!isnan(v->anvil)) {
-            snprintf(
-                text, size,
-                "Critical fall height above %.3f m and below %.3f m of free fall: neither a_max %g g nor HIC %g is "
-                "reached, but from %.3f m the missile reaches the anvil.",
-                v->highest, v->anvil, r->plan->limit[SF_CFH_A_MAX], r->plan->limit[SF_CFH_HIC], v->anvil);
-            break;
-        }
-        snprintf(text, size,
-                 "Critical fall height above %.3f m of free fall: neither a_max %g g nor HIC %g is reached.",
-                 v->highest, r->plan->limit[SF_CFH_A_MAX], r->plan->limit[SF_CFH_HIC]);
-        break;
-    case SF_CFH_BELOW:
-        if (isnan(v->lowest)) {
-            snprintf(
-                text, size,
-                "Critical fall height below %.3f m of free fall: from there the missile reaches the anvil.",
-                v->anvil);
-            break;
-        }
-        snprintf(text, size,
-                 "Critical fall height below %.3f m of free fall: %s exceeds %g%s at the lowest height.",
-                 v->lowest, name, limit, unit);
-        break;
-    case SF_CFH_UNKNOWN:
+    double limit = r->plan->limit[v->deciding], height;
+    const char *side = sf_cfh_bound(r, &height);
+    if (!side) {
         snprintf(text, size, "Critical fall height not determined: %s.", v->problem.text);
-        break;
+        return;
     }
+    bool up_to_anvil = v->verdict == SF_CFH_ABOVE && !isnan(v->anvil);
+    snprintf(text, size, "Critical fall height %s%.3f m", side, height);
+    if (up_to_anvil)
+        sf_text_add(text, size, " and below %.3f m", v->anvil);
+    sf_text_add(text, size,
+                " of free fall%s: ", v->verdict == SF_CFH_FOUND && r->spread ? " as simulated" : "");
+    if (v->verdict == SF_CFH_FOUND)
+        sf_text_add(text, size, "%s reaches %g%s first.", name, limit, unit);
+    else if (v->verdict == SF_CFH_ABOVE)
+        sf_text_add(text, size, "neither a_max %g g nor HIC %g is reached", r->plan->limit[SF_CFH_A_MAX],
+                    r->plan->limit[SF_CFH_HIC]);
+    else if (isnan(v->lowest))
+        sf_text_add(text, size, "from there the missile reaches the anvil.");
+    else
+        sf_text_add(text, size, "%s exceeds %g%s at the lowest height.", name, limit, unit);
+    if (up_to_anvil)
+        sf_text_add(text, size, ", but from %.3f m the missile reaches the anvil.", v->anvil);
+    else if (v->verdict == SF_CFH_ABOVE)
+        sf_text_add(text, size, ".");
 }
 
 void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
@@ -147,26 +144,12 @@ void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
     sf_text_add(text, size, "%s", uncertainty);
 }
 
-/* Returns the upper bound of the height for the verdict SF_CFH_BELOW. */
-double sf_cfh_upper_bound(const sf_cfh_result *v) {
-    return isnan(v->lowest) ? v->anvil : v->lowest;
-}
-
 /* The same on the rig; "" without a rig or a height. */
 void sf_cfh_rig_text(const sf_cfh_report *r, char *text, size_t size) {
-    double height = NAN;
+    double height;
     char interval[64], uncertainty[160] = "";
-    const char *side = "";
+    const char *side = sf_cfh_bound(r, &height);
     text[0] = '\0';
-    if (r->result->verdict == SF_CFH_FOUND) {
-        height = sf_cfh_deciding(r)->height;
-    } else if (r->result->verdict == SF_CFH_ABOVE) {
-        height = r->result->highest;
-        side = "above ";
-    } else if (r->result->verdict == SF_CFH_BELOW) {
-        height = sf_cfh_upper_bound(r->result);
-        side = "below ";
-    }
     if (r->rig->pairs == 0 || isnan(height))
         return;
     if (r->spread)
@@ -361,8 +344,9 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     sf_json_text(json, "verdict", words[v->verdict]);
     sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
     sf_json_text(json, "deciding", !decided ? NULL : isnan(v->lowest) ? "anvil" : sf_cfh_name(v->deciding));
-    put_heights(json, r, found ? sf_cfh_deciding(r)->height : NAN, SF_CFH_FIRST);
-    sf_json_number(json, "speed_m_s", found ? sf_cfh_speed(sf_cfh_deciding(r)->height) : NAN);
+    double height = found ? v->crossing[v->deciding].height : NAN;
+    put_heights(json, r, height, SF_CFH_FIRST);
+    sf_json_number(json, "speed_m_s", sf_cfh_speed(height));
     sf_json_number(json, "confidence", 0.95);
     sf_json_number(json, "lowest_simulated_m", v->lowest);
     sf_json_number(json, "highest_simulated_m", v->highest);

@@ -46,10 +46,9 @@ const char *sf_cfh_response_text(const sf_cfh_spread *spread);
 /* "crossed", "not reached", ...; static storage. */
 const char *sf_cfh_side_word(const sf_cfh_crossing *crossing);
 
-/* The crossing that decides. */
-const sf_cfh_crossing *sf_cfh_deciding(const sf_cfh_report *report);
-/* Returns the upper bound of the height for the verdict SF_CFH_BELOW. */
-double sf_cfh_upper_bound(const sf_cfh_result *result);
+/* Returns "", "above " or "below ", the side of `*height` (m) on which the critical height lies; NULL: it is
+ * not determined. */
+const char *sf_cfh_bound(const sf_cfh_report *report, double *height);
 
 /* Tables of cfh.json and report.html: a row for each simulated point, and for each simulated draw. */
 typedef struct sf_cfh_point_row {
