@@ -6,7 +6,7 @@
 
 #include "io/staging.h"
 #include "report/row.h"
-#include "study/cfh/series.h"
+#include "study/cfh/spread.h"
 
 typedef struct sf_cfh_report {
     const char *case_path;

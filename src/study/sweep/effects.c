@@ -57,26 +57,7 @@ static void measure(sf_quadratic *s, int i, int64_t n, const double *x) {
 typedef struct fit {
     gsl_matrix *terms, *covariance;
     gsl_vector *y, *weight, *c;
-    gsl_multifit_linear_workspace *work;
 } fit;
-
-static bool fit_begin(fit *f, int64_t n, int terms) {
-    size_t rows = (size_t)n, columns = (size_t)terms;
-    *f = (fit){gsl_matrix_alloc(rows, columns), gsl_matrix_alloc(columns, columns),
-               gsl_vector_alloc(rows),          gsl_vector_alloc(rows),
-               gsl_vector_alloc(columns),       gsl_multifit_linear_alloc(rows, columns)};
-    return f->terms && f->covariance && f->y && f->weight && f->c && f->work;
-}
-
-static void fit_end(fit *f) {
-    gsl_matrix_free(f->terms);
-    gsl_matrix_free(f->covariance);
-    gsl_vector_free(f->y);
-    gsl_vector_free(f->weight);
-    gsl_vector_free(f->c);
-    if (f->work)
-        gsl_multifit_linear_free(f->work);
-}
 
 /* The leverage of a row, by (X^T X)^-1. */
 static double leverage(const fit *f, size_t row, gsl_vector *scratch) {
@@ -146,7 +127,7 @@ static void judge(sf_quadratic *s, const fit *f, size_t n, size_t *order, double
 }
 
 static void solve(sf_quadratic *s, fit *f, int64_t n, const double *x, const double *y, size_t *order,
-                  double *left_out, gsl_vector *scratch) {
+                  double *left_out, gsl_vector *scratch, gsl_multifit_linear_workspace *work) {
     double chisq = 0;
     size_t rank = 0;
     for (size_t k = 0; k < (size_t)n; k++) {
@@ -155,7 +136,7 @@ static void solve(sf_quadratic *s, fit *f, int64_t n, const double *x, const dou
         gsl_vector_set(f->weight, k, 1);
     }
     int failed = gsl_multifit_wlinear_tsvd(f->terms, f->weight, f->y, TOLERANCE, f->c, f->covariance, &chisq,
-                                           &rank, f->work);
+                                           &rank, work);
     if (failed || rank < (size_t)s->terms) {
         snprintf(s->problem, sizeof s->problem,
                  "the rows do not determine all terms: two factors vary together, or values are missing");
@@ -180,15 +161,23 @@ sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const
                  terms, terms + 2, (long long)n);
         return SF_OK;
     }
-    fit f;
-    gsl_vector *scratch = gsl_vector_alloc((size_t)terms);
-    size_t *order = sf_alloc(err, (unsigned long)n, sizeof *order, "the response surface");
+    const size_t rows = (size_t)n, columns = (size_t)terms;
+    gsl_vector *scratch = gsl_vector_alloc(columns);
+    fit f = {gsl_matrix_alloc(rows, columns), gsl_matrix_alloc(columns, columns), gsl_vector_alloc(rows),
+             gsl_vector_alloc(rows), gsl_vector_alloc(columns)};
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(rows, columns);
+    size_t *order = sf_alloc(err, rows, sizeof *order, "the response surface");
     s->terms = terms;
-    if (fit_begin(&f, n, terms) && scratch && order)
-        solve(s, &f, n, x, y, order, left_out, scratch);
+    if (f.terms && f.covariance && f.y && f.weight && f.c && work && scratch && order)
+        solve(s, &f, n, x, y, order, left_out, scratch, work);
     else if (err->status == SF_OK)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the response surface");
-    fit_end(&f);
+    gsl_matrix_free(f.terms);
+    gsl_matrix_free(f.covariance);
+    gsl_vector_free(f.y);
+    gsl_vector_free(f.weight);
+    gsl_vector_free(f.c);
+    gsl_multifit_linear_free(work);
     free(order);
     gsl_vector_free(scratch);
     return err->status;

@@ -5,6 +5,7 @@
 #include "case/values.h"
 #include "base/text.h"
 #include "io/plain_file.h"
+#include "study/material_file.h"
 #include <gsl/gsl_cdf.h>
 #include <limits.h>
 #include <math.h>
@@ -278,20 +279,6 @@ static sf_status read_range(reading *r, const config_setting_t *first, sf_error 
 
 /* ---- a posterior ---- */
 
-static void draw_name(const char *folder, int number, char *path, size_t size) {
-    snprintf(path, size, "%s/draw-%03d.cfg", folder, number);
-}
-
-/* Draws from 1 on, at most `most`. */
-static int count_draws(const char *folder, int most) {
-    char path[DRAW_PATH];
-    int count = 0;
-    do {
-        draw_name(folder, count + 1, path, sizeof path);
-    } while (access(path, F_OK) == 0 && count++ < most);
-    return count < most ? count : most;
-}
-
 /* The number of draw `k` (from 0) of `count` of them, in the middle of equal parts of those that are there:
  * softfall-fit writes them model by model. */
 static int chosen_draw(int k, int count, int there) {
@@ -312,7 +299,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
     bool given = config_setting_get_member(r->group, "draws") != NULL;
     snprintf(folder, sizeof folder, "%s%s%s", *name == '/' ? "" : r->config->folder, *name == '/' ? "" : "/",
              name);
-    int there = count_draws(folder, MOST_DRAWS), count = given ? (int)draws : there;
+    int there = sf_draws_count(folder, MOST_DRAWS), count = given ? (int)draws : there;
     if (there == 0)
         return sf_config_refuse(r->config, s, err, "posterior: there is no draw-001.cfg in %s", folder);
     if (there < count)
@@ -320,7 +307,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
     SF_TRY(make_levels(r->factor, count, true, err));
     r->factor->uncertain = r->factor->posterior = true;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
-        draw_name(name, chosen_draw(k, count, there), path, sizeof path);
+        sf_draw_path(name, chosen_draw(k, count, there), path, sizeof path);
         take_file(r, s, path, k, err);
     }
     return err->status;
