@@ -448,8 +448,8 @@ static void put_probability_panel(sf_chart *chart, const sf_analysis *a, int fig
 
 /* ---- all ---- */
 
-/* How a picture is drawn: by a function of its own, which returns NULL if there is nothing to see, or panel
- * by panel for each figure that has one. */
+/* A picture is drawn by a function of its own, which returns NULL if there is nothing to see, or panel by
+ * panel for each figure that has one. */
 typedef struct drawing {
     sf_chart *(*draw)(const sf_analysis *a, const char *folder, sf_error *err);
     bool (*has)(const sf_analysis *a, int figure);
