@@ -90,7 +90,7 @@ void sf_chart_title(sf_chart *chart, const char *format, ...) __attribute__((for
 /* Columns of a grid of panels without areas of their own; 1 unless it is called. */
 void sf_chart_columns(sf_chart *chart, int columns);
 
-/* A new panel with automatic axes; the chart's. NULL after a failure: the functions below then do nothing. */
+/* A new panel with automatic axes; the chart's. After a failure one that is not drawn. */
 sf_panel *sf_chart_panel(sf_chart *chart);
 void sf_axis_label(sf_axis *axis, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void sf_axis_range(sf_axis *axis, double low, double high);

@@ -79,13 +79,13 @@ void sf_chart_columns(sf_chart *chart, int columns) {
 
 sf_panel *sf_chart_panel(sf_chart *chart) {
     static const sf_axis automatic = {.low = NAN, .high = NAN};
+    static sf_panel not_drawn;
     sf_chart_panel_data **list = chart ? grown(chart, chart->panel, chart->panel_count, sizeof *list) : NULL;
-    if (!list)
-        return NULL;
-    chart->panel = list;
-    sf_chart_panel_data *panel = sf_alloc(chart->err, 1, sizeof *panel, "a picture");
+    if (list)
+        chart->panel = list;
+    sf_chart_panel_data *panel = list ? sf_alloc(chart->err, 1, sizeof *panel, "a picture") : NULL;
     if (!panel)
-        return NULL;
+        return &not_drawn;
     *panel = (sf_chart_panel_data){.shown = {.x = automatic, .y = automatic, .x2 = automatic}};
     list[chart->panel_count++] = panel;
     return &panel->shown;
@@ -101,7 +101,7 @@ void sf_axis_range(sf_axis *axis, double low, double high) {
 }
 
 void sf_axis_word(sf_chart *chart, sf_axis *axis, const char *word) {
-    char **list = grown(chart, axis->word, (size_t)axis->word_count, sizeof *list);
+    char **list = chart ? grown(chart, axis->word, (size_t)axis->word_count, sizeof *list) : NULL;
     if (!list)
         return;
     axis->word = list;

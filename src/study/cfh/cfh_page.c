@@ -147,10 +147,7 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *wa
     sf_chart *chart = sf_chart_new("cfh", 1600, 1300, err);
     put_title(chart, r);
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
-        sf_panel *panel = sf_chart_panel(chart);
-        if (!panel)
-            break;
-        put_axes(panel, r, c);
+        put_axes(sf_chart_panel(chart), r, c);
         put_band(chart, r, c);
         put_crossing(chart, r, c);
         put_fit(chart, r, c);

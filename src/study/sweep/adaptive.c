@@ -195,13 +195,11 @@ static double expected_of(const sf_sweep_adaptive *a, int target, int64_t row) {
 
 /* The output of a process at a row that was simulated; NaN: the row has none. */
 static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
-    const double *place = runs->value + row * (int64_t)runs->figures;
+    const double *place = sf_runs_place(runs, row);
     int k = target - a->plan->figure_count;
     bool done = runs->state[row] == SF_SWEEP_DONE;
     if (k < 0)
-        return sf_runs_usable(runs, row)
-                   ? log(place[sf_runs_figure(a->plan->figure[target].figure)]) - expected_of(a, target, row)
-                   : NAN;
+        return log(sf_runs_value(runs, row, target)) - expected_of(a, target, row);
     if (watched[k].figure)
         return done ? place[sf_runs_figure(watched[k].figure)] : NAN;
     return is_simulated(runs, row) ? !sf_runs_usable(runs, row) : NAN;

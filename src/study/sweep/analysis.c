@@ -118,11 +118,6 @@ sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index 
 
 enum { SURFACE_SEED = 1 }; /* and that of pictures */
 
-double sf_analysis_value(const sf_analysis *a, int figure, int64_t row) {
-    const sf_runs *r = a->runs;
-    return sf_runs_usable(r, row) ? r->value[row * (int64_t)r->figures + (int64_t)a->figure[figure]] : NAN;
-}
-
 static void count(sf_analysis *a) {
     for (int64_t k = 0; k < a->runs->count; k++) {
         bool done = a->runs->state[k] == SF_SWEEP_DONE;
@@ -179,7 +174,7 @@ static void put_columns(const sf_plan *p, int d, const int *number, int64_t row,
 static int64_t count_values(const sf_analysis *a, int figure) {
     int64_t number = 0;
     for (int64_t row = 0; row < a->runs->count; row++)
-        number += !isnan(sf_analysis_value(a, figure, row));
+        number += !isnan(sf_runs_value(a->runs, row, figure));
     return number;
 }
 
@@ -215,7 +210,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     s->left_out = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
-        double value = sf_analysis_value(a, figure, row);
+        double value = sf_runs_value(a->runs, row, figure);
         if (isnan(value) || !is_drawn(random, most - s->rows, left--))
             continue;
         put_columns(a->plan, d, numbers, row, x + s->rows * (d + offsets));
@@ -268,7 +263,7 @@ static sf_status make_indices(sf_analysis *a, int figure, sf_error *err) {
     const sf_block *b = sf_plan_saltelli(a->plan);
     double *y = sf_alloc(err, (unsigned long)b->rows, sizeof *y, "indices");
     for (int64_t row = 0; row < b->rows && y; row++)
-        y[row] = sf_analysis_value(a, figure, row);
+        y[row] = sf_runs_value(a->runs, row, figure);
     if (y)
         sf_indices(b->count, b->samples, y, b->seed, a->index[figure], &a->index_samples[figure], err);
     free(y);
@@ -280,9 +275,8 @@ sf_status sf_analysis_make(const sf_runs *runs, sf_analysis *a, sf_error *err) {
         (sf_analysis){.plan = runs->plan, .runs = runs, .with_indices = sf_plan_saltelli(runs->plan) != NULL};
     count(a);
     for (int k = 0; k < a->plan->figure_count && err->status == SF_OK; k++) {
-        a->figure[k] = sf_runs_figure(a->plan->figure[k].figure);
         for (int f = 0; f < a->plan->factor_count && err->status == SF_OK; f++)
-            sf_effect_measure(runs, f, a->figure[k], &a->effect[k][f], err);
+            sf_effect_measure(runs, f, k, &a->effect[k][f], err);
         if (err->status == SF_OK && make_surface(a, k, err) == SF_OK && a->with_indices)
             make_indices(a, k, err);
     }

@@ -72,7 +72,7 @@ bool sf_effect_is_scatter(const sf_plan *plan, int factor);
 bool sf_effect_is_by_surface(const sf_plan *plan, int factor);
 
 /* By means; NaN of a factor of one of these two kinds. */
-sf_status sf_effect_measure(const sf_runs *runs, int factor, size_t figure, sf_effect *effect, sf_error *err);
+sf_status sf_effect_measure(const sf_runs *runs, int factor, int figure, sf_effect *effect, sf_error *err);
 
 /* Computes the effect of number `i` of the surface, between its least and its greatest value, averaged
  * over the rows x [n][d + offsets] that it was fitted to, which are as before when it returns. Changes
@@ -125,7 +125,6 @@ typedef struct sf_sweep_surface {
 typedef struct sf_analysis {
     const sf_plan *plan; /* borrowed, like the next */
     const sf_runs *runs;
-    size_t figure[SF_SWEEP_FIGURES]; /* their places in the list of figures */
     int64_t done, failed, open;
     int64_t usable; /* done and not "do not use", or predicted */
     int64_t predicted;
@@ -143,9 +142,6 @@ typedef struct sf_analysis {
 /* Release with sf_analysis_free, also on failure. */
 sf_status sf_analysis_make(const sf_runs *runs, sf_analysis *analysis, sf_error *err);
 void sf_analysis_free(sf_analysis *analysis);
-
-/* The figure of a row if it can be used, else NaN. */
-double sf_analysis_value(const sf_analysis *a, int figure, int64_t row);
 
 /* [count], from malloc: true for `most` of them at most, drawn with a fixed seed, as those at equal distances
  * may all have the same level of a factor. NULL on failure. */

@@ -242,23 +242,19 @@ void sf_groups_free(sf_groups *g) {
     *g = (sf_groups){0};
 }
 
-static double value_of(const sf_runs *r, int64_t row, size_t figure) {
-    return sf_runs_usable(r, row) ? r->value[row * (int64_t)r->figures + (int64_t)figure] : NAN;
-}
-
 /* The combination of all other blocks. */
 static int64_t combination(const sf_block *b, int64_t row) {
     return row / (b->stride * b->rows) * b->stride + row % b->stride;
 }
 
 /* [combinations] those of which a run does not count; of a plan of one block none. */
-static bool *find_gaps(const sf_runs *r, const sf_block *b, size_t figure, sf_effect *e, sf_error *err) {
+static bool *find_gaps(const sf_runs *r, const sf_block *b, int figure, sf_effect *e, sf_error *err) {
     int64_t count = r->count / b->rows;
     bool *gap = sf_alloc(err, (unsigned long)count, sizeof *gap, "combinations");
     if (!gap || count == 1)
         return gap;
     for (int64_t row = 0; row < r->count; row++)
-        gap[combination(b, row)] |= isnan(value_of(r, row, figure));
+        gap[combination(b, row)] |= isnan(sf_runs_value(r, row, figure));
     e->used = e->of = count;
     for (int64_t k = 0; k < count; k++)
         e->used -= gap[k];
@@ -266,10 +262,10 @@ static bool *find_gaps(const sf_runs *r, const sf_block *b, size_t figure, sf_ef
 }
 
 /* mean [count] of the figure over the rows of each group that count; NaN: there is none. */
-static void find_means(const sf_runs *r, const sf_block *b, const bool *gap, const sf_groups *g,
-                       size_t figure, double *mean, int64_t *number) {
+static void find_means(const sf_runs *r, const sf_block *b, const bool *gap, const sf_groups *g, int figure,
+                       double *mean, int64_t *number) {
     for (int64_t row = 0; row < r->count; row++) {
-        double value = value_of(r, row, figure);
+        double value = sf_runs_value(r, row, figure);
         int64_t k = g->of_row[row / b->stride % b->rows];
         if (isnan(value) || gap[combination(b, row)])
             continue;
@@ -334,7 +330,7 @@ void sf_effect_of_surface(const sf_quadratic *s, int i, int64_t n, double *x, sf
     }
 }
 
-sf_status sf_effect_measure(const sf_runs *r, int factor, size_t figure, sf_effect *e, sf_error *err) {
+sf_status sf_effect_measure(const sf_runs *r, int factor, int figure, sf_effect *e, sf_error *err) {
     sf_groups g = {0};
     const sf_factor *f = &r->plan->factor[factor];
     const sf_block *b = &r->plan->block[r->plan->block_of[factor]];
@@ -420,15 +416,14 @@ static double scatter_of(const sf_runs *r, int64_t row, const char *figure) {
     const char *key = strcmp(figure, "a_max_g") == 0 ? "a_max_scatter"
                       : strcmp(figure, "hic") == 0   ? "hic_scatter"
                                                      : NULL;
-    double sd = key ? sf_runs_place((sf_runs *)r, row)[sf_runs_figure(key)] : 0;
+    double sd = key ? sf_runs_place(r, row)[sf_runs_figure(key)] : 0;
     return isnan(sd) ? 0 : gsl_cdf_ugaussian_Pinv(1 - TAIL) * sd;
 }
 
 /* A prediction whose interval holds the limit is unknown. */
 static void count(const sf_runs *r, int64_t row, int figure, sf_probability *p) {
     const sf_sweep_limit *limit = &r->plan->figure[figure];
-    double value =
-        sf_runs_usable(r, row) ? sf_runs_place((sf_runs *)r, row)[sf_runs_figure(limit->figure)] : NAN;
+    double value = sf_runs_value(r, row, figure);
     if (fabs(log(value / limit->limit)) < sf_runs_half(r, row, figure))
         value = NAN;
     bool anvil =

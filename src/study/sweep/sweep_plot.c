@@ -115,7 +115,7 @@ static sf_series_data *level_series(sf_chart *chart, sf_series_style style, cons
 
 static bool has_values(const sf_analysis *a, int figure) {
     for (int64_t row = 0; row < a->runs->count; row++)
-        if (isfinite(sf_analysis_value(a, figure, row)))
+        if (isfinite(sf_runs_value(a->runs, row, figure)))
             return true;
     return false;
 }
@@ -164,8 +164,7 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
     const sf_block *b = &p->block[p->block_of[factor]];
     sf_groups groups = {0};
     sf_panel *panel = sf_chart_panel(chart);
-    if (!panel || sf_groups_make(p, factor, &groups, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_groups_make(p, factor, &groups, err));
     double *sum = sf_alloc(err, (unsigned long)groups.count, sizeof *sum, "a picture");
     double *number = sf_alloc(err, (unsigned long)groups.count, sizeof *number, "a picture");
     label_factor(&panel->x, &p->factor[factor]);
@@ -183,7 +182,7 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
             if (!sf_runs_usable(a->runs, row) || (++at, series_of(p, s, row) != k))
                 continue;
             int64_t group = groups.of_row[row / b->stride % b->rows];
-            double value = sf_analysis_value(a, figure, row);
+            double value = sf_runs_value(a->runs, row, figure);
             if (shown[at])
                 sf_series_point(points, sf_plan_value(p, factor, row), value);
             sum[group] += isnan(value) ? 0 : value;
@@ -246,13 +245,12 @@ static sf_chart *draw_curves(const sf_analysis *a, const char *folder, sf_error 
     series s;
     bool titled[SERIES] = {false}, *shown = sf_analysis_pick(a->usable, CURVES, err);
     sf_chart *chart = sf_chart_new("curves", 1600, 900, err);
-    sf_panel *panel = choose_series(a->plan, -1, &s, err) == SF_OK ? sf_chart_panel(chart) : NULL;
-    if (panel) {
-        sf_axis_label(&panel->x, "time (ms)");
-        sf_axis_label(&panel->y, "deceleration (g)");
-        panel->key = SF_KEY_TOP_RIGHT;
-    }
-    for (int64_t row = 0; row < a->runs->count && panel; row++) {
+    sf_panel *panel = sf_chart_panel(chart);
+    choose_series(a->plan, -1, &s, err);
+    sf_axis_label(&panel->x, "time (ms)");
+    sf_axis_label(&panel->y, "deceleration (g)");
+    panel->key = SF_KEY_TOP_RIGHT;
+    for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
         if (!sf_runs_usable(a->runs, row) || !shown[++at] || !a->runs->folder[row])
             continue;
         int level = series_of(a->plan, &s, row);
@@ -288,8 +286,6 @@ static void sort_factors(int count, const double *size, int *order) {
 /* A panel with a factor on each place of its y axis, in this order. */
 static sf_panel *bar_panel(sf_chart *chart, const sf_plan *p, const int *order) {
     sf_panel *panel = sf_chart_panel(chart);
-    if (!panel)
-        return NULL;
     for (int k = 0; k < p->factor_count; k++)
         sf_axis_word(chart, &panel->y, p->factor[order[k]].name);
     sf_axis_range(&panel->y, -0.6, p->factor_count - 0.4);
@@ -308,8 +304,6 @@ static void put_effect_panel(sf_chart *chart, const sf_analysis *a, int figure, 
     }
     sort_factors(p->factor_count, size, order);
     sf_panel *panel = bar_panel(chart, p, order);
-    if (!panel)
-        return;
     sf_axis_label(&panel->x, "%s", p->figure[figure].figure);
     sf_series_data *bars = sf_chart_series(chart, effect_span, NULL);
     for (int k = 0; k < p->factor_count; k++) {
@@ -328,8 +322,6 @@ static void put_index_panel(sf_chart *chart, const sf_analysis *a, int figure, s
         size[f] = a->index[figure][f].total;
     sort_factors(p->factor_count, size, order);
     sf_panel *panel = bar_panel(chart, p, order);
-    if (!panel)
-        return;
     sf_axis_label(&panel->x, "share of the variance of %s", p->figure[figure].figure);
     panel->key = SF_KEY_ABOVE;
     sf_series_data *first = sf_chart_series(chart, first_order, "first order"),
@@ -349,10 +341,8 @@ static void put_surface_panel(sf_chart *chart, const sf_analysis *a, int figure,
     bool *shown = sf_analysis_pick(s->rows, POINTS, err);
     sf_panel *panel = sf_chart_panel(chart);
     double low = INFINITY, high = -INFINITY;
-    if (panel) {
-        sf_axis_label(&panel->x, "%s, simulated", a->plan->figure[figure].figure);
-        sf_axis_label(&panel->y, "by the surface without its place");
-    }
+    sf_axis_label(&panel->x, "%s, simulated", a->plan->figure[figure].figure);
+    sf_axis_label(&panel->y, "by the surface without its place");
     sf_series_data *points = sf_chart_series(chart, surface_points, NULL);
     for (int64_t k = 0; k < s->rows && shown; k++) {
         if (!shown[k])
@@ -440,9 +430,9 @@ static void put_probability_panel(sf_chart *chart, const sf_analysis *a, int fig
     for (int k = 0; k < a->plan->block_count; k++)
         if (sf_block_is_chosen(a->plan, k))
             block[chosen++] = k;
-    if (panel && chosen == 2)
+    if (chosen == 2)
         put_map(chart, panel, a, figure, block);
-    else if (panel)
+    else
         put_line(chart, panel, a, figure, block);
 }
 
