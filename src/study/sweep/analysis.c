@@ -99,7 +99,7 @@ static sf_status evaluate(const sample *s, uint64_t seed, sf_index *index, sf_er
     return err->status;
 }
 
-sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index *index, int64_t *used,
+sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index *index, long long *used,
                      sf_error *err) {
     sample s = {.d = d, .n = n, .y = y, .place = sf_alloc(err, (unsigned long)n, sizeof(int64_t), "samples")};
     for (int i = 0; i < d; i++)

@@ -203,7 +203,7 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
         if (f->count != b->rows)
             return sf_config_refuse(config, list, err,
                                     "zip: %s has %lld values and %s %lld; the lists must have one length",
-                                    p->factor[b->first].key, (long long)b->rows, f->key, (long long)f->count);
+                                    p->factor[b->first].key, b->rows, f->key, f->count);
         if (f->uncertain != p->factor[b->first].uncertain)
             return sf_config_refuse(
                 config, list, err,

@@ -23,14 +23,14 @@ static const char *const sampling_words[] = {[SF_SAMPLING_RANDOM] = "random",
 static void list_text(const sf_factor *f, char *text, size_t size) {
     double low = INFINITY, high = -INFINITY;
     if (f->words) {
-        snprintf(text, size, "%lld %s", (long long)f->count, f->uncertain ? "draws" : "levels");
+        snprintf(text, size, "%lld %s", f->count, f->uncertain ? "draws" : "levels");
         return;
     }
     for (int64_t k = 0; k < f->count; k++) {
         low = fmin(low, f->number[k]);
         high = fmax(high, f->number[k]);
     }
-    snprintf(text, size, "%lld values, %.6g to %.6g %s", (long long)f->count, low, high, f->unit);
+    snprintf(text, size, "%lld values, %.6g to %.6g %s", f->count, low, high, f->unit);
 }
 
 /* Writes the values of a factor in a few words: "5 values, 4 to 6 m/s". */
@@ -45,7 +45,7 @@ static void factor_text(const sf_plan *p, int factor, char *text, size_t size) {
         sf_text_add(text, size, ", with %s",
                     p->factor[b->first == factor ? b->first + b->count - 1 : b->first].name);
     else if (b->kind == SF_BLOCK_SAMPLE)
-        sf_text_add(text, size, "; %s of %lld rows", sampling_words[b->method], (long long)b->rows);
+        sf_text_add(text, size, "; %s of %lld rows", sampling_words[b->method], b->rows);
 }
 
 void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
@@ -54,13 +54,13 @@ void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
         factor_text(p, f, text, sizeof text);
         fprintf(out, "  %-36s %s\n", p->factor[f].name, text);
     }
-    fprintf(out, "%lld runs\n  id", (long long)p->rows);
+    fprintf(out, "%lld runs\n  id", p->rows);
     for (int f = 0; f < p->factor_count; f++) {
         sf_factor_heading(&p->factor[f], text, sizeof text);
         fprintf(out, ", %s", text);
     }
-    for (int64_t row = 0; row < p->rows && row < rows; row++) {
-        fprintf(out, "\n  %lld", (long long)row + 1);
+    for (long long row = 0; row < p->rows && row < rows; row++) {
+        fprintf(out, "\n  %lld", row + 1);
         for (int f = 0; f < p->factor_count; f++) {
             sf_factor_text(&p->factor[f], sf_plan_value(p, f, row), text, sizeof text);
             fprintf(out, ", %s", text);
@@ -229,13 +229,13 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
     char value[64], remark[96];
     sf_html_tiles_begin(page);
-    snprintf(value, sizeof value, "%lld of %lld", (long long)a->done, (long long)r->plan->rows);
-    snprintf(remark, sizeof remark, "%lld predicted, %lld failed, %lld open", (long long)a->predicted,
-             (long long)a->failed, (long long)a->open);
+    snprintf(value, sizeof value, "%lld of %lld", a->done, r->plan->rows);
+    snprintf(remark, sizeof remark, "%lld predicted, %lld failed, %lld open", a->predicted, a->failed,
+             a->open);
     sf_html_tile(page, a->failed + a->open > 0 ? "fair" : "good", "runs done", value, remark);
-    snprintf(value, sizeof value, "%lld", (long long)a->usable);
-    snprintf(remark, sizeof remark, "%lld with remarks; %lld more are not to be used", (long long)a->remarks,
-             (long long)a->unusable);
+    snprintf(value, sizeof value, "%lld", a->usable);
+    snprintf(remark, sizeof remark, "%lld with remarks; %lld more are not to be used", a->remarks,
+             a->unusable);
     sf_html_tile(page, a->unusable > 0 ? "fair" : "good", "runs whose figures count", value, remark);
     for (int k = 0; k < r->plan->figure_count && a->probability.cells == 1; k++) {
         const sf_probability *c = &a->probability.cell[k];
@@ -247,7 +247,7 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
         snprintf(remark, sizeof remark, "95 %% interval %.3f to %.3f", c->low, c->high);
         if (c->unknown > 0)
             snprintf(remark, sizeof remark, "%.3f to %.3f; %lld unknown runs are taken as above", c->low,
-                     c->high, (long long)c->unknown);
+                     c->high, c->unknown);
         sf_html_tile(page, "plain", title, value, remark);
     }
     sf_html_tiles_end(page);
@@ -266,7 +266,7 @@ static void put_factors(FILE *page, const sf_plan *p) {
         sf_html_cell(&t, "%s", p->factor[f].uncertain ? "uncertain" : "chosen");
     }
     sf_html_table_end(&t);
-    sf_html_paragraph(page, "%lld runs of %s, a row each in runs.csv.", (long long)p->rows, p->case_path);
+    sf_html_paragraph(page, "%lld runs of %s, a row each in runs.csv.", p->rows, p->case_path);
 }
 
 static void put_predictions(FILE *page, const sf_sweep_report *r) {
@@ -291,7 +291,7 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
         "probabilities a prediction whose interval holds the limit is unknown. %lld rows "
         "are open: they are expected to fail or to be not to be used. A figure that a drop would not define, such as "
         "the rebound of a run that ends in contact, is predicted all the same.",
-        (long long)a->predicted, (long long)r->plan->rows, (long long)a->open);
+        a->predicted, r->plan->rows, a->open);
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
@@ -317,8 +317,7 @@ static void put_probability_row(sf_html_table *t, const sf_sweep_report *r, int6
         if (isnan(r->plan->figure[k].limit))
             continue;
         sf_html_cell(t, isnan(c->share) ? "–" : "%.3f (%.3f to %.3f)", c->share, c->low, c->high);
-        sf_html_cell(t, "%lld / %lld / %lld / %lld", (long long)c->below, (long long)c->above,
-                     (long long)c->unknown, (long long)c->within);
+        sf_html_cell(t, "%lld / %lld / %lld / %lld", c->below, c->above, c->unknown, c->within);
     }
 }
 
@@ -358,12 +357,12 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
 
 /* Means and fits of a part that the outcome has chosen. */
 static void note_missing(FILE *page, const sf_sweep_report *r, const char *what) {
-    int64_t missing = r->plan->rows - r->analysis->usable;
+    long long missing = r->plan->rows - r->analysis->usable;
     if (missing > 0)
         sf_html_note(page,
                      "%lld of %lld runs are left out (failed, not to be used, or open). These are no random "
                      "part, but mostly the hardest drops: %s.",
-                     (long long)missing, (long long)r->plan->rows, what);
+                     missing, r->plan->rows, what);
 }
 
 /* Puts the number of combinations behind a main effect. */
@@ -373,7 +372,7 @@ static void put_ground(sf_html_table *t, const sf_plan *p, int factor, const sf_
     else if (sf_effect_is_scatter(p, factor))
         sf_html_cell(t, "–");
     else if (e->of > 0)
-        sf_html_cell(t, "%lld of %lld combinations", (long long)e->used, (long long)e->of);
+        sf_html_cell(t, "%lld of %lld combinations", e->used, e->of);
     else
         sf_html_cell(t, "all runs that count");
 }
@@ -432,8 +431,7 @@ static void put_indices(FILE *page, const sf_sweep_report *r) {
             sf_html_cell(&t, isnan(i->first_low) ? "–" : "%.3f to %.3f", i->first_low, i->first_high);
             sf_html_number(&t, 3, i->total);
             sf_html_cell(&t, isnan(i->total_low) ? "–" : "%.3f to %.3f", i->total_low, i->total_high);
-            sf_html_cell(&t, "%lld of %lld", (long long)a->index_samples[k],
-                         (long long)sf_plan_saltelli(r->plan)->samples);
+            sf_html_cell(&t, "%lld of %lld", a->index_samples[k], sf_plan_saltelli(r->plan)->samples);
         }
     sf_html_table_end(&t);
     sf_html_note(
@@ -477,13 +475,13 @@ static void put_failures(FILE *page, const sf_sweep_report *r) {
         return;
     sf_html_heading(page, "Runs that failed or are not to be used");
     sf_html_table t = sf_html_table_begin(page, "dense", ">id|what|sentence");
-    for (int64_t row = 0; row < r->runs->count && listed < LISTED; row++) {
+    for (long long row = 0; row < r->runs->count && listed < LISTED; row++) {
         bool failed = r->runs->state[row] == SF_SWEEP_FAILED;
         if (!failed && (r->runs->state[row] != SF_SWEEP_DONE || sf_runs_usable(r->runs, row)))
             continue;
         listed++;
         sf_html_row(&t);
-        sf_html_cell(&t, "%lld", (long long)row + 1);
+        sf_html_cell(&t, "%lld", row + 1);
         sf_html_cell(&t, "%s", failed ? "failed" : "do not use");
         sf_html_cell(&t, "%s", r->runs->message[row] ? r->runs->message[row] : "");
     }
@@ -508,8 +506,7 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
         whole ? "complete" : "with gaps",
         "%lld of %lld runs are done, %lld are predicted, %lld failed, %lld are open; the figures of %lld are not to "
         "be used. %s",
-        (long long)a->done, (long long)r->plan->rows, (long long)a->predicted, (long long)a->failed,
-        (long long)a->open, (long long)a->unusable, caution);
+        a->done, r->plan->rows, a->predicted, a->failed, a->open, a->unusable, caution);
     put_tiles(page, r);
     put_factors(page, r->plan);
     put_predictions(page, r);
@@ -529,25 +526,22 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
 void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
     fprintf(out, "%lld runs: %lld done, %lld failed, %lld open; the figures of %lld are not to be used\n",
-            (long long)r->plan->rows, (long long)a->done, (long long)a->failed, (long long)a->open,
-            (long long)a->unusable);
+            r->plan->rows, a->done, a->failed, a->open, a->unusable);
     for (int k = 0; k < r->plan->figure_count && a->predicted > 0; k++)
-        fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n",
-                (long long)a->predicted, r->plan->figure[k].figure, 100 * a->widest[k],
-                100 * r->plan->figure[k].accuracy);
+        fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n", a->predicted,
+                r->plan->figure[k].figure, 100 * a->widest[k], 100 * r->plan->figure[k].accuracy);
     int listed = 0;
-    for (int64_t row = 0; row < r->runs->count && listed < 5; row++)
+    for (long long row = 0; row < r->runs->count && listed < 5; row++)
         if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)
-            fprintf(out, "  run %lld failed: %s\n", (long long)row + 1, r->runs->message[row]);
+            fprintf(out, "  run %lld failed: %s\n", row + 1, r->runs->message[row]);
     if (a->failed > listed)
-        fprintf(out, "  %lld more in runs.csv; --retry does them again\n", (long long)a->failed - listed);
+        fprintf(out, "  %lld more in runs.csv; --retry does them again\n", a->failed - listed);
     for (int k = 0; k < r->plan->figure_count && a->with_indices; k++)
         if (isnan(a->index[k][0].first))
             fprintf(
                 out,
                 "  %s: no Sobol' indices: it does not vary, or too few samples have all runs, %lld of %lld\n",
-                r->plan->figure[k].figure, (long long)a->index_samples[k],
-                (long long)sf_plan_saltelli(r->plan)->samples);
+                r->plan->figure[k].figure, a->index_samples[k], sf_plan_saltelli(r->plan)->samples);
     for (int k = 0; k < r->plan->figure_count; k++) {
         const sf_quadratic *s = &a->surface[k].fit;
         if (s->terms > 0 && *s->problem)
