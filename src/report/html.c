@@ -233,6 +233,11 @@ void sf_html_number(sf_html_table *table, int digits, double value) {
         sf_html_cell(table, "–");
 }
 
+void sf_html_numbers(sf_html_table *table, int digits, const double *value, int count) {
+    for (int k = 0; k < count; k++)
+        sf_html_number(table, digits, value[k]);
+}
+
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...) {
     sf_html_row(table);
     put_between(table->page, "<th>", title, "</th>");

@@ -73,6 +73,11 @@ void sf_html_cell(sf_html_table *table, const char *format, ...) __attribute__((
 void sf_html_hint(sf_html_table *table, const char *text);
 /* The value with so many digits after the point, or a dash if it is not finite. */
 void sf_html_number(sf_html_table *table, int digits, double value);
+/* The same of several cells. */
+#define SF_HTML_NUMBERS(table, digits, ...)                                                                  \
+    sf_html_numbers(table, digits, (const double[]){__VA_ARGS__},                                            \
+                    (int)(sizeof(double[]){__VA_ARGS__} / sizeof(double)))
+void sf_html_numbers(sf_html_table *table, int digits, const double *value, int count);
 void sf_html_table_end(sf_html_table *table);
 /* Adds a row to a table without headings. */
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...)

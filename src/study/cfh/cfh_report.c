@@ -285,12 +285,9 @@ static void put_trends_json(sf_json *json, const sf_cfh_spread *s) {
         bool trend = t->sum > 0;
         sf_json_open(json, NULL, '{');
         sf_json_text(json, "criterion", sf_cfh_name((sf_cfh_criterion)c));
-        sf_json_integer(json, "checks", t->checks);
-        sf_json_number(json, "centre_m", trend ? exp(t->centre) : NAN);
-        sf_json_number(json, "shift", trend ? t->shift : NAN);
-        sf_json_number(json, "slope", trend ? t->slope : NAN);
-        sf_json_number(json, "scatter", t->scatter);
-        sf_json_integer(json, "degrees_of_freedom", t->freedom);
+        SF_JSON_NUMBERS(json, {"checks", t->checks}, {"centre_m", trend ? exp(t->centre) : NAN},
+                        {"shift", trend ? t->shift : NAN}, {"slope", trend ? t->slope : NAN},
+                        {"scatter", t->scatter}, {"degrees_of_freedom", t->freedom});
         sf_json_close(json, '}');
     }
     sf_json_close(json, ']');
@@ -302,15 +299,11 @@ static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
                                                     "foam_response_mesh_fit",
                                                     "foam_response_mesh_fit_columns"};
     static const char *const shares[SF_CFH_PARTS] = {"foam", "response", "mesh", "fit", "columns"};
-    sf_json_integer(json, "draws", s->draws);
-    sf_json_integer(json, "draws_above", s->above);
-    sf_json_integer(json, "draws_below", s->below);
-    sf_json_integer(json, "draws_collapsed", s->collapsed);
-    sf_json_integer(json, "draws_beyond_simulated", s->beyond);
-    sf_json_integer(json, "repeats", SF_CFH_REPEATS);
-    sf_json_number(json, "expected_mesh_error", s->mesh_error);
-    sf_json_number(json, "fit_scatter_a_max", s->fit_scatter[SF_CFH_A_MAX]);
-    sf_json_number(json, "fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]);
+    SF_JSON_NUMBERS(json, {"draws", s->draws}, {"draws_above", s->above}, {"draws_below", s->below},
+                    {"draws_collapsed", s->collapsed}, {"draws_beyond_simulated", s->beyond},
+                    {"repeats", SF_CFH_REPEATS}, {"expected_mesh_error", s->mesh_error},
+                    {"fit_scatter_a_max", s->fit_scatter[SF_CFH_A_MAX]},
+                    {"fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]});
     for (int part = 0; part < SF_CFH_PARTS; part++)
         sf_cfh_put_interval_json(json, names[part], &s->part[part][SF_CFH_FIRST]);
     sf_cfh_put_interval_json(json, "single_drop", &s->part[SF_CFH_PARTS][SF_CFH_FIRST]);
@@ -346,11 +339,9 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     sf_json_text(json, "deciding", !decided ? NULL : isnan(v->lowest) ? "anvil" : sf_cfh_name(v->deciding));
     double height = found ? v->crossing[v->deciding].height : NAN;
     put_heights(json, r, height, SF_CFH_FIRST);
-    sf_json_number(json, "speed_m_s", sf_cfh_speed(height));
-    sf_json_number(json, "confidence", 0.95);
-    sf_json_number(json, "lowest_simulated_m", v->lowest);
-    sf_json_number(json, "highest_simulated_m", v->highest);
-    sf_json_number(json, "reaches_anvil_m", v->anvil);
+    SF_JSON_NUMBERS(json, {"speed_m_s", sf_cfh_speed(height)}, {"confidence", 0.95},
+                    {"lowest_simulated_m", v->lowest}, {"highest_simulated_m", v->highest},
+                    {"reaches_anvil_m", v->anvil});
     sf_json_text(json, "search_ended", sf_cfh_step_text(r->ending));
     sf_json_close(json, '}');
 }
@@ -362,19 +353,14 @@ static void put_fit(sf_json *json, const sf_cfh_report *r, const sf_cfh_crossing
            on_rig = sf_cfh_rig_height(r->rig, crossing->height);
     sf_json_open(json, "fit", '{');
     sf_json_text(json, "form", "ln(value) = c0 + c1 d + c2 d^2, d = ln(height_m) - centre");
-    sf_json_number(json, "centre", fit->count ? fit->centre : NAN);
-    sf_json_number(json, "c0", fit->count ? fit->c[0] : NAN);
-    sf_json_number(json, "c1", fit->count ? fit->c[1] : NAN);
-    sf_json_number(json, "c2", fit->count ? fit->c[2] : NAN);
-    sf_json_integer(json, "points", fit->count);
-    sf_json_number(json, "rms_residual", fit->count ? fit->rms : NAN);
+    double none = fit->count ? 0 : NAN;
+    SF_JSON_NUMBERS(json, {"centre", fit->centre + none}, {"c0", fit->c[0] + none}, {"c1", fit->c[1] + none},
+                    {"c2", fit->c[2] + none}, {"points", fit->count}, {"rms_residual", fit->rms + none});
     sf_json_bool(json, "bracketed", crossing->bracketed);
-    sf_json_number(json, "fit_low_m", crossing->low);
-    sf_json_number(json, "fit_high_m", crossing->high);
-    if (r->rig->pairs > 0) {
-        sf_json_number(json, "fit_rig_low_m", on_rig * exp(-margin));
-        sf_json_number(json, "fit_rig_high_m", on_rig * exp(margin));
-    }
+    SF_JSON_NUMBERS(json, {"fit_low_m", crossing->low}, {"fit_high_m", crossing->high});
+    if (r->rig->pairs > 0)
+        SF_JSON_NUMBERS(json, {"fit_rig_low_m", on_rig * exp(-margin)},
+                        {"fit_rig_high_m", on_rig * exp(margin)});
     sf_json_close(json, '}');
 }
 
@@ -461,10 +447,9 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
             put_cell(file, p->value[c]);
         for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
             put_cell(file, fitted(r, c, p));
-        put_cell(file, p->v_rebound);
-        put_cell(file, p->max_indentation * 1e3);
-        put_cell(file, p->max_local_strain);
-        put_cell(file, p->energy_error);
+        const double more[] = {p->v_rebound, p->max_indentation * 1e3, p->max_local_strain, p->energy_error};
+        for (int c = 0; c < 4; c++)
+            put_cell(file, more[c]);
         fprintf(file, ",%d", p->failed);
         if (r->rig->pairs > 0)
             put_cell(file, sf_cfh_rig_height(r->rig, p->height));

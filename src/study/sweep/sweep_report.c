@@ -93,10 +93,8 @@ static void json_effects(sf_json *j, const sf_sweep_report *r, int figure) {
         const sf_effect *e = &r->analysis->effect[figure][f];
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "factor", r->plan->factor[f].name);
-        sf_json_number(j, "low", e->low);
-        sf_json_number(j, "high", e->high);
-        sf_json_number(j, "at_least_value", e->first);
-        sf_json_number(j, "at_greatest_value", e->last);
+        SF_JSON_NUMBERS(j, {"low", e->low}, {"high", e->high}, {"at_least_value", e->first},
+                        {"at_greatest_value", e->last});
         sf_json_bool(j, "by_response_surface", sf_effect_is_by_surface(r->plan, f));
         sf_json_integer(j, "combinations", e->used);
         sf_json_integer(j, "all_combinations", e->of);
@@ -115,12 +113,8 @@ static void json_indices(sf_json *j, const sf_sweep_report *r, int figure) {
         const sf_index *i = &a->index[figure][f];
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "factor", r->plan->factor[f].name);
-        sf_json_number(j, "first", i->first);
-        sf_json_number(j, "first_low", i->first_low);
-        sf_json_number(j, "first_high", i->first_high);
-        sf_json_number(j, "total", i->total);
-        sf_json_number(j, "total_low", i->total_low);
-        sf_json_number(j, "total_high", i->total_high);
+        SF_JSON_NUMBERS(j, {"first", i->first}, {"first_low", i->first_low}, {"first_high", i->first_high},
+                        {"total", i->total}, {"total_low", i->total_low}, {"total_high", i->total_high});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -132,18 +126,15 @@ static void json_surface(sf_json *j, const sf_sweep_report *r, int figure) {
     char text[512];
     sf_json_open(j, "response_surface", '{');
     sf_json_text(j, "problem", *fit->problem ? fit->problem : NULL);
-    sf_json_integer(j, "rows", s->rows);
-    sf_json_number(j, "rms", fit->rms);
-    sf_json_number(j, "left_out_rms", fit->left_out_rms);
-    sf_json_number(j, "q2", fit->q2);
+    SF_JSON_NUMBERS(j, {"rows", (double)s->rows}, {"rms", fit->rms}, {"left_out_rms", fit->left_out_rms},
+                    {"q2", fit->q2});
     sf_json_open(j, "numbers", '[');
     int list[SF_SWEEP_FACTORS];
     sf_analysis_numbers(r->plan, list);
     for (int i = 0; i < fit->d && fit->terms > 0; i++) {
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "factor", r->plan->factor[list[i]].name);
-        sf_json_number(j, "centre", fit->centre[i]);
-        sf_json_number(j, "half_range", fit->half[i]);
+        SF_JSON_NUMBERS(j, {"centre", fit->centre[i]}, {"half_range", fit->half[i]});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -174,13 +165,9 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
             sf_factor_text(&r->plan->factor[f], sf_plan_value(r->plan, f, q->row[k]), text, sizeof text);
             sf_json_text(j, r->plan->factor[f].name, text);
         }
-        sf_json_number(j, "probability", c->share);
-        sf_json_number(j, "low", c->low);
-        sf_json_number(j, "high", c->high);
-        sf_json_integer(j, "below", c->below);
-        sf_json_integer(j, "above", c->above);
-        sf_json_integer(j, "unknown", c->unknown);
-        sf_json_integer(j, "within_scatter", c->within);
+        SF_JSON_NUMBERS(j, {"probability", c->share}, {"low", c->low}, {"high", c->high},
+                        {"below", (double)c->below}, {"above", (double)c->above},
+                        {"unknown", (double)c->unknown}, {"within_scatter", (double)c->within});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -194,24 +181,19 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     sf_json j = {.file = file};
     sf_json_open(&j, NULL, '{');
     sf_json_text(&j, "plan", r->plan->path);
-    sf_json_integer(&j, "runs", r->plan->rows);
-    sf_json_integer(&j, "done", a->done);
-    sf_json_integer(&j, "failed", a->failed);
-    sf_json_integer(&j, "open", a->open);
-    sf_json_integer(&j, "predicted", a->predicted);
-    sf_json_integer(&j, "do_not_use", a->unusable);
+    SF_JSON_NUMBERS(&j, {"runs", (double)r->plan->rows}, {"done", (double)a->done},
+                    {"failed", (double)a->failed}, {"open", (double)a->open},
+                    {"predicted", (double)a->predicted}, {"do_not_use", (double)a->unusable});
     json_factors(&j, r->plan);
     sf_json_open(&j, "figures", '[');
     for (int k = 0; k < r->plan->figure_count; k++) {
         sf_json_open(&j, NULL, '{');
         sf_json_text(&j, "figure", r->plan->figure[k].figure);
         sf_json_number(&j, "limit", r->plan->figure[k].limit);
-        if (sf_plan_is_adaptive(r->plan)) {
-            sf_json_number(&j, "accuracy", r->plan->figure[k].accuracy);
-            sf_json_number(&j, "widest_prediction", a->widest[k]);
-            sf_json_integer(&j, "checked_rows", r->runs->checked[k]);
-            sf_json_integer(&j, "held_rows", r->runs->held[k]);
-        }
+        if (sf_plan_is_adaptive(r->plan))
+            SF_JSON_NUMBERS(&j, {"accuracy", r->plan->figure[k].accuracy},
+                            {"widest_prediction", a->widest[k]}, {"checked_rows", r->runs->checked[k]},
+                            {"held_rows", r->runs->held[k]});
         json_probability(&j, r, k);
         json_effects(&j, r, k);
         json_indices(&j, r, k);
@@ -389,10 +371,7 @@ static void put_effects(FILE *page, const sf_sweep_report *r) {
             sf_html_row(&t);
             sf_html_cell(&t, "%s", r->plan->figure[k].figure);
             sf_html_cell(&t, "%s", r->plan->factor[f].name);
-            sf_html_number(&t, 1, e->low);
-            sf_html_number(&t, 1, e->high);
-            sf_html_number(&t, 1, e->first);
-            sf_html_number(&t, 1, e->last);
+            SF_HTML_NUMBERS(&t, 1, e->low, e->high, e->first, e->last);
             put_ground(&t, r->plan, f, e);
             scatter |= sf_effect_is_scatter(r->plan, f);
         }
@@ -451,11 +430,8 @@ static void put_surfaces(FILE *page, const sf_sweep_report *r) {
         const sf_sweep_surface *s = &r->analysis->surface[k];
         sf_html_row(&t);
         sf_html_cell(&t, "%s", r->plan->figure[k].figure);
-        sf_html_number(&t, 0, (double)s->rows);
-        sf_html_number(&t, 0, s->fit.terms);
-        sf_html_number(&t, 3, s->fit.rms);
-        sf_html_number(&t, 3, s->fit.left_out_rms);
-        sf_html_number(&t, 3, s->fit.q2);
+        SF_HTML_NUMBERS(&t, 0, (double)s->rows, s->fit.terms);
+        SF_HTML_NUMBERS(&t, 3, s->fit.rms, s->fit.left_out_rms, s->fit.q2);
         sf_html_cell(&t, "%s%s%s", s->fit.problem, *s->fit.problem && s->rows < s->of ? "; " : "",
                      s->rows < s->of ? "a part of the runs, drawn at random" : "");
     }
