@@ -98,22 +98,6 @@ void sf_json_text(sf_json *json, const char *key, const char *text) {
 
 /* ---- rows ---- */
 
-sf_value sf_value_real(double value) {
-    return (sf_value){.kind = SF_VALUE_REAL, .real = value};
-}
-
-sf_value sf_value_integer(int64_t value) {
-    return (sf_value){.kind = SF_VALUE_INTEGER, .integer = value};
-}
-
-sf_value sf_value_flag(bool value) {
-    return (sf_value){.kind = SF_VALUE_FLAG, .flag = value};
-}
-
-sf_value sf_value_text(const char *text) {
-    return (sf_value){.kind = SF_VALUE_TEXT, .text = text};
-}
-
 sf_value sf_row_value(const sf_row *row, const void *record) {
     const char *member = (const char *)record + row->offset;
     if (row->value)

@@ -89,10 +89,10 @@ typedef struct sf_records {
     int64_t count;
 } sf_records;
 
-sf_value sf_value_real(double value);
-sf_value sf_value_integer(int64_t value);
-sf_value sf_value_flag(bool value);
-sf_value sf_value_text(const char *text);
+#define sf_value_real(x) ((sf_value){.kind = SF_VALUE_REAL, .real = (x)})
+#define sf_value_integer(x) ((sf_value){.kind = SF_VALUE_INTEGER, .integer = (x)})
+#define sf_value_flag(x) ((sf_value){.kind = SF_VALUE_FLAG, .flag = (x)})
+#define sf_value_text(x) ((sf_value){.kind = SF_VALUE_TEXT, .text = (x)})
 
 sf_value sf_row_value(const sf_row *row, const void *record);
 /* The number in the unit of the key, a flag as 0 or 1; NaN: not defined, or a text. */

@@ -150,31 +150,14 @@ static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     return err->status;
 }
 
-/* The programs that simulate a drop: softfall-pre, softfall-solve, softfall-mesh. */
-typedef struct programs {
-    char folder[PATH_MAX]; /* SF_BIN_DIR as they were found */
-    char path[3][PATH_MAX];
-    bool found;
-} programs;
-
-static sf_status find_programs(programs *p, sf_error *err) {
-    const char *given = getenv("SF_BIN_DIR");
-    char folder[PATH_MAX];
-    snprintf(folder, sizeof folder, "%s", given ? given : "");
-    if (p->found && strcmp(folder, p->folder) == 0)
-        return SF_OK;
-    memcpy(p->folder, folder, sizeof folder);
-    p->found = sf_process_find("softfall-pre", p->path[0], PATH_MAX, err) == SF_OK &&
-               sf_process_find("softfall-solve", p->path[1], PATH_MAX, err) == SF_OK &&
-               sf_mesher_find(p->path[2], PATH_MAX, err) == SF_OK;
-    return err->status;
-}
-
+/* The programs that simulate a drop. */
 static sf_status hash_programs(uint64_t *hash, sf_error *err) {
-    static programs known;
-    SF_TRY(find_programs(&known, err));
+    char path[3][PATH_MAX];
+    if (sf_process_find("softfall-pre", path[0], PATH_MAX, err) == SF_OK &&
+        sf_process_find("softfall-solve", path[1], PATH_MAX, err) == SF_OK)
+        sf_mesher_find(path[2], PATH_MAX, err);
     for (int k = 0; k < 3 && err->status == SF_OK; k++)
-        hash_file(hash, known.path[k], err);
+        hash_file(hash, path[k], err);
     return err->status;
 }
 

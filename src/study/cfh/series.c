@@ -2,10 +2,10 @@
 #include "study/cfh/spread.h"
 
 #include "base/hash.h"
+#include "base/text.h"
 #include "study/material_file.h"
 #include <limits.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -13,17 +13,12 @@
 static const double STRAIN_MARGIN = 0.02; /* beyond the end of its data: worth a warning */
 _Static_assert((int)SF_CFH_CHECKS <= (int)SF_CFH_MAX_POINTS, "the checks are simulated as one batch");
 
-__attribute__((format(printf, 2, 3))) static void add_note(sf_cfh_point *point, const char *format, ...) {
-    size_t used = strlen(point->note);
-    va_list args;
-    if (used > 0)
-        used += (size_t)snprintf(point->note + used, sizeof point->note - used, "; ");
-    if (used >= sizeof point->note)
-        return;
-    va_start(args, format);
-    vsnprintf(point->note + used, sizeof point->note - used, format, args);
-    va_end(args);
-}
+/* Appends a sentence to the note of a point. */
+#define ADD_NOTE(point, ...)                                                                                 \
+    do {                                                                                                     \
+        sf_text_add((point)->note, sizeof(point)->note, "%s", *(point)->note ? "; " : "");                   \
+        sf_text_add((point)->note, sizeof(point)->note, __VA_ARGS__);                                        \
+    } while (0)
 
 /* Strains beyond the data of their foam, of each layer. */
 static void note_extrapolation(const sf_runner_result *r, const sf_cfh_foams *foams, sf_cfh_point *p) {
@@ -32,7 +27,7 @@ static void note_extrapolation(const sf_runner_result *r, const sf_cfh_foams *fo
         bool layer = foams->count > 1;
         double strain = layer && k < r->layer_count ? r->layer_strain[k] : layer ? NAN : r->max_local_strain;
         if (strain > foam->end + STRAIN_MARGIN)
-            add_note(p, "largest local strain%s%s%s %.3f, %s %.3f: extrapolated curve",
+            ADD_NOTE(p, "largest local strain%s%s%s %.3f, %s %.3f: extrapolated curve",
                      layer ? " of the layer \"" : "", layer ? foam->name : "", layer ? "\"" : "", strain,
                      foam->words, foam->end);
     }
@@ -53,7 +48,7 @@ void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf
     p->grade = r->grade;
     if (r->grade == SF_GRADE_DO_NOT_USE) {
         p->failed = true;
-        add_note(p, "%s", r->verdict);
+        ADD_NOTE(p, "%s", r->verdict);
         return;
     }
     p->value[SF_CFH_A_MAX] = r->a_max_g;
@@ -65,10 +60,10 @@ void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf
     p->max_local_strain = r->max_local_strain;
     p->energy_error = r->energy_error;
     if (isnan(r->v_rebound))
-        add_note(p, "contact had not ended at the end of the run: a_max and HIC may be too low");
+        ADD_NOTE(p, "contact had not ended at the end of the run: a_max and HIC may be too low");
     note_extrapolation(r, foams, p);
     if (r->grade == SF_GRADE_REMARKS)
-        add_note(p, "%s", r->verdict);
+        ADD_NOTE(p, "%s", r->verdict);
 }
 
 /* The pad below the missile, once. */
@@ -81,11 +76,6 @@ static sf_status learn_pad(const sf_runner_result *result, sf_cfh_pad *pad, sf_e
     sf_columns_build(&r, &pad->columns, err);
     sf_results_close(&r);
     return err->status;
-}
-
-static void report_failure(const sf_runner *runner, const char *label, const sf_cfh_point *p) {
-    if (runner->log)
-        fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
 }
 
 /* Drops that run side by side. */
@@ -112,7 +102,7 @@ static void take_failure(const sf_error *failure, sf_cfh_point *p) {
     p->failed = true;
     p->on_anvil = strstr(failure->text, SF_ENDED_ON_ANVIL) != NULL;
     p->grade = SF_GRADE_DO_NOT_USE;
-    add_note(p, "the simulation failed: %s", failure->text);
+    ADD_NOTE(p, "the simulation failed: %s", failure->text);
 }
 
 static sf_status take_drop(const sf_cfh_series *s, const sf_runner *runner, const char *label,
@@ -124,8 +114,8 @@ static sf_status take_drop(const sf_cfh_series *s, const sf_runner *runner, cons
         sf_cfh_take_result(result, s->foams, p);
     else if (err->status == SF_OK)
         *err = *failure;
-    if (p->failed)
-        report_failure(runner, label, p);
+    if (p->failed && runner->log)
+        fprintf(runner->log, "  %-24s %7.4g m/s  %s\n", label, p->speed, p->note);
     return err->status == SF_OK && failure->status == SF_OK ? learn_pad(result, s->pad, err) : err->status;
 }
 

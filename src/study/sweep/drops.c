@@ -249,19 +249,17 @@ sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, i
 
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {
     double hours = c->seconds * (double)c->open / 3600, size = c->bytes * (double)c->open / 1e9;
+    fprintf(out, "%lld open runs", c->open);
     if (isnan(c->seconds))
-        fprintf(out, "%lld open runs; what they cost is not known\n  (%s)\n", c->open, c->basis);
+        fputs("; what they cost is not known", out);
     else if (jobs > 0)
-        fprintf(
-            out,
-            "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
-            c->open, c->seconds, hours / jobs, jobs, size, c->basis);
+        fprintf(out, " of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB", c->seconds,
+                hours / jobs, jobs, size);
     else
-        fprintf(
-            out,
-            "%lld open runs of about %.3g s of one core like those of this machine: about %.3g core hours, "
-            "%.3g GB\n  (%s)\n",
-            c->open, c->seconds, hours, size, c->basis);
+        fprintf(out,
+                " of about %.3g s of one core like those of this machine: about %.3g core hours, %.3g GB",
+                c->seconds, hours, size);
+    fprintf(out, "\n  (%s)\n", c->basis);
     if (c->there > 0)
         fprintf(
             out,
