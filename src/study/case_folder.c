@@ -33,7 +33,7 @@ typedef struct folder {
     uint64_t hash; /* of the case */
     sf_meshed mesh[SF_GEOMETRIES];
     sf_case_parts parts;
-    int count, capacity;
+    int count;
     folder_file *file; /* [count] */
     sf_tree tree;
 } folder;
@@ -50,16 +50,12 @@ static const folder_file *find_name(const folder *f, const char *name) {
 /* NULL on failure. The path and the name are copied, the text is taken. */
 static folder_file *add_file(folder *f, const char *name, const char *path, char *text, size_t size,
                              sf_error *err) {
-    if (f->count == f->capacity) {
-        int capacity = f->capacity ? 2 * f->capacity : 16;
-        folder_file *grown = realloc(f->file, (size_t)capacity * sizeof *grown);
-        if (grown) {
-            f->file = grown;
-            f->capacity = capacity;
-        }
-    }
+    bool full = (f->count & (f->count - 1)) == 0; /* a power of two, or 0 */
+    folder_file *grown =
+        full ? realloc(f->file, (size_t)(f->count ? 2 * f->count : 1) * sizeof *grown) : f->file;
     char *own_name = strdup(name), *own_path = strdup(path);
-    if (f->count == f->capacity || !own_name || !own_path) {
+    f->file = grown ? grown : f->file;
+    if (!grown || !own_name || !own_path) {
         free(own_name);
         free(own_path);
         free(text);
@@ -282,36 +278,33 @@ static void find_title(const char *text, char *out, size_t size) {
         snprintf(out, size, "A drop test");
 }
 
-/* " with --set a=1 --set b=2", or "": the title may be true of the original only. */
-static char *list_overrides(const sf_case_folder_request *q) {
-    char *text = NULL;
+static sf_status write_readme(folder *f, sf_error *err) {
+    const sf_case_folder_request *q = f->request;
+    char title[PATH_SIZE], *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    for (int k = 0; out && k < q->override_count; k++)
-        fprintf(out, "%s--set '%.200s'", k ? " " : " with ", q->overrides[k]);
-    if (out)
-        fclose(out);
-    return text;
-}
-
-static sf_status write_readme(folder *f, sf_error *err) {
-    char title[PATH_SIZE], *text = NULL, *overrides = list_overrides(f->request);
-    const char *origin = f->request->origin ? f->request->origin : f->request->case_path;
+    if (!out)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", q->folder);
     find_title(f->parts.part[0].text, title, sizeof title);
-    int length = asprintf(
-        &text,
+    fprintf(
+        out,
         "%s\n\n"
         "This folder holds all that the case needs; it may be moved, packed and sent. softfall " SF_VERSION
-        " made it from %s%s.\n\n"
+        " made it from %s",
+        title, q->origin ? q->origin : q->case_path);
+    for (int k = 0; k < q->override_count; k++) /* the title may be true of the original only */
+        fprintf(out, "%s--set '%.200s'", k ? " " : " with ", q->overrides[k]);
+    fputs(
+        ".\n\n"
         "    softfall-pre case.cfg -o model.h5       # mesh the geometry, build and check the model\n"
         "    softfall-solve model.h5 -o results.h5   # the drop\n"
         "    softfall-post results.h5 -o out         # figures, out/report.html, files for ParaView\n\n"
         "Edit case.cfg and run the three again, each with --force. softfall-pre --keys explains every key.\n",
-        title, origin, overrides ? overrides : "");
-    free(overrides);
-    if (length < 0 || !add_file(f, README_NAME, "", text, (size_t)length, err))
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", f->request->folder);
-    return SF_OK;
+        out);
+    if (fclose(out) != 0)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", q->folder);
+    add_file(f, README_NAME, "", text, size, err);
+    return err->status;
 }
 
 /* Collects every file: first their names, then their texts. */

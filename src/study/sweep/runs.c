@@ -306,10 +306,7 @@ static sf_status take_row(sf_runs *r, int64_t row, char *line, sf_error *err) {
     if (state != SF_SWEEP_DONE || grade < 0 || !folder)
         return SF_OK;
     take_figures(r, row, line);
-    r->state[row] = SF_SWEEP_DONE;
-    r->grade[row] = (unsigned char)grade;
-    keep_text(&r->message[row], message, err);
-    return keep_text(&r->folder[row], folder, err);
+    return sf_runs_done(r, row, (sf_grade)grade, folder, message, err);
 }
 
 /* The heading that belongs to the table; from malloc. */
