@@ -220,10 +220,7 @@ static const char *trend_text(const sf_cfh_trend *t, char *text, size_t size) {
 
 /* "0.12 %" */
 static const char *percent_text(double value, char text[24]) {
-    if (isnan(value))
-        snprintf(text, 24, "not known");
-    else
-        snprintf(text, 24, "%.2g %%", 100 * value);
+    snprintf(text, 24, isnan(value) ? "not known" : "%.2g %%", 100 * value);
     return text;
 }
 
@@ -308,10 +305,7 @@ static void put_limit_tile(FILE *page, const sf_cfh_report *r, sf_cfh_criterion 
     char title[48], value[48];
     const sf_cfh_crossing *crossing = &r->result->crossing[c];
     snprintf(title, sizeof title, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-    if (isfinite(crossing->height))
-        snprintf(value, sizeof value, "at %.3f m", crossing->height);
-    else
-        snprintf(value, sizeof value, "–");
+    snprintf(value, sizeof value, isfinite(crossing->height) ? "at %.3f m" : "–", crossing->height);
     sf_html_tile(page, "plain", title, value, sf_cfh_side_word(crossing));
 }
 
@@ -380,15 +374,11 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
         sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
         sf_html_cell(&table, "%d", crossing->fit.count);
         sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
-        if (isfinite(crossing->low))
-            sf_html_cell(&table, "%.3f to %.3f%s", crossing->low, crossing->high,
-                         crossing->bracketed ? ", the drops on both sides" : "");
-        else
-            sf_html_cell(&table, "–");
-        if (rig && isfinite(margin))
-            sf_html_cell(&table, "%.3f to %.3f", height * exp(-margin), height * exp(margin));
-        else if (rig)
-            sf_html_cell(&table, "–");
+        sf_html_cell(&table, isfinite(crossing->low) ? "%.3f to %.3f%s" : "–", crossing->low, crossing->high,
+                     crossing->bracketed ? ", the drops on both sides" : "");
+        if (rig)
+            sf_html_cell(&table, isfinite(margin) ? "%.3f to %.3f" : "–", height * exp(-margin),
+                         height * exp(margin));
     }
     sf_html_table_end(&table);
     sf_html_note(

@@ -469,15 +469,14 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
     for (int k = 0; k < s->grid; k++) {
         fprintf(file, "%.9g", s->height[k]);
         for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            const sf_cfh_band *band = &s->band[c][k];
-            put_cell(file, band->low);
-            put_cell(file, band->median);
-            put_cell(file, band->high);
+            put_cell(file, s->band[c][k].low);
+            put_cell(file, s->band[c][k].median);
+            put_cell(file, s->band[c][k].high);
         }
-        put_cell(file, exp(s->correction[SF_CFH_A_MAX][k]));
-        put_cell(file, exp(s->correction[SF_CFH_HIC][k]));
-        put_cell(file, s->scatter[SF_CFH_A_MAX][k]);
-        put_cell(file, s->scatter[SF_CFH_HIC][k]);
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, exp(s->correction[c][k]));
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, s->scatter[c][k]);
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh_band.csv", err);

@@ -365,11 +365,8 @@ static void put_level_axis(sf_chart *chart, sf_axis *axis, const sf_plan *p, int
     const sf_factor *f = &p->factor[b->first];
     char text[512];
     for (int64_t k = 0; k < b->rows; k++) {
-        if (f->words)
-            snprintf(text, sizeof text, "%s", sf_path_name(f->label[(int64_t)f->value[k]]));
-        else
-            snprintf(text, sizeof text, "%.6g", f->value[k]);
-        sf_axis_word(chart, axis, text);
+        snprintf(text, sizeof text, "%.6g", f->value[k]);
+        sf_axis_word(chart, axis, f->words ? sf_path_name(f->label[(int64_t)f->value[k]]) : text);
     }
     sf_axis_range(axis, -0.5, (double)b->rows - 0.5);
     sf_factor_heading(f, text, sizeof text);
@@ -399,10 +396,8 @@ static void put_map(sf_chart *chart, sf_panel *panel, const sf_analysis *a, int 
         double x = (double)(k / ny), y = (double)(k % ny);
         const char *mark = c->unknown > 0 ? "?" : "";
         sf_series_add(cells, x, y, c->share, c->share);
-        if (intervals)
-            sf_series_label(texts, x, y, "%.2f%s\n%.2f-%.2f", c->share, mark, c->low, c->high);
-        else
-            sf_series_label(texts, x, y, "%.2f%s", c->share, mark);
+        sf_series_label(texts, x, y, intervals ? "%.2f%s\n%.2f-%.2f" : "%.2f%s", c->share, mark, c->low,
+                        c->high);
     }
 }
 
