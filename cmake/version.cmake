@@ -16,3 +16,10 @@ configure_file(${CMAKE_SOURCE_DIR}/cmake/build_info.h.in ${CMAKE_BINARY_DIR}/gen
 if(EXISTS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
 endif()
+
+# report_style.h: the style sheet of the reports, which each page holds.
+file(READ ${CMAKE_SOURCE_DIR}/share/report.css SOFTFALL_REPORT_STYLE)
+string(REPLACE "\n" "" SOFTFALL_REPORT_STYLE "${SOFTFALL_REPORT_STYLE}")
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/report_style.h
+     CONTENT "#define SF_REPORT_STYLE \"@SOFTFALL_REPORT_STYLE@\"\n" @ONLY)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/share/report.css)

@@ -4,7 +4,7 @@
 
 #include "study/cfh/cfh_report.h"
 #include "study/cfh/points.h"
-#include "study/cfh/series.h"
+#include "study/cfh/spread.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

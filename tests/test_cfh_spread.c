@@ -139,7 +139,7 @@ static void the_interval_is_that_of_direct_drops(void **state) {
     sf_cfh_spread s = build(&pad, &draws, &own.law, limit);
     for (int d = 0; d < DRAWS; d++) {
         direct[d] = direct_height(&pad, &draws.draw[d].law);
-        assert_relative(s.crossing[d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST], direct[d], 2e-3);
+        assert_relative(s.draw[d].crossing[SF_CFH_FIRST], direct[d], 2e-3);
     }
     evaluate(&s);
     qsort(direct, DRAWS, sizeof *direct, compare);
@@ -168,7 +168,7 @@ static void without_a_spread_of_the_foam_the_other_errors_are_left(void **state)
     double slope = log(value[1][SF_CFH_HIC] / value[0][SF_CFH_HIC]) / log(1.03 / 0.97);
     s.fit_scatter[SF_CFH_HIC] = 0;
     evaluate(&s);
-    assert_int_equal(s.crossing[SF_CFH_HIC] < s.crossing[SF_CFH_A_MAX], 1); /* HIC decides */
+    assert_int_equal(s.draw[0].crossing[SF_CFH_HIC] < s.draw[0].crossing[SF_CFH_A_MAX], 1); /* HIC decides */
     assert_relative(s.part[SF_CFH_PART_FOAM][SF_CFH_FIRST].low, h, 1e-3);
     assert_relative(s.part[SF_CFH_PART_FOAM][SF_CFH_FIRST].high, h, 1e-3);
     const sf_cfh_interval *mesh = &s.part[SF_CFH_PART_MESH][SF_CFH_FIRST];
@@ -422,14 +422,14 @@ static void checks_at_an_edge(void **state) {
     sf_cfh_check_compare(&s, check);
     double inside = check->shift[SF_CFH_HIC];
     assert_true(inside < -0.03 && inside > -0.06); /* 10 % of HIC, slope about 2.4 */
-    while (s.height[s.reach[check->draw] - 1] > check->height)
-        s.reach[check->draw]--; /* as if its columns collapsed there */
-    check->height = s.height[s.reach[check->draw] - 1];
+    while (s.height[s.draw[check->draw].reach - 1] > check->height)
+        s.draw[check->draw].reach--; /* as if its columns collapsed there */
+    check->height = s.height[s.draw[check->draw].reach - 1];
     sf_cfh_check_compare(&s, check);
     assert_relative(check->shift[SF_CFH_HIC], inside, 0.1);
     for (int d = 0; d < 5; d++)
         for (int c = 0; c <= SF_CFH_FIRST; c++)
-            s.crossing[d * (SF_CFH_FIRST + 1) + c] = d < 4 ? 0 : INFINITY;
+            s.draw[d].crossing[c] = d < 4 ? 0 : INFINITY;
     s.below = 4;
     s.above = 1;
     sf_cfh_spread_choose(&s, 1, 1e-3);
@@ -486,11 +486,11 @@ static void ends_that_draws_do_not_reach_are_open(void **state) {
     const double between[SF_CFH_CRITERIA] = {limit[SF_CFH_A_MAX], 1e7};
     s = build(&pad, &draws, &draws.draw[10].law, between);
     for (int k = 0; k < s.draws; k++) /* as if most draws collapsed at the tenth height */
-        s.reach[k] = k < 15 ? 10 : s.reach[k];
+        s.draw[k].reach = k < 15 ? 10 : s.draw[k].reach;
     evaluate(&s);
     assert_relative(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->median, s.height[9], 1e-12);
     for (int k = 0; k < s.draws; k++) /* half of them have no height: between that and one there is nothing */
-        s.reach[k] = k < FEW / 2 ? 0 : 10;
+        s.draw[k].reach = k < FEW / 2 ? 0 : 10;
     evaluate(&s);
     assert_true(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->median <= 0);
     assert_relative(sf_cfh_spread_whole(&s, SF_CFH_FIRST)->high, s.height[9], 1e-12);

@@ -26,7 +26,7 @@ static void assert_indices_of_ishigami(uint64_t seed) {
     double *u = malloc(N * (D + 2) * D * sizeof *u), *y = malloc(N * (D + 2) * sizeof *y);
     sf_index index[D];
     sf_error err = SF_ERROR_INIT;
-    int64_t used = 0;
+    long long used = 0;
     sf_sample(SF_SAMPLING_SALTELLI, D, N, seed, u, &err);
     for (int k = 0; k < N * (D + 2); k++) {
         double x[D];
@@ -72,7 +72,7 @@ static void indices_converge_to_the_closed_form(void **state) {
     double *u = malloc(N * (D + 2) * D * sizeof *u), *y = malloc(N * (D + 2) * sizeof *y);
     sf_index index[D];
     sf_error err = SF_ERROR_INIT;
-    int64_t used = 0;
+    long long used = 0;
     (void)state;
     sf_sample(SF_SAMPLING_SALTELLI, D, N, 1, u, &err);
     for (int k = 0; k < N * (D + 2); k++) /* variances of x, y and xy: 1/12, 1/12, 1/144 times 1, 4, 36 */

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -106,4 +108,12 @@ int sf_utf8_cut(const char *text, int size) {
     for (length = size; length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80;)
         length--;
     return length;
+}
+
+void sf_text_add(char *text, size_t size, const char *format, ...) {
+    size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
 }

@@ -2,6 +2,7 @@
 #ifndef SF_BASE_TEXT_H
 #define SF_BASE_TEXT_H
 #include <stdbool.h>
+#include <stddef.h>
 
 /* Numbers, words and lines of texts. Numbers of the user are decimal ones alone. */
 
@@ -28,6 +29,9 @@ char *sf_line_take(char **rest, const char *name, char separator);
 
 /* Length of the well-formed UTF-8 sequence at `s`, 0 if there is none (RFC 3629). */
 int sf_utf8_length(const unsigned char *s);
+
+/* Appends to the text in a buffer of `size` bytes, as far as there is room. */
+void sf_text_add(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* Length of `text`, or at most `size`, cut before a sequence that does not end there. */
 int sf_utf8_cut(const char *text, int size);

@@ -7,7 +7,6 @@
 #include "study/batch.h"
 #include "study/cfh/cfh_report.h"
 #include "study/cfh/points.h"
-#include "study/cfh/series.h"
 #include "study/cfh/spread.h"
 #include "study/setup.h"
 

@@ -12,6 +12,7 @@
 #include "io/staging.h"
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum { SF_CHART_TEXT = 192 };
 
@@ -89,7 +90,7 @@ void sf_chart_title(sf_chart *chart, const char *format, ...) __attribute__((for
 /* Columns of a grid of panels without areas of their own; 1 unless it is called. */
 void sf_chart_columns(sf_chart *chart, int columns);
 
-/* A new panel with automatic axes; the chart's. NULL after a failure: the functions below then do nothing. */
+/* A new panel with automatic axes; the chart's. After a failure one that is not drawn. */
 sf_panel *sf_chart_panel(sf_chart *chart);
 void sf_axis_label(sf_axis *axis, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void sf_axis_range(sf_axis *axis, double low, double high);
@@ -111,12 +112,12 @@ void sf_series_label(sf_series_data *series, double x, double y, const char *for
 /* Marks of the last panel: a dashed horizontal line with its text above its left end; a vertical line from
  * the axis to `top` with a text beside its upper end; a disc with a text beside it; a rectangle behind the
  * data. NULL: no text. An infinite end of a rectangle is that of the panel. */
-void sf_chart_level(sf_chart *chart, double y, const char *colour, const char *text, ...)
-    __attribute__((format(printf, 4, 5)));
-void sf_chart_drop(sf_chart *chart, double x, double top, const char *colour, const char *text, ...)
-    __attribute__((format(printf, 5, 6)));
-void sf_chart_spot(sf_chart *chart, double x, double y, const char *colour, const char *text, ...)
-    __attribute__((format(printf, 5, 6)));
+typedef enum sf_mark_kind { SF_MARK_LEVEL, SF_MARK_DROP, SF_MARK_SPOT, SF_MARK_BAND } sf_mark_kind;
+void sf_chart_mark(sf_chart *chart, sf_mark_kind kind, double x, double y, const char *colour,
+                   const char *text, ...) __attribute__((format(printf, 6, 7)));
+#define sf_chart_level(chart, y, ...) sf_chart_mark(chart, SF_MARK_LEVEL, 0, y, __VA_ARGS__)
+#define sf_chart_drop(chart, x, top, ...) sf_chart_mark(chart, SF_MARK_DROP, x, top, __VA_ARGS__)
+#define sf_chart_spot(chart, x, y, ...) sf_chart_mark(chart, SF_MARK_SPOT, x, y, __VA_ARGS__)
 void sf_chart_band(sf_chart *chart, const double x[2], const double y[2], const char *colour, double opacity);
 
 /* Writes NAME.gp and draws NAME.png in the staging directory. If gnuplot is absent or fails, `warning` (size
@@ -129,6 +130,10 @@ sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *
  * stays. */
 char *sf_chart_svg(const sf_staging *output, const char *name, const char *program, char *warning,
                    size_t size);
+
+/* The same as a figure of the page, with its caption, or the warning in its place. */
+void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, const char *program,
+                     const char *caption);
 
 /* The same of a chart that is for a page only: no NAME.gp and no NAME.png stay. */
 char *sf_chart_page(const sf_chart *chart, const sf_staging *output, const char *program, char *warning,

@@ -3,6 +3,7 @@
 
 #include "io/plain_file.h"
 #include "io/process.h"
+#include "report/html.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -78,13 +79,13 @@ void sf_chart_columns(sf_chart *chart, int columns) {
 
 sf_panel *sf_chart_panel(sf_chart *chart) {
     static const sf_axis automatic = {.low = NAN, .high = NAN};
+    static sf_panel not_drawn;
     sf_chart_panel_data **list = chart ? grown(chart, chart->panel, chart->panel_count, sizeof *list) : NULL;
-    if (!list)
-        return NULL;
-    chart->panel = list;
-    sf_chart_panel_data *panel = sf_alloc(chart->err, 1, sizeof *panel, "a picture");
+    if (list)
+        chart->panel = list;
+    sf_chart_panel_data *panel = list ? sf_alloc(chart->err, 1, sizeof *panel, "a picture") : NULL;
     if (!panel)
-        return NULL;
+        return &not_drawn;
     *panel = (sf_chart_panel_data){.shown = {.x = automatic, .y = automatic, .x2 = automatic}};
     list[chart->panel_count++] = panel;
     return &panel->shown;
@@ -100,7 +101,7 @@ void sf_axis_range(sf_axis *axis, double low, double high) {
 }
 
 void sf_axis_word(sf_chart *chart, sf_axis *axis, const char *word) {
-    char **list = grown(chart, axis->word, (size_t)axis->word_count, sizeof *list);
+    char **list = chart ? grown(chart, axis->word, (size_t)axis->word_count, sizeof *list) : NULL;
     if (!list)
         return;
     axis->word = list;
@@ -166,52 +167,28 @@ void sf_series_label(sf_series_data *s, double x, double y, const char *format, 
 
 /* ---- marks ---- */
 
-static sf_chart_mark *new_mark(sf_chart *chart, sf_mark_kind kind, const char *colour) {
+void sf_chart_mark(sf_chart *chart, sf_mark_kind kind, double x, double y, const char *colour,
+                   const char *text, ...) {
     sf_chart_panel_data *p = last_panel(chart);
-    sf_chart_mark *list = p ? grown(chart, p->mark, p->mark_count, sizeof *list) : NULL;
+    sf_chart_mark_data *list = p ? grown(chart, p->mark, p->mark_count, sizeof *list) : NULL;
     if (!list)
-        return NULL;
+        return;
     p->mark = list;
-    list[p->mark_count] = (sf_chart_mark){.kind = kind, .colour = colour};
-    return &list[p->mark_count++];
-}
-
-void sf_chart_level(sf_chart *chart, double y, const char *colour, const char *text, ...) {
-    sf_chart_mark *m = new_mark(chart, SF_MARK_LEVEL, colour);
-    if (!m)
-        return;
-    m->y[0] = y;
-    if (text)
-        FORMAT_INTO(m->text, text);
-}
-
-void sf_chart_drop(sf_chart *chart, double x, double top, const char *colour, const char *text, ...) {
-    sf_chart_mark *m = new_mark(chart, SF_MARK_DROP, colour);
-    if (!m)
-        return;
-    m->x[0] = x;
-    m->y[0] = top;
-    if (text)
-        FORMAT_INTO(m->text, text);
-}
-
-void sf_chart_spot(sf_chart *chart, double x, double y, const char *colour, const char *text, ...) {
-    sf_chart_mark *m = new_mark(chart, SF_MARK_SPOT, colour);
-    if (!m)
-        return;
-    m->x[0] = x;
-    m->y[0] = y;
+    sf_chart_mark_data *m = &list[p->mark_count++];
+    *m = (sf_chart_mark_data){.kind = kind, .colour = colour, .x[0] = x, .y[0] = y};
     if (text)
         FORMAT_INTO(m->text, text);
 }
 
 void sf_chart_band(sf_chart *chart, const double x[2], const double y[2], const char *colour,
                    double opacity) {
-    sf_chart_mark *m = new_mark(chart, SF_MARK_BAND, colour);
-    if (!m)
+    sf_chart_panel_data *p = last_panel(chart);
+    sf_chart_mark(chart, SF_MARK_BAND, x[0], y[0], colour, NULL);
+    if (!p || chart->err->status != SF_OK)
         return;
-    memcpy(m->x, x, sizeof m->x);
-    memcpy(m->y, y, sizeof m->y);
+    sf_chart_mark_data *m = &p->mark[p->mark_count - 1];
+    m->x[1] = x[1];
+    m->y[1] = y[1];
     m->opacity = opacity;
 }
 
@@ -313,6 +290,14 @@ char *sf_chart_svg(const sf_staging *output, const char *name, const char *progr
         snprintf(warning, size, "%s was drawn, but cannot be read", picture);
     free(text);
     return element;
+}
+
+void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, const char *program,
+                     const char *caption) {
+    char warning[320];
+    char *svg = sf_chart_svg(output, name, program, warning, sizeof warning);
+    sf_html_figure(page, svg, "%s.", svg ? caption : warning);
+    free(svg);
 }
 
 sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *warning, size_t size,

@@ -19,20 +19,18 @@ struct sf_series_data {
     char **text;            /* [count] of labels, owned; else NULL */
 };
 
-typedef enum sf_mark_kind { SF_MARK_LEVEL, SF_MARK_DROP, SF_MARK_SPOT, SF_MARK_BAND } sf_mark_kind;
-
-typedef struct sf_chart_mark {
+typedef struct sf_chart_mark_data {
     sf_mark_kind kind;
     const char *colour;
     double x[2], y[2], opacity;
     char text[SF_CHART_TEXT];
-} sf_chart_mark;
+} sf_chart_mark_data;
 
 typedef struct sf_chart_panel_data {
     sf_panel shown;
     size_t series_count, mark_count;
-    sf_series_data **series; /* owned */
-    sf_chart_mark *mark;     /* owned */
+    sf_series_data **series;  /* owned */
+    sf_chart_mark_data *mark; /* owned */
 } sf_chart_panel_data;
 
 struct sf_chart {

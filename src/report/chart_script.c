@@ -21,6 +21,12 @@ static void put_text(FILE *g, const char *text) {
     fputc('\'', g);
 }
 
+static void put_between(FILE *g, const char *before, const char *text, const char *after) {
+    fputs(before, g);
+    put_text(g, text);
+    fputs(after, g);
+}
+
 static void put_number(FILE *g, double value) {
     if (isfinite(value))
         fprintf(g, "%.9g", value);
@@ -99,13 +105,11 @@ static void put_axis(FILE *g, const char *name, const sf_axis *a) {
     put_end(g, a->low);
     fputc(':', g);
     put_end(g, a->high);
-    fprintf(g, "]\nset %slabel ", name);
-    put_text(g, a->hidden ? "" : a->label);
-    fputc('\n', g);
+    fprintf(g, "]\nset %slabel", name);
+    put_between(g, " ", a->hidden ? "" : a->label, "\n");
     if (*a->page_label) {
-        fprintf(g, "if (svg) { set %slabel ", name);
-        put_text(g, a->page_label);
-        fputs(" }\n", g);
+        fprintf(g, "if (svg) { set %slabel", name);
+        put_between(g, " ", a->page_label, " }\n");
     }
     fprintf(g, a->logarithmic ? "set logscale %s\n" : "unset logscale %s\n", name);
     fprintf(g, "set format %s '%s'\n", name, a->hidden ? "" : "%g");
@@ -128,10 +132,8 @@ static void put_upper_axis(FILE *g, const sf_axis *a) {
     fputs("unset x2tics\nunset x2label\nset border 3\n", g);
     if (!*a->label)
         return;
-    fprintf(g, "set x2range [%.9g:%.9g]\nset x2tics nomirror out scale 0.6\nset border 7\nset x2label ",
-            a->low, a->high);
-    put_text(g, a->label);
-    fputs(" offset 0,-0.4\n", g);
+    fprintf(g, "set x2range [%.9g:%.9g]\nset x2tics nomirror out scale 0.6\nset border 7\n", a->low, a->high);
+    put_between(g, "set x2label ", a->label, " offset 0,-0.4\n");
 }
 
 /* Entries of the key, and the characters of the longest. */
@@ -176,45 +178,39 @@ static void put_key(FILE *g, const sf_chart_panel_data *p) {
 }
 
 /* An end of a rectangle: the panel's where it is infinite. */
-static void put_corner(FILE *g, double end) {
+static void put_corner(FILE *g, const char *before, double end) {
     if (isfinite(end))
-        fprintf(g, "first %.9g", end);
+        fprintf(g, "%sfirst %.9g", before, end);
     else
-        fprintf(g, "graph %d", end > 0);
+        fprintf(g, "%sgraph %d", before, end > 0);
 }
 
-static void put_mark(FILE *g, const sf_chart_mark *m) {
+static void put_mark(FILE *g, const sf_chart_mark_data *m) {
+    const char *colour = m->colour;
+    double x = m->x[0], y = m->y[0];
+    if (m->kind == SF_MARK_DROP)
+        fprintf(
+            g, "set arrow from first %.9g, graph 0 to first %.9g, first %.9g nohead front lw 2 lc rgb '%s'\n",
+            x, x, y, colour);
+    if (m->kind != SF_MARK_BAND)
+        put_between(g, "set label ", m->text, "");
     switch (m->kind) {
     case SF_MARK_LEVEL: /* its line is plotted, so that the axis reaches it */
-        fputs("set label ", g);
-        put_text(g, m->text);
-        fprintf(g, " at graph 0.01, first %.9g left offset 0,0.6 front tc rgb '%s'\n", m->y[0], m->colour);
+        fprintf(g, " at graph 0.01, first %.9g left offset 0,0.6 front tc rgb '%s'\n", y, colour);
         break;
     case SF_MARK_DROP:
-        fprintf(g,
-                "set arrow from first %.9g, graph 0 to first %.9g, first %.9g nohead front lw 2 lc rgb '%s'\n"
-                "set label ",
-                m->x[0], m->x[0], m->y[0], m->colour);
-        put_text(g, m->text);
-        fprintf(g, " at first %.9g, first %.9g right offset -0.6,0.8 front tc rgb '%s'\n", m->x[0], m->y[0],
-                m->colour);
+        fprintf(g, " at first %.9g, first %.9g right offset -0.6,0.8 front tc rgb '%s'\n", x, y, colour);
         break;
     case SF_MARK_SPOT:
-        fputs("set label ", g);
-        put_text(g, m->text);
         fprintf(g, " at %.9g,%.9g left offset 1.2,0.5 tc rgb '%s' front point pt 7 ps 1.6*dot lc rgb '%s'\n",
-                m->x[0], m->y[0], m->colour, m->colour);
+                x, y, colour, colour);
         break;
     case SF_MARK_BAND:
-        fputs("set object rectangle from ", g);
-        put_corner(g, m->x[0]);
-        fputs(", ", g);
-        put_corner(g, m->y[0]);
-        fputs(" to ", g);
-        put_corner(g, m->x[1]);
-        fputs(", ", g);
-        put_corner(g, m->y[1]);
-        fprintf(g, " behind fc rgb '%s' fs solid %g noborder\n", m->colour, m->opacity);
+        put_corner(g, "set object rectangle from ", x);
+        put_corner(g, ", ", y);
+        put_corner(g, " to ", m->x[1]);
+        put_corner(g, ", ", m->y[1]);
+        fprintf(g, " behind fc rgb '%s' fs solid %g noborder\n", colour, m->opacity);
         break;
     }
 }
@@ -223,8 +219,7 @@ static void put_mark(FILE *g, const sf_chart_mark *m) {
 static void put_labels(FILE *g, const sf_series_data *s) {
     double size = s->style.size > 0 ? s->style.size : 16;
     for (size_t k = 0; k < s->count; k++) {
-        fputs("set label ", g);
-        put_text(g, s->text[k]);
+        put_between(g, "set label ", s->text[k], "");
         fprintf(g, " at %.9g,%.9g center front font sprintf(',%%g', svg ? %g : %g)\n", s->value[k].x,
                 s->value[k].y, 0.55 * size, size);
     }
@@ -289,12 +284,10 @@ static void put_plot(FILE *g, size_t panel, const sf_chart_panel_data *p) {
             continue;
         fprintf(g, "%s$d%zu_%zu ", any ? ", \\\n     " : "plot ", panel, k);
         put_style(g, &s->style);
-        if (*s->title) {
-            fputs(" title ", g);
-            put_text(g, s->title);
-        } else {
+        if (*s->title)
+            put_between(g, " title ", s->title, "");
+        else
             fputs(" notitle", g);
-        }
         any = true;
     }
     fputs(any ? "\n" : "plot 0 notitle\n", g);
@@ -318,13 +311,10 @@ static void put_panel(FILE *g, const sf_chart *c, size_t k) {
     const sf_chart_panel_data *p = c->panel[k];
     if (k > 0)
         fputs("unset label\nunset arrow\nunset object\n", g);
-    if (*p->shown.title) {
-        fputs("set title ", g);
-        put_text(g, p->shown.title);
-        fputc('\n', g);
-    } else if (k > 0) {
+    if (*p->shown.title)
+        put_between(g, "set title ", p->shown.title, "\n");
+    else if (k > 0)
         fputs("unset title\n", g);
-    }
     put_margins(g, &p->shown);
     put_axis(g, "x", &p->shown.x);
     put_axis(g, "y", &p->shown.y);
@@ -356,11 +346,9 @@ sf_status sf_chart_script(const sf_chart *c, const sf_staging *output, sf_error 
     int rows = ((int)c->panel_count + c->columns - 1) / c->columns;
     if (many)
         fprintf(g, "set multiplot layout %d,%d", rows, c->columns);
-    if (*c->title) {
-        fputs(many ? " title (svg ? '' : " : "set title ", g);
-        put_text(g, c->title);
-        fputs(many ? ")" : "\nif (svg) { unset title }", g);
-    }
+    if (*c->title)
+        put_between(g, many ? " title (svg ? '' : " : "set title ", c->title,
+                    many ? ")" : "\nif (svg) { unset title }");
     fputc('\n', g);
     for (size_t k = 0; k < c->panel_count; k++)
         put_panel(g, c, k);

@@ -1,60 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/html.h"
 
-#include "io/plain_file.h"
 #include "base/text.h"
+#include "io/plain_file.h"
+#include "report_style.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const char style[] =
-    "@page{size:A4;margin:8mm 12mm 6mm 12mm}"
-    "*{box-sizing:border-box}"
-    "html{background:#e9ecef}"
-    "body{margin:0;color:#1b2430;font:7.8pt/1.32 'Helvetica Neue',Arial,'Liberation Sans','DejaVu Sans',sans-serif;"
-    "-webkit-print-color-adjust:exact;print-color-adjust:exact}"
-    "main{width:210mm;max-width:100%;margin:8mm auto;padding:11mm 12mm;background:#fff;"
-    "box-shadow:0 1px 6px rgba(0,0,0,.18)}"
-    "h1{font-size:16pt;line-height:1.15;font-weight:600;margin:0 0 .8mm;letter-spacing:-.01em}"
-    ".subtitle{margin:0 0 2mm;color:#5a6675}"
-    "h2{font-size:9.6pt;line-height:1.2;font-weight:600;margin:2mm 0 .8mm;padding-bottom:.4mm;"
-    "border-bottom:.35mm solid #1f4e79;color:#1f4e79;break-after:avoid}"
-    "p{margin:0 0 1.2mm}.note{color:#5a6675;font-size:7pt}"
-    "pre{margin:0 0 1.2mm;padding:1.2mm 2mm;background:#f3f5f7;font:6.6pt/1.35 'DejaVu Sans Mono',"
-    "'Liberation Mono',Consolas,monospace;white-space:pre-wrap;overflow-wrap:anywhere}"
-    "pre.prose{font-family:inherit;font-size:6.5pt;line-height:1.24}"
-    ".banner{display:flex;gap:3mm;align-items:center;padding:1.4mm 3mm;margin:0 0 2mm;border-left:1.6mm solid;"
-    "break-inside:avoid}"
-    ".banner b{font-size:11.5pt;white-space:nowrap}"
-    ".good{background:#e8f4ea;border-color:#2e7d32}.good b{color:#1b5e20}"
-    ".fair{background:#fff6e0;border-color:#e09a00}.fair b{color:#8a5a00}"
-    ".bad{background:#fdeaea;border-color:#c62828}.bad b{color:#a31515}"
-    ".plain{background:#eef3f8;border-color:#1f4e79}.plain b{color:#1f4e79}"
-    ".tiles{display:flex;gap:2.5mm;margin:0 0 1mm;break-inside:avoid}"
-    ".tile{flex:1 1 0;padding:1.2mm 2.4mm;border-top:.8mm solid}"
-    ".tile.good{border-color:#2e7d32}.tile.bad{border-color:#c62828}.tile.plain{border-color:#1f4e79}"
-    ".tile span{display:block;font-size:7.2pt;color:#5a6675}"
-    ".tile b{display:block;font-size:13.5pt;line-height:1.15;font-weight:600;white-space:nowrap}"
-    ".columns{display:flex;gap:5mm;align-items:flex-start}.columns>*{flex:1 1 0;min-width:0}"
-    ".columns.narrow>:first-child{flex:0 0 30%}.columns.wide>:first-child{flex:0 0 62%}"
-    ".block{break-inside:avoid}"
-    "table{border-collapse:collapse;width:100%;margin:0 0 1.6mm;font-variant-numeric:tabular-nums}"
-    "th,td{padding:.45mm 1.2mm;text-align:left;vertical-align:top;border-bottom:.2mm solid #dfe4ea;"
-    "overflow-wrap:anywhere}"
-    "th:first-child,td:first-child{padding-left:0}th:last-child,td:last-child{padding-right:0}"
-    "thead th{font-weight:600;color:#40505f;border-bottom:.3mm solid #8797a8;vertical-align:bottom;"
-    "overflow-wrap:normal}"
-    "tbody th{font-weight:400;color:#5a6675;width:30%;white-space:nowrap;overflow-wrap:normal}"
-    "tr{break-inside:avoid}.r{text-align:right;overflow-wrap:normal}td.r{white-space:nowrap}tbody td:first-child{min-width:18mm}"
-    ".dense{font-size:6.5pt;line-height:1.2}.dense th,.dense td{padding-top:.15mm;padding-bottom:.15mm}"
-    "figure{margin:0 0 1mm;break-inside:avoid}figure svg{display:block;width:100%;height:auto}"
-    "figure svg text,figure svg g{font-family:inherit}"
-    "figcaption{font-size:7pt;line-height:1.25;color:#5a6675;margin-top:.4mm}"
-    "figure.missing{padding:2mm 3mm;background:#fff6e0}"
-    "footer{margin-top:1.2mm;padding-top:.5mm;border-top:.2mm solid #8797a8;font-size:6.8pt;color:#5a6675}"
-    "@media print{html{background:#fff}main{width:auto;margin:0;padding:0;box-shadow:none;zoom:.87}"
-    "figure svg{max-height:50mm}}";
 
 /* The character, or what stands for it in XML. */
 static void put_character(FILE *page, const unsigned char *s, int length) {
@@ -97,8 +50,11 @@ static void put_arguments(FILE *page, const char *format, va_list arguments) {
         va_end(arguments);                                                                                   \
     } while (0)
 
-void sf_html_format(FILE *page, const char *format, ...) {
-    PUT_ARGUMENTS(page, format);
+/* The escaped text between what opens and what closes an element. */
+static void put_between(FILE *page, const char *open, const char *text, const char *close) {
+    fputs(open, page);
+    sf_html_text(page, text);
+    fputs(close, page);
 }
 
 FILE *sf_html_begin(const sf_staging *output, const char *title, const char *subtitle, sf_error *err) {
@@ -110,29 +66,20 @@ FILE *sf_html_begin(const sf_staging *output, const char *title, const char *sub
         "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
         "<title>",
         page);
-    sf_html_text(page, title);
-    fprintf(page, "</title>\n<style>%s</style>\n</head>\n<body><main>\n<h1>", style);
-    sf_html_text(page, title);
-    fputs("</h1>\n", page);
-    if (subtitle) {
-        fputs("<p class=\"subtitle\">", page);
-        sf_html_text(page, subtitle);
-        fputs("</p>\n", page);
-    }
+    put_between(page, "", title, "</title>\n<style>" SF_REPORT_STYLE "</style>\n</head>\n<body><main>\n<h1>");
+    put_between(page, "", title, "</h1>\n");
+    if (subtitle)
+        put_between(page, "<p class=\"subtitle\">", subtitle, "</p>\n");
     return page;
 }
 
 sf_status sf_html_end(FILE *page, const char *foot, sf_error *err) {
-    fputs("<footer>", page);
-    sf_html_text(page, foot);
-    fputs("</footer>\n</main></body>\n</html>\n", page);
+    put_between(page, "<footer>", foot, "</footer>\n</main></body>\n</html>\n");
     return sf_staging_close(page, "report.html", err);
 }
 
 void sf_html_heading(FILE *page, const char *text) {
-    fputs("<h2>", page);
-    sf_html_text(page, text);
-    fputs("</h2>\n", page);
+    put_between(page, "<h2>", text, "</h2>\n");
 }
 
 void sf_html_paragraph(FILE *page, const char *format, ...) {
@@ -148,56 +95,32 @@ void sf_html_note(FILE *page, const char *format, ...) {
 }
 
 void sf_html_pre(FILE *page, const char *text) {
-    fputs("<pre>", page);
-    sf_html_text(page, text);
-    fputs("</pre>\n", page);
+    put_between(page, "<pre>", text, "</pre>\n");
 }
 
 void sf_html_prose(FILE *page, const char *text) {
-    fputs("<pre class=\"prose\">", page);
-    sf_html_text(page, text);
-    fputs("</pre>\n", page);
+    put_between(page, "<pre class=\"prose\">", text, "</pre>\n");
 }
 
 void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char *format, ...) {
-    fprintf(page, "<div class=\"banner %s\"><b>", kind);
-    sf_html_text(page, phrase);
-    fputs("</b><span>", page);
+    fprintf(page, "<div class=\"banner %s\">", kind);
+    put_between(page, "<b>", phrase, "</b><span>");
     PUT_ARGUMENTS(page, format);
     fputs("</span></div>\n", page);
 }
 
-void sf_html_tiles_begin(FILE *page) {
-    fputs("<div class=\"tiles\">\n", page);
-}
-
 void sf_html_tile(FILE *page, const char *kind, const char *title, const char *value, const char *remark) {
-    fprintf(page, "<div class=\"tile %s\"><span>", kind);
-    sf_html_text(page, title);
-    fputs("</span><b>", page);
-    sf_html_text(page, value);
-    fputs("</b><span>", page);
-    sf_html_text(page, remark);
-    fputs("</span></div>\n", page);
+    fprintf(page, "<div class=\"tile %s\">", kind);
+    put_between(page, "<span>", title, "</span><b>");
+    put_between(page, "", value, "</b><span>");
+    put_between(page, "", remark, "</span></div>\n");
 }
 
-void sf_html_tiles_end(FILE *page) {
-    fputs("</div>\n", page);
+void sf_html_division(FILE *page, const char *kind) {
+    fprintf(page, "<div class=\"%s\">\n", kind);
 }
 
-void sf_html_columns_begin(FILE *page, const char *kind) {
-    fprintf(page, "<div class=\"columns %s\">\n", kind);
-}
-
-void sf_html_columns_end(FILE *page) {
-    fputs("</div>\n", page);
-}
-
-void sf_html_block_begin(FILE *page) {
-    fputs("<div class=\"block\">\n", page);
-}
-
-void sf_html_block_end(FILE *page) {
+void sf_html_division_end(FILE *page) {
     fputs("</div>\n", page);
 }
 
@@ -269,9 +192,7 @@ sf_html_table sf_html_table_begin(FILE *page, const char *kind, const char *colu
         size_t length = strcspn(columns, "|");
         snprintf(text, sizeof text, "%.*s", (int)length, columns);
         table.right |= (unsigned)right << k;
-        fputs(right ? "<th class=\"r\">" : "<th>", page);
-        sf_html_text(page, text);
-        fputs("</th>", page);
+        put_between(page, right ? "<th class=\"r\">" : "<th>", text, "</th>");
         columns = columns[length] ? columns + length + 1 : NULL;
         if (!columns)
             fputs("</tr></thead>", page);
@@ -292,11 +213,8 @@ void sf_html_hint(sf_html_table *table, const char *text) {
 
 static void begin_cell(sf_html_table *table) {
     fputs(table->right >> table->column & 1 ? "<td class=\"r\"" : "<td", table->page);
-    if (table->hint) {
-        fputs(" title=\"", table->page);
-        sf_html_text(table->page, table->hint);
-        fputc('"', table->page);
-    }
+    if (table->hint)
+        put_between(table->page, " title=\"", table->hint, "\"");
     fputc('>', table->page);
     table->hint = NULL;
     table->column++;
@@ -315,11 +233,14 @@ void sf_html_number(sf_html_table *table, int digits, double value) {
         sf_html_cell(table, "–");
 }
 
+void sf_html_numbers(sf_html_table *table, int digits, const double *value, int count) {
+    for (int k = 0; k < count; k++)
+        sf_html_number(table, digits, value[k]);
+}
+
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...) {
     sf_html_row(table);
-    fputs("<th>", table->page);
-    sf_html_text(table->page, title);
-    fputs("</th>", table->page);
+    put_between(table->page, "<th>", title, "</th>");
     begin_cell(table);
     PUT_ARGUMENTS(table->page, format);
     fputs("</td>", table->page);

@@ -17,7 +17,6 @@ sf_status sf_html_end(FILE *page, const char *foot, sf_error *err);
 
 /* Escaped text, without an element around it. */
 void sf_html_text(FILE *page, const char *text);
-void sf_html_format(FILE *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* <h2>, <p>, <p class="note">, <pre>, <pre class="prose">; escaped. */
 void sf_html_heading(FILE *page, const char *text);
@@ -31,19 +30,20 @@ void sf_html_prose(FILE *page, const char *text);
 void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* A few figures in large type: begin, tiles, end. `kind` as above; `remark` below the value. */
-void sf_html_tiles_begin(FILE *page);
+/* A <div> of this class: what stands in it follows until the end. "tiles": a few figures in large type;
+ * "columns", "columns narrow", "columns wide": parts side by side of equal widths, or the first is; "block":
+ * a part that is not broken between pages. */
+void sf_html_division(FILE *page, const char *kind);
+void sf_html_division_end(FILE *page);
+#define sf_html_tiles_begin(page) sf_html_division(page, "tiles")
+#define sf_html_tiles_end(page) sf_html_division_end(page)
+#define sf_html_columns_begin(page, kind) sf_html_division(page, "columns " kind)
+#define sf_html_columns_end(page) sf_html_division_end(page)
+#define sf_html_block_begin(page) sf_html_division(page, "block")
+#define sf_html_block_end(page) sf_html_division_end(page)
+
+/* A figure in large type, one of the tiles. `kind` as above; `remark` below the value. */
 void sf_html_tile(FILE *page, const char *kind, const char *title, const char *value, const char *remark);
-void sf_html_tiles_end(FILE *page);
-
-/* The parts that follow stand side by side until the end. `kind`: "" equal widths; "narrow", "wide": the
- * first is. */
-void sf_html_columns_begin(FILE *page, const char *kind);
-void sf_html_columns_end(FILE *page);
-
-/* A part that is not broken between pages. */
-void sf_html_block_begin(FILE *page);
-void sf_html_block_end(FILE *page);
 
 /* A figure of an SVG element; with `svg` NULL the caption says what is missing and why. */
 void sf_html_figure(FILE *page, const char *svg, const char *format, ...)
@@ -73,6 +73,11 @@ void sf_html_cell(sf_html_table *table, const char *format, ...) __attribute__((
 void sf_html_hint(sf_html_table *table, const char *text);
 /* The value with so many digits after the point, or a dash if it is not finite. */
 void sf_html_number(sf_html_table *table, int digits, double value);
+/* The same of several cells. */
+#define SF_HTML_NUMBERS(table, digits, ...)                                                                  \
+    sf_html_numbers(table, digits, (const double[]){__VA_ARGS__},                                            \
+                    (int)(sizeof(double[]){__VA_ARGS__} / sizeof(double)))
+void sf_html_numbers(sf_html_table *table, int digits, const double *value, int count);
 void sf_html_table_end(sf_html_table *table);
 /* Adds a row to a table without headings. */
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...)

@@ -63,6 +63,11 @@ void sf_json_number(sf_json *json, const char *key, double value) {
         fputs("null", json->file);
 }
 
+void sf_json_numbers(sf_json *json, const sf_named *list) {
+    for (; list->key; list++)
+        sf_json_number(json, list->key, list->value);
+}
+
 void sf_json_integer(sf_json *json, const char *key, int64_t value) {
     begin(json, key);
     if (value >= 0)
@@ -92,22 +97,6 @@ void sf_json_text(sf_json *json, const char *key, const char *text) {
 }
 
 /* ---- rows ---- */
-
-sf_value sf_value_real(double value) {
-    return (sf_value){.kind = SF_VALUE_REAL, .real = value};
-}
-
-sf_value sf_value_integer(int64_t value) {
-    return (sf_value){.kind = SF_VALUE_INTEGER, .integer = value};
-}
-
-sf_value sf_value_flag(bool value) {
-    return (sf_value){.kind = SF_VALUE_FLAG, .flag = value};
-}
-
-sf_value sf_value_text(const char *text) {
-    return (sf_value){.kind = SF_VALUE_TEXT, .text = text};
-}
 
 sf_value sf_row_value(const sf_row *row, const void *record) {
     const char *member = (const char *)record + row->offset;

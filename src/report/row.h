@@ -14,8 +14,8 @@
 #include <stdio.h>
 
 /* Writes strictly valid JSON (RFC 8259): a number that is not finite becomes null, texts are escaped and
- * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. No text holds a '<', so
- * that the whole may stand in a script element of a page. */
+ * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. No text holds a
+ * '<', so that the whole may stand in a script element of a page. */
 typedef struct sf_json {
     FILE *file;
     int depth;
@@ -25,6 +25,14 @@ typedef struct sf_json {
 void sf_json_open(sf_json *json, const char *key, char bracket); /* bracket: '{' or '[' */
 void sf_json_close(sf_json *json, char bracket);                 /* '}' or ']' */
 void sf_json_number(sf_json *json, const char *key, double value);
+/* Several numbers of the open object: SF_JSON_NUMBERS(json, {"low", low}, {"high", high}). Counts below 10^9,
+ * too. */
+typedef struct sf_named {
+    const char *key;
+    double value;
+} sf_named;
+void sf_json_numbers(sf_json *json, const sf_named *list); /* until a key is NULL */
+#define SF_JSON_NUMBERS(json, ...) sf_json_numbers(json, (const sf_named[]){__VA_ARGS__, {0}})
 /* A negative integer becomes null: all of ours are counts. */
 void sf_json_integer(sf_json *json, const char *key, int64_t value);
 void sf_json_bool(sf_json *json, const char *key, bool value);
@@ -81,10 +89,10 @@ typedef struct sf_records {
     int64_t count;
 } sf_records;
 
-sf_value sf_value_real(double value);
-sf_value sf_value_integer(int64_t value);
-sf_value sf_value_flag(bool value);
-sf_value sf_value_text(const char *text);
+#define sf_value_real(x) ((sf_value){.kind = SF_VALUE_REAL, .real = (x)})
+#define sf_value_integer(x) ((sf_value){.kind = SF_VALUE_INTEGER, .integer = (x)})
+#define sf_value_flag(x) ((sf_value){.kind = SF_VALUE_FLAG, .flag = (x)})
+#define sf_value_text(x) ((sf_value){.kind = SF_VALUE_TEXT, .text = (x)})
 
 sf_value sf_row_value(const sf_row *row, const void *record);
 /* The number in the unit of the key, a flag as 0 or 1; NaN: not defined, or a text. */

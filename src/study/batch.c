@@ -314,25 +314,14 @@ static void take_failure(const char *line, int count, const sf_manifest_run *run
             SF_FAIL(&failure[k], (sf_status)status, "%s", line + begin);
 }
 
-bool sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure) {
+int sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure) {
     sf_error none = SF_ERROR_INIT;
     char *text = NULL, *line;
-    if (!sf_replace_exists(path) || sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
-        return false;
-    for (char *rest = text; (line = strsep(&rest, "\n"));)
-        take_failure(line, count, run, failure);
-    free(text);
-    return true;
-}
-
-int sf_manifest_count_failed(const char *path) {
-    sf_error none = SF_ERROR_INIT;
-    char *text = NULL;
     int lines = 0;
     if (!sf_replace_exists(path) || sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
         return -1;
-    for (const char *c = text; (c = strchr(c, '\n')); c++)
-        lines++;
+    for (char *rest = text; (line = strsep(&rest, "\n")) && rest; lines++)
+        take_failure(line, count, run, failure);
     free(text);
     return lines;
 }

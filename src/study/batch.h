@@ -97,9 +97,8 @@ void sf_manifest_outcome_path(const char *manifest, const char *group, char *pat
 /* Its lines: key, status and sentence of each drop of the group that failed. */
 sf_status sf_manifest_write_outcome(const char *path, int count, const sf_manifest_run *run,
                                     const sf_error *failure, sf_error *err);
-/* Puts the failures in the file into failure[k] of the drop with that key; false: there is no such file. */
-bool sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure);
-/* Returns the number of failures in the file; -1: there is no such file. */
-int sf_manifest_count_failed(const char *path);
+/* Puts the failures in the file into failure[k] of the drop with that key; returns how many there are, -1:
+ * there is no such file. */
+int sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure);
 
 #endif

@@ -47,10 +47,6 @@ typedef struct folder {
     sf_tree tree;
 } folder;
 
-static const sf_geo_source *geometry(const sf_case *c, int k) {
-    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support;
-}
-
 /* ---- places ---- */
 
 static const folder_file *find_name(const folder *f, const char *name) {
@@ -139,8 +135,9 @@ static sf_status list_reading(folder *f, sf_error *err) {
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         for (size_t i = 0; i < f->mesh[k].broker.count && err->status == SF_OK; i++) {
             const sf_broker_file *file = &f->mesh[k].broker.file[i];
-            f->read[f->read_count++] = (geometry_file){sf_path_whole(NULL, geometry(&f->c, k)->path, err),
-                                                       sf_path_whole(NULL, file->path, err), file->hash};
+            f->read[f->read_count++] =
+                (geometry_file){sf_path_whole(NULL, sf_campaign_geometry(&f->c, k)->path, err),
+                                sf_path_whole(NULL, file->path, err), file->hash};
         }
     return err->status;
 }
@@ -322,8 +319,8 @@ static sf_status write_files(folder *f, sf_error *err) {
 static sf_status mesh_each(const sf_case *c, sf_meshed mesh[SF_GEOMETRIES], sf_error *err) {
     const sf_mesher_limits limits = {c->mesh_time_limit, NULL};
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
-        if (geometry(c, k)->path)
-            sf_mesher_run(geometry(c, k), &limits, &mesh[k], err);
+        if (sf_campaign_geometry(c, k)->path)
+            sf_mesher_run(sf_campaign_geometry(c, k), &limits, &mesh[k], err);
     return err->status;
 }
 
@@ -352,7 +349,7 @@ static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) 
             (mesh[k].size != f->mesh[k].size ||
              (mesh[k].size > 0 && memcmp(mesh[k].stream, f->mesh[k].stream, mesh[k].size) != 0)))
             SF_REFUSE(err, "%s has no folder of its own: in another folder %s gives another mesh",
-                      f->request->case_path, geometry(&f->c, k)->path);
+                      f->request->case_path, sf_campaign_geometry(&f->c, k)->path);
     for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&mesh[k]);
     free(root);

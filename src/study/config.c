@@ -48,13 +48,11 @@ void sf_config_close(sf_config *config) {
 
 /* "one, two, three" */
 static void list_words(const char *words, char *out, size_t size) {
-    size_t used = 0;
-    for (const char *c = words; *c && used + 3 < size; c++) {
-        out[used++] = *c == '|' ? ',' : *c;
-        if (*c == '|')
-            out[used++] = ' ';
+    *out = '\0';
+    for (int length; *words; words += length + (words[length] == '|')) {
+        length = (int)strcspn(words, "|");
+        sf_text_add(out, size, "%s%.*s", *out ? ", " : "", length, words);
     }
-    out[used] = '\0';
 }
 
 sf_status sf_config_names(const sf_config *config, const config_setting_t *group, const char *names,
@@ -65,14 +63,13 @@ sf_status sf_config_names(const sf_config *config, const config_setting_t *group
     int unknown = 0;
     for (int k = 0; k < config_setting_length(group); k++) {
         const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
-        size_t used = strlen(others);
         if (sf_word_find(names, config_setting_name(item)) >= 0)
             continue;
         if (unknown++ == 0)
             first = item;
         else if (unknown <= NAMED)
-            snprintf(others + used, sizeof others - used, "%s%.24s",
-                     used ? ", " : "; unknown too: ", config_setting_name(item));
+            sf_text_add(others, sizeof others, "%s%.24s",
+                        *others ? ", " : "; unknown too: ", config_setting_name(item));
     }
     if (unknown == 0)
         return SF_OK;
@@ -92,19 +89,21 @@ static const config_setting_t *find(const sf_config *config, const config_settin
     return setting;
 }
 
+bool sf_config_is_number(const config_setting_t *s, double *out) {
+    int type = config_setting_type(s);
+    *out = type == CONFIG_TYPE_FLOAT   ? config_setting_get_float(s)
+           : type == CONFIG_TYPE_INT   ? config_setting_get_int(s)
+           : type == CONFIG_TYPE_INT64 ? (double)config_setting_get_int64(s)
+                                       : NAN;
+    return type == CONFIG_TYPE_FLOAT || type == CONFIG_TYPE_INT || type == CONFIG_TYPE_INT64;
+}
+
 sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
                            bool required, double low, double high, double *out, sf_error *err) {
     const config_setting_t *s = find(config, group, name, required, err);
     if (!s)
         return err->status;
-    int type = config_setting_type(s);
-    if (type == CONFIG_TYPE_FLOAT)
-        *out = config_setting_get_float(s);
-    else if (type == CONFIG_TYPE_INT)
-        *out = config_setting_get_int(s);
-    else if (type == CONFIG_TYPE_INT64)
-        *out = (double)config_setting_get_int64(s);
-    else
+    if (!sf_config_is_number(s, out))
         return sf_config_refuse(config, s, err, "%s must be a number", name);
     if (!(*out >= low && *out <= high))
         return sf_config_refuse(config, s, err, "%s is %g, outside %g to %g", name, *out, low, high);
@@ -175,26 +174,26 @@ sf_status sf_config_choice(const sf_config *config, const config_setting_t *grou
     return SF_OK;
 }
 
+void sf_config_path(const sf_config *config, const char *name, char path[PATH_MAX]) {
+    if (*name == '/')
+        snprintf(path, PATH_MAX, "%s", name);
+    else
+        snprintf(path, PATH_MAX, "%s/%s", config->folder, name);
+}
+
 sf_status sf_config_file(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, char **out, sf_error *err) {
     const char *text = NULL;
     if (sf_config_text(config, group, name, required, &text, err) != SF_OK || !text)
         return err->status;
-    char *path = NULL;
-    if (*text == '/')
-        path = strdup(text);
-    else if (asprintf(&path, "%s/%s", config->folder, text) < 0)
-        path = NULL;
-    if (!path)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", text);
+    char path[PATH_MAX];
+    sf_config_path(config, text, path);
     sf_error inner = SF_ERROR_INIT;
-    if (sf_plain_check(path, NULL, &inner) != SF_OK) {
-        sf_config_refuse(config, config_setting_get_member(group, name), err, "%s: %s", name, inner.text);
-        free(path);
-        return err->status;
-    }
-    *out = path;
-    return SF_OK;
+    if (sf_plain_check(path, NULL, &inner) != SF_OK)
+        return sf_config_refuse(config, config_setting_get_member(group, name), err, "%s: %s", name,
+                                inner.text);
+    *out = strdup(path);
+    return *out ? SF_OK : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", text);
 }
 
 sf_status sf_config_list(const sf_config *config, const config_setting_t *group, const char *name,

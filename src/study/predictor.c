@@ -212,26 +212,23 @@ static sf_status calibrate(sf_predictor *p, sf_error *err) {
     p->calibration = 1;
     if (p->count < LEAST_FOR_CALIBRATION)
         return SF_OK;
-    gsl_matrix *inverse = gsl_matrix_alloc(n, n);
-    double *z = sf_alloc(err, n, sizeof *z, "a predictor");
-    if (inverse && z) {
-        gsl_matrix_memcpy(inverse, p->factor);
-        gsl_linalg_cholesky_invert(inverse);
-        double squares = 0;
-        for (size_t i = 0; i < n; i++) {
-            double w = gsl_vector_get(p->ones, i), own = gsl_matrix_get(inverse, i, i) - w * w / p->ones_sum;
-            z[i] = fabs(gsl_vector_get(p->weight, i)) / sqrt(own) / p->deviation;
-            squares += z[i] * z[i];
-        }
-        gsl_sort(z, 1, n);
-        p->calibration = fmax(LEAST_CALIBRATION, fmax(sqrt(squares / (double)n),
-                                                      z[(size_t)(SHARE * (double)n)] / SF_PREDICTOR_SIDES));
-    } else if (err->status == SF_OK) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a predictor");
+    double *z = sf_alloc(err, n, (n + 1) * sizeof *z, "a predictor"), squares = 0;
+    if (!z)
+        return err->status;
+    gsl_matrix_view inverse = gsl_matrix_view_array(z + n, n, n);
+    gsl_matrix_memcpy(&inverse.matrix, p->factor);
+    gsl_linalg_cholesky_invert(&inverse.matrix);
+    for (size_t i = 0; i < n; i++) {
+        double w = gsl_vector_get(p->ones, i),
+               own = gsl_matrix_get(&inverse.matrix, i, i) - w * w / p->ones_sum;
+        z[i] = fabs(gsl_vector_get(p->weight, i)) / sqrt(own) / p->deviation;
+        squares += z[i] * z[i];
     }
-    gsl_matrix_free(inverse);
+    gsl_sort(z, 1, n);
+    p->calibration = fmax(LEAST_CALIBRATION, fmax(sqrt(squares / (double)n),
+                                                  z[(size_t)(SHARE * (double)n)] / SF_PREDICTOR_SIDES));
     free(z);
-    return err->status;
+    return SF_OK;
 }
 
 static sf_status solve(sf_predictor *p, const double *y, sf_error *err) {

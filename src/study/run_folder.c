@@ -11,7 +11,6 @@
 #include "io/process.h"
 #include "io/replace.h"
 #include "post/results/results.h"
-#include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesher.h"
 
 #include <assert.h>
@@ -36,12 +35,13 @@ enum { END_SIZE = 21 }; /* "end 0123456789abcdef\n" */
 
 /* ---- writing ---- */
 
-static bool put_results(FILE *out, const char *results) {
+/* "size second nanosecond" of the file; false: it is not there. */
+static bool describe_results(const char *results, char text[80]) {
     struct stat info;
     if (stat(results, &info) != 0)
         return false;
-    fprintf(out, "results %" PRId64 " %" PRId64 " %ld\n", (int64_t)info.st_size, (int64_t)info.st_mtim.tv_sec,
-            info.st_mtim.tv_nsec);
+    snprintf(text, 80, "%" PRId64 " %" PRId64 " %ld", (int64_t)info.st_size, (int64_t)info.st_mtim.tv_sec,
+             info.st_mtim.tv_nsec);
     return true;
 }
 
@@ -67,14 +67,14 @@ static void keep(const char *path, const char *text, size_t length) {
 
 void sf_run_record_write(const char *path, const char *results, const sf_results *r, const sf_figures *f,
                          sf_grade grade, const char *verdict, const char *geometry) {
-    char *text = NULL;
+    char *text = NULL, of[80] = "";
     size_t length = 0;
     FILE *out = open_memstream(&text, &length);
     if (!out)
         return;
-    fprintf(out, "%s\n", HEAD);
-    bool there = put_results(out, results) && !strchr(verdict, '\n') && !strchr(r->status, '\n');
-    fprintf(out, "grade %d\nverdict %s\nstatus %s\n", (int)grade, verdict, r->status);
+    bool there = describe_results(results, of) && !strchr(verdict, '\n') && !strchr(r->status, '\n');
+    fprintf(out, "%s\nresults %s\ngrade %d\nverdict %s\nstatus %s\n", HEAD, of, (int)grade, verdict,
+            r->status);
     put_figures(out, r, f);
     fprintf(out, "geometry\n%s", geometry);
     if (fclose(out) == 0 && there)
@@ -92,15 +92,6 @@ static bool is_whole(char *text, size_t length) {
     length -= END_SIZE;
     text[length] = '\0';
     return hash == sf_hash_bytes(SF_HASH_START, text, length);
-}
-
-static bool is_of(const char *line, const char *results) {
-    struct stat info;
-    int64_t size = 0, second = 0;
-    long nanosecond = 0;
-    return line && stat(results, &info) == 0 &&
-           sscanf(line, "%" SCNd64 " %" SCNd64 " %ld", &size, &second, &nanosecond) == 3 &&
-           size == info.st_size && second == info.st_mtim.tv_sec && nanosecond == info.st_mtim.tv_nsec;
 }
 
 static bool take_figures(char **rest, sf_run_record *out) {
@@ -121,12 +112,13 @@ static bool take_figures(char **rest, sf_run_record *out) {
 }
 
 static bool take(char *rest, const char *results, sf_run_record *out) {
+    char now[80];
     const char *head = strsep(&rest, "\n"), *of = sf_line_take(&rest, "results", ' '),
                *grade = sf_line_take(&rest, "grade", ' ');
     out->verdict = sf_line_take(&rest, "verdict", ' ');
     out->status = sf_line_take(&rest, "status", ' ');
-    if (strcmp(head, HEAD) != 0 || !is_of(of, results) || !grade || !out->verdict || !out->status ||
-        !take_figures(&rest, out))
+    if (strcmp(head, HEAD) != 0 || !of || !describe_results(results, now) || strcmp(of, now) != 0 || !grade ||
+        !out->verdict || !out->status || !take_figures(&rest, out))
         return false;
     const char *geometry = rest ? strsep(&rest, "\n") : NULL;
     out->grade = (sf_grade)atoi(grade);
@@ -158,31 +150,14 @@ static sf_status hash_file(uint64_t *hash, const char *path, sf_error *err) {
     return err->status;
 }
 
-/* The programs that simulate a drop: softfall-pre, softfall-solve, softfall-mesh. */
-typedef struct programs {
-    char folder[PATH_MAX]; /* SF_BIN_DIR as they were found */
-    char path[3][PATH_MAX];
-    bool found;
-} programs;
-
-static sf_status find_programs(programs *p, sf_error *err) {
-    const char *given = getenv("SF_BIN_DIR");
-    char folder[PATH_MAX];
-    snprintf(folder, sizeof folder, "%s", given ? given : "");
-    if (p->found && strcmp(folder, p->folder) == 0)
-        return SF_OK;
-    memcpy(p->folder, folder, sizeof folder);
-    p->found = sf_process_find("softfall-pre", p->path[0], PATH_MAX, err) == SF_OK &&
-               sf_process_find("softfall-solve", p->path[1], PATH_MAX, err) == SF_OK &&
-               sf_mesher_find(p->path[2], PATH_MAX, err) == SF_OK;
-    return err->status;
-}
-
+/* The programs that simulate a drop. */
 static sf_status hash_programs(uint64_t *hash, sf_error *err) {
-    static programs known;
-    SF_TRY(find_programs(&known, err));
+    char path[3][PATH_MAX];
+    if (sf_process_find("softfall-pre", path[0], PATH_MAX, err) == SF_OK &&
+        sf_process_find("softfall-solve", path[1], PATH_MAX, err) == SF_OK)
+        sf_mesher_find(path[2], PATH_MAX, err);
     for (int k = 0; k < 3 && err->status == SF_OK; k++)
-        hash_file(hash, known.path[k], err);
+        hash_file(hash, path[k], err);
     return err->status;
 }
 
@@ -199,11 +174,14 @@ uint64_t sf_campaign_case_hash(const sf_case *c) {
 
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
     *hash = sf_campaign_case_hash(c);
-    if (hash_file(hash, c->pad.path, err) != SF_OK ||
-        (c->missile.path && hash_file(hash, c->missile.path, err) != SF_OK) ||
-        (c->support.path && hash_file(hash, c->support.path, err) != SF_OK))
-        return err->status;
-    return hash_programs(hash, err);
+    for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
+        if (sf_campaign_geometry(c, k)->path)
+            hash_file(hash, sf_campaign_geometry(c, k)->path, err);
+    return err->status == SF_OK ? hash_programs(hash, err) : err->status;
+}
+
+const sf_geo_source *sf_campaign_geometry(const sf_case *c, int k) {
+    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support;
 }
 
 char *sf_campaign_geometry_list(const char *path, const char *text) {
@@ -229,7 +207,8 @@ static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err
 
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *at) {
     at->key = key;
-    at->pad_folder[0] = at->missile_folder[0] = at->support_folder[0] = '\0';
+    for (int k = 0; k < SF_GEOMETRIES; k++)
+        at->geometry[k][0] = '\0';
     snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
     snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
     snprintf(at->results, sizeof at->results, "%s/results.h5", at->path);
@@ -246,29 +225,34 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
     SF_TRY(sf_case_read(case_path, count, overrides, NULL, &c, err));
     sf_campaign_key(&c, &key, err);
     sf_run_folder_name_key(parent, label, key, at);
-    if (err->status == SF_OK && name_folder(c.pad.path, at->pad_folder, err) == SF_OK &&
-        name_folder(c.missile.path, at->missile_folder, err) == SF_OK)
-        name_folder(c.support.path, at->support_folder, err);
+    for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
+        name_folder(sf_campaign_geometry(&c, k)->path, at->geometry[k], err);
     sf_case_free(&c);
     return err->status;
 }
 
-/* True if every file that the geometries read, by the list at `text` of the HDF5 file `path`
- * (docs/formats.md, geometry_files), has the content that it had; `unlisted` if there is no such list. */
+/* True if every file of the list of what the geometries read (docs/formats.md, geometry_files) has the
+ * content that it had. */
+static bool are_files_same(const sf_run_folder *at, const char *files) {
+    const char *folder[SF_GEOMETRIES];
+    for (int k = 0; k < SF_GEOMETRIES; k++)
+        folder[k] = at->geometry[k];
+    return sf_geometry_files_are_same(folder, files);
+}
+
+/* The same by the list at `text` of the HDF5 file `path`; `unlisted` if there is no such list. */
 static bool is_geometry_same(const sf_run_folder *at, const char *path, const char *text, bool unlisted) {
-    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
     char *files = sf_campaign_geometry_list(path, text);
-    bool same = files ? sf_geometry_files_are_same(folder, files) : unlisted;
+    bool same = files ? are_files_same(at, files) : unlisted;
     free(files);
     return same;
 }
 
 /* By the record of its figures: only of a drop that ran to its end. */
 static bool is_recorded(const sf_run_folder *at) {
-    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
     sf_run_record record;
-    bool recorded = sf_run_record_read(at->figures, at->results, &record) &&
-                    sf_geometry_files_are_same(folder, record.geometry);
+    bool recorded =
+        sf_run_record_read(at->figures, at->results, &record) && are_files_same(at, record.geometry);
     sf_run_record_free(&record);
     return recorded;
 }
@@ -298,14 +282,13 @@ static void keep_failure(const sf_run_folder *at, const char *files, const sf_er
 }
 
 bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
-    const char *const folder[SF_GEOMETRIES] = {at->pad_folder, at->missile_folder, at->support_folder};
     sf_error none = SF_ERROR_INIT;
     char *text = NULL;
     if (access(at->failed, R_OK) != 0 ||
         sf_plain_read(at->failed, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
         return false;
     char *rest = text, *status = strsep(&rest, "\n"), *sentence = rest ? strsep(&rest, "\n") : NULL;
-    bool failed = rest && atoi(status) == SF_ERR_NUMERIC && sf_geometry_files_are_same(folder, rest);
+    bool failed = rest && atoi(status) == SF_ERR_NUMERIC && are_files_same(at, rest);
     if (failed)
         SF_FAIL(failure, SF_ERR_NUMERIC, "%s", sentence);
     free(text);

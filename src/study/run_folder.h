@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "case/case.h"
 #include "post/figures/verdict.h"
+#include "pre/mesh/mesh_store.h"
 #include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -47,6 +48,9 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 /* The part of it that is of the case alone, without geometry files and programs. */
 uint64_t sf_campaign_case_hash(const sf_case *c);
 
+/* Geometry k of SF_GEOMETRIES: the pad's, the missile's, the support's; without a path there is none. */
+const sf_geo_source *sf_campaign_geometry(const sf_case *c, int k);
+
 /* Returns the list of the files that the geometries read, at `text` of the HDF5 file `path` (docs/formats.md,
  * geometry_files), from malloc; NULL if there is none. */
 char *sf_campaign_geometry_list(const char *path, const char *text);
@@ -64,8 +68,7 @@ typedef struct sf_run_folder {
     char path[PATH_MAX];
     char model[SF_RUN_PATH_SIZE], results[SF_RUN_PATH_SIZE], checkpoint[SF_RUN_PATH_SIZE],
         log[SF_RUN_PATH_SIZE], failed[SF_RUN_PATH_SIZE], figures[SF_RUN_PATH_SIZE];
-    /* Folders of the geometries; "": there is none. */
-    char pad_folder[PATH_MAX], missile_folder[PATH_MAX], support_folder[PATH_MAX];
+    char geometry[SF_GEOMETRIES][PATH_MAX]; /* folder of each; "": there is none */
 } sf_run_folder;
 
 /* The names, "parent/label-<key of the case with its overrides>" and the names of its files; nothing is

@@ -42,15 +42,6 @@ static int list_overrides(const sf_runner_drop *drop, char *material, const char
     return count;
 }
 
-static sf_status result_path(const char *path, sf_runner_result *out, sf_error *err) {
-    out->path = strdup(path);
-    if (!out->path) {
-        sf_runner_result_free(out);
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
-    }
-    return SF_OK;
-}
-
 static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *out) {
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS; /* no part of the grade */
@@ -63,10 +54,7 @@ static sf_status take_layers(const sf_results *r, const sf_figures *f, sf_runner
     if (r->layer_count == 0 || !f->layers)
         return SF_OK;
     out->layer_strain = sf_alloc(err, (unsigned long)r->layer_count, sizeof *out->layer_strain, "layers");
-    if (!out->layer_strain)
-        sf_runner_result_free(out);
-    else
-        out->layer_count = r->layer_count;
+    out->layer_count = out->layer_strain ? r->layer_count : 0;
     for (int k = 0; k < out->layer_count; k++)
         out->layer_strain[k] = f->layers[k].max_local_strain;
     return err->status;
@@ -80,7 +68,15 @@ static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runne
     for (size_t k = 0; out->figure && k < count; k++)
         out->figure[k] = sf_figure_number(&list[k], r, f);
     snprintf(out->status, sizeof out->status, "%.*s", (int)sizeof out->status - 1, r->status);
-    if (!out->figure)
+    return err->status;
+}
+
+/* The end of every reading: the path, or nothing if anything failed. */
+static sf_status finish_result(const char *path, sf_runner_result *out, sf_error *err) {
+    out->path = strdup(path);
+    if (!out->path)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    if (err->status != SF_OK)
         sf_runner_result_free(out);
     return err->status;
 }
@@ -120,22 +116,22 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
         judge(&r, &f, out);
         write_record(at, &r, &f, out);
         f.filtered = (sf_series){0};
-        if (take_layers(&r, &f, out, err) == SF_OK && take_figures(&r, &f, out, err) == SF_OK)
-            result_path(path, out, err);
+        if (take_layers(&r, &f, out, err) == SF_OK)
+            take_figures(&r, &f, out, err);
+        finish_result(path, out, err);
     }
     sf_figures_free(&f);
     sf_results_close(&r);
     return err->status;
 }
 
-double sf_runner_figure(const sf_runner_result *result, const char *key) {
+static double figure_of(const double *figure, const char *key) {
     size_t count;
-    return result->figure ? result->figure[sf_figure_find(key) - sf_figure_list(&count)] : NAN;
+    return figure ? figure[sf_figure_find(key) - sf_figure_list(&count)] : NAN;
 }
 
-static double figure_of(const sf_run_record *record, const char *key) {
-    size_t count;
-    return record->figure[sf_figure_find(key) - sf_figure_list(&count)];
+double sf_runner_figure(const sf_runner_result *result, const char *key) {
+    return figure_of(result->figure, key);
 }
 
 /* Without the results: what has no figure is NaN or 0. False if there is no record of them. */
@@ -143,23 +139,24 @@ static bool read_recorded(const sf_run_folder *at, sf_runner_result *out, sf_err
     sf_run_record record;
     bool there = sf_run_record_read(at->figures, at->results, &record);
     if (there) {
-        *out = (sf_runner_result){.a_max_g = figure_of(&record, "a_max_g"),
-                                  .hic = figure_of(&record, "hic"),
+        const double *f = record.figure;
+        *out = (sf_runner_result){.a_max_g = figure_of(f, "a_max_g"),
+                                  .hic = figure_of(f, "hic"),
                                   .hic_window = NAN,
                                   .contact_time = NAN,
-                                  .v0 = figure_of(&record, "v0_m_s"),
-                                  .v_rebound = figure_of(&record, "v_rebound_m_s"),
-                                  .max_indentation = 1e-3 * figure_of(&record, "max_indentation_mm"),
-                                  .max_local_strain = figure_of(&record, "max_local_strain"),
-                                  .energy_error = figure_of(&record, "energy_error"),
-                                  .nodes = (int64_t)figure_of(&record, "nodes"),
-                                  .steps = (int64_t)figure_of(&record, "steps"),
+                                  .v0 = figure_of(f, "v0_m_s"),
+                                  .v_rebound = figure_of(f, "v_rebound_m_s"),
+                                  .max_indentation = 1e-3 * figure_of(f, "max_indentation_mm"),
+                                  .max_local_strain = figure_of(f, "max_local_strain"),
+                                  .energy_error = figure_of(f, "energy_error"),
+                                  .nodes = (int64_t)figure_of(f, "nodes"),
+                                  .steps = (int64_t)figure_of(f, "steps"),
                                   .grade = record.grade,
                                   .figure = record.figure};
         record.figure = NULL;
         snprintf(out->verdict, sizeof out->verdict, "%s", record.verdict);
         snprintf(out->status, sizeof out->status, "%s", record.status);
-        result_path(at->results, out, err);
+        finish_result(at->results, out, err);
     }
     sf_run_record_free(&record);
     return there;
@@ -244,10 +241,9 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
     if (locate(runner, drop, &l, failure) != SF_OK)
         return;
     r->key = l.at.key;
-    r->geometry = sf_hash_bytes(SF_HASH_START, l.at.pad_folder, strlen(l.at.pad_folder) + 1);
-    r->geometry = sf_hash_bytes(r->geometry, l.at.missile_folder, strlen(l.at.missile_folder) + 1);
-    if (*l.at.support_folder)
-        r->geometry = sf_hash_bytes(r->geometry, l.at.support_folder, strlen(l.at.support_folder) + 1);
+    r->geometry = SF_HASH_START;
+    for (int k = 0; k < SF_GEOMETRIES; k++)
+        r->geometry = sf_hash_bytes(r->geometry, l.at.geometry[k], strlen(l.at.geometry[k]) + 1);
     r->reused = sf_run_folder_is_finished(&l.at) && (runner->figures_only || is_readable(&l.at));
     if (r->reused)
         sf_run_folder_clean(&l.at);
@@ -399,8 +395,8 @@ static void look_again(const batch *b, const sf_manifest *m, const char *manifes
     for (int k = 0, last; k < m->count; k = last) {
         last = sf_manifest_group_end(m, k);
         sf_manifest_outcome_path(manifest, m->run[k].group, path, sizeof path);
-        bool done = sf_manifest_read_outcome(path, last - k, &m->run[k], &failure[k]);
-        for (int j = k; j < last && !done; j++) {
+        int known = sf_manifest_read_outcome(path, last - k, &m->run[k], &failure[k]);
+        for (int j = k; j < last && known < 0; j++) {
             located l;
             if (locate(b->runner, &m->run[j].drop, &l, &failure[j]) == SF_OK &&
                 !sf_run_folder_is_finished(&l.at))
@@ -430,7 +426,7 @@ static void tell_groups(void *context) {
     for (int k = 0, last; k < e->m->count; k = last) {
         last = sf_manifest_group_end(e->m, k);
         sf_manifest_outcome_path(e->manifest, e->m->run[k].group, path, sizeof path);
-        int failed = sf_manifest_count_failed(path);
+        int failed = sf_manifest_read_outcome(path, 0, NULL, NULL);
         ended += failed >= 0 ? last - k : 0;
         b->failed += failed > 0 ? failed : 0;
     }
@@ -529,7 +525,7 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
     return SF_OK;
 }
 
-/* `b` holds runner, count and drop; what it gets here is released by release_batch. */
+/* `b` holds runner, count and drop; its requests are the caller's to free. */
 static sf_status run_held(batch *b, sf_error *failure, sf_error *err) {
     unsigned long n = (unsigned long)b->count;
     b->request = sf_alloc(err, n, sizeof *b->request, "drops");
@@ -560,19 +556,15 @@ static sf_status run_batch(batch *b, sf_error *failure, sf_error *err) {
         run_held(b, failure, err);
         sf_units_let_go();
     }
-    return err->status;
-}
-
-static void release_batch(batch *b) {
-    free(b->request);
     free(b->pending);
+    return err->status;
 }
 
 sf_status sf_runner_simulate_each(sf_runner *runner, int count, const sf_runner_drop *drop, sf_error *failure,
                                   sf_error *err) {
     batch b = {.runner = runner, .count = count, .drop = drop};
     run_batch(&b, failure, err);
-    release_batch(&b);
+    free(b.request);
     return err->status;
 }
 
@@ -584,7 +576,7 @@ sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop 
     for (int k = 0; k < count && err->status == SF_OK; k++)
         if (failure[k].status == SF_OK)
             take_result(runner, &drop[k], &b.request[k], &result[k], &failure[k]);
-    release_batch(&b);
+    free(b.request);
     return err->status;
 }
 

@@ -81,38 +81,26 @@ static sf_status parse_command(int argc, char **argv, const sf_study_program *pr
     return sf_command_parse(&command, argc, argv, err);
 }
 
-/* "softfall-fit drop" of a program and its word. */
-static void name_command(const sf_study_program *p, char *text, size_t size) {
-    snprintf(text, size, "%s%s%s", p->name, p->word ? " " : "", p->word ? p->word : "");
-}
-
-static char *command_of(int argc, char **argv, const sf_study_program *program, sf_error *err) {
-    char *words = sf_command_line(argc, argv), *text = NULL;
-    if (!words ||
-        asprintf(&text, "%s%s%s", program->word ? program->name : "", program->word ? " " : "", words) < 0) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the command line");
-        text = NULL;
-    }
-    free(words);
-    return text;
-}
-
 int sf_study_main(int argc, char **argv, const sf_study_program *program, void *own) {
-    static char name[64];
+    static char name[64]; /* "softfall-fit drop" */
+    char *words = sf_command_line(argc, argv);
     sf_error err = SF_ERROR_INIT;
     sf_study study = {.lock = -1, .sink = sf_program_sink(program->name)};
     gsl_set_error_handler_off(); /* statuses are looked at */
     sf_process_handle_signals();
-    study.command = command_of(argc, argv, program, &err);
-    if (err.status == SF_OK && !program->word)
+    if (!words || asprintf(&study.command, "%s%s%s", program->word ? program->name : "",
+                           program->word ? " " : "", words) < 0)
+        SF_FAIL(&err, SF_ERR_MEMORY, "out of memory for the command line");
+    else if (!program->word)
         sf_program_begin(argv, &err);
     if (program->word) {
-        name_command(program, name, sizeof name);
+        snprintf(name, sizeof name, "%s %s", program->name, program->word);
         argv[0] = name;
     }
     if (err.status == SF_OK && parse_command(argc, argv, program, &study, own, &err) == SF_OK)
         program->run(&study, own, &err);
     sf_staging_end(&study.output);
+    free(words);
     free(study.command);
     return sf_error_report(&err, program->name);
 }

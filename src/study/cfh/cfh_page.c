@@ -2,6 +2,7 @@
 /* The picture and the page of a critical fall height. */
 #include "study/cfh/cfh_report.h"
 
+#include "base/text.h"
 #include "build_info.h"
 #include "post/results/origin.h"
 #include "post/view/report.h"
@@ -127,22 +128,18 @@ static void put_points(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion
 
 /* The verdict in a few words. */
 static void put_title(sf_chart *chart, const sf_cfh_report *r) {
-    const sf_cfh_result *v = r->result;
-    char height[96] = "not determined", rig[48] = "", interval[64], spread[96] = "";
-    if (v->verdict == SF_CFH_FOUND)
-        snprintf(height, sizeof height, "%.3f m of free fall", v->crossing[v->deciding].height);
-    else if (v->verdict == SF_CFH_ABOVE)
-        snprintf(height, sizeof height, "above %.3f m of free fall", v->highest);
-    else if (v->verdict == SF_CFH_BELOW)
-        snprintf(height, sizeof height, "below %.3f m of free fall", v->lowest);
-    if (v->verdict == SF_CFH_FOUND && r->rig->pairs > 0)
-        snprintf(rig, sizeof rig, ", %.3f m on the rig",
-                 sf_cfh_rig_height(r->rig, v->crossing[v->deciding].height));
+    char words[96] = "not determined", rig[48] = "", interval[64], spread[96] = "";
+    double height;
+    const char *side = sf_cfh_bound(r, &height);
+    if (side)
+        snprintf(words, sizeof words, "%s%.3f m of free fall", side, height);
+    if (side && !*side && r->rig->pairs > 0)
+        snprintf(rig, sizeof rig, ", %.3f m on the rig", sf_cfh_rig_height(r->rig, height));
     if (r->spread)
         snprintf(
             spread, sizeof spread, "; 95 %% interval %s",
             sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, SF_CFH_FIRST), interval, sizeof interval));
-    sf_chart_title(chart, "Critical fall height %s%s%s (indicative)", height, rig, spread);
+    sf_chart_title(chart, "Critical fall height %s%s%s (indicative)", words, rig, spread);
 }
 
 sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *warning, size_t size,
@@ -150,10 +147,7 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *wa
     sf_chart *chart = sf_chart_new("cfh", 1600, 1300, err);
     put_title(chart, r);
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
-        sf_panel *panel = sf_chart_panel(chart);
-        if (!panel)
-            break;
-        put_axes(panel, r, c);
+        put_axes(sf_chart_panel(chart), r, c);
         put_band(chart, r, c);
         put_crossing(chart, r, c);
         put_fit(chart, r, c);
@@ -166,13 +160,6 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *wa
 
 /* ---- the section about the interval ---- */
 
-static void put_share(sf_html_table *table, double share) {
-    if (isnan(share))
-        sf_html_cell(table, "–");
-    else
-        sf_html_cell(table, "%.0f", 100 * share);
-}
-
 /* The line of the interval that a single pad and drop have. */
 static const char *single_drop_text(const sf_cfh_spread *s) {
     return isnan(s->scatter[SF_CFH_A_MAX][0])
@@ -180,39 +167,33 @@ static const char *single_drop_text(const sf_cfh_spread *s) {
                : "of a single pad and drop, with the scatter of speed and thickness; not in the whole interval";
 }
 
+/* A line of the table: `i` of the first criterion that is met, and, unless NULL, of each. */
+static void put_part(sf_html_table *table, const sf_cfh_interval *i, const sf_cfh_interval *each,
+                     double share, const char *words, const char *more) {
+    char text[64];
+    sf_html_row(table);
+    sf_html_cell(table, "%s%s", words, more);
+    sf_html_number(table, 3, i->median);
+    sf_html_cell(table, "%s", sf_cfh_interval_text(i, text, sizeof text));
+    sf_html_number(table, 0, 100 * share);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        sf_html_cell(table, "%s", each ? sf_cfh_interval_text(&each[c], text, sizeof text) : "–");
+}
+
 static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig) {
     static const char *const words[SF_CFH_PARTS] = {
         "foam alone (the draws: parameters and curve)", "and the errors of the responses",
         "and the error of the mesh", "and the points about their fit", "and the columns' own error"};
-    char text[64];
     sf_html_table table = sf_html_table_begin(
         page, "dense", "95 % interval with|>median (m)|>critical height|>share (%)|>a_max|>HIC");
-    for (int part = 0; part < SF_CFH_PARTS; part++) {
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s%s", words[part],
-                     part == SF_CFH_PART_RESPONSE && !s->with_response ? ": not known, not in it" : "");
-        sf_html_number(&table, 3, s->part[part][SF_CFH_FIRST].median);
-        sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][SF_CFH_FIRST], text, sizeof text));
-        put_share(&table, sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->part[part][c], text, sizeof text));
-    }
+    for (int part = 0; part < SF_CFH_PARTS; part++)
+        put_part(&table, &s->part[part][SF_CFH_FIRST], s->part[part],
+                 sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST), words[part],
+                 part == SF_CFH_PART_RESPONSE && !s->with_response ? ": not known, not in it" : "");
     const sf_cfh_interval *drop = s->part[SF_CFH_PARTS];
-    sf_html_row(&table);
-    sf_html_cell(&table, "%s", single_drop_text(s));
-    sf_html_number(&table, 3, drop[SF_CFH_FIRST].median);
-    sf_html_cell(&table, "%s", sf_cfh_interval_text(&drop[SF_CFH_FIRST], text, sizeof text));
-    sf_html_cell(&table, "–");
-    for (int c = 0; c < SF_CFH_CRITERIA; c++)
-        sf_html_cell(&table, "%s", sf_cfh_interval_text(&drop[c], text, sizeof text));
-    if (rig->pairs > 0) {
-        sf_html_row(&table);
-        sf_html_cell(&table, "without that, and g_eff: on the rig");
-        sf_html_number(&table, 3, s->rig.median);
-        sf_html_cell(&table, "%s", sf_cfh_interval_text(&s->rig, text, sizeof text));
-        for (int k = 0; k < 1 + SF_CFH_CRITERIA; k++)
-            sf_html_cell(&table, "–");
-    }
+    put_part(&table, &drop[SF_CFH_FIRST], drop, NAN, single_drop_text(s), "");
+    if (rig->pairs > 0)
+        put_part(&table, &s->rig, NULL, NAN, "without that, and g_eff: on the rig", "");
     sf_html_table_end(&table);
     sf_html_note(page,
                  "Share: what the line adds to the squared length of the interval of ln(height). Below 0, "
@@ -239,10 +220,7 @@ static const char *trend_text(const sf_cfh_trend *t, char *text, size_t size) {
 
 /* "0.12 %" */
 static const char *percent_text(double value, char text[24]) {
-    if (isnan(value))
-        snprintf(text, 24, "not known");
-    else
-        snprintf(text, 24, "%.2g %%", 100 * value);
+    snprintf(text, 24, isnan(value) ? "not known" : "%.2g %%", 100 * value);
     return text;
 }
 
@@ -273,24 +251,8 @@ static void put_checks(FILE *page, const sf_cfh_spread *s) {
                   "interval does not hold their error.");
         return;
     }
-    sf_html_table table = sf_html_table_begin(
-        page, "dense",
-        "simulated draw|>draws below (%)|>height (m)|limit|>a_max, columns (g)|>simulated (g)|>its height moves by "
-        "(%)|>HIC, columns|>simulated|>its height moves by (%)");
-    for (int k = 0; k < s->checks; k++) {
-        const sf_cfh_check *check = &s->check[k];
-        sf_html_row(&table);
-        sf_html_cell(&table, "%d", check->draw + 1);
-        sf_html_number(&table, 0, 100 * check->share);
-        sf_html_number(&table, 3, check->height);
-        sf_html_cell(&table, "%s", sf_cfh_name(check->first));
-        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            sf_html_number(&table, c == SF_CFH_A_MAX, check->columns[c]);
-            sf_html_number(&table, c == SF_CFH_A_MAX, check->failed ? NAN : check->simulated[c]);
-            sf_html_number(&table, 2, check->failed ? NAN : 100 * check->shift[c]);
-        }
-    }
-    sf_html_table_end(&table);
+    sf_rows_html_table(page, "dense", sf_cfh_check_rows(),
+                       (sf_records){s->check, sizeof s->check[0], s->checks});
     for (int k = 0; k < s->checks; k++)
         if (s->check[k].note[0])
             sf_html_paragraph(page, "Draw %d: %s.", s->check[k].draw + 1, s->check[k].note);
@@ -328,34 +290,22 @@ static const char *banner_kind(const sf_cfh_report *r) {
 
 /* "1.661 m", or a bound. */
 static void height_text(const sf_cfh_report *r, double scale, char *text, size_t size) {
+    static const char *const signs[] = {[SF_CFH_FOUND] = "", [SF_CFH_ABOVE] = "> ", [SF_CFH_BELOW] = "< "};
     const sf_cfh_result *v = r->result;
-    switch (v->verdict) {
-    case SF_CFH_FOUND:
-        snprintf(text, size, "%.3f m", scale * sf_cfh_deciding(r)->height);
-        break;
-    case SF_CFH_ABOVE:
-        if (isnan(v->anvil))
-            snprintf(text, size, "> %.3f m", scale * v->highest);
-        else
-            snprintf(text, size, "%.3f to %.3f m", scale * v->highest, scale * v->anvil);
-        break;
-    case SF_CFH_BELOW:
-        snprintf(text, size, "< %.3f m", scale * sf_cfh_upper_bound(v));
-        break;
-    case SF_CFH_UNKNOWN:
+    double height;
+    if (!sf_cfh_bound(r, &height))
         snprintf(text, size, "–");
-        break;
-    }
+    else if (v->verdict == SF_CFH_ABOVE && !isnan(v->anvil))
+        snprintf(text, size, "%.3f to %.3f m", scale * height, scale * v->anvil);
+    else
+        snprintf(text, size, "%s%.3f m", signs[v->verdict], scale * height);
 }
 
 static void put_limit_tile(FILE *page, const sf_cfh_report *r, sf_cfh_criterion c) {
     char title[48], value[48];
     const sf_cfh_crossing *crossing = &r->result->crossing[c];
     snprintf(title, sizeof title, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-    if (isfinite(crossing->height))
-        snprintf(value, sizeof value, "at %.3f m", crossing->height);
-    else
-        snprintf(value, sizeof value, "–");
+    snprintf(value, sizeof value, isfinite(crossing->height) ? "at %.3f m" : "–", crossing->height);
     sf_html_tile(page, "plain", title, value, sf_cfh_side_word(crossing));
 }
 
@@ -378,9 +328,8 @@ static void put_tiles(FILE *page, const sf_cfh_report *r) {
     if (r->rig->pairs > 0) {
         height_text(r, sf_cfh_rig_height(r->rig, 1), value, sizeof value);
         tile_remark(r, r->spread ? &r->spread->rig : NULL, remark, sizeof remark);
-        size_t used = strlen(remark);
-        snprintf(remark + used, sizeof remark - used, "%sg_eff = %.3f ± %.3f m/s²", used ? "; " : "",
-                 r->rig->gravity, r->rig->standard_error);
+        sf_text_add(remark, sizeof remark, "%sg_eff = %.3f ± %.3f m/s²", *remark ? "; " : "", r->rig->gravity,
+                    r->rig->standard_error);
         sf_html_tile(page, banner_kind(r), "on the rig", value, remark);
     }
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
@@ -425,15 +374,11 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
         sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
         sf_html_cell(&table, "%d", crossing->fit.count);
         sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
-        if (isfinite(crossing->low))
-            sf_html_cell(&table, "%.3f to %.3f%s", crossing->low, crossing->high,
-                         crossing->bracketed ? ", the drops on both sides" : "");
-        else
-            sf_html_cell(&table, "–");
-        if (rig && isfinite(margin))
-            sf_html_cell(&table, "%.3f to %.3f", height * exp(-margin), height * exp(margin));
-        else if (rig)
-            sf_html_cell(&table, "–");
+        sf_html_cell(&table, isfinite(crossing->low) ? "%.3f to %.3f%s" : "–", crossing->low, crossing->high,
+                     crossing->bracketed ? ", the drops on both sides" : "");
+        if (rig)
+            sf_html_cell(&table, isfinite(margin) ? "%.3f to %.3f" : "–", height * exp(-margin),
+                         height * exp(margin));
     }
     sf_html_table_end(&table);
     sf_html_note(
@@ -443,32 +388,6 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
         "The interval of the fit (95 %%, Student's t) says how well a quadratic describes the simulated "
         "points, and on the rig how well g_eff is known. It is no uncertainty of the height: foam, mesh "
         "and model are not in it.");
-}
-
-static void put_point_table(FILE *page, const sf_cfh_report *r) {
-    bool rig = r->rig->pairs > 0;
-    sf_html_table table = sf_html_table_begin(
-        page, "dense",
-        rig ? ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
-              "strain|>on the rig (m)|verdict"
-            : ">height (m)|>speed (m/s)|>a_max (g)|>residual (%)|>HIC|>residual (%)|>rebound (m/s)|>largest local "
-              "strain|verdict");
-    for (int k = 0; k < r->points->count; k++) {
-        const sf_cfh_point *p = &r->points->point[k];
-        sf_html_row(&table);
-        sf_html_number(&table, 3, p->height);
-        sf_html_number(&table, 3, p->speed);
-        sf_html_number(&table, 1, p->failed ? NAN : p->value[SF_CFH_A_MAX]);
-        sf_html_number(&table, 2, 100 * sf_cfh_residual(r, SF_CFH_A_MAX, p));
-        sf_html_number(&table, 0, p->failed ? NAN : p->value[SF_CFH_HIC]);
-        sf_html_number(&table, 2, 100 * sf_cfh_residual(r, SF_CFH_HIC, p));
-        sf_html_number(&table, 2, p->failed ? NAN : p->v_rebound);
-        sf_html_number(&table, 3, p->failed ? NAN : p->max_local_strain);
-        if (rig)
-            sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, p->height));
-        sf_html_cell(&table, "%s", p->failed ? "failed" : sf_verdict_phrase(p->grade));
-    }
-    sf_html_table_end(&table);
 }
 
 static void put_notes(FILE *page, const sf_cfh_report *r) {
@@ -501,38 +420,27 @@ static void put_bodies(FILE *page, const sf_cfh_report *r) {
     sf_html_table_end(&table);
 }
 
-static void put_picture(FILE *page, const sf_staging *output, const sf_cfh_report *r) {
-    char warning[320];
-    char *svg = sf_chart_svg(output, "cfh", "softfall-cfh", warning, sizeof warning);
-    if (svg)
-        sf_html_figure(
-            page, svg, "a_max and HIC over the drop height%s.",
-            r->spread ? "; bands: 95 % of the draws of the foam, and the intervals of the crossings" : "");
-    else
-        sf_html_figure(page, NULL, "%s.", warning);
-    free(svg);
-}
-
 /* Writes the end of the data of each foam. */
 static void describe_foams(const sf_cfh_foams *foams, char *text, size_t size) {
-    size_t used = 0;
-    for (int k = 0; k < foams->count && used < size; k++) {
+    text[0] = '\0';
+    for (int k = 0; k < foams->count; k++) {
         const sf_cfh_foam *foam = &foams->foam[k];
-        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s %.3f", k ? "; " : "",
-                                 foams->count > 1 ? foam->name : "", foams->count > 1 ? ": " : "",
-                                 foam->words, foam->end);
+        bool many = foams->count > 1;
+        sf_text_add(text, size, "%s%s%s%s %.3f", k ? "; " : "", many ? foam->name : "", many ? ": " : "",
+                    foam->words, foam->end);
     }
 }
 
 static void put_drops(FILE *page, const sf_cfh_report *r) {
     char foams[SF_CASE_MAX_LAYERS * (SF_MATERIAL_NAME_SIZE + 64)];
+    sf_cfh_point_row points[SF_CFH_MAX_POINTS];
     describe_foams(r->foams, foams, sizeof foams);
     sf_html_heading(page, "Crossings of the limits");
     put_criteria_table(page, r);
     if (r->spread)
         put_spread(page, r->spread, r->rig);
     sf_html_heading(page, "Simulated drops");
-    put_point_table(page, r);
+    sf_rows_html_table(page, "dense", sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
     sf_html_note(
         page,
         "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: simulated value "
@@ -557,7 +465,11 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
                    verdict, rig[0] ? " " : "", rig, sf_cfh_caution);
     put_tiles(page, r);
     sf_html_columns_begin(page, "wide");
-    put_picture(page, output, r);
+    sf_chart_figure(page, output, "cfh", "softfall-cfh",
+                    r->spread
+                        ? "a_max and HIC over the drop height; bands: 95 % of the draws of the foam, and "
+                          "the intervals of the crossings"
+                        : "a_max and HIC over the drop height");
     sf_html_block_begin(page);
     put_bodies(page, r);
     sf_html_block_end(page);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/cfh/cfh_report.h"
 
+#include "base/text.h"
 #include "build_info.h"
 #include "report/row.h"
 
@@ -45,26 +46,23 @@ void sf_cfh_draws_text(const sf_cfh_spread *s, char *text, size_t size) {
         {s->beyond,
          "reach a limit outside of the simulated heights, where the correction of the columns is that "
          "of the nearest one"}};
-    size_t used = 0;
     int failed = 0;
     text[0] = '\0';
-    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && used < size; k++)
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
         if (kinds[k].count > 0)
-            used += (size_t)snprintf(text + used, size - used, "%s%d of the %d draws %s.", used ? " " : "",
-                                     kinds[k].count, s->draws, kinds[k].words);
+            sf_text_add(text, size, "%s%d of the %d draws %s.", *text ? " " : "", kinds[k].count, s->draws,
+                        kinds[k].words);
     for (int k = 0; k < s->checks; k++)
         failed += s->check[k].failed;
-    if (failed > 0 && used < size)
-        used +=
-            (size_t)snprintf(text + used, size - used,
-                             "%s%d of the %d simulated draws failed: there the columns are not confirmed.",
-                             used ? " " : "", failed, s->checks);
-    if (is_aside(s) && used < size)
-        snprintf(
-            text + used, size - used,
+    if (failed > 0)
+        sf_text_add(text, size, "%s%d of the %d simulated draws failed: there the columns are not confirmed.",
+                    *text ? " " : "", failed, s->checks);
+    if (is_aside(s))
+        sf_text_add(
+            text, size,
             "%sThe height of the case's own material, %.3g m, lies outside of 95 %% of the draws: it is not the foam "
             "that they describe.",
-            used ? " " : "", s->own_height);
+            *text ? " " : "", s->own_height);
 }
 
 const char *sf_cfh_response_text(const sf_cfh_spread *s) {
@@ -77,8 +75,15 @@ const char *sf_cfh_response_text(const sf_cfh_spread *s) {
 const char sf_cfh_caution[] = "Indicative, not a certification: a computed height from one simulated impact "
                               "site, not the test of ASTM F1292 or EN 1177.";
 
-const sf_cfh_crossing *sf_cfh_deciding(const sf_cfh_report *r) {
-    return &r->result->crossing[r->result->deciding];
+const char *sf_cfh_bound(const sf_cfh_report *r, double *height) {
+    static const char *const words[] = {
+        [SF_CFH_FOUND] = "", [SF_CFH_ABOVE] = "above ", [SF_CFH_BELOW] = "below ", [SF_CFH_UNKNOWN] = NULL};
+    const sf_cfh_result *v = r->result;
+    *height = v->verdict == SF_CFH_FOUND   ? v->crossing[v->deciding].height
+              : v->verdict == SF_CFH_ABOVE ? v->highest
+              : v->verdict == SF_CFH_BELOW ? (isnan(v->lowest) ? v->anvil : v->lowest)
+                                           : NAN;
+    return words[v->verdict];
 }
 
 /* Writes the statement of the verdict about the uncertainty: a sentence after a blank. */
@@ -103,73 +108,48 @@ static void uncertainty_text(const sf_cfh_report *r, char *text, size_t size) {
 static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
     const sf_cfh_result *v = r->result;
     const char *name = sf_cfh_name(v->deciding), *unit = sf_cfh_unit(v->deciding);
-    double limit = r->plan->limit[v->deciding];
-    switch (v->verdict) {
-    case SF_CFH_FOUND:
-        snprintf(text, size, "Critical fall height %.3f m of free fall%s: %s reaches %g%s first.",
-                 sf_cfh_deciding(r)->height, r->spread ? " as simulated" : "", name, limit, unit);
-        break;
-    case SF_CFH_ABOVE:
-        if (!isnan(v->anvil)) {
-            snprintf(
-                text, size,
-                "Critical fall height above %.3f m and below %.3f m of free fall: neither a_max %g g nor HIC %g is "
-                "reached, but from %.3f m the missile reaches the anvil.",
-                v->highest, v->anvil, r->plan->limit[SF_CFH_A_MAX], r->plan->limit[SF_CFH_HIC], v->anvil);
-            break;
-        }
-        snprintf(text, size,
-                 "Critical fall height above %.3f m of free fall: neither a_max %g g nor HIC %g is reached.",
-                 v->highest, r->plan->limit[SF_CFH_A_MAX], r->plan->limit[SF_CFH_HIC]);
-        break;
-    case SF_CFH_BELOW:
-        if (isnan(v->lowest)) {
-            snprintf(
-                text, size,
-                "Critical fall height below %.3f m of free fall: from there the missile reaches the anvil.",
-                v->anvil);
-            break;
-        }
-        snprintf(text, size,
-                 "Critical fall height below %.3f m of free fall: %s exceeds %g%s at the lowest height.",
-                 v->lowest, name, limit, unit);
-        break;
-    case SF_CFH_UNKNOWN:
+    double limit = r->plan->limit[v->deciding], height;
+    const char *side = sf_cfh_bound(r, &height);
+    if (!side) {
         snprintf(text, size, "Critical fall height not determined: %s.", v->problem.text);
-        break;
+        return;
     }
+    bool up_to_anvil = v->verdict == SF_CFH_ABOVE && !isnan(v->anvil);
+    snprintf(text, size, "Critical fall height %s%.3f m", side, height);
+    if (up_to_anvil)
+        sf_text_add(text, size, " and below %.3f m", v->anvil);
+    sf_text_add(text, size,
+                " of free fall%s: ", v->verdict == SF_CFH_FOUND && r->spread ? " as simulated" : "");
+    if (v->verdict == SF_CFH_FOUND)
+        sf_text_add(text, size, "%s reaches %g%s first.", name, limit, unit);
+    else if (v->verdict == SF_CFH_ABOVE)
+        sf_text_add(text, size, "neither a_max %g g nor HIC %g is reached", r->plan->limit[SF_CFH_A_MAX],
+                    r->plan->limit[SF_CFH_HIC]);
+    else if (isnan(v->lowest))
+        sf_text_add(text, size, "from there the missile reaches the anvil.");
+    else
+        sf_text_add(text, size, "%s exceeds %g%s at the lowest height.", name, limit, unit);
+    if (up_to_anvil)
+        sf_text_add(text, size, ", but from %.3f m the missile reaches the anvil.", v->anvil);
+    else if (v->verdict == SF_CFH_ABOVE)
+        sf_text_add(text, size, ".");
 }
 
 void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
     char uncertainty[SF_CFH_NOTE_SIZE + 100];
     simulated_text(r, text, size);
-    size_t used = strlen(text);
     if (r->result->verdict == SF_CFH_UNKNOWN && !r->spread)
         return;
     uncertainty_text(r, uncertainty, sizeof uncertainty);
-    snprintf(text + used, size - used, "%s", uncertainty);
-}
-
-/* Returns the upper bound of the height for the verdict SF_CFH_BELOW. */
-double sf_cfh_upper_bound(const sf_cfh_result *v) {
-    return isnan(v->lowest) ? v->anvil : v->lowest;
+    sf_text_add(text, size, "%s", uncertainty);
 }
 
 /* The same on the rig; "" without a rig or a height. */
 void sf_cfh_rig_text(const sf_cfh_report *r, char *text, size_t size) {
-    double height = NAN;
+    double height;
     char interval[64], uncertainty[160] = "";
-    const char *side = "";
+    const char *side = sf_cfh_bound(r, &height);
     text[0] = '\0';
-    if (r->result->verdict == SF_CFH_FOUND) {
-        height = sf_cfh_deciding(r)->height;
-    } else if (r->result->verdict == SF_CFH_ABOVE) {
-        height = r->result->highest;
-        side = "above ";
-    } else if (r->result->verdict == SF_CFH_BELOW) {
-        height = sf_cfh_upper_bound(r->result);
-        side = "below ";
-    }
     if (r->rig->pairs == 0 || isnan(height))
         return;
     if (r->spread)
@@ -181,18 +161,13 @@ void sf_cfh_rig_text(const sf_cfh_report *r, char *text, size_t size) {
              r->rig->gravity, r->rig->standard_error, r->rig->pairs);
 }
 
-static bool is_fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
+/* Value of the fit at a point; NaN for one that is not in the fit. */
+static double fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
     const sf_cfh_fit *fit = &r->result->crossing[c].fit;
-    int k = 0; /* index among the successes */
+    int k = -fit->first; /* place among the points of the fit */
     for (const sf_cfh_point *q = r->points->point; q < p; q++)
         k += !q->failed;
-    return !p->failed && fit->count > 0 && k >= fit->first && k < fit->first + fit->count;
-}
-
-/* ln(value / fit), NaN for a point that is not in the fit. */
-double sf_cfh_residual(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
-    return is_fitted(r, c, p) ? log(p->value[c] / sf_cfh_fit_at(&r->result->crossing[c].fit, p->height))
-                              : NAN;
+    return !p->failed && k >= 0 && k < fit->count ? sf_cfh_fit_at(fit, p->height) : NAN;
 }
 
 const char *sf_cfh_side_word(const sf_cfh_crossing *crossing) {
@@ -200,6 +175,84 @@ const char *sf_cfh_side_word(const sf_cfh_crossing *crossing) {
     return crossing->side == SF_CFH_CROSSED && isnan(crossing->height) ? "not determined"
                                                                        : words[crossing->side];
 }
+
+/* ---- rows ---- */
+
+#define AT(member) SF_ROW_OF(NUMBER, sf_cfh_point_row, member)
+
+sf_rows sf_cfh_point_rows(const sf_cfh_report *r) {
+    static const sf_row rows[] = {
+        {"height_m", "height", "m", "%.3f", AT(p.height)},
+        {"speed_m_s", "speed", "m/s", "%.3f", AT(p.speed)},
+        {"a_max_g", "a_max", "g", "%.1f", AT(p.value[SF_CFH_A_MAX])},
+        {"a_max_residual", "residual", "%", "%.2f", .shown = 100, AT(residual[SF_CFH_A_MAX])},
+        {"hic", "HIC", NULL, "%.0f", AT(p.value[SF_CFH_HIC])},
+        {"hic_residual", "residual", "%", "%.2f", .shown = 100, AT(residual[SF_CFH_HIC])},
+        {"v_rebound_m_s", "rebound", "m/s", "%.2f", AT(p.v_rebound)},
+        {"max_indentation_mm", .factor = 1e3, AT(p.max_indentation)},
+        {"max_local_strain", "largest local strain", NULL, "%.3f", AT(p.max_local_strain)},
+        {"energy_error", AT(p.energy_error)},
+        {"failed", SF_ROW_OF(FLAG, sf_cfh_point_row, p.failed)},
+        {"grade", SF_ROW_OF(STRING, sf_cfh_point_row, grade)},
+        {NULL, "verdict", SF_ROW_OF(STRING, sf_cfh_point_row, verdict)},
+        {"note", SF_ROW_OF(TEXT, sf_cfh_point_row, p.note)},
+        {"rig_height_m", "on the rig", "m", "%.3f", AT(rig_height)}, /* with a rig */
+    };
+    sf_rows list = SF_ROWS(rows);
+    list.count -= r->rig->pairs == 0;
+    return list;
+}
+
+sf_records sf_cfh_point_records(const sf_cfh_report *r, sf_cfh_point_row list[SF_CFH_MAX_POINTS]) {
+    for (int k = 0; k < r->points->count; k++) {
+        const sf_cfh_point *p = &r->points->point[k];
+        const char *grade = sf_verdict_phrase(p->grade);
+        list[k] = (sf_cfh_point_row){.p = *p,
+                                     .rig_height = sf_cfh_rig_height(r->rig, p->height),
+                                     .grade = grade,
+                                     .verdict = p->failed ? "failed" : grade};
+        for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
+            list[k].residual[c] = log(p->value[c] / fitted(r, c, p));
+    }
+    return (sf_records){list, sizeof list[0], r->points->count};
+}
+
+static sf_value draw_number(const void *record) {
+    return sf_value_integer(((const sf_cfh_check *)record)->draw + 1);
+}
+
+static sf_value criterion_name(const void *record) {
+    return sf_value_text(sf_cfh_name(((const sf_cfh_check *)record)->first));
+}
+
+static sf_value deciding_shift(const void *record) {
+    const sf_cfh_check *check = record;
+    return sf_value_real(check->shift[check->first]);
+}
+
+#undef AT
+#define AT(member) SF_ROW_OF(NUMBER, sf_cfh_check, member)
+
+sf_rows sf_cfh_check_rows(void) {
+    static const sf_row rows[] = {
+        {"draw", "simulated draw", .value = draw_number},
+        {"share_below", "draws below", "%", "%.0f", .shown = 100, AT(share)},
+        {"height_m", "height", "m", "%.3f", AT(height)},
+        {"criterion", "limit", .value = criterion_name, .type = SF_ROW_STRING},
+        {"a_max_columns_g", "a_max, columns", "g", "%.1f", AT(columns[SF_CFH_A_MAX])},
+        {"a_max_g", "simulated", "g", "%.1f", AT(simulated[SF_CFH_A_MAX])},
+        {"a_max_height_shift", "its height moves by", "%", "%.2f", .shown = 100, AT(shift[SF_CFH_A_MAX])},
+        {"hic_columns", "HIC, columns", NULL, "%.0f", AT(columns[SF_CFH_HIC])},
+        {"hic", "simulated", NULL, "%.0f", AT(simulated[SF_CFH_HIC])},
+        {"hic_height_shift", "its height moves by", "%", "%.2f", .shown = 100, AT(shift[SF_CFH_HIC])},
+        {"height_shift", .value = deciding_shift},
+        {"failed", SF_ROW_OF(FLAG, sf_cfh_check, failed)},
+        {"note", SF_ROW_OF(TEXT, sf_cfh_check, note)},
+    };
+    return SF_ROWS(rows);
+}
+
+#undef AT
 
 /* ---- cfh.json ---- */
 
@@ -232,35 +285,9 @@ static void put_trends_json(sf_json *json, const sf_cfh_spread *s) {
         bool trend = t->sum > 0;
         sf_json_open(json, NULL, '{');
         sf_json_text(json, "criterion", sf_cfh_name((sf_cfh_criterion)c));
-        sf_json_integer(json, "checks", t->checks);
-        sf_json_number(json, "centre_m", trend ? exp(t->centre) : NAN);
-        sf_json_number(json, "shift", trend ? t->shift : NAN);
-        sf_json_number(json, "slope", trend ? t->slope : NAN);
-        sf_json_number(json, "scatter", t->scatter);
-        sf_json_integer(json, "degrees_of_freedom", t->freedom);
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
-}
-
-static void put_checks_json(sf_json *json, const sf_cfh_spread *s) {
-    sf_json_open(json, "checks", '[');
-    for (int k = 0; k < s->checks; k++) {
-        const sf_cfh_check *check = &s->check[k];
-        sf_json_open(json, NULL, '{');
-        sf_json_integer(json, "draw", check->draw + 1);
-        sf_json_number(json, "share_below", check->share);
-        sf_json_number(json, "height_m", check->height);
-        sf_json_text(json, "criterion", sf_cfh_name(check->first));
-        sf_json_number(json, "a_max_columns_g", check->columns[SF_CFH_A_MAX]);
-        sf_json_number(json, "a_max_g", check->failed ? NAN : check->simulated[SF_CFH_A_MAX]);
-        sf_json_number(json, "hic_columns", check->columns[SF_CFH_HIC]);
-        sf_json_number(json, "hic", check->failed ? NAN : check->simulated[SF_CFH_HIC]);
-        sf_json_number(json, "height_shift", check->failed ? NAN : check->shift[check->first]);
-        sf_json_number(json, "a_max_height_shift", check->failed ? NAN : check->shift[SF_CFH_A_MAX]);
-        sf_json_number(json, "hic_height_shift", check->failed ? NAN : check->shift[SF_CFH_HIC]);
-        sf_json_bool(json, "failed", check->failed);
-        sf_json_text(json, "note", check->note[0] ? check->note : NULL);
+        SF_JSON_NUMBERS(json, {"checks", t->checks}, {"centre_m", trend ? exp(t->centre) : NAN},
+                        {"shift", trend ? t->shift : NAN}, {"slope", trend ? t->slope : NAN},
+                        {"scatter", t->scatter}, {"degrees_of_freedom", t->freedom});
         sf_json_close(json, '}');
     }
     sf_json_close(json, ']');
@@ -272,15 +299,11 @@ static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
                                                     "foam_response_mesh_fit",
                                                     "foam_response_mesh_fit_columns"};
     static const char *const shares[SF_CFH_PARTS] = {"foam", "response", "mesh", "fit", "columns"};
-    sf_json_integer(json, "draws", s->draws);
-    sf_json_integer(json, "draws_above", s->above);
-    sf_json_integer(json, "draws_below", s->below);
-    sf_json_integer(json, "draws_collapsed", s->collapsed);
-    sf_json_integer(json, "draws_beyond_simulated", s->beyond);
-    sf_json_integer(json, "repeats", SF_CFH_REPEATS);
-    sf_json_number(json, "expected_mesh_error", s->mesh_error);
-    sf_json_number(json, "fit_scatter_a_max", s->fit_scatter[SF_CFH_A_MAX]);
-    sf_json_number(json, "fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]);
+    SF_JSON_NUMBERS(json, {"draws", s->draws}, {"draws_above", s->above}, {"draws_below", s->below},
+                    {"draws_collapsed", s->collapsed}, {"draws_beyond_simulated", s->beyond},
+                    {"repeats", SF_CFH_REPEATS}, {"expected_mesh_error", s->mesh_error},
+                    {"fit_scatter_a_max", s->fit_scatter[SF_CFH_A_MAX]},
+                    {"fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]});
     for (int part = 0; part < SF_CFH_PARTS; part++)
         sf_cfh_put_interval_json(json, names[part], &s->part[part][SF_CFH_FIRST]);
     sf_cfh_put_interval_json(json, "single_drop", &s->part[SF_CFH_PARTS][SF_CFH_FIRST]);
@@ -290,7 +313,8 @@ static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
         sf_json_number(json, shares[part], sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
     sf_json_close(json, '}');
     put_trends_json(json, s);
-    put_checks_json(json, s);
+    sf_rows_json_array(json, "checks", sf_cfh_check_rows(),
+                       (sf_records){s->check, sizeof s->check[0], s->checks});
 }
 
 /* Height of free fall and, if there is a rig, on the rig; `part` SF_CFH_FIRST or a criterion. */
@@ -313,12 +337,11 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     sf_json_text(json, "verdict", words[v->verdict]);
     sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
     sf_json_text(json, "deciding", !decided ? NULL : isnan(v->lowest) ? "anvil" : sf_cfh_name(v->deciding));
-    put_heights(json, r, found ? sf_cfh_deciding(r)->height : NAN, SF_CFH_FIRST);
-    sf_json_number(json, "speed_m_s", found ? sf_cfh_speed(sf_cfh_deciding(r)->height) : NAN);
-    sf_json_number(json, "confidence", 0.95);
-    sf_json_number(json, "lowest_simulated_m", v->lowest);
-    sf_json_number(json, "highest_simulated_m", v->highest);
-    sf_json_number(json, "reaches_anvil_m", v->anvil);
+    double height = found ? v->crossing[v->deciding].height : NAN;
+    put_heights(json, r, height, SF_CFH_FIRST);
+    SF_JSON_NUMBERS(json, {"speed_m_s", sf_cfh_speed(height)}, {"confidence", 0.95},
+                    {"lowest_simulated_m", v->lowest}, {"highest_simulated_m", v->highest},
+                    {"reaches_anvil_m", v->anvil});
     sf_json_text(json, "search_ended", sf_cfh_step_text(r->ending));
     sf_json_close(json, '}');
 }
@@ -330,19 +353,14 @@ static void put_fit(sf_json *json, const sf_cfh_report *r, const sf_cfh_crossing
            on_rig = sf_cfh_rig_height(r->rig, crossing->height);
     sf_json_open(json, "fit", '{');
     sf_json_text(json, "form", "ln(value) = c0 + c1 d + c2 d^2, d = ln(height_m) - centre");
-    sf_json_number(json, "centre", fit->count ? fit->centre : NAN);
-    sf_json_number(json, "c0", fit->count ? fit->c[0] : NAN);
-    sf_json_number(json, "c1", fit->count ? fit->c[1] : NAN);
-    sf_json_number(json, "c2", fit->count ? fit->c[2] : NAN);
-    sf_json_integer(json, "points", fit->count);
-    sf_json_number(json, "rms_residual", fit->count ? fit->rms : NAN);
+    double none = fit->count ? 0 : NAN;
+    SF_JSON_NUMBERS(json, {"centre", fit->centre + none}, {"c0", fit->c[0] + none}, {"c1", fit->c[1] + none},
+                    {"c2", fit->c[2] + none}, {"points", fit->count}, {"rms_residual", fit->rms + none});
     sf_json_bool(json, "bracketed", crossing->bracketed);
-    sf_json_number(json, "fit_low_m", crossing->low);
-    sf_json_number(json, "fit_high_m", crossing->high);
-    if (r->rig->pairs > 0) {
-        sf_json_number(json, "fit_rig_low_m", on_rig * exp(-margin));
-        sf_json_number(json, "fit_rig_high_m", on_rig * exp(margin));
-    }
+    SF_JSON_NUMBERS(json, {"fit_low_m", crossing->low}, {"fit_high_m", crossing->high});
+    if (r->rig->pairs > 0)
+        SF_JSON_NUMBERS(json, {"fit_rig_low_m", on_rig * exp(-margin)},
+                        {"fit_rig_high_m", on_rig * exp(margin)});
     sf_json_close(json, '}');
 }
 
@@ -356,31 +374,6 @@ static void put_criteria(sf_json *json, const sf_cfh_report *r) {
         sf_json_text(json, "state", sf_cfh_side_word(crossing));
         put_heights(json, r, crossing->height, (int)c);
         put_fit(json, r, crossing);
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
-}
-
-static void put_points(sf_json *json, const sf_cfh_report *r) {
-    sf_json_open(json, "points", '[');
-    for (int k = 0; k < r->points->count; k++) {
-        const sf_cfh_point *p = &r->points->point[k];
-        sf_json_open(json, NULL, '{');
-        sf_json_number(json, "height_m", p->height);
-        if (r->rig->pairs > 0)
-            sf_json_number(json, "rig_height_m", sf_cfh_rig_height(r->rig, p->height));
-        sf_json_number(json, "speed_m_s", p->speed);
-        sf_json_bool(json, "failed", p->failed);
-        sf_json_text(json, "grade", sf_verdict_phrase(p->grade));
-        sf_json_number(json, "a_max_g", p->failed ? NAN : p->value[SF_CFH_A_MAX]);
-        sf_json_number(json, "hic", p->failed ? NAN : p->value[SF_CFH_HIC]);
-        sf_json_number(json, "a_max_residual", sf_cfh_residual(r, SF_CFH_A_MAX, p));
-        sf_json_number(json, "hic_residual", sf_cfh_residual(r, SF_CFH_HIC, p));
-        sf_json_number(json, "v_rebound_m_s", p->failed ? NAN : p->v_rebound);
-        sf_json_number(json, "max_indentation_mm", p->failed ? NAN : p->max_indentation * 1e3);
-        sf_json_number(json, "max_local_strain", p->failed ? NAN : p->max_local_strain);
-        sf_json_number(json, "energy_error", p->failed ? NAN : p->energy_error);
-        sf_json_text(json, "note", p->note[0] ? p->note : NULL);
         sf_json_close(json, '}');
     }
     sf_json_close(json, ']');
@@ -403,6 +396,7 @@ static double least_end(const sf_cfh_foams *foams) {
 }
 
 sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
+    sf_cfh_point_row points[SF_CFH_MAX_POINTS];
     FILE *file = sf_staging_open(output, "cfh.json", err);
     if (!file)
         return err->status;
@@ -424,7 +418,7 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
     sf_json_close(&json, '}');
     put_posterior(&json, r);
     put_criteria(&json, r);
-    put_points(&json, r);
+    sf_rows_json_array(&json, "points", sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
     sf_json_close(&json, '}');
     return sf_staging_close(file, "cfh.json", err);
 }
@@ -450,13 +444,12 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
         const sf_cfh_point *p = &r->points->point[k];
         fprintf(file, "%.9g,%.9g", p->height, p->speed);
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, p->failed ? NAN : p->value[c]);
+            put_cell(file, p->value[c]);
         for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, is_fitted(r, c, p) ? sf_cfh_fit_at(&r->result->crossing[c].fit, p->height) : NAN);
-        put_cell(file, p->failed ? NAN : p->v_rebound);
-        put_cell(file, p->failed ? NAN : p->max_indentation * 1e3);
-        put_cell(file, p->failed ? NAN : p->max_local_strain);
-        put_cell(file, p->failed ? NAN : p->energy_error);
+            put_cell(file, fitted(r, c, p));
+        const double more[] = {p->v_rebound, p->max_indentation * 1e3, p->max_local_strain, p->energy_error};
+        for (int c = 0; c < 4; c++)
+            put_cell(file, more[c]);
         fprintf(file, ",%d", p->failed);
         if (r->rig->pairs > 0)
             put_cell(file, sf_cfh_rig_height(r->rig, p->height));
@@ -476,15 +469,14 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
     for (int k = 0; k < s->grid; k++) {
         fprintf(file, "%.9g", s->height[k]);
         for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            const sf_cfh_band *band = &s->band[c][k];
-            put_cell(file, band->low);
-            put_cell(file, band->median);
-            put_cell(file, band->high);
+            put_cell(file, s->band[c][k].low);
+            put_cell(file, s->band[c][k].median);
+            put_cell(file, s->band[c][k].high);
         }
-        put_cell(file, exp(s->correction[SF_CFH_A_MAX][k]));
-        put_cell(file, exp(s->correction[SF_CFH_HIC][k]));
-        put_cell(file, s->scatter[SF_CFH_A_MAX][k]);
-        put_cell(file, s->scatter[SF_CFH_HIC][k]);
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, exp(s->correction[c][k]));
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, s->scatter[c][k]);
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh_band.csv", err);
@@ -497,17 +489,16 @@ static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *
     fputs("draw_1,height_m,a_max_height_m,hic_height_m,a_max_shared_1,hic_shared_1,a_max_sd_1,hic_sd_1\n",
           file);
     for (int d = 0; d < s->draws; d++) {
-        const double *crossing = &s->crossing[(size_t)d * (SF_CFH_FIRST + 1)];
-        const sf_cfh_response *error = &s->response[d];
+        const sf_cfh_curve *draw = &s->draw[d];
         fprintf(file, "%d", d + 1);
         for (int k = 0; k <= SF_CFH_FIRST; k++) { /* the first of them in front */
-            double height = crossing[k == 0 ? SF_CFH_FIRST : k - 1];
+            double height = draw->crossing[k == 0 ? SF_CFH_FIRST : k - 1];
             put_cell(file, height > 0 ? height : NAN);
         }
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, s->with_response ? error->shared[c] : NAN);
+            put_cell(file, s->with_response ? draw->shared[c] : NAN);
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, s->with_response ? error->own_sd[c] : NAN);
+            put_cell(file, s->with_response ? draw->own_sd[c] : NAN);
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh_draws.csv", err);
@@ -520,11 +511,9 @@ static sf_status write_curves(const sf_staging *output, const sf_cfh_spread *s, 
         return err->status;
     fputs("draw_1,height_m,a_max_g,hic_1\n", file);
     for (int d = 0; d < s->draws; d++)
-        for (int k = 0; k < s->reach[d]; k++) {
-            const double *value = &s->value[(size_t)d * SF_CFH_CRITERIA * SF_CFH_GRID + (size_t)k];
-            fprintf(file, "%d,%.9g,%.9g,%.9g\n", d + 1, s->height[k], exp(value[SF_CFH_A_MAX * SF_CFH_GRID]),
-                    exp(value[SF_CFH_HIC * SF_CFH_GRID]));
-        }
+        for (int k = 0; k < s->draw[d].reach; k++)
+            fprintf(file, "%d,%.9g,%.9g,%.9g\n", d + 1, s->height[k], exp(s->draw[d].value[SF_CFH_A_MAX][k]),
+                    exp(s->draw[d].value[SF_CFH_HIC][k]));
     return sf_staging_close(file, "cfh_curves.csv", err);
 }
 

@@ -6,7 +6,7 @@
 
 #include "io/staging.h"
 #include "report/row.h"
-#include "study/cfh/series.h"
+#include "study/cfh/spread.h"
 
 typedef struct sf_cfh_report {
     const char *case_path;
@@ -46,12 +46,20 @@ const char *sf_cfh_response_text(const sf_cfh_spread *spread);
 /* "crossed", "not reached", ...; static storage. */
 const char *sf_cfh_side_word(const sf_cfh_crossing *crossing);
 
-/* The crossing that decides. */
-const sf_cfh_crossing *sf_cfh_deciding(const sf_cfh_report *report);
-/* Returns the upper bound of the height for the verdict SF_CFH_BELOW. */
-double sf_cfh_upper_bound(const sf_cfh_result *result);
-/* ln(value / fit), NaN for a point that is not in the fit. */
-double sf_cfh_residual(const sf_cfh_report *report, sf_cfh_criterion criterion, const sf_cfh_point *point);
+/* Returns "", "above " or "below ", the side of `*height` (m) on which the critical height lies; NULL: it is
+ * not determined. */
+const char *sf_cfh_bound(const sf_cfh_report *report, double *height);
+
+/* Tables of cfh.json and report.html: a row for each simulated point, and for each simulated draw. */
+typedef struct sf_cfh_point_row {
+    sf_cfh_point p;
+    double residual[SF_CFH_CRITERIA]; /* ln(value / fit); NaN: not in the fit */
+    double rig_height;                /* m */
+    const char *grade, *verdict;      /* that of the run; and "failed" */
+} sf_cfh_point_row;
+sf_rows sf_cfh_point_rows(const sf_cfh_report *report);
+sf_records sf_cfh_point_records(const sf_cfh_report *report, sf_cfh_point_row list[SF_CFH_MAX_POINTS]);
+sf_rows sf_cfh_check_rows(void);
 
 /* The members `name`_low_m, `name`_median_m, `name`_high_m and `name`_open ("no", "above", "below", "both");
  * all null with `interval` NULL. An interval wholly beyond the heights looked at has the end of these as its

@@ -10,8 +10,7 @@
 #include <gsl/gsl_multifit.h>
 #include <gsl/gsl_poly.h>
 #include <math.h>
-#include <stdbool.h>
-#include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- rig, fits and crossings ---- */
@@ -121,18 +120,9 @@ static sf_status check_points(const char *name, int count, const double *height,
     return SF_OK;
 }
 
-/* ln(height) of the crossing by the two points around it, or of the end nearest the limit. */
-static double rough_crossing(sf_cfh_side side, int count, const double *height, const double *value,
-                             double limit) {
-    int k = 0;
-    if (side == SF_CFH_EXCEEDED)
-        return log(height[0]);
-    if (side == SF_CFH_NOT_REACHED)
-        return log(height[count - 1]);
-    while (value[k + 1] < limit)
-        k++;
-    double share = log(limit / value[k]) / log(value[k + 1] / value[k]);
-    return log(height[k]) + share * log(height[k + 1] / height[k]);
+/* The part of ln(height) between points k and k + 1 at which the chord of ln(value) reaches the limit. */
+static double chord_share(int k, const double *value, double limit) {
+    return log(limit / value[k]) / log(value[k + 1] / value[k]);
 }
 
 /* The run of points within the window, widened to the nearest four. */
@@ -155,36 +145,24 @@ static void choose_points(double centre, int count, const double *height, sf_cfh
 static sf_status fit_quadratic(const double *height, const double *value, sf_cfh_fit *fit, sf_error *err) {
     size_t n = (size_t)fit->count;
     double square_sum = 0;
-    gsl_matrix *design = gsl_matrix_alloc(n, 3), *covariance = gsl_matrix_alloc(3, 3);
-    gsl_vector *y = gsl_vector_alloc(n), *c = gsl_vector_alloc(3);
-    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, 3);
-    if (!design || !covariance || !y || !c || !work) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit of %zu points", n);
-        goto done;
-    }
+    double *design = sf_alloc(err, n, 4 * sizeof *design, "a fit"), *y = design + 3 * n;
+    if (!design)
+        return err->status;
     for (size_t k = 0; k < n; k++) {
         double d = log(height[fit->first + (int)k]) - fit->centre;
-        gsl_matrix_set(design, k, 0, 1);
-        gsl_matrix_set(design, k, 1, d);
-        gsl_matrix_set(design, k, 2, d * d);
-        gsl_vector_set(y, k, log(value[fit->first + (int)k]));
+        memcpy(&design[3 * k], (const double[]){1, d, d * d}, 3 * sizeof *design);
+        y[k] = log(value[fit->first + (int)k]);
     }
-    if (gsl_multifit_linear(design, y, c, covariance, &square_sum, work) != 0) {
+    gsl_matrix_view x = gsl_matrix_view_array(design, n, 3),
+                    covariance = gsl_matrix_view_array(fit->covariance[0], 3, 3);
+    gsl_vector_view values = gsl_vector_view_array(y, n), c = gsl_vector_view_array(fit->c, 3);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, 3);
+    if (!work ||
+        gsl_multifit_linear(&x.matrix, &values.vector, &c.vector, &covariance.matrix, &square_sum, work) != 0)
         SF_FAIL(err, SF_ERR_LIBRARY, "GSL cannot fit a quadratic to %zu points", n);
-        goto done;
-    }
     fit->rms = sqrt(square_sum / (double)n);
-    for (size_t i = 0; i < 3; i++) {
-        fit->c[i] = gsl_vector_get(c, i);
-        for (size_t j = 0; j < 3; j++)
-            fit->covariance[i][j] = gsl_matrix_get(covariance, i, j);
-    }
-done:
     gsl_multifit_linear_free(work);
-    gsl_vector_free(c);
-    gsl_vector_free(y);
-    gsl_matrix_free(covariance);
-    gsl_matrix_free(design);
+    free(design);
     return err->status;
 }
 
@@ -222,8 +200,7 @@ static void find_crossing(const double *height, const double *value, int below, 
     out->bracketed =
         !(out->fit.rms <= MISSES) || !(exp(centre + d) >= out->low && exp(centre + d) <= out->high);
     if (out->bracketed) {
-        double share = log(limit / value[below]) / log(value[below + 1] / value[below]);
-        out->height = out->low * pow(out->high / out->low, share);
+        out->height = out->low * pow(out->high / out->low, chord_share(below, value, limit));
         out->margin = fmax(log(out->high / out->height), log(out->height / out->low));
         return;
     }
@@ -239,23 +216,23 @@ sf_status sf_cfh_cross(const char *name, int count, const double *height, const 
     if (count < 1)
         return SF_FAIL(err, SF_ERR_INPUT, "%s has no points", name);
     SF_TRY(check_points(name, count, height, value, err));
-    bool below = value[0] < limit, reached = false;
-    for (int k = 0; k < count; k++)
-        reached = reached || value[k] >= limit;
-    out->side = !reached ? SF_CFH_NOT_REACHED : below ? SF_CFH_CROSSED : SF_CFH_EXCEEDED;
-    if (count < SF_CFH_MIN_POINTS && out->side == SF_CFH_CROSSED)
+    int above = 0; /* the first point that reaches the limit */
+    while (above < count && value[above] < limit)
+        above++;
+    out->side = above == count ? SF_CFH_NOT_REACHED : above > 0 ? SF_CFH_CROSSED : SF_CFH_EXCEEDED;
+    bool crossed = out->side == SF_CFH_CROSSED;
+    if (count < SF_CFH_MIN_POINTS && crossed)
         return SF_FAIL(err, SF_ERR_INPUT, "%s has %d points, at least %d are needed for a crossing", name,
                        count, SF_CFH_MIN_POINTS);
     if (count < SF_CFH_MIN_POINTS)
         return SF_OK;
-    choose_points(rough_crossing(out->side, count, height, value, limit), count, height, &out->fit);
-    SF_TRY(fit_quadratic(height, value, &out->fit, err));
-    int at = 0;
-    while (out->side == SF_CFH_CROSSED && value[at + 1] < limit)
-        at++;
-    if (out->side == SF_CFH_CROSSED)
-        find_crossing(height, value, at, limit, out);
-    return SF_OK;
+    double centre = log(height[above > 0 ? above - 1 : 0]); /* of the crossing, or the end nearest to it */
+    if (crossed)
+        centre += chord_share(above - 1, value, limit) * log(height[above] / height[above - 1]);
+    choose_points(centre, count, height, &out->fit);
+    if (fit_quadratic(height, value, &out->fit, err) == SF_OK && crossed)
+        find_crossing(height, value, above - 1, limit, out);
+    return err->status;
 }
 
 void sf_cfh_points_add(sf_cfh_points *points, const sf_cfh_point *point) {
@@ -282,22 +259,17 @@ double sf_cfh_rig_margin(const sf_cfh_rig *rig, double margin) {
     return hypot(margin, rig->margin);
 }
 
-static double anvil_height(const sf_cfh_points *points) {
-    for (int k = 0; k < points->count; k++)
-        if (points->point[k].on_anvil)
-            return points->point[k].height;
-    return NAN;
-}
-
-/* The points that succeeded, of one criterion, below a drop that ended on the anvil. */
-static int list_points(const sf_cfh_points *points, sf_cfh_criterion criterion, double *height,
-                       double *value) {
+/* The points that succeeded, of one criterion, below a drop that ended on the anvil: its height, or NaN. */
+static int list_points(const sf_cfh_points *points, sf_cfh_criterion criterion, double *height, double *value,
+                       double *anvil) {
     int count = 0;
-    for (int k = 0; k < points->count && !points->point[k].on_anvil; k++) {
-        if (points->point[k].failed)
-            continue;
-        height[count] = points->point[k].height;
-        value[count++] = points->point[k].value[criterion];
+    *anvil = NAN;
+    for (int k = 0; k < points->count && isnan(*anvil); k++) {
+        const sf_cfh_point *p = &points->point[k];
+        height[count] = p->height;
+        value[count] = p->value[criterion];
+        count += !p->failed;
+        *anvil = p->on_anvil ? p->height : NAN;
     }
     return count;
 }
@@ -318,12 +290,11 @@ static void decide(sf_cfh_result *r) {
 }
 
 void sf_cfh_evaluate(const sf_cfh_points *points, const double *limit, sf_cfh_result *result) {
-    *result = (sf_cfh_result){
-        .lowest = NAN, .highest = NAN, .anvil = anvil_height(points), .problem = SF_ERROR_INIT};
+    *result = (sf_cfh_result){.lowest = NAN, .highest = NAN, .problem = SF_ERROR_INIT};
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         double height[SF_CFH_MAX_POINTS], value[SF_CFH_MAX_POINTS];
         sf_error problem = SF_ERROR_INIT;
-        int count = list_points(points, c, height, value);
+        int count = list_points(points, c, height, value, &result->anvil);
         if (count > 0) {
             result->lowest = height[0];
             result->highest = height[count - 1];
@@ -333,18 +304,16 @@ void sf_cfh_evaluate(const sf_cfh_points *points, const double *limit, sf_cfh_re
             result->problem.status == SF_OK)
             result->problem = problem;
     }
-    if (isnan(result->lowest)) {
+    bool none = isnan(result->lowest);
+    if (none)
         result->problem = (sf_error)SF_ERROR_INIT;
-        if (!isnan(result->anvil)) {
-            result->verdict = SF_CFH_BELOW;
-            return;
-        }
+    if (none && isnan(result->anvil))
         SF_FAIL(&result->problem, SF_ERR_NUMERIC, "no simulation succeeded");
-    }
-    if (result->problem.status == SF_OK)
-        decide(result);
-    else
+    result->verdict = none ? SF_CFH_BELOW : SF_CFH_UNKNOWN;
+    if (result->problem.status != SF_OK)
         result->verdict = SF_CFH_UNKNOWN;
+    else if (!none)
+        decide(result);
 }
 
 /* ---- the heights to simulate next ---- */
@@ -565,18 +534,13 @@ sf_cfh_step sf_cfh_next(const sf_cfh_plan *plan, const sf_cfh_points *points, sf
 }
 
 const char *sf_cfh_step_text(sf_cfh_step step) {
-    switch (step) {
-    case SF_CFH_LIST_DONE:
-        return "every height of the list was simulated";
-    case SF_CFH_AT_MAX_HEIGHT:
-        return "no limit is reached up to the greatest height allowed (--max-height)";
-    case SF_CFH_AT_MIN_HEIGHT:
-        return "a limit is exceeded down to 1 cm";
-    case SF_CFH_COLLAPSED:
-        return "no limit is reached up to the height at which the simulation fails, reaches the anvil or is not to be used";
-    case SF_CFH_AT_CAP:
-        return "the number of drops is at its cap";
-    default:
-        return "there are enough points around the crossing";
-    }
+    static const char *const texts[] = {
+        [SF_CFH_LIST_DONE] = "every height of the list was simulated",
+        [SF_CFH_ENOUGH] = "there are enough points around the crossing",
+        [SF_CFH_AT_MAX_HEIGHT] = "no limit is reached up to the greatest height allowed (--max-height)",
+        [SF_CFH_AT_MIN_HEIGHT] = "a limit is exceeded down to 1 cm",
+        [SF_CFH_COLLAPSED] =
+            "no limit is reached up to the height at which the simulation fails, reaches the anvil or is not to be used",
+        [SF_CFH_AT_CAP] = "the number of drops is at its cap"};
+    return texts[step];
 }

@@ -85,8 +85,7 @@ enum { SF_CFH_MAX_POINTS = 16, SF_CFH_NOTE_SIZE = 1100 };
 typedef struct sf_cfh_point {
     double height;  /* m */
     double speed;   /* m s-1, at contact */
-    bool failed;    /* no figures: the simulation failed, or its verdict is "do not use"; only height, speed,
-                       grade and note are set */
+    bool failed;    /* no figures (they are NaN): the simulation failed, or its verdict is "do not use" */
     bool on_anvil;  /* it failed as the missile reached the anvil: worse than every limit */
     sf_grade grade; /* of the run; "do not use" if it failed */
     double value[SF_CFH_CRITERIA];   /* g, - */

@@ -36,17 +36,16 @@ static sf_status drop_columns(const sf_columns *pad, const sf_material_law *law,
     return SF_OK;
 }
 
-/* value [SF_CFH_CRITERIA][SF_CFH_GRID]; `reach`: heights before the collapse. */
 static sf_status drop_grid(const sf_cfh_spread *s, const sf_columns *pad, const sf_material_law *law,
-                           double *value, int *reach, sf_error *err) {
-    for (*reach = 0; *reach < s->grid; (*reach)++) {
+                           sf_cfh_curve *draw, sf_error *err) {
+    for (; draw->reach < s->grid; draw->reach++) {
         double y[SF_CFH_CRITERIA];
         if (sf_process_stopped())
             return sf_run_folder_interrupted(err);
-        if (drop_columns(pad, law, s->height[*reach], y, err) != SF_OK)
+        if (drop_columns(pad, law, s->height[draw->reach], y, err) != SF_OK)
             break;
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            value[c * SF_CFH_GRID + *reach] = y[c];
+            draw->value[c][draw->reach] = y[c];
     }
     if (err->status == SF_ERR_NUMERIC)
         *err = (sf_error)SF_ERROR_INIT;
@@ -61,8 +60,7 @@ static sf_status drop_draws(sf_cfh_spread *s, const sf_columns *pad, const sf_cf
 #pragma omp parallel for schedule(dynamic)
     for (int d = 0; d < s->draws; d++) {
         errors[d] = (sf_error)SF_ERROR_INIT;
-        drop_grid(s, pad, &draws->draw[d].law, &s->value[(size_t)d * SF_CFH_CRITERIA * SF_CFH_GRID],
-                  &s->reach[d], &errors[d]);
+        drop_grid(s, pad, &draws->draw[d].law, &s->draw[d], &errors[d]);
     }
     for (int d = 0; d < s->draws && err->status == SF_OK; d++)
         if (errors[d].status != SF_OK)
@@ -131,60 +129,53 @@ static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const 
 static void correct_draws(sf_cfh_spread *s) {
     for (int d = 0; d < s->draws; d++)
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            for (int k = 0; k < s->grid; k++) {
-                double *value =
-                    &s->value[((size_t)d * SF_CFH_CRITERIA + (size_t)c) * SF_CFH_GRID + (size_t)k];
-                *value = k < s->reach[d] ? *value + s->correction[c][k] : INFINITY;
-            }
+            for (int k = 0; k < s->grid; k++)
+                s->draw[d].value[c][k] =
+                    k < s->draw[d].reach ? s->draw[d].value[c][k] + s->correction[c][k] : INFINITY;
 }
 
 /* ---- crossings ---- */
 
-static const double *values_of(const sf_cfh_spread *s, int draw, int criterion) {
-    return &s->value[((size_t)draw * SF_CFH_CRITERIA + (size_t)criterion) * SF_CFH_GRID];
-}
-
-/* Returns the height at which draw `d` first reaches ln(limit) less `raise`. Collapsed columns reach every
+/* Returns the height at which a draw first reaches ln(limit) less `raise`. Collapsed columns reach every
  * limit, at the last height before. */
-static double cross(const sf_cfh_spread *s, int d, int criterion, double raise) {
-    const double *y = values_of(s, d, criterion);
+static double cross(const sf_cfh_spread *s, const sf_cfh_curve *draw, int criterion, double raise) {
+    const double *y = draw->value[criterion];
     double target = log(s->limit[criterion]) - raise;
     int k = 0;
-    while (k < s->reach[d] && y[k] < target)
+    while (k < draw->reach && y[k] < target)
         k++;
     if (k == 0)
         return 0;
-    if (k == s->reach[d])
+    if (k == draw->reach)
         return k < s->grid ? s->height[k - 1] : INFINITY;
     double share = (target - y[k - 1]) / (y[k] - y[k - 1]);
     return s->height[k - 1] * pow(s->height[k] / s->height[k - 1], share);
 }
 
 /* Value of the corrected draw at a height within its reach. */
-static double value_at(const sf_cfh_spread *s, int d, int criterion, double height) {
-    return interpolate(s->reach[d], s->height, values_of(s, d, criterion), height);
+static double value_at(const sf_cfh_spread *s, const sf_cfh_curve *draw, int criterion, double height) {
+    return interpolate(draw->reach, s->height, draw->value[criterion], height);
 }
 
 /* True if the draw has a limit reached before its columns collapse. */
-static bool reaches_limit(const sf_cfh_spread *s, int d) {
+static bool reaches_limit(const sf_cfh_spread *s, const sf_cfh_curve *draw) {
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
-        for (int k = 0; k < s->reach[d]; k++)
-            if (values_of(s, d, c)[k] >= log(s->limit[c]))
+        for (int k = 0; k < draw->reach; k++)
+            if (draw->value[c][k] >= log(s->limit[c]))
                 return true;
     return false;
 }
 
 static void find_crossings(sf_cfh_spread *s) {
     for (int d = 0; d < s->draws; d++) {
-        double *crossing = &s->crossing[(size_t)d * (SF_CFH_FIRST + 1)], first = INFINITY;
-        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            crossing[c] = cross(s, d, c, 0);
-            first = fmin(first, crossing[c]);
-        }
-        crossing[SF_CFH_FIRST] = first;
+        sf_cfh_curve *draw = &s->draw[d];
+        double first = INFINITY;
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            first = fmin(first, draw->crossing[c] = cross(s, draw, c, 0));
+        draw->crossing[SF_CFH_FIRST] = first;
         s->above += isinf(first);
         s->below += first <= 0;
-        s->collapsed += s->reach[d] < s->grid && !reaches_limit(s, d);
+        s->collapsed += draw->reach < s->grid && !reaches_limit(s, draw);
         s->beyond += first > 0 && isfinite(first) && (first < s->simulated[0] || first > s->simulated[1]);
     }
 }
@@ -215,7 +206,7 @@ static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         for (int k = 0; k < s->grid; k++) {
             for (int d = 0; d < s->draws; d++)
-                values[d] = exp(values_of(s, d, c)[k]);
+                values[d] = exp(s->draw[d].value[c][k]);
             sf_cfh_interval i = interval_of(values, s->draws);
             s->band[c][k] = (sf_cfh_band){i.low, i.median, i.high};
         }
@@ -230,8 +221,8 @@ static void take_responses(sf_cfh_spread *s, const sf_cfh_draws *draws) {
     s->with_response = draws->with_response;
     for (int d = 0; d < s->draws && s->with_response; d++)
         for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            s->response[d].shared[c] = draws->draw[d].response.shared[kind[c]];
-            s->response[d].own_sd[c] = draws->draw[d].response.own_sd[kind[c]];
+            s->draw[d].shared[c] = draws->draw[d].response.shared[kind[c]];
+            s->draw[d].own_sd[c] = draws->draw[d].response.own_sd[kind[c]];
         }
 }
 
@@ -240,7 +231,6 @@ static void take_responses(sf_cfh_spread *s, const sf_cfh_draws *draws) {
 sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, const sf_material_law *own,
                               const sf_cfh_points *points, const sf_cfh_result *result, const double *limit,
                               sf_cfh_spread *s, sf_error *err) {
-    unsigned long n = (unsigned long)draws->count;
     *s = (sf_cfh_spread){.draws = draws->count, .mesh_error = pad->mesh_error};
     s->own_height = result->verdict == SF_CFH_FOUND ? result->crossing[result->deciding].height : NAN;
     memcpy(s->limit, limit, sizeof s->limit);
@@ -248,11 +238,8 @@ sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, 
         const sf_cfh_fit *fit = &result->crossing[c].fit;
         s->fit_scatter[c] = fit->count > 3 ? fit->rms * sqrt(fit->count / (fit->count - 3.0)) : NAN;
     }
-    s->value = sf_alloc(err, n * SF_CFH_CRITERIA * SF_CFH_GRID, sizeof *s->value, "draws");
-    s->reach = sf_alloc(err, n, sizeof *s->reach, "draws");
-    s->crossing = sf_alloc(err, n * (SF_CFH_FIRST + 1), sizeof *s->crossing, "draws");
-    s->response = sf_alloc(err, n, sizeof *s->response, "draws");
-    if (err->status == SF_OK && find_correction(s, &pad->columns, own, points, err) == SF_OK &&
+    s->draw = sf_alloc(err, (unsigned long)s->draws, sizeof *s->draw, "draws");
+    if (s->draw && find_correction(s, &pad->columns, own, points, err) == SF_OK &&
         drop_draws(s, &pad->columns, draws, err) == SF_OK) {
         take_responses(s, draws);
         correct_draws(s);
@@ -263,10 +250,7 @@ sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, 
 }
 
 void sf_cfh_spread_free(sf_cfh_spread *s) {
-    free(s->value);
-    free(s->reach);
-    free(s->crossing);
-    free(s->response);
+    free(s->draw);
     *s = (sf_cfh_spread){0};
 }
 
@@ -287,7 +271,7 @@ void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {
     place places[SF_CFH_MOST_DRAWS];
     int n = 0;
     for (int d = 0; d < s->draws; d++) {
-        double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];
+        double height = s->draw[d].crossing[SF_CFH_FIRST];
         if (height > 0 && isfinite(height))
             places[n++] = (place){height, d};
     }
@@ -296,28 +280,29 @@ void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {
     for (int k = 0; k < s->checks; k++) {
         double share = s->checks == 1 ? 0.5 : OUTERMOST + (1 - 2 * OUTERMOST) * k / (s->checks - 1);
         int rank = (int)lround(share * (n - 1));
-        const place *p = &places[rank];
+        const sf_cfh_curve *draw = &s->draw[places[rank].draw];
         sf_cfh_check *check = &s->check[k];
         *check = (sf_cfh_check){
-            .draw = p->draw, .share = (double)(s->below + rank) / s->draws, .shift = {NAN, NAN}};
-        check->height = fmax(grain, grain * round(p->height / grain));
-        const double *crossing = &s->crossing[(size_t)p->draw * (SF_CFH_FIRST + 1)];
-        check->first = crossing[SF_CFH_HIC] < crossing[SF_CFH_A_MAX] ? SF_CFH_HIC : SF_CFH_A_MAX;
+            .draw = places[rank].draw,
+            .share = (double)(s->below + rank) / s->draws,
+            .height = fmax(grain, grain * round(places[rank].height / grain)),
+            .first = draw->crossing[SF_CFH_HIC] < draw->crossing[SF_CFH_A_MAX] ? SF_CFH_HIC : SF_CFH_A_MAX,
+            .shift = {NAN, NAN}};
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            check->columns[c] = exp(value_at(s, p->draw, c, check->height));
+            check->columns[c] = exp(value_at(s, draw, c, check->height));
     }
 }
 
 /* Slope of ln(value) over ln(height) around a height, on what the grid has of that. */
-static double slope_at(const sf_cfh_spread *s, int draw, int criterion, double height) {
+static double slope_at(const sf_cfh_spread *s, const sf_cfh_curve *draw, int criterion, double height) {
     double low = fmax(height * exp(-STEP), s->height[0]),
-           high = fmin(height * exp(STEP), s->height[s->reach[draw] - 1]);
+           high = fmin(height * exp(STEP), s->height[draw->reach - 1]);
     return (value_at(s, draw, criterion, high) - value_at(s, draw, criterion, low)) / log(high / low);
 }
 
 void sf_cfh_check_compare(const sf_cfh_spread *s, sf_cfh_check *check) {
     for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-        double slope = slope_at(s, check->draw, c, check->height);
+        double slope = slope_at(s, &s->draw[check->draw], c, check->height);
         check->shift[c] = slope > 0 ? -log(check->simulated[c] / check->columns[c]) / slope : NAN;
     }
 }
@@ -405,7 +390,7 @@ static errors random_errors(const sf_cfh_spread *s, const sf_cfh_rig *rig, gsl_r
 
 /* Draws the errors of the repeat `at`, from a generator of the draw. */
 static void respond(const sf_cfh_spread *s, int at, gsl_rng *random, errors *e) {
-    const sf_cfh_response *r = &s->response[at / SF_CFH_REPEATS];
+    const sf_cfh_curve *r = &s->draw[at / SF_CFH_REPEATS];
     if (at % SF_CFH_REPEATS == 0)
         gsl_rng_set(random, (unsigned long)(RESPONSE_SEED + at / SF_CFH_REPEATS));
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
@@ -424,9 +409,9 @@ static double raise_of(const errors *e, sf_cfh_part part, int criterion) {
 }
 
 /* Returns the factor by which the checks change the height of a criterion. */
-static double factor_of(const sf_cfh_spread *s, int d, const errors *e, sf_cfh_part part, int criterion) {
+static double factor_of(const sf_cfh_spread *s, double height, const errors *e, sf_cfh_part part,
+                        int criterion) {
     const sf_cfh_trend *t = &s->trend[criterion];
-    double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];
     double x = log(fmin(fmax(height, s->height[0]), s->height[s->grid - 1]));
     if (part < SF_CFH_PART_COLUMNS)
         return 1;
@@ -434,24 +419,19 @@ static double factor_of(const sf_cfh_spread *s, int d, const errors *e, sf_cfh_p
     return exp(fmax(-MOST_SHIFT, fmin(shift, MOST_SHIFT)));
 }
 
-/* Scatter of single pads and drops at a draw's critical height. */
-static double scatter_of(const sf_cfh_spread *s, int d, int criterion) {
-    double height = s->crossing[(size_t)d * (SF_CFH_FIRST + 1) + SF_CFH_FIRST];
-    return or_none(interpolate(s->grid, s->height, s->scatter[criterion], height));
-}
-
-/* values [SF_CFH_FIRST + 1][count] and rig [count] of one repeat, at `at`. */
-static void repeat(const sf_cfh_spread *s, int d, const errors *e, const sf_cfh_rig *rig, sf_cfh_part part,
-                   int count, int at, double *values, double *on_rig) {
-    double first = INFINITY;
-    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-        double drop = part == SF_CFH_PARTS ? e->drop * scatter_of(s, d, c) : 0,
-               height = cross(s, d, c, raise_of(e, part, c) + drop) * factor_of(s, d, e, part, c);
-        values[(size_t)c * (size_t)count + (size_t)at] = height;
-        first = fmin(first, height);
+/* One repeat of a draw, at `at` of values [SF_CFH_FIRST + 2][count], the last of them on the rig. */
+static void repeat(const sf_cfh_spread *s, const errors *e, const sf_cfh_rig *rig, sf_cfh_part part,
+                   int count, int at, double *values) {
+    const sf_cfh_curve *draw = &s->draw[at / SF_CFH_REPEATS];
+    double first = INFINITY, own = draw->crossing[SF_CFH_FIRST];
+    for (int c = 0; c < SF_CFH_CRITERIA; c++, values += count) {
+        double scatter = or_none(interpolate(s->grid, s->height, s->scatter[c], own)),
+               drop = part == SF_CFH_PARTS ? e->drop * scatter : 0;
+        values[at] = cross(s, draw, c, raise_of(e, part, c) + drop) * factor_of(s, own, e, part, c);
+        first = fmin(first, values[at]);
     }
-    values[(size_t)SF_CFH_FIRST * (size_t)count + (size_t)at] = first;
-    on_rig[at] = sf_cfh_rig_height(rig, first) * exp(-e->rig);
+    values[at] = first;
+    values[at + count] = sf_cfh_rig_height(rig, first) * exp(-e->rig);
 }
 
 /* The interval of heights, on the rig or not, of those looked at. */
@@ -465,13 +445,12 @@ static sf_cfh_interval height_interval(const sf_cfh_spread *s, double *values, i
 /* The intervals of one part. values [SF_CFH_FIRST + 2][count], the last of them on the rig. */
 static void evaluate_part(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_cfh_part part, int count,
                           double *values, gsl_rng *random, gsl_rng *of_draw) {
-    double *on_rig = &values[(size_t)count * (SF_CFH_FIRST + 1)];
     gsl_rng_set(random, SEED);
     for (int at = 0; at < count; at++) {
         errors e = random_errors(s, rig, random);
         respond(s, at, of_draw, &e);
         e.drop = part == SF_CFH_PARTS ? gsl_ran_ugaussian(random) : 0;
-        repeat(s, at / SF_CFH_REPEATS, &e, rig, part, count, at, values, on_rig);
+        repeat(s, &e, rig, part, count, at, values);
     }
     for (int c = 0; c <= SF_CFH_FIRST; c++)
         s->part[part][c] = height_interval(s, &values[(size_t)c * (size_t)count], count, 1);

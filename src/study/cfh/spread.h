@@ -12,10 +12,13 @@
 #ifndef SF_CFH_SPREAD_H
 #define SF_CFH_SPREAD_H
 
+#include "case/case.h"
 #include "material/laws.h"
 #include "model/good_run.h"
 #include "study/cfh/points.h"
 #include "study/column.h"
+#include "study/runner.h"
+#include <limits.h>
 
 /* The draws of a foam's posterior: material files draw-001.cfg, draw-002.cfg, ... of a folder, each as
  * probable as any other, as softfall-fit drop writes them. */
@@ -23,8 +26,8 @@
 enum { SF_CFH_LEAST_DRAWS = 100, SF_CFH_MOST_DRAWS = 2000 };
 
 typedef struct sf_cfh_draw {
-    char *path;           /* owned, as the next two */
-    sf_material material; /* of the case with that file */
+    char path[PATH_MAX];
+    sf_material material; /* of the case with that file; owned, as the next */
     sf_material_law law;
     sf_response_error response; /* of its file; of other numbers than a_max and HIC none is used */
 } sf_cfh_draw;
@@ -88,7 +91,7 @@ typedef struct sf_cfh_check {
     sf_cfh_criterion first;            /* which limit it meets first by the corrected columns */
     double columns[SF_CFH_CRITERIA];   /* g, -, corrected */
     bool failed;                       /* no figures: `note` says why */
-    double simulated[SF_CFH_CRITERIA]; /* g, - */
+    double simulated[SF_CFH_CRITERIA]; /* g, -; NaN if it failed, as the next */
     double shift[SF_CFH_CRITERIA];     /* of ln height, by the difference of each; NaN: not known */
     char note[SF_CFH_NOTE_SIZE];
 } sf_cfh_check;
@@ -108,10 +111,14 @@ typedef struct sf_cfh_band {
     double low, median, high; /* g, -; INFINITY: of draws whose columns collapse */
 } sf_cfh_band;
 
-/* Errors of ln(value) of a draw: the one that all drops share, the standard deviation of a drop's own. */
-typedef struct sf_cfh_response {
-    double shared[SF_CFH_CRITERIA], own_sd[SF_CFH_CRITERIA];
-} sf_cfh_response;
+/* A draw as columns. Its errors of ln(value) are zeros if it states none. */
+typedef struct sf_cfh_curve {
+    double value[SF_CFH_CRITERIA][SF_CFH_GRID]; /* ln, corrected; INFINITY where the columns collapse */
+    int reach;                                  /* heights before they do */
+    double crossing[SF_CFH_FIRST + 1];          /* m, foam alone; 0 or INFINITY: beyond the grid */
+    double shared[SF_CFH_CRITERIA];             /* error of the responses that all drops share */
+    double own_sd[SF_CFH_CRITERIA];             /* standard deviation of a drop's own */
+} sf_cfh_curve;
 
 typedef struct sf_cfh_spread {
     int draws, grid;
@@ -119,11 +126,8 @@ typedef struct sf_cfh_spread {
     double simulated[2]; /* m, the heights between which the correction is known */
     double correction[SF_CFH_CRITERIA][SF_CFH_GRID]; /* the bracket */
     sf_cfh_band band[SF_CFH_CRITERIA][SF_CFH_GRID];  /* of the draws, foam alone */
-    double *value;                                   /* [draws][SF_CFH_CRITERIA][SF_CFH_GRID] ln; owned */
-    int *reach;                                      /* [draws] heights before the columns collapse; owned */
-    double *crossing;   /* [draws][SF_CFH_FIRST + 1] m, foam alone; 0 or INFINITY: beyond the grid; owned */
-    bool with_response; /* the draws state errors of the responses */
-    sf_cfh_response *response; /* [draws] zeros if they do not; owned */
+    sf_cfh_curve *draw;                              /* [draws] owned */
+    bool with_response;                              /* the draws state errors of the responses */
     double limit[SF_CFH_CRITERIA];
     double own_height;                   /* m, of the case's own material; NaN: none was found */
     double mesh_error;                   /* -, expected of a_max; NaN: not known */
@@ -164,5 +168,45 @@ double sf_cfh_spread_share(const sf_cfh_spread *spread, sf_cfh_part part, int cr
 
 /* The whole interval of a criterion, or of SF_CFH_FIRST. */
 const sf_cfh_interval *sf_cfh_spread_whole(const sf_cfh_spread *spread, int criterion);
+
+/* Simulates the drops of a search, round by round until it ends, and then draws of the foam. The drops of a
+ * round run side by side, as many as the runner has jobs; the results do not depend on that. */
+
+/* The foams of the pad, and the strains to which their curves are given. */
+typedef struct sf_cfh_foam {
+    char name[SF_MATERIAL_NAME_SIZE]; /* of a layer; "": the pad has one material */
+    double end;                       /* -, sf_law.data_end */
+    const char *words;                /* sf_law.data_end_words; static */
+} sf_cfh_foam;
+
+typedef struct sf_cfh_foams {
+    int count; /* at least 1; 1: one material, whatever its name */
+    sf_cfh_foam foam[SF_CASE_MAX_LAYERS];
+} sf_cfh_foams;
+
+typedef struct sf_cfh_series {
+    const sf_cfh_plan *plan;
+    const sf_cfh_rig *rig;
+    const sf_runner_drop *base; /* case, material, overrides; the speed is added here */
+    const sf_cfh_foams *foams;
+    sf_cfh_pad *pad; /* filled from the first drop that has results; NULL: not wanted */
+} sf_cfh_series;
+
+/* A point without figures. */
+sf_cfh_point sf_cfh_point_at(double height);
+
+/* The point at height and speed of `point` with the result of its drop: figures and, for one with remarks,
+ * the verdict as a note; or, with a verdict of "do not use", a point that failed, with the reason. */
+void sf_cfh_take_result(const sf_runner_result *result, const sf_cfh_foams *foams, sf_cfh_point *point);
+
+/* Runs the search. A drop whose simulation fails numerically becomes a point that failed, with a note; every
+ * other failure ends the series. SF_INTERRUPTED: run the same command again to resume. */
+sf_status sf_cfh_simulate(const sf_cfh_series *series, sf_runner *runner, sf_cfh_points *points,
+                          sf_cfh_step *ending, sf_error *err);
+
+/* Simulates the draws that were chosen to check the columns. A drop that fails numerically or is not to be
+ * used becomes a check that failed. */
+sf_status sf_cfh_simulate_checks(const sf_cfh_series *series, const sf_cfh_draws *draws, sf_runner *runner,
+                                 sf_cfh_spread *spread, sf_error *err);
 
 #endif

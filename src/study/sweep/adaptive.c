@@ -4,7 +4,7 @@
 #include "io/process.h"
 #include "study/predictor.h"
 #include "study/sweep/analysis.h"
-#include "study/sweep/trend.h"
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,6 +120,10 @@ int64_t sf_sweep_adaptive_design(const sf_plan *plan) {
     return count < plan->rows ? count : plan->rows;
 }
 
+static bool is_simulated(const sf_runs *runs, int64_t row) {
+    return runs->state[row] == SF_SWEEP_DONE || runs->state[row] == SF_SWEEP_FAILED;
+}
+
 static double distance(const sf_sweep_adaptive *a, const double *p, const double *q) {
     double sum = 0;
     for (int i = 0; i < a->inputs; i++)
@@ -142,7 +146,7 @@ static int choose_apart(const sf_sweep_adaptive *a, const sf_runs *runs, int mos
         apart[k] = runs->state[k * step] == SF_SWEEP_OPEN ? a->inputs + 1 : -1;
     }
     for (int64_t r = 0; r < runs->count; r++) {
-        if (runs->state[r] != SF_SWEEP_DONE && runs->state[r] != SF_SWEEP_FAILED)
+        if (!is_simulated(runs, r))
             continue;
         put_inputs(a, r, own);
         for (int64_t k = 0; k < n; k++)
@@ -191,30 +195,19 @@ static double expected_of(const sf_sweep_adaptive *a, int target, int64_t row) {
 
 /* The output of a process at a row that was simulated; NaN: the row has none. */
 static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
-    const double *place = runs->value + row * (int64_t)runs->figures;
+    const double *place = sf_runs_place(runs, row);
     int k = target - a->plan->figure_count;
     bool done = runs->state[row] == SF_SWEEP_DONE;
     if (k < 0)
-        return sf_runs_usable(runs, row)
-                   ? log(place[sf_runs_figure(a->plan->figure[target].figure)]) - expected_of(a, target, row)
-                   : NAN;
+        return log(sf_runs_value(runs, row, target)) - expected_of(a, target, row);
     if (watched[k].figure)
         return done ? place[sf_runs_figure(watched[k].figure)] : NAN;
-    return done || runs->state[row] == SF_SWEEP_FAILED ? !sf_runs_usable(runs, row) : NAN;
-}
-
-static bool is_simulated(const sf_runs *runs, int64_t row) {
-    return runs->state[row] == SF_SWEEP_DONE || runs->state[row] == SF_SWEEP_FAILED;
+    return is_simulated(runs, row) ? !sf_runs_usable(runs, row) : NAN;
 }
 
 static void free_models(sf_sweep_adaptive *a) {
     for (int t = 0; t < TARGETS; t++)
         sf_predictor_free(&a->model[t]);
-}
-
-static int compare(const void *a, const void *b) {
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
 }
 
 /* Widens the intervals of a figure until they hold 95 % of the check rows. */
@@ -235,7 +228,7 @@ static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int tar
         z[n++] = fabs(value - mean) / SF_PREDICTOR_SIDES / fmax(deviation, LEAST_DEVIATION);
     }
     if (n > 0) {
-        qsort(z, (size_t)n, sizeof *z, compare);
+        gsl_sort(z, 1, (size_t)n);
         double wider = fmax(1, z[(int64_t)(HELD * (double)(n - 1) + 0.5)]);
         p->calibration *= wider;
         while (held < n && z[held] <= wider)
@@ -281,18 +274,22 @@ static sf_status fit_models(sf_sweep_adaptive *a, const sf_runs *runs, sf_error 
 
 /* ---- outlook of a row ---- */
 
+/* The target whose half interval is the widest over its wish decides. */
+static void hold_against(outlook *o, int target, double ratio, double half) {
+    if (ratio > o->ratio) {
+        o->ratio = ratio;
+        o->target = target;
+        o->wish = half / SF_PREDICTOR_SIDES;
+    }
+}
+
 static void judge_figure(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, double *room,
                          outlook *o) {
     double mean, deviation, wish = log1p(a->plan->figure[target].accuracy);
     sf_predictor_at(&a->model[target], x, room, &mean, &deviation);
     o->value[target] = exp(mean + expected_of(a, target, row));
     o->half[target] = SF_PREDICTOR_SIDES * deviation;
-    double ratio = isfinite(o->value[target]) ? o->half[target] / wish : INFINITY;
-    if (ratio > o->ratio) {
-        o->ratio = ratio;
-        o->target = target;
-        o->wish = wish / SF_PREDICTOR_SIDES;
-    }
+    hold_against(o, target, isfinite(o->value[target]) ? o->half[target] / wish : INFINITY, wish);
 }
 
 static void judge_use(const sf_sweep_adaptive *a, int k, const double *x, double *room, outlook *o) {
@@ -302,11 +299,7 @@ static void judge_use(const sf_sweep_adaptive *a, int k, const double *x, double
     sf_predictor_at(&a->model[target], x, room, &mean, &deviation);
     double margin = fmax(1e-12, fabs(bound - mean)), ratio = SF_PREDICTOR_SIDES * deviation / margin;
     o->is_unusable |= mean > bound && ratio <= 1;
-    if (ratio > o->ratio) {
-        o->ratio = ratio;
-        o->target = target;
-        o->wish = margin / SF_PREDICTOR_SIDES;
-    }
+    hold_against(o, target, ratio, margin);
 }
 
 static outlook judge(const sf_sweep_adaptive *a, int64_t row, double *room) {

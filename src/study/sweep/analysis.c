@@ -2,15 +2,121 @@
 #include "study/sweep/analysis.h"
 
 #include <gsl/gsl_rng.h>
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics.h>
 #include <math.h>
 #include <stdlib.h>
 
-enum { SURFACE_SEED = 1 }; /* and that of pictures */
+/* ---- Sobol' indices ---- */
 
-double sf_analysis_value(const sf_analysis *a, int figure, int64_t row) {
-    const sf_runs *r = a->runs;
-    return sf_runs_usable(r, row) ? r->value[row * (int64_t)r->figures + (int64_t)a->figure[figure]] : NAN;
+enum { RESAMPLES = 1000, FEWER_RESAMPLES = 200, LARGE = 200000 };
+
+typedef struct sample {
+    int d;
+    int64_t n, used;
+    const double *y;
+    int64_t *place; /* [used] of the samples that are whole */
+} sample;
+
+static double at(const sample *s, int block, int64_t k) {
+    return s->y[block * s->n + s->place[k]];
 }
+
+static void list_whole(sample *s) {
+    for (int64_t k = 0; k < s->n; k++) {
+        bool whole = true;
+        for (int block = 0; block < s->d + 2; block++)
+            whole &= isfinite(s->y[block * s->n + k]) != 0;
+        if (whole)
+            s->place[s->used++] = k;
+    }
+}
+
+/* Both indices of every coordinate from the samples `pick` (NULL: all); `out` [2 d]. */
+static void estimate(const sample *s, const int64_t *pick, double *out) {
+    double sum = 0, squares = 0, n = (double)s->used;
+    for (int64_t k = 0; k < s->used; k++)
+        sum += at(s, 0, pick ? pick[k] : k) + at(s, 1, pick ? pick[k] : k);
+    double mean = sum / (2 * n);
+    for (int i = 0; i < 2 * s->d; i++)
+        out[i] = 0;
+    for (int64_t k = 0; k < s->used; k++) {
+        int64_t p = pick ? pick[k] : k;
+        double a = at(s, 0, p) - mean, b = at(s, 1, p) - mean;
+        squares += a * a + b * b;
+        for (int i = 0; i < s->d; i++) {
+            double mixed = at(s, 2 + i, p) - mean;
+            out[i] += b * (mixed - a);
+            out[s->d + i] += 0.5 * (mixed - a) * (mixed - a);
+        }
+    }
+    for (int i = 0; i < 2 * s->d; i++)
+        out[i] = squares > 0 ? out[i] / (0.5 * squares) : NAN;
+}
+
+/* value [resamples][2 d] */
+static sf_status resample(const sample *s, uint64_t seed, int resamples, double *value, sf_error *err) {
+    gsl_rng *rng = sf_sample_random(seed, err);
+    int64_t *pick = sf_alloc(err, (unsigned long)s->used, sizeof *pick, "bootstrap samples");
+    for (int r = 0; r < resamples && err->status == SF_OK; r++) {
+        for (int64_t k = 0; k < s->used; k++)
+            pick[k] = (int64_t)gsl_rng_uniform_int(rng, (unsigned long)s->used);
+        estimate(s, pick, value + r * 2 * s->d);
+    }
+    gsl_rng_free(rng);
+    free(pick);
+    return err->status;
+}
+
+/* The interval of column i of the resamples. */
+static void interval(const double *value, int resamples, int columns, int i, double *scratch, double *low,
+                     double *high) {
+    for (int r = 0; r < resamples; r++)
+        scratch[r] = value[r * columns + i];
+    gsl_sort(scratch, 1, (size_t)resamples);
+    *low = gsl_stats_quantile_from_sorted_data(scratch, 1, (size_t)resamples, 0.025);
+    *high = gsl_stats_quantile_from_sorted_data(scratch, 1, (size_t)resamples, 0.975);
+}
+
+static sf_status evaluate(const sample *s, uint64_t seed, sf_index *index, sf_error *err) {
+    int columns = 2 * s->d, resamples = s->used * s->d > LARGE ? FEWER_RESAMPLES : RESAMPLES;
+    double *value = sf_alloc(err, (unsigned long)resamples, (unsigned long)columns * sizeof *value,
+                             "the bootstrap"),
+           *all = sf_alloc(err, (unsigned long)columns, sizeof *all, "indices"),
+           *scratch = sf_alloc(err, (unsigned long)resamples, sizeof *scratch, "the bootstrap");
+    if (err->status == SF_OK && resample(s, seed, resamples, value, err) == SF_OK) {
+        estimate(s, NULL, all);
+        for (int i = 0; i < s->d && isfinite(all[i]); i++) {
+            index[i].first = all[i];
+            index[i].total = all[s->d + i];
+            interval(value, resamples, columns, i, scratch, &index[i].first_low, &index[i].first_high);
+            interval(value, resamples, columns, s->d + i, scratch, &index[i].total_low, &index[i].total_high);
+        }
+    }
+    free(value);
+    free(all);
+    free(scratch);
+    return err->status;
+}
+
+sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index *index, long long *used,
+                     sf_error *err) {
+    sample s = {.d = d, .n = n, .y = y, .place = sf_alloc(err, (unsigned long)n, sizeof(int64_t), "samples")};
+    for (int i = 0; i < d; i++)
+        index[i] = (sf_index){NAN, NAN, NAN, NAN, NAN, NAN};
+    if (s.place) {
+        list_whole(&s);
+        if (s.used >= SF_INDEX_LEAST && (double)s.used >= SF_INDEX_SHARE * (double)n)
+            evaluate(&s, seed, index, err);
+    }
+    *used = s.used;
+    free(s.place);
+    return err->status;
+}
+
+/* ---- the runs ---- */
+
+enum { SURFACE_SEED = 1 }; /* and that of pictures */
 
 static void count(sf_analysis *a) {
     for (int64_t k = 0; k < a->runs->count; k++) {
@@ -68,7 +174,7 @@ static void put_columns(const sf_plan *p, int d, const int *number, int64_t row,
 static int64_t count_values(const sf_analysis *a, int figure) {
     int64_t number = 0;
     for (int64_t row = 0; row < a->runs->count; row++)
-        number += !isnan(sf_analysis_value(a, figure, row));
+        number += !isnan(sf_runs_value(a->runs, row, figure));
     return number;
 }
 
@@ -104,7 +210,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     s->left_out = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
-        double value = sf_analysis_value(a, figure, row);
+        double value = sf_runs_value(a->runs, row, figure);
         if (isnan(value) || !is_drawn(random, most - s->rows, left--))
             continue;
         put_columns(a->plan, d, numbers, row, x + s->rows * (d + offsets));
@@ -153,13 +259,11 @@ void sf_analysis_term(const sf_analysis *a, const sf_quadratic *s, int term, cha
         offset_name(a->plan, term, text, size);
 }
 
-/* ---- Sobol' indices ---- */
-
 static sf_status make_indices(sf_analysis *a, int figure, sf_error *err) {
     const sf_block *b = sf_plan_saltelli(a->plan);
     double *y = sf_alloc(err, (unsigned long)b->rows, sizeof *y, "indices");
     for (int64_t row = 0; row < b->rows && y; row++)
-        y[row] = sf_analysis_value(a, figure, row);
+        y[row] = sf_runs_value(a->runs, row, figure);
     if (y)
         sf_indices(b->count, b->samples, y, b->seed, a->index[figure], &a->index_samples[figure], err);
     free(y);
@@ -171,9 +275,8 @@ sf_status sf_analysis_make(const sf_runs *runs, sf_analysis *a, sf_error *err) {
         (sf_analysis){.plan = runs->plan, .runs = runs, .with_indices = sf_plan_saltelli(runs->plan) != NULL};
     count(a);
     for (int k = 0; k < a->plan->figure_count && err->status == SF_OK; k++) {
-        a->figure[k] = sf_runs_figure(a->plan->figure[k].figure);
         for (int f = 0; f < a->plan->factor_count && err->status == SF_OK; f++)
-            sf_effect_measure(runs, f, a->figure[k], &a->effect[k][f], err);
+            sf_effect_measure(runs, f, k, &a->effect[k][f], err);
         if (err->status == SF_OK && make_surface(a, k, err) == SF_OK && a->with_indices)
             make_indices(a, k, err);
     }

@@ -48,7 +48,7 @@ enum { SF_EFFECT_LEVELS = 12, SF_EFFECT_BINS = 5, SF_EFFECT_RUNS = 50 /* in a me
 typedef struct sf_effect {
     double low, high;   /* smallest and greatest mean; of draws the means at 5 and 95 % of them; NaN: none */
     double first, last; /* of numbers: the means at the least and at the greatest value */
-    int64_t used, of; /* combinations of the other blocks of which all runs count, and all of them; 0: by the
+    long long used, of; /* combinations of the other blocks of which all runs count, and all of them; 0: by the
                          surface, or a plan of one block */
 } sf_effect;
 
@@ -72,7 +72,7 @@ bool sf_effect_is_scatter(const sf_plan *plan, int factor);
 bool sf_effect_is_by_surface(const sf_plan *plan, int factor);
 
 /* By means; NaN of a factor of one of these two kinds. */
-sf_status sf_effect_measure(const sf_runs *runs, int factor, size_t figure, sf_effect *effect, sf_error *err);
+sf_status sf_effect_measure(const sf_runs *runs, int factor, int figure, sf_effect *effect, sf_error *err);
 
 /* Computes the effect of number `i` of the surface, between its least and its greatest value, averaged
  * over the rows x [n][d + offsets] that it was fitted to, which are as before when it returns. Changes
@@ -89,8 +89,8 @@ enum { SF_PROBABILITY_CELLS = 4096 };
  * hardest drops, so that a share of the others alone would be too kind. The share and the low end of the
  * interval count them as above, its high end as below. */
 typedef struct sf_probability {
-    int64_t below, above, unknown;
-    int64_t within;   /* of a_max_g and hic: runs whose limit lies within the 95 % scatter of drops about them */
+    long long below, above, unknown;
+    long long within;   /* of a_max_g and hic: runs whose limit lies within the 95 % scatter of drops about them */
     double share;     /* `below` of all three; NaN: no run */
     double low, high; /* the 95 % interval of Clopper and Pearson */
 } sf_probability;
@@ -125,27 +125,23 @@ typedef struct sf_sweep_surface {
 typedef struct sf_analysis {
     const sf_plan *plan; /* borrowed, like the next */
     const sf_runs *runs;
-    size_t figure[SF_SWEEP_FIGURES]; /* their places in the list of figures */
-    int64_t done, failed, open;
-    int64_t usable; /* done and not "do not use", or predicted */
-    int64_t predicted;
+    long long done, failed, open;
+    long long usable; /* done and not "do not use", or predicted */
+    long long predicted;
     double widest[SF_SWEEP_FIGURES]; /* -, largest relative half of an interval of the predicted */
-    int64_t unusable; /* of the done: "do not use" */
-    int64_t remarks;  /* of the done: "valid with remarks" */
+    long long unusable; /* of the done: "do not use" */
+    long long remarks;  /* of the done: "valid with remarks" */
     sf_effect effect[SF_SWEEP_FIGURES][SF_SWEEP_FACTORS];
     sf_sweep_surface surface[SF_SWEEP_FIGURES];
     bool with_indices;
     sf_index index[SF_SWEEP_FIGURES][SF_SWEEP_FACTORS];
-    int64_t index_samples[SF_SWEEP_FIGURES]; /* that are whole */
+    long long index_samples[SF_SWEEP_FIGURES]; /* that are whole */
     sf_probabilities probability;
 } sf_analysis;
 
 /* Release with sf_analysis_free, also on failure. */
 sf_status sf_analysis_make(const sf_runs *runs, sf_analysis *analysis, sf_error *err);
 void sf_analysis_free(sf_analysis *analysis);
-
-/* The figure of a row if it can be used, else NaN. */
-double sf_analysis_value(const sf_analysis *a, int figure, int64_t row);
 
 /* [count], from malloc: true for `most` of them at most, drawn with a fixed seed, as those at equal distances
  * may all have the same level of a factor. NULL on failure. */

@@ -152,6 +152,12 @@ static void open_all(sf_runs *runs, sf_sweep_state state) {
             sf_runs_open(runs, row);
 }
 
+/* Opens the rows that are done or failed. */
+static void open_ended(sf_runs *runs) {
+    open_all(runs, SF_SWEEP_DONE);
+    open_all(runs, SF_SWEEP_FAILED);
+}
+
 /* Rows since the last look may be of other inputs than those before. All are opened, as a row that is there
  * is soon found again. */
 static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_error *err) {
@@ -159,8 +165,7 @@ static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_e
     sf_error refused = SF_ERROR_INIT;
     if (!c->look || (c->look(c->plan, &inputs, &refused) == SF_OK && inputs == c->inputs))
         return SF_OK;
-    open_all(runs, SF_SWEEP_DONE);
-    open_all(runs, SF_SWEEP_FAILED);
+    open_ended(runs);
     open_all(runs, SF_SWEEP_PREDICTED);
     return SF_FAIL(err, SF_ERR_IO,
                    "the inputs of the campaign changed while it ran: %.700s; finished drops are kept: repeat "
@@ -184,8 +189,7 @@ static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, bool *chan
     SF_TRY(read_table(c, runs, changed, err));
     if (*changed) {
         bool there = sf_runs_count(runs, SF_SWEEP_OPEN) < runs->count;
-        open_all(runs, SF_SWEEP_DONE);
-        open_all(runs, SF_SWEEP_FAILED);
+        open_ended(runs);
         if (c->log && there)
             fputs("  files or programs have changed since: every run is looked at again\n", c->log);
     }
@@ -193,6 +197,8 @@ static sf_status take_over(const sf_sweep_campaign *c, sf_runs *runs, bool *chan
         open_all(runs, SF_SWEEP_FAILED);
     return SF_OK;
 }
+
+/* ---- what only the geometry knows of ---- */
 
 /* The values of the factors of the geometry in a row. */
 static uint64_t geometry_of(const sf_plan *plan, int64_t row) {
@@ -205,6 +211,7 @@ static uint64_t geometry_of(const sf_plan *plan, int64_t row) {
     return hash;
 }
 
+/* A row that is done or failed. */
 typedef struct geometry {
     uint64_t hash;
     bool failed;
@@ -219,113 +226,46 @@ static int compare_geometries(const void *a, const void *b) {
     return order ? order : (p->row > q->row) - (p->row < q->row);
 }
 
-static int compare_rows(const void *a, const void *b) {
-    int64_t p = *(const int64_t *)a, q = *(const int64_t *)b;
-    return (p > q) - (p < q);
-}
-
-/* The rows that are done or failed, sorted. */
-static int64_t list_geometries(const sf_runs *runs, geometry *list) {
-    int64_t n = 0;
-    for (int64_t row = 0; row < runs->count; row++)
-        if (runs->state[row] != SF_SWEEP_OPEN)
-            list[n++] = (geometry){geometry_of(runs->plan, row), runs->state[row] == SF_SWEEP_FAILED, row};
-    if (n > 0)
-        qsort(list, (size_t)n, sizeof *list, compare_geometries);
-    return n;
-}
-
-/* Rows that are done by which a change of their geometry's files shows. */
-typedef struct samples {
-    int64_t count, *row;     /* the first one of each geometry, in the order of rows */
-    int64_t shared, *sharer; /* these, and those that share a folder with one of them (equal rows) */
-} samples;
-
-static void free_samples(samples *s) {
-    free(s->row);
-    free(s->sharer);
-}
-
-static int compare_folders(const void *a, const void *b) {
-    const char *p = *(char *const *)a, *q = *(char *const *)b;
-    return strcmp(p ? p : "", q ? q : "");
-}
-
-static sf_status list_sharers(const sf_runs *runs, samples *s, sf_error *err) {
-    char **folder = sf_alloc(err, (unsigned long)s->count, sizeof *folder, "geometries");
-    s->sharer =
-        sf_alloc(err, (unsigned long)sf_runs_count(runs, SF_SWEEP_DONE), sizeof *s->sharer, "geometries");
-    if (folder && s->sharer && s->count > 0) {
-        for (int64_t k = 0; k < s->count; k++)
-            folder[k] = runs->folder[s->row[k]];
-        qsort(folder, (size_t)s->count, sizeof *folder, compare_folders);
-        for (int64_t row = 0; row < runs->count; row++)
-            if (runs->state[row] == SF_SWEEP_DONE &&
-                bsearch(&runs->folder[row], folder, (size_t)s->count, sizeof *folder, compare_folders))
-                s->sharer[s->shared++] = row;
-    }
-    free(folder);
-    return err->status;
-}
-
-/* Rows of a geometry of which all have failed are opened: the files that they read may have changed, too. */
-static sf_status pick_samples(sf_runs *runs, samples *s, sf_error *err) {
+/* Returns the rows, sorted; from sf_alloc, NULL on failure. */
+static geometry *list_geometries(const sf_runs *runs, int64_t *count, sf_error *err) {
     int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
     geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
-    s->row = sf_alloc(err, (unsigned long)ended, sizeof *s->row, "geometries");
-    int64_t n = list && s->row ? list_geometries(runs, list) : 0;
-    bool all_failed = false;
-    for (int64_t k = 0; k < n; k++) {
-        bool first = k == 0 || list[k].hash != list[k - 1].hash;
-        all_failed = first ? list[k].failed : all_failed;
-        if (all_failed)
-            sf_runs_open(runs, list[k].row);
-        else if (first)
-            s->row[s->count++] = list[k].row;
-    }
-    if (s->count > 0)
-        qsort(s->row, (size_t)s->count, sizeof *s->row, compare_rows);
-    free(list);
-    return err->status == SF_OK ? list_sharers(runs, s, err) : err->status;
+    *count = 0;
+    for (int64_t row = 0; row < runs->count && list; row++)
+        if (runs->state[row] != SF_SWEEP_OPEN)
+            list[(*count)++] =
+                (geometry){geometry_of(runs->plan, row), runs->state[row] == SF_SWEEP_FAILED, row};
+    if (*count > 0)
+        qsort(list, (size_t)*count, sizeof *list, compare_geometries);
+    return list;
 }
 
-/* Gives the rows to the engine, piece by piece, until one of them had to be simulated. */
-static sf_status look_at(const sf_sweep_engine *engine, sf_runs *runs, int64_t count, const int64_t *row,
-                         int *fresh, sf_error *err) {
-    for (int64_t k = 0; k < count && *fresh == 0 && err->status == SF_OK; k += engine->piece) {
-        int64_t left = count - k;
-        engine->run(engine->context, runs, left < engine->piece ? (int)left : engine->piece, row + k, fresh,
-                    err);
-    }
-    return err->status;
+/* The last row of the geometry of row `first` of the list. */
+static int64_t last_of_geometry(const geometry *list, int64_t count, int64_t first) {
+    while (first + 1 < count && list[first + 1].hash == list[first].hash)
+        first++;
+    return first;
 }
 
-/* Writes the table with the sampled rows open: if the process is killed while they are looked at, the next
- * one takes other samples, none of which finds a folder that was made now. */
-static sf_status write_samples_open(const sf_sweep_campaign *c, sf_runs *runs, bool turned, const samples *s,
-                                    sf_error *err) {
-    for (int64_t k = 0; k < s->shared; k++)
-        runs->state[s->sharer[k]] = SF_SWEEP_OPEN;
-    write_table(c, runs, turned, err);
-    for (int64_t k = 0; k < s->shared; k++)
-        runs->state[s->sharer[k]] = SF_SWEEP_DONE;
-    return err->status;
-}
-
-/* A file that only the geometry knows of may have changed: one finished run of each geometry, the samples, is
- * given to the engine again. If it has to be simulated, every run is looked at again, those that failed, too;
- * if they cannot all be looked at, the samples are open, and the next start takes others. */
+/* A file that only the geometry knows of may have changed since the last campaign: it shows by one finished
+ * run of each geometry, and then every run is looked at again. Failed rows of a geometry without a finished
+ * run are opened, as they may have read such a file. */
 static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
-                       const samples *s, sf_error *err) {
-    int fresh = 0;
-    if (look_at(engine, runs, s->count, s->row, &fresh, err) == SF_OK && fresh == 0)
-        return SF_OK;
-    for (int64_t k = 0; k < s->shared; k++)
-        sf_runs_open(runs, s->sharer[k]);
-    if (fresh == 0)
+                       sf_error *err) {
+    int64_t n, last;
+    geometry *list = list_geometries(runs, &n, err);
+    bool changed = false;
+    for (int64_t k = 0; k < n; k = last + 1) {
+        last = last_of_geometry(list, n, k);
+        for (int64_t j = k; j <= last && list[k].failed; j++)
+            sf_runs_open(runs, list[j].row);
+        changed = changed || (!list[k].failed && engine->is_current &&
+                              !engine->is_current(engine->context, runs, list[k].row));
+    }
+    free(list);
+    if (!changed)
         return err->status;
-    open_all(runs, SF_SWEEP_DONE);
-    open_all(runs, SF_SWEEP_FAILED);
+    open_ended(runs);
     if (c->log)
         fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
               c->log);
@@ -334,44 +274,32 @@ static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine
 
 enum { LOOKED_AT = 200 }; /* geometries at the end */
 
-static sf_status refuse_row(int64_t row, sf_error *err) {
-    return SF_FAIL(
-        err, SF_ERR_IO,
-        "a file that the geometry of run %lld includes or merges, or its result, changed while the "
-        "campaign ran; finished drops are kept: repeat the command",
-        (long long)row + 1);
-}
-
-/* The same at the end, without simulating anything: the first and the last row that is done of each geometry
- * (of many geometries, some evenly spread ones, as all come from a few files). If one is of other files, all
- * rows are opened, as these may be of either. */
+/* The same at the end: the first and the last row that is done of each geometry (of many geometries, some
+ * evenly spread ones, as all come from a few files). If one is of other files, all rows are opened, as these
+ * may be of either. */
 static sf_status probe_again(const sf_sweep_engine *engine, sf_runs *runs, sf_error *err) {
-    if (!engine->is_current)
-        return SF_OK;
-    int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
-    geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
-    int64_t n = list ? list_geometries(runs, list) : 0, geometries = 0, at = 0;
-    for (int64_t k = 0; k < n; k++)
-        geometries += k == 0 || list[k].hash != list[k - 1].hash;
+    int64_t n, geometries = 0, at = 0, last;
+    geometry *list = engine->is_current ? list_geometries(runs, &n, err) : NULL;
+    if (!list)
+        return err->status;
+    for (int64_t k = 0; k < n; k = last_of_geometry(list, n, k) + 1)
+        geometries++;
     int64_t every = geometries / LOOKED_AT + 1;
-    for (int64_t k = 0, last; k < n && err->status == SF_OK; k = last + 1, at++) {
-        for (last = k; last + 1 < n && list[last + 1].hash == list[k].hash;)
-            last++;
-        int64_t done = last;
+    for (int64_t k = 0; k < n && err->status == SF_OK; k = last + 1, at++) {
+        int64_t done = last = last_of_geometry(list, n, k);
         while (done >= k && list[done].failed)
             done--;
-        if (at % every != 0 || done < k)
-            continue;
-        if (!engine->is_current(engine->context, runs, list[k].row))
-            refuse_row(list[k].row, err);
-        else if (!engine->is_current(engine->context, runs, list[done].row))
-            refuse_row(list[done].row, err);
+        const int64_t pair[] = {k, done};
+        for (int j = 0; j < 2 && at % every == 0 && done >= k; j++)
+            if (!engine->is_current(engine->context, runs, list[pair[j]].row))
+                SF_FAIL(err, SF_ERR_IO,
+                        "a file that the geometry of run %lld includes or merges, or its result, changed "
+                        "while the campaign ran; finished drops are kept: repeat the command",
+                        (long long)list[pair[j]].row + 1);
     }
     free(list);
-    if (err->status != SF_OK) {
-        open_all(runs, SF_SWEEP_DONE);
-        open_all(runs, SF_SWEEP_FAILED);
-    }
+    if (err->status != SF_OK)
+        open_ended(runs);
     return err->status;
 }
 
@@ -421,18 +349,15 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err) {
     int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
-    samples s = {0};
     bool turned = false;
-    if (!row || take_over(c, runs, &turned, err) != SF_OK)
-        goto done;
-    if (pick_samples(runs, &s, err) == SF_OK && write_samples_open(c, runs, turned, &s, err) == SF_OK &&
-        probe(c, engine, runs, &s, err) == SF_OK && work(c, engine, runs, row, err) == SF_OK)
-        turned = probe_again(engine, runs, err) != SF_OK || turned;
-    if (c->chooser && err->status == SF_OK)
-        c->chooser->finish(c->chooser->context, runs, err);
-    save(c, runs, turned, err);
-done:
-    free_samples(&s);
+    if (row && take_over(c, runs, &turned, err) == SF_OK) {
+        if (write_table(c, runs, turned, err) == SF_OK && probe(c, engine, runs, err) == SF_OK &&
+            work(c, engine, runs, row, err) == SF_OK)
+            turned = probe_again(engine, runs, err) != SF_OK || turned;
+        if (c->chooser && err->status == SF_OK)
+            c->chooser->finish(c->chooser->context, runs, err);
+        save(c, runs, turned, err);
+    }
     free(row);
     return err->status;
 }

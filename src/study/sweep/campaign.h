@@ -78,8 +78,8 @@ typedef struct sf_sweep_cost {
     double seconds;    /* processor time of one run; NaN: not known, as the first row has no model */
     double bytes;      /* of its results */
     double work_bytes; /* that one run needs while it is at work */
-    int64_t open;      /* runs */
-    int64_t there;     /* of them at most so many have a drop's folder already */
+    long long open;    /* runs */
+    long long there;   /* of them at most so many have a drop's folder already */
     char basis[512];   /* where that comes from */
 } sf_sweep_cost;
 

@@ -61,19 +61,11 @@ static void end_piece(piece *p) {
     free(p->failure);
 }
 
-/* "drop-0123456789abcdef" of ".../drop-0123456789abcdef/results.h5". */
-static void folder_name(const char *path, char *out, size_t size) {
-    const char *end = strrchr(path, '/'), *begin = end;
-    while (begin && begin > path && begin[-1] != '/')
-        begin--;
-    snprintf(out, size, "%.*s", end ? (int)(end - begin) : 0, end ? begin : "");
-}
-
 static sf_status take_result(sf_runs *runs, int64_t row, const sf_runner_result *result, sf_error *err) {
-    char folder[256];
-    folder_name(result->path, folder, sizeof folder);
+    char folder[PATH_MAX]; /* "drop-0123456789abcdef" of ".../drop-0123456789abcdef/results.h5" */
+    snprintf(folder, sizeof folder, "%.*s", (int)sf_path_folder_length(result->path), result->path);
     sf_runs_take(runs, row, result->figure, result->status);
-    return sf_runs_done(runs, row, result->grade, folder,
+    return sf_runs_done(runs, row, result->grade, sf_path_name(folder),
                         result->grade == SF_GRADE_VALID ? NULL : result->verdict, err);
 }
 
@@ -167,7 +159,7 @@ static sf_status measure(const sf_runs *r, double *seconds, int64_t *done, sf_er
     double *value = sf_alloc(err, (unsigned long)r->count, sizeof *value, "run times");
     size_t wall = sf_runs_figure("wall_s"), threads = sf_runs_figure("threads"), n = 0;
     for (int64_t row = 0; row < r->count && value; row++) {
-        const double *place = r->value + row * (int64_t)r->figures;
+        const double *place = sf_runs_place(r, row);
         if (r->state[row] == SF_SWEEP_DONE && place[wall] * place[threads] >= 0)
             value[n++] = place[wall] * place[threads];
     }
@@ -234,16 +226,16 @@ static double free_bytes(const char *folder) {
     char path[PATH_MAX];
     struct statvfs info;
     snprintf(path, sizeof path, "%s", folder);
-    while (*path && statvfs(path, &info) != 0) {
-        char *slash = NULL;
-        for (char *c = path; *c; c++)
-            slash = *c == '/' ? c : slash;
-        if (!slash || slash == path)
-            snprintf(path, sizeof path, slash ? "/" : ".");
-        else
+    while (statvfs(path, &info) != 0) {
+        char *slash = strrchr(path, '/');
+        if (strcmp(path, "/") == 0 || strcmp(path, ".") == 0)
+            return INFINITY;
+        if (slash && slash > path)
             *slash = '\0';
+        else
+            snprintf(path, sizeof path, slash ? "/" : ".");
     }
-    return *path ? (double)info.f_bavail * (double)info.f_frsize : INFINITY;
+    return (double)info.f_bavail * (double)info.f_frsize;
 }
 
 sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, int jobs, sf_error *err) {
@@ -257,19 +249,17 @@ sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, i
 
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {
     double hours = c->seconds * (double)c->open / 3600, size = c->bytes * (double)c->open / 1e9;
+    fprintf(out, "%lld open runs", c->open);
     if (isnan(c->seconds))
-        fprintf(out, "%lld open runs; what they cost is not known\n  (%s)\n", (long long)c->open, c->basis);
+        fputs("; what they cost is not known", out);
     else if (jobs > 0)
-        fprintf(
-            out,
-            "%lld open runs of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB\n  (%s)\n",
-            (long long)c->open, c->seconds, hours / jobs, jobs, size, c->basis);
+        fprintf(out, " of about %.3g s of one core: about %.3g h with %d at a time, %.3g GB", c->seconds,
+                hours / jobs, jobs, size);
     else
-        fprintf(
-            out,
-            "%lld open runs of about %.3g s of one core like those of this machine: about %.3g core hours, "
-            "%.3g GB\n  (%s)\n",
-            (long long)c->open, c->seconds, hours, size, c->basis);
+        fprintf(out,
+                " of about %.3g s of one core like those of this machine: about %.3g core hours, %.3g GB",
+                c->seconds, hours, size);
+    fprintf(out, "\n  (%s)\n", c->basis);
     if (c->there > 0)
         fprintf(
             out,

@@ -57,26 +57,7 @@ static void measure(sf_quadratic *s, int i, int64_t n, const double *x) {
 typedef struct fit {
     gsl_matrix *terms, *covariance;
     gsl_vector *y, *weight, *c;
-    gsl_multifit_linear_workspace *work;
 } fit;
-
-static bool fit_begin(fit *f, int64_t n, int terms) {
-    size_t rows = (size_t)n, columns = (size_t)terms;
-    *f = (fit){gsl_matrix_alloc(rows, columns), gsl_matrix_alloc(columns, columns),
-               gsl_vector_alloc(rows),          gsl_vector_alloc(rows),
-               gsl_vector_alloc(columns),       gsl_multifit_linear_alloc(rows, columns)};
-    return f->terms && f->covariance && f->y && f->weight && f->c && f->work;
-}
-
-static void fit_end(fit *f) {
-    gsl_matrix_free(f->terms);
-    gsl_matrix_free(f->covariance);
-    gsl_vector_free(f->y);
-    gsl_vector_free(f->weight);
-    gsl_vector_free(f->c);
-    if (f->work)
-        gsl_multifit_linear_free(f->work);
-}
 
 /* The leverage of a row, by (X^T X)^-1. */
 static double leverage(const fit *f, size_t row, gsl_vector *scratch) {
@@ -146,7 +127,7 @@ static void judge(sf_quadratic *s, const fit *f, size_t n, size_t *order, double
 }
 
 static void solve(sf_quadratic *s, fit *f, int64_t n, const double *x, const double *y, size_t *order,
-                  double *left_out, gsl_vector *scratch) {
+                  double *left_out, gsl_vector *scratch, gsl_multifit_linear_workspace *work) {
     double chisq = 0;
     size_t rank = 0;
     for (size_t k = 0; k < (size_t)n; k++) {
@@ -155,7 +136,7 @@ static void solve(sf_quadratic *s, fit *f, int64_t n, const double *x, const dou
         gsl_vector_set(f->weight, k, 1);
     }
     int failed = gsl_multifit_wlinear_tsvd(f->terms, f->weight, f->y, TOLERANCE, f->c, f->covariance, &chisq,
-                                           &rank, f->work);
+                                           &rank, work);
     if (failed || rank < (size_t)s->terms) {
         snprintf(s->problem, sizeof s->problem,
                  "the rows do not determine all terms: two factors vary together, or values are missing");
@@ -180,15 +161,23 @@ sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const
                  terms, terms + 2, (long long)n);
         return SF_OK;
     }
-    fit f;
-    gsl_vector *scratch = gsl_vector_alloc((size_t)terms);
-    size_t *order = sf_alloc(err, (unsigned long)n, sizeof *order, "the response surface");
+    const size_t rows = (size_t)n, columns = (size_t)terms;
+    gsl_vector *scratch = gsl_vector_alloc(columns);
+    fit f = {gsl_matrix_alloc(rows, columns), gsl_matrix_alloc(columns, columns), gsl_vector_alloc(rows),
+             gsl_vector_alloc(rows), gsl_vector_alloc(columns)};
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(rows, columns);
+    size_t *order = sf_alloc(err, rows, sizeof *order, "the response surface");
     s->terms = terms;
-    if (fit_begin(&f, n, terms) && scratch && order)
-        solve(s, &f, n, x, y, order, left_out, scratch);
+    if (f.terms && f.covariance && f.y && f.weight && f.c && work && scratch && order)
+        solve(s, &f, n, x, y, order, left_out, scratch, work);
     else if (err->status == SF_OK)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the response surface");
-    fit_end(&f);
+    gsl_matrix_free(f.terms);
+    gsl_matrix_free(f.covariance);
+    gsl_vector_free(f.y);
+    gsl_vector_free(f.weight);
+    gsl_vector_free(f.c);
+    gsl_multifit_linear_free(work);
     free(order);
     gsl_vector_free(scratch);
     return err->status;
@@ -253,23 +242,19 @@ void sf_groups_free(sf_groups *g) {
     *g = (sf_groups){0};
 }
 
-static double value_of(const sf_runs *r, int64_t row, size_t figure) {
-    return sf_runs_usable(r, row) ? r->value[row * (int64_t)r->figures + (int64_t)figure] : NAN;
-}
-
 /* The combination of all other blocks. */
 static int64_t combination(const sf_block *b, int64_t row) {
     return row / (b->stride * b->rows) * b->stride + row % b->stride;
 }
 
 /* [combinations] those of which a run does not count; of a plan of one block none. */
-static bool *find_gaps(const sf_runs *r, const sf_block *b, size_t figure, sf_effect *e, sf_error *err) {
+static bool *find_gaps(const sf_runs *r, const sf_block *b, int figure, sf_effect *e, sf_error *err) {
     int64_t count = r->count / b->rows;
     bool *gap = sf_alloc(err, (unsigned long)count, sizeof *gap, "combinations");
     if (!gap || count == 1)
         return gap;
     for (int64_t row = 0; row < r->count; row++)
-        gap[combination(b, row)] |= isnan(value_of(r, row, figure));
+        gap[combination(b, row)] |= isnan(sf_runs_value(r, row, figure));
     e->used = e->of = count;
     for (int64_t k = 0; k < count; k++)
         e->used -= gap[k];
@@ -277,10 +262,10 @@ static bool *find_gaps(const sf_runs *r, const sf_block *b, size_t figure, sf_ef
 }
 
 /* mean [count] of the figure over the rows of each group that count; NaN: there is none. */
-static void find_means(const sf_runs *r, const sf_block *b, const bool *gap, const sf_groups *g,
-                       size_t figure, double *mean, int64_t *number) {
+static void find_means(const sf_runs *r, const sf_block *b, const bool *gap, const sf_groups *g, int figure,
+                       double *mean, int64_t *number) {
     for (int64_t row = 0; row < r->count; row++) {
-        double value = value_of(r, row, figure);
+        double value = sf_runs_value(r, row, figure);
         int64_t k = g->of_row[row / b->stride % b->rows];
         if (isnan(value) || gap[combination(b, row)])
             continue;
@@ -345,7 +330,7 @@ void sf_effect_of_surface(const sf_quadratic *s, int i, int64_t n, double *x, sf
     }
 }
 
-sf_status sf_effect_measure(const sf_runs *r, int factor, size_t figure, sf_effect *e, sf_error *err) {
+sf_status sf_effect_measure(const sf_runs *r, int factor, int figure, sf_effect *e, sf_error *err) {
     sf_groups g = {0};
     const sf_factor *f = &r->plan->factor[factor];
     const sf_block *b = &r->plan->block[r->plan->block_of[factor]];
@@ -431,15 +416,14 @@ static double scatter_of(const sf_runs *r, int64_t row, const char *figure) {
     const char *key = strcmp(figure, "a_max_g") == 0 ? "a_max_scatter"
                       : strcmp(figure, "hic") == 0   ? "hic_scatter"
                                                      : NULL;
-    double sd = key ? sf_runs_place((sf_runs *)r, row)[sf_runs_figure(key)] : 0;
+    double sd = key ? sf_runs_place(r, row)[sf_runs_figure(key)] : 0;
     return isnan(sd) ? 0 : gsl_cdf_ugaussian_Pinv(1 - TAIL) * sd;
 }
 
 /* A prediction whose interval holds the limit is unknown. */
 static void count(const sf_runs *r, int64_t row, int figure, sf_probability *p) {
     const sf_sweep_limit *limit = &r->plan->figure[figure];
-    double value =
-        sf_runs_usable(r, row) ? sf_runs_place((sf_runs *)r, row)[sf_runs_figure(limit->figure)] : NAN;
+    double value = sf_runs_value(r, row, figure);
     if (fabs(log(value / limit->limit)) < sf_runs_half(r, row, figure))
         value = NAN;
     bool anvil =

@@ -5,6 +5,7 @@
 #include "case/values.h"
 #include "base/text.h"
 #include "io/plain_file.h"
+#include "study/material_file.h"
 #include <gsl/gsl_cdf.h>
 #include <limits.h>
 #include <math.h>
@@ -81,21 +82,12 @@ static sf_status take_quantity(reading *r, const config_setting_t *s, const char
     return SF_OK;
 }
 
-static bool is_plain_number(const config_setting_t *s, double *out) {
-    int type = config_setting_type(s);
-    *out = type == CONFIG_TYPE_FLOAT   ? config_setting_get_float(s)
-           : type == CONFIG_TYPE_INT   ? config_setting_get_int(s)
-           : type == CONFIG_TYPE_INT64 ? (double)config_setting_get_int64(s)
-                                       : NAN;
-    return type == CONFIG_TYPE_FLOAT || type == CONFIG_TYPE_INT || type == CONFIG_TYPE_INT64;
-}
-
 /* A number, with or without a unit. */
 static sf_status take_number(reading *r, const config_setting_t *s, double *out, sf_error *err) {
     const char *text = config_setting_get_string(s);
     double number = 0;
     const char *unit = text ? sf_decimal_read(text + strspn(text, " \t"), &number) : NULL;
-    if (is_plain_number(s, out)) {
+    if (sf_config_is_number(s, out)) {
         if (*r->factor->unit)
             return sf_config_refuse(r->config, s, err, "%s: %g has no unit, the values before it have one",
                                     r->factor->key, *out);
@@ -114,7 +106,7 @@ static bool looks_numeric(const sf_config *config, const config_setting_t *s) {
     const char *text = config_setting_get_string(s);
     double number = 0, si = 0;
     sf_quantity kind;
-    if (is_plain_number(s, &number))
+    if (sf_config_is_number(s, &number))
         return true;
     return text && sf_decimal_read(text + strspn(text, " \t"), &number) &&
            find_kind(config->units, text, &kind, &si);
@@ -186,8 +178,7 @@ static sf_status take_file(reading *r, const config_setting_t *s, const char *la
                            sf_error *err) {
     char *text = NULL, path[DRAW_PATH], real[PATH_MAX];
     sf_error inner = SF_ERROR_INIT;
-    snprintf(path, sizeof path, "%s%s%s", *label == '/' ? "" : r->config->folder, *label == '/' ? "" : "/",
-             label);
+    sf_config_path(r->config, label, path);
     if (sf_plain_check(path, NULL, &inner) != SF_OK)
         return sf_config_refuse(r->config, s, err, "%s: %s", r->factor->key, inner.text);
     const char *whole = realpath(path, real) ? real : path;
@@ -278,20 +269,6 @@ static sf_status read_range(reading *r, const config_setting_t *first, sf_error 
 
 /* ---- a posterior ---- */
 
-static void draw_name(const char *folder, int number, char *path, size_t size) {
-    snprintf(path, size, "%s/draw-%03d.cfg", folder, number);
-}
-
-/* Draws from 1 on, at most `most`. */
-static int count_draws(const char *folder, int most) {
-    char path[DRAW_PATH];
-    int count = 0;
-    do {
-        draw_name(folder, count + 1, path, sizeof path);
-    } while (access(path, F_OK) == 0 && count++ < most);
-    return count < most ? count : most;
-}
-
 /* The number of draw `k` (from 0) of `count` of them, in the middle of equal parts of those that are there:
  * softfall-fit writes them model by model. */
 static int chosen_draw(int k, int count, int there) {
@@ -310,9 +287,8 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
                                 r->factor->key);
     SF_TRY(sf_config_whole(r->config, r->group, "draws", false, 1, MOST_DRAWS, &draws, err));
     bool given = config_setting_get_member(r->group, "draws") != NULL;
-    snprintf(folder, sizeof folder, "%s%s%s", *name == '/' ? "" : r->config->folder, *name == '/' ? "" : "/",
-             name);
-    int there = count_draws(folder, MOST_DRAWS), count = given ? (int)draws : there;
+    sf_config_path(r->config, name, folder);
+    int there = sf_draws_count(folder, MOST_DRAWS), count = given ? (int)draws : there;
     if (there == 0)
         return sf_config_refuse(r->config, s, err, "posterior: there is no draw-001.cfg in %s", folder);
     if (there < count)
@@ -320,7 +296,7 @@ static sf_status read_posterior(reading *r, const config_setting_t *s, sf_error 
     SF_TRY(make_levels(r->factor, count, true, err));
     r->factor->uncertain = r->factor->posterior = true;
     for (int k = 0; k < count && err->status == SF_OK; k++) {
-        draw_name(name, chosen_draw(k, count, there), path, sizeof path);
+        sf_draw_path(name, chosen_draw(k, count, there), path, sizeof path);
         take_file(r, s, path, k, err);
     }
     return err->status;
@@ -369,10 +345,9 @@ static const sf_distribution distributions[] = {
 enum { DISTRIBUTIONS = sizeof distributions / sizeof distributions[0] };
 
 /* Appends "|word" to a list of words. */
-static void add_word(char *list, size_t size, const char *word) {
-    size_t used = strlen(list);
+static void add_word(char list[NAMES_SIZE], const char *word) {
     if (*word)
-        snprintf(list + used, size - used, "%s%s", used ? "|" : "", word);
+        sf_text_add(list, NAMES_SIZE, "%s%s", *list ? "|" : "", word);
 }
 
 static sf_status read_distribution(reading *r, const config_setting_t *setting, sf_error *err) {
@@ -381,11 +356,11 @@ static sf_status read_distribution(reading *r, const config_setting_t *setting, 
     int which = 0;
     (void)setting;
     for (int k = 0; k < DISTRIBUTIONS; k++)
-        add_word(words, sizeof words, distributions[k].name);
+        add_word(words, distributions[k].name);
     SF_TRY(sf_config_choice(r->config, r->group, "distribution", words, &which, err));
     const sf_distribution *d = f->distribution = &distributions[which];
-    add_word(own, sizeof own, d->first);
-    add_word(own, sizeof own, d->second);
+    add_word(own, d->first);
+    add_word(own, d->second);
     SF_TRY(sf_config_names(r->config, r->group, own, err));
     const config_setting_t *first = config_setting_get_member(r->group, d->first),
                            *second = config_setting_get_member(r->group, d->second);
@@ -420,22 +395,22 @@ static const factor_kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
 /* The keys that a group may have: of one kind, or (NULL) of all. */
-static void list_keys(const factor_kind *kind, bool sampled, char *names, size_t size) {
-    snprintf(names, size, "key|name");
+static void list_keys(const factor_kind *kind, bool sampled, char names[NAMES_SIZE]) {
+    snprintf(names, NAMES_SIZE, "key|name");
     for (int k = 0; k < KINDS; k++) {
         if (kind ? kind != &kinds[k] : sampled ? !kinds[k].sampled : !kinds[k].listed)
             continue;
-        add_word(names, size, kinds[k].key);
-        add_word(names, size, kinds[k].more);
+        add_word(names, kinds[k].key);
+        add_word(names, kinds[k].more);
     }
     if (!sampled)
-        add_word(names, size, "uncertain");
+        add_word(names, "uncertain");
     if (!sampled || kind)
         return;
-    add_word(names, size, "distribution");
+    add_word(names, "distribution");
     for (int k = 0; k < DISTRIBUTIONS; k++) {
-        add_word(names, size, distributions[k].first);
-        add_word(names, size, distributions[k].second);
+        add_word(names, distributions[k].first);
+        add_word(names, distributions[k].second);
     }
 }
 
@@ -458,10 +433,8 @@ static sf_status read_head(reading *r, sf_error *err) {
 
 static sf_status refuse_without_kind(const reading *r, sf_error *err) {
     char phrases[NAMES_SIZE] = "";
-    for (int k = 0; k < KINDS; k++) {
-        size_t used = strlen(phrases);
-        snprintf(phrases + used, sizeof phrases - used, "%s%s", used ? ", " : "", kinds[k].phrase);
-    }
+    for (int k = 0; k < KINDS; k++)
+        sf_text_add(phrases, sizeof phrases, "%s%s", k ? ", " : "", kinds[k].phrase);
     return sf_config_refuse(r->config, r->group, err,
                             "%s: give %s; a distribution belongs into a group with sample", r->factor->key,
                             phrases);
@@ -481,7 +454,7 @@ static sf_status read_kind(reading *r, bool sampled, sf_error *err) {
     }
     if (!kind)
         return sampled ? read_distribution(r, NULL, err) : refuse_without_kind(r, err);
-    list_keys(kind, sampled, names, sizeof names);
+    list_keys(kind, sampled, names);
     SF_TRY(sf_config_names(r->config, r->group, names, err));
     return kind->read(r, found, err);
 }
@@ -491,7 +464,7 @@ sf_status sf_factor_read(const sf_config *config, const config_setting_t *group,
     reading r = {.config = config, .group = group, .factor = f};
     char names[NAMES_SIZE];
     *f = (sf_factor){0};
-    list_keys(NULL, sampled, names, sizeof names);
+    list_keys(NULL, sampled, names);
     SF_TRY(sf_config_names(config, group, names, err));
     SF_TRY(read_head(&r, err));
     SF_TRY(read_kind(&r, sampled, err));

@@ -30,7 +30,7 @@ typedef struct sf_factor {
     bool posterior;                      /* the words are draws of a posterior */
     const sf_distribution *distribution; /* of a factor that is sampled; NULL: a list */
     double a, b;                         /* its numbers, in `unit` */
-    int64_t count;  /* levels of a list; words that it repeats are one, but in a sample */
+    long long count; /* levels of a list; words that it repeats are one, but in a sample */
     double *number; /* [count] in `unit`; of words NULL; owned */
     char **text;    /* [count] of words: as --set takes it after '='; owned */
     char **label;   /* [count] of words: as the plan has it; owned */
@@ -98,7 +98,7 @@ typedef struct sf_index {
  * fewer than SF_INDEX_LEAST or than SF_INDEX_SHARE are left (values that are missing for what they would be
  * leave no random part) or y does not vary. Saltelli's estimator of 2010 and Jansen's; percentiles of
  * bootstrap samples, the same for the same seed. */
-sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index *index, int64_t *used,
+sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index *index, long long *used,
                      sf_error *err);
 
 enum {
@@ -114,9 +114,9 @@ typedef struct sf_block {
     sf_block_kind kind;
     int first, count; /* factors */
     sf_sampling method;
-    int64_t samples; /* as asked for; of Saltelli the rows are samples (count + 2) */
+    long long samples; /* as asked for; of Saltelli the rows are samples (count + 2) */
     uint64_t seed;
-    int64_t rows;
+    long long rows;
     int64_t stride; /* rows of the product of all later blocks */
 } sf_block;
 
@@ -140,7 +140,7 @@ typedef struct sf_plan {
     sf_factor factor[SF_SWEEP_FACTORS];
     int block_of[SF_SWEEP_FACTORS];
     sf_block block[SF_SWEEP_FACTORS];
-    int64_t rows;
+    long long rows;
     int figure_count;
     sf_sweep_limit figure[SF_SWEEP_FIGURES]; /* that the report looks at */
 } sf_plan;

@@ -18,6 +18,8 @@ sf_status sf_runs_create(const sf_plan *plan, sf_runs *r, sf_error *err) {
     unsigned long n = (unsigned long)plan->rows;
     *r = (sf_runs){.plan = plan, .count = plan->rows};
     sf_figure_list(&r->figures);
+    for (int k = 0; k < plan->figure_count; k++)
+        r->column[k] = sf_runs_figure(plan->figure[k].figure);
     r->state = sf_alloc(err, n, 1, "the runs");
     r->grade = sf_alloc(err, n, 1, "the runs");
     r->folder = sf_alloc(err, n, sizeof *r->folder, "the runs");
@@ -46,7 +48,7 @@ void sf_runs_free(sf_runs *r) {
     *r = (sf_runs){0};
 }
 
-double *sf_runs_place(sf_runs *r, int64_t row) {
+double *sf_runs_place(const sf_runs *r, int64_t row) {
     return r->value + row * (int64_t)r->figures;
 }
 
@@ -127,7 +129,7 @@ void sf_runs_predicted(sf_runs *r, int64_t row, const double *value, const doubl
     sf_runs_open(r, row);
     r->state[row] = SF_SWEEP_PREDICTED;
     for (int k = 0; k < r->plan->figure_count; k++) {
-        sf_runs_place(r, row)[sf_runs_figure(r->plan->figure[k].figure)] = to_nine_digits(value[k]);
+        sf_runs_place(r, row)[r->column[k]] = to_nine_digits(value[k]);
         r->half[row * r->plan->figure_count + k] = half[k];
     }
 }
@@ -146,6 +148,10 @@ int64_t sf_runs_count(const sf_runs *r, sf_sweep_state state) {
 bool sf_runs_usable(const sf_runs *r, int64_t row) {
     return r->state[row] == SF_SWEEP_PREDICTED ||
            (r->state[row] == SF_SWEEP_DONE && r->grade[row] != SF_GRADE_DO_NOT_USE);
+}
+
+double sf_runs_value(const sf_runs *r, int64_t row, int figure) {
+    return sf_runs_usable(r, row) ? sf_runs_place(r, row)[r->column[figure]] : NAN;
 }
 
 /* ---- runs.csv ---- */
@@ -201,9 +207,7 @@ static void put_figure(FILE *out, const sf_runs *r, const sf_figure *figure, dou
 
 /* The 95 % interval of a figure of a predicted row; of others two empty cells. */
 static void put_interval(FILE *out, const sf_runs *r, int64_t row, int figure) {
-    double value =
-               r->value[row * (int64_t)r->figures + (int64_t)sf_runs_figure(r->plan->figure[figure].figure)],
-           half = sf_runs_half(r, row, figure);
+    double value = sf_runs_value(r, row, figure), half = sf_runs_half(r, row, figure);
     if (r->state[row] == SF_SWEEP_PREDICTED)
         fprintf(out, ",%.9g,%.9g", value * exp(-half), value * exp(half));
     else
@@ -226,7 +230,7 @@ static void put_row(FILE *out, const sf_runs *r, int64_t row) {
     fputc(',', out);
     put_cell(out, r->folder[row] ? r->folder[row] : "");
     for (size_t k = 0; k < count; k++)
-        put_figure(out, r, &list[k], r->value[row * (int64_t)count + (int64_t)k]);
+        put_figure(out, r, &list[k], sf_runs_place(r, row)[k]);
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
         put_interval(out, r, row, k);
     fputc('\n', out);
@@ -302,10 +306,7 @@ static sf_status take_row(sf_runs *r, int64_t row, char *line, sf_error *err) {
     if (state != SF_SWEEP_DONE || grade < 0 || !folder)
         return SF_OK;
     take_figures(r, row, line);
-    r->state[row] = SF_SWEEP_DONE;
-    r->grade[row] = (unsigned char)grade;
-    keep_text(&r->message[row], message, err);
-    return keep_text(&r->folder[row], folder, err);
+    return sf_runs_done(r, row, (sf_grade)grade, folder, message, err);
 }
 
 /* The heading that belongs to the table; from malloc. */

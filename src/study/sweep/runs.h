@@ -20,6 +20,7 @@ typedef struct sf_runs {
     const sf_plan *plan; /* borrowed */
     int64_t count;
     size_t figures;               /* of the list of summary.json, post/figures/figures.h */
+    size_t column[SF_SWEEP_FIGURES]; /* of those of the plan among them */
     unsigned char *state, *grade; /* [count] sf_sweep_state, sf_grade */
     double *value;                /* [count][figures] as in summary.json; NaN: none; a text: its number */
     double *half; /* [count][figures of the plan] of a predicted row half of the 95 % interval of the
@@ -38,7 +39,7 @@ sf_status sf_runs_create(const sf_plan *plan, sf_runs *runs, sf_error *err);
 void sf_runs_free(sf_runs *runs);
 
 /* The figures of a row, to be filled before sf_runs_done. */
-double *sf_runs_place(sf_runs *runs, int64_t row);
+double *sf_runs_place(const sf_runs *runs, int64_t row);
 /* The place of a figure among them; the key must be in the list. */
 size_t sf_runs_figure(const char *key);
 /* The figures of a drop, [of sf_figure_list] sf_figure_number, into the place of the row; `status` is the one
@@ -58,6 +59,9 @@ void sf_runs_predicted(sf_runs *runs, int64_t row, const double *value, const do
 /* Returns that half; 0 of a row that was simulated. */
 double sf_runs_half(const sf_runs *runs, int64_t row, int figure);
 int64_t sf_runs_count(const sf_runs *runs, sf_sweep_state state);
+
+/* Figure `figure` of the plan if the row can be used, else NaN. */
+double sf_runs_value(const sf_runs *runs, int64_t row, int figure);
 
 /* True if the figures of the row can be used: done and not "do not use", or predicted. */
 bool sf_runs_usable(const sf_runs *runs, int64_t row);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/sweep_report.h"
 
+#include "base/text.h"
 #include "io/plain_file.h"
 #include "report/chart.h"
 #include <limits.h>
@@ -28,6 +29,27 @@ static const char *const colours[SERIES] = {"#08519c", "#cb181d", "#238b45", "#6
 
 const sf_sweep_picture *sf_sweep_pictures(void) {
     return pictures;
+}
+
+/* Styles of the series; those of SERIES levels take the colour of the level. */
+static const sf_series_style run_points = {.kind = SF_SERIES_POINTS, .colour = "#08519c", .size = 0.8},
+                             mean_line = {.kind = SF_SERIES_LINE, .width = 2.5},
+                             curve_line = {.kind = SF_SERIES_LINE, .width = 1.2},
+                             effect_span = {.kind = SF_SERIES_SPANS, .colour = "#6baed6", .opacity = 0.7},
+                             first_order = {.kind = SF_SERIES_SIDES, .colour = "#08519c", .width = 2},
+                             total_order = {.kind = SF_SERIES_SIDES,
+                                            .colour = "#cb181d",
+                                            .width = 2,
+                                            .shape = SF_POINT_SQUARE},
+                             surface_points = {.kind = SF_SERIES_POINTS, .colour = "#08519c", .size = 1.2},
+                             equal_line = {.kind = SF_SERIES_LINE, .colour = "#606060", .width = 1.5},
+                             map_cells = {.kind = SF_SERIES_CELLS},
+                             share_errors = {.kind = SF_SERIES_ERRORS, .colour = "#08519c", .width = 2},
+                             labels = {.kind = SF_SERIES_LABELS};
+
+static sf_series_style coloured(sf_series_style style, int level) {
+    style.colour = colours[level];
+    return style;
 }
 
 static void label_factor(sf_axis *axis, const sf_factor *f) {
@@ -82,7 +104,7 @@ static int series_of(const sf_plan *p, const series *s, int64_t row) {
 static sf_series_data *level_series(sf_chart *chart, sf_series_style style, const sf_plan *p, const series *s,
                                     int k) {
     char level[128];
-    style.colour = colours[k];
+    style = coloured(style, k);
     if (s->factor < 0)
         return sf_chart_series(chart, style, NULL);
     level_text(&p->factor[s->factor], s->groups.middle[k], level, sizeof level);
@@ -93,7 +115,7 @@ static sf_series_data *level_series(sf_chart *chart, sf_series_style style, cons
 
 static bool has_values(const sf_analysis *a, int figure) {
     for (int64_t row = 0; row < a->runs->count; row++)
-        if (isfinite(sf_analysis_value(a, figure, row)))
+        if (isfinite(sf_runs_value(a->runs, row, figure)))
             return true;
     return false;
 }
@@ -113,23 +135,23 @@ static bool has_surface(const sf_analysis *a, int figure) {
     return isfinite(a->surface[figure].fit.left_out_rms);
 }
 
-/* The figures of the plan that have one. */
+/* The probabilities of a plan of one or two choices, if they are not too many. */
+static bool has_probability(const sf_analysis *a, int figure) {
+    const sf_plan *p = a->plan;
+    int chosen = 0;
+    for (int k = 0; k < p->block_count; k++)
+        chosen += sf_block_is_chosen(p, k);
+    return !isnan(p->figure[figure].limit) && a->probability.cells >= 2 && a->probability.cells <= 400 &&
+           chosen >= 1 && chosen <= 2;
+}
+
+/* The figures of the plan that have a panel. */
 static int list_panels(const sf_analysis *a, bool (*has)(const sf_analysis *, int), int *list) {
     int count = 0;
     for (int k = 0; k < a->plan->figure_count; k++)
         if (has(a, k))
             list[count++] = k;
     return count;
-}
-
-/* Draws and frees a chart; the first warning is kept. */
-static sf_status draw(sf_chart *chart, const sf_staging *output, char *warning, size_t size, sf_error *err) {
-    char own[320];
-    sf_chart_write(chart, output, own, sizeof own, err);
-    sf_chart_free(chart);
-    if (!*warning)
-        snprintf(warning, size, "%s", own);
-    return err->status;
 }
 
 /* ---- figures against factors ---- */
@@ -142,8 +164,7 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
     const sf_block *b = &p->block[p->block_of[factor]];
     sf_groups groups = {0};
     sf_panel *panel = sf_chart_panel(chart);
-    if (!panel || sf_groups_make(p, factor, &groups, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_groups_make(p, factor, &groups, err));
     double *sum = sf_alloc(err, (unsigned long)groups.count, sizeof *sum, "a picture");
     double *number = sf_alloc(err, (unsigned long)groups.count, sizeof *number, "a picture");
     label_factor(&panel->x, &p->factor[factor]);
@@ -153,17 +174,15 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
     if (!isnan(limit->limit))
         sf_chart_level(chart, limit->limit, "#cb181d", NULL);
     for (int k = 0; k < series_count(s) && err->status == SF_OK; k++) {
-        sf_series_data *points = sf_chart_series(
-            chart, (sf_series_style){.kind = SF_SERIES_POINTS, .colour = colours[k], .size = 0.8}, NULL);
-        sf_series_data *means =
-            level_series(chart, (sf_series_style){.kind = SF_SERIES_LINE, .width = 2.5}, p, s, k);
+        sf_series_data *points = sf_chart_series(chart, coloured(run_points, k), NULL),
+                       *means = level_series(chart, mean_line, p, s, k);
         memset(sum, 0, (size_t)groups.count * sizeof *sum);
         memset(number, 0, (size_t)groups.count * sizeof *number);
         for (int64_t row = 0, at = -1; row < p->rows; row++) {
             if (!sf_runs_usable(a->runs, row) || (++at, series_of(p, s, row) != k))
                 continue;
             int64_t group = groups.of_row[row / b->stride % b->rows];
-            double value = sf_analysis_value(a, figure, row);
+            double value = sf_runs_value(a->runs, row, figure);
             if (shown[at])
                 sf_series_point(points, sf_plan_value(p, factor, row), value);
             sum[group] += isnan(value) ? 0 : value;
@@ -178,28 +197,28 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
     return err->status;
 }
 
-static sf_status plot_factors(const sf_staging *output, const sf_analysis *a, char *warning, size_t size,
-                              sf_error *err) {
+static sf_chart *draw_factors(const sf_analysis *a, const char *folder, sf_error *err) {
     int list[SF_SWEEP_FACTORS], columns = 0;
     int panel[SF_SWEEP_FIGURES], figures = list_panels(a, has_values, panel);
     series s[COLUMNS] = {{0}};
+    (void)folder;
     for (int f = 0; f < a->plan->factor_count && columns < COLUMNS; f++)
         if (!a->plan->factor[f].words)
             list[columns++] = f;
     if (columns == 0 || figures == 0)
-        return SF_OK;
+        return NULL;
     bool *shown = sf_analysis_pick(a->usable, POINTS, err);
     sf_chart *chart = sf_chart_new("factors", columns > 1 ? 900 * columns : 1300, 620 * figures, err);
     sf_chart_columns(chart, columns);
     for (int c = 0; c < columns && err->status == SF_OK; c++)
         choose_series(a->plan, list[c], &s[c], err);
-    for (int k = 0; k < figures && err->status == SF_OK; k++)
-        for (int c = 0; c < columns && err->status == SF_OK; c++)
-            put_factor_panel(chart, a, panel[k], k == 0, list[c], &s[c], shown, err);
+    for (int k = 0; k < figures * columns && err->status == SF_OK; k++)
+        put_factor_panel(chart, a, panel[k / columns], k < columns, list[k % columns], &s[k % columns], shown,
+                         err);
     for (int c = 0; c < columns; c++)
         sf_groups_free(&s[c].groups);
     free(shown);
-    return draw(chart, output, warning, size, err);
+    return chart;
 }
 
 /* ---- curves ---- */
@@ -221,28 +240,22 @@ static bool add_curve(sf_series_data *line, const char *folder, const char *name
     return good;
 }
 
-static sf_status plot_curves(const sf_staging *output, const sf_analysis *a, const char *folder,
-                             char *warning, size_t size, sf_error *err) {
-    int count = 0;
-    int64_t at = -1;
+static sf_chart *draw_curves(const sf_analysis *a, const char *folder, sf_error *err) {
+    int64_t at = -1, count = 0;
     series s;
-    bool titled[SERIES] = {false};
-    SF_TRY(choose_series(a->plan, -1, &s, err));
-    bool *shown = sf_analysis_pick(a->usable, CURVES, err);
+    bool titled[SERIES] = {false}, *shown = sf_analysis_pick(a->usable, CURVES, err);
     sf_chart *chart = sf_chart_new("curves", 1600, 900, err);
     sf_panel *panel = sf_chart_panel(chart);
-    if (panel) {
-        sf_axis_label(&panel->x, "time (ms)");
-        sf_axis_label(&panel->y, "deceleration (g)");
-        panel->key = SF_KEY_TOP_RIGHT;
-    }
-    for (int64_t row = 0; row < a->runs->count && panel; row++) {
+    choose_series(a->plan, -1, &s, err);
+    sf_axis_label(&panel->x, "time (ms)");
+    sf_axis_label(&panel->y, "deceleration (g)");
+    panel->key = SF_KEY_TOP_RIGHT;
+    for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
         if (!sf_runs_usable(a->runs, row) || !shown[++at] || !a->runs->folder[row])
             continue;
         int level = series_of(a->plan, &s, row);
-        sf_series_style style = {.kind = SF_SERIES_LINE, .colour = colours[level], .width = 1.2};
-        sf_series_data *line = titled[level] ? sf_chart_series(chart, style, NULL)
-                                             : level_series(chart, style, a->plan, &s, level);
+        sf_series_data *line = titled[level] ? sf_chart_series(chart, coloured(curve_line, level), NULL)
+                                             : level_series(chart, curve_line, a->plan, &s, level);
         if (add_curve(line, folder, a->runs->folder[row])) {
             titled[level] = true;
             count++;
@@ -251,9 +264,9 @@ static sf_status plot_curves(const sf_staging *output, const sf_analysis *a, con
     free(shown);
     sf_groups_free(&s.groups);
     if (count > 0)
-        return draw(chart, output, warning, size, err);
+        return chart;
     sf_chart_free(chart);
-    return err->status;
+    return NULL;
 }
 
 /* ---- effects and indices: horizontal bars ---- */
@@ -273,8 +286,6 @@ static void sort_factors(int count, const double *size, int *order) {
 /* A panel with a factor on each place of its y axis, in this order. */
 static sf_panel *bar_panel(sf_chart *chart, const sf_plan *p, const int *order) {
     sf_panel *panel = sf_chart_panel(chart);
-    if (!panel)
-        return NULL;
     for (int k = 0; k < p->factor_count; k++)
         sf_axis_word(chart, &panel->y, p->factor[order[k]].name);
     sf_axis_range(&panel->y, -0.6, p->factor_count - 0.4);
@@ -282,21 +293,19 @@ static sf_panel *bar_panel(sf_chart *chart, const sf_plan *p, const int *order) 
     return panel;
 }
 
-static void put_effect_panel(sf_chart *chart, const sf_analysis *a, int figure) {
+static void put_effect_panel(sf_chart *chart, const sf_analysis *a, int figure, sf_error *err) {
     const sf_plan *p = a->plan;
     double size[BARS];
     int order[BARS];
+    (void)err;
     for (int f = 0; f < p->factor_count; f++) {
         const sf_effect *e = &a->effect[figure][f];
         size[f] = isnan(e->low) ? 0 : e->high - e->low;
     }
     sort_factors(p->factor_count, size, order);
     sf_panel *panel = bar_panel(chart, p, order);
-    if (!panel)
-        return;
     sf_axis_label(&panel->x, "%s", p->figure[figure].figure);
-    sf_series_data *bars = sf_chart_series(
-        chart, (sf_series_style){.kind = SF_SERIES_SPANS, .colour = "#6baed6", .opacity = 0.7}, NULL);
+    sf_series_data *bars = sf_chart_series(chart, effect_span, NULL);
     for (int k = 0; k < p->factor_count; k++) {
         const sf_effect *e = &a->effect[figure][order[k]];
         if (!isnan(e->low))
@@ -304,52 +313,24 @@ static void put_effect_panel(sf_chart *chart, const sf_analysis *a, int figure) 
     }
 }
 
-static sf_status plot_effects(const sf_staging *output, const sf_analysis *a, char *warning, size_t size,
-                              sf_error *err) {
-    int panel[SF_SWEEP_FIGURES], figures = list_panels(a, has_effects, panel);
-    int height = 160 + 70 * a->plan->factor_count;
-    if (figures == 0)
-        return SF_OK;
-    sf_chart *chart = sf_chart_new("effects", 1600, (height < 400 ? 400 : height) * figures, err);
-    for (int k = 0; k < figures; k++)
-        put_effect_panel(chart, a, panel[k]);
-    return draw(chart, output, warning, size, err);
-}
-
-static void put_index_panel(sf_chart *chart, const sf_analysis *a, int figure) {
+static void put_index_panel(sf_chart *chart, const sf_analysis *a, int figure, sf_error *err) {
     const sf_plan *p = a->plan;
     double size[BARS];
     int order[BARS];
+    (void)err;
     for (int f = 0; f < p->factor_count; f++)
         size[f] = a->index[figure][f].total;
     sort_factors(p->factor_count, size, order);
     sf_panel *panel = bar_panel(chart, p, order);
-    if (!panel)
-        return;
     sf_axis_label(&panel->x, "share of the variance of %s", p->figure[figure].figure);
     panel->key = SF_KEY_ABOVE;
-    sf_series_data *first = sf_chart_series(
-        chart, (sf_series_style){.kind = SF_SERIES_SIDES, .colour = "#08519c", .width = 2}, "first order");
-    sf_series_data *total = sf_chart_series(
-        chart,
-        (sf_series_style){.kind = SF_SERIES_SIDES, .colour = "#cb181d", .width = 2, .shape = SF_POINT_SQUARE},
-        "total");
+    sf_series_data *first = sf_chart_series(chart, first_order, "first order"),
+                   *total = sf_chart_series(chart, total_order, "total");
     for (int k = 0; k < p->factor_count; k++) {
         const sf_index *i = &a->index[figure][order[k]];
         sf_series_add(first, i->first, k + 0.12, i->first_low, i->first_high);
         sf_series_add(total, i->total, k - 0.12, i->total_low, i->total_high);
     }
-}
-
-static sf_status plot_indices(const sf_staging *output, const sf_analysis *a, char *warning, size_t size,
-                              sf_error *err) {
-    int panel[SF_SWEEP_FIGURES], figures = list_panels(a, has_indices, panel);
-    if (figures == 0)
-        return SF_OK;
-    sf_chart *chart = sf_chart_new("indices", 1600, (240 + 70 * a->plan->factor_count) * figures, err);
-    for (int k = 0; k < figures; k++)
-        put_index_panel(chart, a, panel[k]);
-    return draw(chart, output, warning, size, err);
 }
 
 /* ---- response surface ---- */
@@ -360,12 +341,9 @@ static void put_surface_panel(sf_chart *chart, const sf_analysis *a, int figure,
     bool *shown = sf_analysis_pick(s->rows, POINTS, err);
     sf_panel *panel = sf_chart_panel(chart);
     double low = INFINITY, high = -INFINITY;
-    if (panel) {
-        sf_axis_label(&panel->x, "%s, simulated", a->plan->figure[figure].figure);
-        sf_axis_label(&panel->y, "by the surface without its place");
-    }
-    sf_series_data *points = sf_chart_series(
-        chart, (sf_series_style){.kind = SF_SERIES_POINTS, .colour = "#08519c", .size = 1.2}, NULL);
+    sf_axis_label(&panel->x, "%s, simulated", a->plan->figure[figure].figure);
+    sf_axis_label(&panel->y, "by the surface without its place");
+    sf_series_data *points = sf_chart_series(chart, surface_points, NULL);
     for (int64_t k = 0; k < s->rows && shown; k++) {
         if (!shown[k])
             continue;
@@ -374,33 +352,12 @@ static void put_surface_panel(sf_chart *chart, const sf_analysis *a, int figure,
         high = fmax(high, s->simulated[k]);
     }
     free(shown);
-    sf_series_data *equal = sf_chart_series(
-        chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = "#606060", .width = 1.5}, NULL);
+    sf_series_data *equal = sf_chart_series(chart, equal_line, NULL);
     sf_series_point(equal, low, low);
     sf_series_point(equal, high, high);
 }
 
-static sf_status plot_surface(const sf_staging *output, const sf_analysis *a, char *warning, size_t size,
-                              sf_error *err) {
-    int panel[SF_SWEEP_FIGURES], panels = list_panels(a, has_surface, panel);
-    if (panels == 0)
-        return SF_OK;
-    sf_chart *chart = sf_chart_new("surface", 1600, panels > 1 ? 800 * ((panels + 1) / 2) : 1000, err);
-    sf_chart_columns(chart, panels > 1 ? 2 : 1);
-    for (int k = 0; k < panels; k++)
-        put_surface_panel(chart, a, panel[k], err);
-    return draw(chart, output, warning, size, err);
-}
-
 /* ---- probability ---- */
-
-static int list_chosen(const sf_plan *p, int *block) {
-    int count = 0;
-    for (int k = 0; k < p->block_count; k++)
-        if (sf_block_is_chosen(p, k))
-            block[count++] = k;
-    return count;
-}
 
 /* The levels of a block's first factor as words at 0, 1, ... */
 static void put_level_axis(sf_chart *chart, sf_axis *axis, const sf_plan *p, int block) {
@@ -408,18 +365,13 @@ static void put_level_axis(sf_chart *chart, sf_axis *axis, const sf_plan *p, int
     const sf_factor *f = &p->factor[b->first];
     char text[512];
     for (int64_t k = 0; k < b->rows; k++) {
-        if (f->words)
-            snprintf(text, sizeof text, "%s", sf_path_name(f->label[(int64_t)f->value[k]]));
-        else
-            snprintf(text, sizeof text, "%.6g", f->value[k]);
-        sf_axis_word(chart, axis, text);
+        snprintf(text, sizeof text, "%.6g", f->value[k]);
+        sf_axis_word(chart, axis, f->words ? sf_path_name(f->label[(int64_t)f->value[k]]) : text);
     }
     sf_axis_range(axis, -0.5, (double)b->rows - 0.5);
     sf_factor_heading(f, text, sizeof text);
-    size_t used = strlen(text);
-    for (int k = b->first + 1; k < b->first + b->count && used < sizeof text;
-         k++) /* those of a zip go along */
-        used += (size_t)snprintf(text + used, sizeof text - used, ", with %s", p->factor[k].name);
+    for (int k = b->first + 1; k < b->first + b->count; k++) /* those of a zip go along */
+        sf_text_add(text, sizeof text, ", with %s", p->factor[k].name);
     sf_axis_label(axis, "%s", text);
 }
 
@@ -435,21 +387,17 @@ static void put_map(sf_chart *chart, sf_panel *panel, const sf_analysis *a, int 
     put_level_axis(chart, &panel->y, p, block[1]);
     snprintf(panel->title, sizeof panel->title, "P(%s < %g)%s", p->figure[figure].figure,
              p->figure[figure].limit, intervals ? ", 95 % interval" : "");
-    sf_series_data *cells = sf_chart_series(chart, (sf_series_style){.kind = SF_SERIES_CELLS}, NULL);
-    sf_series_data *texts =
-        sf_chart_series(chart,
-                        (sf_series_style){.kind = SF_SERIES_LABELS,
-                                          .size = fmin(16, (intervals ? 64.0 : 150.0) / (double)nx)},
-                        NULL);
+    sf_series_style sized = labels;
+    sized.size = fmin(16, (intervals ? 64.0 : 150.0) / (double)nx);
+    sf_series_data *cells = sf_chart_series(chart, map_cells, NULL),
+                   *texts = sf_chart_series(chart, sized, NULL);
     for (int64_t k = 0; k < a->probability.cells; k++) {
         const sf_probability *c = &a->probability.cell[figure * a->probability.cells + k];
         double x = (double)(k / ny), y = (double)(k % ny);
         const char *mark = c->unknown > 0 ? "?" : "";
         sf_series_add(cells, x, y, c->share, c->share);
-        if (intervals)
-            sf_series_label(texts, x, y, "%.2f%s\n%.2f-%.2f", c->share, mark, c->low, c->high);
-        else
-            sf_series_label(texts, x, y, "%.2f%s", c->share, mark);
+        sf_series_label(texts, x, y, intervals ? "%.2f%s\n%.2f-%.2f" : "%.2f%s", c->share, mark, c->low,
+                        c->high);
     }
 }
 
@@ -460,9 +408,8 @@ static void put_line(sf_chart *chart, sf_panel *panel, const sf_analysis *a, int
     sf_axis_label(&panel->y, "probability");
     snprintf(panel->title, sizeof panel->title, "P(%s < %g), 95 %% interval", a->plan->figure[figure].figure,
              a->plan->figure[figure].limit);
-    sf_series_data *shares = sf_chart_series(
-        chart, (sf_series_style){.kind = SF_SERIES_ERRORS, .colour = "#08519c", .width = 2}, NULL);
-    sf_series_data *unknown = sf_chart_series(chart, (sf_series_style){.kind = SF_SERIES_LABELS}, NULL);
+    sf_series_data *shares = sf_chart_series(chart, share_errors, NULL),
+                   *unknown = sf_chart_series(chart, labels, NULL);
     for (int64_t k = 0; k < q->cells; k++) {
         const sf_probability *c = &q->cell[figure * q->cells + k];
         sf_series_add(shares, (double)k, c->share, c->low, c->high);
@@ -471,37 +418,63 @@ static void put_line(sf_chart *chart, sf_panel *panel, const sf_analysis *a, int
     }
 }
 
-static sf_status plot_probability(const sf_staging *output, const sf_analysis *a, char *warning, size_t size,
-                                  sf_error *err) {
-    int block[SF_SWEEP_FACTORS], chosen = list_chosen(a->plan, block), panels = 0;
-    for (int k = 0; k < a->plan->figure_count; k++)
-        panels += !isnan(a->plan->figure[k].limit);
-    if (a->probability.cells < 2 || a->probability.cells > 400 || chosen < 1 || chosen > 2 || panels == 0)
-        return SF_OK;
-    sf_chart *chart = sf_chart_new("probability", 1600, panels > 1 ? 760 * ((panels + 1) / 2) : 1000, err);
-    sf_chart_columns(chart, panels > 1 ? 2 : 1);
-    for (int k = 0; k < a->plan->figure_count; k++) {
-        sf_panel *panel = isnan(a->plan->figure[k].limit) ? NULL : sf_chart_panel(chart);
-        if (panel && chosen == 2)
-            put_map(chart, panel, a, k, block);
-        else if (panel)
-            put_line(chart, panel, a, k, block);
-    }
-    return draw(chart, output, warning, size, err);
+static void put_probability_panel(sf_chart *chart, const sf_analysis *a, int figure, sf_error *err) {
+    int block[SF_SWEEP_FACTORS], chosen = 0;
+    sf_panel *panel = sf_chart_panel(chart);
+    (void)err;
+    for (int k = 0; k < a->plan->block_count; k++)
+        if (sf_block_is_chosen(a->plan, k))
+            block[chosen++] = k;
+    if (chosen == 2)
+        put_map(chart, panel, a, figure, block);
+    else
+        put_line(chart, panel, a, figure, block);
 }
 
 /* ---- all ---- */
 
+/* A picture is drawn by a function of its own, which returns NULL if there is nothing to see, or panel by
+ * panel for each figure that has one. */
+typedef struct drawing {
+    sf_chart *(*draw)(const sf_analysis *a, const char *folder, sf_error *err);
+    bool (*has)(const sf_analysis *a, int figure);
+    void (*put)(sf_chart *chart, const sf_analysis *a, int figure, sf_error *err);
+    int grid; /* pixels, height of a panel where two stand side by side; 0: they stand in one column, */
+    int base, least; /* with this height, and 70 for each factor, but at least the second */
+} drawing;
+
+/* In the order of `pictures`. */
+static const drawing drawings[] = {{.draw = draw_factors},
+                                   {.draw = draw_curves},
+                                   {NULL, has_effects, put_effect_panel, .base = 160, .least = 400},
+                                   {NULL, has_indices, put_index_panel, .base = 240},
+                                   {NULL, has_surface, put_surface_panel, .grid = 800},
+                                   {NULL, has_probability, put_probability_panel, .grid = 760}};
+
+static sf_chart *draw_panels(const sf_analysis *a, const char *name, const drawing *d, sf_error *err) {
+    int panel[SF_SWEEP_FIGURES], count = list_panels(a, d->has, panel),
+                                 own = d->base + 70 * a->plan->factor_count;
+    int height = !d->grid    ? (own < d->least ? d->least : own) * count
+                 : count > 1 ? d->grid * ((count + 1) / 2)
+                             : 1000;
+    sf_chart *chart = count > 0 ? sf_chart_new(name, 1600, height, err) : NULL;
+    sf_chart_columns(chart, d->grid && count > 1 ? 2 : 1);
+    for (int k = 0; k < count; k++)
+        d->put(chart, a, panel[k], err);
+    return chart;
+}
+
 sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *a, const char *folder, char *warning,
                         size_t size, sf_error *err) {
     warning[0] = '\0';
-    if (a->usable < 1)
-        return SF_OK;
-    if (plot_factors(output, a, warning, size, err) == SF_OK &&
-        plot_curves(output, a, folder, warning, size, err) == SF_OK &&
-        plot_effects(output, a, warning, size, err) == SF_OK &&
-        plot_indices(output, a, warning, size, err) == SF_OK &&
-        plot_surface(output, a, warning, size, err) == SF_OK)
-        plot_probability(output, a, warning, size, err);
+    for (int k = 0; pictures[k].name && a->usable > 0 && err->status == SF_OK; k++) {
+        const drawing *d = &drawings[k];
+        char own[320] = "";
+        sf_chart *chart = d->draw ? d->draw(a, folder, err) : draw_panels(a, pictures[k].name, d, err);
+        sf_chart_write(chart, output, own, sizeof own, err);
+        sf_chart_free(chart);
+        if (!*warning)
+            snprintf(warning, size, "%s", own);
+    }
     return err->status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/sweep_report.h"
 
+#include "base/text.h"
 #include "build_info.h"
 #include "report/chart.h"
 #include "report/html.h"
@@ -22,14 +23,14 @@ static const char *const sampling_words[] = {[SF_SAMPLING_RANDOM] = "random",
 static void list_text(const sf_factor *f, char *text, size_t size) {
     double low = INFINITY, high = -INFINITY;
     if (f->words) {
-        snprintf(text, size, "%lld %s", (long long)f->count, f->uncertain ? "draws" : "levels");
+        snprintf(text, size, "%lld %s", f->count, f->uncertain ? "draws" : "levels");
         return;
     }
     for (int64_t k = 0; k < f->count; k++) {
         low = fmin(low, f->number[k]);
         high = fmax(high, f->number[k]);
     }
-    snprintf(text, size, "%lld values, %.6g to %.6g %s", (long long)f->count, low, high, f->unit);
+    snprintf(text, size, "%lld values, %.6g to %.6g %s", f->count, low, high, f->unit);
 }
 
 /* Writes the values of a factor in a few words: "5 values, 4 to 6 m/s". */
@@ -40,13 +41,11 @@ static void factor_text(const sf_plan *p, int factor, char *text, size_t size) {
         sf_factor_distribution_text(f, text, size);
     else
         list_text(f, text, size);
-    size_t used = strlen(text);
-    if (b->kind == SF_BLOCK_ZIP && used < size)
-        snprintf(text + used, size - used, ", with %s",
-                 p->factor[b->first == factor ? b->first + b->count - 1 : b->first].name);
-    else if (b->kind == SF_BLOCK_SAMPLE && used < size)
-        snprintf(text + used, size - used, "; %s of %lld rows", sampling_words[b->method],
-                 (long long)b->rows);
+    if (b->kind == SF_BLOCK_ZIP)
+        sf_text_add(text, size, ", with %s",
+                    p->factor[b->first == factor ? b->first + b->count - 1 : b->first].name);
+    else if (b->kind == SF_BLOCK_SAMPLE)
+        sf_text_add(text, size, "; %s of %lld rows", sampling_words[b->method], b->rows);
 }
 
 void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
@@ -55,13 +54,13 @@ void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
         factor_text(p, f, text, sizeof text);
         fprintf(out, "  %-36s %s\n", p->factor[f].name, text);
     }
-    fprintf(out, "%lld runs\n  id", (long long)p->rows);
+    fprintf(out, "%lld runs\n  id", p->rows);
     for (int f = 0; f < p->factor_count; f++) {
         sf_factor_heading(&p->factor[f], text, sizeof text);
         fprintf(out, ", %s", text);
     }
-    for (int64_t row = 0; row < p->rows && row < rows; row++) {
-        fprintf(out, "\n  %lld", (long long)row + 1);
+    for (long long row = 0; row < p->rows && row < rows; row++) {
+        fprintf(out, "\n  %lld", row + 1);
         for (int f = 0; f < p->factor_count; f++) {
             sf_factor_text(&p->factor[f], sf_plan_value(p, f, row), text, sizeof text);
             fprintf(out, ", %s", text);
@@ -94,10 +93,8 @@ static void json_effects(sf_json *j, const sf_sweep_report *r, int figure) {
         const sf_effect *e = &r->analysis->effect[figure][f];
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "factor", r->plan->factor[f].name);
-        sf_json_number(j, "low", e->low);
-        sf_json_number(j, "high", e->high);
-        sf_json_number(j, "at_least_value", e->first);
-        sf_json_number(j, "at_greatest_value", e->last);
+        SF_JSON_NUMBERS(j, {"low", e->low}, {"high", e->high}, {"at_least_value", e->first},
+                        {"at_greatest_value", e->last});
         sf_json_bool(j, "by_response_surface", sf_effect_is_by_surface(r->plan, f));
         sf_json_integer(j, "combinations", e->used);
         sf_json_integer(j, "all_combinations", e->of);
@@ -116,12 +113,8 @@ static void json_indices(sf_json *j, const sf_sweep_report *r, int figure) {
         const sf_index *i = &a->index[figure][f];
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "factor", r->plan->factor[f].name);
-        sf_json_number(j, "first", i->first);
-        sf_json_number(j, "first_low", i->first_low);
-        sf_json_number(j, "first_high", i->first_high);
-        sf_json_number(j, "total", i->total);
-        sf_json_number(j, "total_low", i->total_low);
-        sf_json_number(j, "total_high", i->total_high);
+        SF_JSON_NUMBERS(j, {"first", i->first}, {"first_low", i->first_low}, {"first_high", i->first_high},
+                        {"total", i->total}, {"total_low", i->total_low}, {"total_high", i->total_high});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -133,18 +126,15 @@ static void json_surface(sf_json *j, const sf_sweep_report *r, int figure) {
     char text[512];
     sf_json_open(j, "response_surface", '{');
     sf_json_text(j, "problem", *fit->problem ? fit->problem : NULL);
-    sf_json_integer(j, "rows", s->rows);
-    sf_json_number(j, "rms", fit->rms);
-    sf_json_number(j, "left_out_rms", fit->left_out_rms);
-    sf_json_number(j, "q2", fit->q2);
+    SF_JSON_NUMBERS(j, {"rows", (double)s->rows}, {"rms", fit->rms}, {"left_out_rms", fit->left_out_rms},
+                    {"q2", fit->q2});
     sf_json_open(j, "numbers", '[');
     int list[SF_SWEEP_FACTORS];
     sf_analysis_numbers(r->plan, list);
     for (int i = 0; i < fit->d && fit->terms > 0; i++) {
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "factor", r->plan->factor[list[i]].name);
-        sf_json_number(j, "centre", fit->centre[i]);
-        sf_json_number(j, "half_range", fit->half[i]);
+        SF_JSON_NUMBERS(j, {"centre", fit->centre[i]}, {"half_range", fit->half[i]});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -175,13 +165,9 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
             sf_factor_text(&r->plan->factor[f], sf_plan_value(r->plan, f, q->row[k]), text, sizeof text);
             sf_json_text(j, r->plan->factor[f].name, text);
         }
-        sf_json_number(j, "probability", c->share);
-        sf_json_number(j, "low", c->low);
-        sf_json_number(j, "high", c->high);
-        sf_json_integer(j, "below", c->below);
-        sf_json_integer(j, "above", c->above);
-        sf_json_integer(j, "unknown", c->unknown);
-        sf_json_integer(j, "within_scatter", c->within);
+        SF_JSON_NUMBERS(j, {"probability", c->share}, {"low", c->low}, {"high", c->high},
+                        {"below", (double)c->below}, {"above", (double)c->above},
+                        {"unknown", (double)c->unknown}, {"within_scatter", (double)c->within});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -195,12 +181,9 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     sf_json j = {.file = file};
     sf_json_open(&j, NULL, '{');
     sf_json_text(&j, "plan", r->plan->path);
-    sf_json_integer(&j, "runs", r->plan->rows);
-    sf_json_integer(&j, "done", a->done);
-    sf_json_integer(&j, "failed", a->failed);
-    sf_json_integer(&j, "open", a->open);
-    sf_json_integer(&j, "predicted", a->predicted);
-    sf_json_integer(&j, "do_not_use", a->unusable);
+    SF_JSON_NUMBERS(&j, {"runs", (double)r->plan->rows}, {"done", (double)a->done},
+                    {"failed", (double)a->failed}, {"open", (double)a->open},
+                    {"predicted", (double)a->predicted}, {"do_not_use", (double)a->unusable});
     json_factors(&j, r->plan);
     sf_sweep_views_json(&j, r->views);
     sf_json_open(&j, "figures", '[');
@@ -208,12 +191,10 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
         sf_json_open(&j, NULL, '{');
         sf_json_text(&j, "figure", r->plan->figure[k].figure);
         sf_json_number(&j, "limit", r->plan->figure[k].limit);
-        if (sf_plan_is_adaptive(r->plan)) {
-            sf_json_number(&j, "accuracy", r->plan->figure[k].accuracy);
-            sf_json_number(&j, "widest_prediction", a->widest[k]);
-            sf_json_integer(&j, "checked_rows", r->runs->checked[k]);
-            sf_json_integer(&j, "held_rows", r->runs->held[k]);
-        }
+        if (sf_plan_is_adaptive(r->plan))
+            SF_JSON_NUMBERS(&j, {"accuracy", r->plan->figure[k].accuracy},
+                            {"widest_prediction", a->widest[k]}, {"checked_rows", r->runs->checked[k]},
+                            {"held_rows", r->runs->held[k]});
         json_probability(&j, r, k);
         json_effects(&j, r, k);
         json_indices(&j, r, k);
@@ -231,13 +212,13 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
     char value[64], remark[96];
     sf_html_tiles_begin(page);
-    snprintf(value, sizeof value, "%lld of %lld", (long long)a->done, (long long)r->plan->rows);
-    snprintf(remark, sizeof remark, "%lld predicted, %lld failed, %lld open", (long long)a->predicted,
-             (long long)a->failed, (long long)a->open);
+    snprintf(value, sizeof value, "%lld of %lld", a->done, r->plan->rows);
+    snprintf(remark, sizeof remark, "%lld predicted, %lld failed, %lld open", a->predicted, a->failed,
+             a->open);
     sf_html_tile(page, a->failed + a->open > 0 ? "fair" : "good", "runs done", value, remark);
-    snprintf(value, sizeof value, "%lld", (long long)a->usable);
-    snprintf(remark, sizeof remark, "%lld with remarks; %lld more are not to be used", (long long)a->remarks,
-             (long long)a->unusable);
+    snprintf(value, sizeof value, "%lld", a->usable);
+    snprintf(remark, sizeof remark, "%lld with remarks; %lld more are not to be used", a->remarks,
+             a->unusable);
     sf_html_tile(page, a->unusable > 0 ? "fair" : "good", "runs whose figures count", value, remark);
     for (int k = 0; k < r->plan->figure_count && a->probability.cells == 1; k++) {
         const sf_probability *c = &a->probability.cell[k];
@@ -249,7 +230,7 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
         snprintf(remark, sizeof remark, "95 %% interval %.3f to %.3f", c->low, c->high);
         if (c->unknown > 0)
             snprintf(remark, sizeof remark, "%.3f to %.3f; %lld unknown runs are taken as above", c->low,
-                     c->high, (long long)c->unknown);
+                     c->high, c->unknown);
         sf_html_tile(page, "plain", title, value, remark);
     }
     sf_html_tiles_end(page);
@@ -268,7 +249,7 @@ static void put_factors(FILE *page, const sf_plan *p) {
         sf_html_cell(&t, "%s", p->factor[f].uncertain ? "uncertain" : "chosen");
     }
     sf_html_table_end(&t);
-    sf_html_paragraph(page, "%lld runs of %s, a row each in runs.csv.", (long long)p->rows, p->case_path);
+    sf_html_paragraph(page, "%lld runs of %s, a row each in runs.csv.", p->rows, p->case_path);
 }
 
 static void put_predictions(FILE *page, const sf_sweep_report *r) {
@@ -293,22 +274,15 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
         "probabilities a prediction whose interval holds the limit is unknown. %lld rows "
         "are open: they are expected to fail or to be not to be used. A figure that a drop would not define, such as "
         "the rebound of a run that ends in contact, is predicted all the same.",
-        (long long)a->predicted, (long long)r->plan->rows, (long long)a->open);
+        a->predicted, r->plan->rows, a->open);
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
-    char warning[320];
     for (const sf_sweep_picture *p = sf_sweep_pictures(); p->name; p++) {
         char script[64];
         snprintf(script, sizeof script, "%s.gp", p->name);
-        if (!sf_staging_has(output, script))
-            continue;
-        char *svg = sf_chart_svg(output, p->name, "softfall-sweep", warning, sizeof warning);
-        if (svg)
-            sf_html_figure(page, svg, "%s.", p->caption);
-        else
-            sf_html_figure(page, NULL, "%s.", warning);
-        free(svg);
+        if (sf_staging_has(output, script))
+            sf_chart_figure(page, output, p->name, "softfall-sweep", p->caption);
     }
 }
 
@@ -326,30 +300,27 @@ static void put_probability_row(sf_html_table *t, const sf_sweep_report *r, int6
         if (isnan(r->plan->figure[k].limit))
             continue;
         sf_html_cell(t, isnan(c->share) ? "–" : "%.3f (%.3f to %.3f)", c->share, c->low, c->high);
-        sf_html_cell(t, "%lld / %lld / %lld / %lld", (long long)c->below, (long long)c->above,
-                     (long long)c->unknown, (long long)c->within);
+        sf_html_cell(t, "%lld / %lld / %lld / %lld", c->below, c->above, c->unknown, c->within);
     }
 }
 
 static void put_probability(FILE *page, const sf_sweep_report *r) {
     const sf_probabilities *q = &r->analysis->probability;
     char columns[4096] = "";
-    size_t used = 0;
     if (q->cells == 0)
         return;
     for (int f = 0; f < r->plan->factor_count; f++)
         if (sf_block_is_chosen(r->plan, r->plan->block_of[f])) {
             char text[SF_FACTOR_KEY_SIZE + SF_FACTOR_UNIT_SIZE + 8];
             sf_factor_heading(&r->plan->factor[f], text, sizeof text);
-            used += (size_t)snprintf(columns + used, sizeof columns - used, "%s%s", used ? "|" : "", text);
+            sf_text_add(columns, sizeof columns, "%s%s", *columns ? "|" : "", text);
         }
-    for (int k = 0; k < r->plan->figure_count && used < sizeof columns; k++)
+    for (int k = 0; k < r->plan->figure_count; k++)
         if (!isnan(r->plan->figure[k].limit))
-            used +=
-                (size_t)snprintf(columns + used, sizeof columns - used,
-                                 "%s>P(%s < %g), 95 %% interval|>below / above / unknown / within scatter",
-                                 used ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
-    if (used == 0)
+            sf_text_add(columns, sizeof columns,
+                        "%s>P(%s < %g), 95 %% interval|>below / above / unknown / within scatter",
+                        *columns ? "|" : "", r->plan->figure[k].figure, r->plan->figure[k].limit);
+    if (!*columns)
         return;
     sf_html_heading(page, "Probability of staying below the limits");
     sf_html_table t = sf_html_table_begin(page, "dense", columns);
@@ -369,12 +340,12 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
 
 /* Means and fits of a part that the outcome has chosen. */
 static void note_missing(FILE *page, const sf_sweep_report *r, const char *what) {
-    int64_t missing = r->plan->rows - r->analysis->usable;
+    long long missing = r->plan->rows - r->analysis->usable;
     if (missing > 0)
         sf_html_note(page,
                      "%lld of %lld runs are left out (failed, not to be used, or open). These are no random "
                      "part, but mostly the hardest drops: %s.",
-                     (long long)missing, (long long)r->plan->rows, what);
+                     missing, r->plan->rows, what);
 }
 
 /* Puts the number of combinations behind a main effect. */
@@ -384,7 +355,7 @@ static void put_ground(sf_html_table *t, const sf_plan *p, int factor, const sf_
     else if (sf_effect_is_scatter(p, factor))
         sf_html_cell(t, "–");
     else if (e->of > 0)
-        sf_html_cell(t, "%lld of %lld combinations", (long long)e->used, (long long)e->of);
+        sf_html_cell(t, "%lld of %lld combinations", e->used, e->of);
     else
         sf_html_cell(t, "all runs that count");
 }
@@ -401,10 +372,7 @@ static void put_effects(FILE *page, const sf_sweep_report *r) {
             sf_html_row(&t);
             sf_html_cell(&t, "%s", r->plan->figure[k].figure);
             sf_html_cell(&t, "%s", r->plan->factor[f].name);
-            sf_html_number(&t, 1, e->low);
-            sf_html_number(&t, 1, e->high);
-            sf_html_number(&t, 1, e->first);
-            sf_html_number(&t, 1, e->last);
+            SF_HTML_NUMBERS(&t, 1, e->low, e->high, e->first, e->last);
             put_ground(&t, r->plan, f, e);
             scatter |= sf_effect_is_scatter(r->plan, f);
         }
@@ -443,8 +411,7 @@ static void put_indices(FILE *page, const sf_sweep_report *r) {
             sf_html_cell(&t, isnan(i->first_low) ? "–" : "%.3f to %.3f", i->first_low, i->first_high);
             sf_html_number(&t, 3, i->total);
             sf_html_cell(&t, isnan(i->total_low) ? "–" : "%.3f to %.3f", i->total_low, i->total_high);
-            sf_html_cell(&t, "%lld of %lld", (long long)a->index_samples[k],
-                         (long long)sf_plan_saltelli(r->plan)->samples);
+            sf_html_cell(&t, "%lld of %lld", a->index_samples[k], sf_plan_saltelli(r->plan)->samples);
         }
     sf_html_table_end(&t);
     sf_html_note(
@@ -464,11 +431,8 @@ static void put_surfaces(FILE *page, const sf_sweep_report *r) {
         const sf_sweep_surface *s = &r->analysis->surface[k];
         sf_html_row(&t);
         sf_html_cell(&t, "%s", r->plan->figure[k].figure);
-        sf_html_number(&t, 0, (double)s->rows);
-        sf_html_number(&t, 0, s->fit.terms);
-        sf_html_number(&t, 3, s->fit.rms);
-        sf_html_number(&t, 3, s->fit.left_out_rms);
-        sf_html_number(&t, 3, s->fit.q2);
+        SF_HTML_NUMBERS(&t, 0, (double)s->rows, s->fit.terms);
+        SF_HTML_NUMBERS(&t, 3, s->fit.rms, s->fit.left_out_rms, s->fit.q2);
         sf_html_cell(&t, "%s%s%s", s->fit.problem, *s->fit.problem && s->rows < s->of ? "; " : "",
                      s->rows < s->of ? "a part of the runs, drawn at random" : "");
     }
@@ -488,13 +452,13 @@ static void put_failures(FILE *page, const sf_sweep_report *r) {
         return;
     sf_html_heading(page, "Runs that failed or are not to be used");
     sf_html_table t = sf_html_table_begin(page, "dense", ">id|what|sentence");
-    for (int64_t row = 0; row < r->runs->count && listed < LISTED; row++) {
+    for (long long row = 0; row < r->runs->count && listed < LISTED; row++) {
         bool failed = r->runs->state[row] == SF_SWEEP_FAILED;
         if (!failed && (r->runs->state[row] != SF_SWEEP_DONE || sf_runs_usable(r->runs, row)))
             continue;
         listed++;
         sf_html_row(&t);
-        sf_html_cell(&t, "%lld", (long long)row + 1);
+        sf_html_cell(&t, "%lld", row + 1);
         sf_html_cell(&t, "%s", failed ? "failed" : "do not use");
         sf_html_cell(&t, "%s", r->runs->message[row] ? r->runs->message[row] : "");
     }
@@ -519,8 +483,7 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
         whole ? "complete" : "with gaps",
         "%lld of %lld runs are done, %lld are predicted, %lld failed, %lld are open; the figures of %lld are not to "
         "be used. %s",
-        (long long)a->done, (long long)r->plan->rows, (long long)a->predicted, (long long)a->failed,
-        (long long)a->open, (long long)a->unusable, caution);
+        a->done, r->plan->rows, a->predicted, a->failed, a->open, a->unusable, caution);
     put_tiles(page, r);
     put_factors(page, r->plan);
     put_predictions(page, r);
@@ -541,25 +504,22 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
 void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
     fprintf(out, "%lld runs: %lld done, %lld failed, %lld open; the figures of %lld are not to be used\n",
-            (long long)r->plan->rows, (long long)a->done, (long long)a->failed, (long long)a->open,
-            (long long)a->unusable);
+            r->plan->rows, a->done, a->failed, a->open, a->unusable);
     for (int k = 0; k < r->plan->figure_count && a->predicted > 0; k++)
-        fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n",
-                (long long)a->predicted, r->plan->figure[k].figure, 100 * a->widest[k],
-                100 * r->plan->figure[k].accuracy);
+        fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n", a->predicted,
+                r->plan->figure[k].figure, 100 * a->widest[k], 100 * r->plan->figure[k].accuracy);
     int listed = 0;
-    for (int64_t row = 0; row < r->runs->count && listed < 5; row++)
+    for (long long row = 0; row < r->runs->count && listed < 5; row++)
         if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)
-            fprintf(out, "  run %lld failed: %s\n", (long long)row + 1, r->runs->message[row]);
+            fprintf(out, "  run %lld failed: %s\n", row + 1, r->runs->message[row]);
     if (a->failed > listed)
-        fprintf(out, "  %lld more in runs.csv; --retry does them again\n", (long long)a->failed - listed);
+        fprintf(out, "  %lld more in runs.csv; --retry does them again\n", a->failed - listed);
     for (int k = 0; k < r->plan->figure_count && a->with_indices; k++)
         if (isnan(a->index[k][0].first))
             fprintf(
                 out,
                 "  %s: no Sobol' indices: it does not vary, or too few samples have all runs, %lld of %lld\n",
-                r->plan->figure[k].figure, (long long)a->index_samples[k],
-                (long long)sf_plan_saltelli(r->plan)->samples);
+                r->plan->figure[k].figure, a->index_samples[k], sf_plan_saltelli(r->plan)->samples);
     for (int k = 0; k < r->plan->figure_count; k++) {
         const sf_quadratic *s = &a->surface[k].fit;
         if (s->terms > 0 && *s->problem)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/trend.h"
+#include "study/sweep/adaptive.h"
 
 #include <gsl/gsl_multifit.h>
 #include <limits.h>
@@ -83,31 +83,25 @@ static double thickness_at(const sf_sweep_trend *t, int64_t row) {
 
 /* Least squares; the fit has no use where the drops determine fewer terms. */
 static sf_status fit_thickness(sf_sweep_trend *t, const drop *list, int count, sf_error *err) {
+    double design[MOST_DROPS * (SF_SWEEP_FACTORS + 1)], thickness[MOST_DROPS],
+        square[(SF_SWEEP_FACTORS + 1) * (SF_SWEEP_FACTORS + 1)], squares;
     size_t terms = (size_t)t->numbers + 1, n = (size_t)count, rank = 0;
-    double squares;
-    gsl_matrix *x = gsl_matrix_alloc(n, terms), *covariance = gsl_matrix_alloc(terms, terms);
-    gsl_vector *y = gsl_vector_alloc(n), *c = gsl_vector_alloc(terms);
-    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, terms);
-    if (x && covariance && y && c && work) {
-        for (size_t i = 0; i < n; i++) {
-            gsl_vector_set(y, i, list[i].columns.thickness);
-            gsl_matrix_set(x, i, 0, 1);
-            for (size_t k = 1; k < terms; k++)
-                gsl_matrix_set(x, i, k, sf_plan_value(t->plan, t->number[k - 1], list[i].row));
-        }
-        gsl_multifit_linear_tsvd(x, y, 1e-10, c, covariance, &squares, &rank, work);
-        for (size_t k = 0; k < terms; k++)
-            t->thickness[k] = gsl_vector_get(c, k);
-    } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the thickness of the pads");
+    for (size_t i = 0; i < n; i++) {
+        thickness[i] = list[i].columns.thickness;
+        design[i * terms] = 1;
+        for (size_t k = 1; k < terms; k++)
+            design[i * terms + k] = sf_plan_value(t->plan, t->number[k - 1], list[i].row);
     }
-    gsl_matrix_free(x);
-    gsl_matrix_free(covariance);
-    gsl_vector_free(y);
-    gsl_vector_free(c);
-    if (work)
-        gsl_multifit_linear_free(work);
-    return err->status;
+    gsl_matrix_view x = gsl_matrix_view_array(design, n, terms),
+                    covariance = gsl_matrix_view_array(square, terms, terms);
+    gsl_vector_view y = gsl_vector_view_array(thickness, n), c = gsl_vector_view_array(t->thickness, terms);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, terms);
+    if (!work)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the thickness of the pads");
+    gsl_multifit_linear_tsvd(&x.matrix, &y.vector, 1e-10, &c.vector, &covariance.matrix, &squares, &rank,
+                             work);
+    gsl_multifit_linear_free(work);
+    return SF_OK;
 }
 
 static const char *find_problem(const sf_sweep_trend *t, const drop *list, int count) {
