@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sampling of densities whose answers are known in closed form. */
 #include "study/fit/posterior/chains.h"
-#include "study/fit/posterior/convergence.h"
 #include "study/fit/posterior/discrepancy.h"
-#include "study/fit/posterior/evidence.h"
 #include "study/fit/posterior/leave_one_out.h"
 
 #include <gsl/gsl_errno.h>

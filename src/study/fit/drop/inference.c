@@ -431,8 +431,7 @@ static bool draw(const sf_drop_inference *in, const double *u, uint64_t seed, do
                 own[d * SF_FIT_SAMPLES + kind] =
                     sf_drop_kind_get(kind)->model_sd * (x[kind] + size.kappa * gsl_ran_ugaussian(random));
     }
-    if (random)
-        gsl_rng_free(random);
+    gsl_rng_free(random);
     free(residual);
     return found;
 }

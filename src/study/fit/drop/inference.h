@@ -15,7 +15,6 @@
 #include "study/fit/drop/drop_fit.h"
 #include "study/fit/posterior/chains.h"
 #include "study/fit/posterior/discrepancy.h"
-#include "study/fit/posterior/evidence.h"
 #include "study/fit/posterior/leave_one_out.h"
 
 enum { SF_DISCREPANCY_PLACES = 20 }; /* strains 0, 0.05, ..., 0.95 */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/posterior/emulator.h"
 
-#include "study/fit/posterior/mixture.h"
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
@@ -34,17 +33,8 @@ static void list_terms(sf_emulator *e, int degree) {
     }
 }
 
-/* z = L^-1 (u - centre); |z|^2. */
 static double standardise(const sf_emulator *e, const double *u, double *z) {
-    double sum = 0;
-    for (int i = 0; i < e->parameters; i++) {
-        z[i] = u[i] - e->centre[i];
-        for (int j = 0; j < i; j++)
-            z[i] -= e->factor[i][j] * z[j];
-        z[i] /= e->factor[i][i];
-        sum += z[i] * z[i];
-    }
-    return sum;
+    return sf_mixture_standardise(&e->frame, e->parameters, u, z);
 }
 
 static void fill_terms(const sf_emulator *e, const double *z, double *term) {
@@ -55,21 +45,11 @@ static void fill_terms(const sf_emulator *e, const double *z, double *term) {
 
 /* Centre and factor of the points; false: they span no volume. */
 static bool find_frame(sf_emulator *e, int count, const double *u) {
-    int n = e->parameters;
-    double mean[N] = {0}, covariance[N * N] = {0};
     sf_mixture m;
     sf_error none = SF_ERROR_INIT;
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < n; i++)
-            mean[i] += u[k * n + i] / count;
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++)
-                covariance[i * n + j] += (u[k * n + i] - mean[i]) * (u[k * n + j] - mean[j]) / count;
-    if (sf_mixture_single(n, mean, covariance, 1, &m, &none) != SF_OK)
+    if (sf_mixture_about(e->parameters, count, u, 1, &m, &none) != SF_OK)
         return false;
-    memcpy(e->centre, m.part[0].centre, sizeof e->centre);
-    memcpy(e->factor, m.part[0].factor, sizeof e->factor);
+    e->frame = m.part[0];
     return true;
 }
 

@@ -10,10 +10,9 @@ enum { SF_EMULATOR_MOST_TERMS = 600 };
 
 typedef struct sf_emulator {
     int parameters, responses;
-    int terms; /* 0: no emulator */
-    double centre[SF_POSTERIOR_MOST];
-    double factor[SF_POSTERIOR_MOST][SF_POSTERIOR_MOST]; /* L of the points' covariance: u = centre + L z */
-    double most_distance;                                /* |z|^2 of the farthest point */
+    int terms;             /* 0: no emulator */
+    sf_mixture_part frame; /* of the points' mean and covariance: u = centre + L z */
+    double most_distance;  /* |z|^2 of the farthest point */
     int parent[SF_EMULATOR_MOST_TERMS],
         variable[SF_EMULATOR_MOST_TERMS]; /* term = term[parent] z[variable] */
     double *coefficient;                  /* [responses][terms]; owned */

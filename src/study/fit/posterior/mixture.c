@@ -5,6 +5,7 @@
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_sf_gamma.h>
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,11 +13,19 @@
 enum { ROUNDS = 25, N = SF_POSTERIOR_MOST };
 static const double RIDGE = 1e-6; /* of the samples' own variances, added to a part's */
 
+gsl_rng *sf_random(uint64_t seed, sf_error *err) {
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    if (random)
+        gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
+    else
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
+    return random;
+}
+
 /* ---- density and draws ---- */
 
-/* Squared distance from the part's centre in its scale. */
-static double distance(const sf_mixture_part *part, int n, const double *u) {
-    double z[N], sum = 0;
+double sf_mixture_standardise(const sf_mixture_part *part, int n, const double *u, double *z) {
+    double sum = 0;
     for (int i = 0; i < n; i++) {
         z[i] = u[i] - part->centre[i];
         for (int j = 0; j < i; j++)
@@ -25,6 +34,11 @@ static double distance(const sf_mixture_part *part, int n, const double *u) {
         sum += z[i] * z[i];
     }
     return sum;
+}
+
+static double distance(const sf_mixture_part *part, int n, const double *u) {
+    double z[N];
+    return sf_mixture_standardise(part, n, u, z);
 }
 
 static double part_log_density(const sf_mixture *m, const sf_mixture_part *part, const double *u) {
@@ -90,34 +104,39 @@ sf_status sf_mixture_single(int n, const double *centre, const double *scale, do
 
 /* ---- matched to samples ---- */
 
+void sf_moments(int n, int count, const double *sample, double *mean, double *covariance) {
+    memset(mean, 0, (size_t)n * sizeof *mean);
+    memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            mean[i] += sample[k * n + i] / count;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                covariance[i * n + j] +=
+                    (sample[k * n + i] - mean[i]) * (sample[k * n + j] - mean[j]) / count;
+}
+
+sf_status sf_mixture_about(int n, int count, const double *sample, double freedom, sf_mixture *m,
+                           sf_error *err) {
+    double mean[N], covariance[N * N];
+    sf_moments(n, count, sample, mean, covariance);
+    return sf_mixture_single(n, mean, covariance, freedom, m, err);
+}
+
 typedef struct samples {
     int n, count;
     const double *u;  /* [count][n] */
     double *share;    /* [parts][count] of a sample in a part */
     double ridge[N];  /* added to the variances */
-    double axis[N];   /* first principal axis of the samples in their deviations */
-    double *position; /* [count] along it */
+    double *position; /* [count] along their first principal axis */
 } samples;
-
-/* Mean and covariance [n][n] of all samples. */
-static void moments(const samples *s, double *mean, double *covariance) {
-    int n = s->n;
-    memset(mean, 0, (size_t)n * sizeof *mean);
-    memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
-    for (int k = 0; k < s->count; k++)
-        for (int i = 0; i < n; i++)
-            mean[i] += s->u[k * n + i] / s->count;
-    for (int k = 0; k < s->count; k++)
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++)
-                covariance[i * n + j] += (s->u[k * n + i] - mean[i]) * (s->u[k * n + j] - mean[j]) / s->count;
-}
 
 /* Positions of the samples along the first principal axis of the correlation matrix. */
 static sf_status find_axis(samples *s, sf_error *err) {
     int n = s->n;
     double mean[N], c[N * N], sd[N];
-    moments(s, mean, c);
+    sf_moments(n, s->count, s->u, mean, c);
     for (int i = 0; i < n; i++) {
         sd[i] = sqrt(c[i * n + i]);
         s->ridge[i] = RIDGE * c[i * n + i];
@@ -148,18 +167,13 @@ static sf_status find_axis(samples *s, sf_error *err) {
     return err->status;
 }
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* First shares: equal slices along the axis. */
 static sf_status slice(const samples *s, int parts, sf_error *err) {
     double *sorted = sf_alloc(err, (unsigned long)s->count, sizeof *sorted, "samples");
     if (!sorted)
         return err->status;
     memcpy(sorted, s->position, (size_t)s->count * sizeof *sorted);
-    qsort(sorted, (size_t)s->count, sizeof *sorted, compare);
+    gsl_sort(sorted, 1, (size_t)s->count);
     for (int k = 0; k < s->count; k++)
         for (int p = 0; p < parts; p++) {
             bool above = p == 0 || s->position[k] >= sorted[s->count * p / parts];

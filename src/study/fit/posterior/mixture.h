@@ -38,6 +38,9 @@ static inline double sf_target_at(const sf_target *target, const double *u) {
     return value == value ? value : -__builtin_inf();
 }
 
+/* The generator of a seed; NULL without memory. Release with gsl_rng_free. */
+gsl_rng *sf_random(uint64_t seed, sf_error *err);
+
 /* A seed of its own for the `index`-th of several generators of one `seed`. */
 static inline uint64_t sf_seed_of(uint64_t seed, uint64_t index) {
     uint64_t z = seed * 0x9e3779b97f4a7c15u + (index + 1) * 0xd1342543de82ef95u;
@@ -64,9 +67,17 @@ typedef struct sf_mixture {
     sf_mixture_part part[SF_MIXTURE_MOST];
 } sf_mixture;
 
+/* Mean [n] and covariance [n][n] of samples [count][n]. */
+void sf_moments(int n, int count, const double *sample, double *mean, double *covariance);
+/* z = L^-1 (u - centre) [n]; returns |z|^2, the squared distance from the part's centre in its scale. */
+double sf_mixture_standardise(const sf_mixture_part *part, int n, const double *u, double *z);
+
 /* One part with this centre [n] and scale matrix [n][n]. Errors: it is not positive definite. */
 sf_status sf_mixture_single(int n, const double *centre, const double *scale, double freedom,
                             sf_mixture *mixture, sf_error *err);
+/* The same from the moments of samples [count][n]. */
+sf_status sf_mixture_about(int n, int count, const double *sample, double freedom, sf_mixture *mixture,
+                           sf_error *err);
 /* Matched to `count` samples [count][n] by expectation and maximisation; the number of parts is the one
  * that, matched to the first half (let it be other chains), describes the second best. Errors: too few
  * samples, or they span no volume. */
