@@ -4,7 +4,7 @@
 #include "extreme.h"
 #include "study/column.h"
 #include "study/fit/drop/fit_input.h"
-#include "study/fit/form/gas.h"
+#include "study/fit/form/form.h"
 #include "study/fit/space_mapping.h"
 #include "foam_fixture.h"
 #include "io/folder.h"

@@ -4,7 +4,7 @@
  * are refused. */
 #include "material/curve.h"
 #include "study/fit/drop/parameters.h"
-#include "study/fit/form/gas.h"
+#include "study/fit/form/form.h"
 
 #include <math.h>
 #include <setjmp.h>

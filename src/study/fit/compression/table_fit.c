@@ -596,7 +596,6 @@ static void fill_card(const sf_compression_fit *fit, sf_foam_card *card) {
     int count = fit->table_count;
     for (int r = 0; r < fit->rate_count; r++) {
         card->curve_rate[r] = fit->rate_count > 1 ? fit->data.config->test[r].rate : 0;
-        card->curve_ptr[r + 1] = (int64_t)(r + 1) * count;
         for (int k = 0; k < count; k++) {
             card->curve_strain[r * count + k] = fit->table_strain[k];
             card->curve_stress[r * count + k] = fit->table_stress[r][k];
@@ -607,7 +606,6 @@ static void fill_card(const sf_compression_fit *fit, sf_foam_card *card) {
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err) {
     const sf_compression_config *c = fit->data.config;
     const sf_estimate *e = fit->estimate;
-    unsigned long rates = (unsigned long)fit->rate_count, points = rates * (unsigned long)fit->table_count;
     bool maxwell = e[SF_ESTIMATE_ED].present;
     /* curves of their own each have an exponent of their own where A = 0: the solver finds them (0) */
     bool own = fit->model.form.rule == SF_H1_AUTO && fit->model.form.rate == SF_RATE_CURVES;
@@ -627,24 +625,9 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
                                                  : SF_DENSIFICATION_H1,
                        .densification_start = fit->data.start,
                        .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
-                       .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value,
-                       .curve_count = fit->rate_count,
-                       .curve_points = (int64_t)points};
-    card->curve_rate = sf_alloc(err, rates, sizeof *card->curve_rate, "curve rates");
-    card->curve_ptr = sf_alloc(err, rates + 1, sizeof *card->curve_ptr, "curve list");
-    card->curve_strain = sf_alloc(err, points, sizeof *card->curve_strain, "curve strains");
-    card->curve_stress = sf_alloc(err, points, sizeof *card->curve_stress, "curve stresses");
-    if (err->status == SF_OK)
+                       .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value};
+    if (sf_form_curves_alloc(fit->rate_count, (int64_t)fit->rate_count * fit->table_count, &card->curves,
+                             err) == SF_OK)
         fill_card(fit, card);
-    else
-        sf_compression_card_free(card);
     return err->status;
-}
-
-void sf_compression_card_free(sf_foam_card *card) {
-    free(card->curve_rate);
-    free(card->curve_ptr);
-    free(card->curve_strain);
-    free(card->curve_stress);
-    *card = (sf_foam_card){0};
 }

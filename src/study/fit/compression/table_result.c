@@ -73,7 +73,7 @@ sf_status sf_table_result_make(const sf_compression_config *config, sf_table_res
 
 void sf_table_result_free(sf_table_result *r) {
     sf_compression_fit_free(&r->fit);
-    sf_compression_card_free(&r->card);
+    sf_foam_card_free(&r->card);
     free(r->cube);
 }
 

@@ -2,7 +2,6 @@
 #include "study/fit/drop/parameters.h"
 
 #include "material/curve.h"
-#include "study/fit/form/gas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,30 +79,23 @@ int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARA
     return count;
 }
 
-/* A copy of `count` items; zeros for NULL. */
-static void *copy_items(const void *from, int64_t count, size_t size, sf_error *err) {
-    void *to = sf_alloc(err, (unsigned long)count, size, "foam card");
-    if (to && from && count > 0)
+static void copy_items(void *to, const void *from, int64_t count, size_t size) {
+    if (from && count > 0)
         memcpy(to, from, (size_t)count * size);
-    return to;
 }
 
 sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {
     *to = *from;
-    to->curve_rate = copy_items(from->curve_rate, from->curve_count, sizeof(double), err);
-    to->curve_ptr = copy_items(from->curve_ptr, from->curve_count + 1, sizeof(int64_t), err);
-    to->curve_strain = copy_items(from->curve_strain, from->curve_points, sizeof(double), err);
-    to->curve_stress = copy_items(from->curve_stress, from->curve_points, sizeof(double), err);
-    if (err->status != SF_OK)
-        sf_foam_card_free(to);
-    return err->status;
+    SF_TRY(sf_form_curves_alloc(from->curve_count, from->curve_points, &to->curves, err));
+    copy_items(to->curve_rate, from->curve_rate, from->curve_count, sizeof(double));
+    copy_items(to->curve_ptr, from->curve_ptr, from->curve_count + 1, sizeof(int64_t));
+    copy_items(to->curve_strain, from->curve_strain, from->curve_points, sizeof(double));
+    copy_items(to->curve_stress, from->curve_stress, from->curve_points, sizeof(double));
+    return SF_OK;
 }
 
 void sf_foam_card_free(sf_foam_card *card) {
-    free(card->curve_rate);
-    free(card->curve_ptr);
-    free(card->curve_strain);
-    free(card->curve_stress);
+    sf_law_curves_free(&card->curves);
     *card = (sf_foam_card){0};
 }
 
@@ -147,33 +139,27 @@ static double table_end(const sf_curve *curve, double limit) {
 
 sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
     enum { POINTS = 196 };
-    int64_t n = card->curve_count;
-    double *strain = sf_alloc(err, (unsigned long)n * POINTS, sizeof *strain, "curves"),
-           *stress = sf_alloc(err, (unsigned long)n * POINTS, sizeof *stress, "curves");
-    for (int64_t c = 0; c < n && err->status == SF_OK; c++) {
+    sf_law_curves fine;
+    SF_TRY(sf_form_curves_alloc(card->curve_count, POINTS * card->curve_count, &fine, err));
+    for (int64_t c = 0; c < card->curve_count && err->status == SF_OK; c++) {
         sf_curve curve;
         if (sf_curve_build(card, c, &curve, err) != SF_OK)
             break;
-        double last = table_end(&curve, card->densification_limit);
+        double last = table_end(&curve, card->densification_limit), slope, energy;
+        fine.curve_rate[c] = card->curve_rate[c];
         for (int k = 0; k < POINTS; k++) {
-            double slope, energy;
-            strain[c * POINTS + k] = last * k / (POINTS - 1);
-            sf_curve_evaluate(&curve, strain[c * POINTS + k], &stress[c * POINTS + k], &slope, &energy);
+            int64_t at = c * POINTS + k;
+            fine.curve_strain[at] = last * k / (POINTS - 1);
+            sf_curve_evaluate(&curve, fine.curve_strain[at], &fine.curve_stress[at], &slope, &energy);
         }
         sf_curve_free(&curve);
     }
     if (err->status != SF_OK) {
-        free(strain);
-        free(stress);
+        sf_law_curves_free(&fine);
         return err->status;
     }
-    free(card->curve_strain);
-    free(card->curve_stress);
-    card->curve_strain = strain;
-    card->curve_stress = stress;
-    card->curve_points = n * POINTS;
-    for (int64_t c = 0; c <= n; c++)
-        card->curve_ptr[c] = c * POINTS;
+    sf_law_curves_free(&card->curves);
+    card->curves = fine;
     card->densification_start = 0;
     return SF_OK;
 }

@@ -72,25 +72,18 @@ double sf_curve_form_pole(const sf_curve_form *form, const double *value) {
 
 static const double TAKES_OVER = 0.95; /* of e_D: from there a lock-up continues the form */
 
-/* Value and slope of the form itself. */
-static void join(const sf_curve_form *form, const double *value, double at, double h, double *stress,
-                 double *slope) {
-    const double strain[3] = {at - h, at, at + h};
-    double sigma[3];
-    form->stress(value, 3, strain, sigma);
-    *stress = sigma[1];
-    *slope = (sigma[2] - sigma[0]) / (2 * h);
-}
-
 void sf_curve_form_stresses(const sf_curve_form *form, const double *value, int count, const double *strain,
                             double *stress) {
-    double pole = sf_curve_form_pole(form, value), end = TAKES_OVER * pole, at_end, slope, unused[2];
+    double pole = sf_curve_form_pole(form, value), end = TAKES_OVER * pole, h = 1e-4 * (pole - end), own[3],
+           unused[2];
+    const double about[3] = {end - h, end, end + h};
     form->stress(value, count, strain, stress);
     if (!(pole < form->pole(value)))
         return;
-    join(form, value, end, 1e-4 * (pole - end), &at_end, &slope);
+    form->stress(value, 3, about, own);
+    double slope = (own[2] - own[0]) / (2 * h);
     const sf_densification beyond = sf_densification_join(
-        end, pole, sf_densification_steep_exponent(end, pole, at_end, slope), at_end, slope, 0);
+        end, pole, sf_densification_steep_exponent(end, pole, own[1], slope), own[1], slope, 0);
     for (int k = 0; k < count; k++)
         if (strain[k] > end)
             sf_densification_evaluate(&beyond, strain[k], &stress[k], &unused[0], &unused[1]);
@@ -103,6 +96,22 @@ double sf_curve_form_stress(const sf_curve_form *form, const double *value, doub
 }
 
 /* ---- tabulation ---- */
+
+sf_status sf_form_curves_alloc(int64_t count, int64_t points, sf_law_curves *curves, sf_error *err) {
+    *curves = (sf_law_curves){
+        .curve_count = count,
+        .curve_points = points,
+        .curve_rate = sf_alloc(err, (unsigned long)count, sizeof(double), "curves"),
+        .curve_ptr = sf_alloc(err, (unsigned long)count + 1, sizeof(int64_t), "curves"),
+        .curve_strain = sf_alloc(err, (unsigned long)points, sizeof(double), "curves"),
+        .curve_stress = sf_alloc(err, (unsigned long)points, sizeof(double), "curves"),
+    };
+    for (int64_t k = 1; k <= count && err->status == SF_OK; k++)
+        curves->curve_ptr[k] = k * (points / count);
+    if (err->status != SF_OK)
+        sf_law_curves_free(curves);
+    return err->status;
+}
 
 /* Strains of the table: close together in the knee, and by equal ratios of the distance to the pole where the
  * stress rises steeply. So dense that the solver's interpolant has the stress to 1e-4. */
@@ -154,59 +163,21 @@ static void set_densification(const sf_curve_form *form, const double *value, do
                  : 0;
 }
 
-static void replace_curves(sf_foam_card *card, double *strain, double *stress, double *rate, int64_t *ptr) {
-    free(card->curve_strain);
-    free(card->curve_stress);
-    free(card->curve_rate);
-    free(card->curve_ptr);
-    card->curve_strain = strain;
-    card->curve_stress = stress;
-    card->curve_rate = rate;
-    card->curve_ptr = ptr;
-    card->curve_count = 1;
-    card->curve_points = ptr[1] = POINTS;
-}
-
 sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value, sf_foam_card *card,
                                  sf_error *err) {
-    if (form->check(value, err) != SF_OK)
-        return err->status;
-    double pole = sf_curve_form_pole(form, value), *strain = sf_alloc(err, POINTS, sizeof *strain, "curve"),
-           *stress = sf_alloc(err, POINTS, sizeof *stress, "curve"),
-           *rate = sf_alloc(err, 1, sizeof *rate, "curve");
-    int64_t *ptr = sf_alloc(err, 2, sizeof *ptr, "curve");
-    if (err->status == SF_OK) {
-        double last = last_part(form, value, pole);
-        for (int k = 0; k < POINTS; k++)
-            strain[k] = pole * part_of(k, last);
-        sf_curve_form_stresses(form, value, POINTS, strain, stress);
-        check_table(form, strain, stress, err);
-    }
-    if (err->status != SF_OK) {
-        free(strain);
-        free(stress);
-        free(rate);
-        free(ptr);
+    sf_law_curves made;
+    SF_TRY(form->check(value, err));
+    SF_TRY(sf_form_curves_alloc(1, POINTS, &made, err));
+    double pole = sf_curve_form_pole(form, value), last = last_part(form, value, pole);
+    for (int k = 0; k < POINTS; k++)
+        made.curve_strain[k] = pole * part_of(k, last);
+    sf_curve_form_stresses(form, value, POINTS, made.curve_strain, made.curve_stress);
+    if (check_table(form, made.curve_strain, made.curve_stress, err) != SF_OK) {
+        sf_law_curves_free(&made);
         return err->status;
     }
-    set_densification(form, value, pole, strain[POINTS - 1], card);
-    replace_curves(card, strain, stress, rate, ptr);
+    set_densification(form, value, pole, made.curve_strain[POINTS - 1], card);
+    sf_law_curves_free(&card->curves);
+    card->curves = made;
     return SF_OK;
 }
-
-/* The form `table`: the start material's curve, scaled; its densification law stays. */
-
-static const sf_form_entry entries[] = {{SF_PARAMETER_STRESS_SCALE, 0.3, true},
-                                        {SF_PARAMETER_EXPONENT, 0.3, false}};
-
-static void start(double *value) {
-    value[SF_PARAMETER_STRESS_SCALE] = 1;
-}
-
-const sf_curve_form sf_form_table = {
-    .name = "table",
-    .formula = "the start material's curve times stress_scale",
-    .entry = entries,
-    .entry_count = sizeof entries / sizeof *entries,
-    .start = start,
-};

@@ -135,6 +135,31 @@ void sf_curve_form_stresses(const sf_curve_form *form, const double *value, int 
                             double *stress);
 double sf_curve_form_stress(const sf_curve_form *form, const double *value, double strain);
 
+/* Strain at which a foam of this solid fraction is dense, 1 - 1.4 Phi (Gibson and Ashby). */
+double sf_form_dense_strain(double solid);
+
+/* A physically shaped compression curve of a closed-cell foam:
+ *
+ *     sigma(e) = s0 (1 - exp(-(E - p0/(1 - Phi)) e/s0)) + p0 e/(1 - e - Phi) + B (e/(e_D - e))^m,
+ *
+ * yield of the cell walls at s0; isothermal compression of the gas in the cells, which is beside the solid
+ * fraction Phi (Gibson and Ashby); densification with its pole at e_D = 1 - 1.4 Phi. The initial slope is E.
+ * With Phi = 0 both poles are at 1. */
+typedef struct sf_gas_curve {
+    double modulus;  /* Pa, E > p0/(1 - Phi) */
+    double yield;    /* Pa, s0 > 0 */
+    double pressure; /* Pa, p0 */
+    double factor;   /* Pa, B >= 0 */
+    double exponent; /* -, m > 1 */
+    double solid;    /* -, Phi >= 0 */
+} sf_gas_curve;
+
+/* Nominal stress (Pa) at a compressive strain, 0 <= strain < e_D. */
+double sf_gas_curve_stress(const sf_gas_curve *curve, double strain);
+
+/* Zeroed curves, `points` in all, of equal lengths. Release with sf_law_curves_free. */
+sf_status sf_form_curves_alloc(int64_t count, int64_t points, sf_law_curves *curves, sf_error *err);
+
 /* Puts the curve, as a table to 0.975 of its pole (or 1 GPa) with the densification law beyond, in place of
  * every curve of the card. On failure the card is unchanged: SF_ERR_NUMERIC if the values make no curve or
  * one that falls. Not for the form `table`. */
