@@ -78,16 +78,27 @@ void sf_chart_columns(sf_chart *chart, int columns) {
 
 sf_panel *sf_chart_panel(sf_chart *chart) {
     static const sf_axis automatic = {.low = NAN, .high = NAN};
+    static _Thread_local sf_panel lost;
     sf_chart_panel_data **list = chart ? grown(chart, chart->panel, chart->panel_count, sizeof *list) : NULL;
     if (!list)
-        return NULL;
+        return &lost;
     chart->panel = list;
     sf_chart_panel_data *panel = sf_alloc(chart->err, 1, sizeof *panel, "a picture");
     if (!panel)
-        return NULL;
+        return &lost;
     *panel = (sf_chart_panel_data){.shown = {.x = automatic, .y = automatic, .x2 = automatic}};
     list[chart->panel_count++] = panel;
     return &panel->shown;
+}
+
+sf_panel *sf_chart_panel_at(sf_chart *chart, const char *x, const char *y, double left, double right,
+                            double bottom, double top) {
+    const double area[4] = {left, right, bottom, top};
+    sf_panel *panel = sf_chart_panel(chart);
+    memcpy(panel->area, area, sizeof area);
+    sf_axis_label(&panel->x, "%s", x);
+    sf_axis_label(&panel->y, "%s", y);
+    return panel;
 }
 
 void sf_axis_label(sf_axis *axis, const char *format, ...) {

@@ -135,7 +135,8 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     if (fit) {
         print_tests(job->cube.log, &config);
         fit_and_write(study, job, kind, &config, fit, err);
-        kind->free(fit);
+        if (kind->free)
+            kind->free(fit);
     }
     free(fit);
     sf_compression_config_free(&config);

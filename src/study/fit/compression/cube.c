@@ -33,6 +33,7 @@ static sf_foam_card quicken(const sf_foam_card *card, double k, double *rates) {
     fast.maxwell_rate = k * card->maxwell_rate;
     fast.kelvin_viscosity = card->kelvin_viscosity / k;
     fast.damp = fmax(card->damp, SIMULATED_DAMP);
+    fast.informed_strain = 0;
     return fast;
 }
 

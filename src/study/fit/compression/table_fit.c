@@ -561,6 +561,8 @@ static sf_status finish(sf_compression_fit *fit, sf_error *err) {
     fit->misfit = fit->chi2 / left;
     for (int k = 0; k < (unloads ? 2 : 1); k++)
         measure_side(fit, k == 1, &fit->side[k]);
+    if (!unloads)
+        fit->side[1].misfit = fit->side[1].of_largest = NAN;
     fit->quantile = gsl_cdf_tdist_Pinv(0.5 + 0.5 * c->confidence, left / fit->side[0].serial);
     if (estimate_all(fit, err) != SF_OK)
         return err->status;
@@ -626,6 +628,7 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
                        .densification_start = fit->data.start,
                        .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
                        .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value};
+    card->informed_strain = fit->data.end;
     if (sf_form_curves_alloc(fit->rate_count, (int64_t)fit->rate_count * fit->table_count, &card->curves,
                              err) == SF_OK)
         fill_card(fit, card);

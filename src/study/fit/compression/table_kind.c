@@ -1,333 +1,69 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The entry of the tables, a spline with rate terms and a densification law: its files and words,
- * report.html, and fit.png with data against fit over the whole range and at the foot, deviations below. */
-#include "study/fit/compression/compression_kind.h"
+/* The entry of the tables, a spline with rate terms and a densification law: its files and words. */
 #include "study/fit/compression/table_result.h"
 
 #include "build_info.h"
 #include "io/folder.h"
 #include "material/low_density_foam.h"
-#include "report/chart.h"
-#include "report/html.h"
+#include "material/point.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- the picture ---- */
+static const double CARD_STEP = 5e-4; /* strain, of the check by the solver's law */
 
-/* Light to dark with the rate: points, lines. */
-static const char *const POINT[SF_COMPRESSION_TESTS] = {"#9ecae1", "#fdae6b", "#a1d99b", "#bcbddc",
-                                                        "#fa9fb5", "#bdbdbd", "#d8b365", "#80cdc1"};
-static const char *const LINE[SF_COMPRESSION_TESTS] = {"#08519c", "#a63603", "#006d2c", "#54278f",
-                                                       "#7a0177", "#252525", "#8c510a", "#01665e"};
+/* ---- the fit against the data, and the card against the fit ---- */
 
-static sf_panel *new_panel(sf_chart *chart, const char *title, double left, double right, double bottom,
-                           double top) {
-    const double area[4] = {left, right, bottom, top};
-    sf_panel *panel = sf_chart_panel(chart);
-    if (!panel)
-        return NULL;
-    snprintf(panel->title, sizeof panel->title, "%s", title);
-    memcpy(panel->area, area, sizeof area);
-    sf_axis_label(&panel->x, "compressive strain");
-    panel->x.step = 0.1;
-    sf_axis_label(&panel->y, "nominal stress (kPa)");
-    return panel;
+static double counted(const sf_compression_fit *fit, int i) {
+    const sf_compression_test *t = &fit->data.config->test[fit->data.test[i]];
+    return fmax(fabs(fit->stress[i]), 0.01 * t->largest_stress);
 }
 
-/* Points and lines of every test. */
-static void put_curves(sf_chart *chart, const sf_compression_fit *fit, bool titles) {
+static void compare_test(const sf_compression_fit *fit, int k, sf_table_test *out) {
     const sf_compression_data *d = &fit->data;
-    for (int k = 0; k < d->config->test_count; k++) {
-        sf_series_data *points = sf_chart_series(
-            chart, (sf_series_style){.kind = SF_SERIES_POINTS, .colour = POINT[k], .size = 0.9}, NULL);
-        for (int i = 0; i < d->count; i++)
-            if (d->test[i] == k)
-                sf_series_point(points, d->strain[i], 1e-3 * d->stress[i]);
-    }
-    for (int k = 0; k < d->config->test_count; k++) {
-        const sf_series_style style = {.kind = SF_SERIES_LINE, .colour = LINE[k], .width = 1.8};
-        sf_series_data *line = titles
-                                   ? sf_chart_series(chart, style, "fit at %.3g 1/s", d->config->test[k].rate)
-                                   : sf_chart_series(chart, style, NULL);
-        for (int i = 0; i < d->count; i++)
-            if (d->test[i] == k)
-                sf_series_point(line, d->strain[i], 1e-3 * fit->stress[i]);
-    }
-}
-
-/* Returns the stress up to which the panel of the foot reaches: that of the loading curve at half the largest
- * strain, kPa. */
-static double foot_stress(const sf_compression_fit *fit) {
-    int k = 0, last = fit->rate_count - 1;
-    while (k + 1 < fit->table_count && fit->table_strain[k] < 0.5 * fit->data.end)
-        k++;
-    return 1.3e-3 * fit->table_stress[last][k];
-}
-
-static void put_deviations(sf_chart *chart, sf_panel *panel, const sf_compression_fit *fit) {
-    const sf_compression_data *d = &fit->data;
-    double largest = 3;
-    for (int i = 0; i < d->count; i++)
-        largest = fmax(largest, fabs(d->stress[i] - fit->stress[i]) / d->sigma[i]);
-    sf_axis_label(&panel->y, "deviation / scatter");
-    sf_axis_range(&panel->y, -1.08 * largest, 1.08 * largest);
-    panel->key = SF_KEY_TOP;
-    sf_chart_band(chart, (const double[2]){-INFINITY, INFINITY}, (const double[2]){-2, 2}, "#f0f0f0", 1);
-    for (int k = 0; k < d->config->test_count; k++)
-        for (int side = 0; side < 2; side++) {
-            const sf_series_style style = {.kind = SF_SERIES_POINTS,
-                                           .colour = side ? POINT[k] : LINE[k],
-                                           .shape = side ? SF_POINT_CIRCLE : SF_POINT_DISC,
-                                           .size = 0.7};
-            sf_series_data *points = k == 0 ? sf_chart_series(chart, style, side ? "unloading" : "loading")
-                                            : sf_chart_series(chart, style, NULL);
-            for (int i = 0; i < d->count; i++)
-                if (d->test[i] == k && d->unloading[i] == (side == 1))
-                    sf_series_point(points, d->strain[i], (d->stress[i] - fit->stress[i]) / d->sigma[i]);
+    const sf_compression_test *t = &d->config->test[k];
+    const char *slash = strrchr(t->path, '/');
+    *out = (sf_table_test){.path = t->path,
+                           .name = slash ? slash + 1 : t->path,
+                           .interpretation = t->interpretation,
+                           .toe = t->toe,
+                           .rate = t->rate,
+                           .largest_strain = t->largest_strain,
+                           .largest_stress = t->largest_stress,
+                           .loading = t->loading,
+                           .unloading = t->count - t->loading};
+    for (int side = 0; side < 2; side++) {
+        int first, count;
+        double sum = 0, relative = 0;
+        sf_compression_branch(d, k, side == 1, &first, &count);
+        for (int i = first; i < first + count; i++) {
+            double deviation = d->stress[i] - fit->stress[i];
+            sum += pow(deviation / d->sigma[i], 2);
+            relative += pow(deviation / counted(fit, i), 2);
         }
+        out->rms[side] = count ? sqrt(sum / count) : NAN;
+        out->percent[side] = count ? 100 * sqrt(relative / count) : NAN;
+    }
 }
 
-static sf_status write_picture(const sf_staging *output, const sf_compression_fit *fit, char *warning,
-                               size_t size, sf_error *err) {
-    sf_chart *chart = sf_chart_new("fit", 1700, 1350, err);
-    double end = fit->data.end;
-    sf_chart_title(chart, "%s: compression tests (points) and fit (lines)", fit->data.config->name);
-    sf_panel *whole = new_panel(chart, "whole range", 0.08, 0.49, 0.47, 0.9);
-    if (whole) {
-        sf_axis_range(&whole->x, 0, 1.02 * end);
-        sf_axis_range(&whole->y, 0, NAN);
-        whole->key = SF_KEY_TOP_LEFT;
-        put_curves(chart, fit, true);
+static sf_status compare_card(sf_table_result *r, sf_error *err) {
+    const sf_compression_data *d = &r->fit.data;
+    const sf_material material = sf_foam_material(&r->card);
+    sf_material_law law;
+    SF_TRY(sf_material_law_build(&material, &law, err));
+    double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
+    for (int k = 0, first = 0; stress && k < d->config->test_count; k++) {
+        const sf_compression_test *t = &d->config->test[k];
+        sf_material_point_drive(&law, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
+        for (int i = first; i < first + t->count; i++)
+            r->card_percent =
+                fmax(r->card_percent, 100 * fabs(stress[i] - r->fit.stress[i]) / counted(&r->fit, i));
+        first += t->count;
     }
-    sf_panel *foot = new_panel(chart, "foot and plateau", 0.58, 0.98, 0.47, 0.9);
-    if (foot) {
-        sf_axis_range(&foot->x, 0, 0.6 * end);
-        sf_axis_range(&foot->y, 0, foot_stress(fit));
-        put_curves(chart, fit, false);
-    }
-    sf_panel *below = new_panel(
-        chart, "Deviation of the data from the fit, over the standard deviation of the scatter (band: ±2)",
-        0.08, 0.98, 0.07, 0.34);
-    if (below) {
-        sf_axis_range(&below->x, 0, 1.02 * end);
-        put_deviations(chart, below, fit);
-    }
-    sf_chart_write(chart, output, warning, size, err);
-    sf_chart_free(chart);
+    free(stress);
+    sf_material_law_free(&law);
     return err->status;
-}
-/* ---- the page ---- */
-
-/* The banner says whether the law leaves nothing but scatter. */
-static void put_banner(FILE *out, const sf_compression_fit *fit) {
-    bool misses = fit->misfit > 2;
-    sf_html_banner(
-        out, misses ? "fair" : "good", misses ? "the law misses the data" : "the law fits the data",
-        "Misfit chi2/(n - p) = %.3g with n = %d points and p = %d parameters (%d coefficients for each "
-        "loading curve). 1: the law leaves nothing but scatter; above it the law misses the data, and the "
-        "standard errors are widened by its root.",
-        fit->misfit, fit->data.count, fit->model.parameter_count, fit->model.spline.count - 1);
-}
-
-static void put_tests(FILE *out, const sf_table_result *r) {
-    const sf_compression_config *c = r->fit.data.config;
-    sf_html_heading(out, "Tests");
-    if (c->specimen.area > 0 && c->specimen.thickness > 0)
-        sf_html_paragraph(out, "Specimen of %.5g mm², %.4g mm thick, %.4g kg/m³.", 1e6 * c->specimen.area,
-                          1e3 * c->specimen.thickness, c->density);
-    sf_rows_html_table(out, "dense", sf_table_test_rows(),
-                       (sf_records){r->test, sizeof r->test[0], r->test_count});
-    sf_html_note(
-        out, "Deviation: root mean square of data less fit, over the scatter (1: nothing but scatter) and in "
-             "percent of the stress (counted as a hundredth of the largest at least).");
-    for (int k = 0; k < r->test_count; k++)
-        sf_html_note(out, "Read from %s: %s", r->test[k].path, r->test[k].interpretation);
-}
-
-static void put_parameters(FILE *out, const sf_compression_fit *fit) {
-    char interval[32];
-    sf_table_estimate list[SF_ESTIMATES];
-    int count = 0;
-    snprintf(interval, sizeof interval, "%g %% interval", 100 * fit->data.config->confidence);
-    const sf_row rows[] = {{.name = "parameter", SF_ROW_OF(STRING, sf_table_estimate, name)},
-                           {.name = "value", SF_ROW_OF(TEXT, sf_table_estimate, value)},
-                           {.name = "standard error", SF_ROW_OF(TEXT, sf_table_estimate, error)},
-                           {.name = interval, SF_ROW_OF(TEXT, sf_table_estimate, interval)},
-                           {.name = "note", SF_ROW_OF(STRING, sf_table_estimate, note)}};
-    for (int k = 0; k < SF_ESTIMATES; k++)
-        if (fit->estimate[k].present)
-            list[count++] = sf_table_estimate_of(fit, k);
-    sf_html_block_begin(out);
-    sf_html_heading(out, "Parameters");
-    sf_rows_html_table(out, "dense", SF_ROWS(rows), (sf_records){list, sizeof list[0], count});
-    sf_html_note(
-        out,
-        "E is the slope of a straight line through the loading of the slowest test below a strain of %g; "
-        "where the curve bends within that range the slope at rest is steeper. The loading curve with its "
-        "interval is in loading_curve.csv.",
-        fit->data.config->modulus_range);
-    sf_html_block_end(out);
-}
-
-/* A table of the forms that were tried; false: none was. */
-static bool put_candidates(FILE *out, const sf_candidate *c, int count, int chosen,
-                           const char *(*phrase)(int)) {
-    static const sf_row rows[] = {
-        {.name = "form", SF_ROW_OF(STRING, sf_table_candidate, phrase)},
-        {.name = "parameters", SF_ROW_OF(INTEGER, sf_table_candidate, parameters)},
-        {.name = "chi2", .format = "%.6g", SF_ROW_OF(NUMBER, sf_table_candidate, chi2)},
-        {.name = "BIC above the lowest", .format = "%.1f", SF_ROW_OF(NUMBER, sf_table_candidate, above)},
-        {.name = "choice", SF_ROW_OF(STRING, sf_table_candidate, chosen)}};
-    sf_table_candidate list[SF_RATE_MODELS + SF_RULES];
-    double lowest = INFINITY;
-    int used = 0;
-    for (int k = 0; k < count; k++)
-        lowest = c[k].tried ? fmin(lowest, c[k].bic) : lowest;
-    for (int k = 0; k < count; k++)
-        if (c[k].tried)
-            list[used++] = (sf_table_candidate){phrase(k), c[k].parameters, c[k].chi2, c[k].bic - lowest,
-                                                k == chosen ? "chosen" : NULL};
-    if (used > 0)
-        sf_rows_html_table(out, "dense", SF_ROWS(rows), (sf_records){list, sizeof list[0], used});
-    return used > 0;
-}
-
-static const char *rate_phrase(int k) {
-    return sf_table_rate_phrase((sf_rate_model)k);
-}
-
-static const char *rule_phrase(int k) {
-    return sf_table_rule_phrase((sf_rule)k);
-}
-
-static void put_choice(FILE *out, const sf_compression_fit *fit) {
-    int rate = (int)fit->model.form.rate, rule = (int)fit->model.form.rule;
-    sf_html_block_begin(out);
-    sf_html_heading(out, "Choice of the law");
-    sf_html_paragraph(out, "Rate dependence: %s.", rate_phrase(rate));
-    if (!put_candidates(out, fit->rate, SF_RATE_MODELS, rate, rate_phrase))
-        sf_html_paragraph(out, fit->data.config->test_count > 1 ? "It was prescribed."
-                                                                : "One test says nothing about it.");
-    sf_html_paragraph(out, "Densification from the strain %.4g on: %s.", fit->data.start, rule_phrase(rule));
-    if (!put_candidates(out, fit->rule, SF_RULES, rule, rule_phrase))
-        sf_html_paragraph(out, "It was prescribed.");
-    sf_html_note(
-        out, "BIC = n ln(chi2/n) + p ln n; a form that is 10 above the lowest has the data clearly against "
-             "it, one within 2 is as good.");
-    sf_html_block_end(out);
-}
-
-static void put_quality(FILE *out, const sf_table_result *r) {
-    const sf_compression_fit *fit = &r->fit;
-    sf_html_block_begin(out);
-    sf_html_heading(out, "How good it is");
-    sf_html_table table = sf_html_table_begin(out, "dense", NULL);
-    sf_html_fact(&table, "scatter",
-                 "%.3g kPa and %.3g %% of the stress, of the data about a free smooth curve",
-                 1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative);
-    for (int k = 0; k < 2; k++)
-        if (fit->side[k].points > 0)
-            sf_html_fact(&table, k ? "unloading, given the loading" : "loading",
-                         "rms deviation %.3g %% of the stress, %.3g %% of the largest; misfit (1 is scatter "
-                         "alone) %.3g",
-                         100 * fit->side[k].relative, 100 * fit->side[k].of_largest, fit->side[k].misfit);
-    sf_html_fact(
-        &table, "neighbours",
-        "correlation of their deviations while loading %.3g; its variances are multiplied by %.3g for it",
-        fit->side[0].correlation, fit->side[0].serial);
-    sf_html_fact(&table, "written card", "in the solver's own law it differs from the fit by at most %.2g %%",
-                 r->card_percent);
-    sf_html_table_end(&table);
-    sf_html_block_end(out);
-}
-
-static void put_picture(FILE *out, const sf_staging *output) {
-    char warning[320];
-    char *svg = sf_chart_svg(output, "fit", "softfall-fit", warning, sizeof warning);
-    if (svg)
-        sf_html_figure(out, svg,
-                       "Data (points) and fit (lines), and the deviations over the scatter (band: ±2).");
-    else
-        sf_html_figure(out, NULL, "%s.", warning);
-    free(svg);
-}
-
-static void put_simulation(FILE *out, const sf_table_result *r) {
-    if (!r->simulated)
-        return;
-    sf_html_block_begin(out);
-    sf_html_heading(out, "The simulated test");
-    sf_rows_html_table(out, "dense", sf_table_simulation_rows(),
-                       (sf_records){r->test, sizeof r->test[0], r->test_count});
-    sf_html_note(
-        out,
-        "A cube of the fitted material between platens (softfall-solve), in a time that runs faster with "
-        "everything that depends on the rate, against the material point of the fit; means over blocks "
-        "of time. Differences in percent of the stress, counted as a hundredth of the largest at least. "
-        "simulation.csv holds the curves.");
-    sf_html_block_end(out);
-}
-
-static void put_limits(FILE *out, const sf_compression_fit *fit) {
-    const sf_compression_config *c = fit->data.config;
-    const sf_estimate *e = fit->estimate;
-    double fastest = c->test[c->test_count - 1].rate;
-    sf_html_block_begin(out);
-    sf_html_heading(out, "Extrapolation");
-    sf_html_paragraph(
-        out,
-        "Strains beyond %.4g: the densification law extrapolates the last part of the data. Compare "
-        "max_local_strain of a drop.",
-        fit->data.end);
-    if (fit->model.form.rate == SF_RATE_MAXWELL)
-        sf_html_paragraph(
-            out,
-            "Rates beyond %.3g 1/s: a drop is faster by orders of magnitude, there the branch is a "
-            "spring of ED = %.4g kPa.",
-            fastest, 1e-3 * e[SF_ESTIMATE_ED].value);
-    else if (fit->rate_count > 1)
-        sf_html_paragraph(
-            out,
-            "Rates beyond %.3g 1/s: the solver holds the fastest curve; a drop is faster by orders of "
-            "magnitude, and the foam may be stiffer there.",
-            fastest);
-    else
-        sf_html_paragraph(
-            out, "Rates other than those of the tests (to %.3g 1/s): the law has no rate effect.", fastest);
-    sf_html_paragraph(
-        out,
-        "Unloading faster than in the tests, and reloading: the law unloads on the slowest curve, and its "
-        "hysteresis does not depend on the rate.");
-    sf_html_paragraph(out, "Tension: it takes the modulus E, which compression does not show.");
-    sf_html_paragraph(out, "DAMP is not identified; it is written as given.");
-    if (!isfinite(e[SF_ESTIMATE_HU].error))
-        sf_html_paragraph(out, "HU = %.4g and SHAPE = %.4g: %s.", e[SF_ESTIMATE_HU].value,
-                          e[SF_ESTIMATE_SHAPE].value, e[SF_ESTIMATE_HU].note);
-    sf_html_block_end(out);
-}
-
-static sf_status write_report(const sf_staging *output, const sf_table_result *r, const char *path,
-                              const char *command, char *warning, size_t size, sf_error *err) {
-    const sf_compression_fit *fit = &r->fit;
-    char title[256];
-    SF_TRY(write_picture(output, fit, warning, size, err));
-    snprintf(title, sizeof title, "%s: identification from compression tests", fit->data.config->name);
-    FILE *out = sf_html_begin(output, title, path, err);
-    if (!out)
-        return err->status;
-    put_banner(out, fit);
-    put_picture(out, output);
-    put_parameters(out, fit);
-    put_tests(out, r);
-    put_quality(out, r);
-    put_choice(out, fit);
-    put_simulation(out, r);
-    put_limits(out, fit);
-    sf_html_heading(out, "The command that repeats this report");
-    sf_html_pre(out, command);
-    return sf_html_end(out, "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }
 
 /* ---- the entry ---- */
@@ -340,22 +76,71 @@ static const char *const outputs[] = {"simulation.csv", "fit.csv",        "loadi
                                       "material-8.csv", "material.cfg",   NULL};
 
 static sf_material material_of(const void *place) {
-    static _Thread_local sf_foam_card informed; /* its curves stay the card's */
-    const sf_table_result *r = place;
-    informed = r->card;
-    informed.informed_strain = r->fit.data.end;
-    return sf_foam_material(&informed);
+    return sf_foam_material(&((const sf_table_result *)place)->card);
 }
 
-static sf_status run(const sf_compression_config *config, void *result, sf_error *err) {
-    return sf_table_result_make(config, result, err);
+/* Fits, builds the card and compares. */
+static sf_status run(const sf_compression_config *config, void *place, sf_error *err) {
+    sf_table_result *r = place;
+    SF_TRY(sf_compression_fit_run(config, &r->fit, err));
+    r->confidence = config->confidence;
+    r->coefficients = r->fit.model.spline.count - 1;
+    r->test_count = config->test_count;
+    for (int k = 0; k < r->test_count; k++)
+        compare_test(&r->fit, k, &r->test[k]);
+    SF_TRY(sf_compression_card(&r->fit, &r->card, err));
+    return compare_card(r, err);
 }
 
-static void release(void *result) {
-    sf_table_result_free(result);
+static void release(void *place) {
+    sf_table_result *r = place;
+    sf_compression_fit_free(&r->fit);
+    sf_foam_card_free(&r->card);
+    free(r->cube);
 }
 
 /* ---- words ---- */
+
+const char *const sf_table_rates[SF_RATE_MODELS] = {
+    "none: one curve for all rates",
+    "log: curve times 1 + c ln(rate/slowest rate), written as a curve for each rate",
+    "maxwell: one curve and a Maxwell branch ED, BETA1",
+    "curves: a curve of its own for each rate",
+};
+const char *const sf_table_rules[SF_RULES] = {
+    "H1, exponent by A = 0: B/(1 - strain)^m",
+    "H1, exponent free: A + B/(1 - strain)^m",
+    "H2: A + B/(limit - strain)^m",
+};
+
+/* A value of the estimate with its unit; pressures in kPa. */
+static void value_text(const sf_estimate *e, double value, char *out, size_t size) {
+    bool pressure = strcmp(e->unit, "Pa") == 0;
+    const char *unit = pressure ? "kPa" : e->unit;
+    if (isfinite(value))
+        snprintf(out, size, "%.5g%s%s", value * (pressure ? 1e-3 : 1), *unit ? " " : "", unit);
+    else
+        snprintf(out, size, "-");
+}
+
+sf_table_estimate sf_table_estimate_of(const sf_estimate *e) {
+    sf_table_estimate out = {.interval = ""};
+    char low[64], high[64];
+    value_text(e, e->value, out.value, sizeof out.value);
+    value_text(e, e->error, out.error, sizeof out.error);
+    value_text(e, e->low, low, sizeof low);
+    value_text(e, e->high, high, sizeof high);
+    if (isfinite(e->low))
+        snprintf(out.interval, sizeof out.interval, "%s to %s", low, high);
+    return out;
+}
+
+const char *sf_table_misfit(const sf_side *side, char text[160]) {
+    snprintf(text, 160,
+             "rms deviation %.3g %% of the stress, %.3g %% of the largest; misfit (1 is scatter alone) %.3g",
+             100 * side->relative, 100 * side->of_largest, side->misfit);
+    return text;
+}
 
 static void title(FILE *out, const void *place) {
     const sf_compression_fit *fit = &((const sf_table_result *)place)->fit;
@@ -365,40 +150,32 @@ static void title(FILE *out, const void *place) {
 }
 
 static void put_estimates(FILE *out, const sf_compression_fit *fit) {
-    for (int k = 0; k < SF_ESTIMATES; k++) {
-        sf_table_estimate e = sf_table_estimate_of(fit, k);
-        if (!fit->estimate[k].present)
+    for (const sf_estimate *e = fit->estimate; e < fit->estimate + SF_ESTIMATES; e++) {
+        sf_table_estimate shown = sf_table_estimate_of(e);
+        if (!e->present)
             continue;
-        fprintf(out, "  %-12s %-12s", e.name, e.value);
-        if (*e.interval)
-            fprintf(out, " %g %% interval %s", 100 * fit->data.config->confidence, e.interval);
-        fprintf(out, "%s%s\n", *e.note ? "  " : "", e.note);
+        fprintf(out, "  %-12s %-12s", e->name, shown.value);
+        if (*shown.interval)
+            fprintf(out, " %g %% interval %s", 100 * fit->data.config->confidence, shown.interval);
+        fprintf(out, "%s%s\n", *e->note ? "  " : "", e->note);
     }
-}
-
-static void put_misfits(FILE *out, const sf_compression_fit *fit) {
-    static const char *const sides[2] = {"loading", "unloading, given the loading"};
-    for (int k = 0; k < 2; k++)
-        if (fit->side[k].points > 0)
-            fprintf(out,
-                    "  %s: rms deviation %.3g %% of the stress, %.3g %% of the largest; misfit (1 is scatter "
-                    "alone) %.3g\n",
-                    sides[k], 100 * fit->side[k].relative, 100 * fit->side[k].of_largest,
-                    fit->side[k].misfit);
 }
 
 static void describe(FILE *out, const void *place, bool comments) {
     const sf_table_result *r = place;
     const sf_compression_fit *fit = &r->fit;
-    const char *rate = sf_table_rate_phrase(fit->model.form.rate),
-               *rule = sf_table_rule_phrase(fit->model.form.rule);
+    const char *rate = sf_table_rates[fit->model.form.rate], *rule = sf_table_rules[fit->model.form.rule];
+    char misfit[160];
     if (!comments) {
         fprintf(out, "  rate dependence  %s\n  densification    %s, from strain %.4g\n", rate, rule,
                 fit->data.start);
         put_estimates(out, fit);
         fprintf(out, "  scatter of the data: %.3g kPa and %.3g %% of the stress\n",
                 1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative);
-        put_misfits(out, fit);
+        for (int k = 0; k < 2; k++)
+            if (fit->side[k].points > 0)
+                fprintf(out, "  %s: %s\n", k ? "unloading, given the loading" : "loading",
+                        sf_table_misfit(&fit->side[k], misfit));
         fprintf(out, "  card in the solver's law against the fit: largest difference %.2g %%\n",
                 r->card_percent);
         return;
@@ -487,7 +264,7 @@ static sf_status write_more(const sf_compression_job *job, const sf_staging *out
     sf_table_result *r = place;
     SF_TRY(write_curves(output, &r->fit, err));
     SF_TRY(write_simulation(job, output, r, err));
-    return write_report(output, r, job->path, job->command, warning, size, err);
+    return sf_table_report_write(job, output, r, warning, size, err);
 }
 
 /* ---- fit.json ---- */
@@ -541,56 +318,64 @@ static void json_estimates(sf_json *json, const sf_compression_fit *fit) {
     sf_json_close(json, '}');
 }
 
-static sf_value confidence_of(const void *record) {
-    return sf_value_real(((const sf_table_result *)record)->fit.data.config->confidence);
-}
-
-static sf_value coefficients_of(const void *record) {
-    return sf_value_integer((int64_t)((const sf_table_result *)record)->fit.model.spline.count - 1);
-}
-
-/* NaN, which JSON shows as null, without any unloading. */
-static double of_unloading(const void *record, double value) {
-    return ((const sf_table_result *)record)->fit.side[1].points > 0 ? value : NAN;
-}
-
-static sf_value unloading_misfit(const void *record) {
-    return sf_value_real(of_unloading(record, ((const sf_table_result *)record)->fit.side[1].misfit));
-}
-
-static sf_value unloading_rms(const void *record) {
-    return sf_value_real(of_unloading(record, ((const sf_table_result *)record)->fit.side[1].of_largest));
-}
-
+#define OF_RESULT(type, member) SF_ROW_OF(type, sf_table_result, member)
 static const sf_row quality_rows[] = {
-    {.key = "confidence", .value = confidence_of},
-    {.key = "points", SF_ROW_OF(INTEGER, sf_table_result, fit.data.count)},
-    {.key = "fitted_parameters", SF_ROW_OF(INTEGER, sf_table_result, fit.model.parameter_count)},
-    {.key = "spline_coefficients", .value = coefficients_of},
-    {.key = "scatter_absolute_Pa", SF_ROW_OF(NUMBER, sf_table_result, fit.data.scatter.absolute)},
-    {.key = "scatter_relative", SF_ROW_OF(NUMBER, sf_table_result, fit.data.scatter.relative)},
-    {.key = "chi2", SF_ROW_OF(NUMBER, sf_table_result, fit.chi2)},
-    {.key = "misfit", SF_ROW_OF(NUMBER, sf_table_result, fit.misfit)},
-    {.key = "misfit_loading", SF_ROW_OF(NUMBER, sf_table_result, fit.side[0].misfit)},
-    {.key = "misfit_unloading", .value = unloading_misfit},
-    {.key = "loading_rms_of_largest", SF_ROW_OF(NUMBER, sf_table_result, fit.side[0].of_largest)},
-    {.key = "unloading_rms_of_largest", .value = unloading_rms},
-    {.key = "neighbour_correlation", SF_ROW_OF(NUMBER, sf_table_result, fit.side[0].correlation)},
-    {.key = "variance_factor_for_correlation", SF_ROW_OF(NUMBER, sf_table_result, fit.side[0].serial)},
-    {.key = "card_difference_percent", SF_ROW_OF(NUMBER, sf_table_result, card_percent)},
+    {.key = "confidence", OF_RESULT(NUMBER, confidence)},
+    {.key = "points", OF_RESULT(INTEGER, fit.data.count)},
+    {.key = "fitted_parameters", OF_RESULT(INTEGER, fit.model.parameter_count)},
+    {.key = "spline_coefficients", OF_RESULT(INTEGER, coefficients)},
+    {.key = "scatter_absolute_Pa", OF_RESULT(NUMBER, fit.data.scatter.absolute)},
+    {.key = "scatter_relative", OF_RESULT(NUMBER, fit.data.scatter.relative)},
+    {.key = "chi2", OF_RESULT(NUMBER, fit.chi2)},
+    {.key = "misfit", OF_RESULT(NUMBER, fit.misfit)},
+    {.key = "misfit_loading", OF_RESULT(NUMBER, fit.side[0].misfit)},
+    {.key = "misfit_unloading", OF_RESULT(NUMBER, fit.side[1].misfit)},
+    {.key = "loading_rms_of_largest", OF_RESULT(NUMBER, fit.side[0].of_largest)},
+    {.key = "unloading_rms_of_largest", OF_RESULT(NUMBER, fit.side[1].of_largest)},
+    {.key = "neighbour_correlation", OF_RESULT(NUMBER, fit.side[0].correlation)},
+    {.key = "variance_factor_for_correlation", OF_RESULT(NUMBER, fit.side[0].serial)},
+    {.key = "card_difference_percent", OF_RESULT(NUMBER, card_percent)},
 };
+
+#define OF_TEST(type, member) SF_ROW_OF(type, sf_table_test, member)
+static const sf_row test_rows[] = {
+    {.name = "file", OF_TEST(STRING, name)},
+    {.key = "file", OF_TEST(STRING, path)},
+    {.key = "understood", OF_TEST(STRING, interpretation)},
+    {.key = "toe_strain", OF_TEST(NUMBER, toe)},
+    {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, rate)},
+    {.key = "points_loading", .name = "points of loading", OF_TEST(INTEGER, loading)},
+    {.key = "points_unloading", .name = "of unloading", OF_TEST(INTEGER, unloading)},
+    {.key = "largest_strain", .name = "largest strain", OF_TEST(NUMBER, largest_strain)},
+    {"largest_stress_Pa", "largest stress", "kPa", .shown = 1e-3, OF_TEST(NUMBER, largest_stress)},
+    {"loading_rms_over_sigma", "deviation / scatter, loading", NULL, "%.3g", OF_TEST(NUMBER, rms[0])},
+    {"unloading_rms_over_sigma", "unloading", NULL, "%.3g", OF_TEST(NUMBER, rms[1])},
+    {"loading_rms_percent", "deviation, loading", "%", "%.3g", OF_TEST(NUMBER, percent[0])},
+    {"unloading_rms_percent", "unloading", "%", "%.3g", OF_TEST(NUMBER, percent[1])},
+};
+const sf_rows sf_table_test_rows = {test_rows, sizeof test_rows / sizeof *test_rows};
+
+static const sf_row simulation_rows[] = {
+    {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, rate)},
+    {.key = "speed_up", .name = "speed-up", OF_TEST(NUMBER, speed_up)},
+    {"loading_difference_percent", "largest difference, loading", "%", "%.2g",
+     OF_TEST(NUMBER, difference[0])},
+    {"unloading_difference_percent", "unloading", "%", "%.2g", OF_TEST(NUMBER, difference[1])},
+    {.key = "energy_error", .name = "energy error", .format = "%.1g", OF_TEST(NUMBER, energy_error)},
+};
+const sf_rows sf_table_simulation_rows = {simulation_rows, sizeof simulation_rows / sizeof *simulation_rows};
 
 static void put_json(sf_json *json, const void *place, const char *path) {
     const sf_table_result *r = place;
     sf_json_text(json, "program", "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")");
     sf_json_text(json, "input", path);
     sf_json_text(json, "name", r->fit.data.config->name);
-    sf_rows_json_array(json, "tests", sf_table_test_rows(),
+    sf_rows_json_array(json, "tests", sf_table_test_rows,
                        (sf_records){r->test, sizeof r->test[0], r->test_count});
     json_choice(json, &r->fit);
     json_estimates(json, &r->fit);
     sf_rows_json(json, SF_ROWS(quality_rows), r);
-    sf_rows_json_array(json, "simulation", sf_table_simulation_rows(),
+    sf_rows_json_array(json, "simulation", sf_table_simulation_rows,
                        (sf_records){r->test, sizeof r->test[0], r->simulated ? r->test_count : 0});
 }
 

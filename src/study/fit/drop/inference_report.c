@@ -35,6 +35,10 @@ static void find_worst(const sf_chains *c, double *rhat, double *effective) {
     }
 }
 
+static const char *drop_of(const sf_drop_inference *in, int quantity) {
+    return in->fit->input->drop[in->quantity[quantity].drop].name;
+}
+
 /* ---- quantiles: low, median, high; INFINITY: among the draws that collapse ---- */
 
 enum { SHARE = 24, MISSING = 128, SHOWN = 64 };
@@ -102,20 +106,14 @@ static void put_models(FILE *f, const sf_drop_average *a) {
         char text[LABEL];
         sf_html_row(&table);
         sf_html_cell(&table, "%s%s", label_of(a, m, text), m == sf_drop_average_best(a) ? " (written)" : "");
-        sf_html_number(&table, 3, a->weight[m]);
-        sf_html_number(&table, 2, a->predictive[m]);
-        sf_html_number(&table, 2, in->evidence.log_value);
-        sf_html_number(&table, 2, in->evidence.error);
-        sf_html_number(&table, 3, a->evidence_weight[m]);
-        sf_html_cell(&table, "%d", in->fit->input->unknown_count);
-        sf_html_number(&table, 2, in->fit->result.misfit);
+        sf_html_line(&table, NULL, "%.3f|%.2f|%.2f|%.2f|%.3f|%d|%.2f", a->weight[m], a->predictive[m],
+                     in->evidence.log_value, in->evidence.error, a->evidence_weight[m],
+                     in->fit->input->unknown_count, in->fit->result.misfit);
     }
     for (int m = 0; m < a->failed; m++) {
         sf_html_row(&table);
         sf_html_cell(&table, "%s: FAILED, %s", a->failure[m].label, a->failure[m].sentence);
-        sf_html_number(&table, 3, 0);
-        for (int k = 0; k < 6; k++)
-            sf_html_cell(&table, "–");
+        sf_html_line(&table, NULL, "0.000|–|–|–|–|–|–");
     }
     sf_html_table_end(&table);
 }
@@ -141,7 +139,7 @@ static void put_prediction_notes(FILE *f, const sf_drop_average *a) {
 
 static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
-    char text[LABEL], missing[MISSING], shown[SHOWN];
+    char text[LABEL], missing[MISSING], median[SHOWN], shown[SHOWN], alone[SHOWN];
     if (in->quantities == 0)
         return SF_OK;
     sf_html_heading(f, "Predictions, averaged over the models");
@@ -157,14 +155,19 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
         snprintf(text, sizeof text, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
         sf_html_row(&table);
         missing_text(a, q, "", missing);
-        sf_html_cell(&table, *missing ? "%s (%s)" : "%s", in->fit->input->drop[in->quantity[q].drop].name,
-                     missing);
-        sf_html_cell(&table, "%s", text);
-        sf_html_cell(&table, "%s", median_text(about->digits, all, shown));
-        sf_html_cell(&table, "%s", interval_text(about->digits, all, shown));
-        sf_html_cell(&table, "%s", interval_text(about->digits, best, shown));
+        sf_html_cell(&table, *missing ? "%s (%s)" : "%s", drop_of(in, q), missing);
+        sf_html_line(&table, NULL, "%s|%s|%s|%s", text, median_text(about->digits, all, median),
+                     interval_text(about->digits, all, shown), interval_text(about->digits, best, alone));
     }
     sf_html_table_end(&table);
+    return SF_OK;
+}
+
+/* Quantiles of a parameter, SI. */
+static sf_status find_parameter(const sf_drop_inference *in, int k, double value[3], sf_error *err) {
+    SF_TRY(sf_drop_parameter_quantiles(in, k, 3, THREE, value, err));
+    for (int q = 0; q < 3; q++)
+        value[q] = sf_drop_inference_value(in, k, value[q]);
     return SF_OK;
 }
 
@@ -183,19 +186,12 @@ static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err
         for (int k = 0; k < in->parameters; k++) {
             bool size = k >= in->fit->input->unknown_count;
             const sf_parameter_info *about = size ? NULL : sf_parameter_get(in->fit->input->unknown[k]);
-            double value[3];
-            if (sf_drop_parameter_quantiles(in, k, 3, THREE, value, err) != SF_OK)
-                return err->status;
-            for (int q = 0; q < 3; q++)
-                value[q] = sf_drop_inference_value(in, k, value[q]) / (size ? 1 : about->per_unit);
-            sf_html_row(&table);
-            sf_html_cell(&table, "%s", k == 0 ? label_of(a, m, text) : "");
-            sf_html_cell(&table, "%s%s%s", sf_drop_inference_name(in, k), !size && *about->unit ? ", " : "",
-                         size ? "" : about->unit);
-            sf_html_cell(&table, "%.4g", value[1]);
-            sf_html_cell(&table, "%.4g to %.4g", value[0], value[2]);
-            sf_html_number(&table, 3, in->chains.rhat[k]);
-            sf_html_number(&table, 0, in->chains.effective[k]);
+            double value[3], s = size ? 1 : about->per_unit;
+            SF_TRY(find_parameter(in, k, value, err));
+            sf_html_line(&table, k == 0 ? label_of(a, m, text) : "", "%s%s%s|%.4g|%.4g to %.4g|%.3f|%.0f",
+                         sf_drop_inference_name(in, k), !size && *about->unit ? ", " : "",
+                         size ? "" : about->unit, value[1] / s, value[0] / s, value[2] / s,
+                         in->chains.rhat[k], in->chains.effective[k]);
         }
     }
     sf_html_table_end(&table);
@@ -215,12 +211,8 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
     for (int m = 0; m < a->models; m++)
         for (int d = 0; d < a->model[m]->fit->measured_drops; d++) {
             const sf_left_out *out = &a->model[m]->left_out[d];
-            sf_html_row(&table);
-            sf_html_cell(&table, "%s", d == 0 ? label_of(a, m, text) : "");
-            sf_html_cell(&table, "%s", a->model[m]->fit->input->drop[d].name);
-            sf_html_number(&table, 2, out->log_density);
-            sf_html_number(&table, 2, out->pareto_k);
-            sf_html_cell(&table, "%s%s",
+            sf_html_line(&table, d == 0 ? label_of(a, m, text) : "", "%s|%.2f|%.2f|%s%s",
+                         a->model[m]->fit->input->drop[d].name, out->log_density, out->pareto_k,
                          out->sampled ? "chains"
                          : out->drawn ? "draws"
                                       : "weights",
@@ -242,15 +234,10 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
         const sf_drop_inference *in = a->model[m];
         double rhat, effective;
         find_worst(&in->chains, &rhat, &effective);
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s", label_of(a, m, text));
-        sf_html_number(&table, 3, rhat);
-        sf_html_number(&table, 0, effective);
-        sf_html_cell(&table, "%d x %d", in->chains.chains, in->chains.kept);
-        sf_html_number(&table, 0, 100 * in->chains.accepted);
-        sf_html_cell(&table, "%lld", in->chains.evaluations);
-        sf_html_cell(&table, "%.0f of %d", in->evidence.effective, in->evidence.draws);
-        sf_html_cell(&table, "%s%s", in->chains.converged ? "yes" : "NO: chains",
+        sf_html_line(&table, label_of(a, m, text), "%.3f|%.0f|%d x %d|%.0f|%lld|%.0f of %d|%s%s", rhat,
+                     effective, in->chains.chains, in->chains.kept, 100 * in->chains.accepted,
+                     in->chains.evaluations, in->evidence.effective, in->evidence.draws,
+                     in->chains.converged ? "yes" : "NO: chains",
                      in->evidence.trusted ? "" : "; NO: evidence");
     }
     sf_html_table_end(&table);
@@ -280,11 +267,9 @@ sf_status sf_inference_html(FILE *f, const sf_drop_average *a, sf_error *err) {
             "Some chains or importance weights did not reach their criteria (see Diagnostics): weights "
             "and intervals are less certain than they look.");
     put_failures(f, a);
-    if (put_predictions(f, a, err) != SF_OK)
-        return err->status;
+    SF_TRY(put_predictions(f, a, err));
     put_models(f, a);
-    if (put_parameters(f, a, err) != SF_OK)
-        return err->status;
+    SF_TRY(put_parameters(f, a, err));
     put_left_out(f, a);
     put_diagnostics(f, a);
     return SF_OK;
@@ -302,10 +287,7 @@ static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_err
     sf_json_open(j, "parameters", '[');
     for (int k = 0; k < in->parameters; k++) {
         double value[3];
-        if (sf_drop_parameter_quantiles(in, k, 3, THREE, value, err) != SF_OK)
-            return err->status;
-        for (int q = 0; q < 3; q++)
-            value[q] = sf_drop_inference_value(in, k, value[q]);
+        SF_TRY(find_parameter(in, k, value, err));
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "name", sf_drop_inference_name(in, k));
         sf_json_text(j, "unit", "SI");
@@ -331,6 +313,19 @@ static void json_failed_drops(sf_json *j, const sf_drop_fit *fit) {
     sf_json_close(j, ']');
 }
 
+static const sf_row left_out_rows[] = {
+    {.key = "log_density", SF_ROW_OF(NUMBER, sf_left_out, log_density)},
+    {.key = "pareto_k", SF_ROW_OF(NUMBER, sf_left_out, pareto_k)},
+    {.key = "by_chains", SF_ROW_OF(FLAG, sf_left_out, sampled)},
+    {.key = "by_draws", SF_ROW_OF(FLAG, sf_left_out, drawn)},
+    {.key = "reached", SF_ROW_OF(FLAG, sf_left_out, converged)},
+};
+static const sf_row evidence_rows[] = {
+    {.key = "log_evidence", SF_ROW_OF(NUMBER, sf_evidence, log_value)},
+    {.key = "log_evidence_sd", SF_ROW_OF(NUMBER, sf_evidence, error)},
+    {.key = "log_evidence_effective_draws", SF_ROW_OF(NUMBER, sf_evidence, effective)},
+};
+
 static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_error *err) {
     const sf_drop_inference *in = a->model[m];
     double rhat, effective;
@@ -341,9 +336,7 @@ static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_erro
     sf_json_number(j, "weight", a->weight[m]);
     sf_json_number(j, "weight_by_evidence", a->evidence_weight[m]);
     sf_json_number(j, "log_predictive_density", a->predictive[m]);
-    sf_json_number(j, "log_evidence", in->evidence.log_value);
-    sf_json_number(j, "log_evidence_sd", in->evidence.error);
-    sf_json_number(j, "log_evidence_effective_draws", in->evidence.effective);
+    sf_rows_json(j, SF_ROWS(evidence_rows), &in->evidence);
     sf_json_number(j, "misfit", in->fit->result.misfit);
     sf_json_bool(j, "chains_reached", in->chains.converged);
     sf_json_number(j, "largest_rhat", rhat);
@@ -353,11 +346,7 @@ static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_erro
     for (int d = 0; d < in->fit->measured_drops && !a->by_evidence; d++) {
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "drop", in->fit->input->drop[d].name);
-        sf_json_number(j, "log_density", in->left_out[d].log_density);
-        sf_json_number(j, "pareto_k", in->left_out[d].pareto_k);
-        sf_json_bool(j, "by_chains", in->left_out[d].sampled);
-        sf_json_bool(j, "by_draws", in->left_out[d].drawn);
-        sf_json_bool(j, "reached", in->left_out[d].converged);
+        sf_rows_json(j, SF_ROWS(left_out_rows), &in->left_out[d]);
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -374,7 +363,7 @@ static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf
     if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
         return err->status;
     sf_json_open(j, NULL, '{');
-    sf_json_text(j, "drop", in->fit->input->drop[in->quantity[q].drop].name);
+    sf_json_text(j, "drop", drop_of(in, q));
     sf_json_text(j, "quantity", about->key);
     json_quantiles(j, value);
     sf_json_text(j, "open", isnan(value[1]) ? NULL : isinf(value[2]) ? "above" : "no");
@@ -512,8 +501,8 @@ static sf_status print_prediction(FILE *f, const sf_drop_average *a, int q, sf_e
     char median[SHOWN], interval[SHOWN], missing[MISSING];
     if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
         return err->status;
-    fprintf(f, "  %-20s %s %s %s (95 %%: %s)%s\n", in->fit->input->drop[in->quantity[q].drop].name,
-            about->name, median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
+    fprintf(f, "  %-20s %s %s %s (95 %%: %s)%s\n", drop_of(in, q), about->name,
+            median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
             interval_text(about->digits, value, interval), missing_text(a, q, "; ", missing));
     return SF_OK;
 }
