@@ -4,7 +4,12 @@
 #ifndef SF_STUDY_FIT_LEAST_SQUARES_H
 #define SF_STUDY_FIT_LEAST_SQUARES_H
 
+#include "base/error.h"
 #include <gsl/gsl_matrix.h>
+
+/* Zeros; NULL without memory. */
+gsl_vector *sf_vector(size_t size, sf_error *err);
+gsl_matrix *sf_matrix(size_t rows, size_t columns, sf_error *err);
 
 /* Deviations [count] at parameters; GSL_SUCCESS, or another code where there are none. */
 typedef int sf_deviations(const gsl_vector *x, void *data, gsl_vector *out);

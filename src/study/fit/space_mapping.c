@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/space_mapping.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -81,10 +82,10 @@ static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
 
 /* Their Jacobian by central differences: absolute steps, as the parameters are logarithms. */
 static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobian) {
-    gsl_vector *at = gsl_vector_alloc(x->size), *high = gsl_vector_alloc(jacobian->size1),
-               *low = gsl_vector_alloc(jacobian->size1);
-    int status = at && high && low ? GSL_SUCCESS : GSL_ENOMEM;
-    for (size_t j = 0; j < x->size && status == GSL_SUCCESS; j++) {
+    sf_error err = SF_ERROR_INIT;
+    gsl_vector *at = sf_vector(x->size, &err), *high = sf_vector(jacobian->size1, &err),
+               *low = sf_vector(jacobian->size1, &err);
+    for (size_t j = 0; j < x->size && err.status == SF_OK; j++) {
         gsl_vector_memcpy(at, x);
         gsl_vector_set(at, j, gsl_vector_get(x, j) + DIFFERENCE);
         residuals(at, data, high);
@@ -97,7 +98,7 @@ static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobi
     gsl_vector_free(at);
     gsl_vector_free(high);
     gsl_vector_free(low);
-    return status;
+    return err.status == SF_OK ? GSL_SUCCESS : GSL_ENOMEM;
 }
 
 /* Minimises from `u`, which gets the minimum. */
@@ -184,8 +185,8 @@ static bool is_misfit(const sf_mapping_result *r) {
  * shows; degrees of freedom: data less trace(J C J^T). */
 static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_result *r, sf_error *err) {
     size_t n = (size_t)p->parameters;
-    gsl_matrix *a = gsl_matrix_calloc(n, n), *c = gsl_matrix_calloc(n, n);
-    if (a && c) {
+    gsl_matrix *a = sf_matrix(n, n, err), *c = sf_matrix(n, n, err);
+    if (err->status == SF_OK) {
         double effective = 0;
         int data = collect_information(p, r->corrected, a);
         invert_information(p, a, 1, c);
@@ -198,8 +199,6 @@ static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_r
         for (size_t j = 0; j < n; j++)
             for (size_t k = 0; k < n; k++)
                 r->covariance[j][k] = gsl_matrix_get(c, j, k);
-    } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a covariance");
     }
     gsl_matrix_free(a);
     gsl_matrix_free(c);
@@ -290,22 +289,21 @@ static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
 static sf_status regress_matrix(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     size_t n = (size_t)p->parameters, responses = (size_t)p->responses;
-    gsl_matrix *a = gsl_matrix_calloc(n, n), *b = gsl_matrix_calloc(responses, n);
-    if (!a || !b)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a regression of %zu parameters", n);
-    for (size_t k = 0; err->status == SF_OK && k < responses * n; k++)
-        b->data[k] =
-            p->first_matrix && isfinite(p->first_matrix[k]) ? p->first_matrix[k] / (SLOPE * SLOPE) : 0;
-    for (size_t j = 0; err->status == SF_OK && j < n; j++)
-        gsl_matrix_set(a, j, j, 1 / (SLOPE * SLOPE));
-    for (int k = 0; err->status == SF_OK && k < s->count; k++)
-        add_secant(s, k, a, b);
-    if (err->status == SF_OK)
+    const double *first = p->first_matrix;
+    gsl_matrix *a = sf_matrix(n, n, err), *b = sf_matrix(responses, n, err);
+    if (err->status == SF_OK) {
+        for (size_t k = 0; k < responses * n; k++)
+            b->data[k] = first && isfinite(first[k]) ? first[k] / (SLOPE * SLOPE) : 0;
+        for (size_t j = 0; j < n; j++)
+            gsl_matrix_set(a, j, j, 1 / (SLOPE * SLOPE));
+        for (int k = 0; k < s->count; k++)
+            add_secant(s, k, a, b);
         gsl_linalg_cholesky_decomp1(a);
-    for (size_t i = 0; err->status == SF_OK && i < responses; i++) {
-        gsl_vector_view row = gsl_matrix_row(b, i);
-        gsl_linalg_cholesky_svx(a, &row.vector);
-        memcpy(&s->result->matrix[i * n], row.vector.data, n * sizeof(double));
+        for (size_t i = 0; i < responses; i++) {
+            gsl_vector_view row = gsl_matrix_row(b, i);
+            gsl_linalg_cholesky_svx(a, &row.vector);
+            memcpy(&s->result->matrix[i * n], row.vector.data, n * sizeof(double));
+        }
     }
     gsl_matrix_free(a);
     gsl_matrix_free(b);

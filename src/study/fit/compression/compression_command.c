@@ -14,9 +14,9 @@ static const sf_option options[] = {
     {"simulate", 0, "CASE",
      "press a cube of the fitted material between platens too, as CASE says "
      "(examples/compression/case.cfg), and compare it with the material point",
-     .member = offsetof(sf_compression_job, cube.case_path), .group = 1},
+     .member = offsetof(sf_compression_job, case_path), .group = 1},
     {"friction", 0, "MU", "of the upper platen in --simulate (default: that of CASE)",
-     .member = offsetof(sf_compression_job, cube.friction), .group = 1},
+     .member = offsetof(sf_compression_job, friction), .group = 1},
     {0},
 };
 
@@ -30,15 +30,14 @@ static const sf_compression_kind *kind_of(const sf_compression_config *config) {
 static sf_status check_job(const sf_compression_job *job, sf_study *study, const sf_compression_kind *kind,
                            const sf_compression_config *config, sf_error *err) {
     uint64_t ignored; /* the case can be read */
-    if (kind->label && job->cube.case_path)
+    if (kind->label && job->case_path)
         return SF_FAIL(err, SF_ERR_INPUT,
                        kind == &sf_compression_form_kind
                            ? "--simulate does not work with curve_form = \"%s\" in %s"
                            : "--simulate does not work with law = \"%s\" in %s",
                        config->form.form.curve ? config->form.form.curve->name : kind->label, job->path);
     SF_TRY(sf_study_check(study, kind->outputs, err));
-    return job->cube.case_path ? sf_plain_hash(job->cube.case_path, "case file", SF_PLAIN_TEXT, &ignored, err)
-                               : SF_OK;
+    return job->case_path ? sf_plain_hash(job->case_path, "case file", SF_PLAIN_TEXT, &ignored, err) : SF_OK;
 }
 
 static void print_tests(FILE *out, const sf_compression_config *config) {
@@ -113,8 +112,8 @@ static sf_status fit_and_write(sf_study *study, const sf_compression_job *job,
     char warning[512] = "";
     SF_TRY(kind->run(config, fit, err));
     SF_TRY(write_all(job, kind, study, fit, config->name, warning, sizeof warning, err));
-    kind->title(job->cube.log, fit);
-    kind->describe(job->cube.log, fit, false);
+    kind->title(job->log, fit);
+    kind->describe(job->log, fit, false);
     sf_study_close(study, kind->files, warning);
     kind->warn(fit, &study->sink);
     return SF_OK;
@@ -126,14 +125,14 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     job->path = study->input;
     job->directory = study->directory;
     job->command = study->command;
-    if (job->cube.friction && !job->cube.case_path)
+    if (job->friction && !job->case_path)
         return SF_FAIL(err, SF_ERR_INPUT, "--friction needs --simulate");
     SF_TRY(sf_compression_config_read(job->path, &config, err));
     const sf_compression_kind *kind = kind_of(&config);
     void *fit =
         check_job(job, study, kind, &config, err) == SF_OK ? sf_alloc(err, 1, kind->size, "the fit") : NULL;
     if (fit) {
-        print_tests(job->cube.log, &config);
+        print_tests(job->log, &config);
         fit_and_write(study, job, kind, &config, fit, err);
         if (kind->free)
             kind->free(fit);
@@ -154,6 +153,6 @@ int sf_fit_compression_main(int argc, char **argv) {
         .options = options,
         .run = run,
     };
-    sf_compression_job job = {.cube.log = stdout};
+    sf_compression_job job = {.log = stdout};
     return sf_study_main(argc, argv, &program, &job);
 }

@@ -8,12 +8,14 @@
 #include "material/hyperfoam.h"
 #include "report/row.h"
 #include "study/fit/compression/compression_config.h"
-#include "study/fit/compression/cube.h"
 
 /* The request of the command; borrowed. */
 typedef struct sf_compression_job {
     const char *path, *directory, *command; /* FIT.cfg as given, -o, the whole command line */
-    sf_cube_options cube;                   /* its log is that of the summary, too */
+    const char *case_path;                  /* --simulate: of a cube between platens (missile.motion,
+                                               geometry.parameters.side); NULL: none */
+    const char *friction; /* of the upper platen, in place of the case's; NULL: the case's */
+    FILE *log;            /* progress and summary */
 } sf_compression_job;
 
 typedef struct sf_compression_kind {
@@ -43,8 +45,8 @@ typedef struct sf_compression_kind {
  * the hyperfoam. */
 extern const sf_compression_kind sf_compression_tables, sf_compression_form_kind, sf_compression_hyperfoam;
 
-/* Stress (Pa, compression positive), lateral strain and W (J m-3) of a hyperfoam in loading with free sides at
- * an axial strain; `lateral` is also the start of the search. */
+/* Stress (Pa, compression positive), lateral strain and W (J m-3) of a hyperfoam in loading with free sides
+ * at an axial strain; `lateral` is also the start of the search. */
 double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double *lateral, double *energy);
 
 #endif

@@ -36,7 +36,7 @@ typedef struct problem {
     const sf_compression_config *config;
     const sf_form_request *request;
     int points;      /* of loading, of all tests */
-    double *strain;  /* [points] */
+    double *strain;  /* [points] owned, with the next two behind it */
     double *stress;  /* [points] Pa, of the form */
     double *reduced; /* [points] deviations at the last evaluation */
     double fall_weight;
@@ -129,19 +129,14 @@ static sf_status init_problem(const sf_compression_config *config, problem *p, s
     *p = (problem){.config = config, .request = &config->form, .fall_weight = FALL_WEIGHT[0]};
     for (int k = 0; k < config->test_count; k++)
         p->points += config->test[k].loading;
-    p->strain = sf_alloc(err, (unsigned long)p->points, sizeof *p->strain, "form fit");
-    p->stress = sf_alloc(err, (unsigned long)p->points, sizeof *p->stress, "form fit");
-    p->reduced = sf_alloc(err, (unsigned long)p->points, sizeof *p->reduced, "form fit");
-    for (int k = 0, at = 0; k < config->test_count && err->status == SF_OK; k++)
+    p->strain = sf_alloc(err, 3 * (unsigned long)p->points, sizeof *p->strain, "form fit");
+    SF_TRY(err->status);
+    p->stress = p->strain + p->points;
+    p->reduced = p->stress + p->points;
+    for (int k = 0, at = 0; k < config->test_count; k++)
         for (int i = 0; i < config->test[k].loading; i++)
             p->strain[at++] = fmax(0, config->test[k].strain[i]);
     return err->status;
-}
-
-static void free_problem(problem *p) {
-    free(p->strain);
-    free(p->stress);
-    free(p->reduced);
 }
 
 /* Start 0: the medians; then each unknown up and down from there. */
@@ -338,21 +333,18 @@ static sf_status fit_all_unloading(sf_form_fit *fit, const sf_curve *curve, sf_e
     fit->has_unloading = count > 3;
     if (!fit->has_unloading)
         return SF_OK;
-    u.measured = sf_alloc(err, count, sizeof(double), "unloading");
-    u.loading = sf_alloc(err, count, sizeof(double), "unloading");
-    u.viscous = sf_alloc(err, count, sizeof(double), "unloading");
-    u.ratio = sf_alloc(err, count, sizeof(double), "unloading");
+    u.measured = sf_alloc(err, 4 * count, sizeof(double), "unloading");
     if (err->status == SF_OK) {
+        u.loading = u.measured + count;
+        u.viscous = u.loading + count;
+        u.ratio = u.viscous + count;
         list_unloading(fit, curve, &u);
         fit->unloading_of_one = fit_unloading(&u, true);
         fit->unloading = fit_unloading(&u, false);
         if (!isfinite(fit->unloading.rms))
             SF_FAIL(err, SF_ERR_NUMERIC, "no search for HU, SHAPE and ALPHA converges");
     }
-    free(u.measured);
-    free(u.loading);
-    free(u.viscous);
-    free(u.ratio);
+    free(u.measured); /* and all behind it */
     return err->status;
 }
 
@@ -455,7 +447,7 @@ sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit,
         fit_all_unloading(fit, &curve, err) == SF_OK && follow_all(fit, &curve, err) == SF_OK)
         take_hysteresis(fit);
     sf_curve_free(&curve);
-    free_problem(&p);
+    free(p.strain); /* and all behind it */
     gsl_set_error_handler(handler);
     if (err->status != SF_OK)
         sf_form_fit_free(fit);

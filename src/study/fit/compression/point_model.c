@@ -74,11 +74,11 @@ sf_status sf_compression_data_init(const sf_compression_config *config, sf_compr
     unsigned long n = (unsigned long)data->count;
     data->test = sf_alloc(err, n, sizeof *data->test, "test points");
     data->unloading = sf_alloc(err, n, sizeof *data->unloading, "test points");
-    data->strain = sf_alloc(err, n, sizeof *data->strain, "test points");
-    data->stress = sf_alloc(err, n, sizeof *data->stress, "test points");
-    data->smooth = sf_alloc(err, n, sizeof *data->smooth, "test points");
-    data->sigma = sf_alloc(err, n, sizeof *data->sigma, "test points");
+    data->strain = sf_alloc(err, 4 * n, sizeof *data->strain, "test points");
     if (err->status == SF_OK) {
+        data->stress = data->strain + n;
+        data->smooth = data->stress + n;
+        data->sigma = data->smooth + n;
         fill(data);
         estimate(data, err);
     }
@@ -90,10 +90,7 @@ sf_status sf_compression_data_init(const sf_compression_config *config, sf_compr
 void sf_compression_data_free(sf_compression_data *data) {
     free(data->test);
     free(data->unloading);
-    free(data->strain);
-    free(data->stress);
-    free(data->smooth);
-    free(data->sigma);
+    free(data->strain); /* and all behind it */
     *data = (sf_compression_data){0};
 }
 
@@ -326,15 +323,14 @@ static double predict_maxwell(const sf_compression_model *model, const gsl_vecto
     return modulus * unit[0];
 }
 
-static double predict_loading(const sf_compression_model *model, const gsl_vector *parameters,
-                              const numbers *n, int i, double *gradient) {
-    const sf_compression_data *d = model->data;
-    int curve = model->curve_count > 1 ? d->test[i] : 0;
-    double logarithm = rate_logarithm(model, d->test[i]),
-           factor = 1 + n->value[SF_NUMBER_LOG_RATE] * logarithm;
+/* Stress of loading at the rate of a test; `row`: of the spline at this strain. Adds to `gradient` or NULL.
+ */
+static double loading_stress(const sf_compression_model *model, const gsl_vector *parameters,
+                             const numbers *n, int test, double strain, const double *row, double *gradient) {
+    int curve = model->curve_count > 1 ? test : 0;
+    double logarithm = rate_logarithm(model, test), factor = 1 + n->value[SF_NUMBER_LOG_RATE] * logarithm;
     ordinate o;
-    evaluate(model, n->coefficient[curve], n, d->strain[i], &model->value_row[i * model->spline.count], NULL,
-             &o);
+    evaluate(model, n->coefficient[curve], n, strain, row, NULL, &o);
     if (gradient) {
         add_coefficients(model, n, curve, o.stress_by, factor, gradient);
         add_densification(model, parameters, factor * o.stress_by_exponent, factor * o.stress_by_limit,
@@ -390,7 +386,8 @@ void sf_compression_predict(const sf_compression_model *model, const gsl_vector 
     for (int i = 0; i < d->count; i++) {
         double *gradient = jacobian ? gsl_matrix_ptr(jacobian, (size_t)i, 0) : NULL;
         stress[i] = d->unloading[i] ? predict_unloading(model, parameters, &n, i, gradient)
-                                    : predict_loading(model, parameters, &n, i, gradient);
+                                    : loading_stress(model, parameters, &n, d->test[i], d->strain[i],
+                                                     &model->value_row[i * model->spline.count], gradient);
         if (model->form.rate == SF_RATE_MAXWELL)
             stress[i] += predict_maxwell(model, parameters, &n, i, &maxwell, gradient);
     }
@@ -413,43 +410,27 @@ double sf_compression_exponent(const sf_compression_model *model, const gsl_vect
 
 double sf_compression_curve(sf_compression_model *model, const gsl_vector *parameters, int test,
                             double strain, double *gradient) {
-    int curve = model->curve_count > 1 ? test : 0;
-    double row[SF_SPLINE_COEFFICIENTS], logarithm = rate_logarithm(model, test);
+    double row[SF_SPLINE_COEFFICIENTS];
     numbers n;
-    ordinate o;
     unpack(model, parameters, &n);
     sf_spline_value(&model->spline, fmin(strain, model->data->start), row);
-    evaluate(model, n.coefficient[curve], &n, strain, row, NULL, &o);
-    double factor = 1 + n.value[SF_NUMBER_LOG_RATE] * logarithm;
-    if (gradient) {
-        memset(gradient, 0, (size_t)model->parameter_count * sizeof *gradient);
-        add_coefficients(model, &n, curve, o.stress_by, factor, gradient);
-        add_densification(model, parameters, factor * o.stress_by_exponent, factor * o.stress_by_limit,
-                          gradient);
-        add_number(model, parameters, SF_NUMBER_LOG_RATE, logarithm * o.stress, gradient);
-    }
-    return factor * o.stress;
+    memset(gradient, 0, (size_t)model->parameter_count * sizeof *gradient);
+    return loading_stress(model, parameters, &n, test, strain, row, gradient);
 }
 
 /* ---- set-up ---- */
-
-static bool any_unloading(const sf_compression_data *data) {
-    for (int i = 0; i < data->count; i++)
-        if (data->unloading[i])
-            return true;
-    return false;
-}
 
 static void set_ranges(sf_compression_model *model) {
     const sf_compression_data *d = model->data;
     const sf_compression_config *c = d->config;
     double size = 0, longest = 0, shortest = INFINITY;
+    bool hysteresis = false, maxwell = model->form.rate == SF_RATE_MAXWELL;
     for (int k = 0; k < c->test_count; k++) {
+        hysteresis = hysteresis || c->test[k].count > c->test[k].loading;
         size = fmax(size, c->test[k].largest_stress);
         longest = fmax(longest, c->test[k].largest_strain / c->test[k].rate);
         shortest = fmin(shortest, c->test[k].largest_strain / c->test[k].rate);
     }
-    bool hysteresis = any_unloading(d), maxwell = model->form.rate == SF_RATE_MAXWELL;
     const sf_number_range range[SF_NUMBERS] = {
         [SF_NUMBER_HU] = {hysteresis, false, 1e-4, 1, 1},
         [SF_NUMBER_SHAPE] = {hysteresis, true, 0.05, 50, 1},

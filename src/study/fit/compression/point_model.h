@@ -22,10 +22,10 @@ typedef struct sf_compression_data {
     int count;
     int *test;       /* [count] index into config->test; points of a branch stand together, in order; owned */
     bool *unloading; /* [count] owned */
-    double *strain;  /* [count] -, not below 0; owned */
-    double *stress;  /* [count] Pa; owned */
-    double *smooth;  /* [count] Pa, by the smoothing spline of the branch; owned */
-    double *sigma;   /* [count] Pa, standard deviation of the stress; owned */
+    double *strain;  /* [count] -, not below 0; owned, with the next three behind it */
+    double *stress;  /* [count] Pa */
+    double *smooth;  /* [count] Pa, by the smoothing spline of the branch */
+    double *sigma;   /* [count] Pa, standard deviation of the stress */
     sf_scatter scatter;
     int intervals; /* of the loading curves' splines up to the start, before joining */
     double start;  /* -, strain from which densification is fitted */
@@ -101,7 +101,7 @@ double sf_compression_exponent(const sf_compression_model *model, const gsl_vect
                                double *gradient);
 
 /* Stress (Pa) of the loading curve at the rate of a test, at 0 <= strain <= data->end, and its gradient
- * [parameter_count] (or NULL). Without the Maxwell stress. */
+ * [parameter_count]. Without the Maxwell stress. */
 double sf_compression_curve(sf_compression_model *model, const gsl_vector *parameters, int test,
                             double strain, double *gradient);
 

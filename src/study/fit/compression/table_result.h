@@ -17,7 +17,7 @@ typedef struct sf_table_test {
     double rms[2];     /* of deviation over sigma, loading and unloading; NaN: no such branch */
     double percent[2]; /* root mean square of deviation, % of the stress, counted as one hundredth of the
                           largest at least */
-    double speed_up, difference[2], energy_error; /* of the simulated test (cube.h) */
+    double speed_up, difference[2], energy_error; /* of the simulated test */
 } sf_table_test;
 
 typedef struct sf_table_result {
@@ -29,7 +29,6 @@ typedef struct sf_table_result {
     int test_count;
     sf_table_test test[SF_COMPRESSION_TESTS];
     bool simulated;
-    sf_cube_test *cube; /* [test_count] if simulated; owned */
 } sf_table_result;
 
 /* Rows of an sf_table_test: all, and those of the simulated test. */

@@ -27,7 +27,8 @@ typedef struct state {
 typedef struct walker {
     gsl_rng *random;
     state at;
-    double *path, *density; /* [steps][parameters] of the last walk, and their log densities */
+    double *path, *density; /* [steps][parameters] of the last walk, and their log densities; owned, with
+                               all arrays in the block of the first */
     long long accepted, proposed, evaluations;
     int tried, room; /* evaluated states that are kept */
     double *tried_u, *tried_y, *tried_density;
@@ -189,24 +190,18 @@ static sf_status init_walker(const sf_target *target, int most, int round, uint6
                              sf_error *err) {
     unsigned long n = (unsigned long)target->parameters, steps = (unsigned long)round;
     *c = (walker){.room = target->responses > 0 ? most : 0};
-    unsigned long room = (unsigned long)c->room;
-    c->path = sf_alloc(err, steps * n, sizeof(double), "Markov chains");
-    c->density = sf_alloc(err, steps, sizeof(double), "Markov chains");
-    c->tried_u = sf_alloc(err, room * (unsigned long)target->shape, sizeof(double), "Markov chains");
-    c->tried_y = sf_alloc(err, room * (unsigned long)target->responses, sizeof(double), "Markov chains");
-    c->tried_density = sf_alloc(err, room, sizeof(double), "Markov chains");
+    unsigned long room = (unsigned long)c->room, shape = (unsigned long)target->shape,
+                  responses = (unsigned long)target->responses;
     c->random = sf_random(seed, err);
+    c->path =
+        sf_alloc(err, steps * (n + 1) + room * (shape + responses + 1), sizeof(double), "Markov chains");
+    if (!c->path)
+        return err->status;
+    c->density = c->path + steps * n;
+    c->tried_u = c->density + steps;
+    c->tried_y = c->tried_u + room * shape;
+    c->tried_density = c->tried_y + room * responses;
     return err->status;
-}
-
-static void free_walker(walker *c) {
-    gsl_rng_free(c->random);
-    free(c->path);
-    free(c->density);
-    free(c->tried_u);
-    free(c->tried_y);
-    free(c->tried_density);
-    *c = (walker){0};
 }
 
 /* ---- agreement of the chains ---- */
@@ -506,11 +501,12 @@ static sf_status allocate(work *w, sf_error *err) {
     unsigned long all = chains * (unsigned long)w->room;
     w->walker = sf_alloc(err, chains, sizeof *w->walker, "Markov chains");
     w->column = sf_alloc(err, all, sizeof(double), "Markov chains");
-    r->sample = sf_alloc(err, all * n, sizeof(double), "Markov chains");
-    r->log_density = sf_alloc(err, all, sizeof(double), "Markov chains");
-    r->quantity = sf_alloc(err, all * q, sizeof(double), "Markov chains");
-    r->rhat = sf_alloc(err, n + q, sizeof(double), "Markov chains");
-    r->effective = sf_alloc(err, n + q, sizeof(double), "Markov chains");
+    r->sample = sf_alloc(err, (all + 2) * (n + q) + all, sizeof(double), "Markov chains");
+    SF_TRY(err->status);
+    r->quantity = r->sample + all * n;
+    r->log_density = r->quantity + all * q;
+    r->rhat = r->log_density + all;
+    r->effective = r->rhat + n + q;
     for (int c = 0; c < r->chains && err->status == SF_OK; c++)
         init_walker(w->target, o->burn_in_rounds * o->round + o->most_steps, o->round,
                     sf_seed_of(o->seed, (uint64_t)c), &w->walker[c], err);
@@ -518,8 +514,10 @@ static sf_status allocate(work *w, sf_error *err) {
 }
 
 static void release(work *w) {
-    for (int c = 0; w->walker && c < w->options->chains; c++)
-        free_walker(&w->walker[c]);
+    for (int c = 0; w->walker && c < w->options->chains; c++) {
+        gsl_rng_free(w->walker[c].random);
+        free(w->walker[c].path); /* and all behind it */
+    }
     sf_emulator_free(&w->walk.emulator);
     free(w->walker);
     free(w->column);
@@ -551,10 +549,6 @@ sf_status sf_chains_run(const sf_target *target, const double *start, const doub
 }
 
 void sf_chains_free(sf_chains *r) {
-    free(r->sample);
-    free(r->log_density);
-    free(r->quantity);
-    free(r->rhat);
-    free(r->effective);
+    free(r->sample); /* and all behind it */
     *r = (sf_chains){0};
 }

@@ -37,12 +37,12 @@ typedef struct sf_chains {
     int parameters, quantities, chains;
     int kept;              /* states of each chain */
     int thinning;          /* steps from one to the next */
-    double *sample;        /* [chains][kept][parameters]; owned */
-    double *log_density;   /* [chains][kept] of the target; owned */
-    double *quantity;      /* [chains][kept][quantities]; owned */
+    double *sample;        /* [chains][kept][parameters]; owned, with the next four behind it */
+    double *log_density;   /* [chains][kept] of the target */
+    double *quantity;      /* [chains][kept][quantities] */
     double *rhat;          /* [parameters + quantities]; NaN: a quantity that no state has. A state
-                              without it counts with the largest value of the others; owned */
-    double *effective;     /* [parameters + quantities]; owned */
+                              without it counts with the largest value of the others */
+    double *effective;     /* [parameters + quantities] */
     double accepted;       /* share of the proposals after burn-in; a delayed step is one */
     long long evaluations; /* of the target */
     bool converged;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/posterior/discrepancy.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
@@ -26,17 +27,15 @@ static gsl_matrix_view matrix(double *a, int rows, int columns) {
 /* K = R R^T by its eigenvectors, as K is almost singular. */
 static sf_status find_root(const double *kernel, int n, double *root, sf_error *err) {
     gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc((size_t)n);
-    gsl_matrix *copy = gsl_matrix_alloc((size_t)n, (size_t)n);
-    gsl_vector *value = gsl_vector_alloc((size_t)n);
-    if (w && copy && value) {
+    gsl_matrix *copy = sf_matrix((size_t)n, (size_t)n, err);
+    gsl_vector *value = sf_vector((size_t)n, err);
+    if (w && err->status == SF_OK) {
         gsl_matrix_view out = matrix(root, n, n);
         memcpy(copy->data, kernel, (size_t)(n * n) * sizeof *kernel);
         gsl_eigen_symmv(copy, value, &out.matrix, w);
         for (int i = 0; i < n; i++)
             for (int j = 0; j < n; j++)
                 root[i * n + j] *= sqrt(fmax(0, gsl_vector_get(value, (size_t)j)));
-    } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a discrepancy of %d places", n);
     }
     gsl_eigen_symmv_free(w);
     gsl_matrix_free(copy);

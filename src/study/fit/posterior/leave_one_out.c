@@ -140,8 +140,7 @@ sf_status sf_predictive_weights(int models, int groups, const double *log_densit
                                 double *weight, sf_error *err) {
     double *share = sf_alloc(err, (unsigned long)groups, sizeof *share, "weights"),
            *alpha = sf_alloc(err, (unsigned long)groups, sizeof *alpha, "weights"),
-           *sum = sf_alloc(err, (unsigned long)models, sizeof *sum, "weights"),
-           *part = sf_alloc(err, (unsigned long)models, sizeof *part, "weights");
+           *sum = sf_alloc(err, 2 * (unsigned long)models, sizeof *sum, "weights"), *part = sum + models;
     gsl_rng *random = sf_random(sf_seed_of(seed, 77), err);
     if (err->status == SF_OK) {
         for (int g = 0; g < groups; g++)
@@ -164,7 +163,6 @@ sf_status sf_predictive_weights(int models, int groups, const double *log_densit
     free(share);
     free(alpha);
     free(sum);
-    free(part);
     return err->status;
 }
 

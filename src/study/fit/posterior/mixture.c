@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/posterior/mixture.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_randist.h>
@@ -148,9 +149,9 @@ static sf_status find_axis(samples *s, sf_error *err) {
             c[i * n + j] /= sd[i] * sd[j];
     gsl_matrix_view a = gsl_matrix_view_array(c, (size_t)n, (size_t)n);
     gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc((size_t)n);
-    gsl_vector *value = gsl_vector_alloc((size_t)n);
-    gsl_matrix *vector = gsl_matrix_alloc((size_t)n, (size_t)n);
-    if (w && value && vector) {
+    gsl_vector *value = sf_vector((size_t)n, err);
+    gsl_matrix *vector = sf_matrix((size_t)n, (size_t)n, err);
+    if (w && err->status == SF_OK) {
         gsl_eigen_symmv(&a.matrix, value, vector, w);
         size_t first = gsl_vector_max_index(value);
         for (int k = 0; k < s->count; k++) {
@@ -158,8 +159,6 @@ static sf_status find_axis(samples *s, sf_error *err) {
             for (int i = 0; i < n; i++)
                 s->position[k] += gsl_matrix_get(vector, (size_t)i, first) * s->u[k * n + i] / sd[i];
         }
-    } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", n);
     }
     gsl_eigen_symmv_free(w);
     gsl_vector_free(value);
