@@ -52,26 +52,6 @@ static void print_tests(FILE *out, const sf_compression_config *config) {
 
 /* ---- files ---- */
 
-static sf_status write_points(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
-                              sf_error *err) {
-    FILE *file = sf_staging_open(output, "fit.csv", err);
-    if (!file)
-        return err->status;
-    kind->points(file, fit);
-    return sf_staging_close(file, "fit.csv", err);
-}
-
-static sf_status write_json(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
-                            const char *path, sf_error *err) {
-    sf_json json = {.file = sf_staging_open(output, "fit.json", err)};
-    if (!json.file)
-        return err->status;
-    sf_json_open(&json, NULL, '{');
-    kind->json(&json, fit, path);
-    sf_json_close(&json, '}');
-    return sf_staging_close(json.file, "fit.json", err);
-}
-
 static sf_status write_material(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
                                 const char *title, sf_error *err) {
     char *text = NULL;
@@ -96,10 +76,18 @@ static sf_status write_all(const sf_compression_job *job, const sf_compression_k
                            void *fit, const char *name, char *warning, size_t size, sf_error *err) {
     sf_staging *output = &study->output;
     SF_TRY(sf_staging_begin(job->directory, kind->outputs, study->force, output, err));
-    SF_TRY(write_points(output, kind, fit, err));
+    FILE *points = sf_staging_open(output, "fit.csv", err);
+    SF_TRY(err->status);
+    kind->points(points, fit);
+    SF_TRY(sf_staging_close(points, "fit.csv", err));
     if (kind->more)
         SF_TRY(kind->more(job, output, fit, warning, size, err));
-    SF_TRY(write_json(output, kind, fit, job->path, err));
+    sf_json json = {.file = sf_staging_open(output, "fit.json", err)};
+    SF_TRY(err->status);
+    sf_json_open(&json, NULL, '{');
+    kind->json(&json, fit, job->path);
+    sf_json_close(&json, '}');
+    SF_TRY(sf_staging_close(json.file, "fit.json", err));
     SF_TRY(write_material(output, kind, fit, name, err));
     return sf_staging_commit(output, err);
 }

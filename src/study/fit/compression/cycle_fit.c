@@ -188,8 +188,7 @@ sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err) {
     if (!fit->has_unloading)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: a test without unloading has no memory", r->path);
     p.stress = sf_alloc(err, (unsigned long)r->count, sizeof *p.stress, "cycles");
-    if (!p.stress)
-        return err->status;
+    SF_TRY(err->status);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     size_t size = (size_t)(fit->config->form.unknown_count + HYSTERESIS + p.memory),
            count = (size_t)r->turn[2 * r->fitted] + 1;

@@ -371,8 +371,7 @@ static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, cons
     bool back = fit->has_unloading && t->count > t->loading;
     free(out->stress);
     out->stress = sf_alloc(err, (unsigned long)t->count, sizeof(double), "test");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     loading_at(curve, t->largest_strain, &peak);
     for (int i = 0; i < t->count; i++) {
         double stress = loading_at(curve, t->strain[i], &energy),

@@ -307,8 +307,7 @@ static sf_table_layout lateral_layout(void) {
 static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_error *err) {
     const sf_table_layout layout = lateral_layout();
     sf_table table = {0};
-    if (sf_table_read(path, &layout, &table, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_table_read(path, &layout, &table, err));
     int64_t end = 0;
     for (int64_t i = 1; i < table.count; i++)
         end = table.value[0][i] > table.value[0][end] ? i : end;

@@ -57,11 +57,9 @@ static int list_branches(const sf_compression_data *data, int sides,
 static sf_status estimate(sf_compression_data *data, sf_error *err) {
     sf_scatter_branch branches[SF_SCATTER_BRANCHES];
     int intervals, all = list_branches(data, 2, branches);
-    if (sf_scatter_estimate(all, branches, &data->scatter, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_scatter_estimate(all, branches, &data->scatter, err));
     int loading = list_branches(data, 1, branches);
-    if (sf_scatter_intervals(loading, branches, &intervals, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_scatter_intervals(loading, branches, &intervals, err));
     data->intervals = (int)ceil(FINER * intervals * sf_spline_part(data->end, data->start));
     return SF_OK;
 }
@@ -490,8 +488,7 @@ sf_status sf_compression_model_init(const sf_compression_data *data, sf_compress
                                     sf_compression_model *model, sf_error *err) {
     *model = (sf_compression_model){.data = data, .form = form};
     model->curve_count = form.rate == SF_RATE_CURVES ? data->config->test_count : 1;
-    if (make_spline(model, err) != SF_OK)
-        return err->status;
+    SF_TRY(make_spline(model, err));
     unsigned long items = (unsigned long)data->count * (unsigned long)model->spline.count;
     model->value_row = sf_alloc(err, items, sizeof *model->value_row, "spline rows");
     model->area_row = sf_alloc(err, items, sizeof *model->area_row, "spline rows");

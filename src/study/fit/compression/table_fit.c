@@ -350,8 +350,7 @@ static void place_table(sf_compression_fit *fit) {
 static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
     double *gradient =
         sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
-    if (!gradient)
-        return err->status;
+    SF_TRY(err->status);
     bool several = fit->model.form.rate == SF_RATE_LOG || fit->model.form.rate == SF_RATE_CURVES;
     fit->rate_count = several ? fit->data.config->test_count : 1;
     place_table(fit);

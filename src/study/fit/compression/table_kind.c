@@ -220,8 +220,7 @@ static void put_points(FILE *file, const void *place) {
 
 static sf_status write_curves(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
     FILE *file = sf_staging_open(output, "loading_curve.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fprintf(file, "# Loading curves of the fit with their %g %% intervals; rate 0: one curve for all rates\n",
             100 * fit->data.config->confidence);
     fputs("rate_1_s,strain,stress_kPa,low_kPa,high_kPa\n", file);
@@ -268,8 +267,7 @@ static sf_foam_card quicken(const sf_foam_card *card, double k, double *rates) {
 static sf_status write_motion(const char *path, double displacement, double turn_time, sf_error *err) {
     sf_replacement out;
     FILE *file = sf_replace_open(path, &out, err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fprintf(file, "time_s,displacement_m\n0,0\n%.12g,%.12g\n%.12g,0\n", turn_time, displacement,
             2 * turn_time);
     return sf_replace_close(&out, err);
@@ -330,8 +328,7 @@ static sf_status compare_cube(const sf_foam_card *card, double rate, double turn
     const sf_material material = sf_foam_material(&point);
     sf_material_law law;
     point.damp = 0;
-    if (sf_material_law_build(&material, &law, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_material_law_build(&material, &law, err));
     memcpy(strain, test->strain, (size_t)loading * sizeof *strain);
     strain[loading] = turn;
     memcpy(&strain[loading + 1], &test->strain[loading], (size_t)(test->count - loading) * sizeof *strain);
@@ -352,8 +349,7 @@ static sf_status compare_cube(const sf_foam_card *card, double rate, double turn
 static sf_status read_cube(const char *path, const sf_foam_card *card, const sf_compression_test *lab,
                            double turn_time, cube_test *test, sf_error *err) {
     sf_results r;
-    if (sf_results_open(path, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_results_open(path, &r, err));
     average_blocks(&r, sf_results_cross_section(&r), turn_time, test);
     sf_results_close(&r);
     return compare_cube(card, lab->rate, lab->largest_strain, test, err);
@@ -393,10 +389,9 @@ static sf_status simulate(const sf_table_result *r, const sf_compression_job *jo
         drop.overrides[drop.override_count++] = friction;
     }
     sf_runner_result result;
-    if (write_motion(motion, lab->largest_strain * c->specimen.side, turn_time, err) != SF_OK ||
-        sf_material_write(real, name, &quick, &text, err) != SF_OK ||
-        sf_runner_run(&runner, &drop, &result, err) != SF_OK)
-        return err->status;
+    SF_TRY(write_motion(motion, lab->largest_strain * c->specimen.side, turn_time, err));
+    SF_TRY(sf_material_write(real, name, &quick, &text, err));
+    SF_TRY(sf_runner_run(&runner, &drop, &result, err));
     test->energy_error = result.energy_error;
     read_cube(result.path, &r->card, lab, turn_time, test, err);
     sf_runner_result_free(&result);
@@ -414,8 +409,7 @@ static sf_status write_simulation(const sf_compression_job *job, const sf_stagin
     SF_TRY(sf_folder_own(folder, err));
     SF_TRY(check_specimen(r->fit.data.config, err));
     FILE *file = sf_staging_open(output, "simulation.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fputs("test,strain,cube_kPa,point_kPa\n", file);
     for (int k = 0; k < r->test_count && simulate(r, job, folder, k, &cube, err) == SF_OK; k++) {
         sf_table_test *test = &r->test[k];

@@ -284,8 +284,7 @@ sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging 
     SF_TRY(write_picture(output, fit, warning, size, err));
     snprintf(title, sizeof title, "%s: identification from compression tests", fit->data.config->name);
     FILE *out = sf_html_begin(output, title, job->path, err);
-    if (!out)
-        return err->status;
+    SF_TRY(err->status);
     put_banner(out, fit);
     put_picture(out, output);
     put_parameters(out, fit);

@@ -99,8 +99,7 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
                                 sf_error *err) {
     size_t *order = sf_alloc(err, (unsigned long)w->count, sizeof *order, "samples");
     double all = 0;
-    if (!order)
-        return err->status;
+    SF_TRY(err->status);
     gsl_sort_index(order, w->value, 1, (size_t)w->count);
     for (int s = 0; s < w->count; s++)
         all += w->weight[s];
@@ -191,7 +190,7 @@ sf_status sf_drop_average_discrepancy(const sf_drop_average *a, int k, const sf_
                                       double *delta, sf_response_error *error, sf_error *err) {
     const sf_drop_inference *in = a->model[draw->model];
     const double *u = &in->chains.sample[draw->state * in->parameters];
-    if (!sf_drop_inference_draw(in, u, sf_seed_of(a->seed, (uint64_t)(FIRST_SEED + k)), delta, error))
+    if (!sf_drop_inference_draw(in, u, sf_seed_of(a->seed, (uint64_t)(FIRST_SEED + k)), delta, error, NULL))
         return SF_FAIL(err, SF_ERR_NUMERIC, "draw %d of the posterior: the foam of the columns collapsed",
                        k + 1);
     return SF_OK;
@@ -205,9 +204,8 @@ static sf_status write_draw(const sf_drop_average *a, int k, const sf_posterior_
     char name[32], title[160];
     sf_foam_card card;
     sf_response_error error;
-    if (sf_drop_average_discrepancy(a, k, draw, delta, &error, err) != SF_OK ||
-        sf_drop_inference_card(in, u, delta, &card, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_average_discrepancy(a, k, draw, delta, &error, err));
+    SF_TRY(sf_drop_inference_card(in, u, delta, &card, err));
     card.informed_strain = 0; /* that of the start says nothing about a draw */
     snprintf(name, sizeof name, "draw-%03d", k + 1);
     snprintf(title, sizeof title, "Draw %d of %d of a posterior of softfall-fit drop, equally likely.", k + 1,

@@ -130,8 +130,7 @@ static sf_status list_strain_bins(const sf_drop_fit *fit, strain_bin bin[SF_FIT_
 
 static sf_status write_curve(const strain_bin *bin, const sf_staging *output, sf_error *err) {
     FILE *f = sf_staging_open(output, "fit-curve.csv", err);
-    if (!f)
-        return err->status;
+    SF_TRY(err->status);
     fputs("strain,stress_kPa,low95_kPa,high95_kPa,information\n", f);
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
         fprintf(f, "%.3f,%.6g,%.6g,%.6g,%.6g\n", bin[b].strain, bin[b].stress, bin[b].low, bin[b].high,
@@ -141,8 +140,7 @@ static sf_status write_curve(const strain_bin *bin, const sf_staging *output, sf
 
 static sf_status write_drops(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
     FILE *f = sf_staging_open(output, "fit-drops.csv", err);
-    if (!f)
-        return err->status;
+    SF_TRY(err->status);
     fputs("# one block per drop: time after the run's start (ms), acceleration (g)\n", f);
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_series *s = &fit->simulated[d].curve;

@@ -26,8 +26,7 @@ static sf_status surrogate(void *context, const double *u, double *y, sf_error *
 
 static sf_status find_columns(const char *path, sf_columns *columns, sf_error *err) {
     sf_results r;
-    if (sf_results_open(path, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_results_open(path, &r, err));
     sf_columns_build(&r, columns, err);
     sf_results_close(&r);
     return err->status;
@@ -67,8 +66,7 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
         return SF_FAIL(err, SF_ERR_NUMERIC, "the fit does not go through the drop %s: %.800s", drop->name,
                        result->verdict);
     sf_fit_simulated *last = &fit->simulated[d];
-    if (find_own_columns(fit, d, result->path, err) != SF_OK)
-        return err->status;
+    SF_TRY(find_own_columns(fit, d, result->path, err));
     const sf_columns_figures figures = {.a_max_g = result->a_max_g,
                                         .hic = result->hic,
                                         .hic_window = result->hic_window,
@@ -195,8 +193,7 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     char path[PATH_MAX];
     const sf_material_text text = {.title = "An iterate of softfall-fit drop.", .provenance = ""};
     snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
-    if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_fit_card(fit->input, u, &card, err));
     fit->chain_now = sf_drop_fit_chain(fit, u);
     card.informed_strain = 0; /* that of the start says nothing about an iterate */
     const sf_material material = sf_foam_material(&card);
@@ -235,8 +232,7 @@ static sf_status simulate(void *context, const double *u, double *y, sf_error *e
     sf_drop_fit *fit = context;
     char name[SF_FIT_NAME_SIZE];
     snprintf(name, sizeof name, "%s-%02d", fit->coarse ? "coarse" : "iterate", fit->iteration++);
-    if (simulate_drops(fit, 0, fit->measured_drops, name, u, y, err) != SF_OK)
-        return err->status;
+    SF_TRY(simulate_drops(fit, 0, fit->measured_drops, name, u, y, err));
     return add_speeds(fit, u, y, err);
 }
 
@@ -307,8 +303,7 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
         sf_foam_card low, high;
         memcpy(u, fit->result.u, sizeof u);
         u[j] += step;
-        if (sf_drop_fit_card(in, u, &high, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_drop_fit_card(in, u, &high, err));
         u[j] -= 2 * step;
         if (sf_drop_fit_card(in, u, &low, err) == SF_OK)
             for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
@@ -317,8 +312,7 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
             }
         sf_foam_card_free(&low);
         sf_foam_card_free(&high);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(err->status);
     }
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
         double prior = 0;
@@ -394,8 +388,8 @@ static sf_status finish(sf_drop_fit *fit, sf_error *err) {
 }
 
 static sf_status conclude(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_error *err) {
-    if (leave_one_out(fit, problem, err) != SF_OK || bound_curve(fit, err) != SF_OK)
-        return err->status;
+    SF_TRY(leave_one_out(fit, problem, err));
+    SF_TRY(bound_curve(fit, err));
     return locate_information(fit, err);
 }
 

@@ -29,8 +29,7 @@ static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *
     sf_record_verdict record;
     char line[SF_VERDICT_LINE_SIZE];
     double contact = 0, peak = 0, zero = NAN;
-    if (sf_reference_read(options, &reference, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_reference_read(options, &reference, err));
     const sf_series *curve = &reference.curve;
     if (sf_record_judge(&reference.raw, curve, reference.other, &record, err) != SF_OK)
         goto done;
@@ -100,8 +99,7 @@ static sf_status name_drop(const sf_config *config, const config_setting_t *grou
                            sf_fit_drop *drop, sf_error *err) {
     sf_fit_drop *const last = &drop[count];
     const char *name = NULL;
-    if (sf_config_text(config, group, "name", false, &name, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_text(config, group, "name", false, &name, err));
     if (name && strlen(name) >= sizeof last->name)
         return sf_config_refuse(config, group, err, "the name \"%.80s\" is longer than %zu characters", name,
                                 sizeof last->name - 1);
@@ -236,10 +234,9 @@ sf_status sf_drop_input_read(const sf_config *config, const config_setting_t *gr
     *last = (sf_fit_drop){.predicted = predicted};
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
         last->value[kind] = NAN;
-    if (sf_config_names(config, group, names[predicted], err) != SF_OK ||
-        name_drop(config, group, count, drop, err) != SF_OK ||
-        sf_config_file(config, group, "case", true, &last->case_path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, group, names[predicted], err));
+    SF_TRY(name_drop(config, group, count, drop, err));
+    SF_TRY(sf_config_file(config, group, "case", true, &last->case_path, err));
     if (predicted)
         return SF_OK;
     SF_TRY(read_measurement(config, group, last, err));

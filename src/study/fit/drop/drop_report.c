@@ -316,8 +316,7 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
     char title[256];
     snprintf(title, sizeof title, "Identification from drops: %s", fit->input->material_name);
     FILE *f = sf_html_begin(output, title, input_path, err);
-    if (!f)
-        return err->status;
+    SF_TRY(err->status);
     put_banner(f, fit);
     put_picture(f, output);
     if (average)
@@ -443,8 +442,7 @@ static void json_parameters(sf_json *j, const sf_drop_fit *fit) {
 static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
                             const sf_staging *output, sf_error *err) {
     FILE *f = sf_staging_open(output, "fit.json", err);
-    if (!f)
-        return err->status;
+    SF_TRY(err->status);
     sf_json j = {.file = f, .empty = true};
     sf_json_open(&j, NULL, '{');
     sf_json_text(&j, "program", "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")");

@@ -58,8 +58,7 @@ static sf_status filter_like_measured(const sf_series *curve, double cfc, sf_ser
 
 static sf_status take_samples(const sf_fit_drop *drop, const sf_series *curve, double *y, sf_error *err) {
     double contact = 0, end = curve->time[curve->count - 1];
-    if (sf_contact_instant(curve, drop->name, 0, &contact, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_contact_instant(curve, drop->name, 0, &contact, err));
     for (int k = 0; k < drop->samples; k++) {
         double time = contact + drop->sample_time[k];
         y[k] = time <= end ? sf_series_at(curve, time) / drop->sample_scale : 0;
@@ -134,8 +133,7 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
                               const double *u, double *y, sf_error *err) {
     const sf_material material = sf_foam_material(card);
     sf_material_law law;
-    if (sf_material_law_build(&material, &law, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_material_law_build(&material, &law, err));
     const sf_signal_chain chain = sf_drop_fit_chain(fit, u);
     if (first == 0)
         sf_joint_respond(&fit->input->joint, &law, y, err);

@@ -16,8 +16,7 @@ static sf_status read_drops(const sf_config *config, const config_setting_t *roo
                             bool predicted, sf_fit_input *in, sf_error *err) {
     const config_setting_t *list;
     bool required = !predicted && in->joint.rows == 0;
-    if (sf_config_list(config, root, name, required, SF_FIT_MAX_DROPS - in->drop_count, &list, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_list(config, root, name, required, SF_FIT_MAX_DROPS - in->drop_count, &list, err));
     for (int k = 0; list && k < config_setting_length(list); k++) {
         const config_setting_t *group = config_setting_get_elem(list, (unsigned)k);
         int count = in->drop_count++; /* it is released with the input, read or not */
@@ -180,12 +179,10 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     const char *form = "gas", *name = "material", *title = "Identified foam";
     const config_setting_t *model = model_of(root, in);
     char override[4096];
-    if (sf_config_text(config, model, model == root ? "curve_form" : "curve", model != root, &form, err) !=
-            SF_OK ||
-        sf_config_text(config, root, "name", false, &name, err) != SF_OK ||
-        sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
-        sf_config_file(config, root, "material", true, &in->material_path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_text(config, model, model == root ? "curve_form" : "curve", model != root, &form, err));
+    SF_TRY(sf_config_text(config, root, "name", false, &name, err));
+    SF_TRY(sf_config_text(config, root, "title", false, &title, err));
+    SF_TRY(sf_config_file(config, root, "material", true, &in->material_path, err));
     in->form.curve = sf_curve_form_find(form);
     if (!in->form.curve)
         return sf_config_refuse(config,
@@ -263,8 +260,7 @@ static sf_status read_start(const sf_config *config, const config_setting_t *hol
                                err);
         if (err->status == SF_OK && !(in->start[p] <= about->high))
             sf_config_refuse(config, item, err, "%s is above %g", about->name, about->high);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(err->status);
     }
     return SF_OK;
 }
@@ -347,9 +343,8 @@ static sf_status put_unknown(const sf_config *config, const config_setting_t *wh
 static sf_status read_unknown(const sf_config *config, const config_setting_t *entry, sf_fit_input *in,
                               sf_error *err) {
     const char *name = NULL;
-    if (sf_config_names(config, entry, "name|prior_sd", err) != SF_OK ||
-        sf_config_text(config, entry, "name", true, &name, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, entry, "name|prior_sd", err));
+    SF_TRY(sf_config_text(config, entry, "name", true, &name, err));
     sf_foam_parameter p = sf_parameter_find(name);
     if (p == SF_PARAMETER_COUNT)
         return sf_config_refuse(config, entry, err, "\"%.80s\" is no parameter of the foam", name);
@@ -376,8 +371,7 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
 static sf_status read_list(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
                            bool *given, sf_error *err) {
     const config_setting_t *list;
-    if (sf_config_list(config, holder, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_list(config, holder, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err));
     *given = list;
     for (int k = 0; list && k < config_setting_length(list) && err->status == SF_OK; k++)
         read_unknown(config, config_setting_get_elem(list, (unsigned)k), in, err);
@@ -463,10 +457,9 @@ static sf_status read_options(const sf_config *config, const config_setting_t *r
     double seed = 1;
     const config_setting_t *list;
     in->posterior = true;
-    if (sf_config_number(config, root, "seed", false, 0, 1e9, &seed, err) != SF_OK ||
-        sf_config_flag(config, root, "posterior", &in->posterior, err) != SF_OK ||
-        sf_config_list(config, root, "forms", false, SF_FIT_MAX_MODELS, &list, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_number(config, root, "seed", false, 0, 1e9, &seed, err));
+    SF_TRY(sf_config_flag(config, root, "posterior", &in->posterior, err));
+    SF_TRY(sf_config_list(config, root, "forms", false, SF_FIT_MAX_MODELS, &list, err));
     in->seed = (uint64_t)seed;
     in->model_count = list ? config_setting_length(list) : 1;
     if (list && config_setting_get_member(root, "curve_form"))

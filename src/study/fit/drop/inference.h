@@ -67,10 +67,11 @@ const char *sf_drop_inference_name(const sf_drop_inference *inference, int param
 double sf_drop_inference_value(const sf_drop_inference *inference, int parameter, double u);
 /* Strain of a place of delta. */
 double sf_discrepancy_strain(int place);
-/* delta [SF_DISCREPANCY_PLACES] and the errors of the responses, given a state of the chains and the data.
- * False: the columns fail there. */
+/* delta [SF_DISCREPANCY_PLACES], the errors of the responses that all drops share and, if `own` is not NULL,
+ * those of the drops to predict, [input drops][SF_FIT_SAMPLES], the shared ones in them, given a state of the
+ * chains and the data. False: the columns fail there. */
 bool sf_drop_inference_draw(const sf_drop_inference *inference, const double *u, uint64_t seed, double *delta,
-                            sf_response_error *error);
+                            sf_response_error *error, double *own);
 /* The card of a state with its curve times exp(delta), linear between the places; a curve that would fall is
  * held. Owned by the caller. */
 sf_status sf_drop_inference_card(const sf_drop_inference *inference, const double *u, const double *delta,

@@ -149,9 +149,8 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
     for (int q = 0; q < in->quantities; q++) {
         const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
         double all[3], best[3];
-        if (sf_drop_average_quantiles(a, -1, q, 3, THREE, all, err) != SF_OK ||
-            sf_drop_average_quantiles(a, sf_drop_average_best(a), q, 3, THREE, best, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, all, err));
+        SF_TRY(sf_drop_average_quantiles(a, sf_drop_average_best(a), q, 3, THREE, best, err));
         snprintf(text, sizeof text, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
         sf_html_row(&table);
         missing_text(a, q, "", missing);
@@ -360,8 +359,7 @@ static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf
     const sf_drop_inference *in = a->model[0];
     const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
     double value[3];
-    if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err));
     sf_json_open(j, NULL, '{');
     sf_json_text(j, "drop", drop_of(in, q));
     sf_json_text(j, "quantity", about->key);
@@ -444,8 +442,7 @@ static sf_status put_csv_draw(FILE *f, const sf_drop_average *a, int k, const sf
     char text[LABEL];
     sf_response_error error;
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
-    if (sf_drop_average_discrepancy(a, k, draw, delta, &error, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_average_discrepancy(a, k, draw, delta, &error, err));
     fprintf(f, "%d,\"%s\",%.9g,%.9g", k + 1, label_of(a, draw->model, text), size.tau, size.kappa);
     put_csv_parameters(f, a, in->fit->input, u);
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
@@ -457,8 +454,7 @@ static sf_status put_csv_draw(FILE *f, const sf_drop_average *a, int k, const sf
 sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, sf_error *err) {
     sf_posterior_draw draw[SF_POSTERIOR_DRAWS];
     FILE *f = sf_staging_open(output, "posterior.csv", err);
-    if (!f)
-        return err->status;
+    SF_TRY(err->status);
     put_csv_heading(f, a);
     sf_drop_average_draw(a, draw);
     for (int k = 0; k < SF_POSTERIOR_DRAWS && err->status == SF_OK; k++)
@@ -499,8 +495,7 @@ static sf_status print_prediction(FILE *f, const sf_drop_average *a, int q, sf_e
     const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
     double value[3];
     char median[SHOWN], interval[SHOWN], missing[MISSING];
-    if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err));
     fprintf(f, "  %-20s %s %s %s (95 %%: %s)%s\n", drop_of(in, q), about->name,
             median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
             interval_text(about->digits, value, interval), missing_text(a, q, "; ", missing));
@@ -519,8 +514,7 @@ sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
     for (int m = 0; m < a->failed; m++)
         fprintf(f, "  weight 0      FAILED: %s: %s\n", a->failure[m].label, a->failure[m].sentence);
     for (int q = 0; q < a->model[0]->quantities; q++)
-        if (print_prediction(f, a, q, err) != SF_OK)
-            return err->status;
+        SF_TRY(print_prediction(f, a, q, err));
     if (!sf_drop_average_reached(a))
         fputs("  The chains did NOT reach their criteria: see report.html.\n", f);
     return SF_OK;

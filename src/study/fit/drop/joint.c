@@ -66,12 +66,10 @@ static sf_status drop_flat(const sf_joint_cushion *cushion, double static_stress
 
 sf_status sf_joint_respond(const sf_joint *joint, const sf_material_law *law, double *y, sf_error *err) {
     for (int t = 0; t < joint->test_count; y += joint->test[t++].count)
-        if (compress(&joint->test[t], law, y, err) != SF_OK)
-            return err->status;
+        SF_TRY(compress(&joint->test[t], law, y, err));
     for (int c = 0; c < joint->cushion_count; c++)
         for (int k = 0; k < joint->cushion[c].count; k++)
-            if (drop_flat(&joint->cushion[c], joint->cushion[c].static_stress[k], law, y++, err) != SF_OK)
-                return err->status;
+            SF_TRY(drop_flat(&joint->cushion[c], joint->cushion[c].static_stress[k], law, y++, err));
     return SF_OK;
 }
 

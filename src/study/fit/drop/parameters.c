@@ -101,8 +101,7 @@ void sf_foam_card_free(sf_foam_card *card) {
 
 sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
                             sf_foam_card *card, sf_error *err) {
-    if (sf_foam_card_copy(&form->base, card, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_foam_card_copy(&form->base, card, err));
     card->modulus = value[SF_PARAMETER_E];
     card->hysteresis_hu = fmin(1, value[SF_PARAMETER_HU]);
     card->hysteresis_shape = value[SF_PARAMETER_SHAPE];

@@ -59,7 +59,7 @@ static double evaluate(const walk *w, walker *c, const double *u) {
         return sf_target_at(t, u);
     if (!t->respond(t->context, u, y))
         return -INFINITY;
-    double density = t->log_density_of(t->context, u, y);
+    double density = t->log_density(t->context, u, y);
     if (isfinite(density) && c->tried < c->room) {
         memcpy(&c->tried_u[c->tried * t->shape], u, (size_t)t->shape * sizeof *u);
         memcpy(&c->tried_y[c->tried * t->responses], y, (size_t)t->responses * sizeof *y);
@@ -75,7 +75,7 @@ static double emulate(const walk *w, walker *c, const double *u) {
     (void)c;
     if (!sf_emulator_at(&w->emulator, u, y))
         return -INFINITY;
-    double density = FLATTENED * w->target->log_density_of(w->target->context, u, y);
+    double density = FLATTENED * w->target->log_density(w->target->context, u, y);
     return density == density ? density : -INFINITY;
 }
 
@@ -195,8 +195,7 @@ static sf_status init_walker(const sf_target *target, int most, int round, uint6
     c->random = sf_random(seed, err);
     c->path =
         sf_alloc(err, steps * (n + 1) + room * (shape + responses + 1), sizeof(double), "Markov chains");
-    if (!c->path)
-        return err->status;
+    SF_TRY(err->status);
     c->density = c->path + steps * n;
     c->tried_u = c->density + steps;
     c->tried_y = c->tried_u + room * shape;
@@ -334,8 +333,7 @@ static sf_status match(work *w, sf_error *err) {
     double *all = sf_alloc(err, (unsigned long)(count * n), sizeof *all, "samples");
     sf_mixture proposal, jump;
     sf_error none = SF_ERROR_INIT;
-    if (!all)
-        return err->status;
+    SF_TRY(err->status);
     for (int c = 0; c < w->options->chains; c++)
         memcpy(&all[c * round * n], w->walker[c].path, (size_t)(round * n) * sizeof *all);
     if (sf_mixture_about(n, count, all, FREEDOM, &jump, &none) == SF_OK &&
@@ -351,8 +349,8 @@ static sf_status match(work *w, sf_error *err) {
 static sf_status burn_in(work *w, int rounds, sf_error *err) {
     for (int k = 0; k < rounds; k++) {
         walk_all(w);
-        if (match(w, err) != SF_OK || learn(&w->walk, w->options->chains, w->walker, err) != SF_OK)
-            return err->status;
+        SF_TRY(match(w, err));
+        SF_TRY(learn(&w->walk, w->options->chains, w->walker, err));
     }
     for (int c = 0; c < w->options->chains; c++)
         w->walker[c].accepted = w->walker[c].proposed = 0;
@@ -530,8 +528,7 @@ sf_status sf_chains_run(const sf_target *target, const double *start, const doub
                      .chains = options->chains,
                      .thinning = 1};
     work w = {.target = target, .options = options, .out = r, .walk = {.target = target}};
-    if (sf_mixture_single(target->parameters, start, covariance, FREEDOM, &w.walk.proposal, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_mixture_single(target->parameters, start, covariance, FREEDOM, &w.walk.proposal, err));
     w.walk.jump = w.walk.proposal;
     if (allocate(&w, err) == SF_OK && place_all(&w, err) == SF_OK &&
         burn_in(&w, options->burn_in_rounds, err) == SF_OK && sample(&w, err) == SF_OK) {

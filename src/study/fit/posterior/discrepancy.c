@@ -60,8 +60,7 @@ static sf_status factorise(sf_discrepancy *d, sf_error *err) {
 static sf_status whiten(sf_discrepancy *d, const double *jacobian, const double *effect, sf_error *err) {
     int p = d->latent;
     d->white = sf_alloc(err, (unsigned long)(d->data * p), sizeof(double), "a discrepancy");
-    if (!d->white)
-        return err->status;
+    SF_TRY(err->status);
     for (int i = 0; i < d->data; i++) {
         double *row = &d->white[i * p];
         for (int k = 0; k < d->bins; k++)
@@ -107,8 +106,8 @@ sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const
     if (err->status != SF_OK || find_root(kernel, bins, d->root, err) != SF_OK || data == 0)
         return err->status;
     memcpy(d->base_root, base, (size_t)(data * data) * sizeof *base);
-    if (factorise(d, err) != SF_OK || whiten(d, jacobian, effect, err) != SF_OK)
-        return err->status;
+    SF_TRY(factorise(d, err));
+    SF_TRY(whiten(d, jacobian, effect, err));
     return d->data < d->latent ? fill_spread(d, err) : err->status;
 }
 

@@ -177,14 +177,10 @@ typedef struct without {
     int group;
 } without;
 
-static double density_without_of(const void *context, const double *u, const double *y) {
+static double density_without(const void *context, const double *u, const double *y) {
     const without *w = context;
     double conditional[MOST_GROUPS], all = w->grouped->split(w->grouped->target.context, u, y, conditional);
     return all - conditional[w->group];
-}
-
-static double density_without(const void *context, const double *u) {
-    return density_without_of(context, u, NULL);
 }
 
 static bool respond(const void *context, const double *u, double *y) {
@@ -207,8 +203,7 @@ static double *split_all(const sf_grouped *g, const double *sample, int count, s
 static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
                        sf_error *err) {
     double *sum = sf_alloc(err, (unsigned long)count, sizeof *sum, "weights");
-    if (!sum)
-        return err->status;
+    SF_TRY(err->status);
     for (int s = 0; s < count; s++)
         scratch[s] = -all[s * groups + g];
     out->pareto_k = sf_pareto_smooth(count, scratch, err);
@@ -237,8 +232,7 @@ static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
                               .context = &context,
                               .responses = g->target.responses,
                               .shape = g->target.shape,
-                              .respond = respond,
-                              .log_density_of = density_without_of};
+                              .respond = respond};
     sf_chains_options own = *options;
     sf_chains chains;
     own.seed = sf_seed_of(options->seed, (uint64_t)(500 + group));

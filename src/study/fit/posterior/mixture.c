@@ -169,8 +169,7 @@ static sf_status find_axis(samples *s, sf_error *err) {
 /* First shares: equal slices along the axis. */
 static sf_status slice(const samples *s, int parts, sf_error *err) {
     double *sorted = sf_alloc(err, (unsigned long)s->count, sizeof *sorted, "samples");
-    if (!sorted)
-        return err->status;
+    SF_TRY(err->status);
     memcpy(sorted, s->position, (size_t)s->count * sizeof *sorted);
     gsl_sort(sorted, 1, (size_t)s->count);
     for (int k = 0; k < s->count; k++)
@@ -224,12 +223,10 @@ static void share_out(const sf_mixture *m, const samples *s) {
 
 static sf_status match(const samples *s, int parts, double freedom, sf_mixture *m, sf_error *err) {
     *m = (sf_mixture){.parameters = s->n, .parts = parts, .freedom = freedom};
-    if (slice(s, parts, err) != SF_OK)
-        return err->status;
+    SF_TRY(slice(s, parts, err));
     for (int round = 0; round < ROUNDS; round++) {
         for (int p = 0; p < parts; p++)
-            if (match_part(m, s, &s->share[p * s->count], round == 0, &m->part[p], err) != SF_OK)
-                return err->status;
+            SF_TRY(match_part(m, s, &s->share[p * s->count], round == 0, &m->part[p], err));
         share_out(m, s);
     }
     return SF_OK;

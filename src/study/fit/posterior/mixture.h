@@ -17,15 +17,14 @@ enum {
 
 typedef struct sf_target {
     int parameters;
-    /* Logarithm of the density at u [parameters]; -INFINITY or NaN: outside. Called by several threads at a
-     * time. */
-    double (*log_density)(const void *context, const double *u);
+    /* Logarithm of the density at u [parameters]; -INFINITY or NaN: outside. `y`: what `respond` gives there;
+     * NULL: not known yet. Called by several threads at a time. */
+    double (*log_density)(const void *context, const double *u, const double *y);
     const void *context;
     /* The density in two steps, of which the first costs much more; responses = 0: not told. */
     int responses; /* smooth functions of the first `shape` parameters */
     int shape;
     bool (*respond)(const void *context, const double *u, double *y); /* false: outside */
-    double (*log_density_of)(const void *context, const double *u, const double *y);
     int quantities; /* followed beside the parameters, for example predictions; 0: none */
     /* Quantities of u; what is random in them follows from `seed`. NaN: no value. Called by several threads.
      */
@@ -34,7 +33,7 @@ typedef struct sf_target {
 
 /* The density at u, -INFINITY where it is NaN. */
 static inline double sf_target_at(const sf_target *target, const double *u) {
-    double value = target->log_density(target->context, u);
+    double value = target->log_density(target->context, u, NULL);
     return value == value ? value : -__builtin_inf();
 }
 
