@@ -133,6 +133,10 @@ sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *
 char *sf_chart_svg(const sf_staging *output, const char *name, const char *program, char *warning,
                    size_t size);
 
+/* The same as a figure of the page; without the element its caption says why. */
+void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, const char *program,
+                     const char *caption);
+
 /* The same of a chart that is for a page only: no NAME.gp and no NAME.png stay. */
 char *sf_chart_page(const sf_chart *chart, const sf_staging *output, const char *program, char *warning,
                     size_t size, sf_error *err);

@@ -3,6 +3,7 @@
 
 #include "io/plain_file.h"
 #include "io/process.h"
+#include "report/html.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -324,6 +325,13 @@ char *sf_chart_svg(const sf_staging *output, const char *name, const char *progr
         snprintf(warning, size, "%s was drawn, but cannot be read", picture);
     free(text);
     return element;
+}
+
+void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, const char *program,
+                     const char *caption) {
+    char warning[320], *svg = sf_chart_svg(output, name, program, warning, sizeof warning);
+    sf_html_figure(page, svg, svg ? "%s" : "%s.", svg ? caption : warning);
+    free(svg);
 }
 
 sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *warning, size_t size,

@@ -10,6 +10,8 @@
 #include <libconfig.h>
 #include <stdbool.h>
 
+typedef const config_setting_t sf_config_item; /* of libconfig */
+
 typedef struct sf_config {
     const char *path; /* borrowed */
     char *folder;     /* that holds the file; owned */

@@ -263,12 +263,6 @@ static sf_status minimise(likelihood *l, double size, sf_scatter *scatter, sf_er
     return err->status;
 }
 
-static void set_sigma(int count, const sf_scatter_branch *branches, const sf_scatter *s) {
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < branches[k].count; i++)
-            branches[k].sigma[i] = hypot(s->absolute, s->relative * branches[k].smooth[i]);
-}
-
 /* Deviations of the smoothed branches count for the coefficients that were spent on them. */
 static sf_status set_inflation(likelihood *l, int intervals, sf_error *err) {
     for (int k = 0; k < l->count; k++) {
@@ -295,7 +289,10 @@ sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branche
     for (int round = 0; round < ROUNDS && err->status == SF_OK; round++) {
         if (choose_intervals(branch_count, branches, SF_GRADING_ENDS, &intervals, err) == SF_OK &&
             set_inflation(&l, intervals, err) == SF_OK && minimise(&l, size, scatter, err) == SF_OK)
-            set_sigma(branch_count, branches, scatter);
+            for (int k = 0; k < branch_count; k++)
+                for (int i = 0; i < branches[k].count; i++)
+                    branches[k].sigma[i] =
+                        hypot(scatter->absolute, scatter->relative * branches[k].smooth[i]);
     }
     gsl_set_error_handler(handler);
     return err->status;

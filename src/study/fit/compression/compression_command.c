@@ -20,12 +20,6 @@ static const sf_option options[] = {
     {0},
 };
 
-static const sf_compression_kind *kind_of(const sf_compression_config *config) {
-    return config->hyperfoam.terms > 0 ? &sf_compression_hyperfoam
-           : config->form.form.curve   ? &sf_compression_form_kind
-                                       : &sf_compression_tables;
-}
-
 /* Refuses what cannot be done before anything is computed or made. */
 static sf_status check_job(const sf_compression_job *job, sf_study *study, const sf_compression_kind *kind,
                            const sf_compression_config *config, sf_error *err) {
@@ -116,7 +110,9 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     if (job->friction && !job->case_path)
         return SF_FAIL(err, SF_ERR_INPUT, "--friction needs --simulate");
     SF_TRY(sf_compression_config_read(job->path, &config, err));
-    const sf_compression_kind *kind = kind_of(&config);
+    const sf_compression_kind *kind = config.hyperfoam.terms > 0 ? &sf_compression_hyperfoam
+                                      : config.form.form.curve   ? &sf_compression_form_kind
+                                                                 : &sf_compression_tables;
     void *fit =
         check_job(job, study, kind, &config, err) == SF_OK ? sf_alloc(err, 1, kind->size, "the fit") : NULL;
     if (fit) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/compression/cycle_fit.h"
+#include "study/fit/compression/form_fit.h"
 
 #include <gsl/gsl_errno.h>
 #include <math.h>

@@ -411,20 +411,14 @@ sf_status sf_form_fit_follow(sf_form_fit *fit, sf_error *err) {
 
 /* ---- all ---- */
 
-static double largest_strain(const sf_compression_config *c) {
-    double largest = 0;
-    for (int k = 0; k < c->test_count; k++)
-        largest = fmax(largest, c->test[k].largest_strain);
-    return largest;
-}
-
 /* The material, without its unloading. */
 static sf_status make_card(sf_form_fit *fit, sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
     if (sf_foam_form_card(&fit->config->form.form, fit->value, &fit->card, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "the tests lead to no foam of curve_form = \"%s\": %s",
                        fit->config->form.form.curve->name, inner.text);
-    fit->card.informed_strain = largest_strain(fit->config);
+    for (int k = 0; k < fit->config->test_count; k++)
+        fit->card.informed_strain = fmax(fit->card.informed_strain, fit->config->test[k].largest_strain);
     return SF_OK;
 }
 

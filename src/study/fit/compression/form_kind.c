@@ -4,7 +4,7 @@
 
 #include "material/low_density_foam.h"
 #include "report/row.h"
-#include "study/fit/compression/cycle_fit.h"
+#include "study/fit/compression/form_fit.h"
 #include <math.h>
 
 static const char *const outputs[] = {"fit.csv", "fit.json", "material.csv", "material.cfg", NULL};
@@ -96,7 +96,7 @@ static void describe(FILE *out, const void *place, bool comments) {
         fputc('\n', out);
     if (comments && sf_form_fit_is_poor(fit))
         fprintf(out, "WARNING: %s\n", POOR_WARNING);
-    fprintf(out, "Curve: %s.\nRate: %s.\n", c->form.form.curve->formula, sf_form_rate_name(c->form.rate));
+    fprintf(out, "Curve: %s.\nRate: %s.\n", c->form.form.curve->formula, sf_form_rate_names[c->form.rate]);
     fprintf(out, "rms of loading %.2g %% of the largest stress, with %d parameters:\n",
             100 * fit->loading_rms, c->form.unknown_count);
     put_unknowns(out, fit);
@@ -261,7 +261,7 @@ static void put_json(sf_json *json, const void *place, const char *path) {
     sf_json_text(json, "law", "low_density_foam");
     sf_json_text(json, "name", c->name);
     sf_json_text(json, "curve_form", c->form.form.curve->name);
-    sf_json_text(json, "rate_model", sf_form_rate_name(c->form.rate));
+    sf_json_text(json, "rate_model", sf_form_rate_names[c->form.rate]);
     sf_json_integer(json, "parameter_count", c->form.unknown_count);
     sf_json_number(json, "loading_rms", fit->loading_rms);
     sf_json_bool(json, "describes_the_tests", !sf_form_fit_is_poor(fit));

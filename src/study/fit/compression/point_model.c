@@ -32,6 +32,7 @@ static void fill(sf_compression_data *data) {
             data->unloading[at] = i >= t->loading;
             data->strain[at] = fmax(0, t->strain[i]);
             data->stress[at] = t->stress[i];
+            data->largest = fmax(data->largest, t->stress[i]);
         }
     }
     data->start =
@@ -111,17 +112,12 @@ typedef struct ordinate {
 
 /* ---- parameters ---- */
 
-/* 1 / (1 + exp(-x)), kept off 0 and 1. */
-static double logistic(double x) {
-    return 1 / (1 + exp(-fmax(-30, fmin(30, x))));
-}
-
 static double from_real(const sf_number_range *r, double x, double *slope) {
     if (isinf(r->high)) {
         *slope = 1;
         return x;
     }
-    double part = logistic(x), change = part * (1 - part);
+    double part = 1 / (1 + exp(-fmax(-30, fmin(30, x)))), change = part * (1 - part);
     if (!r->logarithmic) {
         *slope = (r->high - r->low) * change;
         return r->low + (r->high - r->low) * part;
@@ -261,11 +257,6 @@ double sf_compression_maxwell(double decay_rate, double rate, double turn, doubl
     return -(1 - strain) * walk->held;
 }
 
-static double rate_logarithm(const sf_compression_model *model, int test) {
-    const sf_compression_test *t = model->data->config->test;
-    return model->form.rate == SF_RATE_LOG ? log(t[test].rate / t[0].rate) : 0;
-}
-
 /* ---- derivatives into the parameter vector ---- */
 
 /* Adds `factor` times a gradient by the coefficients of a curve: an increment raises all coefficients after
@@ -326,7 +317,9 @@ static double predict_maxwell(const sf_compression_model *model, const gsl_vecto
 static double loading_stress(const sf_compression_model *model, const gsl_vector *parameters,
                              const numbers *n, int test, double strain, const double *row, double *gradient) {
     int curve = model->curve_count > 1 ? test : 0;
-    double logarithm = rate_logarithm(model, test), factor = 1 + n->value[SF_NUMBER_LOG_RATE] * logarithm;
+    const sf_compression_test *t = model->data->config->test;
+    double logarithm = model->form.rate == SF_RATE_LOG ? log(t[test].rate / t[0].rate) : 0,
+           factor = 1 + n->value[SF_NUMBER_LOG_RATE] * logarithm;
     ordinate o;
     evaluate(model, n->coefficient[curve], n, strain, row, NULL, &o);
     if (gradient) {

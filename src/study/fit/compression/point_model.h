@@ -27,9 +27,10 @@ typedef struct sf_compression_data {
     double *smooth;  /* [count] Pa, by the smoothing spline of the branch */
     double *sigma;   /* [count] Pa, standard deviation of the stress */
     sf_scatter scatter;
-    int intervals; /* of the loading curves' splines up to the start, before joining */
-    double start;  /* -, strain from which densification is fitted */
-    double end;    /* -, largest strain of all tests */
+    int intervals;  /* of the loading curves' splines up to the start, before joining */
+    double start;   /* -, strain from which densification is fitted */
+    double end;     /* -, largest strain of all tests */
+    double largest; /* Pa, largest stress of all points */
 } sf_compression_data;
 
 sf_status sf_compression_data_init(const sf_compression_config *config, sf_compression_data *data,

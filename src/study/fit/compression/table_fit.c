@@ -151,14 +151,6 @@ static sf_status try_form(const sf_compression_data *data, sf_compression_form f
     return err->status;
 }
 
-static int lowest(const sf_candidate *candidates, int count, int otherwise) {
-    int best = otherwise;
-    for (int k = 0; k < count; k++)
-        if (candidates[k].tried && (!candidates[best].tried || candidates[k].bic < candidates[best].bic))
-            best = k;
-    return best;
-}
-
 /* First the rate dependence, with the prescribed densification or the free exponent of H1; then, unless it is
  * prescribed, the densification. A = 0 is fitted for the report, but not chosen: with one parameter less it
  * would win wherever the data do not determine A, with intervals that are too narrow. */
@@ -174,7 +166,9 @@ static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_e
         for (int k = 0; k < SF_RATE_MODELS; k++)
             SF_TRY(try_form(&fit->data, (sf_compression_form){(sf_rate_model)k, form->rule, false},
                             &fit->rate[k], err));
-        form->rate = (sf_rate_model)lowest(fit->rate, SF_RATE_MODELS, SF_RATE_NONE);
+        form->rate = SF_RATE_NONE; /* all were tried */
+        for (int k = 1; k < SF_RATE_MODELS; k++)
+            form->rate = fit->rate[k].bic < fit->rate[form->rate].bic ? (sf_rate_model)k : form->rate;
     }
     if (c->rule != SF_RULE_AUTO)
         return SF_OK;
@@ -200,12 +194,6 @@ static double neighbour_correlation(const sf_compression_fit *fit, bool unloadin
             product += r * (d->stress[i - 1] - fit->stress[i - 1]) / d->sigma[i - 1];
     }
     return square > 0 ? product / square : 0;
-}
-
-/* Deviations that hang together count for fewer points: the variance of a mean grows by (1 + r)/(1 - r). */
-static double serial_factor(double correlation, int count) {
-    double r = fmin(0.98, correlation);
-    return r > 2 / sqrt(count) ? (1 + r) / (1 - r) : 1;
 }
 
 double sf_compression_error(const sf_compression_fit *fit, const double *gradient) {
@@ -369,9 +357,7 @@ static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
 /* Root mean square of the deviations of a side, over the stress and over the largest stress of all tests. */
 static void measure_side(const sf_compression_fit *fit, bool unloading, sf_side *side) {
     const sf_compression_data *d = &fit->data;
-    double relative = 0, absolute = 0, largest = 0;
-    for (int i = 0; i < d->count; i++)
-        largest = fmax(largest, d->stress[i]);
+    double relative = 0, absolute = 0, largest = d->largest;
     for (int i = 0; i < d->count; i++) {
         double off = fit->stress[i] - d->stress[i];
         if (d->unloading[i] != unloading)
@@ -485,8 +471,11 @@ static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
     }
     sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
     for (int k = 0; k < 2; k++) {
-        fit->side[k].correlation = neighbour_correlation(fit, k == 1);
-        fit->side[k].serial = serial_factor(fit->side[k].correlation, fit->side[k].points);
+        /* deviations that hang together count for fewer points: (1 + r)/(1 - r) for the variance of a mean */
+        sf_side *side = &fit->side[k];
+        side->correlation = neighbour_correlation(fit, k == 1);
+        double r = fmin(0.98, side->correlation);
+        side->serial = r > 2 / sqrt(side->points) ? (1 + r) / (1 - r) : 1;
     }
     if (err->status == SF_OK && p2 > 0) {
         join_covariances(fit, own[0], own[1], err);
@@ -510,15 +499,12 @@ static sf_status weigh_by_law(sf_compression_fit *fit, sf_error *err) {
     side->misfit = side->chi2 / ((double)side->points - (double)count_of(&fit->model, true));
     if (!(side->misfit > FAR))
         return SF_OK;
-    double largest = 0;
     sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
     measure_side(fit, true, side);
     side->law_error = side->of_largest;
     for (int i = 0; i < d->count; i++)
-        largest = fmax(largest, d->stress[i]);
-    for (int i = 0; i < d->count; i++)
         if (d->unloading[i])
-            d->sigma[i] = hypot(d->sigma[i], side->law_error * largest);
+            d->sigma[i] = hypot(d->sigma[i], side->law_error * d->largest);
     side->chi2 = search_unloading(&fit->model, fit->parameters, err);
     return err->status == SF_OK && isfinite(side->chi2) ? try_alpha(fit, err) : err->status;
 }

@@ -29,15 +29,8 @@ static void compare_test(const sf_compression_fit *fit, int k, sf_table_test *ou
     const sf_compression_data *d = &fit->data;
     const sf_compression_test *t = &d->config->test[k];
     const char *slash = strrchr(t->path, '/');
-    *out = (sf_table_test){.path = t->path,
-                           .name = slash ? slash + 1 : t->path,
-                           .interpretation = t->interpretation,
-                           .toe = t->toe,
-                           .rate = t->rate,
-                           .largest_strain = t->largest_strain,
-                           .largest_stress = t->largest_stress,
-                           .loading = t->loading,
-                           .unloading = t->count - t->loading};
+    *out =
+        (sf_table_test){.test = *t, .name = slash ? slash + 1 : t->path, .unloading = t->count - t->loading};
     for (int side = 0; side < 2; side++) {
         int first, count;
         double sum = 0, relative = 0;
@@ -186,8 +179,8 @@ static void describe(FILE *out, const void *place, bool comments) {
     }
     fputs(" from\n", out);
     for (int k = 0; k < r->test_count; k++)
-        fprintf(out, "  %s at %.6g 1/s, to a strain of %.4g\n", r->test[k].path, r->test[k].rate,
-                r->test[k].largest_strain);
+        fprintf(out, "  %s at %.6g 1/s, to a strain of %.4g\n", r->test[k].test.path, r->test[k].test.rate,
+                r->test[k].test.largest_strain);
     fprintf(out, "Rate dependence %s.\nDensification from the strain %.4g on by %s.\n", rate, fit->data.start,
             rule);
     put_estimates(out, fit);
@@ -423,7 +416,7 @@ static sf_status write_simulation(const sf_compression_job *job, const sf_stagin
             job->log,
             "simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g %% "
             "unloading\n",
-            test->rate, cube.percent[0], cube.percent[1]);
+            test->test.rate, cube.percent[0], cube.percent[1]);
         fflush(job->log);
     }
     r->simulated = true;
@@ -456,10 +449,10 @@ static void json_candidate(sf_json *json, const char *name, const sf_candidate *
 
 static void json_choice(sf_json *json, const sf_compression_fit *fit) {
     static const char *const rules[SF_RULES] = {"H1_automatic", "H1_free", "H2"};
-    sf_json_text(json, "rate_model", sf_rate_model_name(fit->model.form.rate));
+    sf_json_text(json, "rate_model", sf_rate_model_names[fit->model.form.rate]);
     sf_json_open(json, "rate_models_tried", '{');
     for (int k = 0; k < SF_RATE_MODELS; k++)
-        json_candidate(json, sf_rate_model_name((sf_rate_model)k), &fit->rate[k]);
+        json_candidate(json, sf_rate_model_names[k], &fit->rate[k]);
     sf_json_close(json, '}');
     sf_json_text(json, "densification", rules[fit->model.form.rule]);
     sf_json_open(json, "densifications_tried", '{');
@@ -512,14 +505,14 @@ static const sf_row quality_rows[] = {
 #define OF_TEST(type, member) SF_ROW_OF(type, sf_table_test, member)
 static const sf_row test_rows[] = {
     {.name = "file", OF_TEST(STRING, name)},
-    {.key = "file", OF_TEST(STRING, path)},
-    {.key = "understood", OF_TEST(STRING, interpretation)},
-    {.key = "toe_strain", OF_TEST(NUMBER, toe)},
-    {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, rate)},
-    {.key = "points_loading", .name = "points of loading", OF_TEST(INTEGER, loading)},
+    {.key = "file", OF_TEST(STRING, test.path)},
+    {.key = "understood", OF_TEST(TEXT, test.interpretation)},
+    {.key = "toe_strain", OF_TEST(NUMBER, test.toe)},
+    {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, test.rate)},
+    {.key = "points_loading", .name = "points of loading", OF_TEST(INTEGER, test.loading)},
     {.key = "points_unloading", .name = "of unloading", OF_TEST(INTEGER, unloading)},
-    {.key = "largest_strain", .name = "largest strain", OF_TEST(NUMBER, largest_strain)},
-    {"largest_stress_Pa", "largest stress", "kPa", .shown = 1e-3, OF_TEST(NUMBER, largest_stress)},
+    {.key = "largest_strain", .name = "largest strain", OF_TEST(NUMBER, test.largest_strain)},
+    {"largest_stress_Pa", "largest stress", "kPa", .shown = 1e-3, OF_TEST(NUMBER, test.largest_stress)},
     {"loading_rms_over_sigma", "deviation / scatter, loading", NULL, "%.3g", OF_TEST(NUMBER, rms[0])},
     {"unloading_rms_over_sigma", "unloading", NULL, "%.3g", OF_TEST(NUMBER, rms[1])},
     {"loading_rms_percent", "deviation, loading", "%", "%.3g", OF_TEST(NUMBER, percent[0])},
@@ -528,7 +521,7 @@ static const sf_row test_rows[] = {
 const sf_rows sf_table_test_rows = {test_rows, sizeof test_rows / sizeof *test_rows};
 
 static const sf_row simulation_rows[] = {
-    {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, rate)},
+    {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, test.rate)},
     {.key = "speed_up", .name = "speed-up", OF_TEST(NUMBER, speed_up)},
     {"loading_difference_percent", "largest difference, loading", "%", "%.2g",
      OF_TEST(NUMBER, difference[0])},

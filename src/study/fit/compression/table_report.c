@@ -45,15 +45,6 @@ static void put_curves(sf_chart *chart, const sf_compression_fit *fit, bool titl
     }
 }
 
-/* Returns the stress up to which the panel of the foot reaches: that of the loading curve at half the largest
- * strain, kPa. */
-static double foot_stress(const sf_compression_fit *fit) {
-    int k = 0, last = fit->rate_count - 1;
-    while (k + 1 < fit->table_count && fit->table_strain[k] < 0.5 * fit->data.end)
-        k++;
-    return 1.3e-3 * fit->table_stress[last][k];
-}
-
 static void put_deviations(sf_chart *chart, sf_panel *panel, const sf_compression_fit *fit) {
     const sf_compression_data *d = &fit->data;
     double largest = 3;
@@ -91,7 +82,10 @@ static sf_status write_picture(const sf_staging *output, const sf_compression_fi
     put_curves(chart, fit, true);
     sf_panel *foot = new_panel(chart, "foot and plateau", 0.58, 0.98, 0.47, 0.9);
     sf_axis_range(&foot->x, 0, 0.6 * end);
-    sf_axis_range(&foot->y, 0, foot_stress(fit));
+    int half = 0; /* point of the loading curve at half the largest strain */
+    while (half + 1 < fit->table_count && fit->table_strain[half] < 0.5 * end)
+        half++;
+    sf_axis_range(&foot->y, 0, 1.3e-3 * fit->table_stress[fit->rate_count - 1][half]);
     put_curves(chart, fit, false);
     sf_panel *below = new_panel(
         chart, "Deviation of the data from the fit, over the standard deviation of the scatter (band: ±2)",
@@ -128,7 +122,7 @@ static void put_tests(FILE *out, const sf_table_result *r) {
         out, "Deviation: root mean square of data less fit, over the scatter (1: nothing but scatter) and in "
              "percent of the stress (counted as a hundredth of the largest at least).");
     for (int k = 0; k < r->test_count; k++)
-        sf_html_note(out, "Read from %s: %s", r->test[k].path, r->test[k].interpretation);
+        sf_html_note(out, "Read from %s: %s", r->test[k].test.path, r->test[k].test.interpretation);
 }
 
 static void put_parameters(FILE *out, const sf_compression_fit *fit) {
@@ -212,17 +206,6 @@ static void put_quality(FILE *out, const sf_table_result *r) {
     sf_html_block_end(out);
 }
 
-static void put_picture(FILE *out, const sf_staging *output) {
-    char warning[320];
-    char *svg = sf_chart_svg(output, "fit", "softfall-fit", warning, sizeof warning);
-    if (svg)
-        sf_html_figure(out, svg,
-                       "Data (points) and fit (lines), and the deviations over the scatter (band: ±2).");
-    else
-        sf_html_figure(out, NULL, "%s.", warning);
-    free(svg);
-}
-
 static void put_simulation(FILE *out, const sf_table_result *r) {
     if (!r->simulated)
         return;
@@ -286,7 +269,8 @@ sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging 
     FILE *out = sf_html_begin(output, title, job->path, err);
     SF_TRY(err->status);
     put_banner(out, fit);
-    put_picture(out, output);
+    sf_chart_figure(out, output, "fit", "softfall-fit",
+                    "Data (points) and fit (lines), and the deviations over the scatter (band: ±2).");
     put_parameters(out, fit);
     put_tests(out, r);
     put_quality(out, r);

@@ -10,11 +10,10 @@
 
 /* A test against the fit. */
 typedef struct sf_table_test {
-    const char *path, *name; /* the file, and without its folders; borrowed */
-    const char *interpretation;
-    double toe, rate, largest_strain, largest_stress; /* SI */
-    int loading, unloading;                           /* points */
-    double rms[2];     /* of deviation over sigma, loading and unloading; NaN: no such branch */
+    sf_compression_test test; /* its arrays are the configuration's */
+    const char *name;         /* the file without its folders; borrowed */
+    int unloading;            /* points */
+    double rms[2];            /* of deviation over sigma, loading and unloading; NaN: no such branch */
     double percent[2]; /* root mean square of deviation, % of the stress, counted as one hundredth of the
                           largest at least */
     double speed_up, difference[2], energy_error; /* of the simulated test */

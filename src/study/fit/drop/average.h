@@ -10,7 +10,8 @@ enum { SF_POSTERIOR_DRAWS = 200 };
 
 /* A model without a fit. */
 typedef struct sf_failed_model {
-    char label[96], sentence[512];
+    const char *label; /* of its input; borrowed */
+    char sentence[512];
 } sf_failed_model;
 
 typedef struct sf_drop_average {

@@ -36,15 +36,14 @@ static sf_status fit_model(models *all, int m, sf_runner *runner, sf_fit_memory 
     const sf_fit_input *in = &all->input[m];
     sf_drop_fit *fit = &all->fit[m];
     const sf_inference_options sampling = sf_inference_defaults(in->seed);
-    char text[96];
     *fit = (sf_drop_fit){
         .input = in, .runner = runner, .folder = runner->folder, .log = runner->log, .memory = memory};
     for (int k = 0; k < m && !fit->earlier; k++)
         if (all->failure[k].status == SF_OK)
             fit->earlier = &all->fit[k];
     if (all->count > 1)
-        printf("model %d of %d: %s, %d unknown parameters\n", m + 1, all->count,
-               sf_model_label(in, text, sizeof text), in->unknown_count);
+        printf("model %d of %d: %s, %d unknown parameters\n", m + 1, all->count, in->label,
+               in->unknown_count);
     if (sf_drop_fit_run(fit, err) != SF_OK || !in->posterior)
         return err->status;
     if (sf_drop_infer(fit, &sampling, &all->inference[m], err) == SF_OK)
@@ -65,7 +64,7 @@ static sf_status average_models(models *all, sf_error *err) {
         sf_failed_model *failed = &a->failure[a->failed];
         if (all->failure[m].status == SF_OK)
             continue;
-        sf_model_label(&all->input[m], failed->label, sizeof failed->label);
+        failed->label = all->input[m].label;
         snprintf(failed->sentence, sizeof failed->sentence, "%.500s", all->failure[m].text);
         a->failed++;
     }
@@ -73,7 +72,6 @@ static sf_status average_models(models *all, sf_error *err) {
 }
 
 static sf_status fit_models(models *all, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
-    char text[96];
     int fitted = 0;
     for (int m = 0; m < all->count; m++) {
         sf_error *failure = &all->failure[m];
@@ -88,8 +86,7 @@ static sf_status fit_models(models *all, sf_runner *runner, sf_fit_memory *memor
             return err->status;
         }
         if (all->count > 1)
-            printf("model %d of %d FAILED: %s: %s\n", m + 1, all->count,
-                   sf_model_label(&all->input[m], text, sizeof text), failure->text);
+            printf("model %d of %d FAILED: %s: %s\n", m + 1, all->count, all->input[m].label, failure->text);
         fflush(stdout);
     }
     if (fitted == 0 && all->count == 1)
@@ -143,18 +140,16 @@ static sf_status report(sf_study *study, const models *all, char *warning, size_
 
 /* Tells what has no weight; a fit that did not converge is a failure, though its files are written. */
 static sf_status warn(const sf_sink *sink, const models *all, sf_error *err) {
-    char text[96];
     int open = 0;
     for (int m = 0; m < all->count; m++)
         if (all->failure[m].status != SF_OK)
-            sf_sink_tell(sink, SF_WARNING, "model %s has no weight: %s",
-                         sf_model_label(&all->input[m], text, sizeof text), all->failure[m].text);
+            sf_sink_tell(sink, SF_WARNING, "model %s has no weight: %s", all->input[m].label,
+                         all->failure[m].text);
         else if (!all->fit[m].result.converged) {
             open++;
             sf_sink_tell(sink, SF_WARNING, "%s%snot converged after %d iterations: %s",
-                         all->count > 1 ? sf_model_label(&all->input[m], text, sizeof text) : "",
-                         all->count > 1 ? ": " : "", all->fit[m].result.iterations,
-                         all->fit[m].result.reason);
+                         all->count > 1 ? all->input[m].label : "", all->count > 1 ? ": " : "",
+                         all->fit[m].result.iterations, all->fit[m].result.reason);
         }
     if (open > 0)
         SF_FAIL(err, SF_ERR_NUMERIC,

@@ -119,16 +119,26 @@ static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const ch
     }
 }
 
+/* Those of the measured drops are coarse where the fit is. */
+static void fill_requests(const sf_drop_fit *fit, int first, int last, const char *material,
+                          sf_runner_drop *request) {
+    for (int d = first; d < last; d++, request++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
+        *request = (sf_runner_drop){.label = drop->name, .case_path = drop->case_path, .material = material};
+        if (fit->coarse && !drop->predicted) {
+            request->override_count = fit->input->coarse_count;
+            memcpy(request->overrides, fit->input->coarse, sizeof fit->input->coarse);
+        }
+    }
+}
+
 /* Predicted drops side by side with a material file: one that fails is marked, the others go on. */
 static sf_status predict_with(sf_drop_fit *fit, int first, int last, const char *material, double *y,
                               sf_error *err) {
     sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
     sf_runner_result result[SF_FIT_MAX_DROPS];
     sf_error failure[SF_FIT_MAX_DROPS];
-    for (int d = first; d < last; d++)
-        request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
-                                              .case_path = fit->input->drop[d].case_path,
-                                              .material = material};
+    fill_requests(fit, first, last, material, request);
     sf_runner_run_each(fit->runner, last - first, request, result, failure, err);
     for (int d = first; d < last; d++) {
         sf_error *own = &failure[d - first];
@@ -150,13 +160,7 @@ static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char
                                sf_error *err) {
     sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
     sf_runner_result result[SF_FIT_MAX_DROPS];
-    for (int d = first; d < last; d++) {
-        request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
-                                              .case_path = fit->input->drop[d].case_path,
-                                              .material = material,
-                                              .override_count = fit->coarse ? fit->input->coarse_count : 0};
-        memcpy(request[d - first].overrides, fit->input->coarse, sizeof fit->input->coarse);
-    }
+    fill_requests(fit, first, last, material, request);
     sf_runner_run_batch(fit->runner, last - first, request, result, err);
     for (int d = first; d < last; d++) {
         if (err->status == SF_OK)
@@ -387,12 +391,6 @@ static sf_status finish(sf_drop_fit *fit, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status conclude(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_error *err) {
-    SF_TRY(leave_one_out(fit, problem, err));
-    SF_TRY(bound_curve(fit, err));
-    return locate_information(fit, err);
-}
-
 /* The coarse drops cost little and differ from the drops by a correction that hardly changes with the foam:
  * the fit through them tells `problem` where to begin. If they cannot be used it begins at the start. */
 static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_mapping_result *coarse,
@@ -455,8 +453,9 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     if (in->coarse_count > 0 && !fit->earlier)
         begin_coarse(fit, &problem, &coarse, err);
     if (err->status == SF_OK && sf_mapping_solve(&problem, &fit->result, err) == SF_OK &&
-        finish(fit, err) == SF_OK)
-        conclude(fit, &problem, err);
+        finish(fit, err) == SF_OK && leave_one_out(fit, &problem, err) == SF_OK &&
+        bound_curve(fit, err) == SF_OK)
+        locate_information(fit, err);
     sf_mapping_free(&coarse);
     return err->status;
 }

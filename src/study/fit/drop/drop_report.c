@@ -59,18 +59,6 @@ static void put_banner(FILE *f, const sf_drop_fit *fit) {
         high);
 }
 
-static void put_picture(FILE *f, const sf_staging *output) {
-    char warning[320];
-    char *svg = sf_chart_svg(output, "fit", "softfall-fit", warning, sizeof warning);
-    if (svg)
-        sf_html_figure(
-            f, svg,
-            "Identified curve with its 95 %% band, information of the drops about it, and the drops.");
-    else
-        sf_html_figure(f, NULL, "%s.", warning);
-    free(svg);
-}
-
 /* What the accelerometer's mount and high pass are taken to do; nothing without them. */
 static void put_chain(FILE *f, const sf_drop_fit *fit) {
     sf_chain_shown shown[SF_SIGNAL_CHAIN];
@@ -318,7 +306,8 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
     FILE *f = sf_html_begin(output, title, input_path, err);
     SF_TRY(err->status);
     put_banner(f, fit);
-    put_picture(f, output);
+    sf_chart_figure(f, output, "fit", "softfall-fit",
+                    "Identified curve with its 95 % band, information of the drops about it, and the drops.");
     if (average)
         sf_inference_html(f, average, err);
     put_chain(f, fit);
@@ -337,25 +326,22 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
 
 /* ---- fit.json ---- */
 
-/* Writes STEM_measured_SUFFIX and so on of a number of a drop. */
+/* A number of a drop under "STEMmiddleSUFFIX". */
+static void json_stem(sf_json *j, const char *stem, const char *middle, const char *suffix, double value) {
+    char key[64];
+    snprintf(key, sizeof key, "%s%s%s", stem, middle, suffix);
+    sf_json_number(j, key, value);
+}
+
 static void json_kind(sf_json *j, const sf_drop_fit *fit, int d, int kind) {
     const sf_drop_kind_info *about = sf_drop_kind_get(kind);
-    const sf_fit_drop *drop = &fit->input->drop[d];
-    const struct {
-        const char *middle, *suffix;
-        double value;
-    } members[] = {
-        {"_measured", about->suffix, drop->value[kind]},
-        {"_measured_sd", "", isnan(drop->value[kind]) ? NAN : drop->sd[kind]},
-        {"", about->suffix, sf_drop_response(fit, d, kind)},
-        {"_sd_by_parameters", "", response_sd(fit, d, kind)},
-        {"_from_others", about->suffix, exp(fit->without[fit->row[d] + kind])},
-    };
-    for (size_t k = 0; k < sizeof members / sizeof *members; k++) {
-        char key[64];
-        snprintf(key, sizeof key, "%s%s%s", about->stem, members[k].middle, members[k].suffix);
-        sf_json_number(j, key, members[k].value);
-    }
+    const char *stem = about->stem, *suffix = about->suffix;
+    double measured = fit->input->drop[d].value[kind], sd = fit->input->drop[d].sd[kind];
+    json_stem(j, stem, "_measured", suffix, measured);
+    json_stem(j, stem, "_measured_sd", "", isnan(measured) ? NAN : sd);
+    json_stem(j, stem, "", suffix, sf_drop_response(fit, d, kind));
+    json_stem(j, stem, "_sd_by_parameters", "", response_sd(fit, d, kind));
+    json_stem(j, stem, "_from_others", suffix, exp(fit->without[fit->row[d] + kind]));
 }
 
 static void json_drops(sf_json *j, const sf_drop_fit *fit) {

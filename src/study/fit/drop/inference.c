@@ -32,10 +32,6 @@ sf_inference_options sf_inference_defaults(uint64_t seed) {
     return o;
 }
 
-double sf_discrepancy_strain(int place) {
-    return PLACE_WIDTH * place;
-}
-
 sf_discrepancy_size sf_drop_inference_size(const sf_drop_inference *inference, const double *u) {
     int n = inference->parameters;
     return (sf_discrepancy_size){sf_half_normal(u[n - 2], TAU_SCALE), sf_half_normal(u[n - 1], KAPPA_SCALE)};
@@ -282,7 +278,7 @@ static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf
            *base = sf_alloc(err, n * n, sizeof *base, "covariances"),
            *effect = sf_alloc(err, n * (unsigned long)effects, sizeof *effect, "responses");
     for (int b = 0; b < PLACES; b++)
-        place[b] = sf_discrepancy_strain(b);
+        place[b] = PLACE_WIDTH * b;
     sf_kernel_fill(PLACES, place, LENGTH, kernel);
     if (err->status == SF_OK) {
         int count = select_data(in, left_out, which);

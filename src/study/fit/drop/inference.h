@@ -65,8 +65,6 @@ sf_discrepancy_size sf_drop_inference_size(const sf_drop_inference *inference, c
 /* Name and value of an element of a state: an unknown in SI units, tau, kappa. */
 const char *sf_drop_inference_name(const sf_drop_inference *inference, int parameter);
 double sf_drop_inference_value(const sf_drop_inference *inference, int parameter, double u);
-/* Strain of a place of delta. */
-double sf_discrepancy_strain(int place);
 /* delta [SF_DISCREPANCY_PLACES], the errors of the responses that all drops share and, if `own` is not NULL,
  * those of the drops to predict, [input drops][SF_FIT_SAMPLES], the shared ones in them, given a state of the
  * chains and the data. False: the columns fail there. */

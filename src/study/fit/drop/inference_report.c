@@ -6,21 +6,9 @@
 #include <string.h>
 
 static const double THREE[] = {0.025, 0.5, 0.975};
-enum { LABEL = 96 };
 
-const char *sf_model_label(const sf_fit_input *in, char *text, size_t size) {
-    bool maxwell = in->start[SF_PARAMETER_ED] > 0, factor = in->start[SF_PARAMETER_RATE_FACTOR] > 0;
-    for (int k = 0; k < in->unknown_count; k++) {
-        maxwell = maxwell || in->unknown[k] == SF_PARAMETER_ED;
-        factor = factor || in->unknown[k] == SF_PARAMETER_RATE_FACTOR;
-    }
-    snprintf(text, size, "%s%s%s", in->form.curve->name, factor ? ", rate factor" : "",
-             maxwell ? ", Maxwell branch" : "");
-    return text;
-}
-
-static const char *label_of(const sf_drop_average *a, int m, char text[LABEL]) {
-    return sf_model_label(a->model[m]->fit->input, text, LABEL);
+static const char *label_of(const sf_drop_average *a, int m) {
+    return a->model[m]->fit->input->label;
 }
 
 /* Worst R-hat and least effective size of a model's chains. */
@@ -103,9 +91,8 @@ static void put_models(FILE *f, const sf_drop_average *a) {
         "model|>weight|>log predictive density of left-out drops|>log evidence|>± (1 sd)|>weight by evidence|>unknowns|>misfit");
     for (int m = 0; m < a->models; m++) {
         const sf_drop_inference *in = a->model[m];
-        char text[LABEL];
         sf_html_row(&table);
-        sf_html_cell(&table, "%s%s", label_of(a, m, text), m == sf_drop_average_best(a) ? " (written)" : "");
+        sf_html_cell(&table, "%s%s", label_of(a, m), m == sf_drop_average_best(a) ? " (written)" : "");
         sf_html_line(&table, NULL, "%.3f|%.2f|%.2f|%.2f|%.3f|%d|%.2f", a->weight[m], a->predictive[m],
                      in->evidence.log_value, in->evidence.error, a->evidence_weight[m],
                      in->fit->input->unknown_count, in->fit->result.misfit);
@@ -139,7 +126,7 @@ static void put_prediction_notes(FILE *f, const sf_drop_average *a) {
 
 static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
-    char text[LABEL], missing[MISSING], median[SHOWN], shown[SHOWN], alone[SHOWN];
+    char text[64], missing[MISSING], median[SHOWN], shown[SHOWN], alone[SHOWN];
     if (in->quantities == 0)
         return SF_OK;
     sf_html_heading(f, "Predictions, averaged over the models");
@@ -171,7 +158,6 @@ static sf_status find_parameter(const sf_drop_inference *in, int k, double value
 }
 
 static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err) {
-    char text[LABEL];
     sf_html_heading(f, "Posterior of the parameters");
     sf_html_note(
         f,
@@ -187,7 +173,7 @@ static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err
             const sf_parameter_info *about = size ? NULL : sf_parameter_get(in->fit->input->unknown[k]);
             double value[3], s = size ? 1 : about->per_unit;
             SF_TRY(find_parameter(in, k, value, err));
-            sf_html_line(&table, k == 0 ? label_of(a, m, text) : "", "%s%s%s|%.4g|%.4g to %.4g|%.3f|%.0f",
+            sf_html_line(&table, k == 0 ? label_of(a, m) : "", "%s%s%s|%.4g|%.4g to %.4g|%.3f|%.0f",
                          sf_drop_inference_name(in, k), !size && *about->unit ? ", " : "",
                          size ? "" : about->unit, value[1] / s, value[0] / s, value[2] / s,
                          in->chains.rhat[k], in->chains.effective[k]);
@@ -198,7 +184,6 @@ static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err
 }
 
 static void put_left_out(FILE *f, const sf_drop_average *a) {
-    char text[LABEL];
     if (a->by_evidence)
         return;
     sf_html_heading(f, "Drops left out one by one");
@@ -210,7 +195,7 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
     for (int m = 0; m < a->models; m++)
         for (int d = 0; d < a->model[m]->fit->measured_drops; d++) {
             const sf_left_out *out = &a->model[m]->left_out[d];
-            sf_html_line(&table, d == 0 ? label_of(a, m, text) : "", "%s|%.2f|%.2f|%s%s",
+            sf_html_line(&table, d == 0 ? label_of(a, m) : "", "%s|%.2f|%.2f|%s%s",
                          a->model[m]->fit->input->drop[d].name, out->log_density, out->pareto_k,
                          out->sampled ? "chains"
                          : out->drawn ? "draws"
@@ -221,7 +206,6 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
 }
 
 static void put_diagnostics(FILE *f, const sf_drop_average *a) {
-    char text[LABEL];
     sf_html_heading(f, "Diagnostics of the chains");
     sf_html_note(f,
                  "Reached: R-hat below 1.02 and an effective sample size above 400 for every parameter and "
@@ -233,10 +217,9 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
         const sf_drop_inference *in = a->model[m];
         double rhat, effective;
         find_worst(&in->chains, &rhat, &effective);
-        sf_html_line(&table, label_of(a, m, text), "%.3f|%.0f|%d x %d|%.0f|%lld|%.0f of %d|%s%s", rhat,
-                     effective, in->chains.chains, in->chains.kept, 100 * in->chains.accepted,
-                     in->chains.evaluations, in->evidence.effective, in->evidence.draws,
-                     in->chains.converged ? "yes" : "NO: chains",
+        sf_html_line(&table, label_of(a, m), "%.3f|%.0f|%d x %d|%.0f|%lld|%.0f of %d|%s%s", rhat, effective,
+                     in->chains.chains, in->chains.kept, 100 * in->chains.accepted, in->chains.evaluations,
+                     in->evidence.effective, in->evidence.draws, in->chains.converged ? "yes" : "NO: chains",
                      in->evidence.trusted ? "" : "; NO: evidence");
     }
     sf_html_table_end(&table);
@@ -244,7 +227,6 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
 
 /* Models and simulations that ended without a result. */
 static void put_failures(FILE *f, const sf_drop_average *a) {
-    char text[LABEL];
     for (int m = 0; m < a->failed; m++)
         sf_html_banner(f, "bad", "a model failed", "%s: %s. It has no weight.", a->failure[m].label,
                        a->failure[m].sentence);
@@ -255,7 +237,7 @@ static void put_failures(FILE *f, const sf_drop_average *a) {
                 sf_html_banner(
                     f, "bad", "a predicted drop failed",
                     "%s, model %s: %s. The averaged prediction has this model by its columns, corrected as the measured drops are.",
-                    fit->input->drop[d].name, label_of(a, m, text), fit->simulated[d].failure);
+                    fit->input->drop[d].name, label_of(a, m), fit->simulated[d].failure);
     }
 }
 
@@ -328,10 +310,9 @@ static const sf_row evidence_rows[] = {
 static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_error *err) {
     const sf_drop_inference *in = a->model[m];
     double rhat, effective;
-    char text[LABEL];
     find_worst(&in->chains, &rhat, &effective);
     sf_json_open(j, NULL, '{');
-    sf_json_text(j, "model", label_of(a, m, text));
+    sf_json_text(j, "model", label_of(a, m));
     sf_json_number(j, "weight", a->weight[m]);
     sf_json_number(j, "weight_by_evidence", a->evidence_weight[m]);
     sf_json_number(j, "log_predictive_density", a->predictive[m]);
@@ -439,11 +420,10 @@ static sf_status put_csv_draw(FILE *f, const sf_drop_average *a, int k, const sf
     const sf_drop_inference *in = a->model[draw->model];
     const double *u = &in->chains.sample[draw->state * in->parameters];
     double delta[SF_DISCREPANCY_PLACES];
-    char text[LABEL];
     sf_response_error error;
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
     SF_TRY(sf_drop_average_discrepancy(a, k, draw, delta, &error, err));
-    fprintf(f, "%d,\"%s\",%.9g,%.9g", k + 1, label_of(a, draw->model, text), size.tau, size.kappa);
+    fprintf(f, "%d,\"%s\",%.9g,%.9g", k + 1, label_of(a, draw->model), size.tau, size.kappa);
     put_csv_parameters(f, a, in->fit->input, u);
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
         fprintf(f, ",%.9g,%.9g", error.shared[kind], error.own_sd[kind]);
@@ -466,11 +446,10 @@ sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, s
 /* ---- lines ---- */
 
 void sf_inference_comment(FILE *f, const sf_drop_average *a) {
-    char text[LABEL];
     fprintf(f,
             "Weights of the models (%s): ", a->by_evidence ? "evidence" : "leave-one-out predictive density");
     for (int m = 0; m < a->models; m++)
-        fprintf(f, "%s%s %.3f%s", m > 0 ? "; " : "", label_of(a, m, text), a->weight[m],
+        fprintf(f, "%s%s %.3f%s", m > 0 ? "; " : "", label_of(a, m), a->weight[m],
                 m == sf_drop_average_best(a) ? " (this file, its maximum)" : "");
     for (int m = 0; m < a->failed; m++)
         fprintf(f, "; %s 0 (failed)", a->failure[m].label);
@@ -503,13 +482,12 @@ static sf_status print_prediction(FILE *f, const sf_drop_average *a, int q, sf_e
 }
 
 sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
-    char text[LABEL];
     fputs("\nPosterior by Markov chains:\n", f);
     for (int m = 0; m < a->models; m++) {
         fprintf(f, "  weight %.3f  ", a->weight[m]);
         if (isfinite(a->predictive[m]))
             fprintf(f, "log predictive density %7.2f  ", a->predictive[m]);
-        fprintf(f, "log evidence %8.2f  %s\n", a->model[m]->evidence.log_value, label_of(a, m, text));
+        fprintf(f, "log evidence %8.2f  %s\n", a->model[m]->evidence.log_value, label_of(a, m));
     }
     for (int m = 0; m < a->failed; m++)
         fprintf(f, "  weight 0      FAILED: %s: %s\n", a->failure[m].label, a->failure[m].sentence);

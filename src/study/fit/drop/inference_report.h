@@ -8,9 +8,6 @@
 #include "report/row.h"
 #include "io/staging.h"
 
-/* "gas_solid, Maxwell branch": of the form and the rate terms of a model. Returns `text`. */
-const char *sf_model_label(const sf_fit_input *input, char *text, size_t size);
-
 sf_status sf_inference_html(FILE *page, const sf_drop_average *average, sf_error *err);
 sf_status sf_inference_json(sf_json *json, const sf_drop_average *average, sf_error *err);
 /* posterior.csv: the draws of the folder posterior/, one a line. */

@@ -181,3 +181,182 @@ sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value,
     card->curves = made;
     return SF_OK;
 }
+
+/* ---- parameters of a foam ---- */
+
+static const double LEAST_SOLID = 300, MOST_SOLID = 20000; /* kg m-3 */
+static const double MOST_FRACTION = 0.5;
+static const double UNKNOWN_SOLID_SD = 0.5; /* of the logarithm */
+static const double USUAL_SOLID = 0.05;     /* solid fraction, where it is not known */
+static const double RATE_FACTOR = 0.1;      /* median where the start material has none */
+static const double RATE_REFERENCE = 1;     /* s-1, the same; drops are far above */
+
+sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err) {
+    double solid = form->solid_density, foam = form->base.density;
+    if (!(solid >= LEAST_SOLID && solid <= MOST_SOLID))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3", solid,
+                       LEAST_SOLID, MOST_SOLID);
+    if (!(foam < MOST_FRACTION * solid))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than half solid", solid,
+            foam);
+    return SF_OK;
+}
+
+/* Parameters that are members of the card. */
+static const struct {
+    sf_foam_parameter parameter;
+    size_t offset;
+} members[] = {{SF_PARAMETER_E, offsetof(sf_foam_card, modulus)},
+               {SF_PARAMETER_HU, offsetof(sf_foam_card, hysteresis_hu)},
+               {SF_PARAMETER_SHAPE, offsetof(sf_foam_card, hysteresis_shape)},
+               {SF_PARAMETER_ALPHA, offsetof(sf_foam_card, hysteresis_alpha)},
+               {SF_PARAMETER_DAMP, offsetof(sf_foam_card, damp)},
+               {SF_PARAMETER_ED, offsetof(sf_foam_card, maxwell_modulus)},
+               {SF_PARAMETER_BETA1, offsetof(sf_foam_card, maxwell_rate)},
+               {SF_PARAMETER_ETA, offsetof(sf_foam_card, kelvin_viscosity)},
+               {SF_PARAMETER_RATE_FACTOR, offsetof(sf_foam_card, rate_factor)},
+               {SF_PARAMETER_RATE_REFERENCE, offsetof(sf_foam_card, rate_reference)}};
+enum { MEMBERS = sizeof members / sizeof *members };
+
+void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]) {
+    if (!(value[SF_PARAMETER_RATE_FACTOR] > 0))
+        value[SF_PARAMETER_RATE_FACTOR] = RATE_FACTOR;
+}
+
+void sf_foam_form_start_lock(double value[SF_PARAMETER_COUNT]) {
+    double solid = value[SF_PARAMETER_SOLID_FRACTION];
+    if (!(value[SF_PARAMETER_LOCKED] > 0))
+        value[SF_PARAMETER_LOCKED] = 1 - sf_form_dense_strain(solid > 0 ? solid : USUAL_SOLID);
+}
+
+void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]) {
+    memset(value, 0, SF_PARAMETER_COUNT * sizeof *value);
+    for (int k = 0; k < MEMBERS; k++)
+        value[members[k].parameter] = *(const double *)((const char *)&form->base + members[k].offset);
+    if (!(form->base.rate_factor > 0))
+        value[SF_PARAMETER_RATE_REFERENCE] = RATE_REFERENCE;
+    value[SF_PARAMETER_STRESS_SCALE] = 1;
+    value[SF_PARAMETER_EXPONENT] = form->base.densification_exponent;
+    value[SF_PARAMETER_SOLID_FRACTION] =
+        form->solid_density > 0 ? form->base.density / form->solid_density : 0;
+    form->curve->start(value);
+}
+
+double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter parameter) {
+    const sf_form_entry *entry = sf_curve_form_entry(form->curve, parameter);
+    if (parameter == SF_PARAMETER_SOLID_FRACTION && !(form->solid_density > 0))
+        return UNKNOWN_SOLID_SD;
+    return entry ? entry->prior_sd : sf_parameter_get(parameter)->prior_sd;
+}
+
+int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARAMETER_COUNT]) {
+    int count = 0;
+    for (int k = 0; k < form->curve->entry_count; k++)
+        if (form->curve->entry[k].usual)
+            usual[count++] = form->curve->entry[k].parameter;
+    usual[count++] = SF_PARAMETER_ED;
+    return count;
+}
+
+sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_foam_parameter p, double *out,
+                            sf_error *err) {
+    const sf_parameter_info *about = sf_parameter_get(p);
+    if (about->quantity == SF_QUANTITY_COUNT)
+        return sf_config_number(config, group, about->name, true, about->low, about->high, out, err);
+    SF_TRY(sf_config_quantity(config, group, about->name, about->quantity, true, about->low, out, err));
+    if (!(*out <= about->high))
+        return sf_config_refuse(config, config_setting_get_member(group, about->name), err, "%s is above %g",
+                                about->name, about->high);
+    return SF_OK;
+}
+
+sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
+                                  sf_error *err) {
+    sf_error inner = SF_ERROR_INIT;
+    SF_TRY(
+        sf_config_quantity(config, root, "solid_density", SF_DENSITY, false, 0, &form->solid_density, err));
+    if (form->solid_density > 0 && sf_foam_form_check_solid(form, &inner) != SF_OK)
+        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err, "%s",
+                                inner.text);
+    return SF_OK;
+}
+
+static void copy_items(void *to, const void *from, int64_t count, size_t size) {
+    if (from && count > 0)
+        memcpy(to, from, (size_t)count * size);
+}
+
+sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {
+    *to = *from;
+    SF_TRY(sf_form_curves_alloc(from->curve_count, from->curve_points, &to->curves, err));
+    copy_items(to->curve_rate, from->curve_rate, from->curve_count, sizeof(double));
+    copy_items(to->curve_ptr, from->curve_ptr, from->curve_count + 1, sizeof(int64_t));
+    copy_items(to->curve_strain, from->curve_strain, from->curve_points, sizeof(double));
+    copy_items(to->curve_stress, from->curve_stress, from->curve_points, sizeof(double));
+    return SF_OK;
+}
+
+void sf_foam_card_free(sf_foam_card *card) {
+    sf_law_curves_free(&card->curves);
+    *card = (sf_foam_card){0};
+}
+
+sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
+                            sf_foam_card *card, sf_error *err) {
+    SF_TRY(sf_foam_card_copy(&form->base, card, err));
+    for (int k = 0; k < MEMBERS; k++)
+        *(double *)((char *)card + members[k].offset) = value[members[k].parameter];
+    card->hysteresis_hu = fmin(1, card->hysteresis_hu);
+    if (form->curve->stress) {
+        sf_curve_form_tabulate(form->curve, value, card, err);
+    } else {
+        card->densification_exponent = value[SF_PARAMETER_EXPONENT];
+        for (int64_t k = 0; k < card->curve_points; k++)
+            card->curve_stress[k] *= value[SF_PARAMETER_STRESS_SCALE];
+    }
+    if (err->status != SF_OK)
+        sf_foam_card_free(card);
+    return err->status;
+}
+
+/* The end of a fine table of the curve: 0.975 of the strain limit, or where the stress is as high as a table
+ * holds. */
+static double table_end(const sf_curve *curve, double limit) {
+    static const double STEP = 0.005; /* of the limit */
+    double part = 0.975 + STEP, stress, slope, energy;
+    do {
+        part -= STEP;
+        sf_curve_evaluate(curve, part * limit, &stress, &slope, &energy);
+    } while (stress > MOST_STRESS && part > 0.5);
+    return part * limit;
+}
+
+sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
+    enum { FINE = 196 };
+    sf_law_curves fine;
+    SF_TRY(sf_form_curves_alloc(card->curve_count, FINE * card->curve_count, &fine, err));
+    for (int64_t c = 0; c < card->curve_count && err->status == SF_OK; c++) {
+        sf_curve curve;
+        if (sf_curve_build(card, c, &curve, err) != SF_OK)
+            break;
+        double last = table_end(&curve, card->densification_limit), slope, energy;
+        fine.curve_rate[c] = card->curve_rate[c];
+        for (int k = 0; k < FINE; k++) {
+            int64_t at = c * FINE + k;
+            fine.curve_strain[at] = last * k / (FINE - 1);
+            sf_curve_evaluate(&curve, fine.curve_strain[at], &fine.curve_stress[at], &slope, &energy);
+        }
+        sf_curve_free(&curve);
+    }
+    if (err->status != SF_OK) {
+        sf_law_curves_free(&fine);
+        return err->status;
+    }
+    sf_law_curves_free(&card->curves);
+    card->curves = fine;
+    card->densification_start = 0;
+    return SF_OK;
+}

@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "material/foam_card.h"
+#include "study/config.h"
 
 /* The parameters of a foam that measurements identify: those of every foam, and those of the forms of its
  * loading curve (form.h). A set of values is an array [SF_PARAMETER_COUNT] in SI. */
@@ -165,4 +166,51 @@ sf_status sf_form_curves_alloc(int64_t count, int64_t points, sf_law_curves *cur
  * one that falls. Not for the form `table`. */
 sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value, sf_foam_card *card,
                                  sf_error *err);
+
+/* The form that a fit varies; all other values are the start material's. */
+typedef struct sf_foam_form {
+    sf_foam_card base;          /* the start material; curves owned */
+    const sf_curve_form *curve; /* of the table of forms; borrowed */
+    double solid_density;       /* kg m-3, of the solid in the cell walls; 0: not known */
+} sf_foam_form;
+
+/* SF_ERR_INPUT: solid_density is not plausible for this foam (the foam must be lighter than half of it, and a
+ * solid has between 300 and 20,000 kg/m3). */
+sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err);
+
+/* The key solid_density of a fit file, if it is there, with that check. */
+sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
+                                  sf_error *err);
+/* The start value (SI) of a parameter in the group that has it. */
+sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_foam_parameter parameter,
+                            double *out, sf_error *err);
+
+/* Start values (SI) of every parameter: medians of the form's priors, and the base's own values. The solid
+ * fraction is density over solid_density, 0 if that is not known (gas_solid: then 0.05). */
+void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]);
+
+/* Gives a foam without rate factor the median of its prior: 0.1 for a decade of the rate. */
+void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]);
+
+/* Gives a foam without a lock-up of its own the median of its prior: dense at 1 - 1.4 Phi. */
+void sf_foam_form_start_lock(double value[SF_PARAMETER_COUNT]);
+
+/* Default width of the prior of a parameter, of the logarithm: the form's own; the solid fraction's is wide
+ * where solid_density is not known. */
+double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter parameter);
+
+/* The parameters that are identified where the user does not say: the form's usual ones and ED. Returns their
+ * number. */
+int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARAMETER_COUNT]);
+
+/* A card with these values; its arrays are owned by the caller (sf_foam_card_free). SF_ERR_NUMERIC if the
+ * values make no curve. */
+sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
+                            sf_foam_card *card, sf_error *err);
+sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err);
+/* Puts a fine table, up to 0.975 of the strain limit or 1 GPa, in place of each curve and its densification.
+ */
+sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err);
+void sf_foam_card_free(sf_foam_card *card);
+
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/posterior/chains.h"
 
-#include "study/fit/posterior/emulator.h"
 #include <gsl/gsl_randist.h>
 #include <math.h>
 #include <stdlib.h>
@@ -150,33 +149,25 @@ static void place(const walk *w, walker *c) {
 
 /* ---- emulator ---- */
 
-/* The states of all walkers that are not far below the best: u [][shape], y [][responses]; their number. */
-static int gather(const walk *w, int count, const walker *list, double *u, double *y) {
+/* Fits the emulator to the states that the walkers kept and that are not far below the best; none where they
+ * are too few. */
+static sf_status learn(walk *w, int count, const walker *list, sf_error *err) {
     size_t n = (size_t)w->target->shape, m = (size_t)w->target->responses, all = 0;
     double best = -INFINITY;
-    for (int c = 0; c < count; c++)
-        for (int k = 0; k < list[c].tried; k++)
-            best = fmax(best, list[c].tried_density[k]);
-    for (int c = 0; c < count; c++)
-        for (size_t k = 0; k < (size_t)list[c].tried; k++)
-            if (list[c].tried_density[k] > best - FAR) {
-                memcpy(&u[all * n], &list[c].tried_u[k * n], n * sizeof *u);
-                memcpy(&y[all * m], &list[c].tried_y[k * m], m * sizeof *y);
-                all++;
-            }
-    return (int)all;
-}
-
-/* Fits the emulator to the states that the walkers kept; none where they are too few. */
-static sf_status learn(walk *w, int count, const walker *list, sf_error *err) {
-    unsigned long n = (unsigned long)w->target->shape, m = (unsigned long)w->target->responses, all = 0;
+    int near = 0;
     if (m == 0)
         return SF_OK;
     for (int c = 0; c < count; c++)
-        all += (unsigned long)list[c].tried;
+        for (int k = 0; k < list[c].tried; k++, all++)
+            best = fmax(best, list[c].tried_density[k]);
     double *u = sf_alloc(err, all * n, sizeof *u, "states"), *y = sf_alloc(err, all * m, sizeof *y, "states");
     if (err->status == SF_OK) {
-        int near = gather(w, count, list, u, y);
+        for (int c = 0; c < count; c++)
+            for (size_t k = 0; k < (size_t)list[c].tried; k++)
+                if (list[c].tried_density[k] > best - FAR) {
+                    memcpy(&u[(size_t)near * n], &list[c].tried_u[k * n], n * sizeof *u);
+                    memcpy(&y[(size_t)near++ * m], &list[c].tried_y[k * m], m * sizeof *y);
+                }
         sf_emulator_free(&w->emulator);
         sf_emulator_fit((int)n, (int)m, near, u, y, &w->emulator, err);
     }
@@ -360,18 +351,20 @@ static sf_status burn_in(work *w, int rounds, sf_error *err) {
 
 /* ---- what is kept ---- */
 
+/* One state becomes another. */
+static void move_state(sf_chains *r, int from, int to) {
+    size_t n = (size_t)r->parameters, q = (size_t)r->quantities;
+    memmove(&r->sample[(size_t)to * n], &r->sample[(size_t)from * n], n * sizeof(double));
+    memmove(&r->quantity[(size_t)to * q], &r->quantity[(size_t)from * q], q * sizeof(double));
+    r->log_density[to] = r->log_density[from];
+}
+
 /* Every second state only. */
 static void thin(work *w) {
     sf_chains *r = w->out;
-    size_t n = (size_t)r->parameters, q = (size_t)r->quantities;
     for (int c = 0; c < r->chains; c++)
-        for (int k = 0; k < r->kept / 2; k++) {
-            size_t to = (size_t)(c * w->room + k), from = (size_t)(c * w->room + 2 * k + 1);
-            memmove(&r->sample[to * n], &r->sample[from * n], n * sizeof(double));
-            if (q > 0)
-                memmove(&r->quantity[to * q], &r->quantity[from * q], q * sizeof(double));
-            r->log_density[to] = r->log_density[from];
-        }
+        for (int k = 0; k < r->kept / 2; k++)
+            move_state(r, c * w->room + 2 * k + 1, c * w->room + k);
     r->kept /= 2;
     r->thinning *= 2;
 }
@@ -477,19 +470,6 @@ static sf_status sample(work *w, sf_error *err) {
 
 /* ---- the whole ---- */
 
-/* [chains][room] becomes [chains][kept]. */
-static void pack(const work *w) {
-    sf_chains *r = w->out;
-    size_t n = (size_t)r->parameters, q = (size_t)r->quantities, kept = (size_t)r->kept;
-    for (size_t c = 1; c < (size_t)r->chains; c++) {
-        size_t from = c * (size_t)w->room, to = c * kept;
-        memmove(&r->sample[to * n], &r->sample[from * n], kept * n * sizeof(double));
-        memmove(&r->log_density[to], &r->log_density[from], kept * sizeof(double));
-        if (q > 0)
-            memmove(&r->quantity[to * q], &r->quantity[from * q], kept * q * sizeof(double));
-    }
-}
-
 static sf_status allocate(work *w, sf_error *err) {
     sf_chains *r = w->out;
     const sf_chains_options *o = w->options;
@@ -533,7 +513,8 @@ sf_status sf_chains_run(const sf_target *target, const double *start, const doub
     if (allocate(&w, err) == SF_OK && place_all(&w, err) == SF_OK &&
         burn_in(&w, options->burn_in_rounds, err) == SF_OK && sample(&w, err) == SF_OK) {
         long long accepted = 0, proposed = 0;
-        pack(&w);
+        for (int s = r->kept; s < r->chains * r->kept; s++) /* [chains][room] becomes [chains][kept] */
+            move_state(r, s / r->kept * w.room + s % r->kept, s);
         for (int c = 0; c < r->chains; c++) {
             accepted += w.walker[c].accepted;
             proposed += w.walker[c].proposed;

@@ -88,10 +88,6 @@ static double fit_tail(int count, const double *x, double *scale) {
     return (count * shape + 10 * 0.5) / (count + 10.);
 }
 
-static double quantile(double shape, double scale, double p) {
-    return fabs(shape) < 1e-9 ? -scale * log1p(-p) : scale * expm1(-shape * log1p(-p)) / shape;
-}
-
 double sf_pareto_smooth(int count, double *weight, sf_error *err) {
     enum { LEAST = 5 };
     int tail = (int)fmin(0.2 * count, 3 * sqrt(count));
@@ -110,9 +106,11 @@ double sf_pareto_smooth(int count, double *weight, sf_error *err) {
             for (int k = 0; k < tail; k++) /* ties with the cut */
                 x[k] = fmax(x[k], 1e-15);
             shape = fit_tail(tail, x, &scale);
-            for (int k = 0; k < tail && isfinite(shape); k++)
-                weight[order[count - tail + k]] =
-                    largest + fmin(0, log(cut + quantile(shape, scale, (k + 0.5) / tail)));
+            for (int k = 0; k < tail && isfinite(shape); k++) {
+                double away = -log1p(-(k + 0.5) / tail), /* the quantile of an exponential distribution */
+                    by = fabs(shape) < 1e-9 ? scale * away : scale * expm1(shape * away) / shape;
+                weight[order[count - tail + k]] = largest + fmin(0, log(cut + by));
+            }
             if (!isfinite(shape))
                 shape = INFINITY;
         }
@@ -215,14 +213,6 @@ static sf_status weigh(const double *all, int groups, int g, int count, double *
     return err->status;
 }
 
-/* Finds the start of the chains without the group: mean and widened covariance of those with it. */
-static void find_start(const sf_chains *c, double *mean, double *covariance) {
-    int n = c->parameters;
-    sf_moments(n, c->chains * c->kept, c->sample, mean, covariance);
-    for (int i = 0; i < n * n; i++)
-        covariance[i] *= WIDER;
-}
-
 static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
                         const sf_chains_options *options, sf_left_out *out, sf_error *err) {
     double mean[SF_POSTERIOR_MOST], covariance[SF_POSTERIOR_MOST * SF_POSTERIOR_MOST];
@@ -236,7 +226,9 @@ static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
     sf_chains_options own = *options;
     sf_chains chains;
     own.seed = sf_seed_of(options->seed, (uint64_t)(500 + group));
-    find_start(whole, mean, covariance);
+    sf_moments(whole->parameters, whole->chains * whole->kept, whole->sample, mean, covariance);
+    for (int i = 0; i < whole->parameters * whole->parameters; i++)
+        covariance[i] *= WIDER;
     if (sf_chains_run(&target, mean, covariance, &own, &chains, err) == SF_OK) {
         int count = chains.chains * chains.kept;
         double *all = split_all(g, chains.sample, count, err);
