@@ -12,6 +12,7 @@
 #include "io/staging.h"
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum { SF_CHART_TEXT = 192 };
 
@@ -89,7 +90,7 @@ void sf_chart_title(sf_chart *chart, const char *format, ...) __attribute__((for
 /* Columns of a grid of panels without areas of their own; 1 unless it is called. */
 void sf_chart_columns(sf_chart *chart, int columns);
 
-/* A new panel with automatic axes; the chart's. After a failure it is one that nothing draws. */
+/* A new panel with automatic axes; the chart's. After a failure one that is not drawn. */
 sf_panel *sf_chart_panel(sf_chart *chart);
 /* The same with labels of its axes, and `area`. */
 sf_panel *sf_chart_panel_at(sf_chart *chart, const char *x, const char *y, double left, double right,
@@ -133,7 +134,7 @@ sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *
 char *sf_chart_svg(const sf_staging *output, const char *name, const char *program, char *warning,
                    size_t size);
 
-/* The same as a figure of the page; without the element its caption says why. */
+/* The same as a figure of the page, with its caption, or the warning in its place. */
 void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, const char *program,
                      const char *caption);
 

@@ -79,14 +79,13 @@ void sf_chart_columns(sf_chart *chart, int columns) {
 
 sf_panel *sf_chart_panel(sf_chart *chart) {
     static const sf_axis automatic = {.low = NAN, .high = NAN};
-    static _Thread_local sf_panel lost;
+    static sf_panel not_drawn;
     sf_chart_panel_data **list = chart ? grown(chart, chart->panel, chart->panel_count, sizeof *list) : NULL;
-    if (!list)
-        return &lost;
-    chart->panel = list;
-    sf_chart_panel_data *panel = sf_alloc(chart->err, 1, sizeof *panel, "a picture");
+    if (list)
+        chart->panel = list;
+    sf_chart_panel_data *panel = list ? sf_alloc(chart->err, 1, sizeof *panel, "a picture") : NULL;
     if (!panel)
-        return &lost;
+        return &not_drawn;
     *panel = (sf_chart_panel_data){.shown = {.x = automatic, .y = automatic, .x2 = automatic}};
     list[chart->panel_count++] = panel;
     return &panel->shown;
@@ -112,7 +111,7 @@ void sf_axis_range(sf_axis *axis, double low, double high) {
 }
 
 void sf_axis_word(sf_chart *chart, sf_axis *axis, const char *word) {
-    char **list = grown(chart, axis->word, (size_t)axis->word_count, sizeof *list);
+    char **list = chart ? grown(chart, axis->word, (size_t)axis->word_count, sizeof *list) : NULL;
     if (!list)
         return;
     axis->word = list;
@@ -329,8 +328,9 @@ char *sf_chart_svg(const sf_staging *output, const char *name, const char *progr
 
 void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, const char *program,
                      const char *caption) {
-    char warning[320], *svg = sf_chart_svg(output, name, program, warning, sizeof warning);
-    sf_html_figure(page, svg, svg ? "%s" : "%s.", svg ? caption : warning);
+    char warning[320];
+    char *svg = sf_chart_svg(output, name, program, warning, sizeof warning);
+    sf_html_figure(page, svg, "%s.", svg ? caption : warning);
     free(svg);
 }
 

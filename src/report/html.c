@@ -328,7 +328,8 @@ void sf_html_line(sf_html_table *table, const char *first, const char *format, .
     }
     while ((cell = strsep(&rest, "|"))) {
         const char *number = cell + strspn(cell, "+-");
-        bool finite = (strncmp(number, "nan", 3) != 0 && strncmp(number, "inf", 3) != 0) || isalpha(number[3]);
+        bool finite = (strncmp(number, "nan", 3) != 0 && strncmp(number, "inf", 3) != 0) ||
+                      isalpha((unsigned char)number[3]);
         sf_html_cell(table, "%s", finite ? cell : "–");
     }
 }

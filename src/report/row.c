@@ -63,6 +63,11 @@ void sf_json_number(sf_json *json, const char *key, double value) {
         fputs("null", json->file);
 }
 
+void sf_json_numbers(sf_json *json, const sf_named *list) {
+    for (; list->key; list++)
+        sf_json_number(json, list->key, list->value);
+}
+
 void sf_json_integer(sf_json *json, const char *key, int64_t value) {
     begin(json, key);
     if (value >= 0)

@@ -14,8 +14,8 @@
 #include <stdio.h>
 
 /* Writes strictly valid JSON (RFC 8259): a number that is not finite becomes null, texts are escaped and
- * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. No text holds a '<', so
- * that the whole may stand in a script element of a page. */
+ * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. No text holds a
+ * '<', so that the whole may stand in a script element of a page. */
 typedef struct sf_json {
     FILE *file;
     int depth;
@@ -25,6 +25,14 @@ typedef struct sf_json {
 void sf_json_open(sf_json *json, const char *key, char bracket); /* bracket: '{' or '[' */
 void sf_json_close(sf_json *json, char bracket);                 /* '}' or ']' */
 void sf_json_number(sf_json *json, const char *key, double value);
+/* Several numbers of the open object: SF_JSON_NUMBERS(json, {"low", low}, {"high", high}). Counts below 10^9,
+ * too. */
+typedef struct sf_named {
+    const char *key;
+    double value;
+} sf_named;
+void sf_json_numbers(sf_json *json, const sf_named *list); /* until a key is NULL */
+#define SF_JSON_NUMBERS(json, ...) sf_json_numbers(json, (const sf_named[]){__VA_ARGS__, {0}})
 /* A negative integer becomes null: all of ours are counts. */
 void sf_json_integer(sf_json *json, const char *key, int64_t value);
 void sf_json_bool(sf_json *json, const char *key, bool value);

@@ -10,8 +10,6 @@
 #include <libconfig.h>
 #include <stdbool.h>
 
-typedef const config_setting_t sf_config_item; /* of libconfig */
-
 typedef struct sf_config {
     const char *path; /* borrowed */
     char *folder;     /* that holds the file; owned */
@@ -19,6 +17,8 @@ typedef struct sf_config {
     config_t config;
     sf_case_source source; /* of its lines */
 } sf_config;
+
+typedef const config_setting_t sf_config_item; /* of libconfig */
 
 /* Reads the file. Release with sf_config_close, also on failure. */
 sf_status sf_config_open(const char *path, sf_config *config, sf_error *err);

@@ -41,3 +41,12 @@ double sf_least_squares(sf_deviations *deviations, void *data, size_t count, gsl
     gsl_multifit_nlinear_free(work);
     return isfinite(sum) ? sum : INFINITY;
 }
+
+double sf_neighbour_correlation(size_t count, const double *deviation) {
+    double top = 0, bottom = 0;
+    for (size_t i = 0; i < count; i++) {
+        bottom += deviation[i] * deviation[i];
+        top += i > 0 ? deviation[i] * deviation[i - 1] : 0;
+    }
+    return bottom > 0 ? top / bottom : 0;
+}

@@ -19,4 +19,7 @@ typedef int sf_deviations(const gsl_vector *x, void *data, gsl_vector *out);
 double sf_least_squares(sf_deviations *deviations, void *data, size_t count, gsl_vector *x,
                         gsl_matrix *covariance);
 
+/* Correlation of neighbouring deviations, r: the variance of a mean of them grows by (1 + r)/(1 - r). */
+double sf_neighbour_correlation(size_t count, const double *deviation);
+
 #endif

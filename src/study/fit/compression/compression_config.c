@@ -97,9 +97,9 @@ static sf_status read_rate(const sf_config *file, sf_config_item *entry, double 
     return SF_OK;
 }
 
-/* `specimen` and `source->toe`: of the tests without their own. */
-static sf_status read_keys(const sf_config *file, sf_config_item *entry, sf_compression_specimen specimen,
-                           sf_compression_source *source, sf_error *err) {
+sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entry,
+                                     sf_compression_specimen specimen, sf_compression_source *source,
+                                     sf_error *err) {
     int invert = SF_INVERT_NONE;
     SF_TRY(read_specimen(file, entry, &specimen, err));
     SF_TRY(read_rate(file, entry, specimen.thickness, &source->rate, err));
@@ -119,12 +119,6 @@ static sf_status read_keys(const sf_config *file, sf_config_item *entry, sf_comp
     return SF_OK;
 }
 
-sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entry,
-                                     sf_compression_source *source, sf_error *err) {
-    *source = (sf_compression_source){0};
-    return read_keys(file, entry, (sf_compression_specimen){0}, source, err);
-}
-
 /* Into the tests that are fitted, each rate once, or those that are predicted. */
 static sf_status read_test(const sf_config *file, sf_config_item *entry, bool predicted,
                            sf_compression_config *c, sf_error *err) {
@@ -133,7 +127,7 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, bool pr
     char *path = NULL;
     sf_compression_source source = {.toe = c->toe};
     if (sf_config_names(file, entry, "file|" SF_COMPRESSION_SOURCE_KEYS, err) == SF_OK &&
-        read_keys(file, entry, c->specimen, &source, err) == SF_OK &&
+        sf_compression_source_read(file, entry, c->specimen, &source, err) == SF_OK &&
         (predicted || check_rate(file, entry, source.rate, c, err) == SF_OK) &&
         sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
         source.path = path;

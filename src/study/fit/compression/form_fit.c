@@ -149,21 +149,12 @@ static void put_start(const sf_form_request *r, int start, gsl_vector *x) {
     }
 }
 
-/* Variance factor of neighbouring deviations that correlate. */
-static double serial_factor(const problem *p) {
-    double top = 0, bottom = 0;
-    for (int i = 0; i < p->points; i++) {
-        bottom += p->reduced[i] * p->reduced[i];
-        top += i > 0 ? p->reduced[i] * p->reduced[i - 1] : 0;
-    }
-    double r = bottom > 0 ? fmin(0.98, top / bottom) : 0;
-    return r > 2 / sqrt(p->points) ? (1 + r) / (1 - r) : 1;
-}
-
 static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix *covariance, double sum,
                         sf_form_fit *fit) {
     const sf_form_request *r = p->request;
-    double variance = sum / fmax(1, p->points - r->unknown_count) * serial_factor(p);
+    double correlation = fmin(0.98, sf_neighbour_correlation((size_t)p->points, p->reduced)),
+           serial = correlation > 2 / sqrt(p->points) ? (1 + correlation) / (1 - correlation) : 1,
+           variance = sum / fmax(1, p->points - r->unknown_count) * serial;
     for (int k = 0; k < r->unknown_count; k++) {
         const sf_parameter_info *about = sf_parameter_get(r->unknown[k]);
         double part = logistic(gsl_vector_get(x, (size_t)k)),
@@ -356,10 +347,10 @@ static double area(const double *strain, const double *stress, int first, int la
     return sum;
 }
 
-static double rms(const sf_compression_test *t, const double *stress, int first, int last) {
+double sf_form_rms(const double *measured, double largest, const double *stress, int first, int last) {
     double sum = 0;
     for (int i = first; i < last; i++)
-        sum += pow((stress[i] - t->stress[i]) / t->largest_stress, 2);
+        sum += pow((stress[i] - measured[i]) / largest, 2);
     return last > first ? sqrt(sum / (last - first)) : NAN;
 }
 
@@ -381,8 +372,9 @@ static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, cons
                                          : NAN;
         out->stress[i] = by * stress + viscous;
     }
-    out->loading_rms = rms(t, out->stress, 0, t->loading);
-    out->unloading_rms = back ? rms(t, out->stress, t->loading, t->count) : NAN;
+    out->loading_rms = sf_form_rms(t->stress, t->largest_stress, out->stress, 0, t->loading);
+    out->unloading_rms =
+        back ? sf_form_rms(t->stress, t->largest_stress, out->stress, t->loading, t->count) : NAN;
     out->returned_measured = back ? -area(t->strain, t->stress, t->loading - 1, t->count) /
                                         area(t->strain, t->stress, 0, t->loading)
                                   : NAN;

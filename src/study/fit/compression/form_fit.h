@@ -52,6 +52,9 @@ typedef struct sf_form_fit {
 sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit, sf_error *err);
 void sf_form_fit_free(sf_form_fit *fit);
 
+/* Root mean square of the deviations of points `first` to `last` - 1, over the largest stress; NaN: none. */
+double sf_form_rms(const double *measured, double largest, const double *stress, int first, int last);
+
 /* Compares the tests with the present card and values once more. */
 sf_status sf_form_fit_follow(sf_form_fit *fit, sf_error *err);
 

@@ -413,46 +413,34 @@ static void put_points(FILE *file, const void *place) {
     }
 }
 
-#define OF_FIT(type, member) SF_ROW_OF(type, fitted, member)
-static const sf_row fit_rows[] = {
-    {.key = "poisson_at_1_percent", OF_FIT(NUMBER, poisson[0])},
-    {.key = "poisson_at_largest_strain", OF_FIT(NUMBER, poisson[1])},
-    {.key = "stress_rms", OF_FIT(NUMBER, stress_rms)},
-    {.key = "lateral_rms", OF_FIT(NUMBER, lateral_rms)},
-    {.key = "describes_the_test", OF_FIT(FLAG, is_good)},
-    {.key = "HU", OF_FIT(NUMBER, card.hysteresis_hu)},
-    {.key = "SHAPE", OF_FIT(NUMBER, card.hysteresis_shape)},
-    {.key = "ALPHA", OF_FIT(NUMBER, card.hysteresis_alpha)},
-    {.key = "HU_at_bound", OF_FIT(FLAG, unloading_at_bound[0])},
-    {.key = "SHAPE_at_bound", OF_FIT(FLAG, unloading_at_bound[1])},
-    {.key = "ALPHA_at_bound", OF_FIT(FLAG, unloading_at_bound[2])},
-    {.key = "unloading_rms", OF_FIT(NUMBER, unloading_rms)},
-};
-
 static void put_json(sf_json *json, const void *place, const char *path) {
     const fitted *f = place;
     (void)path;
     sf_json_text(json, "law", "hyperfoam");
     sf_json_text(json, "name", f->config->name);
     sf_json_text(json, "test", f->test->path);
-    sf_json_number(json, "rate_1_s", f->test->rate);
-    sf_json_number(json, "largest_strain", f->test->largest_strain);
+    SF_JSON_NUMBERS(json, {"rate_1_s", f->test->rate}, {"largest_strain", f->test->largest_strain});
     sf_json_open(json, "terms", '[');
     for (int k = 0; k < f->request->terms; k++) {
         const sf_hyperfoam_term *t = &f->card.term[k];
         sf_json_open(json, NULL, '{');
-        sf_json_number(json, "mu_Pa", t->mu);
-        sf_json_number(json, "mu_relative_error", f->error[k][0]);
-        sf_json_number(json, "alpha", t->alpha);
-        sf_json_number(json, "alpha_error", f->error[k][1]);
-        sf_json_number(json, "nu", t->nu);
-        sf_json_number(json, "nu_error", f->error[k][2]);
+        SF_JSON_NUMBERS(json, {"mu_Pa", t->mu}, {"mu_relative_error", f->error[k][0]}, {"alpha", t->alpha},
+                        {"alpha_error", f->error[k][1]}, {"nu", t->nu}, {"nu_error", f->error[k][2]});
         sf_json_bool(json, "alpha_at_bound", f->at_bound[k][1]);
         sf_json_bool(json, "nu_at_bound", f->at_bound[k][2]);
         sf_json_close(json, '}');
     }
     sf_json_close(json, ']');
-    sf_rows_json(json, SF_ROWS(fit_rows), f);
+    SF_JSON_NUMBERS(json, {"poisson_at_1_percent", f->poisson[0]},
+                    {"poisson_at_largest_strain", f->poisson[1]}, {"stress_rms", f->stress_rms},
+                    {"lateral_rms", f->lateral_rms});
+    sf_json_bool(json, "describes_the_test", f->is_good);
+    SF_JSON_NUMBERS(json, {"HU", f->card.hysteresis_hu}, {"SHAPE", f->card.hysteresis_shape},
+                    {"ALPHA", f->card.hysteresis_alpha});
+    sf_json_bool(json, "HU_at_bound", f->unloading_at_bound[0]);
+    sf_json_bool(json, "SHAPE_at_bound", f->unloading_at_bound[1]);
+    sf_json_bool(json, "ALPHA_at_bound", f->unloading_at_bound[2]);
+    sf_json_number(json, "unloading_rms", f->unloading_rms);
 }
 
 static const char *const outputs[] = {"fit.csv", "fit.json", "material.cfg", NULL};

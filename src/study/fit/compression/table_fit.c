@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char AT_BOUND[] = "at the bound of the search: not identified by these tests";
 enum { ITERATIONS = 150, MAXWELL_STARTS = 4 };
 static const double STEP_TOLERANCE = 1e-7, GRADIENT_TOLERANCE = 1e-9;
 static const double RANK_TOLERANCE = 1e-7; /* columns of the Jacobian below it do not bear on the data */
@@ -228,16 +229,13 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
     e->value = sf_compression_number(&fit->model, fit->parameters, number, &slope);
     if (!e->present)
         return;
-    size_t index = (size_t)r->index;
-    double variance = gsl_matrix_get(fit->covariance, index, index), part;
+    double variance = gsl_matrix_get(fit->covariance, (size_t)r->index, (size_t)r->index),
+           part = r->logarithmic ? log(e->value / r->low) / log(r->high / r->low)
+                                 : (e->value - r->low) / (r->high - r->low);
     e->error = slope * sqrt(variance);
-    part = r->logarithmic ? log(e->value / r->low) / log(r->high / r->low)
-                          : (e->value - r->low) / (r->high - r->low);
-    if (isfinite(r->high) && (part < 1e-4 || part > 1 - 1e-4)) {
-        e->note = "at the bound of the search: not identified by these tests";
-        e->error = NAN;
-    } else if (!(variance > 0)) {
-        e->note = "not identified by these tests";
+    bool at_bound = isfinite(r->high) && (part < 1e-4 || part > 1 - 1e-4);
+    if (at_bound || !(variance > 0)) {
+        e->note = at_bound ? AT_BOUND : "not identified by these tests";
         e->error = NAN;
     }
     bool hu = number == SF_NUMBER_HU, limit = number == SF_NUMBER_LIMIT;
@@ -257,7 +255,7 @@ static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e
     set_interval(fit, true, 0, INFINITY, e);
     bool follows = fit->model.form.rule == SF_H1_AUTO;
     if (!follows && (!(e->error > 0) || e->value > 59.9 || e->value < 0.0501)) {
-        e->note = "at the bound of the search: not identified by these tests";
+        e->note = AT_BOUND;
         e->error = e->low = e->high = NAN;
     } else if (e->value < 1)
         e->note =
@@ -289,22 +287,23 @@ static void estimate_modulus(const sf_compression_fit *fit, sf_estimate *e) {
 
 static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {
     static const struct {
-        const char *name, *unit;
+        const char *name, *key, *unit;
         int number; /* sf_number; -1: found otherwise */
         bool logarithmic;
     } table[SF_ESTIMATES] = {
-        [SF_ESTIMATE_E] = {"E", "Pa", -1, false},
-        [SF_ESTIMATE_HU] = {"HU", "", SF_NUMBER_HU, false},
-        [SF_ESTIMATE_SHAPE] = {"SHAPE", "", SF_NUMBER_SHAPE, true},
-        [SF_ESTIMATE_ALPHA] = {"ALPHA", "", SF_NUMBER_ALPHA, true},
-        [SF_ESTIMATE_LOG_RATE] = {"c (log rate)", "", SF_NUMBER_LOG_RATE, false},
-        [SF_ESTIMATE_ED] = {"ED", "Pa", SF_NUMBER_ED, true},
-        [SF_ESTIMATE_BETA1] = {"BETA1", "1/s", SF_NUMBER_BETA1, true},
-        [SF_ESTIMATE_EXPONENT] = {"exponent", "", -1, false},
-        [SF_ESTIMATE_LIMIT] = {"limit", "", SF_NUMBER_LIMIT, false},
+        [SF_ESTIMATE_E] = {"E", "E_Pa", "Pa", -1, false},
+        [SF_ESTIMATE_HU] = {"HU", "HU", "", SF_NUMBER_HU, false},
+        [SF_ESTIMATE_SHAPE] = {"SHAPE", "SHAPE", "", SF_NUMBER_SHAPE, true},
+        [SF_ESTIMATE_ALPHA] = {"ALPHA", "ALPHA", "", SF_NUMBER_ALPHA, true},
+        [SF_ESTIMATE_LOG_RATE] = {"c (log rate)", "log_rate_c", "", SF_NUMBER_LOG_RATE, false},
+        [SF_ESTIMATE_ED] = {"ED", "ED_Pa", "Pa", SF_NUMBER_ED, true},
+        [SF_ESTIMATE_BETA1] = {"BETA1", "BETA1_1_s", "1/s", SF_NUMBER_BETA1, true},
+        [SF_ESTIMATE_EXPONENT] = {"exponent", "exponent", "", -1, false},
+        [SF_ESTIMATE_LIMIT] = {"limit", "limit", "", SF_NUMBER_LIMIT, false},
     };
     for (int k = 0; k < SF_ESTIMATES; k++) {
-        fit->estimate[k] = (sf_estimate){table[k].name, table[k].unit, false, NAN, NAN, NAN, NAN, ""};
+        fit->estimate[k] =
+            (sf_estimate){table[k].name, table[k].key, table[k].unit, false, NAN, NAN, NAN, NAN, ""};
         if (table[k].number >= 0)
             estimate_number(fit, (sf_number)table[k].number, table[k].logarithmic, &fit->estimate[k]);
     }
@@ -339,8 +338,8 @@ static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
     double *gradient =
         sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
     SF_TRY(err->status);
-    bool several = fit->model.form.rate == SF_RATE_LOG || fit->model.form.rate == SF_RATE_CURVES;
-    fit->rate_count = several ? fit->data.config->test_count : 1;
+    sf_rate_model rate = fit->model.form.rate;
+    fit->rate_count = rate == SF_RATE_LOG || rate == SF_RATE_CURVES ? fit->data.config->test_count : 1;
     place_table(fit);
     for (int r = 0; r < fit->rate_count; r++)
         for (int k = 0; k < fit->table_count; k++) {

@@ -26,8 +26,8 @@ typedef enum sf_estimate_name {
 
 /* A number with its standard error and interval; all NaN but the value if the number was not fitted. */
 typedef struct sf_estimate {
-    const char *name, *unit; /* static storage */
-    bool present;            /* the material has it */
+    const char *name, *key, *unit; /* static storage; `key` in fit.json */
+    bool present;                  /* the material has it */
     double value, error, low, high;
     const char *note; /* why it is to be taken with care, or "" ; static storage */
 } sf_estimate;

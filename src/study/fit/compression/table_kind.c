@@ -81,8 +81,6 @@ static sf_material material_of(const void *place) {
 static sf_status run(const sf_compression_config *config, void *place, sf_error *err) {
     sf_table_result *r = place;
     SF_TRY(sf_compression_fit_run(config, &r->fit, err));
-    r->confidence = config->confidence;
-    r->coefficients = r->fit.model.spline.count - 1;
     r->test_count = config->test_count;
     for (int k = 0; k < r->test_count; k++)
         compare_test(&r->fit, k, &r->test[k]);
@@ -435,15 +433,10 @@ static sf_status write_more(const sf_compression_job *job, const sf_staging *out
 /* ---- fit.json ---- */
 
 static void json_candidate(sf_json *json, const char *name, const sf_candidate *c) {
-    static const sf_row rows[] = {
-        {.key = "parameters", SF_ROW_OF(INTEGER, sf_candidate, parameters)},
-        {.key = "chi2", SF_ROW_OF(NUMBER, sf_candidate, chi2)},
-        {.key = "bic", SF_ROW_OF(NUMBER, sf_candidate, bic)},
-    };
     if (!c->tried)
         return;
     sf_json_open(json, name, '{');
-    sf_rows_json(json, SF_ROWS(rows), c);
+    SF_JSON_NUMBERS(json, {"parameters", c->parameters}, {"chi2", c->chi2}, {"bic", c->bic});
     sf_json_close(json, '}');
 }
 
@@ -463,44 +456,18 @@ static void json_choice(sf_json *json, const sf_compression_fit *fit) {
 }
 
 static void json_estimates(sf_json *json, const sf_compression_fit *fit) {
-    static const char *const names[SF_ESTIMATES] = {"E_Pa",  "HU",        "SHAPE",    "ALPHA", "log_rate_c",
-                                                    "ED_Pa", "BETA1_1_s", "exponent", "limit"};
-    static const sf_row rows[] = {
-        {.key = "value", SF_ROW_OF(NUMBER, sf_estimate, value)},
-        {.key = "standard_error", SF_ROW_OF(NUMBER, sf_estimate, error)},
-        {.key = "low", SF_ROW_OF(NUMBER, sf_estimate, low)},
-        {.key = "high", SF_ROW_OF(NUMBER, sf_estimate, high)},
-        {.key = "note", SF_ROW_OF(STRING, sf_estimate, note)},
-    };
     sf_json_open(json, "parameters", '{');
-    for (int k = 0; k < SF_ESTIMATES; k++) {
-        if (!fit->estimate[k].present)
+    for (const sf_estimate *e = fit->estimate; e < fit->estimate + SF_ESTIMATES; e++) {
+        if (!e->present)
             continue;
-        sf_json_open(json, names[k], '{');
-        sf_rows_json(json, SF_ROWS(rows), &fit->estimate[k]);
+        sf_json_open(json, e->key, '{');
+        SF_JSON_NUMBERS(json, {"value", e->value}, {"standard_error", e->error}, {"low", e->low},
+                        {"high", e->high});
+        sf_json_text(json, "note", *e->note ? e->note : NULL);
         sf_json_close(json, '}');
     }
     sf_json_close(json, '}');
 }
-
-#define OF_RESULT(type, member) SF_ROW_OF(type, sf_table_result, member)
-static const sf_row quality_rows[] = {
-    {.key = "confidence", OF_RESULT(NUMBER, confidence)},
-    {.key = "points", OF_RESULT(INTEGER, fit.data.count)},
-    {.key = "fitted_parameters", OF_RESULT(INTEGER, fit.model.parameter_count)},
-    {.key = "spline_coefficients", OF_RESULT(INTEGER, coefficients)},
-    {.key = "scatter_absolute_Pa", OF_RESULT(NUMBER, fit.data.scatter.absolute)},
-    {.key = "scatter_relative", OF_RESULT(NUMBER, fit.data.scatter.relative)},
-    {.key = "chi2", OF_RESULT(NUMBER, fit.chi2)},
-    {.key = "misfit", OF_RESULT(NUMBER, fit.misfit)},
-    {.key = "misfit_loading", OF_RESULT(NUMBER, fit.side[0].misfit)},
-    {.key = "misfit_unloading", OF_RESULT(NUMBER, fit.side[1].misfit)},
-    {.key = "loading_rms_of_largest", OF_RESULT(NUMBER, fit.side[0].of_largest)},
-    {.key = "unloading_rms_of_largest", OF_RESULT(NUMBER, fit.side[1].of_largest)},
-    {.key = "neighbour_correlation", OF_RESULT(NUMBER, fit.side[0].correlation)},
-    {.key = "variance_factor_for_correlation", OF_RESULT(NUMBER, fit.side[0].serial)},
-    {.key = "card_difference_percent", OF_RESULT(NUMBER, card_percent)},
-};
 
 #define OF_TEST(type, member) SF_ROW_OF(type, sf_table_test, member)
 static const sf_row test_rows[] = {
@@ -539,7 +506,17 @@ static void put_json(sf_json *json, const void *place, const char *path) {
                        (sf_records){r->test, sizeof r->test[0], r->test_count});
     json_choice(json, &r->fit);
     json_estimates(json, &r->fit);
-    sf_rows_json(json, SF_ROWS(quality_rows), r);
+    const sf_compression_fit *fit = &r->fit;
+    const sf_side *side = fit->side;
+    SF_JSON_NUMBERS(
+        json, {"confidence", fit->data.config->confidence}, {"points", fit->data.count},
+        {"fitted_parameters", fit->model.parameter_count},
+        {"spline_coefficients", fit->model.spline.count - 1},
+        {"scatter_absolute_Pa", fit->data.scatter.absolute}, {"scatter_relative", fit->data.scatter.relative},
+        {"chi2", fit->chi2}, {"misfit", fit->misfit}, {"misfit_loading", side[0].misfit},
+        {"misfit_unloading", side[1].misfit}, {"loading_rms_of_largest", side[0].of_largest},
+        {"unloading_rms_of_largest", side[1].of_largest}, {"neighbour_correlation", side[0].correlation},
+        {"variance_factor_for_correlation", side[0].serial}, {"card_difference_percent", r->card_percent});
     sf_rows_json_array(json, "simulation", sf_table_simulation_rows,
                        (sf_records){r->test, sizeof r->test[0], r->simulated ? r->test_count : 0});
 }

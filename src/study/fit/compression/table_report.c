@@ -270,7 +270,7 @@ sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging 
     SF_TRY(err->status);
     put_banner(out, fit);
     sf_chart_figure(out, output, "fit", "softfall-fit",
-                    "Data (points) and fit (lines), and the deviations over the scatter (band: ±2).");
+                    "Data (points) and fit (lines), and the deviations over the scatter (band: ±2)");
     put_parameters(out, fit);
     put_tests(out, r);
     put_quality(out, r);

@@ -23,8 +23,6 @@ typedef struct sf_table_result {
     sf_compression_fit fit;
     sf_foam_card card;   /* of the fit; owned */
     double card_percent; /* largest difference of card and fit, counted as `percent` */
-    double confidence;
-    int coefficients; /* of a loading curve */
     int test_count;
     sf_table_test test[SF_COMPRESSION_TESTS];
     bool simulated;

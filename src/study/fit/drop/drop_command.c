@@ -4,7 +4,6 @@
 #include "base/program.h"
 #include "io/folder.h"
 #include "study/fit/drop/drop_report.h"
-#include "study/fit/drop/inference_report.h"
 #include "study/setup.h"
 #include <omp.h>
 #include <stdlib.h>

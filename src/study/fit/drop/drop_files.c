@@ -10,7 +10,6 @@
 #include "build_info.h"
 #include "material/low_density_foam.h"
 #include "report/chart.h"
-#include "study/fit/drop/inference_report.h"
 #include "study/material_file.h"
 
 /* ---- numbers ---- */

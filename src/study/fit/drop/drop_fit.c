@@ -119,7 +119,7 @@ static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const ch
     }
 }
 
-/* Those of the measured drops are coarse where the fit is. */
+/* Fills the requests of drops; those of measured drops have the coarse keys where the fit is coarse. */
 static void fill_requests(const sf_drop_fit *fit, int first, int last, const char *material,
                           sf_runner_drop *request) {
     for (int d = first; d < last; d++, request++) {

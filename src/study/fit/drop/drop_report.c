@@ -7,7 +7,6 @@
 #include "build_info.h"
 #include "report/chart.h"
 #include "report/row.h"
-#include "study/fit/drop/inference_report.h"
 
 /* Standard deviation of the logarithm of a response by the parameters. */
 static double response_sd(const sf_drop_fit *fit, int d, int kind) {
@@ -59,7 +58,7 @@ static void put_banner(FILE *f, const sf_drop_fit *fit) {
         high);
 }
 
-/* What the accelerometer's mount and high pass are taken to do; nothing without them. */
+/* Writes the numbers of the accelerometer's mount and high pass; nothing without them. */
 static void put_chain(FILE *f, const sf_drop_fit *fit) {
     sf_chain_shown shown[SF_SIGNAL_CHAIN];
     int count = sf_drop_chain_list(fit, shown);
@@ -307,7 +306,7 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
     SF_TRY(err->status);
     put_banner(f, fit);
     sf_chart_figure(f, output, "fit", "softfall-fit",
-                    "Identified curve with its 95 % band, information of the drops about it, and the drops.");
+                    "Identified curve with its 95 % band, information of the drops about it, and the drops");
     if (average)
         sf_inference_html(f, average, err);
     put_chain(f, fit);
@@ -345,10 +344,6 @@ static void json_kind(sf_json *j, const sf_drop_fit *fit, int d, int kind) {
 }
 
 static void json_drops(sf_json *j, const sf_drop_fit *fit) {
-    static const sf_row rows[] = {
-        {.key = "max_local_strain", SF_ROW_OF(NUMBER, sf_fit_simulated, max_local_strain)},
-        {.key = "energy_error", SF_ROW_OF(NUMBER, sf_fit_simulated, energy_error)},
-    };
     sf_json_open(j, "drops", '[');
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
@@ -358,8 +353,9 @@ static void json_drops(sf_json *j, const sf_drop_fit *fit) {
         sf_json_bool(j, "used", !drop->predicted);
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
             json_kind(j, fit, d, kind);
-        sf_json_number(j, "curve_rmse_g", sf_drop_curve_rmse(fit, d));
-        sf_rows_json(j, SF_ROWS(rows), simulated);
+        SF_JSON_NUMBERS(j, {"curve_rmse_g", sf_drop_curve_rmse(fit, d)},
+                        {"max_local_strain", simulated->max_local_strain},
+                        {"energy_error", simulated->energy_error});
         sf_json_text(j, "grade", sf_verdict_phrase(simulated->grade));
         sf_json_text(j, "verdict", simulated->verdict);
         if (*simulated->failure)
@@ -380,9 +376,8 @@ static void json_joint(sf_json *j, const sf_drop_fit *fit) {
         sf_json_text(j, "understood", test->interpretation);
         sf_json_number(j, "rate_1_s", test->rate);
         sf_json_bool(j, "below_rate_reference", is_below_reference(fit, test));
-        sf_json_integer(j, "points", test->count);
-        sf_json_number(j, "loading_rms", sf_joint_rms(test, false, y));
-        sf_json_number(j, "unloading_rms", sf_joint_rms(test, true, y));
+        SF_JSON_NUMBERS(j, {"points", test->count}, {"loading_rms", sf_joint_rms(test, false, y)},
+                        {"unloading_rms", sf_joint_rms(test, true, y)});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -391,9 +386,8 @@ static void json_joint(sf_json *j, const sf_drop_fit *fit) {
         for (int k = 0; k < joint->cushion[c].count; k++) {
             sf_json_open(j, NULL, '{');
             sf_json_text(j, "name", joint->cushion[c].name);
-            sf_json_number(j, "static_stress_Pa", joint->cushion[c].static_stress[k]);
-            sf_json_number(j, "peak_measured_g", joint->cushion[c].peak_g[k]);
-            sf_json_number(j, "peak_g", exp(*y++));
+            SF_JSON_NUMBERS(j, {"static_stress_Pa", joint->cushion[c].static_stress[k]},
+                            {"peak_measured_g", joint->cushion[c].peak_g[k]}, {"peak_g", exp(*y++)});
             sf_json_close(j, '}');
         }
     sf_json_close(j, ']');
@@ -406,12 +400,10 @@ static void json_parameters(sf_json *j, const sf_drop_fit *fit) {
         sf_estimate_shown e = sf_drop_estimate(fit, k);
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "name", e.about->name);
-        sf_json_number(j, "value_SI", e.value * e.per_unit);
-        sf_json_number(j, "low95_SI", e.low * e.per_unit);
-        sf_json_number(j, "high95_SI", e.high * e.per_unit);
-        sf_json_number(j, "prior_SI", in->prior[k]);
-        sf_json_number(j, "prior_sd_of_logarithm", in->prior_sd[k]);
-        sf_json_number(j, "sd_of_logarithm", sqrt(fit->result.covariance[k][k]));
+        SF_JSON_NUMBERS(j, {"value_SI", e.value * e.per_unit}, {"low95_SI", e.low * e.per_unit},
+                        {"high95_SI", e.high * e.per_unit}, {"prior_SI", in->prior[k]},
+                        {"prior_sd_of_logarithm", in->prior_sd[k]},
+                        {"sd_of_logarithm", sqrt(fit->result.covariance[k][k])});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -437,12 +429,9 @@ static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *avera
     sf_json_bool(&j, "converged", fit->result.converged);
     if (fit->result.reason)
         sf_json_text(&j, "reason", fit->result.reason);
-    sf_json_integer(&j, "iterations", fit->result.iterations);
-    sf_json_integer(&j, "coarse_iterations", fit->coarse_iterations);
-    sf_json_number(&j, "expected_gain", fit->result.gain);
-    sf_json_number(&j, "misfit", fit->result.misfit);
-    sf_json_number(&j, "degrees_of_freedom", fit->result.freedom);
-    sf_json_number(&j, "sd_scale", fit->result.scale);
+    SF_JSON_NUMBERS(&j, {"iterations", fit->result.iterations}, {"coarse_iterations", fit->coarse_iterations},
+                    {"expected_gain", fit->result.gain}, {"misfit", fit->result.misfit},
+                    {"degrees_of_freedom", fit->result.freedom}, {"sd_scale", fit->result.scale});
     json_parameters(&j, fit);
     json_joint(&j, fit);
     json_drops(&j, fit);

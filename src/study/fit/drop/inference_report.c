@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/inference_report.h"
+#include "study/fit/drop/average.h"
 
 #include "report/html.h"
 #include <math.h>
@@ -259,9 +259,7 @@ sf_status sf_inference_html(FILE *f, const sf_drop_average *a, sf_error *err) {
 /* ---- fit.json ---- */
 
 static void json_quantiles(sf_json *j, const double *value) {
-    sf_json_number(j, "median", value[1]);
-    sf_json_number(j, "low95", value[0]);
-    sf_json_number(j, "high95", value[2]);
+    SF_JSON_NUMBERS(j, {"median", value[1]}, {"low95", value[0]}, {"high95", value[2]});
 }
 
 static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_error *err) {
@@ -273,8 +271,7 @@ static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_err
         sf_json_text(j, "name", sf_drop_inference_name(in, k));
         sf_json_text(j, "unit", "SI");
         json_quantiles(j, value);
-        sf_json_number(j, "rhat", in->chains.rhat[k]);
-        sf_json_number(j, "effective_sample_size", in->chains.effective[k]);
+        SF_JSON_NUMBERS(j, {"rhat", in->chains.rhat[k]}, {"effective_sample_size", in->chains.effective[k]});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -294,39 +291,29 @@ static void json_failed_drops(sf_json *j, const sf_drop_fit *fit) {
     sf_json_close(j, ']');
 }
 
-static const sf_row left_out_rows[] = {
-    {.key = "log_density", SF_ROW_OF(NUMBER, sf_left_out, log_density)},
-    {.key = "pareto_k", SF_ROW_OF(NUMBER, sf_left_out, pareto_k)},
-    {.key = "by_chains", SF_ROW_OF(FLAG, sf_left_out, sampled)},
-    {.key = "by_draws", SF_ROW_OF(FLAG, sf_left_out, drawn)},
-    {.key = "reached", SF_ROW_OF(FLAG, sf_left_out, converged)},
-};
-static const sf_row evidence_rows[] = {
-    {.key = "log_evidence", SF_ROW_OF(NUMBER, sf_evidence, log_value)},
-    {.key = "log_evidence_sd", SF_ROW_OF(NUMBER, sf_evidence, error)},
-    {.key = "log_evidence_effective_draws", SF_ROW_OF(NUMBER, sf_evidence, effective)},
-};
-
 static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_error *err) {
     const sf_drop_inference *in = a->model[m];
     double rhat, effective;
     find_worst(&in->chains, &rhat, &effective);
     sf_json_open(j, NULL, '{');
     sf_json_text(j, "model", label_of(a, m));
-    sf_json_number(j, "weight", a->weight[m]);
-    sf_json_number(j, "weight_by_evidence", a->evidence_weight[m]);
-    sf_json_number(j, "log_predictive_density", a->predictive[m]);
-    sf_rows_json(j, SF_ROWS(evidence_rows), &in->evidence);
-    sf_json_number(j, "misfit", in->fit->result.misfit);
+    SF_JSON_NUMBERS(j, {"weight", a->weight[m]}, {"weight_by_evidence", a->evidence_weight[m]},
+                    {"log_predictive_density", a->predictive[m]}, {"log_evidence", in->evidence.log_value},
+                    {"log_evidence_sd", in->evidence.error},
+                    {"log_evidence_effective_draws", in->evidence.effective},
+                    {"misfit", in->fit->result.misfit});
     sf_json_bool(j, "chains_reached", in->chains.converged);
-    sf_json_number(j, "largest_rhat", rhat);
-    sf_json_number(j, "least_effective_sample_size", effective);
+    SF_JSON_NUMBERS(j, {"largest_rhat", rhat}, {"least_effective_sample_size", effective});
     sf_json_integer(j, "evaluations", in->chains.evaluations);
     sf_json_open(j, "left_out", '[');
     for (int d = 0; d < in->fit->measured_drops && !a->by_evidence; d++) {
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "drop", in->fit->input->drop[d].name);
-        sf_rows_json(j, SF_ROWS(left_out_rows), &in->left_out[d]);
+        SF_JSON_NUMBERS(j, {"log_density", in->left_out[d].log_density},
+                        {"pareto_k", in->left_out[d].pareto_k});
+        sf_json_bool(j, "by_chains", in->left_out[d].sampled);
+        sf_json_bool(j, "by_draws", in->left_out[d].drawn);
+        sf_json_bool(j, "reached", in->left_out[d].converged);
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');

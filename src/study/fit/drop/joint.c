@@ -170,24 +170,17 @@ static void take_points(const sf_compression_test *t, sf_joint_test *out) {
         put_point(t, t->loading - 1, t->count, GRID * k, out);
 }
 
-/* The text of the file, at whatever rate it is said to be, is that of no other test. */
-static sf_status check_test_file(const sf_config *config, sf_config_item *entry, const char *path,
-                                 sf_joint *joint, sf_error *err) {
-    sf_joint_test *test = &joint->test[joint->test_count];
-    SF_TRY(sf_plain_hash(path, NULL, SF_PLAIN_TEXT, &test->file, err));
-    for (int t = 0; t < joint->test_count; t++)
-        if (joint->test[t].file == test->file)
-            return refuse_again(config, config_setting_get_member(entry, "file"),
-                                "the contents of the file are", joint->test[t].name, err);
-    return SF_OK;
-}
-
 static sf_status take_test(const sf_config *config, sf_config_item *entry,
                            const sf_compression_source *source, sf_joint *joint, sf_error *err) {
     sf_joint_test *test = &joint->test[joint->test_count];
     sf_compression_test read;
     sf_error inner = SF_ERROR_INIT;
-    SF_TRY(check_test_file(config, entry, source->path, joint, err));
+    /* the text of the file, at whatever rate it is said to be, is that of no other test */
+    SF_TRY(sf_plain_hash(source->path, NULL, SF_PLAIN_TEXT, &test->file, err));
+    for (int t = 0; t < joint->test_count; t++)
+        if (joint->test[t].file == test->file)
+            return refuse_again(config, config_setting_get_member(entry, "file"),
+                                "the contents of the file are", joint->test[t].name, err);
     if (sf_compression_test_read(source, &read, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
                        config_setting_source_line(entry));
@@ -209,13 +202,13 @@ static sf_status take_test(const sf_config *config, sf_config_item *entry,
 
 static sf_status read_test(const sf_config *config, sf_config_item *entry, sf_joint *joint, sf_error *err) {
     sf_joint_test *test = &joint->test[joint->test_count];
-    sf_compression_source source;
+    sf_compression_source source = {0};
     char *path = NULL;
     *test = (sf_joint_test){.sd = 0.05};
     SF_TRY(sf_config_names(config, entry, "name|file|sd|" SF_COMPRESSION_SOURCE_KEYS, err));
     SF_TRY(read_name(config, entry, "compression", joint->test_count + 1, test->name, err));
     SF_TRY(sf_config_number(config, entry, "sd", false, 1e-3, 1, &test->sd, err));
-    SF_TRY(sf_compression_source_read(config, entry, &source, err));
+    SF_TRY(sf_compression_source_read(config, entry, (sf_compression_specimen){0}, &source, err));
     SF_TRY(sf_config_file(config, entry, "file", true, &path, err));
     source.path = path;
     test->rate = source.rate;
