@@ -96,47 +96,6 @@ static void release(void *place) {
 
 /* ---- words ---- */
 
-const char *const sf_table_rates[SF_RATE_MODELS] = {
-    "none: one curve for all rates",
-    "log: curve times 1 + c ln(rate/slowest rate), written as a curve for each rate",
-    "maxwell: one curve and a Maxwell branch ED, BETA1",
-    "curves: a curve of its own for each rate",
-};
-const char *const sf_table_rules[SF_RULES] = {
-    "H1, exponent by A = 0: B/(1 - strain)^m",
-    "H1, exponent free: A + B/(1 - strain)^m",
-    "H2: A + B/(limit - strain)^m",
-};
-
-/* A value of the estimate with its unit; pressures in kPa. */
-static void value_text(const sf_estimate *e, double value, char *out, size_t size) {
-    bool pressure = strcmp(e->unit, "Pa") == 0;
-    const char *unit = pressure ? "kPa" : e->unit;
-    if (isfinite(value))
-        snprintf(out, size, "%.5g%s%s", value * (pressure ? 1e-3 : 1), *unit ? " " : "", unit);
-    else
-        snprintf(out, size, "-");
-}
-
-sf_table_estimate sf_table_estimate_of(const sf_estimate *e) {
-    sf_table_estimate out = {.interval = ""};
-    char low[64], high[64];
-    value_text(e, e->value, out.value, sizeof out.value);
-    value_text(e, e->error, out.error, sizeof out.error);
-    value_text(e, e->low, low, sizeof low);
-    value_text(e, e->high, high, sizeof high);
-    if (isfinite(e->low))
-        snprintf(out.interval, sizeof out.interval, "%s to %s", low, high);
-    return out;
-}
-
-const char *sf_table_misfit(const sf_side *side, char text[160]) {
-    snprintf(text, 160,
-             "rms deviation %.3g %% of the stress, %.3g %% of the largest; misfit (1 is scatter alone) %.3g",
-             100 * side->relative, 100 * side->of_largest, side->misfit);
-    return text;
-}
-
 static void title(FILE *out, const void *place) {
     const sf_compression_fit *fit = &((const sf_table_result *)place)->fit;
     const sf_compression_config *c = fit->data.config;
@@ -468,34 +427,6 @@ static void json_estimates(sf_json *json, const sf_compression_fit *fit) {
     }
     sf_json_close(json, '}');
 }
-
-#define OF_TEST(type, member) SF_ROW_OF(type, sf_table_test, member)
-static const sf_row test_rows[] = {
-    {.name = "file", OF_TEST(STRING, name)},
-    {.key = "file", OF_TEST(STRING, test.path)},
-    {.key = "understood", OF_TEST(TEXT, test.interpretation)},
-    {.key = "toe_strain", OF_TEST(NUMBER, test.toe)},
-    {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, test.rate)},
-    {.key = "points_loading", .name = "points of loading", OF_TEST(INTEGER, test.loading)},
-    {.key = "points_unloading", .name = "of unloading", OF_TEST(INTEGER, unloading)},
-    {.key = "largest_strain", .name = "largest strain", OF_TEST(NUMBER, test.largest_strain)},
-    {"largest_stress_Pa", "largest stress", "kPa", .shown = 1e-3, OF_TEST(NUMBER, test.largest_stress)},
-    {"loading_rms_over_sigma", "deviation / scatter, loading", NULL, "%.3g", OF_TEST(NUMBER, rms[0])},
-    {"unloading_rms_over_sigma", "unloading", NULL, "%.3g", OF_TEST(NUMBER, rms[1])},
-    {"loading_rms_percent", "deviation, loading", "%", "%.3g", OF_TEST(NUMBER, percent[0])},
-    {"unloading_rms_percent", "unloading", "%", "%.3g", OF_TEST(NUMBER, percent[1])},
-};
-const sf_rows sf_table_test_rows = {test_rows, sizeof test_rows / sizeof *test_rows};
-
-static const sf_row simulation_rows[] = {
-    {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, test.rate)},
-    {.key = "speed_up", .name = "speed-up", OF_TEST(NUMBER, speed_up)},
-    {"loading_difference_percent", "largest difference, loading", "%", "%.2g",
-     OF_TEST(NUMBER, difference[0])},
-    {"unloading_difference_percent", "unloading", "%", "%.2g", OF_TEST(NUMBER, difference[1])},
-    {.key = "energy_error", .name = "energy error", .format = "%.1g", OF_TEST(NUMBER, energy_error)},
-};
-const sf_rows sf_table_simulation_rows = {simulation_rows, sizeof simulation_rows / sizeof *simulation_rows};
 
 static void put_json(sf_json *json, const void *place, const char *path) {
     const sf_table_result *r = place;

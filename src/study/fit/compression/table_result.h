@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The fit of tables as the pipeline has it: the fit, its card in the solver's own law, and how both stand
- * against the data. Internal to table_kind.c, which has its files and words, and table_report.c. */
+ * against the data. Internal to table_kind.c and to table_report.c, which has the page and
+ * the words and rows that stand there, too. */
 #ifndef SF_FIT_COMPRESSION_TABLE_RESULT_H
 #define SF_FIT_COMPRESSION_TABLE_RESULT_H
 
