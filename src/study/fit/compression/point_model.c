@@ -405,7 +405,8 @@ double sf_compression_curve(sf_compression_model *model, const gsl_vector *param
     numbers n;
     unpack(model, parameters, &n);
     sf_spline_value(&model->spline, fmin(strain, model->data->start), row);
-    memset(gradient, 0, (size_t)model->parameter_count * sizeof *gradient);
+    if (gradient)
+        memset(gradient, 0, (size_t)model->parameter_count * sizeof *gradient);
     return loading_stress(model, parameters, &n, test, strain, row, gradient);
 }
 

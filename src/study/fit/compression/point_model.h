@@ -102,7 +102,7 @@ double sf_compression_exponent(const sf_compression_model *model, const gsl_vect
                                double *gradient);
 
 /* Stress (Pa) of the loading curve at the rate of a test, at 0 <= strain <= data->end, and its gradient
- * [parameter_count]. Without the Maxwell stress. */
+ * [parameter_count] (or NULL). Without the Maxwell stress. */
 double sf_compression_curve(sf_compression_model *model, const gsl_vector *parameters, int test,
                             double strain, double *gradient);
 
