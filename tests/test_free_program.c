@@ -164,6 +164,12 @@ static void history_and_figures_hold(void **state) {
                                     h->angular_acceleration_z, h->rows);
     assert_true(fastest > 15);
     assert_close(f.peak_angular_velocity / fastest, 1, 0.01);
+    const double *axis[3] = {h->angular_velocity_x, h->angular_velocity_y, h->angular_velocity_z},
+                 critical[3] = {66.25, 56.45, 42.87};
+    double bric = 0;
+    for (int k = 0; k < 3; k++)
+        bric = hypot(bric, column_largest(axis[k], axis[k], axis[k], h->rows) / sqrt(3) / critical[k]);
+    assert_close(f.bric / bric, 1, 0.01);
     assert_close(f.peak_angular_acceleration / hardest, 1, 0.05);
     double pulled = column_largest(h->specific_force_x, h->specific_force_y, h->specific_force_z, h->rows);
     assert_close(f.injury_raw.a_max_g * 9.80665 / pulled, 1, 1e-12);

@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from . import library, programs
-from .drop import Drop, as_str
+from .drop import Drop, as_str, later_results
 from .errors import Error, InputError, NumericError, SoftfallWarning, find
 
 RUNS = "softfall-runs"  # the folder of runs without a name
@@ -175,7 +175,7 @@ class Case(MutableMapping[str, Any]):
                 except BlockingIOError:
                     warnings.warn(f"another process runs the drop in {folder}: this one waits for it", SoftfallWarning, stacklevel=2)
                     fcntl.flock(lock, fcntl.LOCK_EX)
-                return _solve(model, folder, threads, on_step, force, lock.fileno())
+                return _solve(model, folder, int(self["series.drops"]), threads, on_step, force, lock.fileno())
 
     def _name(self) -> str:
         generic = self.path.stem == "case"
@@ -224,21 +224,31 @@ def _state(path: Path) -> dict[str, str]:
         return {"model": "damaged"}
 
 
-def _solve(model: Path, folder: Path, threads: int | None, on_step: Callable[[Step], object] | None, force: bool,
+def _checkpoint(results: Path) -> Path:
+    return results.with_name(results.name + ".restart")
+
+
+def _solve(model: Path, folder: Path, drops: int, threads: int | None, on_step: Callable[[Step], object] | None, force: bool,
            lock: int) -> Drop:
-    """Moves the model into the folder and solves it there, unless that is done; resumes a run of it."""
-    results, checkpoint = folder / "results.h5", folder / "results.h5.restart"
+    """Moves the model into the folder and solves it there, unless that is done; resumes a run of it, also within a series of drops."""
+    files = [later_results(folder / "results.h5", number) for number in range(1, drops + 1)]
     ours, revision = _state(model)["model"], library.version().split("(")[1].rstrip(")")
-    done, built = _state(results), _state(folder / "model.h5")
-    strange = checkpoint.exists() and not built or any(state and state["model"] != ours for state in (done, built))
+    states, built = [_state(path) for path in files], _state(folder / "model.h5")
+    strange = _checkpoint(files[0]).exists() and not built or any(state and state["model"] != ours for state in (*states, built))
     if strange and not force:
         raise InputError(f"{folder} holds a run of other values; force=True replaces it, another output keeps it")
-    if not force and done.get("status") in ("finished", "rebound") and done.get("revision") == revision:
-        return Drop(results, folder / "out")
+    done = [state.get("status") in ("finished", "rebound") and state.get("revision") == revision for state in states]
+    if all(done) and not force:
+        return Drop(files[0], folder / "out")
     shutil.move(model, folder / "model.h5")
-    resumes = not force and checkpoint.exists() and done.get("status", "interrupted") == "interrupted"
-    where = [f"--restart={results}", str(folder / "model.h5")] if resumes else [str(folder / "model.h5"), f"--output={results}",
-                                                                               "--force"]
+    first = done.index(False) if not force else 0
+    resumes = not force and _checkpoint(files[first]).exists() and states[first].get("status", "interrupted" if first == 0 else "") == "interrupted"
+    if not resumes:
+        for path in files[1:]:  # those of an earlier series are not of this one
+            path.unlink(missing_ok=True)
+            _checkpoint(path).unlink(missing_ok=True)
+    where = [f"--restart={files[first]}", str(folder / "model.h5")] if resumes else [str(folder / "model.h5"), f"--output={files[0]}",
+                                                                                   "--force"]
 
     def tell(line: str) -> None:
         found = _PROGRESS.search(line)
@@ -251,6 +261,6 @@ def _solve(model: Path, folder: Path, threads: int | None, on_step: Callable[[St
         programs.run("solve", [*where, *([f"--threads={threads}"] if threads else [])], terminal=on_step is not None, keep=[lock],
                      on_line=tell)
     except NumericError as error:
-        error.results = str(results) if results.exists() else None
+        error.results = str(files[0]) if files[0].exists() else None
         raise
-    return Drop(results, folder / "out")
+    return Drop(files[0], folder / "out")

@@ -17,6 +17,11 @@ from .curves import STANDARD_GRAVITY, Column, column
 from .errors import Error, InputError, find, missing
 
 
+def later_results(results: Path, number: int) -> Path:
+    """Returns where softfall-solve writes drop `number` of a series whose first one is `results`."""
+    return results if number == 1 else results.with_name(f"{results.stem}-{number}{results.suffix}")
+
+
 def as_str(value: Any) -> str:
     """Returns a text of an HDF5 file."""
     return value.decode() if isinstance(value, bytes) else str(value)
@@ -260,6 +265,14 @@ class Drop:
         made.checks, made.limits = told["checks"], told["limits"]
         made.remarks = [check["finding"] for check in made.checks if check["grade"] not in ("valid", None)]
         return made
+
+    @property
+    def series(self) -> list[Drop]:
+        """The drops of a series on the same pad, this first one included; one that was not run, as one before it failed, is left out."""
+        with self.open() as file:
+            count = int(file["summary/drops"][()]) if "summary/drops" in file else 1
+        later = [later_results(self.results, number) for number in range(2, count + 1)]
+        return [self, *(Drop(path, path.with_name(f"out-{number}")) for number, path in enumerate(later, 2) if path.exists())]
 
     @property
     def layers(self) -> list[dict[str, Any]]:

@@ -16,8 +16,8 @@ import numpy as np
 from . import programs
 from .case import Case
 from .curves import hic
-from .drop import read_results
-from .errors import Error, InputError
+from .drop import later_results, read_results
+from .errors import Error, InputError, NumericError
 from .protocol import Condition, Figure, Position, Protocol, length, speed
 from .record import read_record
 from .study import Table, sweep
@@ -114,12 +114,14 @@ def _take_figures(figures: Iterable[Figure], known: Mapping[str, Any], curve: tu
 
 # ---- simulated ----
 
-def _folder_name(*parts: str) -> str:
+def folder_name(*parts: str) -> str:
     return "-".join(re.sub(r"[^\w.]+", "_", part) for part in parts)
 
 
-def _case(p: Protocol, pad: Case, condition: Condition, position: Position, missing: list[str]) -> Case | None:
+def case_at(p: Protocol, pad: Case, condition: Condition, position: Position, missing: list[str]) -> Case | None:
     """Returns the case of a condition and a position; None, with a sentence in `missing`, if it does not have their keys."""
+    if pad["series.drops"] != 1:
+        raise InputError(f"{pad.path}: series.drops = {pad['series.drops']}: leave the group series out, as the protocol says how many drops there are")
     case = pad.copy()
     case.update(p.missile)
     for what, keys in ((f"condition {condition.name}", condition.keys),
@@ -139,20 +141,24 @@ def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None,
     """
     made = Drops()
     output.mkdir(parents=True, exist_ok=True)
-    if p.count > 1:
-        made.stands_in = True
-        made.missing.append(f"of the {p.count} drops on a spot ({p.interval} apart) the first is simulated; it stands for "
-                            f"drop{'s' if len(p.counted) > 1 else ''} {', '.join(map(str, p.counted))}")
     for condition in p.conditions:
         for position in p.positions:
-            case = _case(p, pad, condition, position, made.missing)
+            case = case_at(p, pad, condition, position, made.missing)
             if case is None:
                 continue
-            folder = output / _folder_name(condition.name, position.name)
-            if p.kind == "critical height" and not p.heights:
-                made.searches.append(_search(p, case, condition, position, folder, posterior, options))
+            folder, remembers = output / folder_name(condition.name, position.name), p.count > 1 and bool(case["material.memory.reload"])
+            if p.count > 1 and not remembers and not made.stands_in:
+                made.stands_in = True
+                made.missing.append(f"of the {p.count} drops on a spot ({p.interval} apart) the first is simulated; it stands for drop"
+                                    f"{'s' if len(p.counted) > 1 else ''} {', '.join(map(str, p.counted))}, as the foam has no material.memory")
+            if remembers:
+                made.drops += _series(p, case, condition, position, folder, made, options)
+            elif p.kind == "critical height" and not p.heights:
+                made.searches.append(search(p, case, condition, position, folder, posterior, options))
             else:
                 made.drops += _sweep(p, case, condition, position, folder, posterior, draws, options)
+    if posterior and any(drop.number > 1 for drop in made.drops):
+        made.missing.append("draws of the foam are not used where later drops are simulated: there is no interval")
     if not made.drops and not made.searches:
         raise InputError(f"nothing of the protocol can be simulated: {'; '.join(made.missing)}")
     if any(figure.least_window for figure in p.figures) and made.searches:
@@ -160,8 +166,77 @@ def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None,
     return made
 
 
-def _search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
+SEARCH_WIDTH, SEARCH_MOST = 1.02, 8  # of the heights on both sides of a limit; series of a search
+
+
+def _series(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, made: Drops, options: Mapping[str, Any]) -> list[Drop]:
+    """Returns the drops of the series on each spot: at the heights of the protocol, or at those of a search for the critical one."""
+    def at(height: float, mass: str = "") -> list[Drop]:
+        return _run_series(p, case, Spot(condition.name, position.name, height, mass), folder, options)
+
+    if p.heights:
+        return [drop for height in p.heights for mass in (p.masses or ("",)) for drop in at(height, mass)]
+    found = search(p, case, condition, position, folder / "first-drop", None, options).summary["critical_fall_height"].get("height_m")
+    if found is None:
+        made.missing.append(f"{condition.name}, {position.name}: no critical height of first drops was found, where the search for later ones begins")
+        return []
+    tried: dict[float, list[Drop]] = {}
+    height = float(f"{0.95 * found:.3g}")
+    while height not in tried and len(tried) < SEARCH_MOST:
+        tried[height] = at(height)
+        height = _next_height(p, tried)
+    return [drop for height in sorted(tried) for drop in tried[height]]
+
+
+def _next_height(p: Protocol, tried: Mapping[float, list[Drop]]) -> float:
+    """Returns where a straight line in logarithms reaches the first limit, or one of the heights that were tried if it is found well enough."""
+    def excess(height: float) -> float:
+        """Returns ln of the largest figure over its limit; drops without figures are far beyond it."""
+        values = [math.log(figures_of(tried[height], f.label, p.counted) / f.limit) for f in p.figures if f.limit is not None]
+        return 1.0 if any(math.isnan(value) for value in values) else max(values)
+
+    low = max((h for h in tried if excess(h) < 0), default=math.nan)
+    high = min((h for h in tried if excess(h) >= 0), default=math.nan)
+    if math.isnan(high):
+        return float(f"{1.06 * low:.3g}")
+    if math.isnan(low):
+        return float(f"{0.94 * high:.3g}")
+    if high / low <= SEARCH_WIDTH:
+        return low
+    part = min(max(-excess(low) / (excess(high) - excess(low)), 0.2), 0.8)
+    return float(f"{low * (high / low) ** part:.4g}")
+
+
+def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapping[str, Any]) -> list[Drop]:
+    """Simulates all drops on a spot, one after another on the same foam. One that fails has no figures, and none comes after it."""
+    if not p.interval:
+        raise InputError(f"{p.path}: drops: interval is missing, the time from one drop to the next")
+    one = case.copy()
+    one.update({"missile.velocity": f"{speed(spot.height):.12g} m/s", "series.drops": p.count, "series.interval": p.interval,
+                **({"missile.mass": spot.mass} if spot.mass else {})})
+    place = folder / folder_name("series", f"{spot.height:g}m", *([spot.mass] if spot.mass else []))
+    files = [later_results(place / "results.h5", number) for number in range(1, p.count + 1)]
+    failure, drops = "", []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            one.run(threads=options.get("threads"), output=place)
+        except NumericError as error:
+            failure = str(error)
+        for number, path in enumerate(files, 1):
+            if failure and (not path.exists() or read_results(path).figures["status"] not in ("finished", "rebound")):
+                drops.append(Drop(spot, number, str(path), grade="do not use", note=failure))
+                continue
+            result = read_results(path)
+            result.post(filter=int(p.filter))
+            drops.append(Drop(spot, number, str(path), _take_figures(p.figures, result.figures, result.curve()), str(result.verdict),
+                              "; ".join(result.verdict.remarks), result.curve()))
+    return drops
+
+
+def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
             options: Mapping[str, Any]) -> Search:
+    folder.mkdir(parents=True, exist_ok=True)
     limits = {figure.key: figure.limit for figure in p.figures}
     given = {"limit_g": limits.get("a_max_g") or 1e6, "limit_hic": limits.get("hic") or 1e9, "posterior": posterior,
              "force": (folder / "cfh.json").exists(), **options}
@@ -220,24 +295,25 @@ def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -
 
 # ---- measured ----
 
-def measure(p: Protocol, folder: Path, pattern: str | None = None) -> Drops:
+def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: bool = True) -> Drops:
     """Reads the measured drops of a folder: by its list.csv, or by a pattern of names such as "{position}_{height}_{drop}.csv".
 
     list.csv has a row for each file: file, condition, position, height, drop, mass, and options of the record (column, scale, rate, ...).
-    A name that the protocol lacks, two files for one drop, a missing drop and a record that cannot be read are refused before anything is
-    judged.
+    A name that the protocol lacks, two files for one drop, a missing drop (if the test is `complete`) and a record that cannot be read are
+    refused before anything is judged. Of a test that is not complete a drop may have any height.
     """
     if not folder.is_dir():
         raise InputError(f"there is no folder {folder}")
     rows = _listed(folder) if (folder / "list.csv").exists() and not pattern else _matched(folder, pattern)
-    made = Drops([_measured(p, folder, where, row) for where, row in rows])
+    made = Drops([_measured(p, folder, where, row, complete) for where, row in rows])
     seen: dict[tuple[Spot, int], str] = {}
     for drop in made.drops:
         key = (drop.spot, drop.number)
         if key in seen:
             raise InputError(f"{seen[key]} and {drop.source} are both drop {drop.number} at {drop.spot}")
         seen[key] = drop.source
-    _refuse_missing(p, folder, set(seen))
+    if complete:
+        _refuse_missing(p, folder, set(seen))
     return made
 
 
@@ -268,7 +344,7 @@ def _matched(folder: Path, pattern: str | None) -> list[tuple[str, dict[str, str
     return found
 
 
-def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str]) -> Drop:
+def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], complete: bool) -> Drop:
     def name(key: str, entries: Iterable[Any]) -> str:
         names = [entry.name for entry in entries]
         value = row.get(key) or (names[0] if len(names) == 1 else "")
@@ -279,7 +355,7 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str]) -> 
     if not row.get("height") and len(p.heights) != 1:
         raise InputError(f"{where}: height is missing")
     height = length(row["height"].replace("_", " "), where) if row.get("height") else p.heights[0]
-    if p.heights:
+    if p.heights and complete:
         height_there = min(p.heights, key=lambda h: abs(h - height))
         if abs(height_there - height) > 1e-3:
             raise InputError(f"{where}: the protocol has no height of {height:g} m; there are {', '.join(f'{h:g} m' for h in p.heights)}")

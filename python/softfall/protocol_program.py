@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import base64
+import math
 import sys
 import tempfile
 import tomllib
@@ -18,7 +19,8 @@ from .curves import column
 from .drop import read_results
 from .errors import Error, InputError
 from .judge import judge
-from .protocol import CAUTION, Protocol, names, read
+from .protocol import CAUTION, Protocol, length, names, read
+from .protocol_advice import advise
 from .protocol_drops import Drop, Drops, measure, simulate
 from .protocol_report import FIELDS, write
 from .rating import rate
@@ -88,9 +90,14 @@ def perform(o: argparse.Namespace) -> str:
     there = [name for name in FILES if (output / name).exists()]
     if there and not o.force:
         raise InputError(f"{output} has {there[0]} already: give --force to replace it (finished drops are used again), or another directory")
+    if o.advise and not (o.pad and o.posterior):
+        raise InputError("--advise needs --pad=CASE and --posterior=FOLDER, draws of its foam")
+    if not o.advise and (o.required or o.bound is not None):
+        raise InputError("--required and --bound belong to --advise")
     parts: dict[str, Drops] = {}
     if o.measured:
-        parts["measured"] = measure(p, Path(o.measured), o.pattern)
+        parts["measured"] = measure(p, Path(o.measured), o.pattern, complete=not o.advise)
+    outcomes, told, pairs = {}, None, []
     if o.pad:
         for text in o.set:
             if "=" not in text:
@@ -98,11 +105,16 @@ def perform(o: argparse.Namespace) -> str:
         pad = Case(o.pad, dict(text.split("=", 1) for text in o.set))
         options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile}
         output.mkdir(parents=True, exist_ok=True)
-        parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, **options)
-    outcomes = {what: judge(p, drops) for what, drops in parts.items()}
-    pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
+        if o.advise:
+            required = length(o.required, "--required") if o.required else math.nan
+            told, outcomes["advice"] = advise(p, pad, parts.get("measured", Drops()), output / "drops", o.posterior, required, o.bound, options)
+        else:
+            parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, **options)
+    if not o.advise:
+        outcomes = {what: judge(p, drops) for what, drops in parts.items()}
+        pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
     output.mkdir(parents=True, exist_ok=True)
-    write(p, parts, outcomes, pairs, laboratory, photo, output)
+    write(p, parts, outcomes, pairs, laboratory, photo, output, told)
     said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}" for what, outcome in outcomes.items()),
             *(f"  note: {note}" for outcome in outcomes.values() for note in outcome.notes),
             f"  {len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed. {CAUTION}", f"Written: {output}/report.html, protocol.json, drops.csv"]

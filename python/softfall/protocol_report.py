@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from . import library
+from .advice import Advice
 from .judge import Outcome
 from .protocol import CAUTION, Protocol
+from .protocol_advice import rows
 from .protocol_drops import Drops
 
 FIELDS = ("laboratory", "address", "sample", "order", "date", "conditioning", "operator", "remarks", "photo")
@@ -92,6 +94,15 @@ def _drop_table(p: Protocol, parts: Mapping[str, Drops]) -> str:
     return "<h2>Drops</h2>" + _table(["", "condition", "position", ">height (m)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note"], rows)
 
 
+def _choices(advice: Advice | None) -> str:
+    if advice is None or not advice.choices:
+        return ""
+    return "<h2>The next measurement</h2>" + _table(["measurement", ">cost (drops)", ">expected loss after it (%)", ">fall of the loss for each drop (%)"],
+                                                    rows(advice)) + (
+        f'<p class="note">Now the loss is {100 * advice.loss:.1f} %: the probability of a wrong decision, or the length of the 95 % interval over the '
+        "height. Expected over the draws of the foam, the errors of the model, and the scatter of drops by speed and thickness.</p>")
+
+
 def _clauses(p: Protocol) -> str:
     rows = [[clause.of, clause.text, clause.source, "confirmed" if clause.confirmed else "UNCONFIRMED"] for clause in p.clauses]
     note = f"<p>{len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed: check them in the standard before use.</p>" if p.unconfirmed else ""
@@ -99,7 +110,7 @@ def _clauses(p: Protocol) -> str:
 
 
 def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcome], pairs: Sequence[Mapping[str, Any]],
-          laboratory: Mapping[str, str], photo: str, output: Path) -> None:
+          laboratory: Mapping[str, str], photo: str, output: Path, advice: Advice | None = None) -> None:
     """Writes the three files; each is whole or as it was before."""
     compared = "<h2>Measured and simulated</h2>" + _table(
         ["drop", ">a_max simulated − measured", ">HIC simulated − measured", ">R²", ">RMSE (g)", ">ISO/TS 18571", "in words"],
@@ -110,16 +121,16 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
         f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(p.title)}</title>'
         f"<style>{_STYLE}</style>", _header(p, laboratory, photo), *(_result(what, outcome) for what, outcome in outcomes.items()),
         "<h2>What was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
-        _drop_table(p, parts), _curves(parts), compared, _clauses(p),
+        _choices(advice), _drop_table(p, parts), _curves(parts), compared, _clauses(p),
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
     _replace(output / "report.html", page)
-    _replace(output / "protocol.json", json.dumps(_summary(p, parts, outcomes, pairs, laboratory), indent=2, allow_nan=False) + "\n")
+    _replace(output / "protocol.json", json.dumps(_summary(p, parts, outcomes, pairs, laboratory, advice), indent=2, allow_nan=False) + "\n")
     text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(["kind", "condition", "position", "height_m", "mass", "drop", *(figure.label for figure in p.figures), "grade", "note", "source"])
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["kind", "condition", "position", "height_m", "mass", "drop", *(figure.label for figure in p.figures), "grade", "note", "source"])
     for what, drops in parts.items():
         for drop in drops.drops:
-            rows.writerow([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position)), f"{drop.spot.height:g}", drop.spot.mass,
+            table.writerow([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position)), f"{drop.spot.height:g}", drop.spot.mass,
                            drop.number, *(drop.figures.get(figure.label, "") for figure in p.figures), drop.grade, _cell(drop.note), _cell(drop.source)])
     _replace(output / "drops.csv", text.getvalue())
 
@@ -135,7 +146,7 @@ def _plain(value: Any) -> Any:
 
 
 def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcome], pairs: Sequence[Mapping[str, Any]],
-             laboratory: Mapping[str, str]) -> dict[str, Any]:
+             laboratory: Mapping[str, str], advice: Advice | None) -> dict[str, Any]:
     def lines(outcome: Outcome) -> list[dict[str, Any]]:
         return [{key: _plain(value) for key, value in vars(line).items()} for line in outcome.lines]
 
@@ -146,6 +157,9 @@ def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Out
                        "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "grade": d.grade, "note": d.note,
                        "source": d.source} for what, drops in parts.items() for d in drops.drops],
             "comparison": [{key: _plain(value) for key, value in pair.items()} for pair in pairs],
+            "advice": advice and {"probability": _plain(advice.probability), "height_m": [_plain(h) for h in advice.height], "loss": advice.loss,
+                                  "bound": advice.bound, "stop": advice.stop, "decision": advice.decision, "problem": advice.problem,
+                                  "choices": [vars(choice) for choice in advice.choices]},
             "unconfirmed": [{"of": c.of, "text": c.text, "source": c.source} for c in p.unconfirmed]}
 
 

@@ -319,8 +319,9 @@ static sf_status simulate(sf_study *study, const setting *s, sf_cfh_report *repo
 }
 
 /* Every file that this program writes; cfh.json last, so that it speaks of files that are there. */
-static const char *const output_names[] = {"cfh.csv", "cfh_band.csv", "cfh_draws.csv", "cfh.gp",
-                                           "cfh.png", "report.html",  "cfh.json",      NULL};
+static const char *const output_names[] = {"cfh.csv",       "cfh_band.csv", "cfh_curves.csv",
+                                           "cfh_draws.csv", "cfh.gp",       "cfh.png",
+                                           "report.html",   "cfh.json",     NULL};
 
 static sf_status run(sf_study *study, void *own, sf_error *err) {
     setting *s = own;

@@ -242,3 +242,23 @@ def test_doctests():
 def test_the_version_is_that_of_the_programs(place):
     assert program("solve", "--version", cwd=place).strip() == f"softfall-solve {softfall.version()}"
     assert json.loads((softfall.Case("pad/case.cfg").run().file("summary.json")).read_text())["program"].split()[-1] == softfall.version().split()[0]
+
+
+# ---- series ----
+
+def test_a_series_has_all_its_drops(tmp_path):
+    """Each later drop is harder, a series that is there is not run again, and one that lacks a drop is."""
+    source = pathlib.Path(os.environ["SF_SOURCE_DIR"])
+    coarse = {"geometry.parameters.fine_spacing": 20, "geometry.parameters.outer_spacing": 20, "geometry.missile_parameters.element_size": 20,
+              "pad.mesh_error_limit": 1, "series.drops": 3}
+    case = softfall.Case(source / "examples/series/case.cfg", coarse)
+    drops = case.run(output=tmp_path / "run").series
+    a = [drop.figures["a_max_g"] for drop in drops]
+    assert len(a) == 3 and a[0] < a[1] < a[2]
+    last = drops[2].results
+    before = last.stat().st_mtime_ns
+    case.run(output=tmp_path / "run")
+    assert last.stat().st_mtime_ns == before
+    last.unlink()
+    again = case.run(output=tmp_path / "run").series
+    assert [drop.figures["a_max_g"] for drop in again] == a

@@ -90,7 +90,7 @@ def test_a_least_window_of_hic_has_its_closed_form():
 # ---- protocols ----
 
 def test_every_protocol_reads_and_names_what_is_unconfirmed():
-    assert {"f1292", "en1177", "en913", "goalpost", "d1596", "fmvss201u", "own"} <= set(protocol.names())
+    assert {"f1292", "en1177", "en913", "goalpost", "d1596", "fmvss201u", "en1621", "f355", "rugby", "own"} <= set(protocol.names())
     for name in protocol.names():
         p = protocol.read(name)
         assert p.clauses and all(clause.source for clause in p.clauses)
@@ -219,6 +219,51 @@ def test_a_pad_is_simulated_measured_and_compared(case, drop, tmp_path):
     for pair in told["comparison"]:  # the record is filtered once more
         assert abs(pair["a_max_difference"]) < 2e-3 and pair["r2"] > 0.999 and pair["rating"]["overall"] > 0.99
     assert told["results"]["measured"]["passed"] == told["results"]["simulated"]["passed"]
+
+
+SERIES = ["--set", "geometry.parameters.fine_spacing=20", "--set", "geometry.parameters.outer_spacing=20", "--set",
+          "geometry.missile_parameters.element_size=20", "--set", "pad.mesh_error_limit=1"]
+
+
+@pytest.fixture
+def remembering(tmp_path):
+    """A pad whose foam has a memory, without a series of its own."""
+    text = (SOURCE / "examples/series/case.cfg").read_text()
+    path = tmp_path / "pad.cfg"
+    path.write_text(re.sub(r"series: \{.*?\};\n", "", text.replace('"../', f'"{SOURCE}/examples/series/../'), flags=re.S))
+    return path
+
+
+def test_later_drops_of_a_foam_with_memory_are_simulated_and_count(remembering, tmp_path):
+    """Each is that of softfall-solve; the mean of the second and the third decides, and is harder than the first."""
+    text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
+    text = text.replace("count = 2", "count = 3").replace("counted = [2]", "counted = [2, 3]").replace('heights = ["0.6 m", "1.0 m"]', 'heights = ["0.8 m"]')
+    (tmp_path / "mine.toml").write_text(text)
+    refused = softfall_protocol(tmp_path / "mine.toml", "--pad", SOURCE / "examples/series/case.cfg", *SERIES, "-o", tmp_path / "out")
+    assert refused.returncode == 2 and "leave the group series out" in refused.stderr
+    result = softfall_protocol(tmp_path / "mine.toml", "--pad", remembering, *SERIES, "-o", tmp_path / "out")
+    assert result.returncode == 0, result.stderr
+    told = json.loads((tmp_path / "out/protocol.json").read_text())
+    a = [d["figures"]["a_max_g"] for d in told["drops"]]
+    assert [d["drop"] for d in told["drops"]] == [1, 2, 3] and a[0] < a[1] < a[2]
+    line = told["results"]["simulated"]["lines"][0]
+    assert line["value"] == pytest.approx((a[1] + a[2]) / 2) and line["passed"] == (line["value"] < 80)
+    assert not any("stands for" in note for note in told["results"]["simulated"]["notes"])
+    third = softfall.read_results(told["drops"][2]["source"])
+    assert third.figures["a_max_g"] == pytest.approx(a[2], rel=1e-12)
+
+
+def test_a_critical_height_is_that_of_the_drops_that_count(remembering, tmp_path):
+    text = re.sub(r"conditions = \[.*?\n\]\n", "", (protocol.folder() / "f1292.toml").read_text(), flags=re.S)
+    (tmp_path / "mine.toml").write_text(re.sub(r'geometry = .*\n|parameters = .*\n', "", text))
+    result = softfall_protocol(tmp_path / "mine.toml", "--pad", remembering, *SERIES, "-o", tmp_path / "out")
+    assert result.returncode == 0, result.stderr
+    told = json.loads((tmp_path / "out/protocol.json").read_text())
+    first = json.loads(next((tmp_path / "out/drops").glob("*/first-drop/cfh.json")).read_text())["critical_fall_height"]["height_m"]
+    found = told["results"]["simulated"]
+    heights = sorted({d["height_m"] for d in told["drops"]})
+    assert found["value_m"] < 0.99 * first and any(h <= found["value_m"] <= 1.03 * h for h in heights)
+    assert "by the first drop" not in found["stated"]
 
 
 def test_what_the_pad_cannot_do_is_told_and_not_decided(case, tmp_path):

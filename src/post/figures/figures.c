@@ -157,6 +157,10 @@ static sf_status find_peak(const sf_results *r, const double *const channel[3], 
     return err->status;
 }
 
+/* rad s-1 about x, y and z of the head, by the strain of the brain (Takhounts et al., Stapp Car Crash J. 57,
+ * 2013). */
+static const double CRITICAL[3] = {66.25, 56.45, 42.87};
+
 static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
     const double *const acceleration[3] = {h->angular_acceleration_x, h->angular_acceleration_y,
@@ -167,7 +171,16 @@ static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *
     if (find_peak(r, acceleration, first_contact(h) > h->time[0], f, &f->peak_angular_acceleration,
                   &f->peak_angular_acceleration_time, err))
         return err->status;
-    return find_peak(r, velocity, true, f, &f->peak_angular_velocity, &f->peak_angular_velocity_time, err);
+    if (find_peak(r, velocity, true, f, &f->peak_angular_velocity, &f->peak_angular_velocity_time, err))
+        return err->status;
+    f->bric = 0;
+    for (int axis = 0; axis < 3 && err->status == SF_OK; axis++) {
+        const double *const same[3] = {velocity[axis], velocity[axis], velocity[axis]}; /* sqrt(3) of one */
+        double peak = 0, time;
+        find_peak(r, same, true, f, &peak, &time, err);
+        f->bric = hypot(f->bric, peak / sqrt(3) / CRITICAL[axis]);
+    }
+    return err->status;
 }
 
 /* Rows around the raw peak, without a gap, above half of it. */

@@ -67,6 +67,8 @@
     X(NUMBER, peak_angular_velocity, "peak_angular_velocity_rad_s", 1, "largest resultant angular velocity, its axes filtered", \
       .name = "angular velocity", .unit = "rad/s", .format = "%.2f") \
     X(NUMBER, peak_angular_velocity_time, "peak_angular_velocity_time_ms", 1e3, "its time") \
+    X(NUMBER, bric, "bric", 1, "brain injury criterion: root of the sum of squares of the largest angular velocities about x, y and z, filtered, over 66.25, 56.45 and 42.87 rad/s; x is to point forwards, z upwards from the neck", \
+      .name = "BrIC", .format = "%.3f") \
     X(NUMBER, cfc, "cfc", 1, "channel frequency class of the filter") \
     X(NUMBER, rate, "sampling_rate_Hz", 1, "sampling of the filtered curve") \
     X(NUMBER, v0, "v0_m_s", 1, "speed at contact") \

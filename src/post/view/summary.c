@@ -163,7 +163,7 @@ static const char *const drop_keys[] = {"a_max_g",
                                         "hic_scatter",
                                         NULL};
 static const char *const rotation_keys[] = {"peak_angular_acceleration_rad_s2", "peak_angular_velocity_rad_s",
-                                            NULL};
+                                            "bric", NULL};
 static const char *const compression_keys[] = {"peak_force_N", "peak_stress_kPa", "work_J",
                                                "returned_energy_fraction", NULL};
 static const char *const common_keys[] = {"max_indentation_mm",

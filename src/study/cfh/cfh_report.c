@@ -471,7 +471,7 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
         return err->status;
     fputs(
         "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,a_max_correction_1,"
-        "hic_correction_1\n",
+        "hic_correction_1,a_max_scatter_1,hic_scatter_1\n",
         file);
     for (int k = 0; k < s->grid; k++) {
         fprintf(file, "%.9g", s->height[k]);
@@ -483,6 +483,8 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
         }
         put_cell(file, exp(s->correction[SF_CFH_A_MAX][k]));
         put_cell(file, exp(s->correction[SF_CFH_HIC][k]));
+        put_cell(file, s->scatter[SF_CFH_A_MAX][k]);
+        put_cell(file, s->scatter[SF_CFH_HIC][k]);
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh_band.csv", err);
@@ -492,22 +494,44 @@ static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *
     FILE *file = sf_staging_open(output, "cfh_draws.csv", err);
     if (!file)
         return err->status;
-    fputs("draw_1,height_m,a_max_height_m,hic_height_m\n", file);
+    fputs("draw_1,height_m,a_max_height_m,hic_height_m,a_max_shared_1,hic_shared_1,a_max_sd_1,hic_sd_1\n",
+          file);
     for (int d = 0; d < s->draws; d++) {
         const double *crossing = &s->crossing[(size_t)d * (SF_CFH_FIRST + 1)];
+        const sf_cfh_response *error = &s->response[d];
         fprintf(file, "%d", d + 1);
         for (int k = 0; k <= SF_CFH_FIRST; k++) { /* the first of them in front */
             double height = crossing[k == 0 ? SF_CFH_FIRST : k - 1];
             put_cell(file, height > 0 ? height : NAN);
         }
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, s->with_response ? error->shared[c] : NAN);
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, s->with_response ? error->own_sd[c] : NAN);
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh_draws.csv", err);
 }
 
+/* The corrected columns of each draw over the height, as far as they do not collapse. */
+static sf_status write_curves(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
+    FILE *file = sf_staging_open(output, "cfh_curves.csv", err);
+    if (!file)
+        return err->status;
+    fputs("draw_1,height_m,a_max_g,hic_1\n", file);
+    for (int d = 0; d < s->draws; d++)
+        for (int k = 0; k < s->reach[d]; k++) {
+            const double *value = &s->value[(size_t)d * SF_CFH_CRITERIA * SF_CFH_GRID + (size_t)k];
+            fprintf(file, "%d,%.9g,%.9g,%.9g\n", d + 1, s->height[k], exp(value[SF_CFH_A_MAX * SF_CFH_GRID]),
+                    exp(value[SF_CFH_HIC * SF_CFH_GRID]));
+        }
+    return sf_staging_close(file, "cfh_curves.csv", err);
+}
+
 sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
-    if (r->spread && write_band(output, r->spread, err) == SF_OK)
-        write_crossings(output, r->spread, err);
+    if (r->spread && write_band(output, r->spread, err) == SF_OK &&
+        write_crossings(output, r->spread, err) == SF_OK)
+        write_curves(output, r->spread, err);
     return err->status;
 }
 

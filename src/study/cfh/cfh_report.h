@@ -59,7 +59,7 @@ double sf_cfh_residual(const sf_cfh_report *report, sf_cfh_criterion criterion, 
 void sf_cfh_put_interval_json(sf_json *json, const char *name, const sf_cfh_interval *interval);
 sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
 sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
-/* cfh_band.csv and cfh_draws.csv, if there is an interval. */
+/* cfh_band.csv, cfh_draws.csv and cfh_curves.csv, if there is an interval. */
 sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
 void sf_cfh_print(FILE *out, const sf_cfh_report *report);
 

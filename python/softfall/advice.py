@@ -1,0 +1,345 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The next measurement: what each one is expected to tell about the result of a protocol (docs/protocols.md, "The next drop").
+
+The pad is one of many: each draw of the foam's posterior, as softfall-cfh corrects its columns, repeated with random errors of the model. A
+measurement gives weights to them; what it is worth is the expected fall of the loss, over measurements that the present weights predict.
+"""
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from .errors import InputError
+
+CRITERIA = ("a_max_g", "hic")
+MESH_SIZE, MESH_HIC = 0.78, 1.3  # as in softfall-cfh (docs/cfh.md, "The interval")
+REPEATS, TRUTHS, LEAST_DRAWS = 32, 128, 8
+SAME = 0.01  # of a logarithm: drops of one pad are never told apart by less
+TEST_STRAINS, TEST_SCATTER = (0.3, 0.5, 0.7), 0.04  # of a compression test; specimens of one foam scatter by that
+
+
+@dataclass(frozen=True)
+class Drop:
+    """A measured drop, or the mean of `number` drops on one spot: figures by CRITERIA, NaN where there is none."""
+
+    place: str
+    height: float
+    figures: tuple[float, float]
+    number: int = 1
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A measurement that could be next: its cost in drops, the expected loss after it, and the fall of the loss for each drop."""
+
+    name: str
+    cost: float
+    loss: float
+    gain: float
+
+
+@dataclass(frozen=True)
+class Advice:
+    """The state of knowledge, and what to do next.
+
+    `probability` that the pad passes (NaN: nothing is required of its height), critical height with its 95 % interval (m; inf: above the heights
+    looked at), `loss` (probability of a wrong decision, or relative length of the interval), `decision` (True, False, or None: go on), and
+    the choices from the best one on. `problem`: why nothing can be said.
+    """
+
+    probability: float
+    height: tuple[float, float, float]
+    loss: float
+    bound: float
+    decision: bool | None
+    stop: bool
+    choices: list[Choice] = field(default_factory=list)
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class Place:
+    """What softfall-cfh knows of a condition and a position: for each draw ln(figure) over ln(height), the errors of the model, the scatter."""
+
+    name: str
+    log_height: np.ndarray  # [grid]
+    value: np.ndarray  # [2][draws][grid] ln; inf: the columns collapse
+    shared: np.ndarray  # [2][draws]
+    own_sd: np.ndarray  # [2][draws]
+    scatter: np.ndarray  # [2][grid], standard deviation of ln(figure) from drop to drop
+    mesh: float
+    fit: np.ndarray  # [2]
+    trend: tuple[Mapping[str, Any], ...]  # of cfh.json
+
+
+def _columns(path: Path) -> dict[str, np.ndarray]:
+    """Returns the columns of a CSV file of softfall-cfh; empty cells are NaN."""
+    with open(path, newline="", encoding="utf-8") as stream:
+        rows = list(csv.reader(stream))
+    table = np.array([[float(cell) if cell else math.nan for cell in row] for row in rows[1:]]).reshape(-1, len(rows[0]))
+    return {name: table[:, k] for k, name in enumerate(rows[0])}
+
+
+def read_place(name: str, folder: Path) -> Place:
+    """Reads the output of softfall-cfh --posterior. InputError: it has no draws."""
+    summary = json.loads((folder / "cfh.json").read_text(encoding="utf-8"))
+    if not (folder / "cfh_curves.csv").exists() or not (folder / "cfh_draws.csv").exists():
+        why = (summary.get("posterior") or {}).get("no_interval") or "it was made without --posterior"
+        raise InputError(f"{folder}: no draws of the foam, which advice needs: {why}")
+    posterior = summary["posterior"]
+    curves, draws, band = (_columns(folder / f"cfh_{part}.csv") for part in ("curves", "draws", "band"))
+    height = band["height_m"]
+    count = len(draws["draw_1"])
+    value = np.full((2, count, height.size), np.inf)
+    at = np.searchsorted(height, curves["height_m"] * (1 - 1e-7)), curves["draw_1"].astype(int) - 1
+    for c, key in enumerate(("a_max_g", "hic_1")):
+        value[c, at[1], at[0]] = np.log(curves[key])
+    error = np.nan_to_num(np.array([draws[key] for key in ("a_max_shared_1", "hic_shared_1", "a_max_sd_1", "hic_sd_1")]))
+    scatter = np.maximum(np.nan_to_num(np.array([band["a_max_scatter_1"], band["hic_scatter_1"]])), SAME)
+    fit = np.array([posterior.get(f"fit_scatter_{key}") or 0.0 for key in ("a_max", "hic")])
+    return Place(name, np.log(height), value, error[:2], error[2:], scatter, posterior.get("expected_mesh_error") or 0.0, fit,
+                 tuple(posterior["columns_error"]))
+
+
+class Pads:
+    """The pads that may be the real one: the draws, each REPEATS times with errors of the model that it keeps in all drops of a place."""
+
+    def __init__(self, places: Sequence[Place], seed: int = 1) -> None:
+        self.places = {place.name: place for place in places}
+        self.draws = places[0].shared.shape[1]
+        if any(place.shared.shape[1] != self.draws for place in places):
+            raise InputError("the places of the protocol have different numbers of draws")
+        random = np.random.default_rng(seed)
+        self.draw = np.repeat(np.arange(self.draws), REPEATS)
+        self.log_weight = np.zeros(self.draw.size)
+        self.offset, self.shift = {}, {}
+        for place in places:
+            n, mesh = self.draw.size, random.standard_normal(self.draw.size)
+            own = random.standard_normal((2, n)) * place.own_sd[:, self.draw]
+            size = np.array([MESH_SIZE, MESH_SIZE * MESH_HIC])[:, None] * place.mesh
+            self.offset[place.name] = place.shared[:, self.draw] + own + size * mesh + place.fit[:, None] * random.standard_normal((2, n))
+            self.shift[place.name] = [_height_error(trend, random, n) for trend in place.trend]
+
+    def predict(self, place: str, height: float) -> np.ndarray:
+        """Returns ln(figure) [2][pads] at a height (m); inf: the foam collapses."""
+        p = self.places[place]
+        made = np.empty((2, self.draw.size))
+        for c in range(2):
+            shift, slope, centre = self.shift[place][c]
+            moved = math.log(height) - (shift + slope * (math.log(height) - centre))
+            k = np.clip(np.searchsorted(p.log_height, moved) - 1, 0, p.log_height.size - 2)
+            part = np.clip((moved - p.log_height[k]) / (p.log_height[k + 1] - p.log_height[k]), 0, 1)
+            low, high = p.value[c][self.draw, k], p.value[c][self.draw, k + 1]
+            with np.errstate(invalid="ignore"):
+                made[c] = np.where(np.isinf(high) & (part > 0), np.inf, low + np.where(part > 0, part * (high - low), 0)) + self.offset[place][c]
+        return made
+
+    def scatter(self, place: str, height: float) -> np.ndarray:
+        """Returns the standard deviations of ln(figure) from drop to drop at a height."""
+        p = self.places[place]
+        return np.array([np.interp(math.log(height), p.log_height, p.scatter[c]) for c in range(2)])
+
+    def crossing(self, place: str, limits: Sequence[float | None]) -> np.ndarray:
+        """Returns the height (m) [pads] where the first limit is reached; inf: at none of the heights looked at."""
+        p, lowest = self.places[place], np.full(self.draw.size, np.inf)
+        grid = np.exp(np.linspace(p.log_height[0], p.log_height[-1], 4 * p.log_height.size))
+        values = np.array([self.predict(place, h) for h in grid])  # [grid][2][pads]
+        for c, limit in enumerate(limits):
+            if limit is None:
+                continue
+            over = values[:, c] >= math.log(limit)
+            first = np.where(over.any(axis=0), over.argmax(axis=0), grid.size - 1)
+            before = np.maximum(first - 1, 0)
+            low, high = (np.take_along_axis(values[:, c], k[None], axis=0)[0] for k in (before, first))
+            with np.errstate(invalid="ignore", divide="ignore"):
+                part = np.where(np.isfinite(high) & (high > low), (math.log(limit) - low) / (high - low), 1.0)
+            found = grid[before] * (grid[first] / grid[before]) ** np.clip(part, 0, 1)
+            lowest = np.minimum(lowest, np.where(over.any(axis=0), found, np.inf))
+        return lowest
+
+    @property
+    def weight(self) -> np.ndarray:
+        """The probabilities of the pads."""
+        w = np.exp(self.log_weight - self.log_weight.max())
+        return w / w.sum()
+
+    @property
+    def effective_draws(self) -> float:
+        """How many draws of equal weight are worth as much as these."""
+        w = np.bincount(self.draw, self.weight, self.draws)
+        return float(1 / (w**2).sum())
+
+    def learn(self, drop: Drop) -> None:
+        """Takes a measured drop into the weights."""
+        predicted, sd = self.predict(drop.place, drop.height), self.scatter(drop.place, drop.height) / math.sqrt(drop.number)
+        self.log_weight = self.log_weight + _log_likelihood(np.log(np.array(drop.figures)), predicted, sd)
+
+    def learn_test(self, stress: np.ndarray, measured: np.ndarray) -> None:
+        """Takes a compression test into the weights: `stress` [draws][strains] and `measured` [strains]."""
+        self.log_weight = self.log_weight - 0.5 * (((np.log(measured) - np.log(stress[self.draw])) / TEST_SCATTER) ** 2).mean(axis=1)
+
+
+def _height_error(trend: Mapping[str, Any], random: np.random.Generator, n: int) -> tuple[np.ndarray, float, float]:
+    """Returns the error of ln(height) of the columns at each pad: a constant, with the scatter of the checks, a slope and its centre."""
+    freedom = max(int(trend["degrees_of_freedom"] or 0), 1)
+    scatter = (trend["scatter"] or 0.0) * np.clip(random.standard_t(freedom, n), -4, 4)
+    return (trend["shift"] or 0.0) + scatter, trend["slope"] or 0.0, math.log(trend["centre_m"] or 1.0)
+
+
+def _log_likelihood(measured: np.ndarray, predicted: np.ndarray, sd: np.ndarray) -> np.ndarray:
+    """Returns ln of the likelihood [pads] of the logarithms of two figures; a NaN is no figure.
+
+    What scatters from drop to drop, speed and thickness, moves all figures of a drop together: two tell no more than one, so their mean counts.
+    """
+    there = ~np.isnan(measured)
+    if not there.any():
+        return np.where(np.isinf(predicted).any(axis=0), 0.0, -1e4)  # a drop without figures is one in which the foam collapses
+    each = np.where(np.isinf(predicted), -1e4, -0.5 * ((measured[:, None] - np.where(np.isinf(predicted), 0, predicted)) / sd[:, None]) ** 2)
+    return each[there].mean(axis=0)
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a protocol asks: limits of CRITERIA at given heights of each place, or a critical height, with one that is required (NaN: none).
+
+    `bound`: of the loss, where measuring stops: a probability of a wrong decision, or a relative length of the interval.
+    """
+
+    limits: tuple[float | None, float | None]
+    heights: tuple[float, ...] = ()
+    required: float = math.nan
+    bound: float = 0.05
+
+    @property
+    def decides(self) -> bool:
+        """True if the answer is yes or no."""
+        return bool(self.heights) or not math.isnan(self.required)
+
+
+def _heights_of(pads: Pads, q: Question) -> np.ndarray:
+    return np.min([pads.crossing(place, q.limits) for place in pads.places], axis=0)
+
+
+def quantiles(order: np.ndarray, value: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Returns 2.5, 50 and 97.5 % of `value`, whose order is given, for weights [...][pads]."""
+    total = np.cumsum(weight[..., order], axis=-1)
+    places = np.stack([(total < part * total[..., -1:]).sum(axis=-1) for part in (0.025, 0.5, 0.975)], axis=-1)
+    return value[order][np.minimum(places, value.size - 1)]
+
+
+class _Loss:
+    """The loss of a question for weights [...][pads]: the probability of a wrong decision, or the relative length of the 95 % interval."""
+
+    def __init__(self, pads: Pads, q: Question) -> None:
+        self.q, self.height = q, _heights_of(pads, q)
+        self.order = np.argsort(self.height)
+        if q.heights:
+            self.passes = np.ones(self.height.size, bool)
+            for place in pads.places:
+                for h in q.heights:
+                    value = pads.predict(place, h)
+                    for c, limit in enumerate(q.limits):
+                        self.passes &= value[c] < math.log(limit) if limit is not None else True
+        else:
+            self.passes = self.height >= q.required
+
+    def probability(self, weight: np.ndarray) -> np.ndarray:
+        """Returns the probability of passing."""
+        return weight @ self.passes / weight.sum(axis=-1)
+
+    def __call__(self, weight: np.ndarray) -> np.ndarray:
+        if self.q.decides:
+            share = self.probability(weight)
+            return np.minimum(share, 1 - share)
+        low, median, high = np.moveaxis(quantiles(self.order, self.height, weight), -1, 0)
+        with np.errstate(invalid="ignore"):
+            return np.where(np.isfinite(high), (high - low) / median, 1.0)
+
+
+def _expected(loss: _Loss, weight: np.ndarray, log_likelihood: np.ndarray) -> float:
+    """Returns the mean loss after measurements whose ln of the likelihood is [truths][pads]."""
+    with np.errstate(under="ignore"):
+        after = weight * np.exp(log_likelihood - log_likelihood.max(axis=1, keepdims=True))
+    return float(np.mean(loss(after / after.sum(axis=1, keepdims=True))))
+
+
+def _truths(weight: np.ndarray) -> np.ndarray:
+    """Returns TRUTHS pads, as probable as their weights, evenly drawn."""
+    return np.minimum(np.searchsorted(np.cumsum(weight), (np.arange(TRUTHS) + 0.5) / TRUTHS), weight.size - 1)
+
+
+def _drop_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, place: str, height: float, number: int) -> Choice:
+    truths, sd = _truths(weight), pads.scatter(place, height) / math.sqrt(number)
+    predicted = pads.predict(place, height)
+    error = np.random.default_rng(2).standard_normal(TRUTHS)
+    measured = predicted[:, truths] + sd[:, None] * error
+    measured = np.where(np.isinf(measured), np.nan, measured)
+    likelihood = np.stack([_log_likelihood(measured[:, m], predicted, sd) for m in range(TRUTHS)])
+    after = _expected(loss, weight, likelihood)
+    return Choice(f"{f'{number} drops' if number > 1 else 'a drop'} from {height:.4g} m, {place}", number, after, (now - after) / number)
+
+
+def _test_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, stress: np.ndarray, cost: float) -> Choice:
+    truths, of = _truths(weight), np.log(stress[pads.draw])
+    measured = of[truths] + TEST_SCATTER * np.random.default_rng(3).standard_normal((TRUTHS, stress.shape[1]))
+    likelihood = -0.5 * (((measured[:, None] - of) / TEST_SCATTER) ** 2).mean(axis=2)
+    after = _expected(loss, weight, likelihood)
+    return Choice("a slow compression test", cost, after, (now - after) / cost)
+
+
+def candidate_heights(pads: Pads, q: Question, height: Sequence[float]) -> list[float]:
+    """Returns heights (m) that may be measured: those of the protocol, and nine about the critical height, in steps of 5 cm."""
+    place = next(iter(pads.places.values()))
+    low, high = math.exp(place.log_height[0]), math.exp(place.log_height[-1])
+    middle = height[1] if math.isfinite(height[1]) else high / 1.3
+    about = {round(20 * middle * part) / 20 for part in np.linspace(0.6, 1.2, 9)}
+    asked = {*q.heights, *([] if math.isnan(q.required) else [q.required])}
+    return sorted(h for h in about | asked if low <= h <= high)
+
+
+def advise(pads: Pads, q: Question, number: int = 1, stress: np.ndarray | None = None, test_cost: float = 3.0) -> Advice:
+    """Returns the state of knowledge and the choices.
+
+    `number`: drops on a spot. `stress` [draws][strains]: of a compression test of each draw (None: no such test), which costs as much as `test_cost` drops.
+    """
+    for place in pads.places.values():
+        ends = math.exp(place.log_height[0]), math.exp(place.log_height[-1])
+        for h in (*q.heights, *([] if math.isnan(q.required) else [q.required])):
+            if not ends[0] <= h <= ends[1]:
+                raise InputError(f"{place.name}: {h:g} m lies outside of the heights looked at, {ends[0]:.3g} to {ends[1]:.3g} m")
+    weight, loss = pads.weight, _Loss(pads, q)
+    low, median, high = (float(v) for v in quantiles(loss.order, loss.height, weight))
+    share = float(loss.probability(weight)) if q.decides else math.nan
+    now = float(loss(weight))
+    if pads.effective_draws < LEAST_DRAWS:
+        return Advice(share, (low, median, high), now, q.bound, None, False, [], f"what was measured leaves {pads.effective_draws:.1f} of {pads.draws} draws: "
+                      "the foam is none of them, or hardly; give these drops to softfall-fit drop and begin anew with its posterior")
+    if now <= q.bound:
+        return Advice(share, (low, median, high), now, q.bound, share > 0.5 if q.decides else None, True)
+    choices = [_drop_choice(pads, loss, weight, now, place, h, number) for place in pads.places for h in candidate_heights(pads, q, (low, median, high))]
+    if stress is not None:
+        choices.append(_test_choice(pads, loss, weight, now, stress, test_cost))
+    return Advice(share, (low, median, high), now, q.bound, None, False, sorted(choices, key=lambda c: -c.gain))
+
+
+def test_stresses(folder: Path) -> np.ndarray | None:
+    """Returns the stress [draws][strains] at TEST_STRAINS of the first curve of each draw-NNN.cfg; None: a draw has no curve as a file."""
+    stress = []
+    for path in sorted(folder.glob("draw-*.cfg")):
+        named = re.search(r'^\s*curves?\s*=[^"]*"([^"]+\.csv)"', path.read_text(encoding="utf-8"), re.M)
+        if not named:
+            return None
+        with open(path.parent / named.group(1), newline="", encoding="utf-8") as stream:
+            rows = list(csv.reader(line for line in stream if not line.startswith("#")))
+        if len(rows) < 3 or rows[0][0].strip() != "strain" or float(rows[-1][0]) < TEST_STRAINS[-1]:
+            return None
+        table = np.array([row[:2] for row in rows[1:]], float)
+        stress.append(np.interp(TEST_STRAINS, table[:, 0], table[:, 1]))
+    return np.array(stress) if stress else None

@@ -1,0 +1,125 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many drops until a decision: the advice of softfall-protocol against a fixed plan, on synthetic foams (docs/protocols.md).
+
+    tools/advice_study.py [FOAMS] [-o DIR]
+
+A foam is a draw of examples/materials/eva35_posterior whose loading curve is bent by a smooth random factor of 6 % (standard deviation), which no
+form of the fit has. Its drops follow its columns, corrected as softfall-cfh corrects them, with random errors of the model and, from drop to drop, the
+scatter of speed and thickness. The question is whether the pad passes from a height, drawn between the 5 and 95 % quantiles of the critical height
+that the posterior expects. Fixed plan: three drops from that height, decided by the mean of the second and the third.
+"""
+import argparse
+import csv
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "python"))
+
+import numpy as np  # noqa: E402
+
+from softfall import advice  # noqa: E402
+
+POSTERIOR = ROOT / "examples/materials/eva35_posterior"
+LIMITS = (200.0, 1000.0)
+BEND, MOST = 0.06, 12
+COARSE = ["--set", "geometry.parameters.fine_spacing=10", "--set", "geometry.parameters.outer_spacing=20", "--set", "pad.mesh_error_limit=1"]
+
+
+def bend(strain, random):
+    """Returns a smooth random factor over the strain."""
+    log = sum(random.standard_normal() * np.cos(np.pi * k * strain + random.uniform(0, 2 * np.pi)) for k in range(1, 5))
+    return np.exp(BEND * log / np.sqrt(2))
+
+
+def make_foams(folder, count, random):
+    """Writes `count` foams as draws of a posterior."""
+    folder.mkdir(parents=True, exist_ok=True)
+    sources = sorted(POSTERIOR.glob("draw-*.cfg"))
+    for k in range(1, count + 1):
+        source = sources[random.integers(len(sources))]
+        lines = source.with_suffix(".csv").read_text().splitlines()
+        rows = list(csv.reader(line for line in lines if not line.startswith("#")))
+        table = np.array(rows[1:], float)
+        stress = np.maximum.accumulate(table[:, 1] * bend(table[:, 0], random))
+        text = "\n".join([",".join(rows[0]), *(f"{e:.9g},{s:.9g}" for e, s in zip(table[:, 0], stress))])
+        (folder / f"draw-{k:03d}.csv").write_text(text + "\n")
+        (folder / f"draw-{k:03d}.cfg").write_text(source.read_text().replace(source.with_suffix(".csv").name, f"draw-{k:03d}.csv"))
+
+
+def search(output, posterior):
+    """Runs softfall-cfh on the 50 mm pad, whose drops are the same for both posteriors."""
+    subprocess.run([str(ROOT / "build/bin/softfall-cfh"), str(ROOT / "examples/eva50-v4.5/case.cfg"), "-o", str(output), "--force",
+                    "--posterior", str(posterior), *COARSE], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return advice.read_place("centre", output)
+
+
+def measure(foam, pad, height, random):
+    """Returns the figures of a drop of a foam; NaN where it collapses."""
+    y = foam.predict("centre", height)[:, pad] + foam.scatter("centre", height) * random.standard_normal()
+    return tuple(np.where(np.isinf(y), np.nan, np.exp(np.minimum(y, 50))))
+
+
+def passes(figures):
+    return all(not np.isnan(value) and value < limit for value, limit in zip(figures, LIMITS))
+
+
+def decide(place, question, foam, pad, random):
+    """Measures as advised until a decision; returns it (None: none), the number of drops and the last advice."""
+    pads = advice.Pads([place])
+    for count in range(MOST + 1):
+        told = advice.advise(pads, question)
+        if told.stop or told.problem:
+            return told.decision, count, told
+        height = float(told.choices[0].name.split()[3])
+        pads.learn(advice.Drop("centre", height, measure(foam, pad, height, random)))
+    return None, MOST, told
+
+
+def try_plan(place, foam, pads, required, bound, seed):
+    """Returns the counts of a plan over the pads: the fixed one (`bound` None), or as advised."""
+    random, count = np.random.default_rng(seed), {"drops": 0, "wrong": 0, "open": 0, "no foam": 0, "held": 0}
+    truth = foam.crossing("centre", LIMITS)
+    for pad, height in zip(pads, required):
+        right = bool(truth[pad] > height)
+        if bound is None:
+            figures = [measure(foam, pad, height, random) for _ in range(3)]
+            count["drops"] += 3
+            count["wrong"] += passes(np.mean(figures[1:], axis=0)) != right
+            continue
+        decision, drops, last = decide(place, advice.Question(LIMITS, required=height, bound=bound), foam, pad, random)
+        count["drops"] += drops
+        count["no foam"] += bool(last.problem)
+        count["open"] += decision is None and not last.problem
+        count["wrong"] += decision is not None and decision != right
+        count["held"] += not last.problem and last.height[0] <= truth[pad] <= last.height[2]
+    return count
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("foams", nargs="?", type=int, default=200)
+    parser.add_argument("-o", default=str(ROOT / "out/advice"))
+    o = parser.parse_args()
+    output, random, n = pathlib.Path(o.o), np.random.default_rng(7), o.foams
+    make_foams(output / "foams", max(n, 100), random)  # softfall-cfh takes 100 draws and more
+    place, synthetic = search(output / "posterior", POSTERIOR), search(output / "synthetic", output / "foams")
+    foam = advice.Pads([synthetic], seed=11)
+    low, high = np.quantile(advice.Pads([place]).crossing("centre", LIMITS), [0.05, 0.95])
+    pads = np.arange(n) * advice.REPEATS + random.integers(advice.REPEATS, size=n)
+    required = random.uniform(low, high, n)
+    print(f"{n} foams; limits {LIMITS[0]:g} g and HIC {LIMITS[1]:g}; heights required {low:.2f} to {high:.2f} m")
+    print("| plan | drops for each pad | wrong decisions (%) | open after 12 drops (%) | foam is none of the draws (%) | interval holds the height (%) |\n"
+          "|---|---:|---:|---:|---:|---:|")
+    for bound in (None, 0.05, 0.1, 0.2):
+        count = try_plan(place, foam, pads, required, bound, 5)
+        held = "–" if bound is None else f"{100 * count['held'] / max(n - count['no foam'], 1):.1f}"
+        name = "three drops from the height" if bound is None else f"as advised, to {100 * bound:g} % of a wrong decision"
+        print(f"| {name} | {count['drops'] / n:.2f} | " + " | ".join(f"{100 * count[key] / n:.1f}" for key in ("wrong", "open", "no foam")) + f" | {held} |",
+              flush=True)
+
+
+if __name__ == "__main__":
+    main()
