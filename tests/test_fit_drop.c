@@ -4,13 +4,13 @@
 #include "extreme.h"
 #include "study/column.h"
 #include "study/fit/drop/fit_input.h"
-#include "study/fit/form/gas.h"
+#include "study/fit/form/form.h"
 #include "study/fit/space_mapping.h"
 #include "foam_fixture.h"
 #include "io/folder.h"
 #include "post/figures/signal.h"
 #include "post_check.h"
-#include "program_fixture.h"
+#include "fit_fixture.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -352,32 +352,14 @@ static void mapping_passes_on_a_failed_simulation(void **state) {
 #define MATERIAL "material = \"start.cfg\";\n"
 #define GOOD MATERIAL DROPS("a_max_g = 60.0; HIC = 180.0;")
 
-/* The case of the 70 mm drop with a coarse mesh, and a start material. */
+/* The case of the fixture, and a material with curves at two rates. */
 static void put_case(const program_place *place) {
-    char text[4096];
-    const char *source = getenv("SF_SOURCE_DIR");
-    snprintf(
-        text, sizeof text,
-        "geometry: { file = \"%s/geo/pad.geo\"; missile_file = \"%s/geo/hemisphere.geo\"; length_unit = "
-        "\"mm\";\n"
-        "parameters = { side = 320.0; thickness = 70.0; zone_side = 200.0; fine_spacing = 17.5; "
-        "outer_spacing = "
-        "30.0; quarter = 1; };\nmissile_parameters = { diameter = 160.0; element_size = 15.0; quarter = 1; "
-        "}; };\n"
-        "material: {\n@include \"start.cfg\"\n};\nmissile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
-        "solver: { end_time = \"40 ms\"; };\n",
-        source, source);
-    program_write_text(place, "case.cfg", text);
-    program_write_text(
-        place, "start.cfg",
-        "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"start.csv\"; HU = 0.01; ED = \"2 MPa\"; "
-        "BETA1 = \"5000 1/s\";\n");
+    fit_fixture_put_case(place);
     program_write_text(
         place, "rates.cfg",
         "density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curves = ( { rate = \"1 1/s\"; file = \"start.csv\"; },\n"
         "{ rate = \"100 1/s\"; file = \"fast.csv\"; } );\n");
     program_write_text(place, "fast.csv", "strain,stress_kPa\n0,0\n0.02,9\n0.5,90\n0.9,2200\n");
-    program_write_text(place, "start.csv", "strain,stress_kPa\n0,0\n0.02,8\n0.5,80\n0.9,2000\n");
 }
 
 /* A half-sine of 60 g over 20 ms from 5 ms on, in the terms of a laboratory, with 20 g at 5 kHz. */

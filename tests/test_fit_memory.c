@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a fit remembers: found by a later run, by its key and length only; never from a record that was cut or
  * has changed; one run at a time. */
-#include "study/fit/drop/memory.h"
+#include "study/fit/drop/drop_fit.h"
 #include "program_fixture.h"
 
 #include <setjmp.h>

@@ -3,8 +3,7 @@
  * gets has the stress of the closed form, the medians of the priors are a foam, and values that make no curve
  * are refused. */
 #include "material/curve.h"
-#include "study/fit/drop/parameters.h"
-#include "study/fit/form/gas.h"
+#include "study/fit/form/form.h"
 
 #include <math.h>
 #include <setjmp.h>

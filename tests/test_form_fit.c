@@ -3,7 +3,7 @@
  * solver's law at two rates, is found; the main facts of docs/foams.md about foams of public
  * sources; refusals and files. */
 #include "study/fit/compression/form_fit.h"
-#include "study/fit/form/gas.h"
+#include "study/fit/form/form.h"
 #include "material/point.h"
 #include "program_fixture.h"
 #include "material/low_density_foam.h"

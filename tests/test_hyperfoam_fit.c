@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit compression with law = "hyperfoam": tests of a known law, the measured VN600, refusals; and a
  * cube of the material, pressed by the solver, against the closed form. */
+#include "study/fit/compression/compression_kind.h"
 #include "case/case.h"
 #include "extreme.h"
-#include "study/fit/compression/hyperfoam_fit.h"
 #include "post/results/results.h"
 #include "program_fixture.h"
 

@@ -586,7 +586,7 @@ static void check_card(const sf_compression_fit *fit) {
     }
     free(stress);
     sf_foam_free(&foam);
-    sf_compression_card_free(&card);
+    sf_foam_card_free(&card);
 }
 
 /* Curves rise, and the densification goes on with value and slope. */
@@ -786,7 +786,7 @@ static void written_material_is_the_card_of_the_fit(void **state) {
         assert_close(sf_foam_card_of(&c.material)->curve_stress[k], card.curve_stress[k],
                      1e-9 * card.curve_stress[k]);
     sf_case_free(&c);
-    sf_compression_card_free(&card);
+    sf_foam_card_free(&card);
     sf_compression_fit_free(&fit);
     sf_compression_config_free(&config);
 }

@@ -112,7 +112,7 @@ static sf_status open_laboratory(const truth *t, laboratory *lab, sf_error *err)
         test->largest_stress = lab->clean[k][LOADING - 1];
     }
     sf_foam_free(&foam);
-    sf_compression_card_free(&card);
+    sf_foam_card_free(&card);
     return SF_OK;
 }
 

@@ -7,7 +7,7 @@
 #include "study.h"
 
 #include "study/column.h"
-#include "study/fit/drop/parameters.h"
+#include "study/fit/form/form.h"
 #include "study/fit/space_mapping.h"
 #include "point_fixture.h"
 #include <gsl/gsl_errno.h>

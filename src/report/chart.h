@@ -92,6 +92,9 @@ void sf_chart_columns(sf_chart *chart, int columns);
 
 /* A new panel with automatic axes; the chart's. After a failure one that is not drawn. */
 sf_panel *sf_chart_panel(sf_chart *chart);
+/* The same with labels of its axes, and `area`. */
+sf_panel *sf_chart_panel_at(sf_chart *chart, const char *x, const char *y, double left, double right,
+                            double bottom, double top);
 void sf_axis_label(sf_axis *axis, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void sf_axis_range(sf_axis *axis, double low, double high);
 void sf_axis_word(sf_chart *chart, sf_axis *axis, const char *word);

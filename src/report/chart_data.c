@@ -91,6 +91,16 @@ sf_panel *sf_chart_panel(sf_chart *chart) {
     return &panel->shown;
 }
 
+sf_panel *sf_chart_panel_at(sf_chart *chart, const char *x, const char *y, double left, double right,
+                            double bottom, double top) {
+    const double area[4] = {left, right, bottom, top};
+    sf_panel *panel = sf_chart_panel(chart);
+    memcpy(panel->area, area, sizeof area);
+    sf_axis_label(&panel->x, "%s", x);
+    sf_axis_label(&panel->y, "%s", y);
+    return panel;
+}
+
 void sf_axis_label(sf_axis *axis, const char *format, ...) {
     FORMAT_INTO(axis->label, format);
 }

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "io/plain_file.h"
 #include "report_style.h"
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -236,6 +237,24 @@ void sf_html_number(sf_html_table *table, int digits, double value) {
 void sf_html_numbers(sf_html_table *table, int digits, const double *value, int count) {
     for (int k = 0; k < count; k++)
         sf_html_number(table, digits, value[k]);
+}
+
+void sf_html_line(sf_html_table *table, const char *first, const char *format, ...) {
+    char text[1024], *rest = text, *cell;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (first) {
+        sf_html_row(table);
+        sf_html_cell(table, "%s", first);
+    }
+    while ((cell = strsep(&rest, "|"))) {
+        const char *number = cell + strspn(cell, "+-");
+        bool finite = (strncmp(number, "nan", 3) != 0 && strncmp(number, "inf", 3) != 0) ||
+                      isalpha((unsigned char)number[3]);
+        sf_html_cell(table, "%s", finite ? cell : "–");
+    }
 }
 
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...) {

@@ -78,6 +78,10 @@ void sf_html_number(sf_html_table *table, int digits, double value);
     sf_html_numbers(table, digits, (const double[]){__VA_ARGS__},                                            \
                     (int)(sizeof(double[]){__VA_ARGS__} / sizeof(double)))
 void sf_html_numbers(sf_html_table *table, int digits, const double *value, int count);
+/* A row: a cell of text, and cells of numbers and words of ours between '|' in the format; NULL: these alone,
+ * in the row that is open. A cell that begins with a number that is not finite is a dash. */
+void sf_html_line(sf_html_table *table, const char *first, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 void sf_html_table_end(sf_html_table *table);
 /* Adds a row to a table without headings. */
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...)

@@ -401,13 +401,8 @@ sf_status sf_case_folder_make(const sf_case_folder_request *q, const sf_sink *si
     if (sf_tree_begin(q->folder, &f.tree, err) == SF_OK &&
         sf_case_read(q->case_path, q->override_count, q->overrides, sink, &f.c, err) == SF_OK) {
         f.hash = sf_campaign_case_hash(&f.c);
-        if (f.c.run.drops > 1)
-            SF_REFUSE(
-                err,
-                "%s: series.drops = %g: studies run single drops; leave the series out, and run it by softfall-solve",
-                q->case_path, f.c.run.drops);
-        else if (mesh_each(&f.c, f.mesh, err) == SF_OK && list_reading(&f, err) == SF_OK &&
-                 write_files(&f, err) == SF_OK && check(&f, err) == SF_OK)
+        if (mesh_each(&f.c, f.mesh, err) == SF_OK && list_reading(&f, err) == SF_OK &&
+            write_files(&f, err) == SF_OK && check(&f, err) == SF_OK)
             sf_tree_commit(&f.tree, err);
     }
     release(&f);

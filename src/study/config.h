@@ -19,6 +19,8 @@ typedef struct sf_config {
     sf_case_source source; /* of its lines */
 } sf_config;
 
+typedef const config_setting_t sf_config_item; /* of libconfig */
+
 /* Reads the file. Release with sf_config_close, also on failure. */
 sf_status sf_config_open(const char *path, sf_config *config, sf_error *err);
 void sf_config_close(sf_config *config);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/bspline.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_matrix.h>
@@ -70,10 +71,9 @@ sf_status sf_spline_init(sf_spline *spline, int break_count, const double *break
     size_t n = (size_t)spline->count, b = (size_t)break_count;
     spline->base = gsl_bspline_alloc(SF_SPLINE_ORDER, b);
     spline->primary = gsl_bspline_alloc(SF_SPLINE_ORDER + 1, b);
-    spline->value = gsl_vector_alloc(n);
     spline->higher = gsl_vector_alloc(n + 1);
     spline->slope = gsl_matrix_alloc(n, 2);
-    if (!spline->base || !spline->primary || !spline->value || !spline->higher || !spline->slope) {
+    if (!spline->base || !spline->primary || !spline->higher || !spline->slope) {
         sf_spline_free(spline);
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a spline of %d coefficients", spline->count);
     }
@@ -88,16 +88,14 @@ void sf_spline_free(sf_spline *spline) {
         gsl_bspline_free(spline->base);
     if (spline->primary)
         gsl_bspline_free(spline->primary);
-    gsl_vector_free(spline->value);
     gsl_vector_free(spline->higher);
     gsl_matrix_free(spline->slope);
     *spline = (sf_spline){0};
 }
 
 void sf_spline_value(sf_spline *spline, double x, double *row) {
-    gsl_bspline_eval(x, spline->value, spline->base);
-    for (int j = 0; j < spline->count; j++)
-        row[j] = gsl_vector_get(spline->value, (size_t)j);
+    gsl_vector_view out = gsl_vector_view_array(row, (size_t)spline->count);
+    gsl_bspline_eval(x, &out.vector, spline->base);
 }
 
 void sf_spline_slope(sf_spline *spline, double x, double *row) {
@@ -138,8 +136,6 @@ static sf_status accumulate(const sf_scatter_branch *b, sf_spline *spline, gsl_m
                             gsl_vector *right) {
     double row[SF_SPLINE_COEFFICIENTS], trace = 0;
     size_t n = normal->size1;
-    gsl_matrix_set_zero(normal);
-    gsl_vector_set_zero(right);
     for (int i = 0; i < b->count; i++) {
         double weight = 1 / (b->sigma[i] * b->sigma[i]);
         sf_spline_value(spline, b->x[i], row);
@@ -161,13 +157,11 @@ static sf_status accumulate(const sf_scatter_branch *b, sf_spline *spline, gsl_m
 static sf_status solve(const sf_scatter_branch *b, sf_spline *spline, smoothing *out, sf_error *err) {
     size_t n = (size_t)spline->count;
     double row[SF_SPLINE_COEFFICIENTS];
-    gsl_matrix *normal = gsl_matrix_alloc(n, n);
-    gsl_vector *right = gsl_vector_alloc(n);
-    if (!normal || !right)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for smoothing a test");
-    else if (accumulate(b, spline, normal, right) != SF_OK)
+    gsl_matrix *normal = sf_matrix(n, n, err);
+    gsl_vector *right = sf_vector(n, err);
+    if (err->status == SF_OK && accumulate(b, spline, normal, right) != SF_OK)
         SF_FAIL(err, SF_ERR_NUMERIC, "a branch of %d points cannot be smoothed", b->count);
-    else
+    if (err->status == SF_OK)
         gsl_linalg_cholesky_svx(normal, right);
     *out = (smoothing){.parameters = spline->count};
     for (int i = 0; i < b->count && err->status == SF_OK; i++) {
@@ -190,8 +184,7 @@ static sf_status smooth(const sf_scatter_branch *b, sf_spline_grading grading, i
     sf_spline spline;
     gsl_stats_minmax(&low, &high, b->x, 1, (size_t)b->count);
     int count = sf_spline_place(grading, intervals, low, high, 1, &data, breaks);
-    if (sf_spline_init(&spline, count, breaks, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_spline_init(&spline, count, breaks, err));
     solve(b, &spline, out, err);
     sf_spline_free(&spline);
     return err->status;
@@ -252,15 +245,13 @@ static double deviance(const gsl_vector *x, void *context) {
 
 static sf_status minimise(likelihood *l, double size, sf_scatter *scatter, sf_error *err) {
     gsl_multimin_function f = {.f = deviance, .n = 2, .params = l};
-    gsl_vector *start = gsl_vector_alloc(2), *step = gsl_vector_alloc(2);
+    double from[2] = {log(1e-3 * size), log(5e-3)}, by[2] = {1, 1};
+    gsl_vector_view start = gsl_vector_view_array(from, 2), step = gsl_vector_view_array(by, 2);
     gsl_multimin_fminimizer *m = gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, 2);
-    if (!start || !step || !m) {
+    if (!m) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the scatter");
     } else {
-        gsl_vector_set(start, 0, log(1e-3 * size));
-        gsl_vector_set(start, 1, log(5e-3));
-        gsl_vector_set_all(step, 1);
-        gsl_multimin_fminimizer_set(m, &f, start, step);
+        gsl_multimin_fminimizer_set(m, &f, &start.vector, &step.vector);
         for (int k = 0; k < 200 && gsl_multimin_fminimizer_size(m) > 1e-3; k++)
             if (gsl_multimin_fminimizer_iterate(m) != GSL_SUCCESS)
                 break;
@@ -268,24 +259,15 @@ static sf_status minimise(likelihood *l, double size, sf_scatter *scatter, sf_er
         scatter->absolute = fmax(exp(gsl_vector_get(m->x, 0)), 1e-7 * size);
         scatter->relative = fmax(exp(gsl_vector_get(m->x, 1)), 1e-7);
     }
-    gsl_vector_free(start);
-    gsl_vector_free(step);
     gsl_multimin_fminimizer_free(m);
     return err->status;
-}
-
-static void set_sigma(int count, const sf_scatter_branch *branches, const sf_scatter *s) {
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < branches[k].count; i++)
-            branches[k].sigma[i] = hypot(s->absolute, s->relative * branches[k].smooth[i]);
 }
 
 /* Deviations of the smoothed branches count for the coefficients that were spent on them. */
 static sf_status set_inflation(likelihood *l, int intervals, sf_error *err) {
     for (int k = 0; k < l->count; k++) {
         smoothing s;
-        if (smooth(&l->branches[k], SF_GRADING_ENDS, intervals, &s, err) != SF_OK)
-            return err->status;
+        SF_TRY(smooth(&l->branches[k], SF_GRADING_ENDS, intervals, &s, err));
         double n = l->branches[k].count;
         l->inflate[k] = n / fmax(1, n - s.parameters);
     }
@@ -307,7 +289,10 @@ sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branche
     for (int round = 0; round < ROUNDS && err->status == SF_OK; round++) {
         if (choose_intervals(branch_count, branches, SF_GRADING_ENDS, &intervals, err) == SF_OK &&
             set_inflation(&l, intervals, err) == SF_OK && minimise(&l, size, scatter, err) == SF_OK)
-            set_sigma(branch_count, branches, scatter);
+            for (int k = 0; k < branch_count; k++)
+                for (int i = 0; i < branches[k].count; i++)
+                    branches[k].sigma[i] =
+                        hypot(scatter->absolute, scatter->relative * branches[k].smooth[i]);
     }
     gsl_set_error_handler(handler);
     return err->status;

@@ -14,7 +14,6 @@ typedef struct sf_spline {
     int count;                      /* coefficients */
     gsl_bspline_workspace *base;    /* order 4 */
     gsl_bspline_workspace *primary; /* order 5 on the same breaks: the integrals */
-    gsl_vector *value;              /* [count] scratch */
     gsl_vector *higher;             /* [count + 1] scratch */
     gsl_matrix *slope;              /* [count][2] scratch */
 } sf_spline;

@@ -7,6 +7,20 @@
 
 enum { TURNS = 200 };
 
+gsl_vector *sf_vector(size_t size, sf_error *err) {
+    gsl_vector *vector = gsl_vector_calloc(size);
+    if (!vector)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu numbers", size);
+    return vector;
+}
+
+gsl_matrix *sf_matrix(size_t rows, size_t columns, sf_error *err) {
+    gsl_matrix *matrix = gsl_matrix_calloc(rows, columns);
+    if (!matrix)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a matrix of %zu by %zu", rows, columns);
+    return matrix;
+}
+
 double sf_least_squares(sf_deviations *deviations, void *data, size_t count, gsl_vector *x,
                         gsl_matrix *covariance) {
     gsl_multifit_nlinear_fdf fdf = {.f = deviations, .n = count, .p = x->size, .params = data};
@@ -26,4 +40,13 @@ double sf_least_squares(sf_deviations *deviations, void *data, size_t count, gsl
     }
     gsl_multifit_nlinear_free(work);
     return isfinite(sum) ? sum : INFINITY;
+}
+
+double sf_neighbour_correlation(size_t count, const double *deviation) {
+    double top = 0, bottom = 0;
+    for (size_t i = 0; i < count; i++) {
+        bottom += deviation[i] * deviation[i];
+        top += i > 0 ? deviation[i] * deviation[i - 1] : 0;
+    }
+    return bottom > 0 ? top / bottom : 0;
 }

@@ -4,7 +4,12 @@
 #ifndef SF_STUDY_FIT_LEAST_SQUARES_H
 #define SF_STUDY_FIT_LEAST_SQUARES_H
 
+#include "base/error.h"
 #include <gsl/gsl_matrix.h>
+
+/* Zeros; NULL without memory. */
+gsl_vector *sf_vector(size_t size, sf_error *err);
+gsl_matrix *sf_matrix(size_t rows, size_t columns, sf_error *err);
 
 /* Deviations [count] at parameters; GSL_SUCCESS, or another code where there are none. */
 typedef int sf_deviations(const gsl_vector *x, void *data, gsl_vector *out);
@@ -13,5 +18,8 @@ typedef int sf_deviations(const gsl_vector *x, void *data, gsl_vector *out);
  * of 1 into `covariance` unless it is NULL. GSL's error handler must be off. */
 double sf_least_squares(sf_deviations *deviations, void *data, size_t count, gsl_vector *x,
                         gsl_matrix *covariance);
+
+/* Correlation of neighbouring deviations, r: the variance of a mean of them grows by (1 + r)/(1 - r). */
+double sf_neighbour_correlation(size_t count, const double *deviation);
 
 #endif

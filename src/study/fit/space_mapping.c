@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/space_mapping.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -39,8 +40,7 @@ typedef struct minimisation {
 
 static sf_status evaluate(const anchor *a, const double *u, double *y, sf_error *err) {
     const sf_mapping_problem *p = a->problem;
-    if (p->surrogate(p->context, u, y, err) != SF_OK)
-        return err->status;
+    SF_TRY(p->surrogate(p->context, u, y, err));
     for (int i = 0; i < p->responses; i++) {
         y[i] += a->offset[i];
         for (int j = 0; j < p->parameters; j++)
@@ -81,10 +81,10 @@ static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
 
 /* Their Jacobian by central differences: absolute steps, as the parameters are logarithms. */
 static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobian) {
-    gsl_vector *at = gsl_vector_alloc(x->size), *high = gsl_vector_alloc(jacobian->size1),
-               *low = gsl_vector_alloc(jacobian->size1);
-    int status = at && high && low ? GSL_SUCCESS : GSL_ENOMEM;
-    for (size_t j = 0; j < x->size && status == GSL_SUCCESS; j++) {
+    sf_error err = SF_ERROR_INIT;
+    gsl_vector *at = sf_vector(x->size, &err), *high = sf_vector(jacobian->size1, &err),
+               *low = sf_vector(jacobian->size1, &err);
+    for (size_t j = 0; j < x->size && err.status == SF_OK; j++) {
         gsl_vector_memcpy(at, x);
         gsl_vector_set(at, j, gsl_vector_get(x, j) + DIFFERENCE);
         residuals(at, data, high);
@@ -97,7 +97,7 @@ static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobi
     gsl_vector_free(at);
     gsl_vector_free(high);
     gsl_vector_free(low);
-    return status;
+    return err.status == SF_OK ? GSL_SUCCESS : GSL_ENOMEM;
 }
 
 /* Minimises from `u`, which gets the minimum. */
@@ -136,12 +136,11 @@ static sf_status differentiate(const anchor *a, double *jacobian, sf_error *err)
     for (int j = 0; j < p->parameters && err->status == SF_OK; j++) {
         memcpy(u, a->u, (size_t)p->parameters * sizeof *u);
         u[j] = a->u[j] + DIFFERENCE;
-        if (evaluate(a, u, plus, err) != SF_OK)
-            break;
+        evaluate(a, u, plus, err);
         u[j] = a->u[j] - DIFFERENCE;
-        if (evaluate(a, u, minus, err) != SF_OK)
-            break;
-        for (int i = 0; i < p->responses; i++)
+        if (err->status == SF_OK)
+            evaluate(a, u, minus, err);
+        for (int i = 0; i < p->responses && err->status == SF_OK; i++)
             jacobian[i * p->parameters + j] = (plus[i] - minus[i]) / (2 * DIFFERENCE);
     }
     free(plus);
@@ -175,17 +174,12 @@ static int collect_information(const sf_mapping_problem *p, const double *jacobi
     return data;
 }
 
-/* True if the residuals contradict the stated standard deviations (chi-squared, 5 %). */
-static bool is_misfit(const sf_mapping_result *r) {
-    return r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
-}
-
 /* Covariance with the stated standard deviations of the data, or with those times the scale that the misfit
  * shows; degrees of freedom: data less trace(J C J^T). */
 static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_result *r, sf_error *err) {
     size_t n = (size_t)p->parameters;
-    gsl_matrix *a = gsl_matrix_calloc(n, n), *c = gsl_matrix_calloc(n, n);
-    if (a && c) {
+    gsl_matrix *a = sf_matrix(n, n, err), *c = sf_matrix(n, n, err);
+    if (err->status == SF_OK) {
         double effective = 0;
         int data = collect_information(p, r->corrected, a);
         invert_information(p, a, 1, c);
@@ -193,13 +187,13 @@ static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_r
             for (size_t k = 0; k < n; k++)
                 effective += gsl_matrix_get(a, j, k) * gsl_matrix_get(c, k, j);
         r->freedom = data - effective;
-        r->scale = scaled && is_misfit(r) ? sqrt(r->misfit / r->freedom) : 1;
+        /* the residuals contradict the stated standard deviations (chi-squared, 5 %) */
+        bool misses = r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
+        r->scale = scaled && misses ? sqrt(r->misfit / r->freedom) : 1;
         invert_information(p, a, r->scale, c);
         for (size_t j = 0; j < n; j++)
             for (size_t k = 0; k < n; k++)
                 r->covariance[j][k] = gsl_matrix_get(c, j, k);
-    } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a covariance");
     }
     gsl_matrix_free(a);
     gsl_matrix_free(c);
@@ -251,9 +245,8 @@ static anchor anchor_at(const search *s) {
 static sf_status simulate(search *s, point *at, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     size_t n = (size_t)p->responses;
-    if (p->simulate(p->context, at->u, at->y, err) != SF_OK ||
-        p->surrogate(p->context, at->u, at->offset, err) != SF_OK)
-        return err->status;
+    SF_TRY(p->simulate(p->context, at->u, at->y, err));
+    SF_TRY(p->surrogate(p->context, at->u, at->offset, err));
     for (size_t i = 0; i < n; i++)
         at->offset[i] = at->y[i] - at->offset[i];
     at->misfit = misfit_of(p, at->y);
@@ -290,22 +283,21 @@ static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
 static sf_status regress_matrix(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     size_t n = (size_t)p->parameters, responses = (size_t)p->responses;
-    gsl_matrix *a = gsl_matrix_calloc(n, n), *b = gsl_matrix_calloc(responses, n);
-    if (!a || !b)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a regression of %zu parameters", n);
-    for (size_t k = 0; err->status == SF_OK && k < responses * n; k++)
-        b->data[k] =
-            p->first_matrix && isfinite(p->first_matrix[k]) ? p->first_matrix[k] / (SLOPE * SLOPE) : 0;
-    for (size_t j = 0; err->status == SF_OK && j < n; j++)
-        gsl_matrix_set(a, j, j, 1 / (SLOPE * SLOPE));
-    for (int k = 0; err->status == SF_OK && k < s->count; k++)
-        add_secant(s, k, a, b);
-    if (err->status == SF_OK)
+    const double *first = p->first_matrix;
+    gsl_matrix *a = sf_matrix(n, n, err), *b = sf_matrix(responses, n, err);
+    if (err->status == SF_OK) {
+        for (size_t k = 0; k < responses * n; k++)
+            b->data[k] = first && isfinite(first[k]) ? first[k] / (SLOPE * SLOPE) : 0;
+        for (size_t j = 0; j < n; j++)
+            gsl_matrix_set(a, j, j, 1 / (SLOPE * SLOPE));
+        for (int k = 0; k < s->count; k++)
+            add_secant(s, k, a, b);
         gsl_linalg_cholesky_decomp1(a);
-    for (size_t i = 0; err->status == SF_OK && i < responses; i++) {
-        gsl_vector_view row = gsl_matrix_row(b, i);
-        gsl_linalg_cholesky_svx(a, &row.vector);
-        memcpy(&s->result->matrix[i * n], row.vector.data, n * sizeof(double));
+        for (size_t i = 0; i < responses; i++) {
+            gsl_vector_view row = gsl_matrix_row(b, i);
+            gsl_linalg_cholesky_svx(a, &row.vector);
+            memcpy(&s->result->matrix[i * n], row.vector.data, n * sizeof(double));
+        }
     }
     gsl_matrix_free(a);
     gsl_matrix_free(b);
@@ -319,9 +311,9 @@ static sf_status measure_step(search *s, double *step, double *gain, sf_error *e
     sf_mapping_result *r = s->result;
     const anchor a = anchor_at(s);
     r->misfit = s->best.misfit;
-    if (differentiate(&a, r->corrected, err) != SF_OK || estimate(p, false, r, err) != SF_OK ||
-        evaluate(&a, s->trial.u, s->trial.y, err) != SF_OK)
-        return err->status;
+    SF_TRY(differentiate(&a, r->corrected, err));
+    SF_TRY(estimate(p, false, r, err));
+    SF_TRY(evaluate(&a, s->trial.u, s->trial.y, err));
     *gain = s->best.objective - misfit_of(p, s->trial.y) - prior_of(p, s->trial.u);
     *step = 0;
     for (int j = 0; j < p->parameters; j++)
@@ -345,13 +337,6 @@ static sf_status propose(search *s, const double *from, double hold, sf_error *e
                       .err = SF_ERROR_INIT};
     memmove(s->trial.u, from, (size_t)s->problem->parameters * sizeof *from);
     return minimise(&m, s->trial.u, err);
-}
-
-/* The trial, a free minimum, is held back until it is no farther than `radius` from `best`. */
-static sf_status restrict_step(search *s, double radius, sf_error *err) {
-    for (double hold = 2 * radius; err->status == SF_OK && distance(s) > radius; hold /= 2)
-        propose(s, s->best.u, hold, err);
-    return err->status;
 }
 
 /* Objective by the corrected surrogate at the trial; INFINITY: the law cannot be there. */
@@ -453,8 +438,7 @@ static sf_status begin(search *s, sf_error *err) {
 static sf_status advance(search *s, double expected, double *radius, int *idle, sf_error *err) {
     static const double POOR = 0.25, GOOD = 0.75;
     double length = distance(s);
-    if (try_point(s, err) != SF_OK)
-        return err->status;
+    SF_TRY(try_point(s, err));
     double loss = s->best.objective - s->trial.objective, noise = s->problem->tolerance,
            ratio = (loss + noise) / (expected + noise);
     *idle = loss < 2 * s->problem->tolerance ? *idle + 1 : 0;
@@ -475,13 +459,11 @@ static sf_status iterate(search *s, sf_error *err) {
     sf_mapping_result *r = s->result;
     double radius = INFINITY, step = 0, expected = 0;
     int idle = 0; /* steps in a row, taken or not, that lowered the objective by nothing that counts */
-    if (begin(s, err) != SF_OK)
-        return err->status;
+    SF_TRY(begin(s, err));
     for (r->iterations = 1;; r->iterations++) {
         bool widely = p->wide && r->iterations == 1 && !p->first_matrix;
-        if ((widely ? propose_widely(s, err) : propose(s, s->best.u, INFINITY, err)) != SF_OK ||
-            measure_step(s, &step, &r->gain, err) != SF_OK)
-            return err->status;
+        SF_TRY(widely ? propose_widely(s, err) : propose(s, s->best.u, INFINITY, err));
+        SF_TRY(measure_step(s, &step, &r->gain, err));
         bool settled = is_settled(p, step, r->gain, idle);
         r->reason = settled && !is_bound(p, s->best.y) ? NULL
                     : settled                          ? "a drop stands at the bound of what can be used"
@@ -490,9 +472,11 @@ static sf_status iterate(search *s, sf_error *err) {
         r->converged = !r->reason;
         if (settled || idle >= MOST_IDLE || r->iterations == p->max_iterations)
             return estimate(p, true, r, err);
-        if (restrict_step(s, radius, err) != SF_OK || measure_step(s, &step, &expected, err) != SF_OK ||
-            advance(s, expected, &radius, &idle, err) != SF_OK)
-            return err->status;
+        for (double hold = 2 * radius; err->status == SF_OK && distance(s) > radius; hold /= 2)
+            propose(s, s->best.u, hold, err); /* no farther than the radius */
+        SF_TRY(err->status);
+        SF_TRY(measure_step(s, &step, &expected, err));
+        SF_TRY(advance(s, expected, &radius, &idle, err));
     }
 }
 
@@ -539,7 +523,6 @@ sf_status sf_mapping_refit(const sf_mapping_problem *p, const sf_mapping_result 
                       .radius = INFINITY,
                       .err = SF_ERROR_INIT};
     memcpy(u, r->u, (size_t)p->parameters * sizeof *u);
-    if (minimise(&m, u, err) != SF_OK)
-        return err->status;
+    SF_TRY(minimise(&m, u, err));
     return evaluate(&m.anchor, u, y, err);
 }

@@ -14,31 +14,24 @@ static const sf_option options[] = {
     {"simulate", 0, "CASE",
      "press a cube of the fitted material between platens too, as CASE says "
      "(examples/compression/case.cfg), and compare it with the material point",
-     .member = offsetof(sf_compression_job, cube.case_path), .group = 1},
+     .member = offsetof(sf_compression_job, case_path), .group = 1},
     {"friction", 0, "MU", "of the upper platen in --simulate (default: that of CASE)",
-     .member = offsetof(sf_compression_job, cube.friction), .group = 1},
+     .member = offsetof(sf_compression_job, friction), .group = 1},
     {0},
 };
-
-static const sf_compression_kind *kind_of(const sf_compression_config *config) {
-    return config->hyperfoam.terms > 0 ? &sf_compression_hyperfoam
-           : config->form.form.curve   ? &sf_compression_form_kind
-                                       : &sf_compression_tables;
-}
 
 /* Refuses what cannot be done before anything is computed or made. */
 static sf_status check_job(const sf_compression_job *job, sf_study *study, const sf_compression_kind *kind,
                            const sf_compression_config *config, sf_error *err) {
     uint64_t ignored; /* the case can be read */
-    if (kind->label && job->cube.case_path)
+    if (kind->label && job->case_path)
         return SF_FAIL(err, SF_ERR_INPUT,
                        kind == &sf_compression_form_kind
                            ? "--simulate does not work with curve_form = \"%s\" in %s"
                            : "--simulate does not work with law = \"%s\" in %s",
                        config->form.form.curve ? config->form.form.curve->name : kind->label, job->path);
     SF_TRY(sf_study_check(study, kind->outputs, err));
-    return job->cube.case_path ? sf_plain_hash(job->cube.case_path, "case file", SF_PLAIN_TEXT, &ignored, err)
-                               : SF_OK;
+    return job->case_path ? sf_plain_hash(job->case_path, "case file", SF_PLAIN_TEXT, &ignored, err) : SF_OK;
 }
 
 static void print_tests(FILE *out, const sf_compression_config *config) {
@@ -52,26 +45,6 @@ static void print_tests(FILE *out, const sf_compression_config *config) {
 }
 
 /* ---- files ---- */
-
-static sf_status write_points(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
-                              sf_error *err) {
-    FILE *file = sf_staging_open(output, "fit.csv", err);
-    if (!file)
-        return err->status;
-    kind->points(file, fit);
-    return sf_staging_close(file, "fit.csv", err);
-}
-
-static sf_status write_json(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
-                            const char *path, sf_error *err) {
-    sf_json json = {.file = sf_staging_open(output, "fit.json", err)};
-    if (!json.file)
-        return err->status;
-    sf_json_open(&json, NULL, '{');
-    kind->json(&json, fit, path);
-    sf_json_close(&json, '}');
-    return sf_staging_close(json.file, "fit.json", err);
-}
 
 static sf_status write_material(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
                                 const char *title, sf_error *err) {
@@ -97,10 +70,18 @@ static sf_status write_all(const sf_compression_job *job, const sf_compression_k
                            void *fit, const char *name, char *warning, size_t size, sf_error *err) {
     sf_staging *output = &study->output;
     SF_TRY(sf_staging_begin(job->directory, kind->outputs, study->force, output, err));
-    SF_TRY(write_points(output, kind, fit, err));
+    FILE *points = sf_staging_open(output, "fit.csv", err);
+    SF_TRY(err->status);
+    kind->points(points, fit);
+    SF_TRY(sf_staging_close(points, "fit.csv", err));
     if (kind->more)
         SF_TRY(kind->more(job, output, fit, warning, size, err));
-    SF_TRY(write_json(output, kind, fit, job->path, err));
+    sf_json json = {.file = sf_staging_open(output, "fit.json", err)};
+    SF_TRY(err->status);
+    sf_json_open(&json, NULL, '{');
+    kind->json(&json, fit, job->path);
+    sf_json_close(&json, '}');
+    SF_TRY(sf_staging_close(json.file, "fit.json", err));
     SF_TRY(write_material(output, kind, fit, name, err));
     return sf_staging_commit(output, err);
 }
@@ -113,8 +94,8 @@ static sf_status fit_and_write(sf_study *study, const sf_compression_job *job,
     char warning[512] = "";
     SF_TRY(kind->run(config, fit, err));
     SF_TRY(write_all(job, kind, study, fit, config->name, warning, sizeof warning, err));
-    kind->title(job->cube.log, fit);
-    kind->describe(job->cube.log, fit, false);
+    kind->title(job->log, fit);
+    kind->describe(job->log, fit, false);
     sf_study_close(study, kind->files, warning);
     kind->warn(fit, &study->sink);
     return SF_OK;
@@ -126,16 +107,19 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     job->path = study->input;
     job->directory = study->directory;
     job->command = study->command;
-    if (job->cube.friction && !job->cube.case_path)
+    if (job->friction && !job->case_path)
         return SF_FAIL(err, SF_ERR_INPUT, "--friction needs --simulate");
     SF_TRY(sf_compression_config_read(job->path, &config, err));
-    const sf_compression_kind *kind = kind_of(&config);
+    const sf_compression_kind *kind = config.hyperfoam.terms > 0 ? &sf_compression_hyperfoam
+                                      : config.form.form.curve   ? &sf_compression_form_kind
+                                                                 : &sf_compression_tables;
     void *fit =
         check_job(job, study, kind, &config, err) == SF_OK ? sf_alloc(err, 1, kind->size, "the fit") : NULL;
     if (fit) {
-        print_tests(job->cube.log, &config);
+        print_tests(job->log, &config);
         fit_and_write(study, job, kind, &config, fit, err);
-        kind->free(fit);
+        if (kind->free)
+            kind->free(fit);
     }
     free(fit);
     sf_compression_config_free(&config);
@@ -153,6 +137,6 @@ int sf_fit_compression_main(int argc, char **argv) {
         .options = options,
         .run = run,
     };
-    sf_compression_job job = {.cube.log = stdout};
+    sf_compression_job job = {.log = stdout};
     return sf_study_main(argc, argv, &program, &job);
 }

@@ -6,33 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const sf_rate_model_names[] = {"none", "log", "maxwell", "curves", "auto"};
 /* In the order of sf_rate_model and sf_rule_choice. */
-static const char *const RATE_MODELS[] = {"none", "log", "maxwell", "curves", "auto"};
 static const char RATE_WORDS[] = "none|log|maxwell|curves|auto", RULE_WORDS[] = "auto|H1|H1_automatic|H2";
-
-const char *sf_rate_model_name(sf_rate_model model) {
-    return RATE_MODELS[model];
-}
 
 static const double PI = 3.14159265358979323846;
 
-/* One shape of the pressed face. */
-static sf_status check_shape(const sf_config *file, const config_setting_t *group, sf_compression_specimen *s,
-                             sf_error *err) {
-    if ((s->side > 0) + (s->diameter > 0) + (s->area > 0) > 1 || (s->width > 0 && !(s->side > 0)))
-        return sf_config_refuse(
-            file, group, err, "specimen: give side (with width, if the face is no square), diameter or area");
-    if (s->side > 0)
-        s->area = s->side * (s->width > 0 ? s->width : s->side);
-    if (s->diameter > 0)
-        s->area = PI / 4 * s->diameter * s->diameter;
-    return SF_OK;
-}
-
 /* Replaces the default of the tests, if the group is there. */
-static sf_status read_specimen(const sf_config *file, const config_setting_t *parent,
+static sf_status read_specimen(const sf_config *file, sf_config_item *parent,
                                sf_compression_specimen *specimen, sf_error *err) {
-    const config_setting_t *group = config_setting_get_member(parent, "specimen");
+    sf_config_item *group = config_setting_get_member(parent, "specimen");
     sf_compression_specimen s = {0};
     if (!group)
         return SF_OK;
@@ -45,14 +28,20 @@ static sf_status read_specimen(const sf_config *file, const config_setting_t *pa
     SF_TRY(sf_config_quantity(file, group, "diameter", SF_LENGTH, false, 0, &s.diameter, err));
     SF_TRY(sf_config_quantity(file, group, "area", SF_AREA, false, 0, &s.area, err));
     SF_TRY(sf_config_quantity(file, group, "thickness", SF_LENGTH, false, 0, &s.thickness, err));
-    SF_TRY(check_shape(file, group, &s, err));
+    if ((s.side > 0) + (s.diameter > 0) + (s.area > 0) > 1 || (s.width > 0 && !(s.side > 0)))
+        return sf_config_refuse(
+            file, group, err, "specimen: give side (with width, if the face is no square), diameter or area");
+    if (s.side > 0)
+        s.area = s.side * (s.width > 0 ? s.width : s.side);
+    if (s.diameter > 0)
+        s.area = PI / 4 * s.diameter * s.diameter;
     *specimen = s;
     return SF_OK;
 }
 
 /* ---- tests ---- */
 
-static sf_status check_rate(const sf_config *file, const config_setting_t *entry, double rate,
+static sf_status check_rate(const sf_config *file, sf_config_item *entry, double rate,
                             const sf_compression_config *c, sf_error *err) {
     for (int k = 0; k < c->test_count; k++)
         if (fabs(log(rate / c->test[k].rate)) < 1e-6)
@@ -64,9 +53,8 @@ static sf_status check_rate(const sf_config *file, const config_setting_t *entry
 }
 
 /* The same points under another rate would say that the rate has no effect. */
-static sf_status check_points(const sf_config *file, const config_setting_t *entry,
-                              const sf_compression_test *test, const sf_compression_config *c,
-                              sf_error *err) {
+static sf_status check_points(const sf_config *file, sf_config_item *entry, const sf_compression_test *test,
+                              const sf_compression_config *c, sf_error *err) {
     for (int k = 0; k < c->test_count; k++) {
         const sf_compression_test *earlier = &c->test[k];
         size_t size = (size_t)test->count * sizeof *test->strain;
@@ -89,9 +77,9 @@ static void insert_test(sf_compression_test *tests, int *count, const sf_compres
 }
 
 /* A strain rate, or the crosshead's speed over the thickness. */
-static sf_status read_rate(const sf_config *file, const config_setting_t *entry, double thickness,
-                           double *rate, sf_error *err) {
-    const config_setting_t *setting = config_setting_get_member(entry, "rate");
+static sf_status read_rate(const sf_config *file, sf_config_item *entry, double thickness, double *rate,
+                           sf_error *err) {
+    sf_config_item *setting = config_setting_get_member(entry, "rate");
     const char *text = setting ? config_setting_get_string(setting) : NULL;
     sf_error no_speed = SF_ERROR_INIT;
     double speed = 0;
@@ -109,9 +97,9 @@ static sf_status read_rate(const sf_config *file, const config_setting_t *entry,
     return SF_OK;
 }
 
-/* `specimen` and `source->toe`: of the tests without their own. */
-static sf_status read_keys(const sf_config *file, const config_setting_t *entry,
-                           sf_compression_specimen specimen, sf_compression_source *source, sf_error *err) {
+sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entry,
+                                     sf_compression_specimen specimen, sf_compression_source *source,
+                                     sf_error *err) {
     int invert = SF_INVERT_NONE;
     SF_TRY(read_specimen(file, entry, &specimen, err));
     SF_TRY(read_rate(file, entry, specimen.thickness, &source->rate, err));
@@ -131,27 +119,15 @@ static sf_status read_keys(const sf_config *file, const config_setting_t *entry,
     return SF_OK;
 }
 
-sf_status sf_compression_source_read(const sf_config *file, const config_setting_t *entry,
-                                     sf_compression_source *source, sf_error *err) {
-    *source = (sf_compression_source){0};
-    return read_keys(file, entry, (sf_compression_specimen){0}, source, err);
-}
-
-static sf_status read_source(const sf_config *file, const config_setting_t *entry,
-                             const sf_compression_config *c, sf_compression_source *source, sf_error *err) {
-    *source = (sf_compression_source){.toe = c->toe};
-    SF_TRY(sf_config_names(file, entry, "file|" SF_COMPRESSION_SOURCE_KEYS, err));
-    return read_keys(file, entry, c->specimen, source, err);
-}
-
 /* Into the tests that are fitted, each rate once, or those that are predicted. */
-static sf_status read_test(const sf_config *file, const config_setting_t *entry, bool predicted,
+static sf_status read_test(const sf_config *file, sf_config_item *entry, bool predicted,
                            sf_compression_config *c, sf_error *err) {
     sf_compression_test test;
     sf_error inner = SF_ERROR_INIT;
     char *path = NULL;
-    sf_compression_source source;
-    if (read_source(file, entry, c, &source, err) == SF_OK &&
+    sf_compression_source source = {.toe = c->toe};
+    if (sf_config_names(file, entry, "file|" SF_COMPRESSION_SOURCE_KEYS, err) == SF_OK &&
+        sf_compression_source_read(file, entry, c->specimen, &source, err) == SF_OK &&
         (predicted || check_rate(file, entry, source.rate, c, err) == SF_OK) &&
         sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
         source.path = path;
@@ -169,9 +145,9 @@ static sf_status read_test(const sf_config *file, const config_setting_t *entry,
     return err->status;
 }
 
-static sf_status read_tests(const sf_config *file, const config_setting_t *root, const char *name,
-                            bool predicted, sf_compression_config *c, sf_error *err) {
-    const config_setting_t *tests;
+static sf_status read_tests(const sf_config *file, sf_config_item *root, const char *name, bool predicted,
+                            sf_compression_config *c, sf_error *err) {
+    sf_config_item *tests;
     SF_TRY(sf_config_list(file, root, name, !predicted, SF_COMPRESSION_TESTS, &tests, err));
     for (int i = 0; tests && i < config_setting_length(tests) && err->status == SF_OK; i++)
         read_test(file, config_setting_get_elem(tests, (unsigned)i), predicted, c, err);
@@ -180,7 +156,7 @@ static sf_status read_tests(const sf_config *file, const config_setting_t *root,
 
 /* ---- the file ---- */
 
-static sf_status read_name(const sf_config *file, const config_setting_t *root, sf_compression_config *c,
+static sf_status read_name(const sf_config *file, sf_config_item *root, sf_compression_config *c,
                            sf_error *err) {
     const char *text = c->name;
     if (sf_config_text(file, root, "name", false, &text, err) != SF_OK || text == c->name)
@@ -194,7 +170,7 @@ static sf_status read_name(const sf_config *file, const config_setting_t *root, 
 }
 
 static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
-    const config_setting_t *root = config_root_setting(&file->config);
+    sf_config_item *root = config_root_setting(&file->config);
     int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
     bool form, hyperfoam;
     SF_TRY(sf_hyperfoam_request_asked(file, root, &hyperfoam, err));
@@ -237,14 +213,6 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
 
 /* ---- requirements on all tests together ---- */
 
-static double loading_stress(const sf_compression_test *t, double strain) {
-    int i = 1;
-    while (i + 1 < t->loading && t->strain[i] < strain)
-        i++;
-    double width = t->strain[i] - t->strain[i - 1], x = width > 0 ? (strain - t->strain[i - 1]) / width : 0;
-    return t->stress[i - 1] + x * (t->stress[i] - t->stress[i - 1]);
-}
-
 /* The tests stand in ascending rate. A test that is softer than one at a lower rate, on the mean of its
  * plateau, has the other's rate, or both are of different foams: no rate dependence of the laws can be so. */
 static sf_status check_order_of_rates(const sf_compression_config *c, sf_error *err) {
@@ -256,7 +224,8 @@ static sf_status check_order_of_rates(const sf_compression_config *c, sf_error *
         double end = fmin(slow->largest_strain, fast->largest_strain), sum = 0;
         for (int i = 0; i < PLACES; i++) {
             double strain = end * (FIRST + (LAST - FIRST) * i / (PLACES - 1));
-            sum += log(fmax(loading_stress(fast, strain), 1e-9) / fmax(loading_stress(slow, strain), 1e-9));
+            sum += log(fmax(sf_compression_loading_stress(fast, strain), 1e-9) /
+                       fmax(sf_compression_loading_stress(slow, strain), 1e-9));
         }
         double softer = -expm1(sum / PLACES);
         if (fast->rate > slow->rate && softer > SOFTER)
@@ -291,7 +260,7 @@ static sf_status check_together(const char *path, const sf_compression_config *c
     if (c->test_count == 1 && c->rate_model != SF_RATE_AUTO && c->rate_model != SF_RATE_NONE)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s: the rate model \"%s\" needs tests at two rates; there is one test", path,
-                       sf_rate_model_name(c->rate_model));
+                       sf_rate_model_names[c->rate_model]);
     return SF_OK;
 }
 

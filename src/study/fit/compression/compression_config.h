@@ -5,9 +5,27 @@
 
 #include "study/fit/compression/law_request.h"
 #include "study/config.h"
-#include "study/fit/compression/cycle_record.h"
 #include "study/fit/compression/compression_test.h"
 #include <stdio.h>
+
+enum { SF_CYCLES = 16 }; /* in a record at most */
+
+/* A record of several cycles of compression of one specimen, with its time: what a foam remembers is in the
+ * cycles after the first (theory, section "Memory"). A time of rest without load in which nothing was
+ * recorded is a pause. */
+typedef struct sf_cycle_record {
+    char *path;            /* owned, as the next three */
+    int count;             /* points; 0: there is no record */
+    double *time;          /* [count] s */
+    double *strain;        /* [count] -, not below 0 */
+    double *stress;        /* [count] Pa */
+    double largest_stress; /* Pa */
+    int cycles;            /* loadings, each with its unloading */
+    int turn[2 * SF_CYCLES +
+             1]; /* first point, that of the largest strain of cycle 1, of the least after it, ... */
+    int pauses;
+    int fitted; /* cycles, from the first on; the others are predicted */
+} sf_cycle_record;
 
 enum { SF_COMPRESSION_TESTS = 8, SF_COMPRESSION_NAME = 64 };
 
@@ -51,8 +69,8 @@ typedef struct sf_compression_config {
     sf_compression_test predicted[SF_COMPRESSION_TESTS]; /* owned */
 } sf_compression_config;
 
-/* "none", "log", "maxwell", "curves", "auto" */
-const char *sf_rate_model_name(sf_rate_model model);
+/* Names of sf_rate_model. */
+extern const char *const sf_rate_model_names[];
 
 /* Reads the file and the tests that it names (paths relative to it). SF_ERR_INPUT names file, line and value:
  * unknown or missing keys, units of another kind, values out of bounds, rates that are equal, and what
@@ -63,7 +81,20 @@ void sf_compression_config_free(sf_compression_config *config);
 /* The keys of one test beside its file, for other files with such tests; `path` is the caller's. */
 #define SF_COMPRESSION_SOURCE_KEYS                                                                           \
     "rate|specimen|specimen_number|cycle|heading|contact_force|toe_correction|invert"
-sf_status sf_compression_source_read(const sf_config *file, const config_setting_t *entry,
-                                     sf_compression_source *source, sf_error *err);
+/* Reads them; `specimen` and `source->toe` are those of tests without their own. */
+sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entry,
+                                     sf_compression_specimen specimen, sf_compression_source *source,
+                                     sf_error *err);
+
+/* ---- cycle_record.c ---- */
+
+/* Reads the key `cycles`, { file = "cycles.csv"; fitted = 3; }, if it is there. SF_ERR_INPUT also where the
+ * file has no two cycles, one does not return, or time goes back. Release with sf_cycle_record_free. */
+sf_status sf_cycle_record_read(const sf_config *file, sf_config_item *root, sf_cycle_record *record,
+                               sf_error *err);
+void sf_cycle_record_free(sf_cycle_record *record);
+
+/* The pause (s) before point i; 0: none. */
+double sf_cycle_record_pause(const sf_cycle_record *record, int i);
 
 #endif

@@ -5,14 +5,17 @@
 #define SF_FIT_COMPRESSION_KIND_H
 
 #include "io/staging.h"
+#include "material/hyperfoam.h"
 #include "report/row.h"
 #include "study/fit/compression/compression_config.h"
-#include "study/fit/compression/cube.h"
 
 /* The request of the command; borrowed. */
 typedef struct sf_compression_job {
     const char *path, *directory, *command; /* FIT.cfg as given, -o, the whole command line */
-    sf_cube_options cube;                   /* its log is that of the summary, too */
+    const char *case_path;                  /* --simulate: of a cube between platens (missile.motion,
+                                               geometry.parameters.side); NULL: none */
+    const char *friction; /* of the upper platen, in place of the case's; NULL: the case's */
+    FILE *log;            /* progress and summary */
 } sf_compression_job;
 
 typedef struct sf_compression_kind {
@@ -23,7 +26,7 @@ typedef struct sf_compression_kind {
 
     /* Fits; `config` is borrowed until `free`. SF_ERR_NUMERIC if no search converges. */
     sf_status (*run)(const sf_compression_config *config, void *fit, sf_error *err);
-    void (*free)(void *fit);
+    void (*free)(void *fit); /* NULL: the fit owns nothing */
     /* The fitted material; its arrays stay those of the fit. */
     sf_material (*material)(const void *fit);
     /* The first line of the summary, and the lines that follow it and stand in material.cfg (`comments`). */
@@ -41,5 +44,9 @@ typedef struct sf_compression_kind {
 /* A spline with rate terms and a densification law, written as tables; a form of few parameters (fit/form);
  * the hyperfoam. */
 extern const sf_compression_kind sf_compression_tables, sf_compression_form_kind, sf_compression_hyperfoam;
+
+/* Stress (Pa, compression positive), lateral strain and W (J m-3) of a hyperfoam in loading with free sides
+ * at an axial strain; `lateral` is also the start of the search. */
+double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double *lateral, double *energy);
 
 #endif

@@ -4,6 +4,7 @@
 #include "case/curves.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -123,9 +124,7 @@ static sf_status begin_at_contact(const sf_compression_source *source, sf_compre
     for (int i = first; i < t->count; i++) {
         if (i > top && t->strain[i] < zero) /* the crosshead leaves the specimen */
             continue;
-        t->strain[kept] = t->strain[i] - zero;
-        t->stress[kept] = t->stress[i];
-        t->line[kept++] = t->line[i];
+        sf_compression_move(t, i, kept++, zero);
     }
     t->count = kept;
     return SF_OK;
@@ -149,19 +148,26 @@ static sf_status take_table(const sf_compression_source *source, const table_ter
     }
     if (source->contact_force > 0)
         SF_TRY(begin_at_contact(source, t, err));
-    for (int i = 0; i < t->count; i++) {
-        t->largest_strain = fmax(t->largest_strain, t->strain[i]);
-        t->largest_stress = fmax(t->largest_stress, t->stress[i]);
-    }
+    sf_compression_find_largest(t);
     return SF_OK;
 }
 
 /* ---- checks of the whole ---- */
 
-/* A fall of more than SF_COMPRESSION_JITTER below what was reached, before the largest strain: the strain
- * turns twice. */
-static sf_status check_rise(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
-    double highest = t->count > 0 ? t->strain[0] : 0;
+/* The strain turns twice: at point `again`, after it began to fall at `first`. */
+static sf_status refuse_turn(const sf_compression_test *t, const table_terms *terms, int again, int first,
+                             sf_error *err) {
+    return SF_FAIL(err, SF_ERR_INPUT,
+                   "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
+                   "then one unloading",
+                   t->path, t->line[again], terms->name[0], t->strain[again] / terms->scale[0],
+                   t->line[first]);
+}
+
+/* Refuses a fall of more than SF_COMPRESSION_JITTER below what was reached before the largest strain, and
+ * such a rise after it. */
+static sf_status check_turns(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
+    double highest = t->count > 0 ? t->strain[0] : 0, lowest = INFINITY;
     for (int i = 1; i < t->loading; i++) {
         highest = fmax(highest, t->strain[i]);
         if (t->strain[i] >= highest - SF_COMPRESSION_JITTER)
@@ -169,25 +175,12 @@ static sf_status check_rise(const sf_compression_test *t, const table_terms *ter
         int again = i + 1; /* there is one, as the largest strain follows */
         while (again < t->loading - 1 && t->strain[again] <= t->strain[again - 1])
             again++;
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
-            "then one unloading",
-            t->path, t->line[again], terms->name[0], t->strain[again] / terms->scale[0], t->line[i]);
+        return refuse_turn(t, terms, again, i, err);
     }
-    return SF_OK;
-}
-
-static sf_status check_fall(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
-    double lowest = INFINITY;
     for (int i = t->loading; i < t->count; i++) {
         lowest = fmin(lowest, t->strain[i]);
         if (t->strain[i] > lowest + SF_COMPRESSION_JITTER)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
-                "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
-                "then one unloading",
-                t->path, t->line[i], terms->name[0], t->strain[i] / terms->scale[0], t->line[t->loading]);
+            return refuse_turn(t, terms, i, t->loading, err);
     }
     return SF_OK;
 }
@@ -217,8 +210,7 @@ static sf_status split_branches(sf_compression_test *t, const table_terms *terms
     for (int i = 0; i < t->count; i++)
         if (t->strain[i] >= t->largest_strain && (!t->loading || t->stress[i] > t->stress[t->loading - 1]))
             t->loading = i + 1;
-    SF_TRY(check_rise(t, terms, err));
-    SF_TRY(check_fall(t, terms, err));
+    SF_TRY(check_turns(t, terms, err));
     t->sorted = sort_branch(t, 0, t->loading, 1) + sort_branch(t, t->loading, t->count, -1);
     return SF_OK;
 }
@@ -278,8 +270,7 @@ static sf_status check_loading(const sf_compression_test *t, const table_terms *
     return SF_OK;
 }
 
-/* Stress of loading at a strain, by interpolation. */
-static double loading_stress(const sf_compression_test *t, double strain) {
+double sf_compression_loading_stress(const sf_compression_test *t, double strain) {
     int high = t->loading - 1, low = 0;
     if (strain <= t->strain[0])
         return t->stress[0];
@@ -294,7 +285,7 @@ static double loading_stress(const sf_compression_test *t, double strain) {
 
 static sf_status check_unloading(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
     for (int i = t->loading; i < t->count; i++) {
-        double loading = loading_stress(t, t->strain[i]);
+        double loading = sf_compression_loading_stress(t, t->strain[i]);
         if (t->stress[i] > (1 + ABOVE) * loading + SLACK * t->largest_stress)
             return SF_FAIL(
                 err, SF_ERR_INPUT,
@@ -320,7 +311,7 @@ static sf_status check_test(const sf_compression_source *source, sf_compression_
     if (source->toe)
         SF_TRY(sf_compression_correct_toe(t, err));
     else
-        sf_compression_note_preload(t);
+        t->preload = sf_compression_preload(t);
     SF_TRY(check_size(t, err));
     SF_TRY(check_sign(t, terms, err));
     SF_TRY(check_loading(t, terms, err));
@@ -355,42 +346,42 @@ static void condense(sf_compression_test *t) {
 
 /* ---- the whole ---- */
 
+static void append(sf_compression_test *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void append(sf_compression_test *t, const char *format, ...) {
+    size_t used = strlen(t->interpretation);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(t->interpretation + used, sizeof t->interpretation - used, format, arguments);
+    va_end(arguments);
+}
+
 static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
                      sf_compression_test *t) {
     static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};
-    char specimen[96] = "", toe[64] = "", sorted[64] = "", left_out[320] = "";
-    size_t used = 0, size = sizeof left_out;
-    if (t->cycles > 1)
-        used += (size_t)snprintf(left_out + used, size - used, ", cycle %d of %d", t->cycle, t->cycles);
-    if (source->contact_force > 0)
-        used += (size_t)snprintf(left_out + used, size - used, ", zero at a force of %.4g N",
-                                 source->contact_force);
-    if (t->dwell > 0)
-        used += (size_t)snprintf(
-            left_out + used, size - used,
-            ", without %d points of a rest under strain, during which the stress relaxed", t->dwell);
-    if (t->tension > 0)
-        used += (size_t)snprintf(left_out + used, size - used,
-                                 ", %d points in tension at the end set to zero", t->tension);
-    if (t->preload > 0)
-        snprintf(
-            left_out + used, size - used,
-            ", begins under a load that stands for a strain of %.3g %% (preload or zero of the load cell: "
-            "toe_correction takes it away)",
-            100 * t->preload);
-    if (t->sorted > 0)
-        snprintf(sorted, sizeof sorted, ", jitter of %d points sorted", t->sorted);
+    append(t, "%.383s", table->interpretation);
     if (machine)
-        snprintf(specimen, sizeof specimen, ", over %.5g mm2 and %.5g mm", 1e6 * source->area,
-                 1e3 * source->thickness);
+        append(t, ", over %.5g mm2 and %.5g mm", 1e6 * source->area, 1e3 * source->thickness);
+    append(t, ", %d points of loading and %d of unloading%s", t->loading, t->count - t->loading,
+           inverted[source->invert]);
+    if (t->cycles > 1)
+        append(t, ", cycle %d of %d", t->cycle, t->cycles);
+    if (source->contact_force > 0)
+        append(t, ", zero at a force of %.4g N", source->contact_force);
+    if (t->dwell > 0)
+        append(t, ", without %d points of a rest under strain, during which the stress relaxed", t->dwell);
+    if (t->tension > 0)
+        append(t, ", %d points in tension at the end set to zero", t->tension);
+    if (t->preload > 0)
+        append(t,
+               ", begins under a load that stands for a strain of %.3g %% (preload or zero of the load cell: "
+               "toe_correction takes it away)",
+               100 * t->preload);
+    if (t->sorted > 0)
+        append(t, ", jitter of %d points sorted", t->sorted);
     if (source->toe)
-        snprintf(toe, sizeof toe,
-                 t->toe < 0 ? ", %.3g %% added that a preload had hidden" : ", toe of %.3g %% taken away",
-                 100 * fabs(t->toe));
-    snprintf(t->interpretation, sizeof t->interpretation,
-             "%.383s%s, %d points of loading and %d of unloading%s%s%s%s, %.4g 1/s", table->interpretation,
-             specimen, t->loading, t->count - t->loading, inverted[source->invert], left_out, sorted, toe,
-             t->rate);
+        append(t, t->toe < 0 ? ", %.3g %% added that a preload had hidden" : ", toe of %.3g %% taken away",
+               100 * fabs(t->toe));
+    append(t, ", %.4g 1/s", t->rate);
 }
 
 sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,

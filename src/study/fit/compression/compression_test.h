@@ -68,6 +68,9 @@ sf_status sf_compression_test_read(const sf_compression_source *source, sf_compr
                                    sf_error *err);
 void sf_compression_test_free(sf_compression_test *test);
 
+/* Stress of loading at a strain, by interpolation; below the first strain that of the first point. */
+double sf_compression_loading_stress(const sf_compression_test *test, double strain);
+
 /* ---- internal: test_shape.c ---- */
 
 /* Keeps one cycle of the strain: that of the number, or the first of several. SF_ERR_INPUT: there is none of
@@ -81,8 +84,12 @@ void sf_compression_leave_rests_out(sf_compression_test *test);
 /* The strain counts from where the toe (steepest straight part) or a preload puts its zero. */
 sf_status sf_compression_correct_toe(sf_compression_test *test, sf_error *err);
 
-/* Notes a preload that nobody corrects: a stress at the start that stands for a strain of 0.1 % or more. */
-void sf_compression_note_preload(sf_compression_test *test);
+/* The strain that a stress at zero strain stands for, by the slope of the first percent; 0: below 0.1 %. */
+double sf_compression_preload(const sf_compression_test *test);
+
+/* Point `from` becomes point `to`, with the strain counted from `zero`. */
+void sf_compression_move(sf_compression_test *test, int from, int to, double zero);
+void sf_compression_find_largest(sf_compression_test *test);
 
 extern const double SF_COMPRESSION_JITTER; /* strain by which scatter may turn it back */
 

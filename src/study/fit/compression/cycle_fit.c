@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/compression/cycle_fit.h"
+#include "study/fit/compression/form_fit.h"
 
 #include <gsl/gsl_errno.h>
 #include <math.h>
@@ -113,17 +113,6 @@ static void put_start(const problem *p, gsl_vector *x) {
                                  k < HYSTERESIS ? p->fit->unloading.value[k] : memory[k - HYSTERESIS]));
 }
 
-/* Neighbouring deviations correlate by r: (1 + r)/(1 - r). */
-static double serial_factor(const gsl_vector *d) {
-    double top = 0, bottom = 0;
-    for (size_t i = 0; i < d->size; i++) {
-        bottom += d->data[i] * d->data[i];
-        top += i > 0 ? d->data[i] * d->data[i - 1] : 0;
-    }
-    double r = bottom > 0 ? fmin(0.98, fmax(0, top / bottom)) : 0;
-    return (1 + r) / (1 - r);
-}
-
 /* The half widths, from the slope of each bounded value. */
 static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix *covariance, double variance,
                         const double own[HYSTERESIS + MEMORY], sf_form_fit *fit) {
@@ -147,13 +136,6 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
     }
 }
 
-static double rms(const sf_cycle_record *r, const double *stress, int first, int last) {
-    double sum = 0;
-    for (int i = first; i < last; i++)
-        sum += pow((stress[i] - r->stress[i]) / r->largest_stress, 2);
-    return sqrt(sum / (last - first));
-}
-
 static sf_status conclude(const problem *p, const double *value, const double own[HYSTERESIS + MEMORY],
                           sf_form_fit *fit, sf_error *err) {
     sf_cycle_result *c = &fit->cycles;
@@ -173,7 +155,8 @@ static sf_status conclude(const problem *p, const double *value, const double ow
     if (err->status != SF_OK || follow(r, &fit->card, r->count, c->stress, err) != SF_OK)
         return err->status;
     for (int k = 0; k < 2 * r->cycles; k++)
-        c->rms[k % 2][k / 2] = rms(r, c->stress, r->turn[k], r->turn[k + 1] + 1);
+        c->rms[k % 2][k / 2] =
+            sf_form_rms(r->stress, r->largest_stress, c->stress, r->turn[k], r->turn[k + 1] + 1);
     fit->loading_rms = c->rms[0][0];
     fit->unloading.rms = c->rms[1][0];
     fit->unloading.factor_rms = NAN; /* of the first cycle alone */
@@ -188,8 +171,7 @@ sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err) {
     if (!fit->has_unloading)
         return SF_FAIL(err, SF_ERR_INPUT, "%s: a test without unloading has no memory", r->path);
     p.stress = sf_alloc(err, (unsigned long)r->count, sizeof *p.stress, "cycles");
-    if (!p.stress)
-        return err->status;
+    SF_TRY(err->status);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     size_t size = (size_t)(fit->config->form.unknown_count + HYSTERESIS + p.memory),
            count = (size_t)r->turn[2 * r->fitted] + 1;
@@ -203,7 +185,8 @@ sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err) {
         deviate(x, &p, out);
         for (int k = 0; k < MEMORY; k++)
             fit->cycles.width[k] = NAN;
-        take_errors(&p, x, covariance, sum / (double)(count - size) * serial_factor(out), own, fit);
+        double r1 = fmin(0.98, fmax(0, sf_neighbour_correlation(count, out->data)));
+        take_errors(&p, x, covariance, sum / (double)(count - size) * ((1 + r1) / (1 - r1)), own, fit);
         conclude(&p, value, own, fit, err);
     } else {
         SF_FAIL(err, SF_ERR_NUMERIC, "no search for the memory in %s converges", r->path);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/compression/cycle_record.h"
+#include "study/fit/compression/compression_config.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -93,9 +93,9 @@ static sf_status find_turns(sf_cycle_record *r, sf_error *err) {
     return SF_OK;
 }
 
-sf_status sf_cycle_record_read(const sf_config *file, const config_setting_t *root, sf_cycle_record *r,
+sf_status sf_cycle_record_read(const sf_config *file, sf_config_item *root, sf_cycle_record *r,
                                sf_error *err) {
-    const config_setting_t *group = config_setting_get_member(root, "cycles");
+    sf_config_item *group = config_setting_get_member(root, "cycles");
     double fitted = SF_CYCLES;
     sf_error inner = SF_ERROR_INIT;
     if (!group)

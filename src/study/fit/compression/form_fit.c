@@ -36,7 +36,7 @@ typedef struct problem {
     const sf_compression_config *config;
     const sf_form_request *request;
     int points;      /* of loading, of all tests */
-    double *strain;  /* [points] */
+    double *strain;  /* [points] owned, with the next two behind it */
     double *stress;  /* [points] Pa, of the form */
     double *reduced; /* [points] deviations at the last evaluation */
     double fall_weight;
@@ -129,19 +129,14 @@ static sf_status init_problem(const sf_compression_config *config, problem *p, s
     *p = (problem){.config = config, .request = &config->form, .fall_weight = FALL_WEIGHT[0]};
     for (int k = 0; k < config->test_count; k++)
         p->points += config->test[k].loading;
-    p->strain = sf_alloc(err, (unsigned long)p->points, sizeof *p->strain, "form fit");
-    p->stress = sf_alloc(err, (unsigned long)p->points, sizeof *p->stress, "form fit");
-    p->reduced = sf_alloc(err, (unsigned long)p->points, sizeof *p->reduced, "form fit");
-    for (int k = 0, at = 0; k < config->test_count && err->status == SF_OK; k++)
+    p->strain = sf_alloc(err, 3 * (unsigned long)p->points, sizeof *p->strain, "form fit");
+    SF_TRY(err->status);
+    p->stress = p->strain + p->points;
+    p->reduced = p->stress + p->points;
+    for (int k = 0, at = 0; k < config->test_count; k++)
         for (int i = 0; i < config->test[k].loading; i++)
             p->strain[at++] = fmax(0, config->test[k].strain[i]);
     return err->status;
-}
-
-static void free_problem(problem *p) {
-    free(p->strain);
-    free(p->stress);
-    free(p->reduced);
 }
 
 /* Start 0: the medians; then each unknown up and down from there. */
@@ -154,21 +149,12 @@ static void put_start(const sf_form_request *r, int start, gsl_vector *x) {
     }
 }
 
-/* Variance factor of neighbouring deviations that correlate. */
-static double serial_factor(const problem *p) {
-    double top = 0, bottom = 0;
-    for (int i = 0; i < p->points; i++) {
-        bottom += p->reduced[i] * p->reduced[i];
-        top += i > 0 ? p->reduced[i] * p->reduced[i - 1] : 0;
-    }
-    double r = bottom > 0 ? fmin(0.98, top / bottom) : 0;
-    return r > 2 / sqrt(p->points) ? (1 + r) / (1 - r) : 1;
-}
-
 static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix *covariance, double sum,
                         sf_form_fit *fit) {
     const sf_form_request *r = p->request;
-    double variance = sum / fmax(1, p->points - r->unknown_count) * serial_factor(p);
+    double correlation = fmin(0.98, sf_neighbour_correlation((size_t)p->points, p->reduced)),
+           serial = correlation > 2 / sqrt(p->points) ? (1 + correlation) / (1 - correlation) : 1,
+           variance = sum / fmax(1, p->points - r->unknown_count) * serial;
     for (int k = 0; k < r->unknown_count; k++) {
         const sf_parameter_info *about = sf_parameter_get(r->unknown[k]);
         double part = logistic(gsl_vector_get(x, (size_t)k)),
@@ -338,21 +324,18 @@ static sf_status fit_all_unloading(sf_form_fit *fit, const sf_curve *curve, sf_e
     fit->has_unloading = count > 3;
     if (!fit->has_unloading)
         return SF_OK;
-    u.measured = sf_alloc(err, count, sizeof(double), "unloading");
-    u.loading = sf_alloc(err, count, sizeof(double), "unloading");
-    u.viscous = sf_alloc(err, count, sizeof(double), "unloading");
-    u.ratio = sf_alloc(err, count, sizeof(double), "unloading");
+    u.measured = sf_alloc(err, 4 * count, sizeof(double), "unloading");
     if (err->status == SF_OK) {
+        u.loading = u.measured + count;
+        u.viscous = u.loading + count;
+        u.ratio = u.viscous + count;
         list_unloading(fit, curve, &u);
         fit->unloading_of_one = fit_unloading(&u, true);
         fit->unloading = fit_unloading(&u, false);
         if (!isfinite(fit->unloading.rms))
             SF_FAIL(err, SF_ERR_NUMERIC, "no search for HU, SHAPE and ALPHA converges");
     }
-    free(u.measured);
-    free(u.loading);
-    free(u.viscous);
-    free(u.ratio);
+    free(u.measured); /* and all behind it */
     return err->status;
 }
 
@@ -364,10 +347,10 @@ static double area(const double *strain, const double *stress, int first, int la
     return sum;
 }
 
-static double rms(const sf_compression_test *t, const double *stress, int first, int last) {
+double sf_form_rms(const double *measured, double largest, const double *stress, int first, int last) {
     double sum = 0;
     for (int i = first; i < last; i++)
-        sum += pow((stress[i] - t->stress[i]) / t->largest_stress, 2);
+        sum += pow((stress[i] - measured[i]) / largest, 2);
     return last > first ? sqrt(sum / (last - first)) : NAN;
 }
 
@@ -379,8 +362,7 @@ static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, cons
     bool back = fit->has_unloading && t->count > t->loading;
     free(out->stress);
     out->stress = sf_alloc(err, (unsigned long)t->count, sizeof(double), "test");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     loading_at(curve, t->largest_strain, &peak);
     for (int i = 0; i < t->count; i++) {
         double stress = loading_at(curve, t->strain[i], &energy),
@@ -390,8 +372,9 @@ static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, cons
                                          : NAN;
         out->stress[i] = by * stress + viscous;
     }
-    out->loading_rms = rms(t, out->stress, 0, t->loading);
-    out->unloading_rms = back ? rms(t, out->stress, t->loading, t->count) : NAN;
+    out->loading_rms = sf_form_rms(t->stress, t->largest_stress, out->stress, 0, t->loading);
+    out->unloading_rms =
+        back ? sf_form_rms(t->stress, t->largest_stress, out->stress, t->loading, t->count) : NAN;
     out->returned_measured = back ? -area(t->strain, t->stress, t->loading - 1, t->count) /
                                         area(t->strain, t->stress, 0, t->loading)
                                   : NAN;
@@ -420,20 +403,14 @@ sf_status sf_form_fit_follow(sf_form_fit *fit, sf_error *err) {
 
 /* ---- all ---- */
 
-static double largest_strain(const sf_compression_config *c) {
-    double largest = 0;
-    for (int k = 0; k < c->test_count; k++)
-        largest = fmax(largest, c->test[k].largest_strain);
-    return largest;
-}
-
 /* The material, without its unloading. */
 static sf_status make_card(sf_form_fit *fit, sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
     if (sf_foam_form_card(&fit->config->form.form, fit->value, &fit->card, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "the tests lead to no foam of curve_form = \"%s\": %s",
                        fit->config->form.form.curve->name, inner.text);
-    fit->card.informed_strain = largest_strain(fit->config);
+    for (int k = 0; k < fit->config->test_count; k++)
+        fit->card.informed_strain = fmax(fit->card.informed_strain, fit->config->test[k].largest_strain);
     return SF_OK;
 }
 
@@ -455,7 +432,7 @@ sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit,
         fit_all_unloading(fit, &curve, err) == SF_OK && follow_all(fit, &curve, err) == SF_OK)
         take_hysteresis(fit);
     sf_curve_free(&curve);
-    free_problem(&p);
+    free(p.strain); /* and all behind it */
     gsl_set_error_handler(handler);
     if (err->status != SF_OK)
         sf_form_fit_free(fit);

@@ -52,6 +52,9 @@ typedef struct sf_form_fit {
 sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit, sf_error *err);
 void sf_form_fit_free(sf_form_fit *fit);
 
+/* Root mean square of the deviations of points `first` to `last` - 1, over the largest stress; NaN: none. */
+double sf_form_rms(const double *measured, double largest, const double *stress, int first, int last);
+
 /* Compares the tests with the present card and values once more. */
 sf_status sf_form_fit_follow(sf_form_fit *fit, sf_error *err);
 
@@ -65,5 +68,19 @@ bool sf_form_fit_is_below_reference(const sf_form_fit *fit, const sf_compression
 
 /* True if a deviation of the fitted tests exceeds a tenth of the largest stress. */
 bool sf_form_fit_is_poor(const sf_form_fit *fit);
+
+/* ---- cycle_fit.c ---- */
+
+/* The law with memory along a record of cycles: the form's unknowns, HU, SHAPE and ALPHA, reload and drift,
+ * and recovery where the record has pauses, together by least squares over the fitted cycles. Names:
+ * "reload", "drift", "recovery", and the half width of their interval (two standard errors; NaN: the record
+ * does not tell it, and its value is that without effect). */
+const char *sf_cycle_fit_name(int number);
+
+/* Refines `fit`, whose values are the start, by the record of its configuration, and fills fit->cycles. */
+sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err);
+
+/* Largest rms, over the largest stress, of loading (0) or unloading (1) of the cycles first .. last - 1. */
+double sf_cycle_fit_worst(const sf_form_fit *fit, int unloading, int first, int last);
 
 #endif

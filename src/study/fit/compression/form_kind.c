@@ -4,7 +4,7 @@
 
 #include "material/low_density_foam.h"
 #include "report/row.h"
-#include "study/fit/compression/cycle_fit.h"
+#include "study/fit/compression/form_fit.h"
 #include <math.h>
 
 static const char *const outputs[] = {"fit.csv", "fit.json", "material.csv", "material.cfg", NULL};
@@ -96,7 +96,7 @@ static void describe(FILE *out, const void *place, bool comments) {
         fputc('\n', out);
     if (comments && sf_form_fit_is_poor(fit))
         fprintf(out, "WARNING: %s\n", POOR_WARNING);
-    fprintf(out, "Curve: %s.\nRate: %s.\n", c->form.form.curve->formula, sf_form_rate_name(c->form.rate));
+    fprintf(out, "Curve: %s.\nRate: %s.\n", c->form.form.curve->formula, sf_form_rate_names[c->form.rate]);
     fprintf(out, "rms of loading %.2g %% of the largest stress, with %d parameters:\n",
             100 * fit->loading_rms, c->form.unknown_count);
     put_unknowns(out, fit);
@@ -180,9 +180,7 @@ static void json_cycles(sf_json *json, const sf_form_fit *fit) {
     const sf_cycle_record *r = &fit->config->cycles;
     sf_json_open(json, "memory", '{');
     sf_json_text(json, "file", r->path);
-    sf_json_integer(json, "cycles", r->cycles);
-    sf_json_integer(json, "fitted", r->fitted);
-    sf_json_integer(json, "pauses", r->pauses);
+    SF_JSON_NUMBERS(json, {"cycles", r->cycles}, {"fitted", r->fitted}, {"pauses", r->pauses});
     for (int k = 0; k < SF_CYCLE_MEMORY; k++) {
         char key[64];
         sf_json_number(json, sf_cycle_fit_name(k), fit->cycles.value[k]);
@@ -206,8 +204,8 @@ static void json_unknowns(sf_json *json, const sf_form_fit *fit) {
         sf_json_open(json, NULL, '{');
         sf_json_text(json, "name", about->name);
         sf_json_text(json, "unit", about->unit);
-        sf_json_number(json, "value", fit->value[r->unknown[k]] / about->per_unit);
-        sf_json_number(json, "relative_error", fit->error[k]);
+        SF_JSON_NUMBERS(json, {"value", fit->value[r->unknown[k]] / about->per_unit},
+                        {"relative_error", fit->error[k]});
         sf_json_bool(json, "at_bound", fit->at_bound[k]);
         sf_json_bool(json, "determined", sf_form_fit_determines(fit, k));
         sf_json_close(json, '}');
@@ -224,31 +222,23 @@ static void json_unloading(sf_json *json, const char *key, const sf_form_unloadi
         if (u->at_bound[k])
             sf_json_text(json, NULL, unloading_names[k]);
     sf_json_close(json, ']');
-    sf_json_number(json, "rms", u->rms);
-    sf_json_number(json, "factor_rms", u->factor_rms);
+    SF_JSON_NUMBERS(json, {"rms", u->rms}, {"factor_rms", u->factor_rms});
     sf_json_close(json, '}');
 }
 
 static void json_tests(sf_json *json, const sf_form_fit *fit, const char *key, int count,
                        const sf_compression_test *tests, const sf_form_test *fits) {
-    static const sf_row test_rows[] = {
-        {.key = "largest_strain", SF_ROW_OF(NUMBER, sf_compression_test, largest_strain)},
-        {.key = "largest_stress_Pa", SF_ROW_OF(NUMBER, sf_compression_test, largest_stress)},
-    };
-    static const sf_row fit_rows[] = {
-        {.key = "loading_rms", SF_ROW_OF(NUMBER, sf_form_test, loading_rms)},
-        {.key = "unloading_rms", SF_ROW_OF(NUMBER, sf_form_test, unloading_rms)},
-        {.key = "returned_energy_measured", SF_ROW_OF(NUMBER, sf_form_test, returned_measured)},
-        {.key = "returned_energy_fitted", SF_ROW_OF(NUMBER, sf_form_test, returned_fitted)},
-    };
     sf_json_open(json, key, '[');
     for (int k = 0; k < count; k++) {
         sf_json_open(json, NULL, '{');
         sf_json_text(json, "file", tests[k].path);
         sf_json_number(json, "rate_1_s", tests[k].rate);
         sf_json_bool(json, "below_rate_reference", sf_form_fit_is_below_reference(fit, &tests[k]));
-        sf_rows_json(json, SF_ROWS(test_rows), &tests[k]);
-        sf_rows_json(json, SF_ROWS(fit_rows), &fits[k]);
+        SF_JSON_NUMBERS(json, {"largest_strain", tests[k].largest_strain},
+                        {"largest_stress_Pa", tests[k].largest_stress}, {"loading_rms", fits[k].loading_rms},
+                        {"unloading_rms", fits[k].unloading_rms},
+                        {"returned_energy_measured", fits[k].returned_measured},
+                        {"returned_energy_fitted", fits[k].returned_fitted});
         sf_json_close(json, '}');
     }
     sf_json_close(json, ']');
@@ -261,9 +251,8 @@ static void put_json(sf_json *json, const void *place, const char *path) {
     sf_json_text(json, "law", "low_density_foam");
     sf_json_text(json, "name", c->name);
     sf_json_text(json, "curve_form", c->form.form.curve->name);
-    sf_json_text(json, "rate_model", sf_form_rate_name(c->form.rate));
-    sf_json_integer(json, "parameter_count", c->form.unknown_count);
-    sf_json_number(json, "loading_rms", fit->loading_rms);
+    sf_json_text(json, "rate_model", sf_form_rate_names[c->form.rate]);
+    SF_JSON_NUMBERS(json, {"parameter_count", c->form.unknown_count}, {"loading_rms", fit->loading_rms});
     sf_json_bool(json, "describes_the_tests", !sf_form_fit_is_poor(fit));
     json_unknowns(json, fit);
     if (fit->has_unloading) {

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const RATES[] = {"none", "factor", "maxwell", "both"}; /* in the order of sf_form_rate */
+const char *const sf_form_rate_names[] = {"none", "factor", "maxwell", "both"};
 static const char RATE_WORDS[] = "none|factor|maxwell|both";
 static const char FREE_FORM[] = "free";
 enum { LEAST_POINTS = 4 }; /* of the slope that E begins with */
@@ -17,12 +17,7 @@ enum { LEAST_POINTS = 4 }; /* of the slope that E begins with */
 static const double FILTER_TIME = 1e-4, FACTOR_FILTER_TIME = 5e-4; /* s */
 static const double FACTOR_DAMP = 0.05;
 
-const char *sf_form_rate_name(sf_form_rate rate) {
-    return RATES[rate];
-}
-
-sf_status sf_form_request_asked(const sf_config *file, const config_setting_t *root, bool *asked,
-                                sf_error *err) {
+sf_status sf_form_request_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err) {
     const char *name = FREE_FORM;
     SF_TRY(sf_config_text(file, root, "curve_form", false, &name, err));
     const sf_curve_form *form = sf_curve_form_find(name);
@@ -51,7 +46,7 @@ static bool is_of_curve(const sf_form_request *r, sf_foam_parameter p) {
 }
 
 /* A value of the rate that the rate model does not have would be lost, or act where none is asked for. */
-static sf_status check_rate_value(const sf_config *file, const config_setting_t *item, sf_foam_parameter p,
+static sf_status check_rate_value(const sf_config *file, sf_config_item *item, sf_foam_parameter p,
                                   const sf_form_request *r, sf_error *err) {
     bool factor = p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE,
          maxwell = p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
@@ -59,13 +54,13 @@ static sf_status check_rate_value(const sf_config *file, const config_setting_t 
         return sf_config_refuse(file, item, err,
                                 "%s is given, but rate_model = \"%s\" has none: give rate_model = \"%s\" "
                                 "or \"both\", or leave it out",
-                                sf_parameter_get(p)->name, RATES[r->rate],
-                                RATES[factor ? SF_FORM_RATE_FACTOR : SF_FORM_RATE_MAXWELL]);
+                                sf_parameter_get(p)->name, sf_form_rate_names[r->rate],
+                                sf_form_rate_names[factor ? SF_FORM_RATE_FACTOR : SF_FORM_RATE_MAXWELL]);
     return SF_OK;
 }
 
-static sf_status read_value(const sf_config *file, const config_setting_t *group,
-                            const config_setting_t *item, sf_form_request *r, sf_error *err) {
+static sf_status read_value(const sf_config *file, sf_config_item *group, sf_config_item *item,
+                            sf_form_request *r, sf_error *err) {
     const char *name = config_setting_name(item);
     sf_foam_parameter p = sf_parameter_find(name);
     if (!is_of_curve(r, p) && p != SF_PARAMETER_RATE_FACTOR && p != SF_PARAMETER_ED &&
@@ -75,19 +70,11 @@ static sf_status read_value(const sf_config *file, const config_setting_t *group
             "start: \"%.80s\" is neither E, a parameter of curve_form = \"%s\", nor rate_factor, ED or BETA1",
             name, r->form.curve->name);
     SF_TRY(check_rate_value(file, item, p, r, err));
-    const sf_parameter_info *about = sf_parameter_get(p);
-    if (about->quantity == SF_QUANTITY_COUNT)
-        return sf_config_number(file, group, about->name, true, about->low, about->high, &r->start[p], err);
-    SF_TRY(
-        sf_config_quantity(file, group, about->name, about->quantity, true, about->low, &r->start[p], err));
-    if (!(r->start[p] <= about->high))
-        return sf_config_refuse(file, item, err, "%s is above %g", about->name, about->high);
-    return SF_OK;
+    return sf_parameter_read(file, group, p, &r->start[p], err);
 }
 
-static sf_status read_start(const sf_config *file, const config_setting_t *root, sf_form_request *r,
-                            sf_error *err) {
-    const config_setting_t *group = config_setting_get_member(root, "start");
+static sf_status read_start(const sf_config *file, sf_config_item *root, sf_form_request *r, sf_error *err) {
+    sf_config_item *group = config_setting_get_member(root, "start");
     if (group && !config_setting_is_group(group))
         return sf_config_refuse(file, group, err, "start must be a group: start = { p0 = \"101 kPa\"; }");
     for (int k = 0; group && k < config_setting_length(group); k++)
@@ -103,9 +90,9 @@ static void add_unknown(sf_form_request *r, sf_foam_parameter p) {
 }
 
 /* Reads the unknowns of the curve; unloading and rate have keys of their own. */
-static sf_status read_unknowns(const sf_config *file, const config_setting_t *root, sf_form_request *r,
+static sf_status read_unknowns(const sf_config *file, sf_config_item *root, sf_form_request *r,
                                sf_error *err) {
-    const config_setting_t *list = config_setting_get_member(root, "unknown");
+    sf_config_item *list = config_setting_get_member(root, "unknown");
     if (list && !config_setting_is_array(list) && !config_setting_is_list(list))
         return sf_config_refuse(file, list, err, "unknown must be a list: unknown = ( \"E\", \"s0\" )");
     if (list && config_setting_length(list) > SF_FORM_UNKNOWNS - 4)
@@ -130,11 +117,11 @@ static sf_status read_unknowns(const sf_config *file, const config_setting_t *ro
 }
 
 /* The solid fraction is known in one way, where the form has one. */
-static sf_status check_solid_fraction(const sf_config *file, const config_setting_t *root,
-                                      const sf_form_request *r, sf_error *err) {
-    const config_setting_t *start = config_setting_get_member(root, "start"),
-                           *density = config_setting_get_member(root, "solid_density"),
-                           *given = start ? config_setting_get_member(start, "solid_fraction") : NULL;
+static sf_status check_solid_fraction(const sf_config *file, sf_config_item *root, const sf_form_request *r,
+                                      sf_error *err) {
+    sf_config_item *start = config_setting_get_member(root, "start"),
+                   *density = config_setting_get_member(root, "solid_density"),
+                   *given = start ? config_setting_get_member(start, "solid_fraction") : NULL;
     bool known = density || given;
     for (int k = 0; k < r->unknown_count; k++)
         known = known || r->unknown[k] == SF_PARAMETER_SOLID_FRACTION;
@@ -156,7 +143,7 @@ static sf_status check_solid_fraction(const sf_config *file, const config_settin
 }
 
 /* At its pole the curve is infinite: no test can get there. */
-static sf_status check_pole(const sf_config *file, const config_setting_t *root, int test_count,
+static sf_status check_pole(const sf_config *file, sf_config_item *root, int test_count,
                             const sf_compression_test *test, const sf_form_request *r, sf_error *err) {
     double pole = sf_curve_form_pole(r->form.curve, r->start);
     for (int k = 0; k < test_count; k++)
@@ -171,10 +158,10 @@ static sf_status check_pole(const sf_config *file, const config_setting_t *root,
 }
 
 /* The rate up to which the curve holds as it is: below the fastest test, or the factor would be 1 in all. */
-static sf_status read_reference(const sf_config *file, const config_setting_t *root, int test_count,
+static sf_status read_reference(const sf_config *file, sf_config_item *root, int test_count,
                                 const sf_compression_test *test, sf_form_request *r, sf_error *err) {
     const sf_parameter_info *about = sf_parameter_get(SF_PARAMETER_RATE_REFERENCE);
-    const config_setting_t *given = config_setting_get_member(root, about->name);
+    sf_config_item *given = config_setting_get_member(root, about->name);
     double *reference = &r->start[SF_PARAMETER_RATE_REFERENCE], fastest = test[test_count - 1].rate;
     *reference = test[0].rate;
     if (!given)
@@ -189,14 +176,7 @@ static sf_status read_reference(const sf_config *file, const config_setting_t *r
     return SF_OK;
 }
 
-/* Unless the user says otherwise. */
-static void stabilise_factor(const config_setting_t *root, sf_form_request *r) {
-    r->form.base.rate_filter_time = FACTOR_FILTER_TIME;
-    if (!config_setting_get_member(root, "DAMP"))
-        r->form.base.damp = r->start[SF_PARAMETER_DAMP] = FACTOR_DAMP;
-}
-
-static sf_status read_rate(const sf_config *file, const config_setting_t *root, int test_count,
+static sf_status read_rate(const sf_config *file, sf_config_item *root, int test_count,
                            const sf_compression_test *test, sf_form_request *r, sf_error *err) {
     int rate = SF_FORM_RATE_NONE;
     double largest = test[test_count - 1].largest_stress;
@@ -206,14 +186,16 @@ static sf_status read_rate(const sf_config *file, const config_setting_t *root, 
     if (r->rate != SF_FORM_RATE_NONE && test_count < 2)
         return sf_config_refuse(file, config_setting_get_member(root, "rate_model"), err,
                                 "the rate model \"%s\" needs tests at two rates; there is one test",
-                                RATES[rate]);
+                                sf_form_rate_names[rate]);
     SF_TRY(read_reference(file, root, test_count, test, r, err));
     r->start[SF_PARAMETER_RATE_FACTOR] = 0;
     r->start[SF_PARAMETER_ED] = maxwell ? 0.1 * largest : 0;
     r->start[SF_PARAMETER_BETA1] = maxwell ? sqrt(test[0].rate * test[test_count - 1].rate) : 5000;
     if (factor) {
         sf_foam_form_start_rate(r->start);
-        stabilise_factor(root, r);
+        r->form.base.rate_filter_time = FACTOR_FILTER_TIME;
+        if (!config_setting_get_member(root, "DAMP"))
+            r->form.base.damp = r->start[SF_PARAMETER_DAMP] = FACTOR_DAMP;
         add_unknown(r, SF_PARAMETER_RATE_FACTOR);
     }
     if (maxwell) {
@@ -226,34 +208,24 @@ static sf_status read_rate(const sf_config *file, const config_setting_t *root, 
     return SF_OK;
 }
 
-/* A foam of these tests, without curve. */
-static sf_foam_card base_card(double density, double damp, double modulus) {
-    return (sf_foam_card){.density = density,
-                          .modulus = modulus,
-                          .hysteresis_hu = 1,
-                          .hysteresis_shape = 1,
-                          .hysteresis_alpha = 1,
-                          .damp = damp,
-                          .maxwell_rate = 5000,
-                          .tension_cutoff = 1e30,
-                          .densification_limit = 1,
-                          .rate_filter_time = FILTER_TIME};
-}
-
-sf_status sf_form_request_read(const sf_config *file, const config_setting_t *root, double density,
-                               double damp, double range, int test_count, const sf_compression_test *test,
+sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, double density, double damp,
+                               double range, int test_count, const sf_compression_test *test,
                                int predicted_count, const sf_compression_test *predicted, sf_form_request *r,
                                sf_error *err) {
     const char *name = NULL;
-    sf_error inner = SF_ERROR_INIT;
     SF_TRY(sf_config_text(file, root, "curve_form", true, &name, err));
     *r = (sf_form_request){.form = {.curve = sf_curve_form_find(name),
-                                    .base = base_card(density, damp, first_slope(&test[0], range))}};
-    SF_TRY(
-        sf_config_quantity(file, root, "solid_density", SF_DENSITY, false, 0, &r->form.solid_density, err));
-    if (r->form.solid_density > 0 && sf_foam_form_check_solid(&r->form, &inner) != SF_OK)
-        return sf_config_refuse(file, config_setting_get_member(root, "solid_density"), err, "%s",
-                                inner.text);
+                                    .base = {.density = density,
+                                             .modulus = first_slope(&test[0], range),
+                                             .hysteresis_hu = 1,
+                                             .hysteresis_shape = 1,
+                                             .hysteresis_alpha = 1,
+                                             .damp = damp,
+                                             .maxwell_rate = 5000,
+                                             .tension_cutoff = 1e30,
+                                             .densification_limit = 1,
+                                             .rate_filter_time = FILTER_TIME}}};
+    SF_TRY(sf_foam_form_read_solid(file, root, &r->form, err));
     sf_foam_form_start(&r->form, r->start);
     SF_TRY(read_unknowns(file, root, r, err));
     SF_TRY(read_rate(file, root, test_count, test, r, err));
@@ -268,7 +240,7 @@ sf_status sf_form_request_read(const sf_config *file, const config_setting_t *ro
 enum { LAW_HYPERFOAM = 1, LEAST_LATERAL = 6 };
 #define LAW_WORDS "low_density_foam|hyperfoam"
 
-sf_status sf_hyperfoam_request_asked(const sf_config *file, const config_setting_t *root, bool *asked,
+sf_status sf_hyperfoam_request_asked(const sf_config *file, sf_config_item *root, bool *asked,
                                      sf_error *err) {
     int law = 0;
     SF_TRY(sf_config_choice(file, root, "law", LAW_WORDS, &law, err));
@@ -307,8 +279,7 @@ static sf_table_layout lateral_layout(void) {
 static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_error *err) {
     const sf_table_layout layout = lateral_layout();
     sf_table table = {0};
-    if (sf_table_read(path, &layout, &table, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_table_read(path, &layout, &table, err));
     int64_t end = 0;
     for (int64_t i = 1; i < table.count; i++)
         end = table.value[0][i] > table.value[0][end] ? i : end;
@@ -333,9 +304,9 @@ static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_e
 
 /* ---- the keys ---- */
 
-static sf_status read_test(const sf_config *file, const config_setting_t *root, sf_hyperfoam_request *r,
+static sf_status read_test(const sf_config *file, sf_config_item *root, sf_hyperfoam_request *r,
                            sf_compression_test *test, sf_error *err) {
-    const config_setting_t *tests, *entry;
+    sf_config_item *tests, *entry;
     sf_compression_source source = {0};
     char *path = NULL, *lateral = NULL;
     sf_error inner = SF_ERROR_INIT;
@@ -362,8 +333,8 @@ static sf_status read_test(const sf_config *file, const config_setting_t *root, 
     return err->status;
 }
 
-sf_status sf_hyperfoam_request_read(const sf_config *file, const config_setting_t *root,
-                                    sf_hyperfoam_request *r, sf_compression_test *test, sf_error *err) {
+sf_status sf_hyperfoam_request_read(const sf_config *file, sf_config_item *root, sf_hyperfoam_request *r,
+                                    sf_compression_test *test, sf_error *err) {
     double terms = 2;
     SF_TRY(sf_config_number(file, root, "terms", false, 1, SF_HYPERFOAM_TERMS, &terms, err));
     SF_TRY(sf_config_number(file, root, "nu", false, 0, 0.45, &r->nu, err));

@@ -7,7 +7,7 @@
 
 #include "study/config.h"
 #include "study/fit/compression/compression_test.h"
-#include "study/fit/drop/parameters.h"
+#include "study/fit/form/form.h"
 
 /* Keys of the file that belong to forms, and rate_model. */
 #define SF_FORM_REQUEST_KEYS "curve_form|solid_density|start|unknown|rate_model|rate_reference|predict"
@@ -30,20 +30,19 @@ typedef struct sf_form_request {
     sf_foam_parameter unknown[SF_FORM_UNKNOWNS];
 } sf_form_request;
 
-/* "none", "factor", "maxwell", "both" */
-const char *sf_form_rate_name(sf_form_rate rate);
+/* Names of sf_form_rate. */
+extern const char *const sf_form_rate_names[];
 
 /* True if the file names a form other than "free". SF_ERR_INPUT: it names one that does not exist, or
  * "table". */
-sf_status sf_form_request_asked(const sf_config *file, const config_setting_t *root, bool *asked,
-                                sf_error *err);
+sf_status sf_form_request_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err);
 
 /* Reads the keys of a form. E begins as the slope of the slowest test's first points, up to the strain
  * `range`. `predicted` are compared only. SF_ERR_INPUT also where the data cannot decide: a start value of a
  * rate that the model does not have, a reference rate at or above the fastest test, two solid fractions, a
  * test at the curve's pole or beyond, nothing unknown. */
-sf_status sf_form_request_read(const sf_config *file, const config_setting_t *root, double density,
-                               double damp, double range, int test_count, const sf_compression_test *test,
+sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, double density, double damp,
+                               double range, int test_count, const sf_compression_test *test,
                                int predicted_count, const sf_compression_test *predicted,
                                sf_form_request *request, sf_error *err);
 
@@ -59,10 +58,9 @@ typedef struct sf_hyperfoam_request {
 } sf_hyperfoam_request;
 
 /* True if the file asks for the hyperfoam. */
-sf_status sf_hyperfoam_request_asked(const sf_config *file, const config_setting_t *root, bool *asked,
-                                     sf_error *err);
+sf_status sf_hyperfoam_request_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err);
 /* Reads terms, nu and the only test. SF_ERR_INPUT also where nu is both given and measured, or neither. */
-sf_status sf_hyperfoam_request_read(const sf_config *file, const config_setting_t *root,
+sf_status sf_hyperfoam_request_read(const sf_config *file, sf_config_item *root,
                                     sf_hyperfoam_request *request, sf_compression_test *test, sf_error *err);
 void sf_hyperfoam_request_free(sf_hyperfoam_request *request);
 

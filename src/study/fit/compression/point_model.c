@@ -32,6 +32,7 @@ static void fill(sf_compression_data *data) {
             data->unloading[at] = i >= t->loading;
             data->strain[at] = fmax(0, t->strain[i]);
             data->stress[at] = t->stress[i];
+            data->largest = fmax(data->largest, t->stress[i]);
         }
     }
     data->start =
@@ -57,11 +58,9 @@ static int list_branches(const sf_compression_data *data, int sides,
 static sf_status estimate(sf_compression_data *data, sf_error *err) {
     sf_scatter_branch branches[SF_SCATTER_BRANCHES];
     int intervals, all = list_branches(data, 2, branches);
-    if (sf_scatter_estimate(all, branches, &data->scatter, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_scatter_estimate(all, branches, &data->scatter, err));
     int loading = list_branches(data, 1, branches);
-    if (sf_scatter_intervals(loading, branches, &intervals, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_scatter_intervals(loading, branches, &intervals, err));
     data->intervals = (int)ceil(FINER * intervals * sf_spline_part(data->end, data->start));
     return SF_OK;
 }
@@ -74,11 +73,11 @@ sf_status sf_compression_data_init(const sf_compression_config *config, sf_compr
     unsigned long n = (unsigned long)data->count;
     data->test = sf_alloc(err, n, sizeof *data->test, "test points");
     data->unloading = sf_alloc(err, n, sizeof *data->unloading, "test points");
-    data->strain = sf_alloc(err, n, sizeof *data->strain, "test points");
-    data->stress = sf_alloc(err, n, sizeof *data->stress, "test points");
-    data->smooth = sf_alloc(err, n, sizeof *data->smooth, "test points");
-    data->sigma = sf_alloc(err, n, sizeof *data->sigma, "test points");
+    data->strain = sf_alloc(err, 4 * n, sizeof *data->strain, "test points");
     if (err->status == SF_OK) {
+        data->stress = data->strain + n;
+        data->smooth = data->stress + n;
+        data->sigma = data->smooth + n;
         fill(data);
         estimate(data, err);
     }
@@ -90,10 +89,7 @@ sf_status sf_compression_data_init(const sf_compression_config *config, sf_compr
 void sf_compression_data_free(sf_compression_data *data) {
     free(data->test);
     free(data->unloading);
-    free(data->strain);
-    free(data->stress);
-    free(data->smooth);
-    free(data->sigma);
+    free(data->strain); /* and all behind it */
     *data = (sf_compression_data){0};
 }
 
@@ -116,17 +112,12 @@ typedef struct ordinate {
 
 /* ---- parameters ---- */
 
-/* 1 / (1 + exp(-x)), kept off 0 and 1. */
-static double logistic(double x) {
-    return 1 / (1 + exp(-fmax(-30, fmin(30, x))));
-}
-
 static double from_real(const sf_number_range *r, double x, double *slope) {
     if (isinf(r->high)) {
         *slope = 1;
         return x;
     }
-    double part = logistic(x), change = part * (1 - part);
+    double part = 1 / (1 + exp(-fmax(-30, fmin(30, x)))), change = part * (1 - part);
     if (!r->logarithmic) {
         *slope = (r->high - r->low) * change;
         return r->low + (r->high - r->low) * part;
@@ -266,11 +257,6 @@ double sf_compression_maxwell(double decay_rate, double rate, double turn, doubl
     return -(1 - strain) * walk->held;
 }
 
-static double rate_logarithm(const sf_compression_model *model, int test) {
-    const sf_compression_test *t = model->data->config->test;
-    return model->form.rate == SF_RATE_LOG ? log(t[test].rate / t[0].rate) : 0;
-}
-
 /* ---- derivatives into the parameter vector ---- */
 
 /* Adds `factor` times a gradient by the coefficients of a curve: an increment raises all coefficients after
@@ -326,15 +312,16 @@ static double predict_maxwell(const sf_compression_model *model, const gsl_vecto
     return modulus * unit[0];
 }
 
-static double predict_loading(const sf_compression_model *model, const gsl_vector *parameters,
-                              const numbers *n, int i, double *gradient) {
-    const sf_compression_data *d = model->data;
-    int curve = model->curve_count > 1 ? d->test[i] : 0;
-    double logarithm = rate_logarithm(model, d->test[i]),
+/* Stress of loading at the rate of a test; `row`: of the spline at this strain. Adds to `gradient` or NULL.
+ */
+static double loading_stress(const sf_compression_model *model, const gsl_vector *parameters,
+                             const numbers *n, int test, double strain, const double *row, double *gradient) {
+    int curve = model->curve_count > 1 ? test : 0;
+    const sf_compression_test *t = model->data->config->test;
+    double logarithm = model->form.rate == SF_RATE_LOG ? log(t[test].rate / t[0].rate) : 0,
            factor = 1 + n->value[SF_NUMBER_LOG_RATE] * logarithm;
     ordinate o;
-    evaluate(model, n->coefficient[curve], n, d->strain[i], &model->value_row[i * model->spline.count], NULL,
-             &o);
+    evaluate(model, n->coefficient[curve], n, strain, row, NULL, &o);
     if (gradient) {
         add_coefficients(model, n, curve, o.stress_by, factor, gradient);
         add_densification(model, parameters, factor * o.stress_by_exponent, factor * o.stress_by_limit,
@@ -390,7 +377,8 @@ void sf_compression_predict(const sf_compression_model *model, const gsl_vector 
     for (int i = 0; i < d->count; i++) {
         double *gradient = jacobian ? gsl_matrix_ptr(jacobian, (size_t)i, 0) : NULL;
         stress[i] = d->unloading[i] ? predict_unloading(model, parameters, &n, i, gradient)
-                                    : predict_loading(model, parameters, &n, i, gradient);
+                                    : loading_stress(model, parameters, &n, d->test[i], d->strain[i],
+                                                     &model->value_row[i * model->spline.count], gradient);
         if (model->form.rate == SF_RATE_MAXWELL)
             stress[i] += predict_maxwell(model, parameters, &n, i, &maxwell, gradient);
     }
@@ -413,43 +401,28 @@ double sf_compression_exponent(const sf_compression_model *model, const gsl_vect
 
 double sf_compression_curve(sf_compression_model *model, const gsl_vector *parameters, int test,
                             double strain, double *gradient) {
-    int curve = model->curve_count > 1 ? test : 0;
-    double row[SF_SPLINE_COEFFICIENTS], logarithm = rate_logarithm(model, test);
+    double row[SF_SPLINE_COEFFICIENTS];
     numbers n;
-    ordinate o;
     unpack(model, parameters, &n);
     sf_spline_value(&model->spline, fmin(strain, model->data->start), row);
-    evaluate(model, n.coefficient[curve], &n, strain, row, NULL, &o);
-    double factor = 1 + n.value[SF_NUMBER_LOG_RATE] * logarithm;
-    if (gradient) {
+    if (gradient)
         memset(gradient, 0, (size_t)model->parameter_count * sizeof *gradient);
-        add_coefficients(model, &n, curve, o.stress_by, factor, gradient);
-        add_densification(model, parameters, factor * o.stress_by_exponent, factor * o.stress_by_limit,
-                          gradient);
-        add_number(model, parameters, SF_NUMBER_LOG_RATE, logarithm * o.stress, gradient);
-    }
-    return factor * o.stress;
+    return loading_stress(model, parameters, &n, test, strain, row, gradient);
 }
 
 /* ---- set-up ---- */
-
-static bool any_unloading(const sf_compression_data *data) {
-    for (int i = 0; i < data->count; i++)
-        if (data->unloading[i])
-            return true;
-    return false;
-}
 
 static void set_ranges(sf_compression_model *model) {
     const sf_compression_data *d = model->data;
     const sf_compression_config *c = d->config;
     double size = 0, longest = 0, shortest = INFINITY;
+    bool hysteresis = false, maxwell = model->form.rate == SF_RATE_MAXWELL;
     for (int k = 0; k < c->test_count; k++) {
+        hysteresis = hysteresis || c->test[k].count > c->test[k].loading;
         size = fmax(size, c->test[k].largest_stress);
         longest = fmax(longest, c->test[k].largest_strain / c->test[k].rate);
         shortest = fmin(shortest, c->test[k].largest_strain / c->test[k].rate);
     }
-    bool hysteresis = any_unloading(d), maxwell = model->form.rate == SF_RATE_MAXWELL;
     const sf_number_range range[SF_NUMBERS] = {
         [SF_NUMBER_HU] = {hysteresis, false, 1e-4, 1, 1},
         [SF_NUMBER_SHAPE] = {hysteresis, true, 0.05, 50, 1},
@@ -509,8 +482,7 @@ sf_status sf_compression_model_init(const sf_compression_data *data, sf_compress
                                     sf_compression_model *model, sf_error *err) {
     *model = (sf_compression_model){.data = data, .form = form};
     model->curve_count = form.rate == SF_RATE_CURVES ? data->config->test_count : 1;
-    if (make_spline(model, err) != SF_OK)
-        return err->status;
+    SF_TRY(make_spline(model, err));
     unsigned long items = (unsigned long)data->count * (unsigned long)model->spline.count;
     model->value_row = sf_alloc(err, items, sizeof *model->value_row, "spline rows");
     model->area_row = sf_alloc(err, items, sizeof *model->area_row, "spline rows");

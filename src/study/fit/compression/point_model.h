@@ -22,14 +22,15 @@ typedef struct sf_compression_data {
     int count;
     int *test;       /* [count] index into config->test; points of a branch stand together, in order; owned */
     bool *unloading; /* [count] owned */
-    double *strain;  /* [count] -, not below 0; owned */
-    double *stress;  /* [count] Pa; owned */
-    double *smooth;  /* [count] Pa, by the smoothing spline of the branch; owned */
-    double *sigma;   /* [count] Pa, standard deviation of the stress; owned */
+    double *strain;  /* [count] -, not below 0; owned, with the next three behind it */
+    double *stress;  /* [count] Pa */
+    double *smooth;  /* [count] Pa, by the smoothing spline of the branch */
+    double *sigma;   /* [count] Pa, standard deviation of the stress */
     sf_scatter scatter;
-    int intervals; /* of the loading curves' splines up to the start, before joining */
-    double start;  /* -, strain from which densification is fitted */
-    double end;    /* -, largest strain of all tests */
+    int intervals;  /* of the loading curves' splines up to the start, before joining */
+    double start;   /* -, strain from which densification is fitted */
+    double end;     /* -, largest strain of all tests */
+    double largest; /* Pa, largest stress of all points */
 } sf_compression_data;
 
 sf_status sf_compression_data_init(const sf_compression_config *config, sf_compression_data *data,

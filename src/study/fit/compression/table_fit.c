@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/table_fit.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
@@ -9,7 +10,9 @@
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+static const char AT_BOUND[] = "at the bound of the search: not identified by these tests";
 enum { ITERATIONS = 150, MAXWELL_STARTS = 4 };
 static const double STEP_TOLERANCE = 1e-7, GRADIENT_TOLERANCE = 1e-9;
 static const double RANK_TOLERANCE = 1e-7; /* columns of the Jacobian below it do not bear on the data */
@@ -79,9 +82,10 @@ static int derivatives(const gsl_vector *x, void *context, gsl_matrix *out) {
  * the search fails. `covariance` [side's parameters] may be NULL. */
 static double search(const sf_compression_model *model, bool unloading, gsl_vector *x, gsl_matrix *covariance,
                      sf_error *err) {
-    size_t n = (size_t)points_of(model->data, unloading), p = count_of(model, unloading), all = x->size;
-    problem context = {model, unloading, x, malloc((size_t)model->data->count * sizeof(double)),
-                       gsl_matrix_alloc((size_t)model->data->count, all)};
+    size_t n = (size_t)points_of(model->data, unloading), p = count_of(model, unloading);
+    problem context = {model, unloading, x,
+                       sf_alloc(err, (unsigned long)model->data->count, sizeof(double), "stresses"),
+                       sf_matrix((size_t)model->data->count, x->size, err)};
     gsl_multifit_nlinear_fdf fdf = {.f = deviations, .df = derivatives, .n = n, .p = p, .params = &context};
     gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
     how.solver = gsl_multifit_nlinear_solver_cholesky;
@@ -89,12 +93,12 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
         gsl_multifit_nlinear_scale_levenberg; /* parameters are logarithms: a flat one stays where it is */
     gsl_multifit_nlinear_workspace *w =
         n > p ? gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, n, p) : NULL;
-    gsl_vector *start = gsl_vector_alloc(p);
+    gsl_vector *start = sf_vector(p, err);
     double chi2 = INFINITY;
     int info;
-    if (!context.stress || !context.change || !start || (n > p && !w)) {
+    if (n > p && !w)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a fit of %zu parameters to %zu points", p, n);
-    } else if (w) {
+    if (w && err->status == SF_OK) {
         gsl_vector_view own = gsl_vector_subvector(x, first_of(model, unloading), p);
         gsl_vector_memcpy(start, &own.vector);
         if (gsl_multifit_nlinear_init(start, &fdf, w) == GSL_SUCCESS) {
@@ -118,10 +122,8 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
 static sf_status search_loading(const sf_compression_model *model, gsl_vector *best, double *chi2,
                                 sf_error *err) {
     int starts = model->form.rate == SF_RATE_MAXWELL ? MAXWELL_STARTS : 1;
-    gsl_vector *x = gsl_vector_alloc((size_t)model->parameter_count);
+    gsl_vector *x = sf_vector((size_t)model->parameter_count, err);
     *chi2 = INFINITY;
-    if (!x)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", model->parameter_count);
     for (int k = 0; k < starts && err->status == SF_OK; k++) {
         sf_compression_guess(model, (k + 1.0) / (starts + 1), x);
         double value = search(model, false, x, NULL, err);
@@ -139,26 +141,15 @@ static sf_status search_loading(const sf_compression_model *model, gsl_vector *b
 static sf_status try_form(const sf_compression_data *data, sf_compression_form form, sf_candidate *candidate,
                           sf_error *err) {
     sf_compression_model model;
-    if (sf_compression_model_init(data, form, &model, err) != SF_OK)
-        return err->status;
-    gsl_vector *x = gsl_vector_alloc((size_t)model.parameter_count);
+    SF_TRY(sf_compression_model_init(data, form, &model, err));
+    gsl_vector *x = sf_vector((size_t)model.parameter_count, err);
     double n = points_of(data, false);
-    if (!x)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", model.parameter_count);
-    else if (search_loading(&model, x, &candidate->chi2, err) == SF_OK)
+    if (err->status == SF_OK && search_loading(&model, x, &candidate->chi2, err) == SF_OK)
         *candidate = (sf_candidate){true, model.loading_count, candidate->chi2,
                                     n * log(candidate->chi2 / n) + model.loading_count * log(n)};
     gsl_vector_free(x);
     sf_compression_model_free(&model);
     return err->status;
-}
-
-static int lowest(const sf_candidate *candidates, int count, int otherwise) {
-    int best = otherwise;
-    for (int k = 0; k < count; k++)
-        if (candidates[k].tried && (!candidates[best].tried || candidates[k].bic < candidates[best].bic))
-            best = k;
-    return best;
 }
 
 /* First the rate dependence, with the prescribed densification or the free exponent of H1; then, unless it is
@@ -174,17 +165,17 @@ static sf_status choose(sf_compression_fit *fit, sf_compression_form *form, sf_e
         (sf_compression_form){c->test_count == 1 ? SF_RATE_NONE : c->rate_model, prescribed[c->rule], false};
     if (form->rate == SF_RATE_AUTO) {
         for (int k = 0; k < SF_RATE_MODELS; k++)
-            if (try_form(&fit->data, (sf_compression_form){(sf_rate_model)k, form->rule, false},
-                         &fit->rate[k], err) != SF_OK)
-                return err->status;
-        form->rate = (sf_rate_model)lowest(fit->rate, SF_RATE_MODELS, SF_RATE_NONE);
+            SF_TRY(try_form(&fit->data, (sf_compression_form){(sf_rate_model)k, form->rule, false},
+                            &fit->rate[k], err));
+        form->rate = SF_RATE_NONE; /* all were tried */
+        for (int k = 1; k < SF_RATE_MODELS; k++)
+            form->rate = fit->rate[k].bic < fit->rate[form->rate].bic ? (sf_rate_model)k : form->rate;
     }
     if (c->rule != SF_RULE_AUTO)
         return SF_OK;
     for (int k = 0; k < SF_RULES; k++)
-        if (try_form(&fit->data, (sf_compression_form){form->rate, (sf_rule)k, false}, &fit->rule[k], err) !=
-            SF_OK)
-            return err->status;
+        SF_TRY(
+            try_form(&fit->data, (sf_compression_form){form->rate, (sf_rule)k, false}, &fit->rule[k], err));
     form->rule = fit->rule[SF_H2].bic < fit->rule[SF_H1_FREE].bic ? SF_H2 : SF_H1_FREE;
     return SF_OK;
 }
@@ -204,12 +195,6 @@ static double neighbour_correlation(const sf_compression_fit *fit, bool unloadin
             product += r * (d->stress[i - 1] - fit->stress[i - 1]) / d->sigma[i - 1];
     }
     return square > 0 ? product / square : 0;
-}
-
-/* Deviations that hang together count for fewer points: the variance of a mean grows by (1 + r)/(1 - r). */
-static double serial_factor(double correlation, int count) {
-    double r = fmin(0.98, correlation);
-    return r > 2 / sqrt(count) ? (1 + r) / (1 - r) : 1;
 }
 
 double sf_compression_error(const sf_compression_fit *fit, const double *gradient) {
@@ -244,41 +229,33 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
     e->value = sf_compression_number(&fit->model, fit->parameters, number, &slope);
     if (!e->present)
         return;
-    size_t index = (size_t)r->index;
-    double variance = gsl_matrix_get(fit->covariance, index, index), part;
+    double variance = gsl_matrix_get(fit->covariance, (size_t)r->index, (size_t)r->index),
+           part = r->logarithmic ? log(e->value / r->low) / log(r->high / r->low)
+                                 : (e->value - r->low) / (r->high - r->low);
     e->error = slope * sqrt(variance);
-    part = r->logarithmic ? log(e->value / r->low) / log(r->high / r->low)
-                          : (e->value - r->low) / (r->high - r->low);
-    if (isfinite(r->high) && (part < 1e-4 || part > 1 - 1e-4)) {
-        e->note = "at the bound of the search: not identified by these tests";
-        e->error = NAN;
-    } else if (!(variance > 0)) {
-        e->note = "not identified by these tests";
+    bool at_bound = isfinite(r->high) && (part < 1e-4 || part > 1 - 1e-4);
+    if (at_bound || !(variance > 0)) {
+        e->note = at_bound ? AT_BOUND : "not identified by these tests";
         e->error = NAN;
     }
-    bool positive = number == SF_NUMBER_HU;
+    bool hu = number == SF_NUMBER_HU, limit = number == SF_NUMBER_LIMIT;
     if (isfinite(e->error))
-        set_interval(fit, logarithmic,
-                     positive                    ? 0
-                     : number == SF_NUMBER_LIMIT ? r->low
-                                                 : -INFINITY,
-                     number == SF_NUMBER_HU || number == SF_NUMBER_LIMIT ? 1 : INFINITY, e);
-    if (isfinite(e->error) && number == SF_NUMBER_HU && e->low <= 0)
+        set_interval(fit, logarithmic, hu ? 0 : limit ? r->low : -INFINITY, hu || limit ? 1 : INFINITY, e);
+    if (isfinite(e->error) && hu && e->low <= 0)
         e->note = "not distinguishable from zero by these tests";
 }
 
 static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e, sf_error *err) {
     double *gradient =
         sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
-    if (!gradient)
-        return err->status;
+    SF_TRY(err->status);
     e->present = true;
     e->value = sf_compression_exponent(&fit->model, fit->parameters, gradient);
     e->error = sf_compression_error(fit, gradient);
     set_interval(fit, true, 0, INFINITY, e);
     bool follows = fit->model.form.rule == SF_H1_AUTO;
     if (!follows && (!(e->error > 0) || e->value > 59.9 || e->value < 0.0501)) {
-        e->note = "at the bound of the search: not identified by these tests";
+        e->note = AT_BOUND;
         e->error = e->low = e->high = NAN;
     } else if (e->value < 1)
         e->note =
@@ -309,19 +286,28 @@ static void estimate_modulus(const sf_compression_fit *fit, sf_estimate *e) {
 }
 
 static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {
-    static const char *const names[SF_ESTIMATES] = {"E",  "HU",    "SHAPE",    "ALPHA", "c (log rate)",
-                                                    "ED", "BETA1", "exponent", "limit"};
-    static const char *const units[SF_ESTIMATES] = {"Pa", "", "", "", "", "Pa", "1/s", "", ""};
-    for (int k = 0; k < SF_ESTIMATES; k++)
-        fit->estimate[k] = (sf_estimate){names[k], units[k], false, NAN, NAN, NAN, NAN, ""};
+    static const struct {
+        const char *name, *key, *unit;
+        int number; /* sf_number; -1: found otherwise */
+        bool logarithmic;
+    } table[SF_ESTIMATES] = {
+        [SF_ESTIMATE_E] = {"E", "E_Pa", "Pa", -1, false},
+        [SF_ESTIMATE_HU] = {"HU", "HU", "", SF_NUMBER_HU, false},
+        [SF_ESTIMATE_SHAPE] = {"SHAPE", "SHAPE", "", SF_NUMBER_SHAPE, true},
+        [SF_ESTIMATE_ALPHA] = {"ALPHA", "ALPHA", "", SF_NUMBER_ALPHA, true},
+        [SF_ESTIMATE_LOG_RATE] = {"c (log rate)", "log_rate_c", "", SF_NUMBER_LOG_RATE, false},
+        [SF_ESTIMATE_ED] = {"ED", "ED_Pa", "Pa", SF_NUMBER_ED, true},
+        [SF_ESTIMATE_BETA1] = {"BETA1", "BETA1_1_s", "1/s", SF_NUMBER_BETA1, true},
+        [SF_ESTIMATE_EXPONENT] = {"exponent", "exponent", "", -1, false},
+        [SF_ESTIMATE_LIMIT] = {"limit", "limit", "", SF_NUMBER_LIMIT, false},
+    };
+    for (int k = 0; k < SF_ESTIMATES; k++) {
+        fit->estimate[k] =
+            (sf_estimate){table[k].name, table[k].key, table[k].unit, false, NAN, NAN, NAN, NAN, ""};
+        if (table[k].number >= 0)
+            estimate_number(fit, (sf_number)table[k].number, table[k].logarithmic, &fit->estimate[k]);
+    }
     estimate_modulus(fit, &fit->estimate[SF_ESTIMATE_E]);
-    estimate_number(fit, SF_NUMBER_HU, false, &fit->estimate[SF_ESTIMATE_HU]);
-    estimate_number(fit, SF_NUMBER_SHAPE, true, &fit->estimate[SF_ESTIMATE_SHAPE]);
-    estimate_number(fit, SF_NUMBER_ALPHA, true, &fit->estimate[SF_ESTIMATE_ALPHA]);
-    estimate_number(fit, SF_NUMBER_LOG_RATE, false, &fit->estimate[SF_ESTIMATE_LOG_RATE]);
-    estimate_number(fit, SF_NUMBER_ED, true, &fit->estimate[SF_ESTIMATE_ED]);
-    estimate_number(fit, SF_NUMBER_BETA1, true, &fit->estimate[SF_ESTIMATE_BETA1]);
-    estimate_number(fit, SF_NUMBER_LIMIT, false, &fit->estimate[SF_ESTIMATE_LIMIT]);
     for (int k = SF_ESTIMATE_HU; k <= SF_ESTIMATE_SHAPE; k++)
         if (!fit->estimate[k].present) {
             fit->estimate[k].present = true;
@@ -351,10 +337,9 @@ static void place_table(sf_compression_fit *fit) {
 static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
     double *gradient =
         sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
-    if (!gradient)
-        return err->status;
-    bool several = fit->model.form.rate == SF_RATE_LOG || fit->model.form.rate == SF_RATE_CURVES;
-    fit->rate_count = several ? fit->data.config->test_count : 1;
+    SF_TRY(err->status);
+    sf_rate_model rate = fit->model.form.rate;
+    fit->rate_count = rate == SF_RATE_LOG || rate == SF_RATE_CURVES ? fit->data.config->test_count : 1;
     place_table(fit);
     for (int r = 0; r < fit->rate_count; r++)
         for (int k = 0; k < fit->table_count; k++) {
@@ -371,9 +356,7 @@ static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
 /* Root mean square of the deviations of a side, over the stress and over the largest stress of all tests. */
 static void measure_side(const sf_compression_fit *fit, bool unloading, sf_side *side) {
     const sf_compression_data *d = &fit->data;
-    double relative = 0, absolute = 0, largest = 0;
-    for (int i = 0; i < d->count; i++)
-        largest = fmax(largest, d->stress[i]);
+    double relative = 0, absolute = 0, largest = d->largest;
     for (int i = 0; i < d->count; i++) {
         double off = fit->stress[i] - d->stress[i];
         if (d->unloading[i] != unloading)
@@ -390,9 +373,9 @@ static double search_unloading(const sf_compression_model *model, gsl_vector *x,
     static const double starts[][3] = {
         {-2, -1, 0}, {-4, -2, -1}, {0, 0, -1.5}, {-5, 1, 1}}; /* on the real line */
     size_t first = first_of(model, true), count = count_of(model, true);
-    gsl_vector *trial = gsl_vector_alloc(x->size);
+    gsl_vector *trial = sf_vector(x->size, err);
     double best = search(model, true, x, NULL, err);
-    for (size_t s = 0; trial && s < sizeof starts / sizeof *starts && err->status == SF_OK; s++) {
+    for (size_t s = 0; s < sizeof starts / sizeof *starts && err->status == SF_OK; s++) {
         gsl_vector_memcpy(trial, x);
         for (size_t k = 0; k < count; k++)
             gsl_vector_set(trial, first + k, starts[s][k]);
@@ -402,8 +385,6 @@ static double search_unloading(const sf_compression_model *model, gsl_vector *x,
             gsl_vector_memcpy(x, trial);
         }
     }
-    if (!trial)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu parameters", x->size);
     gsl_vector_free(trial);
     return best;
 }
@@ -416,10 +397,8 @@ static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
     if (fit->model.form.alpha)
         return SF_OK;
     SF_TRY(sf_compression_model_init(&fit->data, form, &model, err));
-    gsl_vector *x = gsl_vector_alloc((size_t)model.parameter_count);
-    if (!x) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", model.parameter_count);
-    } else {
+    gsl_vector *x = sf_vector((size_t)model.parameter_count, err);
+    if (err->status == SF_OK) {
         sf_compression_guess(&model, 0.5, x);
         for (size_t k = 0; k < fit->parameters->size; k++) /* ALPHA is the last */
             gsl_vector_set(x, k, gsl_vector_get(fit->parameters, k));
@@ -445,15 +424,13 @@ static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *loa
                                   const gsl_matrix *unloading, sf_error *err) {
     const sf_compression_data *d = &fit->data;
     const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true), n = (size_t)d->count;
-    gsl_matrix *change = gsl_matrix_alloc(n, p1 + p2), *cross = gsl_matrix_alloc(p2, p1),
-               *g = gsl_matrix_alloc(p2, p1), *gc = gsl_matrix_alloc(p2, p1);
+    gsl_matrix *change = sf_matrix(n, p1 + p2, err), *cross = sf_matrix(p2, p1, err),
+               *g = sf_matrix(p2, p1, err), *gc = sf_matrix(p2, p1, err);
     gsl_matrix_view c11 = gsl_matrix_submatrix(fit->covariance, 0, 0, p1, p1),
                     c21 = gsl_matrix_submatrix(fit->covariance, p1, 0, p2, p1),
                     c12 = gsl_matrix_submatrix(fit->covariance, 0, p1, p1, p2),
                     c22 = gsl_matrix_submatrix(fit->covariance, p1, p1, p2, p2);
-    if (!change || !cross || !g || !gc) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit");
-    } else {
+    if (err->status == SF_OK) {
         sf_compression_predict(&fit->model, fit->parameters, fit->stress, change);
         for (size_t i = 0; i < n; i++) {
             gsl_vector_view row = gsl_matrix_row(change, i);
@@ -482,10 +459,8 @@ static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *loa
 /* Both sides again with their covariances, at the minimum. */
 static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
     const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true), p = p1 + p2;
-    gsl_matrix *own[2] = {gsl_matrix_alloc(p1, p1), p2 > 0 ? gsl_matrix_alloc(p2, p2) : NULL};
-    fit->covariance = gsl_matrix_calloc(p, p);
-    if (!fit->covariance || !own[0] || (p2 > 0 && !own[1]))
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit");
+    gsl_matrix *own[2] = {sf_matrix(p1, p1, err), p2 > 0 ? sf_matrix(p2, p2, err) : NULL};
+    fit->covariance = sf_matrix(p, p, err);
     for (int k = 0; k < (p2 > 0 ? 2 : 1) && err->status == SF_OK; k++) {
         sf_side *side = &fit->side[k];
         side->points = points_of(&fit->data, k == 1);
@@ -495,8 +470,11 @@ static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
     }
     sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
     for (int k = 0; k < 2; k++) {
-        fit->side[k].correlation = neighbour_correlation(fit, k == 1);
-        fit->side[k].serial = serial_factor(fit->side[k].correlation, fit->side[k].points);
+        /* deviations that hang together count for fewer points: (1 + r)/(1 - r) for the variance of a mean */
+        sf_side *side = &fit->side[k];
+        side->correlation = neighbour_correlation(fit, k == 1);
+        double r = fmin(0.98, side->correlation);
+        side->serial = r > 2 / sqrt(side->points) ? (1 + r) / (1 - r) : 1;
     }
     if (err->status == SF_OK && p2 > 0) {
         join_covariances(fit, own[0], own[1], err);
@@ -520,25 +498,21 @@ static sf_status weigh_by_law(sf_compression_fit *fit, sf_error *err) {
     side->misfit = side->chi2 / ((double)side->points - (double)count_of(&fit->model, true));
     if (!(side->misfit > FAR))
         return SF_OK;
-    double largest = 0;
     sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
     measure_side(fit, true, side);
     side->law_error = side->of_largest;
     for (int i = 0; i < d->count; i++)
-        largest = fmax(largest, d->stress[i]);
-    for (int i = 0; i < d->count; i++)
         if (d->unloading[i])
-            d->sigma[i] = hypot(d->sigma[i], side->law_error * largest);
+            d->sigma[i] = hypot(d->sigma[i], side->law_error * d->largest);
     side->chi2 = search_unloading(&fit->model, fit->parameters, err);
     return err->status == SF_OK && isfinite(side->chi2) ? try_alpha(fit, err) : err->status;
 }
 
 static sf_status finish(sf_compression_fit *fit, sf_error *err) {
     const sf_compression_config *c = fit->data.config;
-    fit->parameters = gsl_vector_alloc((size_t)fit->model.parameter_count);
+    fit->parameters = sf_vector((size_t)fit->model.parameter_count, err);
     fit->stress = sf_alloc(err, (unsigned long)fit->data.count, sizeof *fit->stress, "fitted stresses");
-    if (!fit->parameters || !fit->stress)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the fit");
+    SF_TRY(err->status);
     bool unloads = count_of(&fit->model, true) > 0;
     SF_TRY(search_loading(&fit->model, fit->parameters, &fit->side[0].chi2, err));
     if (isfinite(fit->side[0].chi2) && unloads) {
@@ -561,9 +535,10 @@ static sf_status finish(sf_compression_fit *fit, sf_error *err) {
     fit->misfit = fit->chi2 / left;
     for (int k = 0; k < (unloads ? 2 : 1); k++)
         measure_side(fit, k == 1, &fit->side[k]);
+    if (!unloads)
+        fit->side[1].misfit = fit->side[1].of_largest = NAN;
     fit->quantile = gsl_cdf_tdist_Pinv(0.5 + 0.5 * c->confidence, left / fit->side[0].serial);
-    if (estimate_all(fit, err) != SF_OK)
-        return err->status;
+    SF_TRY(estimate_all(fit, err));
     return fill_table(fit, err);
 }
 
@@ -590,24 +565,9 @@ void sf_compression_fit_free(sf_compression_fit *fit) {
     *fit = (sf_compression_fit){0};
 }
 
-/* ---- the card ---- */
-
-static void fill_card(const sf_compression_fit *fit, sf_foam_card *card) {
-    int count = fit->table_count;
-    for (int r = 0; r < fit->rate_count; r++) {
-        card->curve_rate[r] = fit->rate_count > 1 ? fit->data.config->test[r].rate : 0;
-        card->curve_ptr[r + 1] = (int64_t)(r + 1) * count;
-        for (int k = 0; k < count; k++) {
-            card->curve_strain[r * count + k] = fit->table_strain[k];
-            card->curve_stress[r * count + k] = fit->table_stress[r][k];
-        }
-    }
-}
-
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err) {
     const sf_compression_config *c = fit->data.config;
     const sf_estimate *e = fit->estimate;
-    unsigned long rates = (unsigned long)fit->rate_count, points = rates * (unsigned long)fit->table_count;
     bool maxwell = e[SF_ESTIMATE_ED].present;
     /* curves of their own each have an exponent of their own where A = 0: the solver finds them (0) */
     bool own = fit->model.form.rule == SF_H1_AUTO && fit->model.form.rate == SF_RATE_CURVES;
@@ -627,24 +587,14 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
                                                  : SF_DENSIFICATION_H1,
                        .densification_start = fit->data.start,
                        .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
-                       .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value,
-                       .curve_count = fit->rate_count,
-                       .curve_points = (int64_t)points};
-    card->curve_rate = sf_alloc(err, rates, sizeof *card->curve_rate, "curve rates");
-    card->curve_ptr = sf_alloc(err, rates + 1, sizeof *card->curve_ptr, "curve list");
-    card->curve_strain = sf_alloc(err, points, sizeof *card->curve_strain, "curve strains");
-    card->curve_stress = sf_alloc(err, points, sizeof *card->curve_stress, "curve stresses");
-    if (err->status == SF_OK)
-        fill_card(fit, card);
-    else
-        sf_compression_card_free(card);
-    return err->status;
-}
-
-void sf_compression_card_free(sf_foam_card *card) {
-    free(card->curve_rate);
-    free(card->curve_ptr);
-    free(card->curve_strain);
-    free(card->curve_stress);
-    *card = (sf_foam_card){0};
+                       .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value};
+    card->informed_strain = fit->data.end;
+    int count = fit->table_count;
+    SF_TRY(sf_form_curves_alloc(fit->rate_count, (int64_t)fit->rate_count * count, &card->curves, err));
+    for (int r = 0; r < fit->rate_count; r++) {
+        card->curve_rate[r] = fit->rate_count > 1 ? c->test[r].rate : 0;
+        memcpy(&card->curve_strain[r * count], fit->table_strain, (size_t)count * sizeof(double));
+        memcpy(&card->curve_stress[r * count], fit->table_stress[r], (size_t)count * sizeof(double));
+    }
+    return SF_OK;
 }

@@ -26,8 +26,8 @@ typedef enum sf_estimate_name {
 
 /* A number with its standard error and interval; all NaN but the value if the number was not fitted. */
 typedef struct sf_estimate {
-    const char *name, *unit; /* static storage */
-    bool present;            /* the material has it */
+    const char *name, *key, *unit; /* static storage; `key` in fit.json */
+    bool present;                  /* the material has it */
     double value, error, low, high;
     const char *note; /* why it is to be taken with care, or "" ; static storage */
 } sf_estimate;
@@ -80,8 +80,7 @@ void sf_compression_fit_free(sf_compression_fit *fit);
 /* Standard error of a quantity with this gradient [model.parameter_count] by the parameters. */
 double sf_compression_error(const sf_compression_fit *fit, const double *gradient);
 
-/* The foam card of the fit: arrays from sf_alloc, released by the caller with sf_compression_card_free. */
+/* The foam card of the fit; released by the caller with sf_foam_card_free. */
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err);
-void sf_compression_card_free(sf_foam_card *card);
 
 #endif

@@ -19,21 +19,18 @@ enum { TOE_POINTS = 5 };
 
 enum { MOST_CYCLES = 10000 };
 
-static void find_largest(sf_compression_test *t) {
+void sf_compression_move(sf_compression_test *t, int from, int to, double zero) {
+    t->strain[to] = t->strain[from] - zero;
+    t->stress[to] = t->stress[from];
+    t->line[to] = t->line[from];
+}
+
+void sf_compression_find_largest(sf_compression_test *t) {
     t->largest_strain = t->largest_stress = 0;
     for (int i = 0; i < t->count; i++) {
         t->largest_strain = fmax(t->largest_strain, t->strain[i]);
         t->largest_stress = fmax(t->largest_stress, t->stress[i]);
     }
-}
-
-static void keep(sf_compression_test *t, int first, int count) {
-    for (int i = 0; i < count; i++) {
-        t->strain[i] = t->strain[first + i];
-        t->stress[i] = t->stress[first + i];
-        t->line[i] = t->line[first + i];
-    }
-    t->count = count;
 }
 
 /* The first point of cycle `k` from 1, the cycle ending before the next begins; the number of cycles is k - 1
@@ -79,8 +76,10 @@ sf_status sf_compression_take_cycle(const char *chosen, sf_compression_test *t, 
     int first = begin_of_cycle(t, (int)number), end = t->count;
     if (number < cycles)
         end = begin_of_cycle(t, (int)number + 1);
-    keep(t, first, end - first);
-    find_largest(t);
+    t->count = end - first;
+    for (int i = 0; i < t->count; i++)
+        sf_compression_move(t, first + i, i, 0);
+    sf_compression_find_largest(t);
     t->cycle = (int)number;
     t->cycles = cycles;
     return SF_OK;
@@ -108,9 +107,7 @@ void sf_compression_leave_rests_out(sf_compression_test *t) {
         top = t->strain[i] > t->strain[top] ? i : top;
     double highest = t->strain[top];
     for (int i = 0; i < t->count; i++) {
-        t->strain[kept] = t->strain[i];
-        t->stress[kept] = t->stress[i];
-        t->line[kept++] = t->line[i];
+        sf_compression_move(t, i, kept++, 0);
         int last = end_of_rest(t, i);
         if (last == i)
             continue;
@@ -123,7 +120,7 @@ void sf_compression_leave_rests_out(sf_compression_test *t) {
         i = last;
     }
     t->count = kept;
-    find_largest(t);
+    sf_compression_find_largest(t);
 }
 
 /* ---- toe ---- */
@@ -171,9 +168,7 @@ static void shift_zero(sf_compression_test *t, int first, double zero) {
     for (int i = first; i < t->count; i++) {
         if (t->strain[i] < zero)
             continue;
-        t->strain[to] = t->strain[i] - zero;
-        t->stress[to] = t->stress[i];
-        t->line[to++] = t->line[i];
+        sf_compression_move(t, i, to++, zero);
         loading += i < t->loading;
     }
     t->count = to;
@@ -182,8 +177,7 @@ static void shift_zero(sf_compression_test *t, int first, double zero) {
     t->largest_strain -= zero;
 }
 
-/* The strain that a stress at zero strain stands for, by the slope of the first percent; 0: none. */
-static double find_preload(const sf_compression_test *t) {
+double sf_compression_preload(const sf_compression_test *t) {
     static const double RANGE = 0.01, LEAST = 1e-3, PART = 0.05;
     int last = 0;
     double zero = 0;
@@ -193,10 +187,6 @@ static double find_preload(const sf_compression_test *t) {
     bool loaded = t->strain[0] <= SF_COMPRESSION_JITTER && t->stress[0] > PART * t->stress[last];
     zero = slope > 0 ? t->strain[0] - t->stress[0] / slope : 0;
     return loaded && zero < -LEAST ? -zero : 0;
-}
-
-void sf_compression_note_preload(sf_compression_test *t) {
-    t->preload = find_preload(t);
 }
 
 sf_status sf_compression_correct_toe(sf_compression_test *t, sf_error *err) {
@@ -215,7 +205,7 @@ sf_status sf_compression_correct_toe(sf_compression_test *t, sf_error *err) {
             "%s: the toe correction would be a strain of %.3g %%, more than %g %%: cut the approach off "
             "the file",
             t->path, 100 * zero, 100 * TOE_LARGEST);
-    double preload = find_preload(t);
+    double preload = sf_compression_preload(t);
     if (preload > 0)
         shift_zero(t, 0, -preload);
     else if (zero > 0)

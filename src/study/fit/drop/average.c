@@ -49,17 +49,14 @@ int sf_drop_average_best(const sf_drop_average *a) {
     return best;
 }
 
-static bool is_reached(const sf_drop_inference *in, bool left_out) {
-    bool reached = in->chains.converged && (left_out || in->evidence.trusted);
-    for (int d = 0; d < in->fit->measured_drops && left_out; d++)
-        reached = reached && in->left_out[d].converged;
-    return reached;
-}
-
 bool sf_drop_average_reached(const sf_drop_average *a) {
     bool reached = true;
-    for (int m = 0; m < a->models; m++)
-        reached = reached && is_reached(a->model[m], !a->by_evidence);
+    for (int m = 0; m < a->models; m++) {
+        const sf_drop_inference *in = a->model[m];
+        reached = reached && in->chains.converged && (!a->by_evidence || in->evidence.trusted);
+        for (int d = 0; d < in->fit->measured_drops && !a->by_evidence; d++)
+            reached = reached && in->left_out[d].converged;
+    }
     return reached;
 }
 
@@ -99,8 +96,7 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
                                 sf_error *err) {
     size_t *order = sf_alloc(err, (unsigned long)w->count, sizeof *order, "samples");
     double all = 0;
-    if (!order)
-        return err->status;
+    SF_TRY(err->status);
     gsl_sort_index(order, w->value, 1, (size_t)w->count);
     for (int s = 0; s < w->count; s++)
         all += w->weight[s];
@@ -117,21 +113,21 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
     return SF_OK;
 }
 
-static sf_status make_weighted(int most, weighted *w, sf_error *err) {
-    *w = (weighted){.value = sf_alloc(err, (unsigned long)most, sizeof(double), "samples"),
-                    .weight = sf_alloc(err, (unsigned long)most, sizeof(double), "samples")};
-    return err->status;
+/* With room for so many; release `value`. */
+static weighted make_weighted(int most, sf_error *err) {
+    double *value = sf_alloc(err, 2 * (unsigned long)most, sizeof *value, "samples");
+    return (weighted){.value = value, .weight = value + most};
 }
 
 sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int quantity, int count,
                                     const double *probability, double *value, sf_error *err) {
-    weighted w;
     int most = 0;
     const sf_drop_quantity *q = &a->model[0]->quantity[quantity];
     bool above_all = sf_drop_kind_get(q->kind)->above_all;
     for (int m = 0; m < a->models; m++)
         most += states_of(a->model[m]);
-    if (make_weighted(most, &w, err) == SF_OK) {
+    weighted w = make_weighted(most, err);
+    if (w.value) {
         for (int m = 0; m < a->models; m++)
             if (model < 0 ? a->weight[m] > 0 : m == model)
                 add_states(a->model[m], &a->model[m]->chains.quantity[quantity], a->model[m]->quantities,
@@ -141,7 +137,6 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
             value[k] = exp(value[k]);
     }
     free(w.value);
-    free(w.weight);
     return err->status;
 }
 
@@ -159,13 +154,12 @@ double sf_drop_average_missing(const sf_drop_average *a, int quantity) {
 
 sf_status sf_drop_parameter_quantiles(const sf_drop_inference *in, int parameter, int count,
                                       const double *probability, double *value, sf_error *err) {
-    weighted w;
-    if (make_weighted(states_of(in), &w, err) == SF_OK) {
+    weighted w = make_weighted(states_of(in), err);
+    if (w.value) {
         add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, &w);
         take_quantiles(&w, count, probability, value, err);
     }
     free(w.value);
-    free(w.weight);
     return err->status;
 }
 
@@ -191,7 +185,7 @@ sf_status sf_drop_average_discrepancy(const sf_drop_average *a, int k, const sf_
                                       double *delta, sf_response_error *error, sf_error *err) {
     const sf_drop_inference *in = a->model[draw->model];
     const double *u = &in->chains.sample[draw->state * in->parameters];
-    if (!sf_drop_inference_draw(in, u, sf_seed_of(a->seed, (uint64_t)(FIRST_SEED + k)), delta, error))
+    if (!sf_drop_inference_draw(in, u, sf_seed_of(a->seed, (uint64_t)(FIRST_SEED + k)), delta, error, NULL))
         return SF_FAIL(err, SF_ERR_NUMERIC, "draw %d of the posterior: the foam of the columns collapsed",
                        k + 1);
     return SF_OK;
@@ -205,9 +199,8 @@ static sf_status write_draw(const sf_drop_average *a, int k, const sf_posterior_
     char name[32], title[160];
     sf_foam_card card;
     sf_response_error error;
-    if (sf_drop_average_discrepancy(a, k, draw, delta, &error, err) != SF_OK ||
-        sf_drop_inference_card(in, u, delta, &card, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_average_discrepancy(a, k, draw, delta, &error, err));
+    SF_TRY(sf_drop_inference_card(in, u, delta, &card, err));
     card.informed_strain = 0; /* that of the start says nothing about a draw */
     snprintf(name, sizeof name, "draw-%03d", k + 1);
     snprintf(title, sizeof title, "Draw %d of %d of a posterior of softfall-fit drop, equally likely.", k + 1,

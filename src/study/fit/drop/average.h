@@ -4,13 +4,16 @@
 #ifndef SF_FIT_DROP_AVERAGE_H
 #define SF_FIT_DROP_AVERAGE_H
 
+#include "io/staging.h"
+#include "report/row.h"
 #include "study/fit/drop/inference.h"
 
 enum { SF_POSTERIOR_DRAWS = 200 };
 
 /* A model without a fit. */
 typedef struct sf_failed_model {
-    char label[96], sentence[512];
+    const char *label; /* of its input; borrowed */
+    char sentence[512];
 } sf_failed_model;
 
 typedef struct sf_drop_average {
@@ -62,5 +65,19 @@ sf_status sf_drop_average_discrepancy(const sf_drop_average *average, int k, con
  * softfall's own; a file of an earlier run is replaced. From the last to the first: a folder without
  * draw-001.cfg is not complete. */
 sf_status sf_drop_average_write(const sf_drop_average *average, const char *folder, sf_error *err);
+
+/* ---- inference_report.c ---- */
+
+/* The part of the posterior in the output of `softfall-fit drop`: sections of report.html, "inference" of
+ * fit.json, posterior.csv, lines of the material file and of the terminal. */
+sf_status sf_inference_html(FILE *page, const sf_drop_average *average, sf_error *err);
+sf_status sf_inference_json(sf_json *json, const sf_drop_average *average, sf_error *err);
+/* posterior.csv: the draws of the folder posterior/, one a line. */
+sf_status sf_inference_csv(const sf_drop_average *average, const sf_staging *output, sf_error *err);
+/* Comment lines: the weights of the models. */
+void sf_inference_comment(FILE *file, const sf_drop_average *average);
+/* One line when the chains of a model have ended. */
+void sf_inference_print_chains(FILE *file, const sf_drop_inference *inference);
+sf_status sf_inference_print(FILE *file, const sf_drop_average *average, sf_error *err);
 
 #endif

@@ -4,17 +4,10 @@
 #include "base/program.h"
 #include "io/folder.h"
 #include "study/fit/drop/drop_report.h"
-#include "study/fit/drop/inference_report.h"
 #include "study/setup.h"
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* "<material>.cfg" and so on, for sf_staging. */
-typedef struct names {
-    char card[SF_FIT_NAME_SIZE + 8], curve[SF_FIT_NAME_SIZE + 8];
-    const char *list[10];
-} names;
 
 /* The models of the file, each with its fit and posterior. */
 typedef struct models {
@@ -25,14 +18,6 @@ typedef struct models {
     sf_error failure[SF_FIT_MAX_MODELS]; /* of a model alone: the others go on */
     sf_drop_average average;             /* without posterior: of no models */
 } models;
-
-static void name_files(const sf_fit_input *in, names *n) {
-    snprintf(n->card, sizeof n->card, "%s.cfg", in->material_name);
-    snprintf(n->curve, sizeof n->curve, "%s.csv", in->material_name);
-    const char *const list[] = {n->curve,  n->card,    "fit-curve.csv", "fit-drops.csv", "fit.gp",
-                                "fit.png", "fit.json", "report.html",   "posterior.csv", NULL};
-    memcpy(n->list, list, sizeof list);
-}
 
 static void print_curves(const sf_fit_input *in) {
     for (int k = 0; k < in->drop_count; k++)
@@ -46,49 +31,22 @@ static void print_curves(const sf_fit_input *in) {
     fflush(stdout);
 }
 
-static sf_status read_models(const char *path, models *all, sf_error *err) {
-    all->count = 1;
-    for (int m = 0; m < all->count && sf_fit_input_read(path, m, &all->input[m], err) == SF_OK; m++)
-        all->count = all->input[m].model_count;
-    return err->status;
-}
-
 static sf_status fit_model(models *all, int m, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
     const sf_fit_input *in = &all->input[m];
     sf_drop_fit *fit = &all->fit[m];
     const sf_inference_options sampling = sf_inference_defaults(in->seed);
-    char text[96];
     *fit = (sf_drop_fit){
         .input = in, .runner = runner, .folder = runner->folder, .log = runner->log, .memory = memory};
     for (int k = 0; k < m && !fit->earlier; k++)
         if (all->failure[k].status == SF_OK)
             fit->earlier = &all->fit[k];
     if (all->count > 1)
-        printf("model %d of %d: %s, %d unknown parameters\n", m + 1, all->count,
-               sf_model_label(in, text, sizeof text), in->unknown_count);
+        printf("model %d of %d: %s, %d unknown parameters\n", m + 1, all->count, in->label,
+               in->unknown_count);
     if (sf_drop_fit_run(fit, err) != SF_OK || !in->posterior)
         return err->status;
     if (sf_drop_infer(fit, &sampling, &all->inference[m], err) == SF_OK)
         sf_inference_print_chains(stdout, &all->inference[m]);
-    return err->status;
-}
-
-/* True if the failure concerns this model only, so that the others may go on. */
-static bool is_of_the_model(const sf_error *failure) {
-    return failure->status == SF_ERR_NUMERIC || failure->status == SF_ERR_MODEL ||
-           failure->status == SF_ERR_INPUT;
-}
-
-/* The failure of all of them, or none. */
-static sf_status check_any(const models *all, sf_error *err) {
-    for (int m = 0; m < all->count; m++)
-        if (all->failure[m].status == SF_OK)
-            return SF_OK;
-    if (all->count == 1)
-        *err = all->failure[0];
-    else
-        SF_FAIL(err, all->failure[0].status, "none of the %d models was fitted; the first: %.800s",
-                all->count, all->failure[0].text);
     return err->status;
 }
 
@@ -100,13 +58,12 @@ static sf_status average_models(models *all, sf_error *err) {
     for (int m = 0; m < all->count; m++)
         if (all->failure[m].status == SF_OK)
             list[count++] = &all->inference[m];
-    if (sf_drop_average_build(count, list, all->input[0].seed, a, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_average_build(count, list, all->input[0].seed, a, err));
     for (int m = 0; m < all->count; m++) {
         sf_failed_model *failed = &a->failure[a->failed];
         if (all->failure[m].status == SF_OK)
             continue;
-        sf_model_label(&all->input[m], failed->label, sizeof failed->label);
+        failed->label = all->input[m].label;
         snprintf(failed->sentence, sizeof failed->sentence, "%.500s", all->failure[m].text);
         a->failed++;
     }
@@ -114,22 +71,29 @@ static sf_status average_models(models *all, sf_error *err) {
 }
 
 static sf_status fit_models(models *all, sf_runner *runner, sf_fit_memory *memory, sf_error *err) {
-    char text[96];
+    int fitted = 0;
     for (int m = 0; m < all->count; m++) {
         sf_error *failure = &all->failure[m];
         *failure = (sf_error)SF_ERROR_INIT;
-        if (fit_model(all, m, runner, memory, failure) == SF_OK)
+        if (fit_model(all, m, runner, memory, failure) == SF_OK) {
+            fitted++;
             continue;
-        if (!is_of_the_model(failure)) {
+        }
+        if (failure->status != SF_ERR_NUMERIC && failure->status != SF_ERR_MODEL &&
+            failure->status != SF_ERR_INPUT) { /* it concerns the others, too */
             *err = *failure;
             return err->status;
         }
         if (all->count > 1)
-            printf("model %d of %d FAILED: %s: %s\n", m + 1, all->count,
-                   sf_model_label(&all->input[m], text, sizeof text), failure->text);
+            printf("model %d of %d FAILED: %s: %s\n", m + 1, all->count, all->input[m].label, failure->text);
         fflush(stdout);
     }
-    if (check_any(all, err) == SF_OK && all->input[0].posterior)
+    if (fitted == 0 && all->count == 1)
+        *err = all->failure[0];
+    else if (fitted == 0)
+        SF_FAIL(err, all->failure[0].status, "none of the %d models was fitted; the first: %.800s",
+                all->count, all->failure[0].text);
+    else if (all->input[0].posterior)
         average_models(all, err);
     return err->status;
 }
@@ -152,8 +116,7 @@ static sf_status commit(const char *directory, const sf_drop_average *average, s
                         sf_error *err) {
     char folder[PATH_MAX];
     snprintf(folder, sizeof folder, "%s/posterior", directory);
-    if (sf_folder_own(folder, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_folder_own(folder, err));
     clear_posterior(folder);
     if (sf_staging_commit(output, err) == SF_OK && average->models > 0)
         sf_drop_average_write(average, folder, err);
@@ -167,28 +130,25 @@ static sf_status commit(const char *directory, const sf_drop_average *average, s
 static sf_status report(sf_study *study, const models *all, char *warning, size_t size, sf_error *err) {
     const sf_drop_average *average = all->average.models > 0 ? &all->average : NULL;
     const sf_drop_fit *best = average ? average->model[sf_drop_average_best(average)]->fit : &all->fit[0];
-    if (sf_drop_report_write(best, average, study->input, study->command, &study->output, warning, size,
-                             err) != SF_OK ||
-        commit(study->directory, &all->average, &study->output, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_report_write(best, average, study->input, study->command, &study->output, warning, size,
+                                err));
+    SF_TRY(commit(study->directory, &all->average, &study->output, err));
     sf_drop_report_print(best, stdout);
     return average ? sf_inference_print(stdout, average, err) : SF_OK;
 }
 
 /* Tells what has no weight; a fit that did not converge is a failure, though its files are written. */
 static sf_status warn(const sf_sink *sink, const models *all, sf_error *err) {
-    char text[96];
     int open = 0;
     for (int m = 0; m < all->count; m++)
         if (all->failure[m].status != SF_OK)
-            sf_sink_tell(sink, SF_WARNING, "model %s has no weight: %s",
-                         sf_model_label(&all->input[m], text, sizeof text), all->failure[m].text);
+            sf_sink_tell(sink, SF_WARNING, "model %s has no weight: %s", all->input[m].label,
+                         all->failure[m].text);
         else if (!all->fit[m].result.converged) {
             open++;
             sf_sink_tell(sink, SF_WARNING, "%s%snot converged after %d iterations: %s",
-                         all->count > 1 ? sf_model_label(&all->input[m], text, sizeof text) : "",
-                         all->count > 1 ? ": " : "", all->fit[m].result.iterations,
-                         all->fit[m].result.reason);
+                         all->count > 1 ? all->input[m].label : "", all->count > 1 ? ": " : "",
+                         all->fit[m].result.iterations, all->fit[m].result.reason);
         }
     if (open > 0)
         SF_FAIL(err, SF_ERR_NUMERIC,
@@ -209,9 +169,8 @@ static sf_status fit_and_write(sf_study *study, models *all, sf_fit_memory *memo
            in->unknown_count, in->drop_count, study->runs);
     print_curves(in);
     omp_set_num_threads(study->threads);
-    if (fit_models(all, &study->runner, memory, err) != SF_OK ||
-        report(study, all, warning, sizeof warning, err) != SF_OK)
-        return err->status;
+    SF_TRY(fit_models(all, &study->runner, memory, err));
+    SF_TRY(report(study, all, warning, sizeof warning, err));
     if (memory->file >= 0)
         sf_folder_remove_file(columns);
     snprintf(files, sizeof files, "%s.cfg, report.html, fit.json, fit.png%s", in->material_name,
@@ -222,13 +181,20 @@ static sf_status fit_and_write(sf_study *study, models *all, sf_fit_memory *memo
 
 static sf_status run(sf_study *study, void *own, sf_error *err) {
     models *all = own;
-    names n;
     sf_fit_memory memory = {.file = -1};
+    char card[SF_FIT_NAME_SIZE + 8], curve[SF_FIT_NAME_SIZE + 8];
     const char *const none[] = {NULL}; /* the names are in the input */
+    const char *const names[] = {curve,     card,       "fit-curve.csv", "fit-drops.csv", "fit.gp",
+                                 "fit.png", "fit.json", "report.html",   "posterior.csv", NULL};
     SF_TRY(sf_study_check(study, none, err));
-    SF_TRY(read_models(study->input, all, err));
-    name_files(&all->input[0], &n);
-    if (sf_study_begin(study, n.list, err) == SF_OK && sf_folder_own(study->runs, err) == SF_OK) {
+    all->count = 1;
+    for (int m = 0; m < all->count; m++) {
+        SF_TRY(sf_fit_input_read(study->input, m, &all->input[m], err));
+        all->count = all->input[m].model_count;
+    }
+    snprintf(card, sizeof card, "%s.cfg", all->input[0].material_name);
+    snprintf(curve, sizeof curve, "%s.csv", all->input[0].material_name);
+    if (sf_study_begin(study, names, err) == SF_OK && sf_folder_own(study->runs, err) == SF_OK) {
         sf_study_run_apart(study);
         fit_and_write(study, all, &memory, err);
     }

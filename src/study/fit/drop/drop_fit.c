@@ -14,288 +14,19 @@
 
 enum { MAX_ITERATIONS = 30, EXACT_ITERATIONS = 100 /* of a fit without simulations */ };
 static const double TOLERANCE = 0.1; /* of a standard deviation: the last step */
-/* The bound of the indentation lies a little before the check of the anvil refuses the drop; its logarithm
- * has this standard deviation. */
-static const double BOUND = 0.99, BOUND_SD = 0.003;
-static const double BIN_WIDTH = 0.05; /* of strain */
-
 _Static_assert(SF_MAPPING_MAX_PARAMETERS >= SF_FIT_MAX_UNKNOWNS + SF_SIGNAL_CHAIN + SF_FIT_MAX_DROPS,
                "the unknown parameters, the chain and the speed of every drop");
 
-/* ---- parameters and responses ---- */
-
-static void values_of(const sf_fit_input *in, const double *u, double value[SF_PARAMETER_COUNT]) {
-    memcpy(value, in->start, SF_PARAMETER_COUNT * sizeof *value);
-    for (int k = 0; k < in->unknown_count; k++)
-        value[in->unknown[k]] = exp(u[k]);
-}
-
-sf_status sf_drop_fit_card(const sf_fit_input *in, const double *u, sf_foam_card *card, sf_error *err) {
-    double value[SF_PARAMETER_COUNT];
-    values_of(in, u, value);
-    return sf_foam_form_card(&in->form, value, card, err);
-}
-
-/* Checks that every measured number is defined. `by`: the source that does not give it, `remedy`: the
- * action of the user. */
-static sf_status check_values(const sf_fit_drop *drop, const double *y, const char *by, const char *remedy,
-                              sf_error *err) {
-    for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
-        if (!isnan(drop->value[kind]) && !isfinite(y[kind]))
-            return SF_FAIL(
-                err, SF_ERR_NUMERIC, "%s of the drop %s was measured, but %s without %s within its time: %s",
-                sf_drop_kind_get(kind)->key, drop->name, by, sf_drop_kind_get(kind)->needs, remedy);
-    return SF_OK;
-}
-
-/* The curve, which has CFC 1000, with the lower class of the measured one. */
-static sf_status filter_like_measured(const sf_series *curve, double cfc, sf_series *filtered,
-                                      sf_error *err) {
-    sf_series uniform = {0};
-    if (sf_signal_resample(curve, sf_signal_rate(curve), &uniform, err) == SF_OK)
-        sf_signal_filter_cfc(&uniform, cfc, filtered, err);
-    sf_series_free(&uniform);
-    return err->status;
-}
-
-static sf_status take_samples(const sf_fit_drop *drop, const sf_series *curve, double *y, sf_error *err) {
-    double contact = 0, end = curve->time[curve->count - 1];
-    if (sf_contact_instant(curve, drop->name, 0, &contact, err) != SF_OK)
-        return err->status;
-    for (int k = 0; k < drop->samples; k++) {
-        double time = contact + drop->sample_time[k];
-        y[k] = time <= end ? sf_series_at(curve, time) / drop->sample_scale : 0;
-    }
-    return SF_OK;
-}
-
-sf_signal_chain sf_drop_fit_chain(const sf_drop_fit *fit, const double *u) {
-    double number[SF_SIGNAL_CHAIN];
-    sf_signal_chain chain = fit->input->chain;
-    memcpy(number, &chain, sizeof number);
-    for (int k = 0; k < SF_SIGNAL_CHAIN && u; k++)
-        if (fit->chain[k] >= 0)
-            number[k] *= exp(u[fit->chain[k]]);
-    memcpy(&chain, number, sizeof number);
-    chain.mount_damping = fmin(chain.mount_damping, 0.999);
-    return chain;
-}
-
-/* Passes the curve through the chain, and evaluates it again. The chain and the filter, which the curve has
- * been through, are linear: their order does not matter. */
-static sf_status pass_chain(const sf_signal_chain *chain, const sf_series *curve, sf_columns_figures *figures,
-                            sf_series *passed, sf_error *err) {
-    SF_TRY(sf_signal_resample(curve, sf_signal_rate(curve), passed, err));
-    sf_signal_pass(chain, passed);
-    return sf_columns_read(passed, figures, err);
-}
-
-/* Largest indentation (m) of a missile with this curve, which begins in free flight and touches at 0. */
-static double deepest(const sf_series *curve, double speed) {
-    double depth = 0, largest = 0;
-    for (int64_t i = 1; i < curve->count && speed > 0; i++) {
-        double dt = curve->time[i] - curve->time[i - 1];
-        if (curve->time[i] <= 0)
-            continue;
-        depth += dt * speed;
-        speed += dt * SF_STANDARD_GRAVITY * (1 - 0.5 * (curve->value[i] + curve->value[i - 1]));
-        largest = fmax(largest, depth);
-    }
-    return largest;
-}
-
-/* Scaled responses of one drop from its figures, its curve, which has CFC 1000, as the chain reads it, and
- * its indentation over the thickness. */
-static sf_status respond(const sf_fit_drop *drop, const sf_signal_chain *chain,
-                         const sf_columns_figures *figures, const sf_series *curve, double indentation,
-                         double *y, sf_error *err) {
-    sf_series filtered = {0}, passed = {0};
-    sf_columns_figures read = *figures;
-    bool lower = drop->sample_class > 0 && drop->sample_class < 1000;
-    if ((chain->mount_frequency > 0 || chain->coupling > 0) &&
-        pass_chain(chain, curve, &read, &passed, err) == SF_OK)
-        curve = &passed;
-    if (err->status == SF_OK)
-        sf_drop_values_scale(&read, y);
-    y[SF_FIT_SAMPLES + drop->samples] = log(indentation);
-    if (drop->samples > 0 && err->status == SF_OK &&
-        (!lower || filter_like_measured(curve, drop->sample_class, &filtered, err) == SF_OK))
-        take_samples(drop, lower ? &filtered : curve, &y[SF_FIT_SAMPLES], err);
-    sf_series_free(&filtered);
-    sf_series_free(&passed);
-    return err->status;
-}
-
-static sf_status list_data(sf_drop_fit *fit, sf_error *err) {
-    const sf_fit_input *in = fit->input;
-    fit->row[0] = in->joint.rows;
-    for (int d = 0; d < in->drop_count; d++) {
-        fit->row[d + 1] = fit->row[d] + SF_FIT_SAMPLES + in->drop[d].samples + 1;
-        fit->measured_drops += !in->drop[d].predicted;
-    }
-    fit->parameters = in->unknown_count;
-    for (int k = 0; k < SF_SIGNAL_CHAIN; k++)
-        fit->chain[k] = in->chain_sd[k] > 0 ? fit->parameters++ : -1;
-    for (int d = 0; d < in->drop_count; d++)
-        fit->speed[d] = in->drop[d].speed_sd > 0 ? fit->parameters++ : -1;
-    unsigned long n = (unsigned long)fit->row[in->drop_count];
-    fit->y = sf_alloc(err, n, sizeof(double), "responses");
-    fit->gradient = sf_alloc(err, n * (unsigned long)fit->parameters, sizeof(double), "responses");
-    fit->measured = sf_alloc(err, n, sizeof(double), "responses");
-    fit->sd = sf_alloc(err, n, sizeof(double), "responses");
-    fit->without = sf_alloc(err, n, sizeof(double), "responses");
-    fit->response_sd = sf_alloc(err, n, sizeof(double), "responses");
-    fit->bound_sd = sf_alloc(err, n, sizeof(double), "responses");
-    if (err->status != SF_OK)
-        return err->status;
-    sf_joint_data(&in->joint, fit->measured, fit->sd);
-    for (unsigned long k = 0; k < n; k++)
-        fit->bound_sd[k] = INFINITY;
-    for (int d = 0; d < in->drop_count; d++) {
-        const sf_fit_drop *drop = &in->drop[d];
-        double *measured = &fit->measured[fit->row[d]], *sd = &fit->sd[fit->row[d]];
-        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
-            bool known = !isnan(drop->value[kind]);
-            measured[kind] = known ? log(drop->value[kind]) : 0;
-            sd[kind] = known ? drop->sd[kind] : INFINITY;
-        }
-        for (int k = 0; k < drop->samples; k++) {
-            measured[SF_FIT_SAMPLES + k] = drop->sample_value[k] / drop->sample_scale;
-            sd[SF_FIT_SAMPLES + k] = drop->sample_sd;
-        }
-        int bound = SF_FIT_SAMPLES + drop->samples;
-        measured[bound] = log(BOUND * sf_good_run_rule_get(SF_CHECK_anvil)->refuse);
-        sd[bound] = INFINITY;
-        fit->bound_sd[fit->row[d] + bound] = BOUND_SD;
-    }
-    return SF_OK;
-}
-
-/* ---- surrogate ---- */
-
-/* The joint data stand before the first drop. */
-static int first_row(const sf_drop_fit *fit, int first) {
-    return first == 0 ? 0 : fit->row[first];
-}
-
-/* No value of the drop. */
-static void forget(const sf_drop_fit *fit, int d, double *y) {
-    for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
-        y[k] = NAN;
-}
-
-sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
-                              const double *u, double *y, sf_error *err) {
-    const sf_material material = sf_foam_material(card);
-    sf_material_law law;
-    if (sf_material_law_build(&material, &law, err) != SF_OK)
-        return err->status;
-    const sf_signal_chain chain = sf_drop_fit_chain(fit, u);
-    if (first == 0)
-        sf_joint_respond(&fit->input->joint, &law, y, err);
-    for (int d = first; d < last && err->status == SF_OK; d++) {
-        const sf_fit_drop *drop = &fit->input->drop[d];
-        sf_series curve = {0};
-        sf_columns_figures figures;
-        sf_columns columns = fit->columns[d];
-        if (drop->predicted && columns.count == 0) { /* its simulation failed before the pad was touched */
-            forget(fit, d, y);
-            continue;
-        }
-        if (u && fit->speed[d] >= 0)
-            columns.speed *= exp(u[fit->speed[d]]);
-        if (sf_columns_respond(&columns, &law, &figures, &curve, err) == SF_OK &&
-            respond(drop, &chain, &figures, &curve, deepest(&curve, columns.speed) / columns.thickness,
-                    &y[fit->row[d]], err) == SF_OK)
-            check_values(drop, &y[fit->row[d]], "its columns end", "this foam does not let go", err);
-        sf_series_free(&curve);
-        if (drop->predicted && err->status == SF_ERR_NUMERIC) { /* the foam may be too soft for this one */
-            *err = (sf_error)SF_ERROR_INIT;
-            forget(fit, d, y);
-        }
-    }
-    sf_material_law_free(&law);
-    return err->status;
-}
-
-/* Hashes the program, the start material with the form of its curve, and the samples. */
-static uint64_t hash_inputs(const sf_drop_fit *fit) {
-    const sf_fit_input *in = fit->input;
-    sf_foam_card base = in->form.base;
-    const sf_material material = sf_foam_material(&base);
-    uint64_t hash = sf_hash_identity(SF_HASH_START, &fit->memory->program, sizeof fit->memory->program);
-    hash = sf_material_hash(hash, &material);
-    hash = sf_hash_identity(hash, in->form.curve->name, strlen(in->form.curve->name));
-    hash = sf_hash_identity(hash, &in->form.solid_density, sizeof in->form.solid_density);
-    hash = sf_hash_identity(hash, in->start, sizeof in->start);
-    hash = sf_hash_identity(hash, in->unknown, (size_t)in->unknown_count * sizeof *in->unknown);
-    hash = sf_joint_hash(hash, &in->joint);
-    hash = sf_hash_identity(hash, &in->chain, sizeof in->chain);
-    hash = sf_hash_identity(hash, fit->chain, sizeof fit->chain);
-    for (int d = 0; d < in->drop_count; d++) {
-        const sf_fit_drop *drop = &in->drop[d];
-        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) { /* which must be defined */
-            bool known = !isnan(drop->value[kind]);
-            hash = sf_hash_identity(hash, &known, sizeof known);
-        }
-        hash = sf_hash_identity(hash, &drop->samples, sizeof drop->samples);
-        hash = sf_hash_identity(hash, &drop->sample_scale, sizeof drop->sample_scale);
-        hash = sf_hash_identity(hash, &drop->sample_class, sizeof drop->sample_class);
-        hash = sf_hash_identity(hash, drop->sample_time, (size_t)drop->samples * sizeof *drop->sample_time);
-    }
-    return hash;
-}
-
-static uint64_t hash_columns(uint64_t hash, const sf_columns *c) {
-    const double missile[] = {c->mass, c->speed, c->thickness};
-    hash = sf_hash_identity(hash, missile, sizeof missile);
-    hash = sf_hash_identity(hash, &c->count, sizeof c->count);
-    hash = sf_hash_identity(hash, c->area, (size_t)c->count * sizeof *c->area);
-    return sf_hash_identity(hash, c->gap, (size_t)c->count * sizeof *c->gap);
-}
-
-enum { AS_GIVEN = -2, NOWHERE = -1 }; /* in place of the bin in which the curve is raised */
-
-/* Key of the responses of drops `first` to `last` - 1; 0 without a memory. */
-static uint64_t key_of(const sf_drop_fit *fit, int first, int last, int bin, const double *u) {
-    const int which[] = {first, last, bin, fit->parameters};
-    if (!fit->memory)
-        return 0;
-    uint64_t hash = sf_hash_identity(fit->inputs, which, sizeof which);
-    hash = sf_hash_identity(hash, u, (size_t)fit->parameters * sizeof *u);
-    hash = sf_hash_identity(hash, &fit->speed[first], (size_t)(last - first) * sizeof *fit->speed);
-    for (int d = first; d < last; d++)
-        hash = hash_columns(hash, &fit->columns[d]);
-    return hash;
-}
-
-static sf_status columns_at(const sf_drop_fit *fit, int first, int last, const double *u, double *y,
-                            sf_error *err) {
-    sf_foam_card card;
-    int begin = first_row(fit, first);
-    size_t count = (size_t)(fit->row[last] - begin);
-    uint64_t key = key_of(fit, first, last, AS_GIVEN, u);
-    if (sf_fit_memory_find(fit->memory, key, count, &y[begin]))
-        return SF_OK;
-    if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
-        return err->status;
-    if (sf_drop_fit_respond(fit, first, last, &card, u, y, err) == SF_OK)
-        sf_fit_memory_add(fit->memory, key, count, &y[begin]);
-    sf_foam_card_free(&card);
-    return err->status;
-}
-
 static sf_status surrogate(void *context, const double *u, double *y, sf_error *err) {
     const sf_drop_fit *fit = context;
-    return columns_at(fit, 0, fit->measured_drops, u, y, err);
+    return sf_drop_fit_columns(fit, 0, fit->measured_drops, SF_FIT_AS_GIVEN, u, y, err);
 }
 
 /* ---- simulation ---- */
 
 static sf_status find_columns(const char *path, sf_columns *columns, sf_error *err) {
     sf_results r;
-    if (sf_results_open(path, &r, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_results_open(path, &r, err));
     sf_columns_build(&r, columns, err);
     sf_results_close(&r);
     return err->status;
@@ -335,16 +66,15 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
         return SF_FAIL(err, SF_ERR_NUMERIC, "the fit does not go through the drop %s: %.800s", drop->name,
                        result->verdict);
     sf_fit_simulated *last = &fit->simulated[d];
-    if (find_own_columns(fit, d, result->path, err) != SF_OK)
-        return err->status;
+    SF_TRY(find_own_columns(fit, d, result->path, err));
     const sf_columns_figures figures = {.a_max_g = result->a_max_g,
                                         .hic = result->hic,
                                         .hic_window = result->hic_window,
                                         .v_rebound = result->v_rebound,
                                         .contact_time = result->contact_time};
-    if (respond(drop, &fit->chain_now, &figures, &result->curve,
-                result->max_indentation / fit->columns[d].thickness, &y[fit->row[d]], err) == SF_OK)
-        check_values(drop, &y[fit->row[d]], "its simulation ends", "raise solver.end_time of its case", err);
+    sf_drop_fit_read(drop, &fit->chain_now, &figures, &result->curve,
+                     result->max_indentation / fit->columns[d].thickness, "its simulation ends",
+                     "raise solver.end_time of its case", &y[fit->row[d]], err);
     sf_series_free(&last->curve);
     *last = (sf_fit_simulated){.max_local_strain = result->max_local_strain,
                                .energy_error = result->energy_error,
@@ -381,10 +111,24 @@ static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const ch
     snprintf(s->failure, sizeof s->failure, "%s", sentence);
     if (!*s->verdict)
         snprintf(s->verdict, sizeof s->verdict, "%.400s", sentence);
-    forget(fit, d, y);
+    for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
+        y[k] = NAN;
     if (fit->log) {
         fprintf(fit->log, "  %-24s no prediction by simulation: %s\n", fit->input->drop[d].name, sentence);
         fflush(fit->log);
+    }
+}
+
+/* Fills the requests of drops; those of measured drops have the coarse keys where the fit is coarse. */
+static void fill_requests(const sf_drop_fit *fit, int first, int last, const char *material,
+                          sf_runner_drop *request) {
+    for (int d = first; d < last; d++, request++) {
+        const sf_fit_drop *drop = &fit->input->drop[d];
+        *request = (sf_runner_drop){.label = drop->name, .case_path = drop->case_path, .material = material};
+        if (fit->coarse && !drop->predicted) {
+            request->override_count = fit->input->coarse_count;
+            memcpy(request->overrides, fit->input->coarse, sizeof fit->input->coarse);
+        }
     }
 }
 
@@ -394,10 +138,7 @@ static sf_status predict_with(sf_drop_fit *fit, int first, int last, const char 
     sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
     sf_runner_result result[SF_FIT_MAX_DROPS];
     sf_error failure[SF_FIT_MAX_DROPS];
-    for (int d = first; d < last; d++)
-        request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
-                                              .case_path = fit->input->drop[d].case_path,
-                                              .material = material};
+    fill_requests(fit, first, last, material, request);
     sf_runner_run_each(fit->runner, last - first, request, result, failure, err);
     for (int d = first; d < last; d++) {
         sf_error *own = &failure[d - first];
@@ -419,13 +160,7 @@ static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char
                                sf_error *err) {
     sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
     sf_runner_result result[SF_FIT_MAX_DROPS];
-    for (int d = first; d < last; d++) {
-        request[d - first] = (sf_runner_drop){.label = fit->input->drop[d].name,
-                                              .case_path = fit->input->drop[d].case_path,
-                                              .material = material,
-                                              .override_count = fit->coarse ? fit->input->coarse_count : 0};
-        memcpy(request[d - first].overrides, fit->input->coarse, sizeof fit->input->coarse);
-    }
+    fill_requests(fit, first, last, material, request);
     sf_runner_run_batch(fit->runner, last - first, request, result, err);
     for (int d = first; d < last; d++) {
         if (err->status == SF_OK)
@@ -441,7 +176,7 @@ static sf_status check_card(const sf_fit_input *in, const double *u, const sf_fo
     static const double ROUNDING = 1e-12;
     sf_error inner = SF_ERROR_INIT;
     double value[SF_PARAMETER_COUNT];
-    values_of(in, u, value);
+    sf_drop_fit_values(in, u, value);
     value[SF_PARAMETER_HU] = card->hysteresis_hu; /* no more than 1 in the card */
     for (int k = 0; k < in->unknown_count; k++) {
         const sf_parameter_info *about = sf_parameter_get(in->unknown[k]);
@@ -462,8 +197,7 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     char path[PATH_MAX];
     const sf_material_text text = {.title = "An iterate of softfall-fit drop.", .provenance = ""};
     snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
-    if (sf_drop_fit_card(fit->input, u, &card, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_fit_card(fit->input, u, &card, err));
     fit->chain_now = sf_drop_fit_chain(fit, u);
     card.informed_strain = 0; /* that of the start says nothing about an iterate */
     const sf_material material = sf_foam_material(&card);
@@ -475,7 +209,7 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     else if (err->status == SF_OK && last > first)
         simulate_with(fit, first, last, path, y, err);
     if (err->status == SF_OK && first == 0) /* the joint data need no simulation */
-        columns_at(fit, 0, 0, u, y, err);
+        sf_drop_fit_columns(fit, 0, 0, SF_FIT_AS_GIVEN, u, y, err);
     return err->status;
 }
 
@@ -502,8 +236,7 @@ static sf_status simulate(void *context, const double *u, double *y, sf_error *e
     sf_drop_fit *fit = context;
     char name[SF_FIT_NAME_SIZE];
     snprintf(name, sizeof name, "%s-%02d", fit->coarse ? "coarse" : "iterate", fit->iteration++);
-    if (simulate_drops(fit, 0, fit->measured_drops, name, u, y, err) != SF_OK)
-        return err->status;
+    SF_TRY(simulate_drops(fit, 0, fit->measured_drops, name, u, y, err));
     return add_speeds(fit, u, y, err);
 }
 
@@ -574,18 +307,16 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
         sf_foam_card low, high;
         memcpy(u, fit->result.u, sizeof u);
         u[j] += step;
-        if (sf_drop_fit_card(in, u, &high, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_drop_fit_card(in, u, &high, err));
         u[j] -= 2 * step;
         if (sf_drop_fit_card(in, u, &low, err) == SF_OK)
             for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
-                double strain = (b + 0.5) * BIN_WIDTH;
+                double strain = (b + 0.5) * SF_FIT_BIN_WIDTH;
                 gradient[b][j] = log(stress_at(&high, strain) / stress_at(&low, strain)) / (2 * step);
             }
         sf_foam_card_free(&low);
         sf_foam_card_free(&high);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(err->status);
     }
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
         double prior = 0;
@@ -597,39 +328,17 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
     return err->status;
 }
 
-static const double RAISE = 0.05; /* of the stress, by a hat over one bin */
-
-/* Responses of the columns with the curve raised in bin `b`, or NOWHERE. */
-static sf_status respond_raised(const sf_drop_fit *fit, int b, double *y, sf_error *err) {
-    sf_foam_card card;
-    size_t count = (size_t)fit->row[fit->measured_drops];
-    uint64_t key = key_of(fit, 0, fit->measured_drops, b, fit->result.u);
-    if (sf_fit_memory_find(fit->memory, key, count, y))
-        return SF_OK;
-    if (sf_drop_fit_card(fit->input, fit->result.u, &card, err) != SF_OK)
-        return err->status;
-    sf_foam_card_resample(&card, err);
-    for (int64_t k = 0; k < card.curve_points && b >= 0; k++) {
-        double away = fabs(card.curve_strain[k] - (b + 0.5) * BIN_WIDTH) / BIN_WIDTH;
-        card.curve_stress[k] *= 1 + RAISE * fmax(0, 1 - away);
-    }
-    if (err->status == SF_OK &&
-        sf_drop_fit_respond(fit, 0, fit->measured_drops, &card, NULL, y, err) == SF_OK)
-        sf_fit_memory_add(fit->memory, key, count, y);
-    sf_foam_card_free(&card);
-    return err->status;
-}
-
 /* Finds the change of the measured responses with the curve in each bin. */
 static sf_status locate_information(sf_drop_fit *fit, sf_error *err) {
     size_t n = (size_t)fit->row[fit->measured_drops];
     double *y = sf_alloc(err, n, sizeof *y, "responses"), *base = sf_alloc(err, n, sizeof *base, "responses");
     if (err->status == SF_OK)
-        respond_raised(fit, NOWHERE, base, err);
+        sf_drop_fit_columns(fit, 0, fit->measured_drops, SF_FIT_NOWHERE, fit->result.u, base, err);
     for (int b = 0; b < SF_FIT_STRAIN_BINS && err->status == SF_OK; b++) {
-        respond_raised(fit, b, y, err);
+        sf_drop_fit_columns(fit, 0, fit->measured_drops, b, fit->result.u, y, err);
         for (size_t k = 0; k < n; k++)
-            fit->information[b] += isinf(fit->sd[k]) ? 0 : pow((y[k] - base[k]) / (RAISE * fit->sd[k]), 2);
+            fit->information[b] +=
+                isinf(fit->sd[k]) ? 0 : pow((y[k] - base[k]) / (SF_FIT_RAISE * fit->sd[k]), 2);
     }
     free(y);
     free(base);
@@ -647,10 +356,12 @@ static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
     for (int j = 0; j < in->unknown_count && err->status == SF_OK; j++) {
         memcpy(u, fit->result.u, sizeof u);
         u[j] += step;
-        if (columns_at(fit, fit->measured_drops, in->drop_count, u, high, err) != SF_OK)
+        if (sf_drop_fit_columns(fit, fit->measured_drops, in->drop_count, SF_FIT_AS_GIVEN, u, high, err) !=
+            SF_OK)
             break;
         u[j] -= 2 * step;
-        if (columns_at(fit, fit->measured_drops, in->drop_count, u, low, err) != SF_OK)
+        if (sf_drop_fit_columns(fit, fit->measured_drops, in->drop_count, SF_FIT_AS_GIVEN, u, low, err) !=
+            SF_OK)
             break;
         for (int k = first; k < last; k++)
             fit->gradient[k * fit->parameters + j] = (high[k] - low[k]) / (2 * step);
@@ -678,12 +389,6 @@ static sf_status finish(sf_drop_fit *fit, sf_error *err) {
     for (int k = 0; k < fit->row[in->drop_count]; k++)
         fit->response_sd[k] = deviation(fit, &fit->gradient[k * n]);
     return SF_OK;
-}
-
-static sf_status conclude(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_error *err) {
-    if (leave_one_out(fit, problem, err) != SF_OK || bound_curve(fit, err) != SF_OK)
-        return err->status;
-    return locate_information(fit, err);
 }
 
 /* The coarse drops cost little and differ from the drops by a correction that hardly changes with the foam:
@@ -714,9 +419,7 @@ static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
     double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS];
-    if (list_data(fit, err) != SF_OK)
-        return err->status;
-    fit->inputs = fit->memory ? hash_inputs(fit) : 0;
+    SF_TRY(sf_drop_fit_list(fit, err));
     if (fit->earlier)
         memcpy(fit->columns, fit->earlier->columns, sizeof fit->columns);
     for (int k = 0; k < in->unknown_count; k++) {
@@ -750,8 +453,9 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     if (in->coarse_count > 0 && !fit->earlier)
         begin_coarse(fit, &problem, &coarse, err);
     if (err->status == SF_OK && sf_mapping_solve(&problem, &fit->result, err) == SF_OK &&
-        finish(fit, err) == SF_OK)
-        conclude(fit, &problem, err);
+        finish(fit, err) == SF_OK && leave_one_out(fit, &problem, err) == SF_OK &&
+        bound_curve(fit, err) == SF_OK)
+        locate_information(fit, err);
     sf_mapping_free(&coarse);
     return err->status;
 }
@@ -760,11 +464,6 @@ void sf_drop_fit_free(sf_drop_fit *fit) {
     for (int d = 0; d < SF_FIT_MAX_DROPS; d++)
         sf_series_free(&fit->simulated[d].curve);
     sf_mapping_free(&fit->result);
-    free(fit->y);
+    free(fit->y); /* and all behind it */
     free(fit->gradient);
-    free(fit->measured);
-    free(fit->sd);
-    free(fit->without);
-    free(fit->response_sd);
-    free(fit->bound_sd);
 }

@@ -12,10 +12,33 @@
 #include "study/runner.h"
 #include "study/column.h"
 #include "study/fit/drop/fit_input.h"
-#include "study/fit/drop/memory.h"
 #include "study/fit/space_mapping.h"
 
-enum { SF_FIT_STRAIN_BINS = 19 }; /* 0.05 wide, from 0 to 0.95 */
+/* The cache of a fit between its drops, in a file of its folder, so that a run that was killed does not
+ * compute it again: numbers by a key of everything that they depend on. Each record is written at once and
+ * has a checksum; a record that was cut or has changed, and all behind it, is computed again. A record:
+ * key (u64), number of values (u64), values (f64), hash of these (u64, base/hash.h), in the machine's byte
+ * order. */
+typedef struct sf_fit_memory {
+    uint64_t program; /* hash of softfall-fit: begins every key, as another version computes otherwise */
+    int file;         /* open and locked; -1: nothing more is remembered */
+    char *text;       /* the records that were there; owned */
+    size_t size;      /* bytes of them */
+    size_t next;      /* byte after the record found last, where the next one is expected */
+    size_t end;       /* bytes of the file's whole records */
+} sf_fit_memory;
+
+/* Opens or makes the file. If that fails, the disk is full later, or another run has the file, nothing is
+ * remembered and nothing found. Release with sf_fit_memory_close, which keeps the file. */
+void sf_fit_memory_open(const char *path, sf_fit_memory *memory);
+void sf_fit_memory_close(sf_fit_memory *memory);
+
+/* True if `value` [count] was filled. `memory` may be NULL: nothing is found. */
+bool sf_fit_memory_find(sf_fit_memory *memory, uint64_t key, size_t count, double *value);
+void sf_fit_memory_add(sf_fit_memory *memory, uint64_t key, size_t count, const double *value);
+
+enum { SF_FIT_STRAIN_BINS = 19 }; /* SF_FIT_BIN_WIDTH wide, from 0 to 0.95 */
+#define SF_FIT_BIN_WIDTH 0.05
 
 /* The last simulation of each drop. */
 typedef struct sf_fit_simulated {
@@ -47,8 +70,8 @@ typedef struct sf_drop_fit {
     int parameters;              /* unknown parameters of the foam, then those of the chain, then speeds */
     int chain[SF_SIGNAL_CHAIN];  /* index of the chain's numbers among them; -1: it is known */
     int speed[SF_FIT_MAX_DROPS]; /* index of the drop's speed among them; -1: it is known */
-    double *measured, *sd;       /* [responses] scaled; sd INFINITY where nothing was measured; owned */
-    double *bound_sd;            /* [responses] of sf_mapping_problem; owned */
+    double *measured, *sd;       /* [responses] scaled; sd INFINITY where nothing was measured */
+    double *bound_sd;            /* [responses] of sf_mapping_problem */
     sf_columns columns[SF_FIT_MAX_DROPS];
     bool borrowed[SF_FIT_MAX_DROPS]; /* columns of the coarse drop, until the drop itself was simulated */
     sf_fit_simulated simulated[SF_FIT_MAX_DROPS];
@@ -57,11 +80,12 @@ typedef struct sf_drop_fit {
     int coarse_iterations;     /* of the first part; 0: there was none */
     int iteration;
     sf_mapping_result result; /* of the measured drops */
-    double *y;                /* [responses] of the simulations with the result; owned */
+    double *y; /* [responses] of the simulations with the result; owned, with all others [responses] behind
+                  it */
     double *gradient; /* [responses][parameters] by the parameters: corrected columns, for predictions plain;
                          owned */
-    double *response_sd; /* [responses] standard deviation by the parameters; owned */
-    /* [responses] each measured drop predicted by the others; NaN if there are none; owned */
+    double *response_sd; /* [responses] standard deviation by the parameters */
+    /* [responses] each measured drop predicted by the others; NaN if there are none */
     double *without;
     /* information of the drops about the curve, by strain bin: sum over the data of (d response / d ln sigma
      * / sd)^2 */
@@ -84,5 +108,24 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
 
 /* The card of scaled parameters u, for every other parameter the start. */
 sf_status sf_drop_fit_card(const sf_fit_input *input, const double *u, sf_foam_card *card, sf_error *err);
+
+/* ---- internal: drop_response.c ---- */
+
+/* Every parameter (SI) at scaled ones. */
+void sf_drop_fit_values(const sf_fit_input *input, const double *u, double value[SF_PARAMETER_COUNT]);
+/* Lists parameters and responses, with what was measured; needs `input` and `memory`. */
+sf_status sf_drop_fit_list(sf_drop_fit *fit, sf_error *err);
+/* Scaled responses of one drop from its figures, its curve, which has CFC 1000, as the chain reads it, and
+ * its indentation over the thickness. SF_ERR_NUMERIC: a measured number is not defined; `by`: the source that
+ * does not give it, `remedy`: the action of the user. */
+sf_status sf_drop_fit_read(const sf_fit_drop *drop, const sf_signal_chain *chain,
+                           const sf_columns_figures *figures, const sf_series *curve, double indentation,
+                           const char *by, const char *remedy, double *y, sf_error *err);
+/* Responses of drops `first` to `last` - 1 by columns, from the cache if they are there. The curve is that of
+ * u, or as a fine table raised by SF_FIT_RAISE in a bin, or nowhere. */
+enum { SF_FIT_AS_GIVEN = -2, SF_FIT_NOWHERE = -1 }; /* in place of a bin */
+#define SF_FIT_RAISE 0.05
+sf_status sf_drop_fit_columns(const sf_drop_fit *fit, int first, int last, int bin, const double *u,
+                              double *y, sf_error *err);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/drop_input.h"
+#include "study/fit/drop/fit_input.h"
 
 #include <limits.h>
 #include <math.h>
@@ -29,8 +29,7 @@ static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *
     sf_record_verdict record;
     char line[SF_VERDICT_LINE_SIZE];
     double contact = 0, peak = 0, zero = NAN;
-    if (sf_reference_read(options, &reference, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_reference_read(options, &reference, err));
     const sf_series *curve = &reference.curve;
     if (sf_record_judge(&reference.raw, curve, reference.other, &record, err) != SF_OK)
         goto done;
@@ -62,7 +61,7 @@ done:
 }
 
 /* The measured curve of a drop, filtered like the simulated one unless the file says otherwise. */
-static sf_status read_curve(const sf_config *config, const config_setting_t *group, sf_fit_drop *drop,
+static sf_status read_curve(const sf_config *config, sf_config_item *group, sf_fit_drop *drop,
                             sf_error *err) {
     static const double classes[] = {0, 60, 180, 600, 1000};
     sf_reference_options o = {.column_option = "curve_column = \"...\"",
@@ -96,12 +95,11 @@ static sf_status read_curve(const sf_config *config, const config_setting_t *gro
 
 /* ---- drops ---- */
 
-static sf_status name_drop(const sf_config *config, const config_setting_t *group, int count,
-                           sf_fit_drop *drop, sf_error *err) {
+static sf_status name_drop(const sf_config *config, sf_config_item *group, int count, sf_fit_drop *drop,
+                           sf_error *err) {
     sf_fit_drop *const last = &drop[count];
     const char *name = NULL;
-    if (sf_config_text(config, group, "name", false, &name, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_text(config, group, "name", false, &name, err));
     if (name && strlen(name) >= sizeof last->name)
         return sf_config_refuse(config, group, err, "the name \"%.80s\" is longer than %zu characters", name,
                                 sizeof last->name - 1);
@@ -123,15 +121,15 @@ static sf_status name_drop(const sf_config *config, const config_setting_t *grou
 static const double VALUE_LOW = 1e-3, VALUE_HIGH = 1e7, SD_LOW = 1e-4;
 
 /* A value and its standard deviation. */
-static sf_status read_kind(const sf_config *config, const config_setting_t *group, int kind,
-                           sf_fit_drop *drop, sf_error *err) {
+static sf_status read_kind(const sf_config *config, sf_config_item *group, int kind, sf_fit_drop *drop,
+                           sf_error *err) {
     const sf_drop_kind_info *about = sf_drop_kind_get(kind);
     double *value = &drop->value[kind], *sd = &drop->sd[kind];
     *value = NAN;
     *sd = about->sd;
     SF_TRY(sf_config_number(config, group, about->key, false, VALUE_LOW, VALUE_HIGH, value, err));
     SF_TRY(sf_config_number(config, group, about->sd_key, false, SD_LOW, 1, sd, err));
-    const config_setting_t *stated = config_setting_get_member(group, about->sd_key);
+    sf_config_item *stated = config_setting_get_member(group, about->sd_key);
     if (stated && isnan(*value))
         return sf_config_refuse(config, stated, err, "%s is given, but no %s", about->sd_key, about->key);
     return SF_OK;
@@ -139,10 +137,10 @@ static sf_status read_kind(const sf_config *config, const config_setting_t *grou
 
 /* A window printed in steps of r: both its ends are uniform over a step, so that its length has the variance
  * 2 r^2 / 12; beside a stated scatter, or alone. */
-static sf_status read_resolution(const sf_config *config, const config_setting_t *group, sf_fit_drop *drop,
+static sf_status read_resolution(const sf_config *config, sf_config_item *group, sf_fit_drop *drop,
                                  sf_error *err) {
     static const char key[] = "HIC_window_resolution_ms";
-    const config_setting_t *setting = config_setting_get_member(group, key);
+    sf_config_item *setting = config_setting_get_member(group, key);
     double *sd = &drop->sd[SF_FIT_WINDOW], step = 0;
     if (!setting)
         return SF_OK;
@@ -154,7 +152,7 @@ static sf_status read_resolution(const sf_config *config, const config_setting_t
     return SF_OK;
 }
 
-static sf_status read_measurement(const sf_config *config, const config_setting_t *group, sf_fit_drop *drop,
+static sf_status read_measurement(const sf_config *config, sf_config_item *group, sf_fit_drop *drop,
                                   sf_error *err) {
     bool any = false;
     drop->sample_sd = 0.03;
@@ -192,10 +190,9 @@ static bool is_same_file(const char *a, const char *b) {
 }
 
 static bool is_same_curve(const sf_fit_drop *a, const sf_fit_drop *b) {
-    bool same = a->samples == b->samples;
-    for (int k = 0; k < a->samples && same; k++)
-        same = a->sample_time[k] == b->sample_time[k] && a->sample_value[k] == b->sample_value[k];
-    return same;
+    size_t size = (size_t)a->samples * sizeof(double);
+    return a->samples == b->samples && (size == 0 || (memcmp(a->sample_time, b->sample_time, size) == 0 &&
+                                                      memcmp(a->sample_value, b->sample_value, size) == 0));
 }
 
 /* Everything that was measured, number by number and sample by sample. */
@@ -207,7 +204,7 @@ static bool is_same_measurement(const sf_fit_drop *a, const sf_fit_drop *b) {
 }
 
 /* Twice, a drop would weigh more than it tells, and would foretell itself where it is left out. */
-static sf_status check_drop(const sf_config *config, const config_setting_t *group, const sf_fit_drop *first,
+static sf_status check_drop(const sf_config *config, sf_config_item *group, const sf_fit_drop *first,
                             const sf_fit_drop *drop, sf_error *err) {
     for (const sf_fit_drop *earlier = first; earlier < drop; earlier++) {
         if (is_same_measurement(earlier, drop) && is_same_file(earlier->case_path, drop->case_path))
@@ -226,8 +223,8 @@ static sf_status check_drop(const sf_config *config, const config_setting_t *gro
 
 #define KIND_KEYS(name, key, error_key, ...) key "|" SF_DROP_SD(error_key) "|"
 
-sf_status sf_drop_input_read(const sf_config *config, const config_setting_t *group, bool predicted,
-                             int count, sf_fit_drop *drop, sf_error *err) {
+sf_status sf_drop_input_read(const sf_config *config, sf_config_item *group, bool predicted, int count,
+                             sf_fit_drop *drop, sf_error *err) {
     static const char *const names[2] = {
         "name|case|" SF_DROP_KINDS(
             KIND_KEYS) "HIC_window_resolution_ms|speed_sd|curve|curve_sd|curve_filter|curve_column|curve_columns|curve_heading|curve_scale|curve_rate|curve_invert|curve_zero",
@@ -236,10 +233,9 @@ sf_status sf_drop_input_read(const sf_config *config, const config_setting_t *gr
     *last = (sf_fit_drop){.predicted = predicted};
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
         last->value[kind] = NAN;
-    if (sf_config_names(config, group, names[predicted], err) != SF_OK ||
-        name_drop(config, group, count, drop, err) != SF_OK ||
-        sf_config_file(config, group, "case", true, &last->case_path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, group, names[predicted], err));
+    SF_TRY(name_drop(config, group, count, drop, err));
+    SF_TRY(sf_config_file(config, group, "case", true, &last->case_path, err));
     if (predicted)
         return SF_OK;
     SF_TRY(read_measurement(config, group, last, err));

@@ -12,14 +12,13 @@
 
 /* ---- drops ---- */
 
-static sf_status read_drops(const sf_config *config, const config_setting_t *root, const char *name,
-                            bool predicted, sf_fit_input *in, sf_error *err) {
-    const config_setting_t *list;
+static sf_status read_drops(const sf_config *config, sf_config_item *root, const char *name, bool predicted,
+                            sf_fit_input *in, sf_error *err) {
+    sf_config_item *list;
     bool required = !predicted && in->joint.rows == 0;
-    if (sf_config_list(config, root, name, required, SF_FIT_MAX_DROPS - in->drop_count, &list, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_list(config, root, name, required, SF_FIT_MAX_DROPS - in->drop_count, &list, err));
     for (int k = 0; list && k < config_setting_length(list); k++) {
-        const config_setting_t *group = config_setting_get_elem(list, (unsigned)k);
+        sf_config_item *group = config_setting_get_elem(list, (unsigned)k);
         int count = in->drop_count++; /* it is released with the input, read or not */
         SF_TRY(sf_drop_input_read(config, group, predicted, count, in->drop, err));
     }
@@ -27,10 +26,9 @@ static sf_status read_drops(const sf_config *config, const config_setting_t *roo
 }
 
 /* Reads the keys that the first iterations change: those of the discretisation. */
-static sf_status read_coarse(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
-                             sf_error *err) {
+static sf_status read_coarse(const sf_config *config, sf_config_item *root, sf_fit_input *in, sf_error *err) {
     static const char *const groups[] = {"geometry.", "pad.", "solver."};
-    const config_setting_t *list = config_setting_get_member(root, "coarse_set");
+    sf_config_item *list = config_setting_get_member(root, "coarse_set");
     SF_TRY(
         sf_config_overrides(config, "coarse_set", SF_RUNNER_OVERRIDES, in->coarse, &in->coarse_count, err));
     if (in->coarse_count > 0 && in->drop_count == 0)
@@ -49,8 +47,7 @@ static sf_status read_coarse(const sf_config *config, const config_setting_t *ro
 }
 
 /* Reads what the accelerometer's mount and a high pass do to every record. */
-static sf_status read_chain(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
-                            sf_error *err) {
+static sf_status read_chain(const sf_config *config, sf_config_item *root, sf_fit_input *in, sf_error *err) {
     static const char *const sd[SF_SIGNAL_CHAIN] = {"mount_frequency_sd", "mount_damping_sd", "coupling_sd"};
     const char *mount = NULL, *coupling = NULL;
     SF_TRY(sf_config_text(config, root, "mount", false, &mount, err));
@@ -70,43 +67,26 @@ static sf_status read_chain(const sf_config *config, const config_setting_t *roo
 
 /* ---- material and parameters ---- */
 
-/* Sets the reference of a material without a rate factor: the slowest compression test, as below the
- * reference the law has no effect of the rate. */
-static void start_reference(sf_fit_input *in) {
-    double *reference = &in->start[SF_PARAMETER_RATE_REFERENCE];
-    for (int t = 0; t < in->joint.test_count && !(in->form.base.rate_factor > 0); t++)
-        *reference = fmin(*reference, in->joint.test[t].rate);
-}
-
-/* The density of the solid, and with it the start values. */
-static sf_status read_solid(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
-                            sf_error *err) {
-    sf_error inner = SF_ERROR_INIT;
-    SF_TRY(sf_config_quantity(config, root, "solid_density", SF_DENSITY, false, 0, &in->form.solid_density,
-                              err));
-    if (in->form.solid_density > 0 && sf_foam_form_check_solid(&in->form, &inner) != SF_OK)
-        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err, "%s",
-                                inner.text);
-    sf_foam_form_start(&in->form, in->start);
-    start_reference(in);
-    return SF_OK;
-}
-
 /* The group that describes the model: an entry of `forms`, or the whole file. */
-static const config_setting_t *model_of(const config_setting_t *root, const sf_fit_input *in) {
-    const config_setting_t *list = config_setting_get_member(root, "forms");
+static sf_config_item *model_of(sf_config_item *root, const sf_fit_input *in) {
+    sf_config_item *list = config_setting_get_member(root, "forms");
     return list ? config_setting_get_elem(list, (unsigned)in->model) : root;
 }
 
-static bool starts_solid_fraction(const config_setting_t *holder) {
-    const config_setting_t *start = config_setting_get_member(holder, "start");
+/* The key of the form. */
+static const char *curve_key(sf_config_item *root, sf_config_item *model) {
+    return model == root ? "curve_form" : "curve";
+}
+
+static bool starts_solid_fraction(sf_config_item *holder) {
+    sf_config_item *start = config_setting_get_member(holder, "start");
     return start && config_setting_get_member(start, "solid_fraction");
 }
 
 /* gas_solid needs the solid fraction: by density, given, or sought. */
-static sf_status check_solid_fraction(const sf_config *config, const config_setting_t *root,
-                                      const sf_fit_input *in, sf_error *err) {
-    const config_setting_t *model = model_of(root, in);
+static sf_status check_solid_fraction(const sf_config *config, sf_config_item *root, const sf_fit_input *in,
+                                      sf_error *err) {
+    sf_config_item *model = model_of(root, in);
     bool dense = in->form.solid_density > 0,
          given = starts_solid_fraction(root) || starts_solid_fraction(model), known = dense || given;
     for (int k = 0; k < in->unknown_count; k++)
@@ -120,15 +100,14 @@ static sf_status check_solid_fraction(const sf_config *config, const config_sett
                                 "solid_density is given, but curve_form = \"%s\" has no solid fraction",
                                 in->form.curve->name);
     if (in->form.curve == &sf_form_gas_solid && !known)
-        return sf_config_refuse(config,
-                                config_setting_get_member(model, model == root ? "curve_form" : "curve"), err,
+        return sf_config_refuse(config, config_setting_get_member(model, curve_key(root, model)), err,
                                 "%s = \"gas_solid\" needs solid_density, the density of the solid in the "
                                 "cell walls, or solid_fraction as an unknown",
-                                model == root ? "curve_form" : "curve");
+                                curve_key(root, model));
     return SF_OK;
 }
 
-/* Only this law's parameters are identified; `first`: the input takes the card with its curves. */
+/* Only this law's parameters are identified; the first case gives the input its card with its curves. */
 static sf_status take_material(sf_material *material, bool first, sf_fit_input *in, sf_error *err) {
     if (material->law != &sf_low_density_foam)
         return SF_FAIL(err, SF_ERR_INPUT,
@@ -141,23 +120,13 @@ static sf_status take_material(sf_material *material, bool first, sf_fit_input *
     return SF_OK;
 }
 
-static sf_status read_material_alone(sf_fit_input *in, sf_error *err) {
-    sf_material material;
-    if (sf_case_read_material(in->material_path, &material, err) == SF_OK)
-        take_material(&material, true, in, err);
-    sf_material_free(&material);
-    return err->status;
-}
-
-/* `first`: the input takes its material. */
 static sf_status read_case(const sf_fit_drop *drop, const char *material, bool first, sf_fit_input *in,
                            sf_error *err) {
     const sf_sink sink = sf_program_sink("softfall-fit");
     sf_case c;
-    if (sf_case_read(drop->case_path, 1, &material, &sink, &c, err) == SF_OK) {
-        take_material(&c.material, first, in, err);
-        sf_case_free(&c);
-    }
+    SF_TRY(sf_case_read(drop->case_path, 1, &material, &sink, &c, err));
+    take_material(&c.material, first, in, err);
+    sf_case_free(&c);
     return err->status;
 }
 
@@ -175,23 +144,20 @@ static sf_status check_coarse(const sf_fit_drop *drop, const char *material, con
 }
 
 /* The start material, read as the first drop's case would. */
-static sf_status read_material(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+static sf_status read_material(const sf_config *config, sf_config_item *root, sf_fit_input *in,
                                sf_error *err) {
     const char *form = "gas", *name = "material", *title = "Identified foam";
-    const config_setting_t *model = model_of(root, in);
+    sf_config_item *model = model_of(root, in);
     char override[4096];
-    if (sf_config_text(config, model, model == root ? "curve_form" : "curve", model != root, &form, err) !=
-            SF_OK ||
-        sf_config_text(config, root, "name", false, &name, err) != SF_OK ||
-        sf_config_text(config, root, "title", false, &title, err) != SF_OK ||
-        sf_config_file(config, root, "material", true, &in->material_path, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_text(config, model, curve_key(root, model), model != root, &form, err));
+    SF_TRY(sf_config_text(config, root, "name", false, &name, err));
+    SF_TRY(sf_config_text(config, root, "title", false, &title, err));
+    SF_TRY(sf_config_file(config, root, "material", true, &in->material_path, err));
     in->form.curve = sf_curve_form_find(form);
     if (!in->form.curve)
-        return sf_config_refuse(config,
-                                config_setting_get_member(model, model == root ? "curve_form" : "curve"), err,
-                                "%s is \"%.80s\": one of %s is expected",
-                                model == root ? "curve_form" : "curve", form, sf_curve_form_words());
+        return sf_config_refuse(config, config_setting_get_member(model, curve_key(root, model)), err,
+                                "%s is \"%.80s\": one of %s is expected", curve_key(root, model), form,
+                                sf_curve_form_words());
     if (strpbrk(name, "/\"'\\\n\r") || strncmp(name, "fit", 3) == 0)
         return sf_config_refuse(
             config, config_setting_get_member(root, "name"), err,
@@ -203,20 +169,31 @@ static sf_status read_material(const sf_config *config, const config_setting_t *
     snprintf(in->material_name, sizeof in->material_name, "%s", name);
     snprintf(in->title, sizeof in->title, "%s", title);
     snprintf(override, sizeof override, "material=@%s", in->material_path);
-    if (in->drop_count == 0 && read_material_alone(in, err) != SF_OK)
-        return err->status;
+    if (in->drop_count == 0) {
+        sf_material material;
+        if (sf_case_read_material(in->material_path, &material, err) == SF_OK)
+            take_material(&material, true, in, err);
+        sf_material_free(&material);
+        SF_TRY(err->status);
+    }
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
         SF_TRY(read_case(&in->drop[k], override, k == 0, in, err));
         if (in->coarse_count > 0 && !in->drop[k].predicted)
             SF_TRY(check_coarse(&in->drop[k], override, in, err));
     }
-    return read_solid(config, root, in, err);
+    SF_TRY(sf_foam_form_read_solid(config, root, &in->form, err));
+    sf_foam_form_start(&in->form, in->start);
+    /* of a material without a rate factor the slowest compression test: below it the law has no effect */
+    double *reference = &in->start[SF_PARAMETER_RATE_REFERENCE];
+    for (int t = 0; t < in->joint.test_count && !(in->form.base.rate_factor > 0); t++)
+        *reference = fmin(*reference, in->joint.test[t].rate);
+    return SF_OK;
 }
 
 /* By the model, or, of a start of all models, by one of them. An unknown form is refused by its model. */
-static bool is_used(const config_setting_t *root, const config_setting_t *holder, const sf_fit_input *in,
+static bool is_used(sf_config_item *root, sf_config_item *holder, const sf_fit_input *in,
                     sf_foam_parameter p) {
-    const config_setting_t *list = config_setting_get_member(root, "forms");
+    sf_config_item *list = config_setting_get_member(root, "forms");
     bool used = sf_curve_form_uses(in->form.curve, p);
     for (int m = 0; list && holder == root && m < in->model_count; m++) {
         const char *name = NULL;
@@ -227,11 +204,10 @@ static bool is_used(const config_setting_t *root, const config_setting_t *holder
     return used;
 }
 
-static sf_status check_used(const sf_config *config, const config_setting_t *holder,
-                            const config_setting_t *item, const sf_fit_input *in, sf_foam_parameter p,
-                            sf_error *err) {
-    const config_setting_t *root = config_root_setting(&config->config),
-                           *list = config_setting_get_member(root, "forms");
+static sf_status check_used(const sf_config *config, sf_config_item *holder, sf_config_item *item,
+                            const sf_fit_input *in, sf_foam_parameter p, sf_error *err) {
+    sf_config_item *root = config_root_setting(&config->config),
+                   *list = config_setting_get_member(root, "forms");
     const char *name = sf_parameter_get(p)->name;
     if (is_used(root, holder, in, p))
         return SF_OK;
@@ -241,40 +217,31 @@ static sf_status check_used(const sf_config *config, const config_setting_t *hol
                             list ? "curve" : "curve_form", in->form.curve->name);
 }
 
-static sf_status read_start(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
+static sf_status read_start(const sf_config *config, sf_config_item *holder, sf_fit_input *in,
                             sf_error *err) {
-    const config_setting_t *group = config_setting_get_member(holder, "start");
+    sf_config_item *group = config_setting_get_member(holder, "start");
     if (!group)
         return SF_OK;
     if (!config_setting_is_group(group))
         return sf_config_refuse(config, group, err, "start must be a group: start: { p0 = \"101 kPa\"; }");
     for (int k = 0; k < config_setting_length(group); k++) {
-        const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
+        sf_config_item *item = config_setting_get_elem(group, (unsigned)k);
         sf_foam_parameter p = sf_parameter_find(config_setting_name(item));
         if (p == SF_PARAMETER_COUNT)
             return sf_config_refuse(config, item, err, "\"%.80s\" is no parameter of the foam",
                                     config_setting_name(item));
-        const sf_parameter_info *about = sf_parameter_get(p);
         SF_TRY(check_used(config, holder, item, in, p, err));
-        if (about->quantity == SF_QUANTITY_COUNT)
-            sf_config_number(config, group, about->name, true, about->low, about->high, &in->start[p], err);
-        else
-            sf_config_quantity(config, group, about->name, about->quantity, true, about->low, &in->start[p],
-                               err);
-        if (err->status == SF_OK && !(in->start[p] <= about->high))
-            sf_config_refuse(config, item, err, "%s is above %g", about->name, about->high);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(sf_parameter_read(config, group, p, &in->start[p], err));
     }
     return SF_OK;
 }
 
 /* The start must make a curve. */
-static sf_status check_start(const sf_config *config, const config_setting_t *root, const sf_fit_input *in,
+static sf_status check_start(const sf_config *config, sf_config_item *root, const sf_fit_input *in,
                              sf_error *err) {
     sf_foam_card card;
     sf_error inner = SF_ERROR_INIT;
-    const config_setting_t *group = config_setting_get_member(root, "start");
+    sf_config_item *group = config_setting_get_member(root, "start");
     if (sf_foam_form_card(&in->form, in->start, &card, &inner) != SF_OK)
         return sf_config_refuse(config, group ? group : root, err, "start: %s", inner.text);
     sf_foam_card_free(&card);
@@ -295,9 +262,8 @@ static int term_of(sf_foam_parameter p) {
 }
 
 /* A parameter of a term that the model's `rate` does not name has no effect. `what`: "start: ED". */
-static sf_status check_term(const sf_config *config, const config_setting_t *item,
-                            const config_setting_t *model, sf_foam_parameter p, const char *what,
-                            sf_error *err) {
+static sf_status check_term(const sf_config *config, sf_config_item *item, sf_config_item *model,
+                            sf_foam_parameter p, const char *what, sf_error *err) {
     int rate = -1, term = term_of(p);
     const char *name = NULL;
     if (sf_config_choice(config, model, "rate", RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
@@ -310,10 +276,10 @@ static sf_status check_term(const sf_config *config, const config_setting_t *ite
 }
 
 /* The start values of the model alone; those of all models may be for other models. */
-static sf_status check_terms(const sf_config *config, const config_setting_t *model, sf_error *err) {
-    const config_setting_t *group = config_setting_get_member(model, "start");
+static sf_status check_terms(const sf_config *config, sf_config_item *model, sf_error *err) {
+    sf_config_item *group = config_setting_get_member(model, "start");
     for (int k = 0; group && k < config_setting_length(group); k++) {
-        const config_setting_t *item = config_setting_get_elem(group, (unsigned)k);
+        sf_config_item *item = config_setting_get_elem(group, (unsigned)k);
         char what[64];
         snprintf(what, sizeof what, "start: %s", config_setting_name(item));
         SF_TRY(check_term(config, item, model, sf_parameter_find(config_setting_name(item)), what, err));
@@ -324,7 +290,7 @@ static sf_status check_terms(const sf_config *config, const config_setting_t *mo
 /* ---- unknowns ---- */
 
 /* One more unknown, with its usual prior; SF_ERR_INPUT names `where` if there are too many. */
-static sf_status put_unknown(const sf_config *config, const config_setting_t *where, sf_fit_input *in,
+static sf_status put_unknown(const sf_config *config, sf_config_item *where, sf_fit_input *in,
                              sf_foam_parameter p, sf_error *err) {
     int k = in->unknown_count;
     if (k == SF_FIT_MAX_UNKNOWNS)
@@ -344,12 +310,11 @@ static sf_status put_unknown(const sf_config *config, const config_setting_t *wh
     return SF_OK;
 }
 
-static sf_status read_unknown(const sf_config *config, const config_setting_t *entry, sf_fit_input *in,
+static sf_status read_unknown(const sf_config *config, sf_config_item *entry, sf_fit_input *in,
                               sf_error *err) {
     const char *name = NULL;
-    if (sf_config_names(config, entry, "name|prior_sd", err) != SF_OK ||
-        sf_config_text(config, entry, "name", true, &name, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_names(config, entry, "name|prior_sd", err));
+    SF_TRY(sf_config_text(config, entry, "name", true, &name, err));
     sf_foam_parameter p = sf_parameter_find(name);
     if (p == SF_PARAMETER_COUNT)
         return sf_config_refuse(config, entry, err, "\"%.80s\" is no parameter of the foam", name);
@@ -373,18 +338,17 @@ static sf_status read_unknown(const sf_config *config, const config_setting_t *e
                             err);
 }
 
-static sf_status read_list(const sf_config *config, const config_setting_t *holder, sf_fit_input *in,
-                           bool *given, sf_error *err) {
-    const config_setting_t *list;
-    if (sf_config_list(config, holder, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err) != SF_OK)
-        return err->status;
+static sf_status read_list(const sf_config *config, sf_config_item *holder, sf_fit_input *in, bool *given,
+                           sf_error *err) {
+    sf_config_item *list;
+    SF_TRY(sf_config_list(config, holder, "unknown", false, SF_FIT_MAX_UNKNOWNS, &list, err));
     *given = list;
     for (int k = 0; list && k < config_setting_length(list) && err->status == SF_OK; k++)
         read_unknown(config, config_setting_get_elem(list, (unsigned)k), in, err);
     return err->status;
 }
 
-static sf_status add_unknown(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
+static sf_status add_unknown(const sf_config *config, sf_config_item *model, sf_fit_input *in,
                              sf_foam_parameter p, sf_error *err) {
     for (int k = 0; k < in->unknown_count; k++)
         if (in->unknown[k] == p)
@@ -395,8 +359,7 @@ static sf_status add_unknown(const sf_config *config, const config_setting_t *mo
 }
 
 /* Without a list: those that are usual for the form. */
-static sf_status add_usual(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
-                           sf_error *err) {
+static sf_status add_usual(const sf_config *config, sf_config_item *model, sf_fit_input *in, sf_error *err) {
     sf_foam_parameter usual[SF_PARAMETER_COUNT];
     int count = sf_foam_form_usual(&in->form, usual);
     for (int k = 0; k < count; k++)
@@ -405,8 +368,7 @@ static sf_status add_usual(const sf_config *config, const config_setting_t *mode
 }
 
 /* The rate terms of an entry of `forms`: those that it names are unknown, the others are not there. */
-static sf_status read_rate(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
-                           sf_error *err) {
+static sf_status read_rate(const sf_config *config, sf_config_item *model, sf_fit_input *in, sf_error *err) {
     int rate = -1;
     if (sf_config_choice(config, model, "rate", RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
         check_terms(config, model, err) != SF_OK)
@@ -423,15 +385,9 @@ static sf_status read_rate(const sf_config *config, const config_setting_t *mode
     return SF_OK;
 }
 
-static sf_status add_rate(const sf_config *config, const config_setting_t *model, sf_fit_input *in,
-                          sf_error *err) {
-    SF_TRY(add_unknown(config, model, in, SF_PARAMETER_ED, err));
-    return add_unknown(config, model, in, SF_PARAMETER_RATE_FACTOR, err);
-}
-
 /* The law refuses it too, but only when the material is simulated. */
-static sf_status check_rate_factor(const sf_config *config, const config_setting_t *model,
-                                   const sf_fit_input *in, sf_error *err) {
+static sf_status check_rate_factor(const sf_config *config, sf_config_item *model, const sf_fit_input *in,
+                                   sf_error *err) {
     if (in->start[SF_PARAMETER_RATE_FACTOR] > 0 && !in->form.curve->stress && in->form.base.curve_count > 1)
         return sf_config_refuse(
             config, model, err,
@@ -443,30 +399,31 @@ static sf_status check_rate_factor(const sf_config *config, const config_setting
 
 /* Reads the unknowns of an entry of `forms`: those that the file lists for all models, and its own or
  * those usual for the form, with the rate terms that it names. */
-static sf_status read_unknowns(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+static sf_status read_unknowns(const sf_config *config, sf_config_item *root, sf_fit_input *in,
                                sf_error *err) {
-    const config_setting_t *model = model_of(root, in);
+    sf_config_item *model = model_of(root, in);
     bool common = false, own = false;
     if (read_list(config, root, in, &common, err) != SF_OK ||
         (model != root && read_list(config, model, in, &own, err) != SF_OK))
         return err->status;
     if (model == root ? !common : !own)
         SF_TRY(add_usual(config, model, in, err));
-    if (config_setting_get_member(model, "rate"))
-        SF_TRY(add_rate(config, model, in, err));
+    if (config_setting_get_member(model, "rate")) {
+        SF_TRY(add_unknown(config, model, in, SF_PARAMETER_ED, err));
+        SF_TRY(add_unknown(config, model, in, SF_PARAMETER_RATE_FACTOR, err));
+    }
     SF_TRY(check_rate_factor(config, model, in, err));
     return check_solid_fraction(config, root, in, err);
 }
 
-static sf_status read_options(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
+static sf_status read_options(const sf_config *config, sf_config_item *root, sf_fit_input *in,
                               sf_error *err) {
     double seed = 1;
-    const config_setting_t *list;
+    sf_config_item *list;
     in->posterior = true;
-    if (sf_config_number(config, root, "seed", false, 0, 1e9, &seed, err) != SF_OK ||
-        sf_config_flag(config, root, "posterior", &in->posterior, err) != SF_OK ||
-        sf_config_list(config, root, "forms", false, SF_FIT_MAX_MODELS, &list, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_config_number(config, root, "seed", false, 0, 1e9, &seed, err));
+    SF_TRY(sf_config_flag(config, root, "posterior", &in->posterior, err));
+    SF_TRY(sf_config_list(config, root, "forms", false, SF_FIT_MAX_MODELS, &list, err));
     in->seed = (uint64_t)seed;
     in->model_count = list ? config_setting_length(list) : 1;
     if (list && config_setting_get_member(root, "curve_form"))
@@ -481,9 +438,8 @@ static sf_status read_options(const sf_config *config, const config_setting_t *r
 
 /* Start values of all models, then the model's own. The curve's medians follow the modulus and the solid
  * fraction, so where these are given the others are read again. */
-static sf_status read_starts(const sf_config *config, const config_setting_t *root, sf_fit_input *in,
-                             sf_error *err) {
-    const config_setting_t *model = model_of(root, in);
+static sf_status read_starts(const sf_config *config, sf_config_item *root, sf_fit_input *in, sf_error *err) {
+    sf_config_item *model = model_of(root, in);
     for (int pass = 0; pass < 2; pass++) {
         if (pass == 1)
             in->form.curve->start(in->start);
@@ -496,12 +452,22 @@ static sf_status read_starts(const sf_config *config, const config_setting_t *ro
     return check_start(config, model, in, err);
 }
 
+static void put_label(sf_fit_input *in) {
+    bool maxwell = in->start[SF_PARAMETER_ED] > 0, factor = in->start[SF_PARAMETER_RATE_FACTOR] > 0;
+    for (int k = 0; k < in->unknown_count; k++) {
+        maxwell = maxwell || in->unknown[k] == SF_PARAMETER_ED;
+        factor = factor || in->unknown[k] == SF_PARAMETER_RATE_FACTOR;
+    }
+    snprintf(in->label, sizeof in->label, "%s%s%s", in->form.curve->name, factor ? ", rate factor" : "",
+             maxwell ? ", Maxwell branch" : "");
+}
+
 sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_error *err) {
     sf_config config;
     *in = (sf_fit_input){.model = model};
     if (sf_config_open(path, &config, err) == SF_OK &&
         sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err) == SF_OK) {
-        const config_setting_t *root = config_root_setting(&config.config);
+        sf_config_item *root = config_root_setting(&config.config);
         if (sf_config_names(&config, root,
                             "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
                             "seed|posterior|compressions|cushions|coarse_set|mount|mount_frequency_sd|"
@@ -514,6 +480,8 @@ sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_er
             read_drops(&config, root, "predict", true, in, err) == SF_OK &&
             read_material(&config, root, in, err) == SF_OK && read_starts(&config, root, in, err) == SF_OK)
             read_unknowns(&config, root, in, err);
+        if (err->status == SF_OK)
+            put_label(in);
     }
     sf_config_close(&config);
     return err->status;

@@ -32,10 +32,6 @@ sf_inference_options sf_inference_defaults(uint64_t seed) {
     return o;
 }
 
-double sf_discrepancy_strain(int place) {
-    return PLACE_WIDTH * place;
-}
-
 sf_discrepancy_size sf_drop_inference_size(const sf_drop_inference *inference, const double *u) {
     int n = inference->parameters;
     return (sf_discrepancy_size){sf_half_normal(u[n - 2], TAU_SCALE), sf_half_normal(u[n - 1], KAPPA_SCALE)};
@@ -76,20 +72,14 @@ static void apply_delta(sf_foam_card *card, const double *delta) {
         }
 }
 
-static sf_status raised_card(const sf_drop_fit *fit, const double *u, const double *delta, sf_foam_card *card,
-                             sf_error *err) {
-    if (sf_drop_fit_card(fit->input, u, card, err) != SF_OK)
-        return err->status;
+sf_status sf_drop_inference_card(const sf_drop_inference *in, const double *u, const double *delta,
+                                 sf_foam_card *card, sf_error *err) {
+    SF_TRY(sf_drop_fit_card(in->fit->input, u, card, err));
     if (sf_foam_card_resample(card, err) == SF_OK)
         apply_delta(card, delta);
     else
         sf_foam_card_free(card);
     return err->status;
-}
-
-sf_status sf_drop_inference_card(const sf_drop_inference *inference, const double *u, const double *delta,
-                                 sf_foam_card *card, sf_error *err) {
-    return raised_card(inference->fit, u, delta, card, err);
 }
 
 /* ---- corrected surrogate ---- */
@@ -108,7 +98,7 @@ static sf_status respond(const sf_drop_inference *in, const double *u, const dou
     double full[SF_MAPPING_MAX_PARAMETERS];
     sf_foam_card card;
     fit_parameters(in, u, full);
-    SF_TRY(delta ? raised_card(fit, full, delta, &card, err)
+    SF_TRY(delta ? sf_drop_inference_card(in, full, delta, &card, err)
                  : sf_drop_fit_card(fit->input, full, &card, err));
     if (sf_foam_check_shared(&card, err) == SF_OK)
         sf_drop_fit_respond(fit, first, last, &card, NULL, y, err);
@@ -185,7 +175,7 @@ static sf_status respond_raised(const sf_drop_inference *in, int place, double s
     double delta[PLACES] = {0};
     sf_foam_card card;
     delta[place] = sign * RAISE;
-    if (raised_card(in->fit, in->fit->result.u, delta, &card, err) == SF_OK) {
+    if (sf_drop_inference_card(in, in->fit->result.u, delta, &card, err) == SF_OK) {
         sf_drop_fit_respond(in->fit, 0, in->fit->input->drop_count, &card, NULL, y, err);
         sf_foam_card_free(&card);
     }
@@ -244,8 +234,7 @@ static sf_status fill_base(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     size_t n = (size_t)in->data;
     in->base = sf_alloc(err, n * n, sizeof(double), "covariances");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (size_t i = 0; i < n; i++)
         in->base[i * n + i] = pow(fit->sd[in->data_row[i]], 2);
     for (int d = 0; d < fit->measured_drops; d++)
@@ -268,10 +257,6 @@ static int select_data(const sf_drop_inference *in, int left_out, int *which) {
     return count;
 }
 
-static int effects_of(const sf_drop_fit *fit) {
-    return (fit->measured_drops + 1) * SF_FIT_SAMPLES;
-}
-
 /* Derivatives of a datum by the errors x: first those that all drops share, by number, then each drop's. */
 static void fill_effects(const sf_drop_fit *fit, int row, double *effect) {
     for (int d = 0; d < fit->measured_drops; d++) {
@@ -288,12 +273,12 @@ static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf
     unsigned long n = (unsigned long)in->data;
     double place[PLACES], kernel[PLACES * PLACES];
     int *which = sf_alloc(err, n, sizeof *which, "data");
-    int effects = effects_of(in->fit);
+    int effects = (in->fit->measured_drops + 1) * SF_FIT_SAMPLES;
     double *jacobian = sf_alloc(err, n * PLACES, sizeof *jacobian, "responses"),
            *base = sf_alloc(err, n * n, sizeof *base, "covariances"),
            *effect = sf_alloc(err, n * (unsigned long)effects, sizeof *effect, "responses");
     for (int b = 0; b < PLACES; b++)
-        place[b] = sf_discrepancy_strain(b);
+        place[b] = PLACE_WIDTH * b;
     sf_kernel_fill(PLACES, place, LENGTH, kernel);
     if (err->status == SF_OK) {
         int count = select_data(in, left_out, which);
@@ -331,9 +316,11 @@ static sf_status prepare(sf_drop_inference *in, bool leave_one_out, sf_error *er
         return SF_FAIL(err, SF_ERR_INPUT, "%d unknown parameters: at most %d can be sampled",
                        in->fit->input->unknown_count, SF_POSTERIOR_MOST - 2);
     in->prior_norm = prior_norm(in->fit->input);
-    if (list_data(in, err) != SF_OK || find_offset(in, err) != SF_OK || find_jacobian(in, err) != SF_OK ||
-        fill_base(in, err) != SF_OK || build_discrepancy(in, -1, &in->all, err) != SF_OK)
-        return err->status;
+    SF_TRY(list_data(in, err));
+    SF_TRY(find_offset(in, err));
+    SF_TRY(find_jacobian(in, err));
+    SF_TRY(fill_base(in, err));
+    SF_TRY(build_discrepancy(in, -1, &in->all, err));
     for (int d = 0; d < in->fit->measured_drops && leave_one_out && err->status == SF_OK; d++)
         build_discrepancy(in, d, &in->without[d], err);
     return err->status;
@@ -356,12 +343,6 @@ static double log_prior(const sf_drop_inference *in, const double *u) {
     return sum;
 }
 
-/* Computes the responses of the target: measured less corrected surrogate [data]. */
-static bool respond_residual(const void *context, const double *u, double *residual) {
-    return !sf_process_stopped() &&
-           find_residual(context, u, residual); /* stopped: the chains rush to their end */
-}
-
 /* Log likelihood; `conditional` [measured drops]: log p(data of a drop | those of the others), or NULL;
  * `part` [data] for what is left. */
 static double split_of(const sf_drop_inference *in, const double *u, const double *residual,
@@ -376,6 +357,11 @@ static double split_of(const sf_drop_inference *in, const double *u, const doubl
         conditional[d] = likelihood - sf_discrepancy_log_density(&in->without[d], part, size);
     }
     return likelihood;
+}
+
+/* The responses of the target; once the program is stopped the chains rush to their end. */
+static bool respond_residual(const void *context, const double *u, double *residual) {
+    return !sf_process_stopped() && find_residual(context, u, residual);
 }
 
 static double split(const void *context, const double *u, const double *residual, double *conditional) {
@@ -395,12 +381,8 @@ static double split(const void *context, const double *u, const double *residual
     return sum;
 }
 
-static double log_density_of(const void *context, const double *u, const double *residual) {
+static double log_density(const void *context, const double *u, const double *residual) {
     return split(context, u, residual, NULL);
-}
-
-static double log_density(const void *context, const double *u) {
-    return split(context, u, NULL, NULL);
 }
 
 /* The shared errors are the first of x. */
@@ -412,10 +394,8 @@ static void fill_error(sf_discrepancy_size size, const double *x, sf_response_er
     }
 }
 
-/* delta, the errors x that all drops share and, if `own` is not NULL, those of the drops to predict,
- * [input drops][SF_FIT_SAMPLES], the shared ones in them. */
-static bool draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta,
-                 sf_response_error *error, double *own) {
+bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta,
+                            sf_response_error *error, double *own) {
     sf_error err = SF_ERROR_INIT;
     double x[SF_DISCREPANCY_MOST];
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
@@ -431,15 +411,9 @@ static bool draw(const sf_drop_inference *in, const double *u, uint64_t seed, do
                 own[d * SF_FIT_SAMPLES + kind] =
                     sf_drop_kind_get(kind)->model_sd * (x[kind] + size.kappa * gsl_ran_ugaussian(random));
     }
-    if (random)
-        gsl_rng_free(random);
+    gsl_rng_free(random);
     free(residual);
     return found;
-}
-
-bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta,
-                            sf_response_error *error) {
-    return draw(in, u, seed, delta, error, NULL);
 }
 
 /* Logarithms of what is predicted, of the foam of this state with a delta drawn. */
@@ -450,7 +424,7 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
     sf_response_error error;
     sf_error err = SF_ERROR_INIT;
     double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
-    bool known = y && !sf_process_stopped() && draw(in, u, seed, delta, &error, own) &&
+    bool known = y && !sf_process_stopped() && sf_drop_inference_draw(in, u, seed, delta, &error, own) &&
                  respond(in, u, in->steep ? delta : NULL, fit->measured_drops, fit->input->drop_count, y,
                          &err) == SF_OK;
     for (int q = 0; q < in->quantities; q++) {
@@ -484,9 +458,8 @@ static sf_status estimate_evidence(sf_drop_inference *in, const sf_target *targe
                                    const sf_inference_options *options, sf_error *err) {
     static const double FREEDOM = 5;
     sf_mixture m;
-    if (sf_mixture_fit(in->parameters, in->chains.chains * in->chains.kept, in->chains.sample, FREEDOM, &m,
-                       err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_mixture_fit(in->parameters, in->chains.chains * in->chains.kept, in->chains.sample, FREEDOM, &m,
+                          err));
     return sf_evidence_estimate(target, &m, options->evidence_draws, sf_seed_of(options->chains.seed, 900),
                                 &in->evidence, err);
 }
@@ -496,15 +469,13 @@ static sf_status sample(const sf_drop_fit *fit, const sf_inference_options *opti
     double start[SF_POSTERIOR_MOST], covariance[SF_POSTERIOR_MOST * SF_POSTERIOR_MOST];
     *in = (sf_drop_inference){.fit = fit, .parameters = fit->input->unknown_count + 2};
     bool left_out = options->leave_one_out && fit->measured_drops > 1;
-    if (prepare(in, left_out, err) != SF_OK)
-        return err->status;
+    SF_TRY(prepare(in, left_out, err));
     const sf_grouped grouped = {.target = {.parameters = in->parameters,
                                            .log_density = log_density,
                                            .context = in,
                                            .responses = in->data <= SF_RESPONSES_MOST ? in->data : 0,
                                            .shape = fit->input->unknown_count,
                                            .respond = respond_residual,
-                                           .log_density_of = log_density_of,
                                            .quantities = in->quantities,
                                            .observe = observe},
                                 .groups = fit->measured_drops,

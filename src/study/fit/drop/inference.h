@@ -15,7 +15,6 @@
 #include "study/fit/drop/drop_fit.h"
 #include "study/fit/posterior/chains.h"
 #include "study/fit/posterior/discrepancy.h"
-#include "study/fit/posterior/evidence.h"
 #include "study/fit/posterior/leave_one_out.h"
 
 enum { SF_DISCREPANCY_PLACES = 20 }; /* strains 0, 0.05, ..., 0.95 */
@@ -66,12 +65,11 @@ sf_discrepancy_size sf_drop_inference_size(const sf_drop_inference *inference, c
 /* Name and value of an element of a state: an unknown in SI units, tau, kappa. */
 const char *sf_drop_inference_name(const sf_drop_inference *inference, int parameter);
 double sf_drop_inference_value(const sf_drop_inference *inference, int parameter, double u);
-/* Strain of a place of delta. */
-double sf_discrepancy_strain(int place);
-/* delta [SF_DISCREPANCY_PLACES] and the errors of the responses, given a state of the chains and the data.
- * False: the columns fail there. */
+/* delta [SF_DISCREPANCY_PLACES], the errors of the responses that all drops share and, if `own` is not NULL,
+ * those of the drops to predict, [input drops][SF_FIT_SAMPLES], the shared ones in them, given a state of the
+ * chains and the data. False: the columns fail there. */
 bool sf_drop_inference_draw(const sf_drop_inference *inference, const double *u, uint64_t seed, double *delta,
-                            sf_response_error *error);
+                            sf_response_error *error, double *own);
 /* The card of a state with its curve times exp(delta), linear between the places; a curve that would fall is
  * held. Owned by the caller. */
 sf_status sf_drop_inference_card(const sf_drop_inference *inference, const double *u, const double *delta,

@@ -1,26 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/inference_report.h"
+#include "study/fit/drop/average.h"
 
 #include "report/html.h"
 #include <math.h>
 #include <string.h>
 
 static const double THREE[] = {0.025, 0.5, 0.975};
-enum { LABEL = 96 };
 
-const char *sf_model_label(const sf_fit_input *in, char *text, size_t size) {
-    bool maxwell = in->start[SF_PARAMETER_ED] > 0, factor = in->start[SF_PARAMETER_RATE_FACTOR] > 0;
-    for (int k = 0; k < in->unknown_count; k++) {
-        maxwell = maxwell || in->unknown[k] == SF_PARAMETER_ED;
-        factor = factor || in->unknown[k] == SF_PARAMETER_RATE_FACTOR;
-    }
-    snprintf(text, size, "%s%s%s", in->form.curve->name, factor ? ", rate factor" : "",
-             maxwell ? ", Maxwell branch" : "");
-    return text;
-}
-
-static const char *label_of(const sf_drop_average *a, int m, char text[LABEL]) {
-    return sf_model_label(a->model[m]->fit->input, text, LABEL);
+static const char *label_of(const sf_drop_average *a, int m) {
+    return a->model[m]->fit->input->label;
 }
 
 /* Worst R-hat and least effective size of a model's chains. */
@@ -33,6 +21,10 @@ static void find_worst(const sf_chains *c, double *rhat, double *effective) {
         *rhat = fmax(*rhat, isnan(c->rhat[i]) ? INFINITY : c->rhat[i]);
         *effective = fmin(*effective, c->effective[i]);
     }
+}
+
+static const char *drop_of(const sf_drop_inference *in, int quantity) {
+    return in->fit->input->drop[in->quantity[quantity].drop].name;
 }
 
 /* ---- quantiles: low, median, high; INFINITY: among the draws that collapse ---- */
@@ -99,23 +91,16 @@ static void put_models(FILE *f, const sf_drop_average *a) {
         "model|>weight|>log predictive density of left-out drops|>log evidence|>± (1 sd)|>weight by evidence|>unknowns|>misfit");
     for (int m = 0; m < a->models; m++) {
         const sf_drop_inference *in = a->model[m];
-        char text[LABEL];
         sf_html_row(&table);
-        sf_html_cell(&table, "%s%s", label_of(a, m, text), m == sf_drop_average_best(a) ? " (written)" : "");
-        sf_html_number(&table, 3, a->weight[m]);
-        sf_html_number(&table, 2, a->predictive[m]);
-        sf_html_number(&table, 2, in->evidence.log_value);
-        sf_html_number(&table, 2, in->evidence.error);
-        sf_html_number(&table, 3, a->evidence_weight[m]);
-        sf_html_cell(&table, "%d", in->fit->input->unknown_count);
-        sf_html_number(&table, 2, in->fit->result.misfit);
+        sf_html_cell(&table, "%s%s", label_of(a, m), m == sf_drop_average_best(a) ? " (written)" : "");
+        sf_html_line(&table, NULL, "%.3f|%.2f|%.2f|%.2f|%.3f|%d|%.2f", a->weight[m], a->predictive[m],
+                     in->evidence.log_value, in->evidence.error, a->evidence_weight[m],
+                     in->fit->input->unknown_count, in->fit->result.misfit);
     }
     for (int m = 0; m < a->failed; m++) {
         sf_html_row(&table);
         sf_html_cell(&table, "%s: FAILED, %s", a->failure[m].label, a->failure[m].sentence);
-        sf_html_number(&table, 3, 0);
-        for (int k = 0; k < 6; k++)
-            sf_html_cell(&table, "–");
+        sf_html_line(&table, NULL, "0.000|–|–|–|–|–|–");
     }
     sf_html_table_end(&table);
 }
@@ -141,7 +126,7 @@ static void put_prediction_notes(FILE *f, const sf_drop_average *a) {
 
 static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
-    char text[LABEL], missing[MISSING], shown[SHOWN];
+    char text[64], missing[MISSING], median[SHOWN], shown[SHOWN], alone[SHOWN];
     if (in->quantities == 0)
         return SF_OK;
     sf_html_heading(f, "Predictions, averaged over the models");
@@ -151,25 +136,28 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
     for (int q = 0; q < in->quantities; q++) {
         const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
         double all[3], best[3];
-        if (sf_drop_average_quantiles(a, -1, q, 3, THREE, all, err) != SF_OK ||
-            sf_drop_average_quantiles(a, sf_drop_average_best(a), q, 3, THREE, best, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, all, err));
+        SF_TRY(sf_drop_average_quantiles(a, sf_drop_average_best(a), q, 3, THREE, best, err));
         snprintf(text, sizeof text, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
         sf_html_row(&table);
         missing_text(a, q, "", missing);
-        sf_html_cell(&table, *missing ? "%s (%s)" : "%s", in->fit->input->drop[in->quantity[q].drop].name,
-                     missing);
-        sf_html_cell(&table, "%s", text);
-        sf_html_cell(&table, "%s", median_text(about->digits, all, shown));
-        sf_html_cell(&table, "%s", interval_text(about->digits, all, shown));
-        sf_html_cell(&table, "%s", interval_text(about->digits, best, shown));
+        sf_html_cell(&table, *missing ? "%s (%s)" : "%s", drop_of(in, q), missing);
+        sf_html_line(&table, NULL, "%s|%s|%s|%s", text, median_text(about->digits, all, median),
+                     interval_text(about->digits, all, shown), interval_text(about->digits, best, alone));
     }
     sf_html_table_end(&table);
     return SF_OK;
 }
 
+/* Quantiles of a parameter, SI. */
+static sf_status find_parameter(const sf_drop_inference *in, int k, double value[3], sf_error *err) {
+    SF_TRY(sf_drop_parameter_quantiles(in, k, 3, THREE, value, err));
+    for (int q = 0; q < 3; q++)
+        value[q] = sf_drop_inference_value(in, k, value[q]);
+    return SF_OK;
+}
+
 static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err) {
-    char text[LABEL];
     sf_html_heading(f, "Posterior of the parameters");
     sf_html_note(
         f,
@@ -183,19 +171,12 @@ static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err
         for (int k = 0; k < in->parameters; k++) {
             bool size = k >= in->fit->input->unknown_count;
             const sf_parameter_info *about = size ? NULL : sf_parameter_get(in->fit->input->unknown[k]);
-            double value[3];
-            if (sf_drop_parameter_quantiles(in, k, 3, THREE, value, err) != SF_OK)
-                return err->status;
-            for (int q = 0; q < 3; q++)
-                value[q] = sf_drop_inference_value(in, k, value[q]) / (size ? 1 : about->per_unit);
-            sf_html_row(&table);
-            sf_html_cell(&table, "%s", k == 0 ? label_of(a, m, text) : "");
-            sf_html_cell(&table, "%s%s%s", sf_drop_inference_name(in, k), !size && *about->unit ? ", " : "",
-                         size ? "" : about->unit);
-            sf_html_cell(&table, "%.4g", value[1]);
-            sf_html_cell(&table, "%.4g to %.4g", value[0], value[2]);
-            sf_html_number(&table, 3, in->chains.rhat[k]);
-            sf_html_number(&table, 0, in->chains.effective[k]);
+            double value[3], s = size ? 1 : about->per_unit;
+            SF_TRY(find_parameter(in, k, value, err));
+            sf_html_line(&table, k == 0 ? label_of(a, m) : "", "%s%s%s|%.4g|%.4g to %.4g|%.3f|%.0f",
+                         sf_drop_inference_name(in, k), !size && *about->unit ? ", " : "",
+                         size ? "" : about->unit, value[1] / s, value[0] / s, value[2] / s,
+                         in->chains.rhat[k], in->chains.effective[k]);
         }
     }
     sf_html_table_end(&table);
@@ -203,7 +184,6 @@ static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err
 }
 
 static void put_left_out(FILE *f, const sf_drop_average *a) {
-    char text[LABEL];
     if (a->by_evidence)
         return;
     sf_html_heading(f, "Drops left out one by one");
@@ -215,12 +195,8 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
     for (int m = 0; m < a->models; m++)
         for (int d = 0; d < a->model[m]->fit->measured_drops; d++) {
             const sf_left_out *out = &a->model[m]->left_out[d];
-            sf_html_row(&table);
-            sf_html_cell(&table, "%s", d == 0 ? label_of(a, m, text) : "");
-            sf_html_cell(&table, "%s", a->model[m]->fit->input->drop[d].name);
-            sf_html_number(&table, 2, out->log_density);
-            sf_html_number(&table, 2, out->pareto_k);
-            sf_html_cell(&table, "%s%s",
+            sf_html_line(&table, d == 0 ? label_of(a, m) : "", "%s|%.2f|%.2f|%s%s",
+                         a->model[m]->fit->input->drop[d].name, out->log_density, out->pareto_k,
                          out->sampled ? "chains"
                          : out->drawn ? "draws"
                                       : "weights",
@@ -230,7 +206,6 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
 }
 
 static void put_diagnostics(FILE *f, const sf_drop_average *a) {
-    char text[LABEL];
     sf_html_heading(f, "Diagnostics of the chains");
     sf_html_note(f,
                  "Reached: R-hat below 1.02 and an effective sample size above 400 for every parameter and "
@@ -242,15 +217,9 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
         const sf_drop_inference *in = a->model[m];
         double rhat, effective;
         find_worst(&in->chains, &rhat, &effective);
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s", label_of(a, m, text));
-        sf_html_number(&table, 3, rhat);
-        sf_html_number(&table, 0, effective);
-        sf_html_cell(&table, "%d x %d", in->chains.chains, in->chains.kept);
-        sf_html_number(&table, 0, 100 * in->chains.accepted);
-        sf_html_cell(&table, "%lld", in->chains.evaluations);
-        sf_html_cell(&table, "%.0f of %d", in->evidence.effective, in->evidence.draws);
-        sf_html_cell(&table, "%s%s", in->chains.converged ? "yes" : "NO: chains",
+        sf_html_line(&table, label_of(a, m), "%.3f|%.0f|%d x %d|%.0f|%lld|%.0f of %d|%s%s", rhat, effective,
+                     in->chains.chains, in->chains.kept, 100 * in->chains.accepted, in->chains.evaluations,
+                     in->evidence.effective, in->evidence.draws, in->chains.converged ? "yes" : "NO: chains",
                      in->evidence.trusted ? "" : "; NO: evidence");
     }
     sf_html_table_end(&table);
@@ -258,7 +227,6 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
 
 /* Models and simulations that ended without a result. */
 static void put_failures(FILE *f, const sf_drop_average *a) {
-    char text[LABEL];
     for (int m = 0; m < a->failed; m++)
         sf_html_banner(f, "bad", "a model failed", "%s: %s. It has no weight.", a->failure[m].label,
                        a->failure[m].sentence);
@@ -269,7 +237,7 @@ static void put_failures(FILE *f, const sf_drop_average *a) {
                 sf_html_banner(
                     f, "bad", "a predicted drop failed",
                     "%s, model %s: %s. The averaged prediction has this model by its columns, corrected as the measured drops are.",
-                    fit->input->drop[d].name, label_of(a, m, text), fit->simulated[d].failure);
+                    fit->input->drop[d].name, label_of(a, m), fit->simulated[d].failure);
     }
 }
 
@@ -280,11 +248,9 @@ sf_status sf_inference_html(FILE *f, const sf_drop_average *a, sf_error *err) {
             "Some chains or importance weights did not reach their criteria (see Diagnostics): weights "
             "and intervals are less certain than they look.");
     put_failures(f, a);
-    if (put_predictions(f, a, err) != SF_OK)
-        return err->status;
+    SF_TRY(put_predictions(f, a, err));
     put_models(f, a);
-    if (put_parameters(f, a, err) != SF_OK)
-        return err->status;
+    SF_TRY(put_parameters(f, a, err));
     put_left_out(f, a);
     put_diagnostics(f, a);
     return SF_OK;
@@ -293,25 +259,19 @@ sf_status sf_inference_html(FILE *f, const sf_drop_average *a, sf_error *err) {
 /* ---- fit.json ---- */
 
 static void json_quantiles(sf_json *j, const double *value) {
-    sf_json_number(j, "median", value[1]);
-    sf_json_number(j, "low95", value[0]);
-    sf_json_number(j, "high95", value[2]);
+    SF_JSON_NUMBERS(j, {"median", value[1]}, {"low95", value[0]}, {"high95", value[2]});
 }
 
 static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_error *err) {
     sf_json_open(j, "parameters", '[');
     for (int k = 0; k < in->parameters; k++) {
         double value[3];
-        if (sf_drop_parameter_quantiles(in, k, 3, THREE, value, err) != SF_OK)
-            return err->status;
-        for (int q = 0; q < 3; q++)
-            value[q] = sf_drop_inference_value(in, k, value[q]);
+        SF_TRY(find_parameter(in, k, value, err));
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "name", sf_drop_inference_name(in, k));
         sf_json_text(j, "unit", "SI");
         json_quantiles(j, value);
-        sf_json_number(j, "rhat", in->chains.rhat[k]);
-        sf_json_number(j, "effective_sample_size", in->chains.effective[k]);
+        SF_JSON_NUMBERS(j, {"rhat", in->chains.rhat[k]}, {"effective_sample_size", in->chains.effective[k]});
         sf_json_close(j, '}');
     }
     sf_json_close(j, ']');
@@ -334,27 +294,23 @@ static void json_failed_drops(sf_json *j, const sf_drop_fit *fit) {
 static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_error *err) {
     const sf_drop_inference *in = a->model[m];
     double rhat, effective;
-    char text[LABEL];
     find_worst(&in->chains, &rhat, &effective);
     sf_json_open(j, NULL, '{');
-    sf_json_text(j, "model", label_of(a, m, text));
-    sf_json_number(j, "weight", a->weight[m]);
-    sf_json_number(j, "weight_by_evidence", a->evidence_weight[m]);
-    sf_json_number(j, "log_predictive_density", a->predictive[m]);
-    sf_json_number(j, "log_evidence", in->evidence.log_value);
-    sf_json_number(j, "log_evidence_sd", in->evidence.error);
-    sf_json_number(j, "log_evidence_effective_draws", in->evidence.effective);
-    sf_json_number(j, "misfit", in->fit->result.misfit);
+    sf_json_text(j, "model", label_of(a, m));
+    SF_JSON_NUMBERS(j, {"weight", a->weight[m]}, {"weight_by_evidence", a->evidence_weight[m]},
+                    {"log_predictive_density", a->predictive[m]}, {"log_evidence", in->evidence.log_value},
+                    {"log_evidence_sd", in->evidence.error},
+                    {"log_evidence_effective_draws", in->evidence.effective},
+                    {"misfit", in->fit->result.misfit});
     sf_json_bool(j, "chains_reached", in->chains.converged);
-    sf_json_number(j, "largest_rhat", rhat);
-    sf_json_number(j, "least_effective_sample_size", effective);
+    SF_JSON_NUMBERS(j, {"largest_rhat", rhat}, {"least_effective_sample_size", effective});
     sf_json_integer(j, "evaluations", in->chains.evaluations);
     sf_json_open(j, "left_out", '[');
     for (int d = 0; d < in->fit->measured_drops && !a->by_evidence; d++) {
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "drop", in->fit->input->drop[d].name);
-        sf_json_number(j, "log_density", in->left_out[d].log_density);
-        sf_json_number(j, "pareto_k", in->left_out[d].pareto_k);
+        SF_JSON_NUMBERS(j, {"log_density", in->left_out[d].log_density},
+                        {"pareto_k", in->left_out[d].pareto_k});
         sf_json_bool(j, "by_chains", in->left_out[d].sampled);
         sf_json_bool(j, "by_draws", in->left_out[d].drawn);
         sf_json_bool(j, "reached", in->left_out[d].converged);
@@ -371,10 +327,9 @@ static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf
     const sf_drop_inference *in = a->model[0];
     const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
     double value[3];
-    if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err));
     sf_json_open(j, NULL, '{');
-    sf_json_text(j, "drop", in->fit->input->drop[in->quantity[q].drop].name);
+    sf_json_text(j, "drop", drop_of(in, q));
     sf_json_text(j, "quantity", about->key);
     json_quantiles(j, value);
     sf_json_text(j, "open", isnan(value[1]) ? NULL : isinf(value[2]) ? "above" : "no");
@@ -452,12 +407,10 @@ static sf_status put_csv_draw(FILE *f, const sf_drop_average *a, int k, const sf
     const sf_drop_inference *in = a->model[draw->model];
     const double *u = &in->chains.sample[draw->state * in->parameters];
     double delta[SF_DISCREPANCY_PLACES];
-    char text[LABEL];
     sf_response_error error;
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
-    if (sf_drop_average_discrepancy(a, k, draw, delta, &error, err) != SF_OK)
-        return err->status;
-    fprintf(f, "%d,\"%s\",%.9g,%.9g", k + 1, label_of(a, draw->model, text), size.tau, size.kappa);
+    SF_TRY(sf_drop_average_discrepancy(a, k, draw, delta, &error, err));
+    fprintf(f, "%d,\"%s\",%.9g,%.9g", k + 1, label_of(a, draw->model), size.tau, size.kappa);
     put_csv_parameters(f, a, in->fit->input, u);
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
         fprintf(f, ",%.9g,%.9g", error.shared[kind], error.own_sd[kind]);
@@ -468,8 +421,7 @@ static sf_status put_csv_draw(FILE *f, const sf_drop_average *a, int k, const sf
 sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, sf_error *err) {
     sf_posterior_draw draw[SF_POSTERIOR_DRAWS];
     FILE *f = sf_staging_open(output, "posterior.csv", err);
-    if (!f)
-        return err->status;
+    SF_TRY(err->status);
     put_csv_heading(f, a);
     sf_drop_average_draw(a, draw);
     for (int k = 0; k < SF_POSTERIOR_DRAWS && err->status == SF_OK; k++)
@@ -481,11 +433,10 @@ sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, s
 /* ---- lines ---- */
 
 void sf_inference_comment(FILE *f, const sf_drop_average *a) {
-    char text[LABEL];
     fprintf(f,
             "Weights of the models (%s): ", a->by_evidence ? "evidence" : "leave-one-out predictive density");
     for (int m = 0; m < a->models; m++)
-        fprintf(f, "%s%s %.3f%s", m > 0 ? "; " : "", label_of(a, m, text), a->weight[m],
+        fprintf(f, "%s%s %.3f%s", m > 0 ? "; " : "", label_of(a, m), a->weight[m],
                 m == sf_drop_average_best(a) ? " (this file, its maximum)" : "");
     for (int m = 0; m < a->failed; m++)
         fprintf(f, "; %s 0 (failed)", a->failure[m].label);
@@ -510,28 +461,25 @@ static sf_status print_prediction(FILE *f, const sf_drop_average *a, int q, sf_e
     const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
     double value[3];
     char median[SHOWN], interval[SHOWN], missing[MISSING];
-    if (sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err) != SF_OK)
-        return err->status;
-    fprintf(f, "  %-20s %s %s %s (95 %%: %s)%s\n", in->fit->input->drop[in->quantity[q].drop].name,
-            about->name, median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
+    SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err));
+    fprintf(f, "  %-20s %s %s %s (95 %%: %s)%s\n", drop_of(in, q), about->name,
+            median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
             interval_text(about->digits, value, interval), missing_text(a, q, "; ", missing));
     return SF_OK;
 }
 
 sf_status sf_inference_print(FILE *f, const sf_drop_average *a, sf_error *err) {
-    char text[LABEL];
     fputs("\nPosterior by Markov chains:\n", f);
     for (int m = 0; m < a->models; m++) {
         fprintf(f, "  weight %.3f  ", a->weight[m]);
         if (isfinite(a->predictive[m]))
             fprintf(f, "log predictive density %7.2f  ", a->predictive[m]);
-        fprintf(f, "log evidence %8.2f  %s\n", a->model[m]->evidence.log_value, label_of(a, m, text));
+        fprintf(f, "log evidence %8.2f  %s\n", a->model[m]->evidence.log_value, label_of(a, m));
     }
     for (int m = 0; m < a->failed; m++)
         fprintf(f, "  weight 0      FAILED: %s: %s\n", a->failure[m].label, a->failure[m].sentence);
     for (int q = 0; q < a->model[0]->quantities; q++)
-        if (print_prediction(f, a, q, err) != SF_OK)
-            return err->status;
+        SF_TRY(print_prediction(f, a, q, err));
     if (!sf_drop_average_reached(a))
         fputs("  The chains did NOT reach their criteria: see report.html.\n", f);
     return SF_OK;

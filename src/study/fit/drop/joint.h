@@ -47,8 +47,7 @@ typedef struct sf_joint {
 
 /* The lists `compressions` and `cushions` of a fit file; absent: none. SF_ERR_INPUT names file, line and
  * key; data that are there twice are refused. */
-sf_status sf_joint_read(const sf_config *config, const config_setting_t *root, sf_joint *joint,
-                        sf_error *err);
+sf_status sf_joint_read(const sf_config *config, sf_config_item *root, sf_joint *joint, sf_error *err);
 
 /* Data and their standard deviations, [rows] each. */
 void sf_joint_data(const sf_joint *joint, double *measured, double *sd);

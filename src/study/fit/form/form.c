@@ -72,25 +72,18 @@ double sf_curve_form_pole(const sf_curve_form *form, const double *value) {
 
 static const double TAKES_OVER = 0.95; /* of e_D: from there a lock-up continues the form */
 
-/* Value and slope of the form itself. */
-static void join(const sf_curve_form *form, const double *value, double at, double h, double *stress,
-                 double *slope) {
-    const double strain[3] = {at - h, at, at + h};
-    double sigma[3];
-    form->stress(value, 3, strain, sigma);
-    *stress = sigma[1];
-    *slope = (sigma[2] - sigma[0]) / (2 * h);
-}
-
 void sf_curve_form_stresses(const sf_curve_form *form, const double *value, int count, const double *strain,
                             double *stress) {
-    double pole = sf_curve_form_pole(form, value), end = TAKES_OVER * pole, at_end, slope, unused[2];
+    double pole = sf_curve_form_pole(form, value), end = TAKES_OVER * pole, h = 1e-4 * (pole - end), own[3],
+           unused[2];
+    const double about[3] = {end - h, end, end + h};
     form->stress(value, count, strain, stress);
     if (!(pole < form->pole(value)))
         return;
-    join(form, value, end, 1e-4 * (pole - end), &at_end, &slope);
+    form->stress(value, 3, about, own);
+    double slope = (own[2] - own[0]) / (2 * h);
     const sf_densification beyond = sf_densification_join(
-        end, pole, sf_densification_steep_exponent(end, pole, at_end, slope), at_end, slope, 0);
+        end, pole, sf_densification_steep_exponent(end, pole, own[1], slope), own[1], slope, 0);
     for (int k = 0; k < count; k++)
         if (strain[k] > end)
             sf_densification_evaluate(&beyond, strain[k], &stress[k], &unused[0], &unused[1]);
@@ -103,6 +96,22 @@ double sf_curve_form_stress(const sf_curve_form *form, const double *value, doub
 }
 
 /* ---- tabulation ---- */
+
+sf_status sf_form_curves_alloc(int64_t count, int64_t points, sf_law_curves *curves, sf_error *err) {
+    *curves = (sf_law_curves){
+        .curve_count = count,
+        .curve_points = points,
+        .curve_rate = sf_alloc(err, (unsigned long)count, sizeof(double), "curves"),
+        .curve_ptr = sf_alloc(err, (unsigned long)count + 1, sizeof(int64_t), "curves"),
+        .curve_strain = sf_alloc(err, (unsigned long)points, sizeof(double), "curves"),
+        .curve_stress = sf_alloc(err, (unsigned long)points, sizeof(double), "curves"),
+    };
+    for (int64_t k = 1; k <= count && err->status == SF_OK; k++)
+        curves->curve_ptr[k] = k * (points / count);
+    if (err->status != SF_OK)
+        sf_law_curves_free(curves);
+    return err->status;
+}
 
 /* Strains of the table: close together in the knee, and by equal ratios of the distance to the pole where the
  * stress rises steeply. So dense that the solver's interpolant has the stress to 1e-4. */
@@ -154,59 +163,200 @@ static void set_densification(const sf_curve_form *form, const double *value, do
                  : 0;
 }
 
-static void replace_curves(sf_foam_card *card, double *strain, double *stress, double *rate, int64_t *ptr) {
-    free(card->curve_strain);
-    free(card->curve_stress);
-    free(card->curve_rate);
-    free(card->curve_ptr);
-    card->curve_strain = strain;
-    card->curve_stress = stress;
-    card->curve_rate = rate;
-    card->curve_ptr = ptr;
-    card->curve_count = 1;
-    card->curve_points = ptr[1] = POINTS;
-}
-
 sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value, sf_foam_card *card,
                                  sf_error *err) {
-    if (form->check(value, err) != SF_OK)
-        return err->status;
-    double pole = sf_curve_form_pole(form, value), *strain = sf_alloc(err, POINTS, sizeof *strain, "curve"),
-           *stress = sf_alloc(err, POINTS, sizeof *stress, "curve"),
-           *rate = sf_alloc(err, 1, sizeof *rate, "curve");
-    int64_t *ptr = sf_alloc(err, 2, sizeof *ptr, "curve");
-    if (err->status == SF_OK) {
-        double last = last_part(form, value, pole);
-        for (int k = 0; k < POINTS; k++)
-            strain[k] = pole * part_of(k, last);
-        sf_curve_form_stresses(form, value, POINTS, strain, stress);
-        check_table(form, strain, stress, err);
-    }
-    if (err->status != SF_OK) {
-        free(strain);
-        free(stress);
-        free(rate);
-        free(ptr);
+    sf_law_curves made;
+    SF_TRY(form->check(value, err));
+    SF_TRY(sf_form_curves_alloc(1, POINTS, &made, err));
+    double pole = sf_curve_form_pole(form, value), last = last_part(form, value, pole);
+    for (int k = 0; k < POINTS; k++)
+        made.curve_strain[k] = pole * part_of(k, last);
+    sf_curve_form_stresses(form, value, POINTS, made.curve_strain, made.curve_stress);
+    if (check_table(form, made.curve_strain, made.curve_stress, err) != SF_OK) {
+        sf_law_curves_free(&made);
         return err->status;
     }
-    set_densification(form, value, pole, strain[POINTS - 1], card);
-    replace_curves(card, strain, stress, rate, ptr);
+    set_densification(form, value, pole, made.curve_strain[POINTS - 1], card);
+    sf_law_curves_free(&card->curves);
+    card->curves = made;
     return SF_OK;
 }
 
-/* The form `table`: the start material's curve, scaled; its densification law stays. */
+/* ---- parameters of a foam ---- */
 
-static const sf_form_entry entries[] = {{SF_PARAMETER_STRESS_SCALE, 0.3, true},
-                                        {SF_PARAMETER_EXPONENT, 0.3, false}};
+static const double LEAST_SOLID = 300, MOST_SOLID = 20000; /* kg m-3 */
+static const double MOST_FRACTION = 0.5;
+static const double UNKNOWN_SOLID_SD = 0.5; /* of the logarithm */
+static const double USUAL_SOLID = 0.05;     /* solid fraction, where it is not known */
+static const double RATE_FACTOR = 0.1;      /* median where the start material has none */
+static const double RATE_REFERENCE = 1;     /* s-1, the same; drops are far above */
 
-static void start(double *value) {
-    value[SF_PARAMETER_STRESS_SCALE] = 1;
+sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err) {
+    double solid = form->solid_density, foam = form->base.density;
+    if (!(solid >= LEAST_SOLID && solid <= MOST_SOLID))
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3", solid,
+                       LEAST_SOLID, MOST_SOLID);
+    if (!(foam < MOST_FRACTION * solid))
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than half solid", solid,
+            foam);
+    return SF_OK;
 }
 
-const sf_curve_form sf_form_table = {
-    .name = "table",
-    .formula = "the start material's curve times stress_scale",
-    .entry = entries,
-    .entry_count = sizeof entries / sizeof *entries,
-    .start = start,
-};
+/* Parameters that are members of the card. */
+static const struct {
+    sf_foam_parameter parameter;
+    size_t offset;
+} members[] = {{SF_PARAMETER_E, offsetof(sf_foam_card, modulus)},
+               {SF_PARAMETER_HU, offsetof(sf_foam_card, hysteresis_hu)},
+               {SF_PARAMETER_SHAPE, offsetof(sf_foam_card, hysteresis_shape)},
+               {SF_PARAMETER_ALPHA, offsetof(sf_foam_card, hysteresis_alpha)},
+               {SF_PARAMETER_DAMP, offsetof(sf_foam_card, damp)},
+               {SF_PARAMETER_ED, offsetof(sf_foam_card, maxwell_modulus)},
+               {SF_PARAMETER_BETA1, offsetof(sf_foam_card, maxwell_rate)},
+               {SF_PARAMETER_ETA, offsetof(sf_foam_card, kelvin_viscosity)},
+               {SF_PARAMETER_RATE_FACTOR, offsetof(sf_foam_card, rate_factor)},
+               {SF_PARAMETER_RATE_REFERENCE, offsetof(sf_foam_card, rate_reference)}};
+enum { MEMBERS = sizeof members / sizeof *members };
+
+void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]) {
+    if (!(value[SF_PARAMETER_RATE_FACTOR] > 0))
+        value[SF_PARAMETER_RATE_FACTOR] = RATE_FACTOR;
+}
+
+void sf_foam_form_start_lock(double value[SF_PARAMETER_COUNT]) {
+    double solid = value[SF_PARAMETER_SOLID_FRACTION];
+    if (!(value[SF_PARAMETER_LOCKED] > 0))
+        value[SF_PARAMETER_LOCKED] = 1 - sf_form_dense_strain(solid > 0 ? solid : USUAL_SOLID);
+}
+
+void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]) {
+    memset(value, 0, SF_PARAMETER_COUNT * sizeof *value);
+    for (int k = 0; k < MEMBERS; k++)
+        value[members[k].parameter] = *(const double *)((const char *)&form->base + members[k].offset);
+    if (!(form->base.rate_factor > 0))
+        value[SF_PARAMETER_RATE_REFERENCE] = RATE_REFERENCE;
+    value[SF_PARAMETER_STRESS_SCALE] = 1;
+    value[SF_PARAMETER_EXPONENT] = form->base.densification_exponent;
+    value[SF_PARAMETER_SOLID_FRACTION] =
+        form->solid_density > 0 ? form->base.density / form->solid_density : 0;
+    form->curve->start(value);
+}
+
+double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter parameter) {
+    const sf_form_entry *entry = sf_curve_form_entry(form->curve, parameter);
+    if (parameter == SF_PARAMETER_SOLID_FRACTION && !(form->solid_density > 0))
+        return UNKNOWN_SOLID_SD;
+    return entry ? entry->prior_sd : sf_parameter_get(parameter)->prior_sd;
+}
+
+int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARAMETER_COUNT]) {
+    int count = 0;
+    for (int k = 0; k < form->curve->entry_count; k++)
+        if (form->curve->entry[k].usual)
+            usual[count++] = form->curve->entry[k].parameter;
+    usual[count++] = SF_PARAMETER_ED;
+    return count;
+}
+
+sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_foam_parameter p, double *out,
+                            sf_error *err) {
+    const sf_parameter_info *about = sf_parameter_get(p);
+    if (about->quantity == SF_QUANTITY_COUNT)
+        return sf_config_number(config, group, about->name, true, about->low, about->high, out, err);
+    SF_TRY(sf_config_quantity(config, group, about->name, about->quantity, true, about->low, out, err));
+    if (!(*out <= about->high))
+        return sf_config_refuse(config, config_setting_get_member(group, about->name), err, "%s is above %g",
+                                about->name, about->high);
+    return SF_OK;
+}
+
+sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
+                                  sf_error *err) {
+    sf_error inner = SF_ERROR_INIT;
+    SF_TRY(
+        sf_config_quantity(config, root, "solid_density", SF_DENSITY, false, 0, &form->solid_density, err));
+    if (form->solid_density > 0 && sf_foam_form_check_solid(form, &inner) != SF_OK)
+        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err, "%s",
+                                inner.text);
+    return SF_OK;
+}
+
+static void copy_items(void *to, const void *from, int64_t count, size_t size) {
+    if (from && count > 0)
+        memcpy(to, from, (size_t)count * size);
+}
+
+sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {
+    *to = *from;
+    SF_TRY(sf_form_curves_alloc(from->curve_count, from->curve_points, &to->curves, err));
+    copy_items(to->curve_rate, from->curve_rate, from->curve_count, sizeof(double));
+    copy_items(to->curve_ptr, from->curve_ptr, from->curve_count + 1, sizeof(int64_t));
+    copy_items(to->curve_strain, from->curve_strain, from->curve_points, sizeof(double));
+    copy_items(to->curve_stress, from->curve_stress, from->curve_points, sizeof(double));
+    return SF_OK;
+}
+
+void sf_foam_card_free(sf_foam_card *card) {
+    sf_law_curves_free(&card->curves);
+    *card = (sf_foam_card){0};
+}
+
+sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
+                            sf_foam_card *card, sf_error *err) {
+    SF_TRY(sf_foam_card_copy(&form->base, card, err));
+    for (int k = 0; k < MEMBERS; k++)
+        *(double *)((char *)card + members[k].offset) = value[members[k].parameter];
+    card->hysteresis_hu = fmin(1, card->hysteresis_hu);
+    if (form->curve->stress) {
+        sf_curve_form_tabulate(form->curve, value, card, err);
+    } else {
+        card->densification_exponent = value[SF_PARAMETER_EXPONENT];
+        for (int64_t k = 0; k < card->curve_points; k++)
+            card->curve_stress[k] *= value[SF_PARAMETER_STRESS_SCALE];
+    }
+    if (err->status != SF_OK)
+        sf_foam_card_free(card);
+    return err->status;
+}
+
+/* The end of a fine table of the curve: 0.975 of the strain limit, or where the stress is as high as a table
+ * holds. */
+static double table_end(const sf_curve *curve, double limit) {
+    static const double STEP = 0.005; /* of the limit */
+    double part = 0.975 + STEP, stress, slope, energy;
+    do {
+        part -= STEP;
+        sf_curve_evaluate(curve, part * limit, &stress, &slope, &energy);
+    } while (stress > MOST_STRESS && part > 0.5);
+    return part * limit;
+}
+
+sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
+    enum { FINE = 196 };
+    sf_law_curves fine;
+    SF_TRY(sf_form_curves_alloc(card->curve_count, FINE * card->curve_count, &fine, err));
+    for (int64_t c = 0; c < card->curve_count && err->status == SF_OK; c++) {
+        sf_curve curve;
+        if (sf_curve_build(card, c, &curve, err) != SF_OK)
+            break;
+        double last = table_end(&curve, card->densification_limit), slope, energy;
+        fine.curve_rate[c] = card->curve_rate[c];
+        for (int k = 0; k < FINE; k++) {
+            int64_t at = c * FINE + k;
+            fine.curve_strain[at] = last * k / (FINE - 1);
+            sf_curve_evaluate(&curve, fine.curve_strain[at], &fine.curve_stress[at], &slope, &energy);
+        }
+        sf_curve_free(&curve);
+    }
+    if (err->status != SF_OK) {
+        sf_law_curves_free(&fine);
+        return err->status;
+    }
+    sf_law_curves_free(&card->curves);
+    card->curves = fine;
+    card->densification_start = 0;
+    return SF_OK;
+}

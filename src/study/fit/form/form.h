@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "material/foam_card.h"
+#include "study/config.h"
 
 /* The parameters of a foam that measurements identify: those of every foam, and those of the forms of its
  * loading curve (form.h). A set of values is an array [SF_PARAMETER_COUNT] in SI. */
@@ -135,9 +136,81 @@ void sf_curve_form_stresses(const sf_curve_form *form, const double *value, int 
                             double *stress);
 double sf_curve_form_stress(const sf_curve_form *form, const double *value, double strain);
 
+/* Strain at which a foam of this solid fraction is dense, 1 - 1.4 Phi (Gibson and Ashby). */
+double sf_form_dense_strain(double solid);
+
+/* A physically shaped compression curve of a closed-cell foam:
+ *
+ *     sigma(e) = s0 (1 - exp(-(E - p0/(1 - Phi)) e/s0)) + p0 e/(1 - e - Phi) + B (e/(e_D - e))^m,
+ *
+ * yield of the cell walls at s0; isothermal compression of the gas in the cells, which is beside the solid
+ * fraction Phi (Gibson and Ashby); densification with its pole at e_D = 1 - 1.4 Phi. The initial slope is E.
+ * With Phi = 0 both poles are at 1. */
+typedef struct sf_gas_curve {
+    double modulus;  /* Pa, E > p0/(1 - Phi) */
+    double yield;    /* Pa, s0 > 0 */
+    double pressure; /* Pa, p0 */
+    double factor;   /* Pa, B >= 0 */
+    double exponent; /* -, m > 1 */
+    double solid;    /* -, Phi >= 0 */
+} sf_gas_curve;
+
+/* Nominal stress (Pa) at a compressive strain, 0 <= strain < e_D. */
+double sf_gas_curve_stress(const sf_gas_curve *curve, double strain);
+
+/* Zeroed curves, `points` in all, of equal lengths. Release with sf_law_curves_free. */
+sf_status sf_form_curves_alloc(int64_t count, int64_t points, sf_law_curves *curves, sf_error *err);
+
 /* Puts the curve, as a table to 0.975 of its pole (or 1 GPa) with the densification law beyond, in place of
  * every curve of the card. On failure the card is unchanged: SF_ERR_NUMERIC if the values make no curve or
  * one that falls. Not for the form `table`. */
 sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value, sf_foam_card *card,
                                  sf_error *err);
+
+/* The form that a fit varies; all other values are the start material's. */
+typedef struct sf_foam_form {
+    sf_foam_card base;          /* the start material; curves owned */
+    const sf_curve_form *curve; /* of the table of forms; borrowed */
+    double solid_density;       /* kg m-3, of the solid in the cell walls; 0: not known */
+} sf_foam_form;
+
+/* SF_ERR_INPUT: solid_density is not plausible for this foam (the foam must be lighter than half of it, and a
+ * solid has between 300 and 20,000 kg/m3). */
+sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err);
+
+/* The key solid_density of a fit file, if it is there, with that check. */
+sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
+                                  sf_error *err);
+/* The start value (SI) of a parameter in the group that has it. */
+sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_foam_parameter parameter,
+                            double *out, sf_error *err);
+
+/* Start values (SI) of every parameter: medians of the form's priors, and the base's own values. The solid
+ * fraction is density over solid_density, 0 if that is not known (gas_solid: then 0.05). */
+void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUNT]);
+
+/* Gives a foam without rate factor the median of its prior: 0.1 for a decade of the rate. */
+void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]);
+
+/* Gives a foam without a lock-up of its own the median of its prior: dense at 1 - 1.4 Phi. */
+void sf_foam_form_start_lock(double value[SF_PARAMETER_COUNT]);
+
+/* Default width of the prior of a parameter, of the logarithm: the form's own; the solid fraction's is wide
+ * where solid_density is not known. */
+double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter parameter);
+
+/* The parameters that are identified where the user does not say: the form's usual ones and ED. Returns their
+ * number. */
+int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARAMETER_COUNT]);
+
+/* A card with these values; its arrays are owned by the caller (sf_foam_card_free). SF_ERR_NUMERIC if the
+ * values make no curve. */
+sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
+                            sf_foam_card *card, sf_error *err);
+sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err);
+/* Puts a fine table, up to 0.975 of the strain limit or 1 GPa, in place of each curve and its densification.
+ */
+sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err);
+void sf_foam_card_free(sf_foam_card *card);
+
 #endif

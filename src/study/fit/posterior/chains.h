@@ -37,12 +37,12 @@ typedef struct sf_chains {
     int parameters, quantities, chains;
     int kept;              /* states of each chain */
     int thinning;          /* steps from one to the next */
-    double *sample;        /* [chains][kept][parameters]; owned */
-    double *log_density;   /* [chains][kept] of the target; owned */
-    double *quantity;      /* [chains][kept][quantities]; owned */
+    double *sample;        /* [chains][kept][parameters]; owned, with the next four behind it */
+    double *log_density;   /* [chains][kept] of the target */
+    double *quantity;      /* [chains][kept][quantities] */
     double *rhat;          /* [parameters + quantities]; NaN: a quantity that no state has. A state
-                              without it counts with the largest value of the others; owned */
-    double *effective;     /* [parameters + quantities]; owned */
+                              without it counts with the largest value of the others */
+    double *effective;     /* [parameters + quantities] */
     double accepted;       /* share of the proposals after burn-in; a delayed step is one */
     long long evaluations; /* of the target */
     bool converged;
@@ -54,5 +54,12 @@ typedef struct sf_chains {
 sf_status sf_chains_run(const sf_target *target, const double *start, const double *covariance,
                         const sf_chains_options *options, sf_chains *chains, sf_error *err);
 void sf_chains_free(sf_chains *chains);
+
+/* The agreement of several Markov chains (Gelman et al., Bayesian Data Analysis, 3rd ed., section 11.4-5).
+ * `x` holds [chains][count] values; each chain is cut into halves. Split R-hat; INFINITY if the halves stand
+ * still at different values, NaN for fewer than 4 values of a chain, 1 for a quantity that is constant. */
+double sf_split_rhat(int chains, int count, const double *x);
+/* Effective sample size, by Geyer's initial monotone sequence; 0 where R-hat is not finite. */
+double sf_effective_size(int chains, int count, const double *x);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/posterior/discrepancy.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
@@ -26,17 +27,15 @@ static gsl_matrix_view matrix(double *a, int rows, int columns) {
 /* K = R R^T by its eigenvectors, as K is almost singular. */
 static sf_status find_root(const double *kernel, int n, double *root, sf_error *err) {
     gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc((size_t)n);
-    gsl_matrix *copy = gsl_matrix_alloc((size_t)n, (size_t)n);
-    gsl_vector *value = gsl_vector_alloc((size_t)n);
-    if (w && copy && value) {
+    gsl_matrix *copy = sf_matrix((size_t)n, (size_t)n, err);
+    gsl_vector *value = sf_vector((size_t)n, err);
+    if (w && err->status == SF_OK) {
         gsl_matrix_view out = matrix(root, n, n);
         memcpy(copy->data, kernel, (size_t)(n * n) * sizeof *kernel);
         gsl_eigen_symmv(copy, value, &out.matrix, w);
         for (int i = 0; i < n; i++)
             for (int j = 0; j < n; j++)
                 root[i * n + j] *= sqrt(fmax(0, gsl_vector_get(value, (size_t)j)));
-    } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a discrepancy of %d places", n);
     }
     gsl_eigen_symmv_free(w);
     gsl_matrix_free(copy);
@@ -61,8 +60,7 @@ static sf_status factorise(sf_discrepancy *d, sf_error *err) {
 static sf_status whiten(sf_discrepancy *d, const double *jacobian, const double *effect, sf_error *err) {
     int p = d->latent;
     d->white = sf_alloc(err, (unsigned long)(d->data * p), sizeof(double), "a discrepancy");
-    if (!d->white)
-        return err->status;
+    SF_TRY(err->status);
     for (int i = 0; i < d->data; i++) {
         double *row = &d->white[i * p];
         for (int k = 0; k < d->bins; k++)
@@ -108,8 +106,8 @@ sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const
     if (err->status != SF_OK || find_root(kernel, bins, d->root, err) != SF_OK || data == 0)
         return err->status;
     memcpy(d->base_root, base, (size_t)(data * data) * sizeof *base);
-    if (factorise(d, err) != SF_OK || whiten(d, jacobian, effect, err) != SF_OK)
-        return err->status;
+    SF_TRY(factorise(d, err));
+    SF_TRY(whiten(d, jacobian, effect, err));
     return d->data < d->latent ? fill_spread(d, err) : err->status;
 }
 

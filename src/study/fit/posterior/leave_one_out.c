@@ -2,13 +2,125 @@
 #include "study/fit/posterior/leave_one_out.h"
 
 #include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/fit/posterior/evidence.h"
-#include "study/fit/posterior/mixture.h"
+/* ---- importance sampling ---- */
+
+double sf_log_mean(int count, const double *x) {
+    double largest = -INFINITY, sum = 0;
+    for (int k = 0; k < count; k++)
+        largest = fmax(largest, x[k]);
+    if (!isfinite(largest))
+        return largest;
+    for (int k = 0; k < count; k++)
+        sum += exp(x[k] - largest);
+    return largest + log(sum / count);
+}
+
+/* (sum w)^2 / sum w^2. */
+static double effective_size(int count, const double *x) {
+    double largest = -INFINITY, sum = 0, squares = 0;
+    for (int k = 0; k < count; k++)
+        largest = fmax(largest, x[k]);
+    for (int k = 0; k < count && isfinite(largest); k++) {
+        sum += exp(x[k] - largest);
+        squares += exp(2 * (x[k] - largest));
+    }
+    return squares > 0 ? sum * sum / squares : 0;
+}
+
+sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixture, int draws, uint64_t seed,
+                               sf_evidence *e, sf_error *err) {
+    int n = target->parameters;
+    *e = (sf_evidence){.draws = draws};
+    double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws"),
+           *weight = sf_alloc(err, (unsigned long)draws, sizeof *weight, "draws");
+    gsl_rng *random = sf_random(sf_seed_of(seed, 0), err);
+    if (err->status == SF_OK) {
+        for (int k = 0; k < draws; k++)
+            sf_mixture_draw(mixture, random, &u[k * n]);
+#pragma omp parallel for schedule(dynamic, 8)
+        for (int k = 0; k < draws; k++)
+            weight[k] = sf_target_at(target, &u[k * n]) - sf_mixture_log_density(mixture, &u[k * n]);
+        e->log_value = sf_log_mean(draws, weight);
+        e->effective = effective_size(draws, weight);
+        e->error = e->effective > 0 ? sqrt(fmax(0, 1 / e->effective - 1. / draws)) : INFINITY;
+        e->trusted = e->effective >= 100 && e->effective >= draws / 50.;
+    }
+    gsl_rng_free(random);
+    free(u);
+    free(weight);
+    return err->status;
+}
+
+/* ---- Pareto smoothing ---- */
+
+/* Shape and scale of a generalised Pareto distribution for ascending x [count] > 0: the mean of the profile
+ * likelihood's b over a grid, with the weakly informative prior of the reference (k drawn to 0.5 by ten
+ * observations). */
+static double fit_tail(int count, const double *x, double *scale) {
+    enum { MOST = 200 };
+    int grid = 30 + (int)sqrt(count);
+    double b[MOST], likelihood[MOST], largest = -INFINITY, sum = 0, mean = 0,
+                                      quartile = x[(count + 2) / 4 - 1];
+    grid = grid > MOST ? MOST : grid;
+    for (int j = 0; j < grid; j++) {
+        double k = 0;
+        b[j] = 1 / x[count - 1] + (1 - sqrt(grid / (j + 0.5))) / (3 * quartile);
+        for (int i = 0; i < count; i++)
+            k += log1p(-b[j] * x[i]) / count;
+        likelihood[j] = count * (log(-b[j] / k) - k - 1);
+        largest = fmax(largest, likelihood[j]);
+    }
+    for (int j = 0; j < grid; j++) {
+        double w = exp(likelihood[j] - largest);
+        sum += w;
+        mean += w * b[j];
+    }
+    double shape = 0;
+    mean /= sum;
+    for (int i = 0; i < count; i++)
+        shape += log1p(-mean * x[i]) / count;
+    *scale = -shape / mean;
+    return (count * shape + 10 * 0.5) / (count + 10.);
+}
+
+double sf_pareto_smooth(int count, double *weight, sf_error *err) {
+    enum { LEAST = 5 };
+    int tail = (int)fmin(0.2 * count, 3 * sqrt(count));
+    if (tail < LEAST)
+        return INFINITY;
+    size_t *order = sf_alloc(err, (unsigned long)count, sizeof *order, "weights");
+    double *x = sf_alloc(err, (unsigned long)tail, sizeof *x, "weights"), shape = INFINITY, scale;
+    if (order && x) {
+        gsl_sort_index(order, weight, 1, (size_t)count);
+        double largest = weight[order[count - 1]], cut = exp(weight[order[count - tail - 1]] - largest);
+        for (int k = 0; k < tail; k++)
+            x[k] = exp(weight[order[count - tail + k]] - largest) - cut;
+        if (x[tail - 1] - x[0] < 1e-12) {
+            shape = -INFINITY; /* all alike: nothing to smooth */
+        } else {
+            for (int k = 0; k < tail; k++) /* ties with the cut */
+                x[k] = fmax(x[k], 1e-15);
+            shape = fit_tail(tail, x, &scale);
+            for (int k = 0; k < tail && isfinite(shape); k++) {
+                double away = -log1p(-(k + 0.5) / tail), /* the quantile of an exponential distribution */
+                    by = fabs(shape) < 1e-9 ? scale * away : scale * expm1(shape * away) / shape;
+                weight[order[count - tail + k]] = largest + fmin(0, log(cut + by));
+            }
+            if (!isfinite(shape))
+                shape = INFINITY;
+        }
+    }
+    free(order);
+    free(x);
+    return shape;
+}
+
+/* ---- weights of models ---- */
 
 enum { BOOTSTRAPS = 4000 };
 
@@ -26,13 +138,9 @@ sf_status sf_predictive_weights(int models, int groups, const double *log_densit
                                 double *weight, sf_error *err) {
     double *share = sf_alloc(err, (unsigned long)groups, sizeof *share, "weights"),
            *alpha = sf_alloc(err, (unsigned long)groups, sizeof *alpha, "weights"),
-           *sum = sf_alloc(err, (unsigned long)models, sizeof *sum, "weights"),
-           *part = sf_alloc(err, (unsigned long)models, sizeof *part, "weights");
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    if (!random)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
+           *sum = sf_alloc(err, 2 * (unsigned long)models, sizeof *sum, "weights"), *part = sum + models;
+    gsl_rng *random = sf_random(sf_seed_of(seed, 77), err);
     if (err->status == SF_OK) {
-        gsl_rng_set(random, (unsigned long)sf_seed_of(seed, 77) & 0xffffffffu);
         for (int g = 0; g < groups; g++)
             alpha[g] = 1;
         for (int m = 0; m < models; m++)
@@ -49,14 +157,14 @@ sf_status sf_predictive_weights(int models, int groups, const double *log_densit
                 weight[m] += part[m] / BOOTSTRAPS;
         }
     }
-    if (random)
-        gsl_rng_free(random);
+    gsl_rng_free(random);
     free(share);
     free(alpha);
     free(sum);
-    free(part);
     return err->status;
 }
+
+/* ---- groups of data left out ---- */
 
 enum { MOST_GROUPS = 32 };
 static const double USABLE = 0.5, WIDER = 2; /* of the variances, where the chains without a group start */
@@ -67,14 +175,10 @@ typedef struct without {
     int group;
 } without;
 
-static double density_without_of(const void *context, const double *u, const double *y) {
+static double density_without(const void *context, const double *u, const double *y) {
     const without *w = context;
     double conditional[MOST_GROUPS], all = w->grouped->split(w->grouped->target.context, u, y, conditional);
     return all - conditional[w->group];
-}
-
-static double density_without(const void *context, const double *u) {
-    return density_without_of(context, u, NULL);
 }
 
 static bool respond(const void *context, const double *u, double *y) {
@@ -97,8 +201,7 @@ static double *split_all(const sf_grouped *g, const double *sample, int count, s
 static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
                        sf_error *err) {
     double *sum = sf_alloc(err, (unsigned long)count, sizeof *sum, "weights");
-    if (!sum)
-        return err->status;
+    SF_TRY(err->status);
     for (int s = 0; s < count; s++)
         scratch[s] = -all[s * groups + g];
     out->pareto_k = sf_pareto_smooth(count, scratch, err);
@@ -110,21 +213,6 @@ static sf_status weigh(const double *all, int groups, int g, int count, double *
     return err->status;
 }
 
-/* Finds the start of the chains without the group: mean and widened covariance of those with it. */
-static void find_start(const sf_chains *c, double *mean, double *covariance) {
-    int n = c->parameters, count = c->chains * c->kept;
-    memset(mean, 0, (size_t)n * sizeof *mean);
-    memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < n; i++)
-            mean[i] += c->sample[k * n + i] / count;
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++)
-                covariance[i * n + j] +=
-                    WIDER * (c->sample[k * n + i] - mean[i]) * (c->sample[k * n + j] - mean[j]) / count;
-}
-
 static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
                         const sf_chains_options *options, sf_left_out *out, sf_error *err) {
     double mean[SF_POSTERIOR_MOST], covariance[SF_POSTERIOR_MOST * SF_POSTERIOR_MOST];
@@ -134,12 +222,13 @@ static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
                               .context = &context,
                               .responses = g->target.responses,
                               .shape = g->target.shape,
-                              .respond = respond,
-                              .log_density_of = density_without_of};
+                              .respond = respond};
     sf_chains_options own = *options;
     sf_chains chains;
     own.seed = sf_seed_of(options->seed, (uint64_t)(500 + group));
-    find_start(whole, mean, covariance);
+    sf_moments(whole->parameters, whole->chains * whole->kept, whole->sample, mean, covariance);
+    for (int i = 0; i < whole->parameters * whole->parameters; i++)
+        covariance[i] *= WIDER;
     if (sf_chains_run(&target, mean, covariance, &own, &chains, err) == SF_OK) {
         int count = chains.chains * chains.kept;
         double *all = split_all(g, chains.sample, count, err);
@@ -174,12 +263,9 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
     *w = (wide){.weight = sf_alloc(err, (unsigned long)draws, sizeof(double), "draws"),
                 .conditional = sf_alloc(err, (unsigned long)(draws * g->groups), sizeof(double), "draws")};
     double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws");
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    if (!random)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
+    gsl_rng *random = sf_random(sf_seed_of(options->chains.seed, 700), err);
     if (err->status == SF_OK &&
         sf_mixture_fit(n, chains->chains * chains->kept, chains->sample, FREEDOM, &m, err) == SF_OK) {
-        gsl_rng_set(random, (unsigned long)sf_seed_of(options->chains.seed, 700) & 0xffffffffu);
         for (int p = 0; p < m.parts; p++) {
             for (int i = 0; i < n; i++)
                 for (int j = 0; j <= i; j++)
@@ -194,8 +280,7 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
                            sf_mixture_log_density(&m, &u[k * n]);
         w->count = draws;
     }
-    if (random)
-        gsl_rng_free(random);
+    gsl_rng_free(random);
     free(u);
     return err->status;
 }

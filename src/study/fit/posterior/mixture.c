@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/posterior/mixture.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_sf_gamma.h>
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,11 +14,19 @@
 enum { ROUNDS = 25, N = SF_POSTERIOR_MOST };
 static const double RIDGE = 1e-6; /* of the samples' own variances, added to a part's */
 
+gsl_rng *sf_random(uint64_t seed, sf_error *err) {
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    if (random)
+        gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
+    else
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
+    return random;
+}
+
 /* ---- density and draws ---- */
 
-/* Squared distance from the part's centre in its scale. */
-static double distance(const sf_mixture_part *part, int n, const double *u) {
-    double z[N], sum = 0;
+double sf_mixture_standardise(const sf_mixture_part *part, int n, const double *u, double *z) {
+    double sum = 0;
     for (int i = 0; i < n; i++) {
         z[i] = u[i] - part->centre[i];
         for (int j = 0; j < i; j++)
@@ -25,6 +35,11 @@ static double distance(const sf_mixture_part *part, int n, const double *u) {
         sum += z[i] * z[i];
     }
     return sum;
+}
+
+static double distance(const sf_mixture_part *part, int n, const double *u) {
+    double z[N];
+    return sf_mixture_standardise(part, n, u, z);
 }
 
 static double part_log_density(const sf_mixture *m, const sf_mixture_part *part, const double *u) {
@@ -90,34 +105,39 @@ sf_status sf_mixture_single(int n, const double *centre, const double *scale, do
 
 /* ---- matched to samples ---- */
 
+void sf_moments(int n, int count, const double *sample, double *mean, double *covariance) {
+    memset(mean, 0, (size_t)n * sizeof *mean);
+    memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            mean[i] += sample[k * n + i] / count;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                covariance[i * n + j] +=
+                    (sample[k * n + i] - mean[i]) * (sample[k * n + j] - mean[j]) / count;
+}
+
+sf_status sf_mixture_about(int n, int count, const double *sample, double freedom, sf_mixture *m,
+                           sf_error *err) {
+    double mean[N], covariance[N * N];
+    sf_moments(n, count, sample, mean, covariance);
+    return sf_mixture_single(n, mean, covariance, freedom, m, err);
+}
+
 typedef struct samples {
     int n, count;
     const double *u;  /* [count][n] */
     double *share;    /* [parts][count] of a sample in a part */
     double ridge[N];  /* added to the variances */
-    double axis[N];   /* first principal axis of the samples in their deviations */
-    double *position; /* [count] along it */
+    double *position; /* [count] along their first principal axis */
 } samples;
-
-/* Mean and covariance [n][n] of all samples. */
-static void moments(const samples *s, double *mean, double *covariance) {
-    int n = s->n;
-    memset(mean, 0, (size_t)n * sizeof *mean);
-    memset(covariance, 0, (size_t)(n * n) * sizeof *covariance);
-    for (int k = 0; k < s->count; k++)
-        for (int i = 0; i < n; i++)
-            mean[i] += s->u[k * n + i] / s->count;
-    for (int k = 0; k < s->count; k++)
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++)
-                covariance[i * n + j] += (s->u[k * n + i] - mean[i]) * (s->u[k * n + j] - mean[j]) / s->count;
-}
 
 /* Positions of the samples along the first principal axis of the correlation matrix. */
 static sf_status find_axis(samples *s, sf_error *err) {
     int n = s->n;
     double mean[N], c[N * N], sd[N];
-    moments(s, mean, c);
+    sf_moments(n, s->count, s->u, mean, c);
     for (int i = 0; i < n; i++) {
         sd[i] = sqrt(c[i * n + i]);
         s->ridge[i] = RIDGE * c[i * n + i];
@@ -129,9 +149,9 @@ static sf_status find_axis(samples *s, sf_error *err) {
             c[i * n + j] /= sd[i] * sd[j];
     gsl_matrix_view a = gsl_matrix_view_array(c, (size_t)n, (size_t)n);
     gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc((size_t)n);
-    gsl_vector *value = gsl_vector_alloc((size_t)n);
-    gsl_matrix *vector = gsl_matrix_alloc((size_t)n, (size_t)n);
-    if (w && value && vector) {
+    gsl_vector *value = sf_vector((size_t)n, err);
+    gsl_matrix *vector = sf_matrix((size_t)n, (size_t)n, err);
+    if (w && err->status == SF_OK) {
         gsl_eigen_symmv(&a.matrix, value, vector, w);
         size_t first = gsl_vector_max_index(value);
         for (int k = 0; k < s->count; k++) {
@@ -139,8 +159,6 @@ static sf_status find_axis(samples *s, sf_error *err) {
             for (int i = 0; i < n; i++)
                 s->position[k] += gsl_matrix_get(vector, (size_t)i, first) * s->u[k * n + i] / sd[i];
         }
-    } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %d parameters", n);
     }
     gsl_eigen_symmv_free(w);
     gsl_vector_free(value);
@@ -148,18 +166,12 @@ static sf_status find_axis(samples *s, sf_error *err) {
     return err->status;
 }
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* First shares: equal slices along the axis. */
 static sf_status slice(const samples *s, int parts, sf_error *err) {
     double *sorted = sf_alloc(err, (unsigned long)s->count, sizeof *sorted, "samples");
-    if (!sorted)
-        return err->status;
+    SF_TRY(err->status);
     memcpy(sorted, s->position, (size_t)s->count * sizeof *sorted);
-    qsort(sorted, (size_t)s->count, sizeof *sorted, compare);
+    gsl_sort(sorted, 1, (size_t)s->count);
     for (int k = 0; k < s->count; k++)
         for (int p = 0; p < parts; p++) {
             bool above = p == 0 || s->position[k] >= sorted[s->count * p / parts];
@@ -211,23 +223,13 @@ static void share_out(const sf_mixture *m, const samples *s) {
 
 static sf_status match(const samples *s, int parts, double freedom, sf_mixture *m, sf_error *err) {
     *m = (sf_mixture){.parameters = s->n, .parts = parts, .freedom = freedom};
-    if (slice(s, parts, err) != SF_OK)
-        return err->status;
+    SF_TRY(slice(s, parts, err));
     for (int round = 0; round < ROUNDS; round++) {
         for (int p = 0; p < parts; p++)
-            if (match_part(m, s, &s->share[p * s->count], round == 0, &m->part[p], err) != SF_OK)
-                return err->status;
+            SF_TRY(match_part(m, s, &s->share[p * s->count], round == 0, &m->part[p], err));
         share_out(m, s);
     }
     return SF_OK;
-}
-
-/* Mean log density of samples. */
-static double score(const sf_mixture *m, int count, const double *u) {
-    double sum = 0;
-    for (int k = 0; k < count; k++)
-        sum += sf_mixture_log_density(m, &u[k * m->parameters]);
-    return sum / count;
 }
 
 /* The number of parts, by the first half of the samples, that describes the other half best. */
@@ -239,7 +241,10 @@ static int choose_parts(samples *half, int rest, double freedom) {
     for (int parts = 1; parts <= SF_MIXTURE_MOST && half->count >= 8 * (half->n + 1) * parts; parts++) {
         if (match(half, parts, freedom, &m, &err) != SF_OK)
             break;
-        double value = score(&m, rest, &half->u[half->count * half->n]);
+        double value = 0; /* mean log density of the other half */
+        for (int k = half->count; k < half->count + rest; k++)
+            value += sf_mixture_log_density(&m, &half->u[k * half->n]);
+        value /= rest;
         if (value > highest + 0.02) {
             highest = value;
             best = parts;
@@ -265,4 +270,138 @@ sf_status sf_mixture_fit(int n, int count, const double *u, double freedom, sf_m
     free(share);
     free(position);
     return err->status;
+}
+
+/* ---- emulator ---- */
+
+enum { DEGREE = 4, POINTS_OF_A_TERM = 3 };
+static const double REACH = 2;           /* of the squared distance of the farthest point */
+static const double FRAME_RIDGE = 1e-10; /* of the columns' squares */
+
+/* (n + degree) over degree. */
+static int terms_of(int n, int degree) {
+    double terms = 1;
+    for (int k = 1; k <= degree; k++)
+        terms = terms * (n + k) / k;
+    return terms > SF_EMULATOR_MOST_TERMS ? SF_EMULATOR_MOST_TERMS + 1 : (int)(terms + 0.5);
+}
+
+/* Each degree extends the one before by variables that are not before its last one. */
+static void list_terms(sf_emulator *e, int degree) {
+    int first = 0, last = 1;
+    e->terms = 1;
+    for (int d = 0; d < degree; d++) {
+        for (int t = first; t < last; t++)
+            for (int v = t == 0 ? 0 : e->variable[t]; v < e->parameters; v++) {
+                e->parent[e->terms] = t;
+                e->variable[e->terms++] = v;
+            }
+        first = last;
+        last = e->terms;
+    }
+}
+
+static double standardise(const sf_emulator *e, const double *u, double *z) {
+    return sf_mixture_standardise(&e->frame, e->parameters, u, z);
+}
+
+static void fill_terms(const sf_emulator *e, const double *z, double *term) {
+    term[0] = 1;
+    for (int t = 1; t < e->terms; t++)
+        term[t] = term[e->parent[t]] * z[e->variable[t]];
+}
+
+/* Centre and factor of the points; false: they span no volume. */
+static bool find_frame(sf_emulator *e, int count, const double *u) {
+    sf_mixture m;
+    sf_error none = SF_ERROR_INIT;
+    if (sf_mixture_about(e->parameters, count, u, 1, &m, &none) != SF_OK)
+        return false;
+    e->frame = m.part[0];
+    return true;
+}
+
+/* Adds the points to the normal equations: lower triangle of `gram`, and `right` [responses][terms]. */
+static void add_points(sf_emulator *e, int count, const double *u, const double *y, double *gram,
+                       double *right) {
+    double z[N], term[SF_EMULATOR_MOST_TERMS];
+    int terms = e->terms, m = e->responses;
+    for (int k = 0; k < count; k++) {
+        e->most_distance = fmax(e->most_distance, standardise(e, &u[k * e->parameters], z));
+        fill_terms(e, z, term);
+        for (int i = 0; i < terms; i++)
+            for (int j = 0; j <= i; j++)
+                gram[i * terms + j] += term[i] * term[j];
+        for (int r = 0; r < m; r++)
+            for (int i = 0; i < terms; i++)
+                right[r * terms + i] += term[i] * y[k * m + r];
+    }
+}
+
+/* Solves them with columns scaled to one, and the ridge. */
+static sf_status solve(sf_emulator *e, double *gram, double *right, sf_error *err) {
+    size_t terms = (size_t)e->terms;
+    double scale[SF_EMULATOR_MOST_TERMS];
+    gsl_matrix_view a = gsl_matrix_view_array(gram, terms, terms);
+    for (size_t i = 0; i < terms; i++)
+        scale[i] = 1 / sqrt(gram[i * terms + i]);
+    for (size_t i = 0; i < terms; i++)
+        for (size_t j = 0; j <= i; j++)
+            gram[i * terms + j] = gram[j * terms + i] =
+                gram[i * terms + j] * scale[i] * scale[j] + (i == j ? FRAME_RIDGE : 0);
+    if (gsl_linalg_cholesky_decomp1(&a.matrix) != GSL_SUCCESS)
+        return SF_FAIL(err, SF_ERR_NUMERIC, "the emulator's normal equations are singular");
+    for (size_t r = 0; r < (size_t)e->responses; r++) {
+        gsl_vector_view x = gsl_vector_view_array(&right[r * terms], terms);
+        for (size_t i = 0; i < terms; i++)
+            right[r * terms + i] *= scale[i];
+        gsl_linalg_cholesky_svx(&a.matrix, &x.vector);
+        for (size_t i = 0; i < terms; i++)
+            e->coefficient[r * terms + i] = right[r * terms + i] * scale[i];
+    }
+    return SF_OK;
+}
+
+sf_status sf_emulator_fit(int parameters, int responses, int count, const double *u, const double *y,
+                          sf_emulator *e, sf_error *err) {
+    *e = (sf_emulator){.parameters = parameters, .responses = responses};
+    int degree = DEGREE;
+    while (degree > 1 && (terms_of(parameters, degree) > SF_EMULATOR_MOST_TERMS ||
+                          POINTS_OF_A_TERM * terms_of(parameters, degree) > count))
+        degree--;
+    if (degree < 2 || !find_frame(e, count, u))
+        return SF_OK;
+    list_terms(e, degree);
+    unsigned long terms = (unsigned long)e->terms, all = terms * (unsigned long)responses;
+    double *gram = sf_alloc(err, terms * terms, sizeof *gram, "an emulator"),
+           *right = sf_alloc(err, all, sizeof *right, "an emulator");
+    e->coefficient = sf_alloc(err, all, sizeof(double), "an emulator");
+    if (err->status == SF_OK) {
+        sf_error singular = SF_ERROR_INIT;
+        add_points(e, count, u, y, gram, right);
+        if (solve(e, gram, right, &singular) != SF_OK)
+            sf_emulator_free(e);
+    }
+    free(gram);
+    free(right);
+    return err->status;
+}
+
+bool sf_emulator_at(const sf_emulator *e, const double *u, double *y) {
+    double z[N], term[SF_EMULATOR_MOST_TERMS];
+    if (!(standardise(e, u, z) <= REACH * e->most_distance))
+        return false;
+    fill_terms(e, z, term);
+    for (int r = 0; r < e->responses; r++) {
+        const double *c = &e->coefficient[r * e->terms];
+        y[r] = 0;
+        for (int t = 0; t < e->terms; t++)
+            y[r] += c[t] * term[t];
+    }
+    return true;
+}
+
+void sf_emulator_free(sf_emulator *e) {
+    free(e->coefficient);
+    *e = (sf_emulator){0};
 }

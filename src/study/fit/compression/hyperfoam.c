@@ -1,0 +1,458 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The entry of the hyperfoam, identified from one compression test with free sides: its terms from nominal
+ * stress and lateral strain while loading, by least squares (GSL, Levenberg-Marquardt from several starts);
+ * HU, SHAPE and ALPHA from unloading. Terms have mu > 0 and 0 <= nu < 0.45, so that the law is stable at any
+ * strain. */
+#include "study/fit/compression/compression_kind.h"
+
+#include "material/hyperfoam.h"
+#include "material/unloading.h"
+#include "report/row.h"
+#include "study/fit/least_squares.h"
+#include <gsl/gsl_errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { STARTS = 6, MISFIT_SIZE = 256 };
+static const char AT_BOUND_WORDS[] = " (at its bound)";
+static const double LARGEST_NU = 0.45, LARGEST_ALPHA = 49, LEAST_ALPHA = 0.02;
+static const double AT_BOUND = 1e-3; /* of the range */
+static const double POOR = 0.1;      /* rms over the largest value */
+/* HU, SHAPE, ALPHA. */
+static const double UNLOADING_LEAST[3] = {1e-4, 0.05, 0.1}, UNLOADING_RANGE[3] = {1 - 1e-4, 20, 4.9};
+static const double starts[STARTS] = {40, 14, 4, -1, -3, -8}; /* of alpha: from yield to densification */
+
+/* A test with its lateral strain, and what is fitted to it. */
+typedef struct fitted {
+    const sf_compression_config *config;
+    const sf_compression_test *test;
+    const sf_hyperfoam_request *request;  /* terms, and lateral strain of the test */
+    sf_hyperfoam_card card;               /* terms and unloading; the rest as given */
+    double error[SF_HYPERFOAM_TERMS][3];  /* standard errors: mu over mu, alpha, nu; NaN: not fitted, or at
+                                             its bound */
+    bool at_bound[SF_HYPERFOAM_TERMS][3]; /* mu (never), alpha, nu */
+    bool unloading_at_bound[3];           /* HU, SHAPE, ALPHA */
+    double poisson[2];    /* -, -ln(lateral stretch)/ln(axial stretch), at 1 % strain and at the largest */
+    double stress_rms;    /* -, of the deviations while loading, over the largest stress */
+    double lateral_rms;   /* -, the same of the lateral strain; NaN: none */
+    double unloading_rms; /* -, of the stress of unloading, over the largest; NaN: none */
+    bool is_good;         /* no deviation exceeds a tenth of the largest value */
+} fitted;
+
+double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double *lateral, double *energy) {
+    double stretch[3] = {1 - strain, 1 + *lateral, 1};
+    if (!sf_hyperfoam_release(foam, 1, stretch))
+        return NAN;
+    sf_hyperfoam_point p = sf_hyperfoam_evaluate(foam, stretch);
+    *lateral = stretch[1] - 1;
+    *energy = p.energy;
+    return -p.t[0];
+}
+
+/* A problem of least squares: the terms, or the numbers of unloading. */
+typedef struct problem {
+    const sf_compression_test *test;
+    const sf_hyperfoam_request *request;
+    sf_hyperfoam_card card;
+    int terms;
+    double largest_lateral;
+    const double *loading,
+        *ratio; /* [count - loading] of unloading: stress of loading in Pa, W over largest */
+} problem;
+
+static int per_term(const problem *p) {
+    return p->request->lateral_count > 0 ? 3 : 2;
+}
+
+static double logistic(double x) {
+    return 1 / (1 + exp(-x));
+}
+
+/* Parameters of a term: ln mu, alpha (bounded smoothly), nu likewise. */
+static void take_terms(const problem *p, const gsl_vector *x, sf_hyperfoam_card *card) {
+    int each = per_term(p);
+    for (int k = 0; k < p->terms; k++) {
+        sf_hyperfoam_term *t = &card->term[k];
+        double alpha = gsl_vector_get(x, (size_t)(each * k + 1));
+        t->mu = exp(fmin(30, gsl_vector_get(x, (size_t)(each * k))));
+        t->alpha = LARGEST_ALPHA * tanh(alpha / LARGEST_ALPHA);
+        t->alpha = fabs(t->alpha) < LEAST_ALPHA ? copysign(LEAST_ALPHA, t->alpha) : t->alpha;
+        if (each == 3)
+            t->nu = LARGEST_NU * logistic(gsl_vector_get(x, (size_t)(each * k + 2)));
+    }
+}
+
+/* Deviations over the largest value, each quantity with the same weight in all. */
+static int deviate(const gsl_vector *x, void *data, gsl_vector *out) {
+    const problem *p = data;
+    const sf_compression_test *t = p->test;
+    sf_hyperfoam_card card = p->card;
+    take_terms(p, x, &card);
+    sf_hyperfoam foam = sf_hyperfoam_build(&card);
+    double lateral = 0, energy, weight = 1 / (t->largest_stress * sqrt(t->loading));
+    for (int i = 0; i < t->loading; i++) {
+        double stress = sf_hyperfoam_free_stress(&foam, t->strain[i], &lateral, &energy);
+        gsl_vector_set(out, (size_t)i, weight * (stress - t->stress[i]));
+    }
+    lateral = 0;
+    weight = 1 / (p->largest_lateral * sqrt(p->request->lateral_count));
+    for (int i = 0; i < p->request->lateral_count; i++) {
+        sf_hyperfoam_free_stress(&foam, p->request->lateral_at[i], &lateral, &energy);
+        gsl_vector_set(out, (size_t)(t->loading + i), weight * (lateral - p->request->lateral[i]));
+    }
+    for (size_t i = 0; i < out->size; i++)
+        if (!isfinite(gsl_vector_get(out, i)))
+            return GSL_EDOM;
+    return GSL_SUCCESS;
+}
+
+static void take_unloading(const gsl_vector *x, sf_hyperfoam_card *card) {
+    card->hysteresis_hu = UNLOADING_LEAST[0] + UNLOADING_RANGE[0] * logistic(gsl_vector_get(x, 0));
+    card->hysteresis_shape = UNLOADING_LEAST[1] + UNLOADING_RANGE[1] * logistic(gsl_vector_get(x, 1));
+    card->hysteresis_alpha = UNLOADING_LEAST[2] + UNLOADING_RANGE[2] * logistic(gsl_vector_get(x, 2));
+}
+
+static int deviate_unloading(const gsl_vector *x, void *data, gsl_vector *out) {
+    const problem *p = data;
+    const sf_compression_test *t = p->test;
+    sf_hyperfoam_card card;
+    take_unloading(x, &card);
+    for (int i = t->loading; i < t->count; i++) {
+        int k = i - t->loading;
+        double factor = sf_unloading_factor(card.hysteresis_hu, card.hysteresis_shape, card.hysteresis_alpha,
+                                            p->ratio[k]);
+        gsl_vector_set(out, (size_t)k, (factor * p->loading[k] - t->stress[i]) / t->largest_stress);
+    }
+    return GSL_SUCCESS;
+}
+
+/* The next choice of `terms` different starts, descending; false: there is none. */
+static bool next_choice(int terms, int choice[SF_HYPERFOAM_TERMS]) {
+    for (int k = terms - 1; k >= 0; k--)
+        if (choice[k] < STARTS - terms + k) {
+            choice[k]++;
+            for (int j = k + 1; j < terms; j++)
+                choice[j] = choice[j - 1] + 1;
+            return true;
+        }
+    return false;
+}
+
+/* ln mu with which a term of this alpha alone has its part of the stress in the middle of the test. */
+static double start_modulus(const problem *p, double alpha) {
+    const sf_compression_test *t = p->test;
+    sf_hyperfoam foam = {.count = 1, .mu = {1}, .alpha = {alpha}, .beta = {p->card.term[0].nu}};
+    double lateral = 0, energy,
+           stress = sf_hyperfoam_free_stress(&foam, t->strain[t->loading / 2], &lateral, &energy);
+    return log(fmax(1, t->stress[t->loading / 2]) / (p->terms * fmax(stress, 1e-6)));
+}
+
+static void start(const problem *p, const int choice[SF_HYPERFOAM_TERMS], gsl_vector *x) {
+    int each = per_term(p);
+    for (int k = 0; k < p->terms; k++) {
+        gsl_vector_set(x, (size_t)(each * k), start_modulus(p, starts[choice[k]]));
+        gsl_vector_set(x, (size_t)(each * k + 1), LARGEST_ALPHA * atanh(starts[choice[k]] / LARGEST_ALPHA));
+        if (each == 3)
+            gsl_vector_set(x, (size_t)(each * k + 2), -1);
+    }
+}
+
+static bool is_at_end(double part) {
+    return part < AT_BOUND || part > 1 - AT_BOUND;
+}
+
+static void find_bounds(const problem *p, const gsl_vector *x, fitted *fit) {
+    int each = per_term(p);
+    for (int k = 0; k < p->terms; k++) {
+        double alpha = fabs(fit->card.term[k].alpha);
+        fit->at_bound[k][1] = alpha <= LEAST_ALPHA || alpha > (1 - AT_BOUND) * LARGEST_ALPHA;
+        fit->at_bound[k][2] = each == 3 && is_at_end(logistic(gsl_vector_get(x, (size_t)(each * k + 2))));
+    }
+}
+
+static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix *covariance, double factor,
+                        fitted *fit) {
+    int each = per_term(p);
+    for (int k = 0; k < SF_HYPERFOAM_TERMS; k++)
+        for (int j = 0; j < 3; j++) {
+            size_t at = (size_t)(each * k + j);
+            bool is_fitted = k < p->terms && j < each;
+            double part = is_fitted && j == 2 ? logistic(gsl_vector_get(x, at)) : 0;
+            double bend = fit->card.term[k].alpha / LARGEST_ALPHA; /* tanh, as take_terms() has it */
+            double scale = j == 2 ? LARGEST_NU * part * (1 - part) : j == 1 ? 1 - bend * bend : 1;
+            fit->error[k][j] = is_fitted && !fit->at_bound[k][j]
+                                   ? scale * sqrt(factor * gsl_matrix_get(covariance, at, at))
+                                   : NAN;
+        }
+}
+
+static sf_status fit_terms(problem *p, fitted *fit, sf_error *err) {
+    size_t size = (size_t)(per_term(p) * p->terms);
+    size_t count = (size_t)(p->test->loading + p->request->lateral_count);
+    gsl_vector *x = gsl_vector_alloc(size), *best = gsl_vector_alloc(size);
+    gsl_matrix *covariance = gsl_matrix_alloc(size, size);
+    int choice[SF_HYPERFOAM_TERMS] = {0, 1, 2};
+    double least = INFINITY;
+    do {
+        start(p, choice, x);
+        double sum = sf_least_squares(deviate, p, count, x, NULL);
+        if (sum < least) {
+            least = sum;
+            gsl_vector_memcpy(best, x);
+        }
+    } while (next_choice(p->terms, choice));
+    if (isfinite(least))
+        least = sf_least_squares(deviate, p, count, best, covariance);
+    if (isfinite(least)) {
+        take_terms(p, best, &fit->card);
+        find_bounds(p, best, fit);
+        take_errors(p, best, covariance, least / (double)(count > size ? count - size : 1), fit);
+    } else {
+        SF_FAIL(err, SF_ERR_NUMERIC, "no search for %d terms of the hyperfoam converges", p->terms);
+    }
+    gsl_vector_free(x);
+    gsl_vector_free(best);
+    gsl_matrix_free(covariance);
+    return err->status;
+}
+
+static sf_status fit_unloading(problem *p, fitted *fit, sf_error *err) {
+    const sf_compression_test *t = p->test;
+    sf_hyperfoam foam = sf_hyperfoam_build(&fit->card);
+    size_t count = (size_t)(t->count - t->loading);
+    double lateral = 0, peak = 0, *loading = sf_alloc(err, count, sizeof *loading, "unloading"),
+           *ratio = sf_alloc(err, count, sizeof *ratio, "unloading");
+    gsl_vector *x = gsl_vector_alloc(3);
+    if (err->status == SF_OK) {
+        sf_hyperfoam_free_stress(&foam, t->largest_strain, &lateral, &peak);
+        for (size_t k = 0; k < count; k++) {
+            loading[k] =
+                sf_hyperfoam_free_stress(&foam, fmax(0, t->strain[t->loading + (int)k]), &lateral, &ratio[k]);
+            ratio[k] = fmin(1, ratio[k] / peak);
+        }
+        p->loading = loading;
+        p->ratio = ratio;
+        gsl_vector_set(x, 0, -2);
+        gsl_vector_set(x, 1, -3);
+        gsl_vector_set(x, 2, -2);
+        double sum = sf_least_squares(deviate_unloading, p, count, x, NULL);
+        if (isfinite(sum)) {
+            take_unloading(x, &fit->card);
+            for (size_t k = 0; k < 3; k++)
+                fit->unloading_at_bound[k] = is_at_end(logistic(gsl_vector_get(x, k)));
+            fit->unloading_rms = sqrt(sum / (double)count);
+        }
+    }
+    gsl_vector_free(x);
+    free(loading);
+    free(ratio);
+    return err->status;
+}
+
+static void measure(const problem *p, fitted *fit) {
+    const sf_compression_test *t = p->test;
+    sf_hyperfoam foam = sf_hyperfoam_build(&fit->card);
+    double lateral = 0, energy, stress = 0, side = 0;
+    for (int i = 0; i < t->loading; i++)
+        stress += pow(sf_hyperfoam_free_stress(&foam, t->strain[i], &lateral, &energy) - t->stress[i], 2);
+    lateral = 0;
+    for (int i = 0; i < p->request->lateral_count; i++) {
+        sf_hyperfoam_free_stress(&foam, p->request->lateral_at[i], &lateral, &energy);
+        side += pow(lateral - p->request->lateral[i], 2);
+    }
+    fit->poisson[0] = sf_hyperfoam_poisson(&foam, 0.01);
+    fit->poisson[1] = sf_hyperfoam_poisson(&foam, t->largest_strain);
+    fit->stress_rms = sqrt(stress / t->loading) / t->largest_stress;
+    fit->lateral_rms =
+        p->request->lateral_count ? sqrt(side / p->request->lateral_count) / p->largest_lateral : NAN;
+    fit->is_good = !(fit->stress_rms > POOR || fit->lateral_rms > POOR || fit->unloading_rms > POOR);
+}
+
+/* HU, SHAPE and ALPHA are fitted after the terms; nu is that of every term if no lateral strain was
+ * measured. */
+static sf_status run(const sf_compression_config *config, void *place, sf_error *err) {
+    fitted *fit = place;
+    const sf_hyperfoam_request *r = &config->hyperfoam;
+    const sf_compression_test *t = &config->test[0];
+    *fit = (fitted){.config = config,
+                    .test = t,
+                    .request = r,
+                    .card = {.density = config->density,
+                             .damp = config->damp,
+                             .hysteresis_hu = 1,
+                             .hysteresis_shape = 1,
+                             .hysteresis_alpha = 1,
+                             .maxwell_rate = 5000,
+                             .rate_reference = 0.01,
+                             .rate_filter_time = 1e-4,
+                             .stable_to = 0.9,
+                             .informed_strain = t->largest_strain},
+                    .unloading_rms = NAN};
+    for (int k = 0; k < r->terms; k++)
+        fit->card.term[k].nu = r->nu;
+    problem p = {.test = t, .request = r, .card = fit->card, .terms = r->terms};
+    for (int i = 0; i < r->lateral_count; i++)
+        p.largest_lateral = fmax(p.largest_lateral, fabs(r->lateral[i]));
+    p.largest_lateral = fmax(p.largest_lateral, 0.01); /* a foam without lateral strain */
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    if (fit_terms(&p, fit, err) == SF_OK && t->count - t->loading > 3)
+        fit_unloading(&p, fit, err);
+    if (err->status == SF_OK)
+        measure(&p, fit);
+    gsl_set_error_handler(handler);
+    return err->status;
+}
+
+static sf_material material_of(const void *place) {
+    return sf_hyperfoam_material(&((const fitted *)place)->card);
+}
+
+/* ---- words ---- */
+
+static void put_error(FILE *out, double error, bool at_bound) {
+    if (at_bound)
+        fputs(AT_BOUND_WORDS, out);
+    else if (isfinite(error))
+        fprintf(out, " +- %.2g", error);
+}
+
+static void put_term(FILE *out, const fitted *fit, int k) {
+    const sf_hyperfoam_term *t = &fit->card.term[k];
+    fprintf(out, "  term %d: mu %.5g kPa +- %.2g %%, alpha %.4g", k + 1, 1e-3 * t->mu, 100 * fit->error[k][0],
+            t->alpha);
+    put_error(out, fit->error[k][1], fit->at_bound[k][1]);
+    fprintf(out, ", nu %.4g", t->nu);
+    put_error(out, fit->error[k][2], fit->at_bound[k][2]);
+    fputs("\n", out);
+}
+
+/* Writes the deviations of a poor fit. */
+static void describe_misfit(const fitted *fit, char text[MISFIT_SIZE]) {
+    const struct {
+        const char *name;
+        double rms;
+    } parts[] = {{"stress while loading", fit->stress_rms},
+                 {"lateral strain", fit->lateral_rms},
+                 {"stress of unloading", fit->unloading_rms}};
+    int used =
+        snprintf(text, MISFIT_SIZE, "the fit does not describe this test, rms over the largest value:");
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+        if (isfinite(parts[k].rms))
+            used += snprintf(text + used, MISFIT_SIZE - (size_t)used, "%s %s %.2g %%", k > 0 ? "," : "",
+                             parts[k].name, 100 * parts[k].rms);
+}
+
+static void title(FILE *out, const void *place) {
+    const fitted *f = place;
+    int terms = f->config->hyperfoam.terms;
+    fprintf(out, "%s: hyperfoam of %d term%s\n", f->config->name, terms, terms > 1 ? "s" : "");
+}
+
+static void describe(FILE *out, const void *place, bool comments) {
+    const fitted *fit = place;
+    const sf_compression_test *t = fit->test;
+    const bool *at_bound = fit->unloading_at_bound;
+    char misfit[MISFIT_SIZE];
+    if (comments)
+        fprintf(out, " from\n  %s at %.6g 1/s, to a strain of %.4g\n", t->path, t->rate, t->largest_strain);
+    if (comments && !fit->is_good) {
+        describe_misfit(fit, misfit);
+        fprintf(out, "WARNING: %s\n", misfit);
+    }
+    for (int k = 0; k < fit->request->terms; k++)
+        put_term(out, fit, k);
+    fprintf(out, "  -ln(lateral stretch)/ln(axial stretch): %.3g at 1 %% strain, %.3g at %.3g %%\n",
+            fit->poisson[0], fit->poisson[1], 100 * t->largest_strain);
+    fprintf(out, "  rms while loading: stress %.2g %% of the largest", 100 * fit->stress_rms);
+    if (isfinite(fit->lateral_rms))
+        fprintf(out, ", lateral strain %.2g %% of the largest", 100 * fit->lateral_rms);
+    fputs("\n", out);
+    if (isfinite(fit->unloading_rms))
+        fprintf(out,
+                "  unloading: HU %.4g%s, SHAPE %.4g%s, ALPHA %.4g%s; rms %.2g %% of the largest stress\n",
+                fit->card.hysteresis_hu, at_bound[0] ? AT_BOUND_WORDS : "", fit->card.hysteresis_shape,
+                at_bound[1] ? AT_BOUND_WORDS : "", fit->card.hysteresis_alpha,
+                at_bound[2] ? AT_BOUND_WORDS : "", 100 * fit->unloading_rms);
+    if (comments)
+        fprintf(out, "Beyond that strain and at other rates it is extrapolation. +-: standard errors.\n");
+}
+
+static void warn(const void *place, const sf_sink *sink) {
+    const fitted *f = place;
+    char misfit[MISFIT_SIZE];
+    describe_misfit(f, misfit);
+    if (!f->is_good)
+        sf_sink_tell(sink, SF_WARNING, "%s", misfit);
+}
+
+/* ---- files ---- */
+
+static void put_points(FILE *file, const void *place) {
+    const fitted *f = place;
+    const sf_compression_test *t = f->test;
+    const sf_hyperfoam_request *r = f->request;
+    const sf_hyperfoam_card *card = &f->card;
+    sf_hyperfoam foam = sf_hyperfoam_build(card);
+    double side = 0, energy = 0, peak = 0;
+    fputs("quantity,branch,strain,measured,fit\n", file);
+    sf_hyperfoam_free_stress(&foam, t->largest_strain, &side, &peak);
+    side = 0;
+    for (int i = 0; i < t->count; i++) {
+        bool back = i >= t->loading;
+        double stress = sf_hyperfoam_free_stress(&foam, t->strain[i], &side, &energy);
+        if (back)
+            stress *= sf_unloading_factor(card->hysteresis_hu, card->hysteresis_shape, card->hysteresis_alpha,
+                                          fmin(1, energy / peak));
+        fprintf(file, "stress_kPa,%s,%.9g,%.9g,%.9g\n", back ? "unloading" : "loading", t->strain[i],
+                1e-3 * t->stress[i], 1e-3 * stress);
+    }
+    side = 0;
+    for (int i = 0; i < r->lateral_count; i++) {
+        sf_hyperfoam_free_stress(&foam, r->lateral_at[i], &side, &energy);
+        fprintf(file, "lateral_strain,loading,%.9g,%.9g,%.9g\n", r->lateral_at[i], r->lateral[i], side);
+    }
+}
+
+static void put_json(sf_json *json, const void *place, const char *path) {
+    const fitted *f = place;
+    (void)path;
+    sf_json_text(json, "law", "hyperfoam");
+    sf_json_text(json, "name", f->config->name);
+    sf_json_text(json, "test", f->test->path);
+    SF_JSON_NUMBERS(json, {"rate_1_s", f->test->rate}, {"largest_strain", f->test->largest_strain});
+    sf_json_open(json, "terms", '[');
+    for (int k = 0; k < f->request->terms; k++) {
+        const sf_hyperfoam_term *t = &f->card.term[k];
+        sf_json_open(json, NULL, '{');
+        SF_JSON_NUMBERS(json, {"mu_Pa", t->mu}, {"mu_relative_error", f->error[k][0]}, {"alpha", t->alpha},
+                        {"alpha_error", f->error[k][1]}, {"nu", t->nu}, {"nu_error", f->error[k][2]});
+        sf_json_bool(json, "alpha_at_bound", f->at_bound[k][1]);
+        sf_json_bool(json, "nu_at_bound", f->at_bound[k][2]);
+        sf_json_close(json, '}');
+    }
+    sf_json_close(json, ']');
+    SF_JSON_NUMBERS(json, {"poisson_at_1_percent", f->poisson[0]},
+                    {"poisson_at_largest_strain", f->poisson[1]}, {"stress_rms", f->stress_rms},
+                    {"lateral_rms", f->lateral_rms});
+    sf_json_bool(json, "describes_the_test", f->is_good);
+    SF_JSON_NUMBERS(json, {"HU", f->card.hysteresis_hu}, {"SHAPE", f->card.hysteresis_shape},
+                    {"ALPHA", f->card.hysteresis_alpha});
+    sf_json_bool(json, "HU_at_bound", f->unloading_at_bound[0]);
+    sf_json_bool(json, "SHAPE_at_bound", f->unloading_at_bound[1]);
+    sf_json_bool(json, "ALPHA_at_bound", f->unloading_at_bound[2]);
+    sf_json_number(json, "unloading_rms", f->unloading_rms);
+}
+
+static const char *const outputs[] = {"fit.csv", "fit.json", "material.cfg", NULL};
+const sf_compression_kind sf_compression_hyperfoam = {.label = "hyperfoam",
+                                                      .files = "material.cfg, fit.json, fit.csv",
+                                                      .outputs = outputs,
+                                                      .size = sizeof(fitted),
+                                                      .run = run,
+
+                                                      .material = material_of,
+                                                      .title = title,
+                                                      .describe = describe,
+                                                      .points = put_points,
+                                                      .json = put_json,
+                                                      .warn = warn};
