@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shared by the files that implement include/softfall/softfall.h. */
-#ifndef SF_API_API_H
-#define SF_API_API_H
+#pragma once
 
 #include "softfall/softfall.h"
 
@@ -34,5 +33,3 @@ static inline softfall_status softfall_return(const sf_error *err, softfall_erro
 static inline void *softfall_new(sf_error *err, unsigned long size, const char *what) {
     return sf_alloc(err, 1, size, what);
 }
-
-#endif

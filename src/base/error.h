@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_BASE_ERROR_H
-#define SF_BASE_ERROR_H
+#pragma once
 
 /* Status codes and the error record that every fallible softfall function fills.
  *
@@ -76,4 +75,3 @@ typedef struct sf_sink {
  * dropped. */
 void sf_sink_tell(const sf_sink *sink, sf_severity severity, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_BASE_GRID_H
-#define SF_BASE_GRID_H
+#pragma once
 #include <stdint.h>
 
 #include "base/error.h"
@@ -30,4 +29,3 @@ int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius
 /* The same in the order of the bins. */
 int64_t sf_grid_gather(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
                        int32_t *out);
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* FNV-1a of 64 bits: tells whether data are the same. It is no defence against intent. All functions
  * continue a hash that begins with SF_HASH_START. */
-#ifndef SF_BASE_HASH_H
-#define SF_BASE_HASH_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -44,5 +43,3 @@ static inline uint64_t sf_hash_bytes(uint64_t hash, const void *data, size_t siz
         hash = (hash ^ byte[k]) * SF_HASH_PRIME;
     return hash;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_BASE_LANES_H
-#define SF_BASE_LANES_H
+#pragma once
 #include <stdint.h>
 #include <string.h>
 
@@ -121,4 +120,3 @@ static inline double sf_lane_expm1(double x, double *rest) {
     *rest = k == 0 ? near : all - x;
     return all;
 }
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_BASE_MAT3_H
-#define SF_BASE_MAT3_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -148,5 +147,3 @@ void sf_rigid_product(const double matrix[6], const double v[3], double out[3]);
  * of Euler's equations, whose steps keep |L| and the kinetic energy. Second order, symmetric in time. */
 void sf_rigid_turn(const double inertia[6], const double q[4], const double momentum[3], double dt,
                    double turn[3]);
-
-#endif

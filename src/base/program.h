@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* For the programs alone: command lines, printing, and exit codes from status codes. */
-#ifndef SF_BASE_PROGRAM_H
-#define SF_BASE_PROGRAM_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -74,5 +73,3 @@ int sf_error_report(const sf_error *err, const char *program);
 
 /* A sink that prints "program: warning: sentence" (or "note:") to stderr; `program` is borrowed. */
 sf_sink sf_program_sink(const char *program);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_BASE_SETS_H
-#define SF_BASE_SETS_H
+#pragma once
 #include <stdint.h>
 
 #include "base/error.h"
@@ -27,4 +26,3 @@ static inline void sf_sets_join(int64_t *parent, int64_t a, int64_t b) {
     b = sf_sets_find(parent, b);
     parent[a > b ? a : b] = a > b ? b : a;
 }
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_BASE_TEXT_H
-#define SF_BASE_TEXT_H
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -35,4 +34,3 @@ void sf_text_add(char *text, size_t size, const char *format, ...) __attribute__
 
 /* Length of `text`, or at most `size`, cut before a sequence that does not end there. */
 int sf_utf8_cut(const char *text, int size);
-#endif

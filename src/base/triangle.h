@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_BASE_TRIANGLE_H
-#define SF_BASE_TRIANGLE_H
+#pragma once
 #include "base/mat3.h"
 
 /* Finds the point of a triangle that is nearest to x (Ericson 2005, section 5.1.5). `feature`: where it lies,
@@ -44,4 +43,3 @@ static inline void sf_triangle_nearest(const double *a, const double *b, const d
     for (int k = 0; k < 3; k++)
         out[k] = a[k] + s * ab[k] + t * ac[k];
 }
-#endif

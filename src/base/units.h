@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_BASE_UNITS_H
-#define SF_BASE_UNITS_H
+#pragma once
 #include <stdio.h>
 
 #include "base/error.h"
@@ -62,4 +61,3 @@ const char *sf_quantity_example(sf_quantity kind);
 
 /* The names as Markdown: a table for docs/case.md. */
 void sf_unit_text_print(FILE *file);
-#endif

@@ -2,8 +2,7 @@
 /* The case file: libconfig syntax, every dimensional value a string with its unit ("4.6 kg"), read with
  * base/units.h. docs/case.md lists groups and keys.
  */
-#ifndef SF_CASE_CASE_H
-#define SF_CASE_CASE_H
+#pragma once
 
 #include "model/good_run.h"
 #include "base/error.h"
@@ -131,5 +130,3 @@ size_t sf_case_motion_bytes(const sf_case *c);
 /* Writes the table of all keys (value, bounds, default, meaning) as Markdown: `softfall-pre --keys`,
  * docs/case.md. */
 void sf_case_print_keys(FILE *file);
-
-#endif

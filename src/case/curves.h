@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_CASE_CURVES_H
-#define SF_CASE_CURVES_H
+#pragma once
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -38,4 +37,3 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
 /* The reader of SF_KEY_MOTION, the displacement over time of a missile that a machine drives. */
 sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err);
-#endif

@@ -2,8 +2,7 @@
 /* The text of a case with its includes in place, to be changed and written at another place: its lines stay
  * as they are but for the values of --set texts and the names of files. Only of cases that sf_case_read took
  * with the same texts. sf_case_load_marked reads it. */
-#ifndef SF_CASE_EDIT_H
-#define SF_CASE_EDIT_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -37,4 +36,3 @@ typedef char *sf_edit_rename(void *context, const char *path, const char *name, 
 /* Writes text[begin, end) with new names of the files. SF_ERR_INPUT: one of the names does not end there. */
 sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const sf_edit_settings *files,
                              sf_edit_rename *rename, void *context, FILE *out, sf_error *err);
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_CASE_GRAMMAR_H
-#define SF_CASE_GRAMMAR_H
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -60,4 +59,3 @@ char *sf_case_folder_of(const char *path, sf_error *err);
 /* The file of a text "group=@file" or "materials.NAME=@file", NULL for "group.key=value". Relative to the
  * working directory. */
 const char *sf_case_override_file(const char *text);
-#endif

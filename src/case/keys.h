@@ -5,8 +5,7 @@
  * and docs/case.md. The rows of a material are those of its law (material/card.h). Defaults are texts in
  * libconfig syntax and pass through the same reader as given values.
  */
-#ifndef SF_CASE_KEYS_H
-#define SF_CASE_KEYS_H
+#pragma once
 
 #include "case/case.h"
 #include "base/units.h"
@@ -80,5 +79,3 @@ void sf_case_list_names(const sf_key_list *list, const char *group, char *out, s
 /* The existing name nearest to `name` within two edits; NULL if none is near. */
 const char *sf_case_near_name(const sf_key_list *list, const char *group, const char *name, char *out,
                               size_t size);
-
-#endif

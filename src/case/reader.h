@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shared by the readers of a case's keys: the case under construction, the location of a setting, the keys
  * given. Internal to src/case. */
-#ifndef SF_CASE_READER_H
-#define SF_CASE_READER_H
+#pragma once
 
 #include "case/case.h"
 #include "case/keys.h"
@@ -91,4 +90,3 @@ sf_status sf_case_read_response_error(sf_case_reader *reader, sf_error *err);
 
 /* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_CASE_VALUES_H
-#define SF_CASE_VALUES_H
+#pragma once
 #include <libconfig.h>
 #include <stdio.h>
 
@@ -48,4 +47,3 @@ bool sf_case_key_is_file(const char *path);
 
 /* Writes a setting's value in libconfig syntax on one line. */
 void sf_case_print_setting(FILE *file, const config_setting_t *setting);
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The activity of the window, and the next one that a button or the end of a program leads to. */
-#ifndef SF_GUI_ACTIVITY_H
-#define SF_GUI_ACTIVITY_H
+#pragma once
 
 #include "base/error.h"
 #include "io/process.h"
@@ -103,5 +102,3 @@ sf_status sf_cache_find(char *path, size_t size, sf_error *err);
 /* Writes the file that gmsh opens in place of a geometry, into that folder: it merges the geometry. What
  * gmsh's menus rename, delete or append to is that file. `wrap` is "" if it cannot be written. */
 void sf_cache_wrap(const char *cache, const char *geometry, char *wrap, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_GUI_FIELDS_H
-#define SF_GUI_FIELDS_H
+#pragma once
 #include <stdbool.h>
 
 #include "case/case.h"
@@ -10,11 +9,11 @@
  * no one which belongs to which, so the text of the file (and of what it includes) is looked through:
  * DefineConstant and DefineNumber with a Name that is written out. */
 
-enum { SF_GEO_NAME_SIZE = 256, SF_GEO_NAMES = 128 };
+enum { SF_GEO_LABEL_SIZE = 256, SF_GEO_NAMES = 128 };
 
 typedef struct sf_geo_name {
     char variable[SF_CASE_NAME_SIZE]; /* "thickness" */
-    char name[SF_GEO_NAME_SIZE];      /* "Pad/2 Thickness [mm]" */
+    char name[SF_GEO_LABEL_SIZE];      /* "Pad/2 Thickness [mm]" */
 } sf_geo_name;
 
 typedef struct sf_geo_names {
@@ -97,4 +96,3 @@ void sf_fields_lock_unknown(sf_fields *fields);
 
 /* Marks the fields that the sentence of an error names (NULL: none), in the tree too. */
 void sf_fields_mark(sf_fields *fields, const char *sentence);
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The window shows a drop: its bodies, the checks of softfall-pre, the figures, the frames. */
-#ifndef SF_GUI_PICTURES_H
-#define SF_GUI_PICTURES_H
+#pragma once
 
 #include "gui/activity.h"
 #include "gui/fields.h"
@@ -86,5 +85,3 @@ void sf_pictures_show_model(sf_pictures *pictures, const char *path, double leng
 void sf_pictures_show_results(sf_pictures *pictures, const char *path, double length_unit, bool whole);
 /* Shows the frame that the user has chosen in the tree. */
 void sf_pictures_take_frame(sf_pictures *pictures);
-
-#endif

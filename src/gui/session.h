@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One case in the window: its fields, its geometry, its run, and what is shown of them. */
-#ifndef SF_GUI_SESSION_H
-#define SF_GUI_SESSION_H
+#pragma once
 
 #include "study/run_folder.h"
 #include "gui/fields.h"
@@ -42,5 +41,3 @@ void sf_session_end(sf_session *session);
 void sf_session_act(sf_session *session, const char *action);
 /* Looks after the program that runs, its results and the files that were read. */
 void sf_session_refresh(sf_session *session);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_IO_FOLDER_H
-#define SF_IO_FOLDER_H
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -67,4 +66,3 @@ typedef struct sf_stored {
 bool sf_store_find(const char *folder, const char *kind, uint64_t key, sf_stored *out);
 /* Keeps the parts, one after another. */
 void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count, const sf_store_part *part);
-#endif

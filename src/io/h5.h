@@ -2,8 +2,7 @@
 /* The only code that calls HDF5. Every dataset carries the attributes `units` (UDUNITS-2 spelling, "1" if
  * dimensionless) and `description`. Numbers are stored in the native types named by sf_h5_type. All functions
  * record failures in `err` and return its status; a failing read returns no buffer. */
-#ifndef SF_IO_H5_H
-#define SF_IO_H5_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -128,4 +127,3 @@ sf_status sf_members_write(sf_h5 *file, const char *group, const sf_member *memb
 /* Reads them back, bit by bit. */
 sf_status sf_members_read(const sf_h5 *file, const char *group, const sf_member *member, size_t count,
                           void *base, sf_error *err);
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_IO_PLAIN_FILE_H
-#define SF_IO_PLAIN_FILE_H
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -80,4 +79,3 @@ const char *sf_path_name(const char *path);
 /* Returns the name of the file `to` relative to the folder of `from`; both from the same folder, without
  * "." and "..". From malloc, NULL on failure. */
 char *sf_path_between(const char *from, const char *to, sf_error *err);
-#endif

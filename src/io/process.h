@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_IO_PROCESS_H
-#define SF_IO_PROCESS_H
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -90,5 +89,3 @@ void sf_child_end(sf_child *child, double patience);
 
 /* Seconds on a clock that only goes forward. */
 double sf_process_now(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The provenance of a file: the texts under /provenance (docs/formats.md). */
-#ifndef SF_IO_PROVENANCE_H
-#define SF_IO_PROVENANCE_H
+#pragma once
 
 #include "base/error.h"
 #include "io/h5.h"
@@ -42,5 +41,3 @@ sf_status sf_provenance_copy(const sf_h5 *from, sf_h5 *to, sf_error *err);
 /* The words of a command joined by blanks, quoted where a shell would need it; from malloc, owned by the
  * caller. */
 char *sf_command_line(int argc, char *const *argv);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * The other name, "path.partial-<process>-<8 digits>", is always a new file: what has that name is neither
  * followed nor overwritten. */
-#ifndef SF_IO_REPLACE_H
-#define SF_IO_REPLACE_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -85,5 +84,3 @@ sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err)
 sf_status sf_seal_check(const char *path, sf_error *err);
 /* The same for a file that may have come from another tool (h5repack), without a seal: then SF_OK. */
 sf_status sf_seal_check_any(const char *path, sf_error *err);
-
-#endif

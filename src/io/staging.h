@@ -3,8 +3,7 @@
  * when all of them are complete: a run that fails leaves the files of an earlier run as they were
  * (softfall-sweep removes an old report itself when its table turns to other inputs). The hidden
  * directory bears the process's number; that of a run that was killed is removed by the next one. */
-#ifndef SF_IO_STAGING_H
-#define SF_IO_STAGING_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -74,5 +73,3 @@ sf_status sf_tree_commit(sf_tree *tree, sf_error *err);
 
 /* Removes what was not committed; releases. Always safe. */
 void sf_tree_end(sf_tree *tree);
-
-#endif

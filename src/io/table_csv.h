@@ -14,8 +14,7 @@
  * - decimal point or, unless the comma separates, decimal comma; the same throughout.
  *
  * What could be read in two ways is refused. Each sentence names file, line and cell. */
-#ifndef SF_IO_TABLE_CSV_H
-#define SF_IO_TABLE_CSV_H
+#pragma once
 
 #include "io/table_heading.h"
 
@@ -40,5 +39,3 @@ sf_status sf_table_read(const char *path, const sf_table_layout *layout, sf_tabl
 sf_status sf_table_read_any(const char *path, const sf_table_layout *layouts, int count, int *which,
                             sf_table *table, sf_error *err);
 void sf_table_free(sf_table *table);
-
-#endif

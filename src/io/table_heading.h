@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_IO_TABLE_HEADING_H
-#define SF_IO_TABLE_HEADING_H
+#pragma once
 
 #include "base/error.h"
 #include "base/units.h"
@@ -106,5 +105,3 @@ sf_status sf_table_heading_read(const sf_table_layout *layout, const sf_table_ce
  * mark becomes UTF-8, a channel in ISO-MME a table of two columns whose lines are those of the file. `what`:
  * the file in messages. */
 sf_status sf_table_text_read(const char *path, const char *what, char **text, sf_error *err);
-
-#endif

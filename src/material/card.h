@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_MATERIAL_CARD_H
-#define SF_MATERIAL_CARD_H
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -171,4 +170,3 @@ uint64_t sf_material_hash(uint64_t hash, const sf_material *material);
 
 /* True if the value at `parameter` has an effect. */
 bool sf_parameter_acts(const sf_parameter *parameter, const void *card);
-#endif

@@ -19,8 +19,7 @@
  * begins SF_STOP_ROOM before 1 (not before eps_e), and a square of the strain beyond its start is added that
  * takes the rest.
  */
-#ifndef SF_CORE_CURVE_H
-#define SF_CORE_CURVE_H
+#pragma once
 
 #include "base/error.h"
 #include "material/foam_card.h"
@@ -93,5 +92,3 @@ void sf_curve_evaluate(const sf_curve *curve, double strain, double *stress, dou
 /* The same at SF_LANES strains; one below 0 counts as 0, NaN too. */
 void sf_curve_evaluate_lanes(const sf_curve *curve, const double strain[SF_LANES], double stress[SF_LANES],
                              double slope[SF_LANES], double energy[SF_LANES]);
-
-#endif

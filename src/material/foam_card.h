@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_MATERIAL_FOAM_CARD_H
-#define SF_MATERIAL_FOAM_CARD_H
+#pragma once
 #include "material/card.h"
 #include "material/memory.h"
 
@@ -136,4 +135,3 @@ sf_status sf_foam_check_shared_keys(const sf_foam_shared *card, const sf_given *
      "largest compressive strain about which the material's data say something; 0 = where the table or its use ends; " \
      "beyond it softfall-post marks a run", .high = 0.999, .acts = sf_foam_has_informed}
 /* clang-format on */
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_MATERIAL_FOAM_POINT_H
-#define SF_MATERIAL_FOAM_POINT_H
+#pragma once
 #include <math.h>
 
 #include "base/lanes.h"
@@ -134,4 +133,3 @@ void sf_foam_tangent_elastic(const sf_foam_principal *law, double maxwell, doubl
 /* Kelvin viscosity `kelvin` and DAMP's `damp` (Pa s): the same bound on dP by a rate of F, into eta, Pa s. */
 void sf_foam_tangent_viscous(double stretch[3][SF_LANES], double kelvin, const double damp[SF_LANES],
                              double eta[3][SF_LANES]);
-#endif

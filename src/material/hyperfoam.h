@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_MATERIAL_HYPERFOAM_H
-#define SF_MATERIAL_HYPERFOAM_H
+#pragma once
 #include "base/error.h"
 #include "material/foam_point.h"
 
@@ -79,4 +78,3 @@ bool sf_hyperfoam_fails(const sf_hyperfoam *foam, double limit, sf_hyperfoam_fai
 
 /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
 void sf_hyperfoam_update(const sf_hyperfoam *foam, double dt, sf_law_batch *batch);
-#endif

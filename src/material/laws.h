@@ -6,8 +6,7 @@
  * Case, model.h5, checks, written material files, docs (`softfall-pre --keys`), state, checkpoints and solver
  * follow the entry; tests/test_law.c walks the table: uniaxial stress against the batch, stress against the
  * energy. These files make the library softfall_material, which needs src/core alone. */
-#ifndef SF_SOLVER_MATERIAL_LAW_H
-#define SF_SOLVER_MATERIAL_LAW_H
+#pragma once
 
 #include "base/lanes.h"
 #include "material/card.h"
@@ -77,5 +76,3 @@ int sf_material_history_rows(const sf_material *material);
 /* Rows of history between the state's [rows][SF_LANES] and the batch; rows that are not kept are 0. */
 void sf_material_load_history(const sf_material_law *law, const double *from, sf_law_batch *batch);
 void sf_material_store_history(const sf_material_law *law, const sf_law_batch *batch, double *to);
-
-#endif

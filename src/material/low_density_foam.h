@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_MATERIAL_LOW_DENSITY_FOAM_H
-#define SF_MATERIAL_LOW_DENSITY_FOAM_H
+#pragma once
 #include "base/error.h"
 #include "material/curve.h"
 #include "material/foam_point.h"
@@ -42,4 +41,3 @@ double sf_foam_uniaxial(const sf_foam *foam, double dt, double strain, sf_uniaxi
 /* Rate overstress sigma(eps, rate) - sigma(eps, slowest curve) in Pa, interpolated over the logarithm of the
  * rate (s-1), with its derivatives by strain and rate. Needs two curves or more. */
 double sf_foam_overstress(const sf_foam *foam, double strain, double rate, double *slope, double *rate_slope);
-#endif

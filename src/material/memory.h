@@ -4,8 +4,7 @@
  * Z = integral of (1 - f) over W the factor is f + p (1 - f), dp = dZ / L within 0 <= p <= q. Where p stands
  * at q, what is loaded further is lost; hence no path creates energy, whatever q does. q falls with the
  * unloadings that a point has passed, and grows with time at rest. */
-#ifndef SF_MATERIAL_MEMORY_H
-#define SF_MATERIAL_MEMORY_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -51,5 +50,3 @@ void sf_memory_lanes(const sf_memory *memory, const sf_unloading *unloading, con
 /* The factor at one point, which it advances. */
 double sf_memory_advance(const sf_memory *memory, const sf_unloading *unloading, double energy, double *peak,
                          sf_memory_point *point);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A material point of a law of the solver (material/laws.h) in uniaxial compression: what a
  * written card gives in the test that it was fitted to. */
-#ifndef SF_FIT_MATERIAL_POINT_H
-#define SF_FIT_MATERIAL_POINT_H
+#pragma once
 
 #include "material/laws.h"
 
@@ -10,5 +9,3 @@
  * most `step` strain; `stress` [count] receives the compressive nominal stress (Pa). */
 void sf_material_point_drive(const sf_material_law *law, double rate, double step, int count,
                              const double *strain, double *stress);
-
-#endif

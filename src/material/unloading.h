@@ -3,8 +3,7 @@
  * stress, w = W / (its largest so far), and the energies that follow from its integral over w. With ALPHA
  * other than 1 the integral is a pair of power series, in w^SHAPE and in 1 - w^SHAPE, each for values up to
  * 1/2. */
-#ifndef SF_SOLVER_MATERIAL_UNLOADING_H
-#define SF_SOLVER_MATERIAL_UNLOADING_H
+#pragma once
 
 #include "base/lanes.h"
 #include <math.h>
@@ -39,5 +38,3 @@ double sf_unloading_integral(const sf_unloading *u, double ratio);
 void sf_unloading_lanes(const sf_unloading *u, const double energy[SF_LANES], double peak[SF_LANES],
                         double factor[SF_LANES], double softening[SF_LANES], double stored[SF_LANES],
                         double lost[SF_LANES]);
-
-#endif

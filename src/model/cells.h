@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The cells of the background mesh, as tetrahedra and by their faces; positions in a cell's vertex list. */
-#ifndef SF_MODEL_CELLS_H
-#define SF_MODEL_CELLS_H
+#pragma once
 
 #include "base/error.h"
 #include <stdint.h>
@@ -35,5 +34,3 @@ typedef struct sf_skin_faces {
 /* Release with sf_skin_faces_free, also after a failure. */
 sf_status sf_skin_faces_find(const sf_cells *cells, sf_skin_faces *skin, sf_error *err);
 void sf_skin_faces_free(sf_skin_faces *skin);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_MODEL_COLUMNS_H
-#define SF_MODEL_COLUMNS_H
+#pragma once
 #include <stdint.h>
 
 /* The fields of a frame: one value, vector or tensor per node. This list is the only one of them: the bits of
@@ -176,4 +175,3 @@ typedef struct sf_internal_energy {
 
 /* Needs a history with at least one row. */
 sf_internal_energy sf_history_internal_energy(const sf_history *history);
-#endif

@@ -3,8 +3,7 @@
  * its angular velocity are those of first contact, whatever the gap. The flight is followed backwards from
  * there to t = 0, under gravity and without torque. Without a gap, and with a prescribed motion, nothing is
  * to be done. The model's surface stands in the pose of arrival, `gap` away along the direction. */
-#ifndef SF_MODEL_FLIGHT_H
-#define SF_MODEL_FLIGHT_H
+#pragma once
 
 #include "model/model.h"
 
@@ -30,5 +29,3 @@ void sf_flight_orientation(const sf_missile_card *card, double before, double qu
  * (kg) from t = 0 to its arrival. */
 double sf_flight_energy(const sf_missile_card *card, double mass);
 double sf_flight_momentum(const sf_missile_card *card, double mass);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_MODEL_GOOD_RUN_H
-#define SF_MODEL_GOOD_RUN_H
+#pragma once
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -137,4 +136,3 @@ typedef struct sf_response_error {
     double shared[SF_FIT_SAMPLES];
     double own_sd[SF_FIT_SAMPLES];
 } sf_response_error;
-#endif

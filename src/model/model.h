@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_MODEL_MODEL_H
-#define SF_MODEL_MODEL_H
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -332,4 +331,3 @@ typedef struct sf_motion_range {
 
 /* For free missiles too. */
 sf_motion_range sf_motion_measure(const sf_model *model);
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* model.h5: the model's field table and its provenance (docs/formats.md). */
-#ifndef SF_IO_MODEL_IO_H
-#define SF_IO_MODEL_IO_H
+#pragma once
 
 #include "model/model.h"
 #include "io/h5.h"
@@ -15,5 +14,3 @@ sf_status sf_model_write(const char *path, const sf_model *model, const sf_prove
 /* Reads and checks (sf_model_check) a model. On success the caller owns `*model` (sf_model_free) and, if
  * `file` is not NULL, the open file (sf_h5_close), for its provenance. On failure both are empty. */
 sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_error *err);
-
-#endif

@@ -6,8 +6,7 @@
  * domain (Pa) and c_L = V_L * largest eigenvalue of sum_J B_J B_J^T / (theta_JL m_J). The bound costs one
  * pass over the domains a step, holds for any field of tangents, and with damping eta_L (Pa s) gives the time
  * step from c_L (a_L dt^2 + 2 eta_L dt) <= 4. */
-#ifndef SF_CORE_STABILITY_H
-#define SF_CORE_STABILITY_H
+#pragma once
 
 #include "base/error.h"
 #include "model/model.h"
@@ -38,5 +37,3 @@ sf_status sf_stability_membrane(const sf_model *model, double *load, sf_error *e
 static inline double sf_stability_with_membrane(double load, double step) {
     return load > 0 ? 2 * step / (1 + sqrt(1 + load * step * step)) : step;
 }
-
-#endif

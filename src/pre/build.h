@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Builds the model from a case, a mesh and a missile surface: cloud, supports, smoothing domains, masses,
  * constraints, contact points, missile. */
-#ifndef SF_PRE_BUILD_H
-#define SF_PRE_BUILD_H
+#pragma once
 
 #include "base/error.h"
 #include "model/model.h"
@@ -34,5 +33,3 @@ typedef struct sf_build_report {
  * empty. Warnings go to `sink`. */
 sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_model *model,
                          sf_build_report *report, const sf_sink *sink, sf_error *err);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_DROP_CHECK_H
-#define SF_PRE_DROP_CHECK_H
+#pragma once
 #include "base/error.h"
 #include "case/case.h"
 #include "model/model.h"
@@ -41,4 +40,3 @@ sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m
  * known to be weak (sf_law.caution), and of a coarse mesh. */
 void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                   const sf_sink *sink);
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The thickness of the pad where the missile hits it: the length of foam on the missile's path. */
-#ifndef SF_PRE_FOAM_PATH_H
-#define SF_PRE_FOAM_PATH_H
+#pragma once
 
 #include "base/error.h"
 #include "model/model.h"
@@ -14,5 +13,3 @@
  * to the anvil, which the foam must cross before it is pressed altogether. `between` fails if a part of the
  * missile passes between the contact nodes. Needs cells, constraints and the placed missile. */
 sf_status sf_foam_path_measure(sf_model *model, sf_error *between, sf_error *err);
-
-#endif

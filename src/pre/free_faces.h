@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The surface of the pad, and the part of it that may touch the pad itself or the anvil. */
-#ifndef SF_PRE_FREE_FACES_H
-#define SF_PRE_FREE_FACES_H
+#pragma once
 
 #include "base/error.h"
 #include "case/case.h"
@@ -18,5 +17,3 @@ sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **nod
  * touches that only. `unheld` (m): the middle of such a face of a pad without skin; NaN: there is none. Needs
  * cells, constraints, ties, thickness and the anvil's depth. */
 sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_error *err);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_HOLD_H
-#define SF_PRE_HOLD_H
+#pragma once
 #include "base/error.h"
 #include "model/model.h"
 
@@ -30,4 +29,3 @@ sf_status sf_hold_check(const sf_hold *hold, const sf_model *model, sf_error *er
 /* Tells `sink` of an underside that is mostly free, and of a missile that pushes the pad along a free motion.
  */
 void sf_hold_warn(const sf_hold *hold, const sf_model *model, const sf_sink *sink);
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The impact point: where on the pad's top the missile's lowest point arrives. */
-#ifndef SF_PRE_IMPACT_H
-#define SF_PRE_IMPACT_H
+#pragma once
 
 #include "case/case.h"
 #include "base/error.h"
@@ -25,5 +24,3 @@ sf_status sf_impact_place(const sf_case *c, const sf_model *model, sf_surface *s
 
 /* The impact point (m) of a complete model, by the same rule; on its symmetry planes. */
 void sf_impact_point(const sf_model *model, double point[3]);
-
-#endif

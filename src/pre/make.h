@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Makes the model of a case: the geometry through gmsh, then build.h. */
-#ifndef SF_PRE_MAKE_H
-#define SF_PRE_MAKE_H
+#pragma once
 
 #include "pre/build.h"
 
@@ -12,5 +11,3 @@ enum { SF_LIBRARIES_SIZE = 96 };
  * held, or if the pad is not held (hold.h). On failure `*model` is empty. */
 sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
                         char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Covers without cells: the membrane on faces of the pad (theory, section "Membranes"). */
-#ifndef SF_PRE_MEMBRANE_H
-#define SF_PRE_MEMBRANE_H
+#pragma once
 
 #include "base/error.h"
 #include "case/case.h"
@@ -15,4 +14,3 @@ sf_status sf_membrane_take(const sf_case *c, const sf_mesh *mesh, const sf_dual 
                            const sf_layers *layers, sf_model *model, sf_error *err);
 /* Adds its mass to those of the nodes. */
 void sf_membrane_weigh(sf_model *model);
-#endif

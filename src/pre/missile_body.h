@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_MISSILE_BODY_H
-#define SF_PRE_MISSILE_BODY_H
+#pragma once
 #include <stdint.h>
 
 #include "base/error.h"
@@ -32,4 +31,3 @@ sf_status sf_solid_measure(int64_t node_count, const double *position, int64_t t
  * yet, the centre lies by it. SF_ERR_INPUT: there is no solid, or no body can have this inertia. */
 sf_status sf_missile_take_body(const sf_case *c, const sf_surface *surface, sf_missile_card *card,
                                sf_error *err);
-#endif

@@ -2,8 +2,7 @@
 /* The report of softfall-pre: size and checks of the model, before a run. It is printed as a table, and
  * stands in model.h5 (/provenance/report) as a line for each entry: key, name and value, separated by tabs.
  */
-#ifndef SF_PRE_REPORT_H
-#define SF_PRE_REPORT_H
+#pragma once
 
 #include "pre/build.h"
 #include <stdio.h>
@@ -31,5 +30,3 @@ bool sf_model_report_find(const char *text, const char *key, char *name, size_t 
 
 /* Expected time of the run on two cores, s, to a factor of 2. */
 double sf_report_seconds(const sf_model *model, const sf_build_report *report);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The support: rigid fixed bodies of any shape that the pad may touch (theory, section "Contact of the pad
  * with itself"). */
-#ifndef SF_PRE_RIGID_SUPPORT_H
-#define SF_PRE_RIGID_SUPPORT_H
+#pragma once
 
 #include "base/error.h"
 #include "case/case.h"
@@ -20,4 +19,3 @@ sf_status sf_support_find_travel(sf_model *model, sf_error *err);
 
 /* Distance (m) from x along the unit vector `direction` to the support; infinity: it is not there. */
 double sf_support_distance(const sf_model *model, const double x[3], const double direction[3]);
-#endif

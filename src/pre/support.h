@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_SUPPORT_H
-#define SF_PRE_SUPPORT_H
+#pragma once
 #include "case/case.h"
 #include "model/model.h"
 #include "pre/hold.h"
@@ -31,4 +30,3 @@ sf_status sf_base_rest(const sf_case *c, const sf_base_marks *marks, sf_model *m
 /* The anvil below the pad: the plane of its underside if most of that is held or rests; else there is none.
  */
 void sf_base_place_anvil(const sf_case *c, const sf_hold *hold, sf_model *model);
-#endif

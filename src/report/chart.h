@@ -5,8 +5,7 @@
  *
  * The functions below add to a chart and never fail at once: a failure is kept in the sf_error of
  * sf_chart_new, and sf_chart_write returns it. Texts are copied. */
-#ifndef SF_REPORT_CHART_H
-#define SF_REPORT_CHART_H
+#pragma once
 
 #include "base/error.h"
 #include "io/staging.h"
@@ -145,5 +144,3 @@ char *sf_chart_page(const sf_chart *chart, const sf_staging *output, const char 
 /* The SVG element of a file of gnuplot's terminal: no prologue and no titles, every id with NAME before it;
  * NULL if the text holds none, or out of memory. */
 char *sf_gnuplot_element(const char *text, const char *name);
-
-#endif

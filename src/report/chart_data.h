@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of a chart. Internal to src/report: chart_data.c collects and draws them, chart_script.c
  * writes them as commands of gnuplot. */
-#ifndef SF_REPORT_CHART_DATA_H
-#define SF_REPORT_CHART_DATA_H
+#pragma once
 
 #include "report/chart.h"
 
@@ -44,5 +43,3 @@ struct sf_chart {
 
 /* Writes NAME.gp into the staging directory (chart_script.c). */
 sf_status sf_chart_script(const sf_chart *chart, const sf_staging *output, sf_error *err);
-
-#endif

@@ -2,8 +2,7 @@
 /* Reports: one self-contained page on A4, without a script and without anything to load. All programs use
  * this template. The page is well-formed XML; texts are escaped, bytes that are not UTF-8 become U+FFFD.
  * Failed writes are reported by sf_staging_close. */
-#ifndef SF_IO_HTML_H
-#define SF_IO_HTML_H
+#pragma once
 
 #include "base/error.h"
 #include "io/staging.h"
@@ -86,5 +85,3 @@ void sf_html_table_end(sf_html_table *table);
 /* Adds a row to a table without headings. */
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-
-#endif

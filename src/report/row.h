@@ -4,8 +4,7 @@
  * points to a member of it, or has a function that computes the value. A value that a run does not define (a
  * number that is not finite, a negative count, an empty text) becomes null in JSON and a dash for
  * readers. */
-#ifndef SF_REPORT_ROW_H
-#define SF_REPORT_ROW_H
+#pragma once
 
 #include "report/html.h"
 #include <stdbool.h>
@@ -114,5 +113,3 @@ void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records r
 void sf_row_text(FILE *out, const sf_row *row, const void *record);
 /* Text: a heading and a line for each record, columns as wide as their widest cell. */
 void sf_rows_text_table(FILE *out, sf_rows rows, sf_records records);
-
-#endif

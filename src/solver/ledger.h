@@ -7,8 +7,7 @@
  * a missile that turns (sf_missile_momenta); angular momentum is about the origin, its error refers to the
  * same momentum times the pad's thickness. Both hold to rounding, whatever the step: theory, section
  * "Ledger". */
-#ifndef SF_SOLVER_LEDGER_H
-#define SF_SOLVER_LEDGER_H
+#pragma once
 
 #include "solver/operators.h"
 #include "solver/state.h"
@@ -30,5 +29,3 @@ void sf_ledger_close(const sf_model *model, sf_state *state, const sf_wrench *ou
 
 /* Internal energy: stored + hysteresis + viscous + stabilisation, J. */
 double sf_ledger_internal(const sf_ledger *ledger);
-
-#endif

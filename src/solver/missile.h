@@ -12,8 +12,7 @@
  * Forces, masses, energies and momenta are those of the modelled part, 1/2 or 1/4 of the missile under
  * symmetry; sf_model_whole is the factor to the whole. Points and vectors are in the geometry's frame. A
  * scalar "along" is the component in the direction of the missile card. */
-#ifndef SF_SOLVER_MISSILE_H
-#define SF_SOLVER_MISSILE_H
+#pragma once
 
 #include "model/model.h"
 #include "io/h5.h"
@@ -174,5 +173,3 @@ double sf_missile_depth(const sf_model *model, const sf_missile *missile);
 /* True if the missile is not driven and on its way away from the pad. If it turns: its centre rises, and
  * either all of its points do or it is clear of the pad however it turns. */
 bool sf_missile_is_leaving(const sf_model *model, const sf_missile *missile);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* sf_operators: data derived from the model before the first step, constant afterwards. */
-#ifndef SF_SOLVER_OPERATORS_H
-#define SF_SOLVER_OPERATORS_H
+#pragma once
 
 #include "base/error.h"
 #include "model/model.h"
@@ -36,5 +35,3 @@ sf_status sf_operators_build(const sf_model *model, sf_operators *operators, sf_
  * edges), so that arrays and operators are never in memory together. */
 sf_status sf_operators_take(sf_model *model, sf_operators *operators, sf_error *err);
 void sf_operators_free(sf_operators *operators);
-
-#endif

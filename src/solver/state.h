@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_STATE_H
-#define SF_SOLVER_STATE_H
+#pragma once
 #include <stddef.h>
 #include <time.h>
 
@@ -227,4 +226,3 @@ sf_status sf_state_create(const sf_model *model, sf_state *state, sf_error *err)
 /* Can the state be shown: are displacements, velocities, forces and the squares of stresses finite? */
 bool sf_state_is_finite(const sf_model *model, const sf_state *state);
 void sf_state_free(sf_state *state);
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One step of the explicit total-Lagrangian method. */
-#ifndef SF_SOLVER_STEP_H
-#define SF_SOLVER_STEP_H
+#pragma once
 
 #include "solver/operators.h"
 #include "solver/state.h"
@@ -14,5 +13,3 @@ sf_status sf_step_evaluate(const sf_model *model, const sf_operators *operators,
 
 /* Moves coefficients and missile to the next time with the velocities that sf_step_evaluate has set. */
 void sf_step_advance(const sf_model *model, sf_state *state);
-
-#endif

@@ -3,8 +3,7 @@
  * highest frequency to the bound. A warm-started Lanczos iteration measures that ratio when the bound has
  * moved by 10 %, and at least every 40 steps (theory, section "Time step"). Contact and constraints are
  * kinematic and do not limit the step. */
-#ifndef SF_SOLVER_TIME_STEP_H
-#define SF_SOLVER_TIME_STEP_H
+#pragma once
 
 #include "solver/operators.h"
 #include "solver/state.h"
@@ -23,5 +22,3 @@ void sf_time_step_choose(const sf_model *model, const sf_operators *operators, s
  * `settled` of the value; 0: never. */
 double sf_time_step_power(const sf_model *model, const sf_operators *operators, sf_state *state, int products,
                           double settled);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A drop of a campaign, and what runs a batch of them. */
-#ifndef SF_STUDY_BATCH_H
-#define SF_STUDY_BATCH_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -100,5 +99,3 @@ sf_status sf_manifest_write_outcome(const char *path, int count, const sf_manife
 /* Puts the failures in the file into failure[k] of the drop with that key; returns how many there are, -1:
  * there is no such file. */
 int sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure);
-
-#endif

@@ -2,8 +2,7 @@
 /* A case with everything that it needs in a folder of its own, which can be moved, packed and sent:
  * case.cfg, its geometries with what they include and merge, its materials with their curves, and a README.
  * Its drop has the same bits as that of the case itself. */
-#ifndef SF_CAMPAIGN_CASE_FOLDER_H
-#define SF_CAMPAIGN_CASE_FOLDER_H
+#pragma once
 
 #include "base/error.h"
 
@@ -23,5 +22,3 @@ typedef struct sf_case_folder_request {
  * gives another mesh in the new folder, or reads files there that are not in it. SF_ERR_IO: the folder cannot
  * be written. SF_INTERRUPTED: a signal came (sf_process_stopped). */
 sf_status sf_case_folder_make(const sf_case_folder_request *request, const sf_sink *sink, sf_error *err);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_STUDY_COLUMN_H
-#define SF_STUDY_COLUMN_H
+#pragma once
 #include "material/laws.h"
 #include "post/figures/signal.h"
 #include "post/results/results.h"
@@ -57,4 +56,3 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
  * below a fifth of the peak may have any shape. Any other curve goes to sf_hic_evaluate; so do pulses
  * whose best level is below a quarter of the peak. The window has no limit. */
 sf_status sf_pulse_hic(const sf_series *acceleration_g, sf_hic *hic, sf_error *err);
-#endif

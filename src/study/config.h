@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The input file of a campaign: libconfig syntax, dimensional values as texts with units. Every sentence of
  * an error begins with "file:line: group.key". File names are relative to the file that holds them. */
-#ifndef SF_CAMPAIGN_CONFIG_H
-#define SF_CAMPAIGN_CONFIG_H
+#pragma once
 
 #include "base/error.h"
 #include "base/units.h"
@@ -69,5 +68,3 @@ sf_status sf_config_overrides(const sf_config *config, const char *name, int mos
 /* Records SF_ERR_INPUT: "file:line: sentence". */
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
                            const char *format, ...) __attribute__((format(printf, 4, 5)));
-
-#endif

@@ -3,8 +3,7 @@
  * and comments, and its compression curves as CSV files beside it. A case includes the file, or softfall-pre
  * takes it with
  * --set material=@FILE. */
-#ifndef SF_CAMPAIGN_MATERIAL_FILE_H
-#define SF_CAMPAIGN_MATERIAL_FILE_H
+#pragma once
 
 #include "model/good_run.h"
 #include "material/card.h"
@@ -30,5 +29,3 @@ sf_status sf_material_write_checked(const char *folder, const char *name, const 
 void sf_draw_path(const char *folder, int number, char *path, size_t size);
 /* Returns how many draws there are from 1 on without a gap, at most `most`. */
 int sf_draws_count(const char *folder, int most);
-
-#endif

@@ -8,8 +8,7 @@
  * where d_i is the difference of two numbers, or 0 for equal and 1 for different words. A nugget holds the
  * scatter of meshes. Lengths and nugget maximise the restricted likelihood under a weak prior. The same bits
  * for any number of threads. */
-#ifndef SF_STUDY_PREDICTOR_H
-#define SF_STUDY_PREDICTOR_H
+#pragma once
 
 #include "base/error.h"
 #include <gsl/gsl_matrix.h>
@@ -51,5 +50,3 @@ void sf_predictor_at(const sf_predictor *predictor, const double *x, double *roo
  * while it exceeds one. `chosen` [most] receives their places; returns how many, -1 without memory. */
 int sf_predictor_choose(const sf_predictor *predictor, int candidates, const double *x, const double *wish,
                         int most, int *chosen);
-
-#endif

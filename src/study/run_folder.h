@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key of a drop, its folder, and the figures of a finished drop. */
-#ifndef SF_STUDY_RUN_FOLDER_H
-#define SF_STUDY_RUN_FOLDER_H
+#pragma once
 
 #include "base/error.h"
 #include "case/case.h"
@@ -110,5 +109,3 @@ sf_status sf_run_folder_report(const sf_run_folder *folder, sf_error *err);
 
 /* Records SF_INTERRUPTED. */
 sf_status sf_run_folder_interrupted(sf_error *err);
-
-#endif

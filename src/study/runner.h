@@ -4,8 +4,7 @@
  * drop from its checkpoint.
  *
  * The programs are those in the folder of the running program, or in SF_BIN_DIR if that is set. */
-#ifndef SF_CAMPAIGN_RUNNER_H
-#define SF_CAMPAIGN_RUNNER_H
+#pragma once
 
 #include "study/batch.h"
 #include "base/error.h"
@@ -90,5 +89,3 @@ sf_status sf_runner_find_status(const sf_runner *runner, const sf_runner_drop *d
                                 sf_error *failure, sf_error *err);
 /* open, running, done, failed */
 const char *sf_runner_state_name(sf_runner_state state);
-
-#endif

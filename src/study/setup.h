@@ -2,8 +2,7 @@
 /* The set-up that all programs of studies share: `PROGRAM INPUT -o DIR` with its options, the output
  * directory that is staged and locked, the runner of drops with its engine, warnings and the closing lines.
  */
-#ifndef SF_STUDY_SETUP_H
-#define SF_STUDY_SETUP_H
+#pragma once
 
 #include "base/program.h"
 #include "io/staging.h"
@@ -53,5 +52,3 @@ void sf_study_run_apart(sf_study *study);
 /* Prints what was simulated and which files were written ("report.html, cfh.json"); `warning`: "" or a
  * sentence for the sink. */
 void sf_study_close(const sf_study *study, const char *files, const char *warning);
-
-#endif

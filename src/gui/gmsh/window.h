@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_GUI_GMSH_WINDOW_H
-#define SF_GUI_GMSH_WINDOW_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -122,5 +121,3 @@ void sf_view_show_frame(int frame);
 /* A graph of y over x. */
 void sf_view_plot(const char *title, const char *x_label, int64_t count, const double *x, const double *y);
 void sf_view_remove(sf_picture which);
-
-#endif

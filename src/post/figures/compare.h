@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_POST_FIGURES_COMPARE_H
-#define SF_POST_FIGURES_COMPARE_H
+#pragma once
 
 #include "post/figures/signal.h"
 #include "post/figures/verdict.h"
@@ -199,5 +198,3 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
 sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *comparison,
                          sf_error *err);
 void sf_comparison_free(sf_comparison *comparison);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * To add a figure: a line in the list, and its computation in figures.c. The list declares its member of
  * sf_figures and drives summary.json and the table in docs/formats.md. */
-#ifndef SF_POST_FIGURES_H
-#define SF_POST_FIGURES_H
+#pragma once
 
 #include "post/figures/signal.h"
 #include "post/figures/strain_field.h"
@@ -187,5 +186,3 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
                                      sf_figures *figures, sf_error *err);
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *figures, sf_error *err);
 void sf_figures_free(sf_figures *figures);
-
-#endif

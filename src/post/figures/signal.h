@@ -4,8 +4,7 @@
  * sf_series is a piecewise-linear curve: `value[i]` at `time[i]` (s), times strictly ascending. The unit of
  * the values is the user's (here: multiples of g). Arrays come from sf_alloc and belong to the series;
  * sf_series_free releases them. A failing function leaves its output series zeroed. */
-#ifndef SF_POST_SIGNAL_H
-#define SF_POST_SIGNAL_H
+#pragma once
 
 #include "base/error.h"
 #include <stdint.h>
@@ -115,5 +114,3 @@ double sf_injury_gadd(const sf_series *acceleration_g);
 /* Largest level that the curve reaches or exceeds for `duration` (s): at a stretch, or summed over all
  * stretches. NaN if the whole curve is shorter. */
 double sf_injury_clip(const sf_series *acceleration_g, double duration, int contiguous);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures of the strain over the pad at the peak, from the fields of /peak. */
-#ifndef SF_POST_FIGURES_STRAIN_FIELD_H
-#define SF_POST_FIGURES_STRAIN_FIELD_H
+#pragma once
 
 #include "post/results/results.h"
 #include "report/row.h"
@@ -63,5 +62,3 @@ sf_layer_figures *sf_layer_figures_compute(const sf_results *results, const doub
 /* Notes by how much layers slide on each other at the peak, if that is more than 2 % of the thickness: their
  * ties hold along the undeformed normal, which is right for small slips. */
 sf_status sf_layers_note_slip(sf_results *results, sf_error *err);
-
-#endif

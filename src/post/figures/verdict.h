@@ -2,8 +2,7 @@
 /* May the figures of a run be used? Every check of model/good_run.h becomes a row, the worst row is the
  * verdict. Limits that the user puts on the figures (200 g, HIC 1000) pass or fail beside it: a pad may fail
  * them in a valid run. */
-#ifndef SF_POST_VERDICT_H
-#define SF_POST_VERDICT_H
+#pragma once
 
 #include "model/good_run.h"
 #include "post/figures/figures.h"
@@ -73,5 +72,3 @@ bool sf_check_is_flag(const sf_check *check);
 /* "valid", or the phrase and the findings of the rows that are not valid, the worst first; after three
  * findings only the number of the others: "and 2 more". */
 void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size);
-
-#endif

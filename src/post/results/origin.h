@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The texts of /provenance in results.h5 about its case, for a report. */
-#ifndef SF_POST_ORIGIN_H
-#define SF_POST_ORIGIN_H
+#pragma once
 
 #include "post/results/results.h"
 
@@ -35,5 +34,3 @@ bool sf_origin_find_report(const char *parameters, const char *name, sf_origin_k
  * memory. `layer`: the comments of its group in `materials`; NULL: of the one material. */
 char *sf_origin_title(const char *case_text);
 char *sf_origin_material(const char *case_text, const char *layer);
-
-#endif

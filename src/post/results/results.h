@@ -6,8 +6,7 @@
  * parts left out: history rows that are not complete or not finite, and frames without their scalars. In a
  * file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
  * errors. */
-#ifndef SF_POST_RESULTS_RESULTS_H
-#define SF_POST_RESULTS_RESULTS_H
+#pragma once
 
 #include "base/error.h"
 #include "base/mat3.h"
@@ -142,5 +141,3 @@ bool sf_results_ended_well(const sf_results *results);
 
 /* Adds a sentence to the notes; further ones are dropped when they are full. */
 void sf_results_note(sf_results *results, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-#endif

@@ -2,8 +2,7 @@
 /* view.html: the drop in a browser, one page without anything to load: share/softfall/view.html with the
  * facts and arrays of the drop in it as JSON. Numbers of the arrays have 16 bits between the least and the
  * largest value of a frame; the page states the error. */
-#ifndef SF_POST_BROWSER_H
-#define SF_POST_BROWSER_H
+#pragma once
 
 #include "post/view/report.h"
 #include "post/view/xdmf.h"
@@ -15,5 +14,3 @@ enum { SF_BROWSER_MOST_MB = 200 }; /* beyond that a browser may have no memory f
  * page, or is ""; with 0 MB, or without frames, there is none and no warning. */
 sf_status sf_browser_write(const sf_staging *output, const sf_report *report, const sf_xdmf *made,
                            double megabytes, char *warning, size_t size, sf_error *err);
-
-#endif

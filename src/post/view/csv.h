@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_POST_VIEW_CSV_H
-#define SF_POST_VIEW_CSV_H
+#pragma once
 #include "io/staging.h"
 #include "post/figures/compare.h"
 #include "post/figures/figures.h"
@@ -49,4 +48,3 @@ double sf_section_mean(const double *field, int components, int component, const
 /* Writes the section of /peak, or without it of the frame of the largest acceleration. `*written` is false
  * if that holds no von Mises stress: then there is no file. */
 sf_status sf_section_write(const sf_staging *output, const sf_results *results, bool *written, sf_error *err);
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_POST_VIEW_CUT_H
-#define SF_POST_VIEW_CUT_H
+#pragma once
 #include <stdbool.h>
 
 #include "model/cells.h"
@@ -94,4 +93,3 @@ typedef struct sf_corner {
 /* The part of a convex polygon of at most 6 corners where low <= value <= high, into `part`; returns its
  * corners, 0 if there is none. */
 int sf_picture_band(int count, const sf_corner *corner, double low, double high, sf_corner part[SF_CORNERS]);
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The ready state for ParaView, pad_paraview.py beside pad.xdmf: share/softfall/pad_paraview.py with the
  * facts of the drop in it; and the film and the picture that it makes. */
-#ifndef SF_POST_PARAVIEW_H
-#define SF_POST_PARAVIEW_H
+#pragma once
 
 #include "post/view/xdmf.h"
 
@@ -22,5 +21,3 @@ sf_status sf_paraview_check_film(const char *kind, const char **film, sf_error *
 
 /* The film and pad.png, the picture at the peak, in the staging directory, by the state there. */
 sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error *err);
-
-#endif

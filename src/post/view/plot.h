@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* acceleration.png: the curves, the HIC window and the limit; acceleration.gp, which draws the picture again,
  * or differently, stays beside it. Of a run with a prescribed motion compression.png: stress over strain. */
-#ifndef SF_POST_PLOT_H
-#define SF_POST_PLOT_H
+#pragma once
 
 #include "post/figures/compare.h"
 #include "post/figures/figures.h"
@@ -29,5 +28,3 @@ void sf_plot_time_range(const sf_figures *figures, const sf_comparison *comparis
 /* Returns the largest difference of two curves over the range, over the largest value of `a`: a curve with a
  * small one is not seen beside the other. */
 double sf_plot_difference(const sf_series *a, const sf_series *b, const double range[2]);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_POST_VIEW_REPORT_H
-#define SF_POST_VIEW_REPORT_H
+#pragma once
 #include "post/view/summary.h"
 #include "report/html.h"
 
@@ -30,4 +29,3 @@ typedef struct sf_report {
 
 /* After sf_plot_write, whose picture the page takes in. */
 sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_error *err);
-#endif

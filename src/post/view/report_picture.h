@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_POST_REPORT_PICTURE_H
-#define SF_POST_REPORT_PICTURE_H
+#pragma once
 
 #include "post/figures/figures.h"
 #include "io/staging.h"
@@ -18,5 +17,3 @@ typedef struct sf_report_pictures {
 sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *results,
                                   const sf_figures *figures, sf_report_pictures *pictures, sf_error *err);
 void sf_report_pictures_free(sf_report_pictures *pictures);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* summary.json, and the short table that softfall-post prints. Keys carry their units; a figure that the run
  * does not define is null. docs/formats.md lists the keys. */
-#ifndef SF_POST_SUMMARY_H
-#define SF_POST_SUMMARY_H
+#pragma once
 
 #include "post/figures/compare.h"
 #include "post/figures/figures.h"
@@ -24,5 +23,3 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *summary, 
 /* The verdict, its rows that are not valid, and the table on `out`; the last line says that the figures are
  * indicative. */
 void sf_summary_print(FILE *out, const sf_summary *summary);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_POST_VIEW_XDMF_H
-#define SF_POST_VIEW_XDMF_H
+#pragma once
 #include "io/staging.h"
 #include "post/results/results.h"
 
@@ -54,4 +53,3 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_
 /* Removes data of earlier runs from the directory, after pad.xdmf is in its place: files pad-HASH.h5 with
  * that hash that no .xdmf file there names, but not `data`. */
 void sf_xdmf_remove_old(const char *directory, const char *data);
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_CLOUD_CLOUD_H
-#define SF_PRE_CLOUD_CLOUD_H
+#pragma once
 #include <stdint.h>
 
 #include "base/error.h"
@@ -24,4 +23,3 @@ void sf_cloud_spacing(const sf_mesh *mesh, const sf_dual *dual, double *spacing)
 
 /* FNV-1a (64 bit) of positions, cell types, vertices and layers, as 16 hex digits and NUL. */
 void sf_cloud_hash(const sf_mesh *mesh, char text[17]);
-#endif

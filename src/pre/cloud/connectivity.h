@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_CLOUD_CONNECTIVITY_H
-#define SF_PRE_CLOUD_CONNECTIVITY_H
+#pragma once
 #include "base/error.h"
 #include "case/case.h"
 #include "pre/cloud/dual.h"
@@ -20,4 +19,3 @@ sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, sf_err
  * behind it, if one of contact or symmetry lies inside the pad, or if a face in the plane of a symmetry group
  * is not in that group. Groups that do not exist, and sets without faces, are left to others. */
 sf_status sf_group_check(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual, sf_error *err);
-#endif

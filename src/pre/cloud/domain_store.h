@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The smoothing domains of a mesh, kept in a store (io/folder.h) for the drops of a campaign. */
-#ifndef SF_PRE_CLOUD_DOMAIN_STORE_H
-#define SF_PRE_CLOUD_DOMAIN_STORE_H
+#pragma once
 
 #include "pre/cloud/domains.h"
 
@@ -9,5 +8,3 @@
  * this very program. The same bits. */
 sf_status sf_domain_store_build(const char *folder, const sf_mesh *mesh, const sf_dual *dual,
                                 double condition_limit, double *support, sf_domains *out, sf_error *err);
-
-#endif

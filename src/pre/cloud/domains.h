@@ -6,8 +6,7 @@
  * once and added with + and - to its two domains. On the boundary phi is interpolated between the face's
  * vertices, so that boundary tractions are exactly nodal forces of u_h: this makes the patch test with
  * constrained u_h exact (docs/adr/0002). */
-#ifndef SF_PRE_CLOUD_DOMAINS_H
-#define SF_PRE_CLOUD_DOMAINS_H
+#pragma once
 
 #include "base/error.h"
 #include "pre/cloud/dual.h"
@@ -65,4 +64,3 @@ sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const 
 
 /* SF_ERR_MODEL if one of them exceeds 1e-10. */
 sf_status sf_invariants_check(const sf_invariants *invariants, sf_error *err);
-#endif

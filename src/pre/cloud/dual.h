@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_CLOUD_DUAL_H
-#define SF_PRE_CLOUD_DUAL_H
+#pragma once
 #include <stdint.h>
 
 #include "base/error.h"
@@ -84,4 +83,3 @@ typedef struct sf_surface_sides {
 /* Finds the orientation of the group against a body that comes along `direction` (unit vector). */
 sf_status sf_surface_find_sides(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
                                 const double direction[3], sf_surface_sides *sides, sf_error *err);
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A pad of layers: one conforming mesh, parted at the interfaces. Each layer gets nodes of its own, so that
  * no shape function reaches across, and ties join the nodes that stand at one place (docs/adr/0017). */
-#ifndef SF_PRE_CLOUD_LAYERS_H
-#define SF_PRE_CLOUD_LAYERS_H
+#pragma once
 
 #include "case/case.h"
 #include "base/error.h"
@@ -57,5 +56,3 @@ sf_status sf_layers_hold(const sf_layers *layers, uint8_t *mask, uint8_t *base, 
 /* Removes the ties of loose interfaces, after they have told what holds the layers: from there on the layers
  * only touch (the model's skin). */
 void sf_layers_loosen(const sf_case *c, sf_model *model);
-
-#endif

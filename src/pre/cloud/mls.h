@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_CLOUD_MLS_H
-#define SF_PRE_CLOUD_MLS_H
+#pragma once
 #include <stdint.h>
 
 #include "base/grid.h"
@@ -57,4 +56,3 @@ int sf_mls_evaluate(const sf_mls_cloud *cloud, const double x[3], int64_t count,
 
 /* Cubic B-spline weight of q = distance / R: 2/3 at 0, zero from 1 on. */
 double sf_mls_weight(double q);
-#endif

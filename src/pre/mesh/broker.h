@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Opens files for softfall-mesh, which can open none: it gets a sealed copy of the content that was read and
  * hashed here, once per file. */
-#ifndef SF_PRE_MESH_BROKER_H
-#define SF_PRE_MESH_BROKER_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -39,5 +38,3 @@ int sf_broker_open(sf_broker *broker, const char *path, int flags, int *file);
 
 /* A sealed copy of a text in memory, at its beginning; -1 and errno (EFBIG: larger than files may be). */
 int sf_broker_memory(const char *text, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_MESH_GEO_PARAMETERS_H
-#define SF_PRE_MESH_GEO_PARAMETERS_H
+#pragma once
 #include <stdbool.h>
 
 #include "base/error.h"
@@ -19,4 +18,3 @@ sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *
 /* The same before anything is meshed, for a .geo file that includes and merges no other: it defines all that
  * there is. Of every other geometry nothing is said. */
 sf_status sf_geo_parameters_check_alone(const sf_geo_source *source, sf_error *err);
-#endif

@@ -2,8 +2,7 @@
 /* Geometries through gmsh: a session reads what gmsh can open (.geo, .msh, .step with groups), sets its
  * parameters, meshes it if it holds no mesh, and hands out the pad's cells and the missile's surface. gmsh
  * itself runs in a confined process (mesher.h), one for each geometry. */
-#ifndef SF_PRE_MESH_GMSH_SESSION_H
-#define SF_PRE_MESH_GMSH_SESSION_H
+#pragma once
 
 #include "base/error.h"
 #include "case/case.h"
@@ -59,5 +58,3 @@ sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, doub
 /* Adds to the surface that was read last the hull of the cells behind it. */
 sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                             sf_error *err);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_MESH_MESH_H
-#define SF_PRE_MESH_MESH_H
+#pragma once
 #include <stdint.h>
 
 #include "base/error.h"
@@ -86,4 +85,3 @@ int64_t sf_mesh_orient(sf_mesh *mesh);
  * centroid. On success
  * `*volume` is the mesh volume in m3. */
 sf_status sf_mesh_check(const sf_mesh *mesh, double *volume, sf_error *err);
-#endif

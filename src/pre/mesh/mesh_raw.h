@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_MESH_MESH_RAW_H
-#define SF_PRE_MESH_MESH_RAW_H
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -63,4 +62,3 @@ sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *s
 /* Adds the hull to a surface that was assembled from the same mesh: of all cells that are joined through
  * faces to one behind it. Without cells there is none. */
 sf_status sf_hull_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err);
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_MESH_MESH_STORE_H
-#define SF_PRE_MESH_MESH_STORE_H
+#pragma once
 #include <stdbool.h>
 
 #include "pre/mesh/mesher.h"
@@ -23,4 +22,3 @@ bool sf_mesh_store_find(const char *folder, const sf_geo_source *source, sf_mesh
 /* Keeps the mesh of a confined gmsh. */
 void sf_mesh_store_keep(const char *folder, const sf_geo_source *source, const sf_meshed *meshed,
                         const char *files);
-#endif

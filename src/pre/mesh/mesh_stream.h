@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads the mesh stream of softfall-mesh (mesher_protocol.h), which may hold anything: every count is checked
  * against what is there, every number against its range, before anything is allocated. */
-#ifndef SF_PRE_MESH_MESH_STREAM_H
-#define SF_PRE_MESH_MESH_STREAM_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -49,5 +48,3 @@ bool sf_geo_group_has(const sf_geo_group *group, int32_t entity);
 
 /* First block of the entity, `*end` is one beyond its last; equal if it has none. */
 size_t sf_geo_data_blocks(const sf_geo_data *data, int dimension, int entity, size_t *end);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_MESH_MESHER_H
-#define SF_PRE_MESH_MESHER_H
+#pragma once
 #include <stddef.h>
 
 #include "base/error.h"
@@ -46,4 +45,3 @@ typedef struct sf_meshed {
 sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *limits, sf_meshed *out,
                         sf_error *err);
 void sf_meshed_free(sf_meshed *meshed);
-#endif

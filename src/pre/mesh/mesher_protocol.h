@@ -2,8 +2,7 @@
 /* The messages between softfall-pre (the parent, pre/mesh/mesher.h) and softfall-mesh (the child,
  * pre/mesher). The child runs gmsh on a file that may be hostile: the parent checks everything that it
  * receives. */
-#ifndef SF_PRE_MESH_MESHER_PROTOCOL_H
-#define SF_PRE_MESH_MESHER_PROTOCOL_H
+#pragma once
 
 #include <limits.h>
 #include <stdbool.h>
@@ -70,5 +69,3 @@ static inline bool sf_mesher_has_suffix(const char *path, const char *suffix) {
     size_t n = strlen(path), m = strlen(suffix);
     return n > m && strcasecmp(path + n - m, suffix) == 0;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_MESH_MISSILE_SHAPE_H
-#define SF_PRE_MESH_MISSILE_SHAPE_H
+#pragma once
 #include "base/error.h"
 #include "model/model.h"
 #include "pre/mesh/mesh.h"
@@ -41,5 +40,3 @@ double sf_missile_travel(const sf_surface *surface, const sf_missile_card *card,
 
 /* The missile's surface of a model; borrowed. */
 sf_surface sf_surface_of_missile(const sf_model *model);
-
-#endif

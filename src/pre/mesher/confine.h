@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Takes from this process what a hostile geometry could do harm with. Irrevocable. */
-#ifndef SF_MESHER_CONFINE_H
-#define SF_MESHER_CONFINE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -16,5 +15,3 @@ void sf_confine_resources(uint64_t bytes, uint64_t seconds);
  * attempt to start a program is told to the parent. Returns 0, or an errno value if the kernel cannot do
  * this; then nothing is confined. */
 int sf_confine_calls(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_PRE_MESHER_WORK_H
-#define SF_PRE_MESHER_WORK_H
+#pragma once
 /* Differences between the versions of gmsh's C API, from 4.8 on, for the mesher (gui/gmsh/window.c has its
  * own). */
 
@@ -17,4 +16,3 @@ int sf_work_begin(void);
 _Bool sf_work_parse(const char *parameters, const char *path);
 /* Meshes what sf_work_parse read and writes the stream. */
 void sf_work_mesh(const char *path);
-#endif

@@ -4,8 +4,7 @@
  * G a* + (G v) / dt, a = a* - M^-1 G^T lambda. The matrix is factored once (solver/constraint/ldl.h). A row
  * of G stands for a node held in all components, or for one component of a node that is held in some. Ties
  * between layers are rows too: phi(X_c) of one cloud less that of the other. */
-#ifndef SF_SOLVER_CONSTRAINT_CONSTRAINT_H
-#define SF_SOLVER_CONSTRAINT_CONSTRAINT_H
+#pragma once
 
 #include "base/error.h"
 #include "model/model.h"
@@ -57,5 +56,3 @@ void sf_constraint_project(const sf_constraint *constraint, sf_constraint_step *
 /* Largest |G v| at the next half step, m s-1, after a projection: only rounding errors are left. */
 double sf_constraint_residual(const sf_model *model, const sf_constraint *constraint,
                               const sf_constraint_step *step);
-
-#endif

@@ -4,8 +4,7 @@
  * which come last. CHOLMOD orders and factors A = L D L^T once, and L too is shared. The elimination tree of
  * the shared rows is cut into independent branches, which may be solved in parallel, and a trunk above them.
  * The cut depends on A alone: x is the same, bit for bit, for any number of threads. */
-#ifndef SF_SOLVER_CONSTRAINT_LDL_H
-#define SF_SOLVER_CONSTRAINT_LDL_H
+#pragma once
 
 #include "base/error.h"
 #include "base/lanes.h"
@@ -53,5 +52,3 @@ void sf_ldl_free(sf_ldl *factor);
 void sf_ldl_forward(const sf_ldl *factor, int branch, sf_vec *x);
 void sf_ldl_trunk(const sf_ldl *factor, sf_vec *x);
 void sf_ldl_backward(const sf_ldl *factor, int branch, sf_vec *x);
-
-#endif

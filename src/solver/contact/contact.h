@@ -9,8 +9,7 @@
  * gap_c = 0, |q_c - p_c n_c| <= mu p_c (sticking below the bound), found by projected Gauss-Seidel sweeps
  * from the last step's forces. There is no penalty: no stored contact energy, no stiffness that limits the
  * time step. The energy lost is the impact energy of the surface points that the missile catches up with. */
-#ifndef SF_SOLVER_CONTACT_CONTACT_H
-#define SF_SOLVER_CONTACT_CONTACT_H
+#pragma once
 
 #include "solver/operators.h"
 #include "solver/state.h"
@@ -19,5 +18,3 @@
  * and to missile and anvil, and adds the work lost since the last step to the ledger. Needs force without
  * contact, reaction of the last step, dt and dt_old. */
 void sf_contact_solve(const sf_model *model, const sf_operators *operators, sf_state *state);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_CONTACT_CONTACT_ROWS_H
-#define SF_SOLVER_CONTACT_CONTACT_ROWS_H
+#pragma once
 #include "base/error.h"
 #include "model/model.h"
 
@@ -39,4 +38,3 @@ typedef struct sf_contact_gram {
 sf_status sf_contact_gram_build(const sf_model *model, const sf_contact_rows *rows, sf_contact_gram *gram,
                                 sf_error *err);
 void sf_contact_gram_free(sf_contact_gram *gram);
-#endif

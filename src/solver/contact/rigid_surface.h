@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_CONTACT_RIGID_SURFACE_H
-#define SF_SOLVER_CONTACT_RIGID_SURFACE_H
+#pragma once
 #include "base/error.h"
 #include "model/model.h"
 #include "solver/contact/contact_rows.h"
@@ -70,4 +69,3 @@ double sf_anvil_work(const sf_anvil *anvil, const double *d);
 static inline double sf_anvil_gap(const sf_model *model, int64_t node, const double x[3]) {
     return x[2] - model->position[3 * node + 2];
 }
-#endif

@@ -7,8 +7,7 @@
  * direction, so that momentum and angular momentum hold. A node touches a face only if it comes from outside:
  * one that lies deeper behind a face than it may, as behind the other side of a thin wall, does not see it.
  */
-#ifndef SF_SOLVER_CONTACT_SELF_CONTACT_H
-#define SF_SOLVER_CONTACT_SELF_CONTACT_H
+#pragma once
 
 #include "solver/ledger.h"
 #include "solver/operators.h"
@@ -20,5 +19,3 @@ sf_status sf_self_contact_solve(const sf_model *model, const sf_operators *opera
 
 /* Adds the forces of anvil and support on the skin, and those of the symmetry planes with `symmetry`. */
 void sf_self_contact_outside(const sf_skin *skin, const sf_state *state, bool symmetry, sf_wrench *outside);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_CONTACT_SKIN_H
-#define SF_SOLVER_CONTACT_SKIN_H
+#pragma once
 #include "solver/contact/contact_rows.h"
 
 /* The faces of the pad that may touch the pad itself, the anvil, a symmetry plane or the rigid support, with
@@ -44,4 +43,3 @@ void sf_skin_free(sf_skin *skin);
 static inline bool sf_skin_is_rigid(const sf_skin *skin, int64_t node) {
     return node >= skin->moving;
 }
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_FIELD_DOMAIN_STRESS_H
-#define SF_SOLVER_FIELD_DOMAIN_STRESS_H
+#pragma once
 #include "solver/operators.h"
 #include "solver/state.h"
 
@@ -26,4 +25,3 @@ double sf_domain_rest(const sf_model *model, const sf_operators *operators, sf_s
 /* Adds them to force. In a parallel region all threads must call it and share the work; it ends with a
  * barrier. */
 void sf_internal_force(const sf_model *model, const sf_operators *operators, sf_state *state);
-#endif

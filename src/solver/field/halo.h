@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_FIELD_HALO_H
-#define SF_SOLVER_FIELD_HALO_H
+#pragma once
 #include "base/error.h"
 #include "base/lanes.h"
 #include "model/model.h"
@@ -63,4 +62,3 @@ typedef struct sf_pairs {
 /* SF_ERR_MODEL if nodes of one group have more than 65,535 edges. */
 sf_status sf_pairs_build(const sf_model *model, sf_pairs *pairs, sf_error *err);
 void sf_pairs_free(sf_pairs *pairs);
-#endif

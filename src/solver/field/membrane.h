@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The membrane on faces of the pad: triangles of constant strain between the physical positions of its nodes,
  * x = X + Phi d, whose forces act on the coefficients by the same rows (theory, section "Membranes"). */
-#ifndef SF_SOLVER_FIELD_MEMBRANE_H
-#define SF_SOLVER_FIELD_MEMBRANE_H
+#pragma once
 
 #include "base/error.h"
 #include "model/model.h"
@@ -36,4 +35,3 @@ typedef struct sf_membrane_state {
 /* Adds its forces at the coefficients d [node_count][3] (m) to force [node_count][3] (N). */
 void sf_membrane_force(const sf_model *model, const sf_membrane *membrane, const double *d,
                        sf_membrane_state *state, double *force);
-#endif

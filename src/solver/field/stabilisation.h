@@ -4,8 +4,7 @@
  * not reproduce, e = x_J - x_I - 1/2 (F_I + F_J)(X_J - X_I), is penalised by the energy 1/2 k |e|^2, k =
  * weight (g_I + g_J), g the current stiffness of the foam. Forces are the exact gradient of that energy: on
  * x, and on F as an extra couple in the stress, so that linear and angular momentum hold. */
-#ifndef SF_SOLVER_FIELD_STABILISATION_H
-#define SF_SOLVER_FIELD_STABILISATION_H
+#pragma once
 
 #include "solver/operators.h"
 #include "solver/state.h"
@@ -28,5 +27,3 @@ void sf_stabilisation_group(const sf_model *model, const sf_pairs *pairs, const 
 
 /* Returns the sum of 1/2 weight |e|^2 (m3) of a node of the group. */
 double sf_stabilisation_energy(const sf_pair_sums *sums, int64_t place);
-
-#endif

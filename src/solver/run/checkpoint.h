@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_RUN_CHECKPOINT_H
-#define SF_SOLVER_RUN_CHECKPOINT_H
+#pragma once
 #include "io/h5.h"
 #include "io/provenance.h"
 #include "solver/run/output.h"
@@ -38,4 +37,3 @@ void sf_checkpoint_close(sf_checkpoint *checkpoint);
 /* State and recorder, both new, of the same model; /peak goes back into the folder of `output`. */
 sf_status sf_checkpoint_read(const sf_checkpoint *checkpoint, const sf_model *model, const sf_output *output,
                              sf_state *state, sf_recorder *recorder, sf_error *err);
-#endif

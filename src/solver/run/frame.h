@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A frame: the fields at the nodes at one time, as docs/formats.md lists them. */
-#ifndef SF_SOLVER_RUN_FRAME_H
-#define SF_SOLVER_RUN_FRAME_H
+#pragma once
 
 #include "base/error.h"
 #include "model/model.h"
@@ -17,5 +16,3 @@ sf_status sf_frame_write(const sf_model *model, const sf_operators *operators, c
 /* One field of all nodes into values [node_count][components]. */
 void sf_frame_take(const sf_model *model, const sf_operators *operators, const sf_state *state,
                    sf_frame_field field, double *values);
-
-#endif

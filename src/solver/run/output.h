@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_RUN_OUTPUT_H
-#define SF_SOLVER_RUN_OUTPUT_H
+#pragma once
 #include "base/error.h"
 #include "io/h5.h"
 #include "io/provenance.h"
@@ -75,4 +74,3 @@ sf_status sf_output_commit(sf_output *output, sf_h5 **file, sf_error *err);
 
 /* Removes the folder with its files. */
 void sf_output_clear(const sf_output *output);
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_RUN_RECORDER_H
-#define SF_SOLVER_RUN_RECORDER_H
+#pragma once
 #include "base/error.h"
 #include "io/h5.h"
 #include "model/columns.h"
@@ -86,4 +85,3 @@ bool sf_recorder_frame_due(sf_recorder *recorder, const sf_model *model, const s
 sf_status sf_recorder_write(const sf_recorder *recorder, sf_h5 *file, sf_error *err);
 sf_status sf_recorder_read(sf_recorder *recorder, const sf_model *model, const sf_state *state,
                            const sf_h5 *file, sf_error *err);
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_SOLVER_RUN_RUN_H
-#define SF_SOLVER_RUN_RUN_H
+#pragma once
 #include <signal.h>
 #include <stdio.h>
 
@@ -74,4 +73,3 @@ typedef struct sf_run {
  * the last checkpoint with it. */
 sf_status sf_run_drop(const sf_model *model, const sf_operators *operators, sf_state *state, sf_run *run,
                       sf_output *output, const sf_checkpoint *checkpoint, sf_error *err);
-#endif

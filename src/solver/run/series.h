@@ -2,8 +2,7 @@
 /* A drop on a pad that has been hit before: its foam's history goes on from the end of an earlier run. The
  * laws have no permanent set, so that the pad at rest is the undeformed one, exactly: the history is unloaded
  * to it and rests, and nothing else of the earlier run remains. */
-#ifndef SF_SOLVER_RUN_SERIES_H
-#define SF_SOLVER_RUN_SERIES_H
+#pragma once
 #include "solver/operators.h"
 #include "solver/state.h"
 
@@ -18,5 +17,3 @@ typedef struct sf_earlier {
  * away from the pad, or if its pad is another one: nodes, volumes, layers or what the laws remember. */
 sf_status sf_series_begin(const sf_earlier *earlier, const sf_model *model, const sf_operators *operators,
                           sf_state *state, sf_error *err);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Output of softfall-cfh: cfh.json, cfh.csv, cfh_band.csv, cfh_draws.csv, report.html, and the lines on the
  * terminal. */
-#ifndef SF_CFH_REPORT_H
-#define SF_CFH_REPORT_H
+#pragma once
 
 #include "io/staging.h"
 #include "report/row.h"
@@ -79,5 +78,3 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *report, cha
                       sf_error *err);
 /* report.html, after sf_cfh_plot, whose picture it takes in. */
 sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *report, sf_error *err);
-
-#endif

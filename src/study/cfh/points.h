@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_STUDY_CFH_POINTS_H
-#define SF_STUDY_CFH_POINTS_H
+#pragma once
 
 #include "base/error.h"
 #include "io/table_csv.h"
@@ -172,5 +171,3 @@ sf_cfh_step sf_cfh_next(const sf_cfh_plan *plan, const sf_cfh_points *points, sf
 
 /* Why the search ended, in words; static storage. */
 const char *sf_cfh_step_text(sf_cfh_step step);
-
-#endif

@@ -9,8 +9,7 @@
  * with random errors of the responses (study/fit/drop/inference.h), of the mesh, of the points about their
  * fit, of the corrected columns and of the rig. Heights are those of free fall (m) unless a name says "rig".
  * The same bits for any number of threads. */
-#ifndef SF_CFH_SPREAD_H
-#define SF_CFH_SPREAD_H
+#pragma once
 
 #include "case/case.h"
 #include "material/laws.h"
@@ -208,5 +207,3 @@ sf_status sf_cfh_simulate(const sf_cfh_series *series, sf_runner *runner, sf_cfh
  * used becomes a check that failed. */
 sf_status sf_cfh_simulate_checks(const sf_cfh_series *series, const sf_cfh_draws *draws, sf_runner *runner,
                                  sf_cfh_spread *spread, sf_error *err);
-
-#endif

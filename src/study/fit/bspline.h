@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_STUDY_FIT_BSPLINE_H
-#define SF_STUDY_FIT_BSPLINE_H
+#pragma once
 #include <gsl/gsl_bspline.h>
 
 #include "base/error.h"
@@ -83,4 +82,3 @@ sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branche
  * cross-validation with the sigmas that are there. Writes `smooth` anew. */
 sf_status sf_scatter_intervals(int branch_count, const sf_scatter_branch *branches, int *intervals,
                                sf_error *err);
-#endif

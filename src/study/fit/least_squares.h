@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A search for the least sum of squares (GSL, Levenberg-Marquardt with trust region, derivatives by
  * differences). */
-#ifndef SF_STUDY_FIT_LEAST_SQUARES_H
-#define SF_STUDY_FIT_LEAST_SQUARES_H
+#pragma once
 
 #include "base/error.h"
 #include <gsl/gsl_matrix.h>
@@ -21,5 +20,3 @@ double sf_least_squares(sf_deviations *deviations, void *data, size_t count, gsl
 
 /* Correlation of neighbouring deviations, r: the variance of a mean of them grows by (1 + r)/(1 - r). */
 double sf_neighbour_correlation(size_t count, const double *deviation);
-
-#endif

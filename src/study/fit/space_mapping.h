@@ -10,8 +10,7 @@
  * Levenberg-Marquardt) within a trust region: the best point is kept, and the radius follows the ratio of
  * what the objective lost to what y_c expected. Everything is in the caller's scaled variables: logarithms of
  * parameters and of responses. */
-#ifndef SF_FIT_SPACE_MAPPING_H
-#define SF_FIT_SPACE_MAPPING_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -75,5 +74,3 @@ void sf_mapping_free(sf_mapping_result *result);
  * leaves a datum out); `u` [parameters] and `y` [responses] get the minimum and y_c there. */
 sf_status sf_mapping_refit(const sf_mapping_problem *problem, const sf_mapping_result *result,
                            const double *sd, double *u, double *y, sf_error *err);
-
-#endif

@@ -5,8 +5,7 @@
  * Further processes watch whether the row's figures can be used: a row that may be near the anvil, beyond its
  * foam's data or failing is simulated; one that is sure to be so stays open. Random rows are simulated for
  * checks alone: the intervals are widened until they hold 95 % of these. */
-#ifndef SF_SWEEP_ADAPTIVE_H
-#define SF_SWEEP_ADAPTIVE_H
+#pragma once
 
 #include "study/column.h"
 #include "study/sweep/campaign.h"
@@ -49,5 +48,3 @@ int sf_sweep_trend_find(const char *figure);
 /* Natural logarithms of the figures that columns expect of a row, [SF_TRENDS]; NaN where the foam of the
  * columns collapses. */
 sf_status sf_sweep_trend_at(const sf_sweep_trend *trend, int64_t row, double *expected, sf_error *err);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The statements of the report about the runs, figure by figure of the plan. */
-#ifndef SF_SWEEP_ANALYSIS_H
-#define SF_SWEEP_ANALYSIS_H
+#pragma once
 
 #include "base/error.h"
 #include "study/sweep/plan.h"
@@ -153,5 +152,3 @@ void sf_analysis_term(const sf_analysis *a, const sf_quadratic *s, int term, cha
 /* The factors that are numbers and have more than one value, in the order of the surface; returns how many.
  */
 int sf_analysis_numbers(const sf_plan *plan, int list[SF_SWEEP_FACTORS]);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs the open rows of a plan in pieces, and keeps runs.csv up to date, so that a campaign that was
  * interrupted or killed resumes. */
-#ifndef SF_SWEEP_CAMPAIGN_H
-#define SF_SWEEP_CAMPAIGN_H
+#pragma once
 
 #include "study/sweep/runs.h"
 #include <stdio.h>
@@ -93,5 +92,3 @@ sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *cost, const char *folder
 
 /* `jobs` 0: on machines that are not known. */
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *cost, int jobs);
-
-#endif

@@ -2,8 +2,7 @@
 /* The plan of a sweep: a base case, factors in blocks, and what is asked of the results. The rows are the
  * full product of the blocks, the last block the fastest. A block is one list, a group of lists of one length
  * (zip), or a sample of several factors. docs/campaigns.md has the keys. */
-#ifndef SF_SWEEP_PLAN_H
-#define SF_SWEEP_PLAN_H
+#pragma once
 
 #include "base/error.h"
 #include "case/case.h"
@@ -172,5 +171,3 @@ sf_status sf_sweep_check_inputs(const sf_plan *plan, uint64_t *hash, sf_error *e
 
 /* The case of a row; sf_case_free. */
 sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_error *err);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state of every run of a plan and its figures: the table runs.csv. */
-#ifndef SF_SWEEP_RUNS_H
-#define SF_SWEEP_RUNS_H
+#pragma once
 
 #include "post/figures/figures.h"
 #include "post/figures/verdict.h"
@@ -71,5 +70,3 @@ sf_status sf_runs_write(const sf_runs *runs, const char *path, uint64_t *hash, s
 /* Reads what sf_runs_write wrote. All rows stay open if the file is of another table or has another hash:
  * something else has written it. */
 sf_status sf_runs_read(sf_runs *runs, const char *path, uint64_t hash, sf_error *err);
-
-#endif

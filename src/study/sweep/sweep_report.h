@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* sweep.json, report.html and the lines on the terminal. */
-#ifndef SF_SWEEP_REPORT_H
-#define SF_SWEEP_REPORT_H
+#pragma once
 
 #include "io/staging.h"
 #include "study/sweep/analysis.h"
@@ -36,5 +35,3 @@ const sf_sweep_picture *sf_sweep_pictures(void);
  * ("DIR/runs"). `warning`: as sf_chart_write. */
 sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *analysis, const char *folder,
                         char *warning, size_t size, sf_error *err);
-
-#endif

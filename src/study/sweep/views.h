@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs of a plan that are simulated once more with all fields, for their own report.html and view.html. */
-#ifndef SF_SWEEP_VIEWS_H
-#define SF_SWEEP_VIEWS_H
+#pragma once
 
 #include "report/row.h"
 #include "study/sweep/runs.h"
@@ -34,5 +33,3 @@ sf_status sf_sweep_views_make(const sf_plan *plan, const char *directory, int th
 /* Parts of report.html, which is in the directory, and of sweep.json. */
 void sf_sweep_views_put(FILE *page, const sf_runs *runs, const sf_sweep_views *views);
 void sf_sweep_views_json(sf_json *json, const sf_sweep_views *views);
-
-#endif

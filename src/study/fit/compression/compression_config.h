@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The input of `softfall-fit compression`: a libconfig file that names the tests (docs/identification.md). */
-#ifndef SF_FIT_COMPRESSION_CONFIG_H
-#define SF_FIT_COMPRESSION_CONFIG_H
+#pragma once
 
 #include "study/fit/compression/law_request.h"
 #include "study/config.h"
@@ -96,5 +95,3 @@ void sf_cycle_record_free(sf_cycle_record *record);
 
 /* The pause (s) before point i; 0: none. */
 double sf_cycle_record_pause(const sf_cycle_record *record, int i);
-
-#endif

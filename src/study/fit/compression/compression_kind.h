@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The models that `softfall-fit compression` fits: one entry for each. compression_command.c has the only
  * pipeline: configuration, fit, files, summary, warnings. */
-#ifndef SF_FIT_COMPRESSION_KIND_H
-#define SF_FIT_COMPRESSION_KIND_H
+#pragma once
 
 #include "io/staging.h"
 #include "material/hyperfoam.h"
@@ -48,5 +47,3 @@ extern const sf_compression_kind sf_compression_tables, sf_compression_form_kind
 /* Stress (Pa, compression positive), lateral strain and W (J m-3) of a hyperfoam in loading with free sides
  * at an axial strain; `lateral` is also the start of the search. */
 double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double *lateral, double *energy);
-
-#endif

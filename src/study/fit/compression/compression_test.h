@@ -13,8 +13,7 @@
  *
  * Of a branch with more than SF_COMPRESSION_BRANCH_POINTS points the means of neighbours are kept: they hold
  * as much about the law, and the fit stays quick. The turn is kept as it is. */
-#ifndef SF_FIT_COMPRESSION_TEST_H
-#define SF_FIT_COMPRESSION_TEST_H
+#pragma once
 
 #include "base/error.h"
 #include <stdbool.h>
@@ -92,5 +91,3 @@ void sf_compression_move(sf_compression_test *test, int from, int to, double zer
 void sf_compression_find_largest(sf_compression_test *test);
 
 extern const double SF_COMPRESSION_JITTER; /* strain by which scatter may turn it back */
-
-#endif

@@ -3,8 +3,7 @@
  * from loading, by least squares of the deviations over each test's largest stress (every test and every
  * point counts alike: a form's own misfit is far above the scatter of a machine); then HU, SHAPE and ALPHA
  * from unloading. */
-#ifndef SF_FIT_COMPRESSION_FORM_FIT_H
-#define SF_FIT_COMPRESSION_FORM_FIT_H
+#pragma once
 
 #include "study/fit/compression/compression_config.h"
 
@@ -82,5 +81,3 @@ sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err);
 
 /* Largest rms, over the largest stress, of loading (0) or unloading (1) of the cycles first .. last - 1. */
 double sf_cycle_fit_worst(const sf_form_fit *fit, int unloading, int first, int last);
-
-#endif

@@ -2,8 +2,7 @@
 /* The keys of the file of `softfall-fit compression` that belong to one law: those of a form of the loading
  * curve (fit/form), which are its start values, its unknown parameters and the rate dependence, and those of
  * the hyperfoam, which are its terms and the lateral strain of its test. */
-#ifndef SF_FIT_COMPRESSION_LAW_REQUEST_H
-#define SF_FIT_COMPRESSION_LAW_REQUEST_H
+#pragma once
 
 #include "study/config.h"
 #include "study/fit/compression/compression_test.h"
@@ -63,5 +62,3 @@ sf_status sf_hyperfoam_request_asked(const sf_config *file, sf_config_item *root
 sf_status sf_hyperfoam_request_read(const sf_config *file, sf_config_item *root,
                                     sf_hyperfoam_request *request, sf_compression_test *test, sf_error *err);
 void sf_hyperfoam_request_free(sf_hyperfoam_request *request);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * A parameter vector holds for every curve the logarithms of the coefficients' increments, then the other
  * parameters mapped from their bounds to the real line. */
-#ifndef SF_FIT_COMPRESSION_MODEL_H
-#define SF_FIT_COMPRESSION_MODEL_H
+#pragma once
 
 #include "study/fit/bspline.h"
 #include "study/fit/compression/compression_config.h"
@@ -116,5 +115,3 @@ typedef struct sf_compression_walk {
 /* Compressive nominal stress (Pa) of the branch at the next strain of a test that turns at `turn`. */
 double sf_compression_maxwell(double decay_rate, double rate, double turn, double strain, bool unloading,
                               sf_compression_walk *walk);
-
-#endif

@@ -2,8 +2,7 @@
 /* The joint fit of all tests: weighted least squares of point_model.h (GSL, Levenberg-Marquardt), loading
  * first and then unloading given the loading, the
  * choice of rate dependence and densification by BIC, and the 95 % interval of every number. */
-#ifndef SF_FIT_COMPRESSION_FIT_H
-#define SF_FIT_COMPRESSION_FIT_H
+#pragma once
 
 #include "material/foam_card.h"
 #include "study/fit/compression/point_model.h"
@@ -82,5 +81,3 @@ double sf_compression_error(const sf_compression_fit *fit, const double *gradien
 
 /* The foam card of the fit; released by the caller with sf_foam_card_free. */
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err);
-
-#endif

@@ -2,8 +2,7 @@
 /* The fit of tables as the pipeline has it: the fit, its card in the solver's own law, and how both stand
  * against the data. Internal to table_kind.c and to table_report.c, which has the page and
  * the words and rows that stand there, too. */
-#ifndef SF_FIT_COMPRESSION_TABLE_RESULT_H
-#define SF_FIT_COMPRESSION_TABLE_RESULT_H
+#pragma once
 
 #include "report/row.h"
 #include "study/fit/compression/compression_kind.h"
@@ -46,5 +45,3 @@ const char *sf_table_misfit(const sf_side *side, char text[160]);
 /* fit.gp, fit.png and report.html. */
 sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging *output,
                                 const sf_table_result *result, char *warning, size_t size, sf_error *err);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Several models of one foam, compared and averaged. The weights are those of the leave-one-out predictive
  * densities (posterior/weights.h), or of the evidence where only one drop was measured. */
-#ifndef SF_FIT_DROP_AVERAGE_H
-#define SF_FIT_DROP_AVERAGE_H
+#pragma once
 
 #include "io/staging.h"
 #include "report/row.h"
@@ -79,5 +78,3 @@ void sf_inference_comment(FILE *file, const sf_drop_average *average);
 /* One line when the chains of a model have ended. */
 void sf_inference_print_chains(FILE *file, const sf_drop_inference *inference);
 sf_status sf_inference_print(FILE *file, const sf_drop_average *average, sf_error *err);
-
-#endif

@@ -6,8 +6,7 @@
  * of the numbers of kinds.h, then the samples of a measured curve over its peak, then the logarithm of the
  * largest indentation over the thickness, which is no datum but bounded. Measured or not, every drop
  * has the numbers; one that is not defined (no rebound within the end time) and was not measured is NaN. */
-#ifndef SF_FIT_DROP_FIT_H
-#define SF_FIT_DROP_FIT_H
+#pragma once
 
 #include "study/runner.h"
 #include "study/column.h"
@@ -127,5 +126,3 @@ enum { SF_FIT_AS_GIVEN = -2, SF_FIT_NOWHERE = -1 }; /* in place of a bin */
 #define SF_FIT_RAISE 0.05
 sf_status sf_drop_fit_columns(const sf_drop_fit *fit, int first, int last, int bin, const double *u,
                               double *y, sf_error *err);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The output of `softfall-fit drop`: report.html, fit.json, fit.png with its data, and the material file. */
-#ifndef SF_FIT_DROP_REPORT_H
-#define SF_FIT_DROP_REPORT_H
+#pragma once
 
 #include "study/fit/drop/average.h"
 #include "study/fit/drop/drop_fit.h"
@@ -58,5 +57,3 @@ int sf_drop_chain_list(const sf_drop_fit *fit, sf_chain_shown shown[SF_SIGNAL_CH
 /* fit-curve.csv, fit-drops.csv, fit.gp with fit.png, and the material file with its comments. */
 sf_status sf_drop_files_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
                               const sf_staging *output, char *warning, size_t size, sf_error *err);
-
-#endif

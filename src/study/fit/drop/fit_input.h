@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The input of `softfall-fit drop` (docs/identification.md): start material, drops with what was measured,
  * unknown parameters with their priors, and drops to predict. */
-#ifndef SF_FIT_DROP_INPUT_H
-#define SF_FIT_DROP_INPUT_H
+#pragma once
 
 #include "study/batch.h"
 #include "model/good_run.h"
@@ -76,5 +75,3 @@ void sf_drop_values_scale(const sf_columns_figures *values, double y[SF_FIT_SAMP
 sf_status sf_drop_input_read(const sf_config *config, sf_config_item *group, bool predicted, int count,
                              sf_fit_drop *drop, sf_error *err);
 void sf_drop_input_free(sf_fit_drop *drop);
-
-#endif

@@ -9,8 +9,7 @@
  * standard deviations of kappa times model_sd (kinds.h). e are the measurements' errors and those of the
  * speeds, whose effect is taken as linear. So delta, x and the speeds are integrated in closed form, and
  * drawn where predictions need them. */
-#ifndef SF_FIT_DROP_INFERENCE_H
-#define SF_FIT_DROP_INFERENCE_H
+#pragma once
 
 #include "study/fit/drop/drop_fit.h"
 #include "study/fit/posterior/chains.h"
@@ -74,5 +73,3 @@ bool sf_drop_inference_draw(const sf_drop_inference *inference, const double *u,
  * held. Owned by the caller. */
 sf_status sf_drop_inference_card(const sf_drop_inference *inference, const double *u, const double *delta,
                                  sf_foam_card *card, sf_error *err);
-
-#endif

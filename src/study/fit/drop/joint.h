@@ -6,8 +6,7 @@
  *
  * Responses: nominal stress over the largest measured one, at strains 0.05 apart (neighbours closer than that
  * deviate alike), loading then unloading; ln of a cushion's peak deceleration in g (F/m, CFC 1000). */
-#ifndef SF_FIT_DROP_JOINT_H
-#define SF_FIT_DROP_JOINT_H
+#pragma once
 
 #include "study/config.h"
 #include "material/laws.h"
@@ -59,5 +58,3 @@ uint64_t sf_joint_hash(uint64_t hash, const sf_joint *joint);
 /* Root mean square of the deviations of a branch, over the largest stress; `first`: its first row. NaN
  * without points. */
 double sf_joint_rms(const sf_joint_test *test, bool unloading, const double *y);
-
-#endif

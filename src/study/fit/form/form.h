@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_STUDY_FIT_FORM_FORM_H
-#define SF_STUDY_FIT_FORM_FORM_H
+#pragma once
 #include <stdbool.h>
 
 #include "base/units.h"
@@ -212,5 +211,3 @@ sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error
  */
 sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err);
 void sf_foam_card_free(sf_foam_card *card);
-
-#endif

@@ -14,8 +14,7 @@
  * learnt. Chains start at draws of a t-distribution about the point and with the covariance that the caller
  * gives. Every chain has its own generator, and what chains share is computed between rounds in the chains'
  * order: the result has the same bits for any number of threads. */
-#ifndef SF_FIT_POSTERIOR_CHAINS_H
-#define SF_FIT_POSTERIOR_CHAINS_H
+#pragma once
 
 #include "study/fit/posterior/mixture.h"
 
@@ -61,5 +60,3 @@ void sf_chains_free(sf_chains *chains);
 double sf_split_rhat(int chains, int count, const double *x);
 /* Effective sample size, by Geyer's initial monotone sequence; 0 where R-hat is not finite. */
 double sf_effective_size(int chains, int count, const double *x);
-
-#endif

@@ -7,8 +7,7 @@
  * `effects` independent errors x. Both are integrated in closed form: with their `latent` standard variables
  * z and the whitened derivatives H, one evaluation factorises 1 + S H^T H S, S the sizes, or 1 + H S S H^T
  * where the data are fewer than the variables. */
-#ifndef SF_FIT_POSTERIOR_DISCREPANCY_H
-#define SF_FIT_POSTERIOR_DISCREPANCY_H
+#pragma once
 
 #include "base/error.h"
 #include <gsl/gsl_rng.h>
@@ -50,5 +49,3 @@ void sf_discrepancy_draw(const sf_discrepancy *discrepancy, const double *residu
 /* tau = `scale` times the half-normal variable that the normal variable z stands for; 0.6745 `scale` at z =
  * 0. So a prior that is half-normal in tau is normal in z. */
 double sf_half_normal(double z, double scale);
-
-#endif

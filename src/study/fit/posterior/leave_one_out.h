@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_STUDY_FIT_POSTERIOR_LEAVE_ONE_OUT_H
-#define SF_STUDY_FIT_POSTERIOR_LEAVE_ONE_OUT_H
+#pragma once
 #include <stdint.h>
 
 #include "base/error.h"
@@ -70,4 +69,3 @@ typedef struct sf_leave_options {
 /* `out` [groups], from the samples of `chains`. */
 sf_status sf_leave_one_out(const sf_grouped *grouped, const sf_chains *chains,
                            const sf_leave_options *options, sf_left_out *out, sf_error *err);
-#endif

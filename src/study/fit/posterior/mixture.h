@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SF_STUDY_FIT_POSTERIOR_MIXTURE_H
-#define SF_STUDY_FIT_POSTERIOR_MIXTURE_H
+#pragma once
 #include <gsl/gsl_rng.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -107,4 +106,3 @@ sf_status sf_emulator_fit(int parameters, int responses, int count, const double
 /* y [responses] at u [parameters]. False: u is farther out than every point of the fit. */
 bool sf_emulator_at(const sf_emulator *emulator, const double *u, double *y);
 void sf_emulator_free(sf_emulator *emulator);
-#endif
