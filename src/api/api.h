@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shared by the files that implement include/softfall/softfall.h. */
 #pragma once
-
 #include "softfall/softfall.h"
 
 #include "base/error.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/grid.h"
+#include "base/sets.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -57,11 +58,6 @@ void sf_grid_free(sf_grid *grid) {
     *grid = (sf_grid){0};
 }
 
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
-
 int64_t sf_grid_gather(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
                        int32_t *out) {
     int64_t found = 0, low[3], high[3];
@@ -90,6 +86,6 @@ int64_t sf_grid_gather(const sf_grid *grid, const double centre[3], double radiu
 int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
                       int32_t *out) {
     int64_t found = sf_grid_gather(grid, centre, radius, limit, out);
-    qsort(out, (size_t)(found < limit ? found : limit), sizeof *out, by_value);
+    qsort(out, (size_t)(found < limit ? found : limit), sizeof *out, sf_by_number);
     return found;
 }

@@ -2,7 +2,6 @@
 /* FNV-1a of 64 bits: tells whether data are the same. It is no defence against intent. All functions
  * continue a hash that begins with SF_HASH_START. */
 #pragma once
-
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>

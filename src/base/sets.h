@@ -4,7 +4,9 @@
 
 #include "base/error.h"
 
-/* Disjoint sets of the numbers from 0 on: `parent` leads from each to the lowest of its set. */
+/* Lists and disjoint sets of numbers.
+ *
+ * Disjoint sets of the numbers from 0 on: `parent` leads from each to the lowest of its set. */
 
 /* [count] each number alone; owned by the caller, NULL on failure. `what`: for the sentence. */
 static inline int64_t *sf_sets_alone(int64_t count, const char *what, sf_error *err) {
@@ -25,4 +27,10 @@ static inline void sf_sets_join(int64_t *parent, int64_t a, int64_t b) {
     a = sf_sets_find(parent, a);
     b = sf_sets_find(parent, b);
     parent[a > b ? a : b] = a > b ? b : a;
+}
+
+/* Compares two numbers of type int32_t, for qsort. */
+static inline int sf_by_number(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
 }

@@ -3,7 +3,6 @@
  * base/units.h. docs/case.md lists groups and keys.
  */
 #pragma once
-
 #include "model/good_run.h"
 #include "base/error.h"
 #include "model/model.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/curves.h"
 
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -246,11 +247,6 @@ static double stress_at(const sf_law_curves *c, int64_t k, double strain) {
     return c->curve_stress[i - 1] + fmin(1, x) * (c->curve_stress[i] - c->curve_stress[i - 1]);
 }
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The curve at part x of the way from curve k to the next, by the logarithm of the stress at the strains of
  * both, up to the end of the shorter one. */
 static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_case_curve *out, sf_error *err) {
@@ -261,7 +257,7 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
     *out = (sf_case_curve){.strain = strain, .stress = stress};
     SF_TRY(err->status);
     memcpy(strain, &c->curve_strain[first], (size_t)count * sizeof *strain);
-    qsort(strain, (size_t)count, sizeof *strain, compare);
+    gsl_sort(strain, 1, (size_t)count);
     for (int64_t i = 0; i < count && strain[i] <= end; i++) {
         if (out->count > 0 && strain[i] - strain[out->count - 1] < 1e-9)
             continue;

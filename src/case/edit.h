@@ -3,7 +3,6 @@
  * as they are but for the values of --set texts and the names of files. Only of cases that sf_case_read took
  * with the same texts. sf_case_load_marked reads it. */
 #pragma once
-
 #include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>

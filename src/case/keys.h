@@ -6,7 +6,6 @@
  * libconfig syntax and pass through the same reader as given values.
  */
 #pragma once
-
 #include "case/case.h"
 #include "base/units.h"
 #include <stdbool.h>

@@ -2,7 +2,6 @@
 /* Shared by the readers of a case's keys: the case under construction, the location of a setting, the keys
  * given. Internal to src/case. */
 #pragma once
-
 #include "case/case.h"
 #include "case/keys.h"
 #include "case/grammar.h"

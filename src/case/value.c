@@ -2,6 +2,7 @@
 #include "case/reader.h"
 
 #include <ctype.h>
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -229,18 +230,13 @@ static sf_status read_items(const slot *s, const char *phrase, const char *examp
     return SF_OK;
 }
 
-static int by_time(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static sf_status read_times(const slot *s) {
     if (!is_sequence(s->setting) || config_setting_length(s->setting) > SF_CASE_MAX_TIMES)
         return REFUSE(s, "expected an array of at most %d times, for example [\"12 ms\", \"20 ms\"]",
                       SF_CASE_MAX_TIMES);
     *s->count = config_setting_length(s->setting);
     SF_TRY(read_items(s, "a time", "12 ms"));
-    qsort(s->at, (size_t)*s->count, sizeof(double), by_time);
+    gsl_sort(s->at, 1, (size_t)*s->count);
     return SF_OK;
 }
 

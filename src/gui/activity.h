@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The activity of the window, and the next one that a button or the end of a program leads to. */
 #pragma once
-
 #include "base/error.h"
 #include "io/process.h"
 #include "study/run_folder.h"

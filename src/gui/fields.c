@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/fields.h"
 
-#include <ctype.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,74 +10,31 @@
 #include "base/text.h"
 #include "case/values.h"
 #include "io/plain_file.h"
+#include "pre/mesh/geo_parameters.h"
 
 enum { LARGEST = 1 << 22, DEEPEST = 8 };
 
-/* A word, a string without its quotes, or a single character. */
-typedef struct token {
-    enum { END, WORD, STRING, OTHER } kind;
-    const char *text;
-    size_t length;
-} token;
-
-static const char *skip_blanks(const char *at) {
-    for (;;) {
-        at += strspn(at, " \t\r\n");
-        if (at[0] == '/' && at[1] == '/')
-            at += strcspn(at, "\n");
-        else if (at[0] == '/' && at[1] == '*')
-            at = strstr(at + 2, "*/") ? strstr(at + 2, "*/") + 2 : at + strlen(at);
-        else
-            return at;
-    }
+static bool is(const sf_geo_token *t, const char *text) {
+    return t->kind != SF_GEO_TEXT && sf_geo_token_is(*t, text);
 }
 
-static size_t word_length(const char *at) {
-    size_t length = 0;
-    while (isalnum((unsigned char)at[length]) || at[length] == '_')
-        length++;
-    return length;
-}
-
-static token next(const char **at) {
-    *at = skip_blanks(*at);
-    token t = {OTHER, *at, 1};
-    if (**at == '\0') {
-        t.kind = END;
-        return t;
-    }
-    if (**at == '"') {
-        t = (token){STRING, *at + 1, strcspn(*at + 1, "\"\n")};
-        *at = t.text + t.length + (t.text[t.length] == '"');
-        return t;
-    }
-    if (word_length(*at) > 0)
-        t = (token){WORD, *at, word_length(*at)};
-    *at += t.length;
-    return t;
-}
-
-static bool is(const token *t, const char *text) {
-    return t->kind != STRING && t->length == strlen(text) && strncmp(t->text, text, t->length) == 0;
-}
-
-static void add_name(sf_geo_names *names, const token *variable, const token *name) {
+static void add_name(sf_geo_names *names, const sf_geo_token *variable, const sf_geo_token *name) {
     sf_geo_name *out = &names->name[names->count];
     if (names->count == SF_GEO_NAMES || variable->length >= sizeof out->variable ||
         name->length >= sizeof out->name)
         return;
-    snprintf(out->variable, sizeof out->variable, "%.*s", (int)variable->length, variable->text);
-    snprintf(out->name, sizeof out->name, "%.*s", (int)name->length, name->text);
+    snprintf(out->variable, sizeof out->variable, "%.*s", (int)variable->length, variable->begin);
+    snprintf(out->name, sizeof out->name, "%.*s", (int)name->length, name->begin);
     names->count++;
 }
 
 /* A variable is what stands before "= {" or "= DefineNumber"; its name is the string after the word Name. */
 void sf_geo_names_scan(const char *text, sf_geo_names *names) {
-    token before = {OTHER, text, 0}, last = before, variable = before;
-    for (token t = next(&text); t.kind != END; t = next(&text)) {
-        if (is(&last, "=") && before.kind == WORD && (is(&t, "{") || is(&t, "DefineNumber")))
+    sf_geo_token before = {SF_GEO_MARK, text, 0}, last = before, variable = before;
+    for (sf_geo_token t = sf_geo_token_next(&text); t.kind != SF_GEO_END; t = sf_geo_token_next(&text)) {
+        if (is(&last, "=") && before.kind == SF_GEO_WORD && (is(&t, "{") || is(&t, "DefineNumber")))
             variable = before;
-        if (is(&last, "Name") && t.kind == STRING && variable.length > 0) {
+        if (is(&last, "Name") && t.kind == SF_GEO_TEXT && variable.length > 0) {
             add_name(names, &variable, &t);
             variable.length = 0;
         }
@@ -91,14 +47,14 @@ static sf_status read_depth(const char *path, sf_geo_names *names, int depth, sf
 
 /* The files that the text includes, where they are there; gmsh tells of those that are not. */
 static void read_included(const char *path, const char *text, sf_geo_names *names, int depth) {
-    token last = {OTHER, text, 0};
+    sf_geo_token last = {SF_GEO_MARK, text, 0};
     int above = (int)(sf_path_name(path) - path);
-    for (token t = next(&text); t.kind != END; t = next(&text)) {
+    for (sf_geo_token t = sf_geo_token_next(&text); t.kind != SF_GEO_END; t = sf_geo_token_next(&text)) {
         char included[PATH_MAX];
         sf_error none = SF_ERROR_INIT;
-        int folder = t.kind == STRING && t.text[0] != '/' ? above : 0;
-        if (is(&last, "Include") && t.kind == STRING && depth < DEEPEST &&
-            snprintf(included, sizeof included, "%.*s%.*s", folder, path, (int)t.length, t.text) <
+        int folder = t.kind == SF_GEO_TEXT && t.begin[0] != '/' ? above : 0;
+        if (is(&last, "Include") && t.kind == SF_GEO_TEXT && depth < DEEPEST &&
+            snprintf(included, sizeof included, "%.*s%.*s", folder, path, (int)t.length, t.begin) <
                 (int)sizeof included)
             read_depth(included, names, depth + 1, &none);
         last = t;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The window shows a drop: its bodies, the checks of softfall-pre, the figures, the frames. */
 #pragma once
-
 #include "gui/activity.h"
 #include "gui/fields.h"
 #include "gui/gmsh/window.h"

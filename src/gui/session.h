@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One case in the window: its fields, its geometry, its run, and what is shown of them. */
 #pragma once
-
 #include "study/run_folder.h"
 #include "gui/fields.h"
 #include "gui/gmsh/window.h"

@@ -3,7 +3,6 @@
  * dimensionless) and `description`. Numbers are stored in the native types named by sf_h5_type. All functions
  * record failures in `err` and return its status; a failing read returns no buffer. */
 #pragma once
-
 #include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>

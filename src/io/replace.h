@@ -6,7 +6,6 @@
  * The other name, "path.partial-<process>-<8 digits>", is always a new file: what has that name is neither
  * followed nor overwritten. */
 #pragma once
-
 #include "base/error.h"
 #include <stdbool.h>
 #include <stdio.h>

@@ -4,7 +4,6 @@
  * (softfall-sweep removes an old report itself when its table turns to other inputs). The hidden
  * directory bears the process's number; that of a run that was killed is removed by the next one. */
 #pragma once
-
 #include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>

@@ -15,7 +15,6 @@
  *
  * What could be read in two ways is refused. Each sentence names file, line and cell. */
 #pragma once
-
 #include "io/table_heading.h"
 
 enum { SF_TABLE_INTERPRETATION = 384 };

@@ -20,7 +20,6 @@
  * takes the rest.
  */
 #pragma once
-
 #include "base/error.h"
 #include "material/foam_card.h"
 #include "base/lanes.h"

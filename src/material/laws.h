@@ -7,7 +7,6 @@
  * follow the entry; tests/test_law.c walks the table: uniaxial stress against the batch, stress against the
  * energy. These files make the library softfall_material, which needs src/core alone. */
 #pragma once
-
 #include "base/lanes.h"
 #include "material/card.h"
 

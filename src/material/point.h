@@ -2,7 +2,6 @@
 /* A material point of a law of the solver (material/laws.h) in uniaxial compression: what a
  * written card gives in the test that it was fitted to. */
 #pragma once
-
 #include "material/laws.h"
 
 /* Takes the point through `strain` [count] (from rest, in order) at the nominal rate (s-1), in steps of at

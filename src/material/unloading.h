@@ -4,7 +4,6 @@
  * other than 1 the integral is a pair of power series, in w^SHAPE and in 1 - w^SHAPE, each for values up to
  * 1/2. */
 #pragma once
-
 #include "base/lanes.h"
 #include <math.h>
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The cells of the background mesh, as tetrahedra and by their faces; positions in a cell's vertex list. */
 #pragma once
-
 #include "base/error.h"
 #include <stdint.h>
 

@@ -4,7 +4,6 @@
  * there to t = 0, under gravity and without torque. Without a gap, and with a prescribed motion, nothing is
  * to be done. The model's surface stands in the pose of arrival, `gap` away along the direction. */
 #pragma once
-
 #include "model/model.h"
 
 /* Acceleration of the missile by gravity (m s-2), and its part along the direction. */

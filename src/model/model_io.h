@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* model.h5: the model's field table and its provenance (docs/formats.md). */
 #pragma once
-
 #include "model/model.h"
 #include "io/h5.h"
 #include "io/provenance.h"

@@ -2,7 +2,6 @@
 /* Builds the model from a case, a mesh and a missile surface: cloud, supports, smoothing domains, masses,
  * constraints, contact points, missile. */
 #pragma once
-
 #include "base/error.h"
 #include "model/model.h"
 #include "case/case.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The thickness of the pad where the missile hits it: the length of foam on the missile's path. */
 #pragma once
-
 #include "base/error.h"
 #include "model/model.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The surface of the pad, and the part of it that may touch the pad itself or the anvil. */
 #pragma once
-
 #include "base/error.h"
 #include "case/case.h"
 #include "model/model.h"

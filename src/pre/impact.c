@@ -3,6 +3,7 @@
 #include "pre/mesh/missile_shape.h"
 
 #include "model/model.h"
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -68,11 +69,6 @@ void sf_impact_lowest(const sf_surface *surface, const sf_missile_card *card, do
 
 /* ---- is the place on the pad's top? ---- */
 
-static int by_value(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The largest angle (rad) at the place that holds no node of the whole top: beyond pi the place lies outside
  * its convex outline. 0 at a node. */
 static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, sf_error *err) {
@@ -96,7 +92,7 @@ static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, 
             angle[count++] = atan2(dy, dx);
         }
     }
-    qsort(angle, (size_t)count, sizeof *angle, by_value);
+    gsl_sort(angle, 1, (size_t)count);
     *gap = angle[0] + 2 * M_PI - angle[count - 1];
     for (int64_t k = 1; k < count; k++)
         *gap = fmax(*gap, angle[k] - angle[k - 1]);

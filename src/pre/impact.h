@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The impact point: where on the pad's top the missile's lowest point arrives. */
 #pragma once
-
 #include "case/case.h"
 #include "base/error.h"
 #include "model/model.h"

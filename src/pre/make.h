@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Makes the model of a case: the geometry through gmsh, then build.h. */
 #pragma once
-
 #include "pre/build.h"
 
 enum { SF_LIBRARIES_SIZE = 96 };

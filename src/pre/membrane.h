@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Covers without cells: the membrane on faces of the pad (theory, section "Membranes"). */
 #pragma once
-
 #include "base/error.h"
 #include "case/case.h"
 #include "model/model.h"

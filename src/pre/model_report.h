@@ -3,7 +3,6 @@
  * stands in model.h5 (/provenance/report) as a line for each entry: key, name and value, separated by tabs.
  */
 #pragma once
-
 #include "pre/build.h"
 #include <stdio.h>
 

@@ -2,7 +2,6 @@
 /* The support: rigid fixed bodies of any shape that the pad may touch (theory, section "Contact of the pad
  * with itself"). */
 #pragma once
-
 #include "base/error.h"
 #include "case/case.h"
 #include "model/model.h"

@@ -238,26 +238,12 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
 /* Every file that this program may write. The data of pad.xdmf are moved before it, and earlier ones (pad.h5
  * of earlier versions) removed after it. Without a name of the data yet, pad.xdmf stands for them. */
 static void name_output(job *j) {
-    const char *const names[] = {j->data,
-                                 "pad.xdmf",
-                                 "pad_paraview.py",
-                                 "pad.mp4",
-                                 "pad.gif",
-                                 "pad.png",
-                                 "history.csv",
-                                 "section.csv",
-                                 "reference.csv",
-                                 "compression.csv",
-                                 "compression.gp",
-                                 "compression.png",
-                                 "acceleration.csv",
-                                 "acceleration.gp",
-                                 "acceleration.png",
-                                 "view.html",
-                                 "report.html",
-                                 "summary.json",
-                                 "pad.h5",
-                                 NULL};
+    /* clang-format off */
+    const char *const names[] = {
+        j->data, "pad.xdmf", "pad_paraview.py", "pad.mp4", "pad.gif", "pad.png", "history.csv", "section.csv",
+        "reference.csv", "compression.csv", "compression.gp", "compression.png", "acceleration.csv",
+        "acceleration.gp", "acceleration.png", "view.html", "report.html", "summary.json", "pad.h5", NULL};
+    /* clang-format on */
     static_assert(sizeof names == sizeof j->names, "as many as the job holds");
     memcpy(j->names, names, sizeof names);
     snprintf(j->data, sizeof j->data, "pad.xdmf");

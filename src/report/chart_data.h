@@ -2,7 +2,6 @@
 /* The parts of a chart. Internal to src/report: chart_data.c collects and draws them, chart_script.c
  * writes them as commands of gnuplot. */
 #pragma once
-
 #include "report/chart.h"
 
 typedef struct sf_series_value {

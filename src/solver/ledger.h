@@ -8,7 +8,6 @@
  * same momentum times the pad's thickness. Both hold to rounding, whatever the step: theory, section
  * "Ledger". */
 #pragma once
-
 #include "solver/operators.h"
 #include "solver/state.h"
 

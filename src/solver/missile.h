@@ -13,7 +13,6 @@
  * symmetry; sf_model_whole is the factor to the whole. Points and vectors are in the geometry's frame. A
  * scalar "along" is the component in the direction of the missile card. */
 #pragma once
-
 #include "model/model.h"
 #include "io/h5.h"
 #include "solver/contact/rigid_surface.h"

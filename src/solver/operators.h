@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* sf_operators: data derived from the model before the first step, constant afterwards. */
 #pragma once
-
 #include "base/error.h"
 #include "model/model.h"
 #include "solver/constraint/constraint.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One step of the explicit total-Lagrangian method. */
 #pragma once
-
 #include "solver/operators.h"
 #include "solver/state.h"
 

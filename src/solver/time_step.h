@@ -4,7 +4,6 @@
  * moved by 10 %, and at least every 40 steps (theory, section "Time step"). Contact and constraints are
  * kinematic and do not limit the step. */
 #pragma once
-
 #include "solver/operators.h"
 #include "solver/state.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A drop of a campaign, and what runs a batch of them. */
 #pragma once
-
 #include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>

@@ -3,7 +3,6 @@
  * case.cfg, its geometries with what they include and merge, its materials with their curves, and a README.
  * Its drop has the same bits as that of the case itself. */
 #pragma once
-
 #include "base/error.h"
 
 typedef struct sf_case_folder_request {

@@ -2,7 +2,6 @@
 /* The input file of a campaign: libconfig syntax, dimensional values as texts with units. Every sentence of
  * an error begins with "file:line: group.key". File names are relative to the file that holds them. */
 #pragma once
-
 #include "base/error.h"
 #include "base/units.h"
 #include "case/grammar.h"

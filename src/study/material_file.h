@@ -4,7 +4,6 @@
  * takes it with
  * --set material=@FILE. */
 #pragma once
-
 #include "model/good_run.h"
 #include "material/card.h"
 #include <stddef.h>

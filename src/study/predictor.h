@@ -9,7 +9,6 @@
  * scatter of meshes. Lengths and nugget maximise the restricted likelihood under a weak prior. The same bits
  * for any number of threads. */
 #pragma once
-
 #include "base/error.h"
 #include <gsl/gsl_matrix.h>
 #include <stdbool.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key of a drop, its folder, and the figures of a finished drop. */
 #pragma once
-
 #include "base/error.h"
 #include "case/case.h"
 #include "post/figures/verdict.h"

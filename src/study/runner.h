@@ -5,7 +5,6 @@
  *
  * The programs are those in the folder of the running program, or in SF_BIN_DIR if that is set. */
 #pragma once
-
 #include "study/batch.h"
 #include "base/error.h"
 #include "post/figures/signal.h"

@@ -3,7 +3,6 @@
  * directory that is staged and locked, the runner of drops with its engine, warnings and the closing lines.
  */
 #pragma once
-
 #include "base/program.h"
 #include "io/staging.h"
 #include "study/runner.h"

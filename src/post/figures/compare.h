@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-
 #include "post/figures/signal.h"
 #include "post/figures/verdict.h"
 #include "report/row.h"

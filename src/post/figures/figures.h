@@ -5,7 +5,6 @@
  * To add a figure: a line in the list, and its computation in figures.c. The list declares its member of
  * sf_figures and drives summary.json and the table in docs/formats.md. */
 #pragma once
-
 #include "post/figures/signal.h"
 #include "post/figures/strain_field.h"
 #include "post/results/results.h"

@@ -5,7 +5,6 @@
  * the values is the user's (here: multiples of g). Arrays come from sf_alloc and belong to the series;
  * sf_series_free releases them. A failing function leaves its output series zeroed. */
 #pragma once
-
 #include "base/error.h"
 #include <stdint.h>
 

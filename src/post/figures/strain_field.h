@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures of the strain over the pad at the peak, from the fields of /peak. */
 #pragma once
-
 #include "post/results/results.h"
 #include "report/row.h"
 

@@ -3,7 +3,6 @@
  * verdict. Limits that the user puts on the figures (200 g, HIC 1000) pass or fail beside it: a pad may fail
  * them in a valid run. */
 #pragma once
-
 #include "model/good_run.h"
 #include "post/figures/figures.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The texts of /provenance in results.h5 about its case, for a report. */
 #pragma once
-
 #include "post/results/results.h"
 
 /* A text of the file ("/provenance/model/case_text"); from malloc, owned by the caller; "" if the file does

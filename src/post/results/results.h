@@ -7,7 +7,6 @@
  * file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
  * errors. */
 #pragma once
-
 #include "base/error.h"
 #include "base/mat3.h"
 #include "io/h5.h"

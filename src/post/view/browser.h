@@ -3,7 +3,6 @@
  * facts and arrays of the drop in it as JSON. Numbers of the arrays have 16 bits between the least and the
  * largest value of a frame; the page states the error. */
 #pragma once
-
 #include "post/view/report.h"
 #include "post/view/xdmf.h"
 

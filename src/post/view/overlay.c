@@ -49,19 +49,11 @@ static const char *const colours[MOST_RUNS] = {"#08519c", "#cb181d", "#238b45", 
                                                "#d94801", "#17becf", "#8c6d31", "#525252",
                                                "#e7298a", "#66c2a4", "#fdae6b", "#9e9ac8"};
 /* In the page; compare.csv has every figure. */
-static const char *const listed[] = {"a_max_g",
-                                     "a_max_time_ms",
-                                     "hic",
-                                     "hic_t1_ms",
-                                     "hic_t2_ms",
-                                     "v0_m_s",
-                                     "v_rebound_m_s",
-                                     "absorbed_energy_fraction",
-                                     "max_indentation_mm",
-                                     "max_local_strain",
-                                     "energy_error",
-                                     "nodes",
-                                     "steps"};
+/* clang-format off */
+static const char *const listed[] = {
+    "a_max_g", "a_max_time_ms", "hic", "hic_t1_ms", "hic_t2_ms", "v0_m_s", "v_rebound_m_s",
+    "absorbed_energy_fraction", "max_indentation_mm", "max_local_strain", "energy_error", "nodes", "steps"};
+/* clang-format on */
 
 static error_t parse(int key, char *text, struct argp_state *state) {
     overlay *o = state->input;

@@ -2,7 +2,6 @@
 /* The ready state for ParaView, pad_paraview.py beside pad.xdmf: share/softfall/pad_paraview.py with the
  * facts of the drop in it; and the film and the picture that it makes. */
 #pragma once
-
 #include "post/view/xdmf.h"
 
 /* The text of a file that comes with softfall in share/softfall, from malloc, owned by the caller. SF_ERR_IO:

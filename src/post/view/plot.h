@@ -2,7 +2,6 @@
 /* acceleration.png: the curves, the HIC window and the limit; acceleration.gp, which draws the picture again,
  * or differently, stays beside it. Of a run with a prescribed motion compression.png: stress over strain. */
 #pragma once
-
 #include "post/figures/compare.h"
 #include "post/figures/figures.h"
 #include "post/figures/verdict.h"

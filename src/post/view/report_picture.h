@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-
 #include "post/figures/figures.h"
 #include "io/staging.h"
 

@@ -148,31 +148,21 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
 /* ---- the printed table ---- */
 
 /* Keys of the printed figures, in their order. */
-static const char *const drop_keys[] = {"a_max_g",
-                                        "a_max_raw_g",
-                                        "hic",
-                                        "hic15",
-                                        "hic36",
-                                        "gadd",
-                                        "clip_3ms_g",
-                                        "v_rebound_m_s",
-                                        "absorbed_energy_fraction",
-                                        "a_max_change_by_speed",
-                                        "a_max_change_by_thickness",
-                                        "a_max_scatter",
-                                        "hic_scatter",
-                                        NULL};
+/* clang-format off */
+static const char *const drop_keys[] = {
+    "a_max_g", "a_max_raw_g", "hic", "hic15", "hic36", "gadd", "clip_3ms_g", "v_rebound_m_s",
+    "absorbed_energy_fraction", "a_max_change_by_speed", "a_max_change_by_thickness", "a_max_scatter",
+    "hic_scatter", NULL};
+/* clang-format on */
 static const char *const rotation_keys[] = {"peak_angular_acceleration_rad_s2", "peak_angular_velocity_rad_s",
                                             "bric", NULL};
 static const char *const compression_keys[] = {"peak_force_N", "peak_stress_kPa", "work_J",
                                                "returned_energy_fraction", NULL};
-static const char *const common_keys[] = {"max_indentation_mm",
-                                          "max_mean_strain",
-                                          "max_local_strain",
-                                          "energy_error",
-                                          "stabilisation_energy_fraction",
-                                          "contact_energy_fraction",
-                                          NULL};
+/* clang-format off */
+static const char *const common_keys[] = {
+    "max_indentation_mm", "max_mean_strain", "max_local_strain", "energy_error",
+    "stabilisation_energy_fraction", "contact_energy_fraction", NULL};
+/* clang-format on */
 
 /* Returns the end of the window of a figure (ms), `which` "t1" or "t2"; NaN: the figure has no window. */
 static double window_end(const sf_summary *s, const char *key, const char *which) {

@@ -2,7 +2,6 @@
 /* summary.json, and the short table that softfall-post prints. Keys carry their units; a figure that the run
  * does not define is null. docs/formats.md lists the keys. */
 #pragma once
-
 #include "post/figures/compare.h"
 #include "post/figures/figures.h"
 #include "post/figures/verdict.h"

@@ -7,11 +7,7 @@
 #include <string.h>
 
 #include "base/hash.h"
-
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
+#include "base/sets.h"
 
 typedef struct keyed_node {
     uint64_t key;
@@ -66,10 +62,10 @@ sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
             if (mesh->set[s].face[k] >= 0)
                 mesh->set[s].face[k] = rank[mesh->set[s].face[k]];
         for (int64_t k = 0; k < mesh->set[s].face_count; k++)
-            qsort(&mesh->set[s].face[4 * k], 4, sizeof(int32_t), by_value);
+            qsort(&mesh->set[s].face[4 * k], 4, sizeof(int32_t), sf_by_number);
         for (int64_t k = 0; k < mesh->set[s].count; k++)
             mesh->set[s].node[k] = rank[mesh->set[s].node[k]];
-        qsort(mesh->set[s].node, (size_t)mesh->set[s].count, sizeof(int32_t), by_value);
+        qsort(mesh->set[s].node, (size_t)mesh->set[s].count, sizeof(int32_t), sf_by_number);
     }
 done:
     free(order);

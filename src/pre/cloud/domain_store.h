@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The smoothing domains of a mesh, kept in a store (io/folder.h) for the drops of a campaign. */
 #pragma once
-
 #include "pre/cloud/domains.h"
 
 /* sf_domains_build, unless the store (NULL: none) has its results of the same mesh, supports and limit, by

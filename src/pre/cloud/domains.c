@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/grid.h"
+#include "base/sets.h"
 #include "pre/cloud/domains.h"
 
 #include "pre/cloud/mls.h"
@@ -356,11 +357,6 @@ static void row_add(void *target, int32_t node, const double part[3]) {
         sum[c] += part[c];
 }
 
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
-
 /* The boundary corners of each node: [corner_ptr[i], corner_ptr[i+1]) are 4 * face + corner. */
 static int64_t *list_corners(const builder *b, int64_t **corner, sf_error *err) {
     int64_t n = b->mesh->node_count;
@@ -402,7 +398,7 @@ static void domain_row(const builder *b, const int64_t *corner_ptr, const int64_
 static void finish_row(row_sum *row, double volume, int32_t *node, double *gradient) {
     if (node) {
         memcpy(node, row->node, (size_t)row->count * sizeof *node);
-        qsort(node, (size_t)row->count, sizeof *node, by_value);
+        qsort(node, (size_t)row->count, sizeof *node, sf_by_number);
         for (int64_t k = 0; k < row->count; k++)
             for (int c = 0; c < 3; c++)
                 gradient[3 * k + c] = row->sum[3 * row->slot[node[k]] + c] / volume;

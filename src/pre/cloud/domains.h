@@ -7,7 +7,6 @@
  * vertices, so that boundary tractions are exactly nodal forces of u_h: this makes the patch test with
  * constrained u_h exact (docs/adr/0002). */
 #pragma once
-
 #include "base/error.h"
 #include "pre/cloud/dual.h"
 #include "pre/mesh/mesh.h"

@@ -2,7 +2,6 @@
 /* A pad of layers: one conforming mesh, parted at the interfaces. Each layer gets nodes of its own, so that
  * no shape function reaches across, and ties join the nodes that stand at one place (docs/adr/0017). */
 #pragma once
-
 #include "case/case.h"
 #include "base/error.h"
 #include "model/model.h"

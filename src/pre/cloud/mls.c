@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/grid.h"
+#include "base/sets.h"
 #include "pre/cloud/mls.h"
 
 #include <math.h>
@@ -80,11 +81,6 @@ static void spread(searcher *s, int32_t start, double limit) {
     }
 }
 
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
-
 /* The candidates with no path near enough. */
 static void list_hidden(searcher *s, int32_t node, int64_t count, sf_hidden *out) {
     double far = 0;
@@ -99,7 +95,7 @@ static void list_hidden(searcher *s, int32_t node, int64_t count, sf_hidden *out
         if (s->seen[other] != s->turn || s->level[other] > DETOUR * DETOUR * square_to(s, other))
             s->candidate[used++] = other;
     }
-    qsort(s->candidate, (size_t)used, sizeof *s->candidate, by_value);
+    qsort(s->candidate, (size_t)used, sizeof *s->candidate, sf_by_number);
     out->node = used > 0 ? malloc((size_t)used * sizeof *out->node) : NULL;
     s->failed = s->failed || (used > 0 && !out->node);
     if (!out->node)

@@ -9,16 +9,6 @@
 
 #include "io/plain_file.h"
 
-/* The text of a .geo file, cut as gmsh cuts it. */
-
-typedef enum token_kind { END, WORD, TEXT, MARK } token_kind;
-
-typedef struct token {
-    token_kind kind;
-    const char *begin; /* in the text; of a quoted one without its quotes */
-    size_t length;
-} token;
-
 static const char *skip_blank(const char *p) {
     for (;;) {
         if (isspace((unsigned char)*p)) {
@@ -38,18 +28,17 @@ static bool is_word(char c) {
     return isalnum((unsigned char)c) || c == '_' || c == '.';
 }
 
-/* Words (names and numbers), texts in quotes, and single marks; comments vanish. Moves `*text` on. */
-static token next_token(const char **text) {
+sf_geo_token sf_geo_token_next(const char **text) {
     const char *p = skip_blank(*text);
-    token t = {MARK, p, 1};
+    sf_geo_token t = {SF_GEO_MARK, p, 1};
     if (*p == '\0') {
-        t = (token){END, p, 0};
+        t = (sf_geo_token){SF_GEO_END, p, 0};
     } else if (*p == '"' || *p == '\'') {
         size_t length = strcspn(p + 1, *p == '"' ? "\"" : "'");
         *text = p + 1 + length + (p[1 + length] != '\0');
-        return (token){TEXT, p + 1, length};
+        return (sf_geo_token){SF_GEO_TEXT, p + 1, length};
     } else if (is_word(*p)) {
-        t.kind = WORD;
+        t.kind = SF_GEO_WORD;
         while (is_word(p[t.length]))
             t.length++;
     }
@@ -57,7 +46,7 @@ static token next_token(const char **text) {
     return t;
 }
 
-static bool is_text(token t, const char *text) {
+bool sf_geo_token_is(sf_geo_token t, const char *text) {
     return t.length == strlen(text) && strncmp(t.begin, text, t.length) == 0;
 }
 
@@ -68,7 +57,7 @@ typedef struct name_list {
     char name[MAX_NAMES][SF_CASE_NAME_SIZE];
 } name_list;
 
-static void add_name(name_list *list, token t) {
+static void add_name(name_list *list, sf_geo_token t) {
     if (t.length >= SF_CASE_NAME_SIZE || list->count == MAX_NAMES)
         return;
     memcpy(list->name[list->count], t.begin, t.length);
@@ -81,16 +70,16 @@ static void read_constants(const char **text, name_list *list) {
     int depth = 0;
     bool expecting = false;
     do {
-        token t = next_token(text);
-        if (t.kind == END)
+        sf_geo_token t = sf_geo_token_next(text);
+        if (t.kind == SF_GEO_END)
             return;
-        if (t.kind == MARK && strchr("[({", *t.begin)) {
+        if (t.kind == SF_GEO_MARK && strchr("[({", *t.begin)) {
             expecting = depth++ == 0;
-        } else if (t.kind == MARK && strchr("])}", *t.begin)) {
+        } else if (t.kind == SF_GEO_MARK && strchr("])}", *t.begin)) {
             depth--;
-        } else if (t.kind == MARK && *t.begin == ',') {
+        } else if (t.kind == SF_GEO_MARK && *t.begin == ',') {
             expecting = depth == 1;
-        } else if (t.kind == WORD && expecting && depth == 1) {
+        } else if (t.kind == SF_GEO_WORD && expecting && depth == 1) {
             add_name(list, t);
             expecting = false;
         }
@@ -98,9 +87,9 @@ static void read_constants(const char **text, name_list *list) {
 }
 
 static void scan(const char *text, name_list *list) {
-    for (token t = {MARK, NULL, 0}; t.kind != END;) {
-        t = next_token(&text);
-        if (t.kind == WORD && is_text(t, "DefineConstant"))
+    for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; t.kind != SF_GEO_END;) {
+        t = sf_geo_token_next(&text);
+        if (t.kind == SF_GEO_WORD && sf_geo_token_is(t, "DefineConstant"))
             read_constants(&text, list);
     }
 }
@@ -153,8 +142,8 @@ sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *
 }
 
 static bool reads_others(const char *text) {
-    for (token t = next_token(&text); t.kind != END; t = next_token(&text))
-        if (t.kind == WORD && (is_text(t, "Include") || is_text(t, "Merge")))
+    for (sf_geo_token t = sf_geo_token_next(&text); t.kind != SF_GEO_END; t = sf_geo_token_next(&text))
+        if (t.kind == SF_GEO_WORD && (sf_geo_token_is(t, "Include") || sf_geo_token_is(t, "Merge")))
             return true;
     return false;
 }

@@ -9,6 +9,19 @@
 /* The parameters that a .geo file offers: gmsh itself accepts a value for any name without a message, so that
  * a misspelt parameter would keep its default unnoticed. */
 
+/* The text of a .geo file, cut as gmsh cuts it: words (names and numbers), texts in quotes, and single marks;
+ * comments vanish. */
+typedef struct sf_geo_token {
+    enum { SF_GEO_END, SF_GEO_WORD, SF_GEO_TEXT, SF_GEO_MARK } kind;
+    const char *begin; /* in the text; of a quoted one without its quotes */
+    size_t length;
+} sf_geo_token;
+
+/* Returns the next token and moves `*text` behind it. */
+sf_geo_token sf_geo_token_next(const char **text);
+/* True if it is that word or mark, or the content of a text in quotes. */
+bool sf_geo_token_is(sf_geo_token token, const char *text);
+
 /* Refuses a parameter of the source that no DefineConstant of the texts that the geometry read defines; the
  * sentence lists those that exist. `complete`: `read` holds all of them; else the named file is read here,
  * and the others are not. */

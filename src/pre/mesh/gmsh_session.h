@@ -3,7 +3,6 @@
  * parameters, meshes it if it holds no mesh, and hands out the pad's cells and the missile's surface. gmsh
  * itself runs in a confined process (mesher.h), one for each geometry. */
 #pragma once
-
 #include "base/error.h"
 #include "case/case.h"
 #include "pre/mesh/mesh_store.h"

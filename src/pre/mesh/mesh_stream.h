@@ -2,7 +2,6 @@
 /* Reads the mesh stream of softfall-mesh (mesher_protocol.h), which may hold anything: every count is checked
  * against what is there, every number against its range, before anything is allocated. */
 #pragma once
-
 #include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>

@@ -3,7 +3,6 @@
  * pre/mesher). The child runs gmsh on a file that may be hostile: the parent checks everything that it
  * receives. */
 #pragma once
-
 #include <limits.h>
 #include <stdbool.h>
 #include <stdint.h>

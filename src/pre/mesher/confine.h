@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Takes from this process what a hostile geometry could do harm with. Irrevocable. */
 #pragma once
-
 #include <stdint.h>
 
 /* Limits of memory (bytes beyond what is mapped now; 0: none; none in builds with a sanitizer, whose shadow

@@ -5,7 +5,6 @@
  * the shared rows is cut into independent branches, which may be solved in parallel, and a trunk above them.
  * The cut depends on A alone: x is the same, bit for bit, for any number of threads. */
 #pragma once
-
 #include "base/error.h"
 #include "base/lanes.h"
 #include <stdbool.h>

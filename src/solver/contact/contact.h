@@ -10,7 +10,6 @@
  * from the last step's forces. There is no penalty: no stored contact energy, no stiffness that limits the
  * time step. The energy lost is the impact energy of the surface points that the missile catches up with. */
 #pragma once
-
 #include "solver/operators.h"
 #include "solver/state.h"
 

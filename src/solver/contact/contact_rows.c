@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/contact_rows.h"
+#include "base/sets.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -184,11 +185,6 @@ static sf_status transpose(const sf_model *m, const sf_contact_rows *rows, trans
     return SF_OK;
 }
 
-static int by_value(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
-
 /* Row c: sums into `dense` (zero on entry and exit) and lists the points touched. */
 static int64_t gram_row(const sf_model *m, const sf_contact_rows *rows, const transposed *t, int64_t c,
                         double *dense, int32_t *list, uint8_t *seen) {
@@ -203,7 +199,7 @@ static int64_t gram_row(const sf_model *m, const sf_contact_rows *rows, const tr
             dense[t->point[q]] += rows->value[k] * t->phi[q] / m->mass[node];
         }
     }
-    qsort(list, (size_t)used, sizeof *list, by_value);
+    qsort(list, (size_t)used, sizeof *list, sf_by_number);
     return used;
 }
 

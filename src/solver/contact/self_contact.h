@@ -8,7 +8,6 @@
  * one that lies deeper behind a face than it may, as behind the other side of a thin wall, does not see it.
  */
 #pragma once
-
 #include "solver/ledger.h"
 #include "solver/operators.h"
 

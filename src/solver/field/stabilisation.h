@@ -5,7 +5,6 @@
  * weight (g_I + g_J), g the current stiffness of the foam. Forces are the exact gradient of that energy: on
  * x, and on F as an extra couple in the stress, so that linear and angular momentum hold. */
 #pragma once
-
 #include "solver/operators.h"
 #include "solver/state.h"
 

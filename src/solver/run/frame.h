@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A frame: the fields at the nodes at one time, as docs/formats.md lists them. */
 #pragma once
-
 #include "base/error.h"
 #include "model/model.h"
 #include "io/h5.h"

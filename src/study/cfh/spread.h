@@ -10,7 +10,6 @@
  * fit, of the corrected columns and of the rig. Heights are those of free fall (m) unless a name says "rig".
  * The same bits for any number of threads. */
 #pragma once
-
 #include "case/case.h"
 #include "material/laws.h"
 #include "model/good_run.h"

@@ -2,7 +2,6 @@
 /* A search for the least sum of squares (GSL, Levenberg-Marquardt with trust region, derivatives by
  * differences). */
 #pragma once
-
 #include "base/error.h"
 #include <gsl/gsl_matrix.h>
 

@@ -11,7 +11,6 @@
  * what the objective lost to what y_c expected. Everything is in the caller's scaled variables: logarithms of
  * parameters and of responses. */
 #pragma once
-
 #include "base/error.h"
 #include <stdbool.h>
 #include <stdio.h>

@@ -6,7 +6,6 @@
  * foam's data or failing is simulated; one that is sure to be so stays open. Random rows are simulated for
  * checks alone: the intervals are widened until they hold 95 % of these. */
 #pragma once
-
 #include "study/column.h"
 #include "study/sweep/campaign.h"
 

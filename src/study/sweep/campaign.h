@@ -2,7 +2,6 @@
 /* Runs the open rows of a plan in pieces, and keeps runs.csv up to date, so that a campaign that was
  * interrupted or killed resumes. */
 #pragma once
-
 #include "study/sweep/runs.h"
 #include <stdio.h>
 

@@ -3,7 +3,6 @@
  * full product of the blocks, the last block the fastest. A block is one list, a group of lists of one length
  * (zip), or a sample of several factors. docs/campaigns.md has the keys. */
 #pragma once
-
 #include "base/error.h"
 #include "case/case.h"
 #include "study/config.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* sweep.json, report.html and the lines on the terminal. */
 #pragma once
-
 #include "io/staging.h"
 #include "study/sweep/analysis.h"
 #include "study/sweep/views.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs of a plan that are simulated once more with all fields, for their own report.html and view.html. */
 #pragma once
-
 #include "report/row.h"
 #include "study/sweep/runs.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The input of `softfall-fit compression`: a libconfig file that names the tests (docs/identification.md). */
 #pragma once
-
 #include "study/fit/compression/law_request.h"
 #include "study/config.h"
 #include "study/fit/compression/compression_test.h"

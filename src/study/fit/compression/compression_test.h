@@ -14,7 +14,6 @@
  * Of a branch with more than SF_COMPRESSION_BRANCH_POINTS points the means of neighbours are kept: they hold
  * as much about the law, and the fit stays quick. The turn is kept as it is. */
 #pragma once
-
 #include "base/error.h"
 #include <stdbool.h>
 

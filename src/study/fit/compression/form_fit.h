@@ -4,7 +4,6 @@
  * point counts alike: a form's own misfit is far above the scatter of a machine); then HU, SHAPE and ALPHA
  * from unloading. */
 #pragma once
-
 #include "study/fit/compression/compression_config.h"
 
 /* HU, SHAPE and ALPHA of unloading; NaN without unloading. */

@@ -3,7 +3,6 @@
  * curve (fit/form), which are its start values, its unknown parameters and the rate dependence, and those of
  * the hyperfoam, which are its terms and the lateral strain of its test. */
 #pragma once
-
 #include "study/config.h"
 #include "study/fit/compression/compression_test.h"
 #include "study/fit/form/form.h"

@@ -9,7 +9,6 @@
  * A parameter vector holds for every curve the logarithms of the coefficients' increments, then the other
  * parameters mapped from their bounds to the real line. */
 #pragma once
-
 #include "study/fit/bspline.h"
 #include "study/fit/compression/compression_config.h"
 #include <gsl/gsl_matrix.h>

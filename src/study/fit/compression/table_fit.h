@@ -3,7 +3,6 @@
  * first and then unloading given the loading, the
  * choice of rate dependence and densification by BIC, and the 95 % interval of every number. */
 #pragma once
-
 #include "material/foam_card.h"
 #include "study/fit/compression/point_model.h"
 #include <gsl/gsl_vector.h>

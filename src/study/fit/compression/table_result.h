@@ -3,7 +3,6 @@
  * against the data. Internal to table_kind.c and to table_report.c, which has the page and
  * the words and rows that stand there, too. */
 #pragma once
-
 #include "report/row.h"
 #include "study/fit/compression/compression_kind.h"
 #include "study/fit/compression/table_fit.h"

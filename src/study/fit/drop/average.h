@@ -2,7 +2,6 @@
 /* Several models of one foam, compared and averaged. The weights are those of the leave-one-out predictive
  * densities (posterior/weights.h), or of the evidence where only one drop was measured. */
 #pragma once
-
 #include "io/staging.h"
 #include "report/row.h"
 #include "study/fit/drop/inference.h"

@@ -7,7 +7,6 @@
  * largest indentation over the thickness, which is no datum but bounded. Measured or not, every drop
  * has the numbers; one that is not defined (no rebound within the end time) and was not measured is NaN. */
 #pragma once
-
 #include "study/runner.h"
 #include "study/column.h"
 #include "study/fit/drop/fit_input.h"

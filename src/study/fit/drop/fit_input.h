@@ -2,7 +2,6 @@
 /* The input of `softfall-fit drop` (docs/identification.md): start material, drops with what was measured,
  * unknown parameters with their priors, and drops to predict. */
 #pragma once
-
 #include "study/batch.h"
 #include "model/good_run.h"
 #include "post/figures/compare.h"

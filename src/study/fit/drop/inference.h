@@ -10,7 +10,6 @@
  * speeds, whose effect is taken as linear. So delta, x and the speeds are integrated in closed form, and
  * drawn where predictions need them. */
 #pragma once
-
 #include "study/fit/drop/drop_fit.h"
 #include "study/fit/posterior/chains.h"
 #include "study/fit/posterior/discrepancy.h"

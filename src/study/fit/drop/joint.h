@@ -7,7 +7,6 @@
  * Responses: nominal stress over the largest measured one, at strains 0.05 apart (neighbours closer than that
  * deviate alike), loading then unloading; ln of a cushion's peak deceleration in g (F/m, CFC 1000). */
 #pragma once
-
 #include "study/config.h"
 #include "material/laws.h"
 

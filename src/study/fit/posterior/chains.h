@@ -15,7 +15,6 @@
  * gives. Every chain has its own generator, and what chains share is computed between rounds in the chains'
  * order: the result has the same bits for any number of threads. */
 #pragma once
-
 #include "study/fit/posterior/mixture.h"
 
 typedef struct sf_chains_options {

@@ -8,7 +8,6 @@
  * z and the whitened derivatives H, one evaluation factorises 1 + S H^T H S, S the sizes, or 1 + H S S H^T
  * where the data are fewer than the variables. */
 #pragma once
-
 #include "base/error.h"
 #include <gsl/gsl_rng.h>
 
