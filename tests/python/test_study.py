@@ -118,3 +118,13 @@ def test_a_drop_that_is_not_to_be_used_raises_or_is_nan(case):
     assert np.isnan(softfall.function(case, ["missile.velocity [m/s]"], "hic", unusable="nan")(30))
     with pytest.raises(softfall.Error, match="does not define peak_force_N"):
         softfall.function(case, ["missile.velocity [m/s]"], "peak_force_N")(4.5)
+
+
+def test_a_series_is_refused_by_studies_and_packed_by_softfall_new(tmp_path):
+    """A study would read the first drop of a series without a word."""
+    source = pathlib.Path(os.environ["SF_SOURCE_DIR"]) / "examples/series/case.cfg"
+    plan = {"case": str(source), "factors": [{"key": "missile.velocity", "values": ["3 m/s"]}], "figures": [{"key": "a_max_g"}]}
+    with pytest.raises(softfall.InputError, match="a study runs single drops"):
+        softfall.sweep(plan, output=tmp_path / "sweep")
+    program("new", tmp_path / "pad", "--from", "series", cwd=tmp_path)
+    assert softfall.Case(tmp_path / "pad/case.cfg")["series.drops"] == 3
