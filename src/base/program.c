@@ -275,7 +275,7 @@ static error_t take(int key, char *text, struct argp_state *state) {
             if (key_of(&c->list[l].option[k], l, k) != key)
                 continue;
             take_option(&c->list[l].option[k], c->list[l].values, text, p->err);
-            if (p->err->status != SF_OK && c->is_usage)
+            if (p->err->status == SF_ERR_INPUT && c->is_usage)
                 argp_error(state, "%s", p->err->text);
             return 0;
         }
