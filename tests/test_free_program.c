@@ -171,9 +171,9 @@ static void history_and_figures_hold(void **state) {
                                    {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
                                    {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
         for (int j = 0; j < 3; j++)
-            largest[j] = fmax(largest[j], fabs(axis[j][0] * h->angular_velocity_x[k] +
-                                               axis[j][1] * h->angular_velocity_y[k] +
-                                               axis[j][2] * h->angular_velocity_z[k]));
+            largest[j] = larger(largest[j], fabs(axis[j][0] * h->angular_velocity_x[k] +
+                                                 axis[j][1] * h->angular_velocity_y[k] +
+                                                 axis[j][2] * h->angular_velocity_z[k]));
     }
     double bric = hypot(largest[0] / 66.25, hypot(largest[1] / 56.45, largest[2] / 42.87));
     assert_close(f.bric / bric, 1, 0.01);
