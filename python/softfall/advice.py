@@ -142,7 +142,7 @@ def _doubts(name: str, posterior: Mapping[str, Any], trends: Sequence[Trend], ba
     """Yields what softfall-cfh does not know of a place, in sentences."""
     failed = sum(check["failed"] for check in posterior["checks"])
     if any(trend.freedom == 0 for trend in trends):
-        yield f"{name}: no draw was simulated, or too few: the error of the columns is not known, and nothing is decided"
+        yield f"{name}: too few draws were simulated with success: the error of the columns is not known, and nothing is decided"
     elif failed:
         yield f"{name}: {failed} of {len(posterior['checks'])} simulated draws failed: there the columns are not confirmed"
     if posterior["draws_beyond_simulated"]:
@@ -348,8 +348,8 @@ def advise(pads: Pads, q: Question, stress: np.ndarray | None = None, test_cost:
         low, high = place.ends
         for h in (*q.heights, *([] if math.isnan(q.required) else [q.required])):
             if not low <= h <= high:
-                raise InputError(f"{place.name}: {h:g} m lies outside of the heights looked at, {low:.3g} to {high:.3g} m, about the critical height: "
-                                 "at the one all pads pass, at the other none")
+                raise InputError(f"{place.name}: {h:g} m lies outside of the heights looked at, {low:.3g} to {high:.3g} m, "
+                                 "which reach from below to above the critical height of the draws")
     weight, loss = pads.weight, _Loss(pads, q)
     height = tuple(float(v) for v in quantiles(loss.order, loss.height, weight))
     share, now = float(loss.probability(weight)) if q.decides else math.nan, float(loss(weight))
