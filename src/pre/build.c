@@ -224,7 +224,7 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
     sf_dual dual = {0};
     if (sf_mesh_check(mesh, &report->mesh_volume, err) != SF_OK || sf_cloud_reorder(mesh, err) != SF_OK ||
         sf_dual_build(mesh, &dual, err) != SF_OK || sf_group_check(c, mesh, &dual, err) != SF_OK ||
-        sf_connectivity_check(mesh, &dual, err) != SF_OK ||
+        sf_connectivity_check(mesh, &dual, c->separate, err) != SF_OK ||
         sf_layers_build(c, mesh, &dual, layers, err) != SF_OK)
         goto done;
     sf_cloud_hash(mesh, report->mesh_hash);
@@ -667,7 +667,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && (sf_layers_loosen(c, m), true) &&
-        sf_support_take(c, mesh->support, m, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
+        sf_support_take(c, mesh, m, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
         find_skin(c, m, report, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&

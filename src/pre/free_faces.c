@@ -7,6 +7,7 @@
 
 #include "base/grid.h"
 #include "base/mat3.h"
+#include "base/triangle.h"
 #include "model/cells.h"
 #include "pre/mesh/missile_shape.h"
 
@@ -41,17 +42,13 @@ typedef struct shape {
 
 static shape shape_of(const sf_model *m, const int32_t node[3]) {
     shape s = {{0}, {0}, 0};
-    double side[2][3];
-    const double *a = &m->position[3 * (int64_t)node[0]];
-    for (int k = 1; k < 3; k++)
-        for (int r = 0; r < 3; r++)
-            side[k - 1][r] = m->position[3 * (int64_t)node[k] + r] - a[r];
-    sf_cross3(side[0], side[1], s.normal);
-    double size = sqrt(sf_dot3(s.normal, s.normal));
-    for (int r = 0; r < 3; r++) {
-        s.centroid[r] = a[r] + (side[0][r] + side[1][r]) / 3;
-        s.normal[r] /= size > 0 ? size : 1;
-    }
+    const double *x[3];
+    for (int k = 0; k < 3; k++)
+        x[k] = &m->position[3 * (int64_t)node[k]];
+    sf_triangle_normal(x[0], x[1], x[2], s.normal);
+    sf_unit3(s.normal);
+    for (int r = 0; r < 3; r++)
+        s.centroid[r] = x[0][r] + ((x[1][r] - x[0][r]) + (x[2][r] - x[0][r])) / 3;
     for (int k = 0; k < 3; k++) {
         double arm[3];
         for (int r = 0; r < 3; r++)
@@ -207,7 +204,7 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
     int64_t first = -1;
     unheld[0] = NAN;
     SF_TRY(faces_find(m, &f, err));
-    if (f.count > 0 && c->loose_count > 0)
+    if (f.count > 0 && (c->loose_count > 0 || c->separate))
         first = 0;
     else if (f.count > 0)
         find_touching(m, &f, &first, err);
@@ -215,7 +212,8 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
          itself = !off && (first >= 0 || c->self_contact == SF_SELF_CONTACT_ON);
     if (first >= 0 && off)
         memcpy(unheld, f.shape[first].centroid, sizeof f.shape[first].centroid);
-    if (err->status == SF_OK && f.count > 0 && (itself || m->support_triangle_count > 0)) {
+    m->skin_watched = off && first >= 0;
+    if (err->status == SF_OK && f.count > 0 && (itself || m->skin_watched || m->support_triangle_count > 0)) {
         m->skin_count = f.count;
         m->skin_triangle = f.node;
         m->skin_friction = c->self_friction;

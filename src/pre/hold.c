@@ -375,9 +375,11 @@ void sf_hold_warn(const sf_hold *hold, const sf_model *m, const sf_sink *sink) {
             "pad.fixed, pad.sliding: %.3g %% of the nodes of the pad's underside (z = %.4g mm) are held along z: "
             "the rest hangs free",
             100 * hold->underside, 1e3 * hold->underside_low);
+    double friction = m->anvil.friction;
+    for (int64_t k = 0; k < m->support_count; k++)
+        friction = fmax(friction, m->support_friction[k]);
     for (int c = 0; c < 2; c++)
-        if (hold->slides[c] && m->missile.direction[c] != 0 && !(m->anvil.friction > 0) &&
-            !(m->support_friction > 0))
+        if (hold->slides[c] && m->missile.direction[c] != 0 && !(friction > 0))
             sf_sink_tell(
                 sink, SF_WARNING,
                 "nothing holds the pad along %c, where missile.direction has the component %g: it will slide "

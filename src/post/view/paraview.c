@@ -65,8 +65,9 @@ static void put_facts(FILE *f, const sf_results *r, const sf_xdmf *made) {
     put_mirrors(f, r);
     put_optional(f, "sphere", r->sphere_radius);
     put_optional(f, "peak", made->peak_time);
-    fprintf(f, "    \"missile\": %s, \"driven\": %s,\n", r->surface_triangle_count > 0 ? "True" : "False",
-            r->driven ? "True" : "False");
+    fprintf(f, "    \"missile\": %s, \"support\": %s, \"driven\": %s,\n",
+            r->surface_triangle_count > 0 ? "True" : "False",
+            r->support_triangle_count > 0 ? "True" : "False", r->driven ? "True" : "False");
     put_colouring(f, made);
     fputs("}", f);
 }

@@ -164,6 +164,16 @@ static sf_status write_points(const store *s, const sf_h5_info *info, int64_t co
     return err->status;
 }
 
+static sf_status write_supports(const store *s, sf_error *err) {
+    const sf_results *r = s->results;
+    if (r->support_triangle_count == 0)
+        return SF_OK;
+    SF_TRY(put_integers(s, "/support/triangle", "triangles of the rigid supports", SF_H5_I32,
+                        r->support_triangle_count, 3, r->support_triangle, err));
+    return write_points(s, &(sf_h5_info){"/support/position", "m", "positions of their nodes"},
+                        r->support_node_count, r->support_position, NULL, NULL, err);
+}
+
 /* The row of the history of that time, or the last before it. */
 static int64_t row_at(const sf_history *h, double time) {
     int64_t low = 0, high = h->rows - 1;
@@ -290,7 +300,8 @@ static sf_status write_data(const char *path, sf_results *r, const sf_xdmf_optio
     store s = {.results = r, .full = options->full};
     SF_TRY(sf_h5_create(path, &s.file, err));
     if (sf_provenance_write(s.file, "softfall-paraview", &provenance, err) == SF_OK &&
-        write_topology(&s, err) == SF_OK && write_materials(&s, err) == SF_OK)
+        write_topology(&s, err) == SF_OK && write_materials(&s, err) == SF_OK &&
+        write_supports(&s, err) == SF_OK)
         write_frames(&s, r, shown, err);
     sf_h5_close(&s.file, err->status == SF_OK ? err : &ignored);
     return err->status;
@@ -353,16 +364,30 @@ static void put_pad(const scene *x, const sf_results *r, int fields, double time
     fputs("        </Grid>\n", x->file);
 }
 
-static void put_missile(const scene *x, const sf_results *r, double time, int64_t index) {
-    if (r->surface_triangle_count == 0)
-        return;
-    put_grid_start(x, "missile", time);
+static void put_triangles(const scene *x, const char *name, double time, int64_t count) {
+    put_grid_start(x, name, time);
     fprintf(x->file,
             "          <Topology TopologyType=\"Triangle\" NumberOfElements=\"%lld\"><DataItem "
             "Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" Dimensions=\"%lld "
-            "3\">%s:/missile/triangle</DataItem></Topology>\n"
+            "3\">%s:/%s/triangle</DataItem></Topology>\n"
             "          <Geometry GeometryType=\"XYZ\">",
-            (long long)r->surface_triangle_count, (long long)r->surface_triangle_count, x->data);
+            (long long)count, (long long)count, x->data, name);
+}
+
+static void put_supports(const scene *x, const sf_results *r, double time) {
+    if (r->support_triangle_count == 0)
+        return;
+    put_triangles(x, "support", time, r->support_triangle_count);
+    fprintf(x->file,
+            "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%lld 3\">"
+            "%s:/support/position</DataItem></Geometry>\n        </Grid>\n",
+            x->precision, (long long)r->support_node_count, x->data);
+}
+
+static void put_missile(const scene *x, const sf_results *r, double time, int64_t index) {
+    if (r->surface_triangle_count == 0)
+        return;
+    put_triangles(x, "missile", time, r->surface_triangle_count);
     put_float_item(x, index, "missile_position", r->surface_node_count, 3);
     fputs("</Geometry>\n", x->file);
     for (int k = 0; k < missile_array_count(r); k++)
@@ -377,6 +402,7 @@ static void put_frame(const scene *x, const sf_results *r, int fields, double ti
             (long long)index, time);
     put_pad(x, r, fields, time, index);
     put_missile(x, r, time, index);
+    put_supports(x, r, time);
     fputs("      </Grid>\n", x->file);
 }
 

@@ -180,7 +180,8 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
     SF_REFUSE(
         err,
         "the pad is in %lld parts that share no faces of cells: the smallest, of %lld cells, lies between (%.4g, "
-        "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm: " ADVICE,
+        "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm: " ADVICE
+        ", or let them be bodies that touch each other (pad.separate = true)",
         (long long)parts, (long long)cells[least], low[0], low[1], low[2], high[0], high[1], high[2]);
     free(cells);
     return err->status;
@@ -242,8 +243,8 @@ done:
     return err->status;
 }
 
-sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    if (check_overlap(mesh, dual, err) != SF_OK || check_parts(mesh, dual, err) != SF_OK)
+sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, bool separate, sf_error *err) {
+    if (check_overlap(mesh, dual, err) != SF_OK || (!separate && check_parts(mesh, dual, err) != SF_OK))
         return err->status;
     return check_hinges(mesh, dual, err);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/layers.h"
 
-#include "base/mat3.h"
+#include "base/triangle.h"
 #include "base/sets.h"
 #include "pre/cloud/dual.h"
 #include <math.h>
@@ -97,13 +97,9 @@ static sf_status check_pairs(const sf_case *c, const pair_table *pairs, sf_error
 /* The component along the normal of a face; 0 if it is not normal to an axis. */
 static uint8_t normal_component(const sf_mesh *mesh, const sf_inner_face *face) {
     const int32_t *node = &face->node[face->node[0] < 0];
-    const double *p = &mesh->position[3 * (int64_t)node[0]];
-    double u[3], v[3], n[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = mesh->position[3 * (int64_t)node[1] + k] - p[k];
-        v[k] = mesh->position[3 * (int64_t)node[2] + k] - p[k];
-    }
-    sf_cross3(u, v, n);
+    double n[3];
+    sf_triangle_normal(&mesh->position[3 * (int64_t)node[0]], &mesh->position[3 * (int64_t)node[1]],
+                       &mesh->position[3 * (int64_t)node[2]], n);
     double length = sqrt(sf_dot3(n, n));
     for (int k = 0; k < 3; k++)
         if (hypot(n[(k + 1) % 3], n[(k + 2) % 3]) <= ALONG_AXIS * length)
