@@ -2,7 +2,6 @@
 #include "pre/foam_path.h"
 
 #include "base/mat3.h"
-#include "base/triangle.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/free_faces.h"
 #include "pre/impact.h"

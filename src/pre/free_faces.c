@@ -7,7 +7,6 @@
 
 #include "base/grid.h"
 #include "base/mat3.h"
-#include "base/triangle.h"
 #include "model/cells.h"
 #include "pre/mesh/missile_shape.h"
 

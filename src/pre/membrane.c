@@ -3,9 +3,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "base/triangle.h"
+#include "base/mat3.h"
 #include "pre/support.h"
 
 /* Adds the triangles of a boundary face: of a quadrangle those on both diagonals. */

@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/triangle.h"
-#include "pre/mesh/mesh.h"
+#include "base/mat3.h"
 
 typedef struct raw_edge {
     int32_t low, high;

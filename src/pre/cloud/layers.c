@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/layers.h"
 
-#include "base/triangle.h"
+#include "base/mat3.h"
 #include "base/sets.h"
-#include "pre/cloud/dual.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

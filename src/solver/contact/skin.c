@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "base/triangle.h"
 
 static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     unsigned long nodes = (unsigned long)(m->node_count + m->support_node_count);
