@@ -197,6 +197,17 @@ static sf_status check_surface(const char *name, int64_t count, const int32_t *t
     return SF_OK;
 }
 
+static sf_status check_supports(const sf_model *m, sf_error *err) {
+    SF_TRY(check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count, err));
+    for (int64_t k = 0; k < m->support_triangle_count; k++)
+        if (m->support_part[k] >= m->support_count)
+            return SF_FAIL(err, SF_ERR_MODEL, "support triangle %lld is of support %d, of 0 to %lld",
+                           (long long)k, m->support_part[k], (long long)m->support_count - 1);
+    for (int64_t k = 0; k < m->support_count; k++)
+        SF_TRY(check_bound("support friction", m->support_friction[k], 0, 10, err));
+    return SF_OK;
+}
+
 static sf_status check_mesh(const sf_model *m, sf_error *err) {
     SF_TRY(check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count,
                      false, err));
@@ -328,8 +339,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
     if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
         check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
         check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
-        check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count,
-                      err) != SF_OK)
+        check_supports(m, err) != SF_OK)
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
         return err->status;

@@ -100,7 +100,7 @@ static void faces_free(faces *f) {
 
 static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
     int64_t all = 0;
-    uint8_t *mark = mark_nodes(m, err);
+    SF_OWNED uint8_t *mark = mark_nodes(m, err);
     *f = (faces){0};
     if (mark && sf_skin_triangles(m, &all, &f->node, err) == SF_OK) {
         f->shape = sf_alloc(err, (unsigned long)all, sizeof *f->shape, "skin of the pad");
@@ -119,7 +119,6 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
         memcpy(&f->position[3 * k], s.centroid, sizeof s.centroid);
     }
     sf_box3(m->node_count, m->position, f->low, f->high);
-    free(mark);
     if (err->status == SF_OK && f->count > 0)
         sf_grid_build(&f->grid, f->count, f->position, f->radius, err);
     if (err->status != SF_OK)
@@ -182,7 +181,7 @@ static bool meets_image(const sf_model *m, const shape *s, double length) {
 /* *first: a face that can touch another one, its image, or the anvil; -1: none can. */
 static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first, sf_error *err) {
     static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
-    int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
+    SF_OWNED int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
     double anvil = f->high[2] - m->anvil.depth;
     *first = -1;
     for (int64_t i = 0; near && i < f->count && *first < 0; i++) {
@@ -194,7 +193,6 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
              (meets_image(m, s, length) || meets_face(m, f, i, length, near))))
             *first = i;
     }
-    free(near);
     return err->status;
 }
 

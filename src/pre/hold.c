@@ -59,7 +59,7 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
     int64_t count = count_faces(m);
     int64_t *place = sf_sets_alone(m->node_count, "parts of the pad", err),
             *parent = sf_sets_alone(m->cell_count, "parts of the pad", err);
-    cell_face *face = sf_alloc(err, (unsigned long)count, sizeof *face, "faces of the cells");
+    SF_OWNED cell_face *face = sf_alloc(err, (unsigned long)count, sizeof *face, "faces of the cells");
     if (err->status == SF_OK) {
         for (int64_t k = 0; k < m->tie_count; k++)
             if (m->tie_mask[k] == ALL)
@@ -73,7 +73,6 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
             parent[c] = sf_sets_find(parent, c);
     }
     free(place);
-    free(face);
     if (err->status == SF_OK)
         return parent;
     free(parent);
@@ -105,12 +104,11 @@ static void number_bodies(const sf_model *m, int32_t *number, body_list *b) {
 
 static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
     unsigned long cells = (unsigned long)m->cell_count;
-    int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
+    SF_OWNED int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
     b->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *b->node, "parts of the pad");
     b->first = sf_alloc(err, cells, sizeof *b->first, "parts of the pad");
     if (err->status == SF_OK && (b->cell = join_cells(m, err)))
         number_bodies(m, number, b);
-    free(number);
     return err->status;
 }
 

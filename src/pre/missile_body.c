@@ -32,13 +32,12 @@ static sf_status check_nodes(int64_t node_count, int64_t triangle_count, const i
 static sf_status check_closed(int64_t node_count, const double *position, int64_t triangle_count,
                               const int32_t *triangle, sf_error *err) {
     SF_TRY(check_nodes(node_count, triangle_count, triangle, err));
-    sf_half_edge *edge = sf_half_edges(triangle_count, triangle, err);
+    SF_OWNED sf_half_edge *edge = sf_half_edges(triangle_count, triangle, err);
     for (int64_t k = 0, end; edge && k < 3 * triangle_count && err->status == SF_OK; k = end) {
         end = sf_half_edges_end(edge, k, 3 * triangle_count);
         if (end != k + 2 || edge[k].rises == edge[k + 1].rises)
             refuse_edge(&edge[k], end - k, position, err);
     }
-    free(edge);
     return err->status;
 }
 

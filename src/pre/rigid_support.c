@@ -56,8 +56,8 @@ static void join_corners(const triangles *s, const sf_half_edge *edge, int64_t *
  */
 static sf_status split_edges(const triangles *s, int part, sf_model *m, sf_error *err) {
     int64_t corners = 3 * s->count;
-    sf_half_edge *edge = sf_half_edges(s->count, s->node, err);
-    int64_t *parent = sf_sets_alone(corners, "edges of the support", err);
+    SF_OWNED sf_half_edge *edge = sf_half_edges(s->count, s->node, err);
+    SF_OWNED int64_t *parent = sf_sets_alone(corners, "edges of the support", err);
     if (err->status == SF_OK) {
         int32_t *node = &m->support_triangle[3 * m->support_triangle_count];
         join_corners(s, edge, parent);
@@ -70,8 +70,6 @@ static sf_status split_edges(const triangles *s, int part, sf_model *m, sf_error
         memset(&m->support_part[m->support_triangle_count], part, (size_t)s->count);
         m->support_triangle_count += s->count;
     }
-    free(edge);
-    free(parent);
     return err->status;
 }
 

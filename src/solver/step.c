@@ -91,33 +91,49 @@ static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed)
     return fastest;
 }
 
-/* What a node of the foam has passed through by more than its spacing; NULL: nothing. The anvil holds the
- * base alone: of it a fifth of the thickness counts, as in the verdict. */
-static const char *find_passed(const sf_model *m, const sf_operators *op, const sf_state *s, double top,
-                               int64_t i) {
+/* Where the foam has to stay. */
+typedef struct confines {
+    double floor, plane[2]; /* m, of the anvil, -INFINITY: there is none; of symmetry planes, NAN likewise */
+} confines;
+
+static confines find_confines(const sf_model *m) {
+    double low[3], high[3];
+    confines c;
+    sf_box3(m->node_count, m->position, low, high);
+    c.floor = m->anvil.depth > 0 ? high[2] - m->anvil.depth : -INFINITY;
+    for (int axis = 0; axis < 2; axis++)
+        if (!sf_symmetry_plane(m, axis, &c.plane[axis]))
+            c.plane[axis] = NAN;
+    return c;
+}
+
+/* Returns what the foam at node i has passed through by more than its spacing, NULL: nothing. Of the missile
+ * half of it counts, since larger gaps are not known, and of the anvil, which holds the base alone, a fifth
+ * of the thickness, as in the verdict. */
+static const char *find_passed(const sf_model *m, const sf_operators *op, const sf_state *s,
+                               const confines *c, int64_t i) {
     static const double SHARE = 0.2;
-    double x[3], normal[3], gap, place, least = m->spacing[i];
+    double x[3], normal[3], gap, least = m->spacing[i];
     const double *rest = &m->position[3 * i];
     for (int r = 0; r < 3; r++)
         x[r] = rest[r] + s->d[3 * i + r];
-    if (m->anvil.depth > 0 && x[2] < top - m->anvil.depth - fmax(least, SHARE * m->thickness))
+    if (x[2] < c->floor - fmax(least, SHARE * m->thickness))
         return "the anvil";
     for (int axis = 0; axis < 2; axis++)
-        if (sf_symmetry_plane(m, axis, &place) && fabs(x[axis] - place) > least &&
-            (x[axis] - place) * (rest[axis] - place) < 0)
+        if (fabs(x[axis] - c->plane[axis]) > least &&
+            (x[axis] - c->plane[axis]) * (rest[axis] - c->plane[axis]) < 0)
             return "a symmetry plane";
     bool inside = sf_missile_near(m, &s->missile, &op->surface, x, 0) &&
-                  sf_missile_gap(m, &s->missile, &op->surface, x, &gap, normal) && gap < -least;
+                  sf_missile_gap(m, &s->missile, &op->surface, x, &gap, normal) && gap < -0.5 * least;
     return inside ? "the missile" : NULL;
 }
 
 /* Fails where foam has passed through anvil, missile or a symmetry plane; faces of the foam and supports:
  * contact/self_contact.h. */
 static sf_status check_passed(const sf_model *m, const sf_operators *op, const sf_state *s, sf_error *err) {
-    double low[3], high[3];
-    sf_box3(m->node_count, m->position, low, high);
+    const confines c = find_confines(m);
     for (int64_t i = 0; i < m->node_count; i++) {
-        const char *through = find_passed(m, op, s, high[2], i);
+        const char *through = find_passed(m, op, s, &c, i);
         const double *x = &m->position[3 * i], *d = &s->d[3 * i];
         if (through)
             return SF_FAIL(

@@ -393,7 +393,7 @@ sf_status sf_browser_write(const sf_staging *output, const sf_report *report, co
                             r->cell_type,  r->cell_ptr,   r->cell_node};
     page p = {.report = report, .results = r, .made = made, .bytes = megabytes * 1e6};
     sf_error problem = SF_ERROR_INIT;
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     *warning = '\0';
     if (made->frames == 0 || megabytes == 0)
         return SF_OK;
@@ -412,6 +412,5 @@ sf_status sf_browser_write(const sf_staging *output, const sf_report *report, co
     sf_shown_free(&p.shown);
     free(p.value);
     free(p.coded);
-    free(text);
     return err->status;
 }

@@ -202,7 +202,7 @@ static int by_depth(const void *a, const void *b, void *positions) {
 static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *frame, sf_error *err) {
     double axis[2], top;
     sf_section_point station[SF_SECTION_STATIONS];
-    int32_t *nodes = sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
+    SF_OWNED int32_t *nodes = sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
     size_t count = 0;
     if (!nodes)
         return err->status;
@@ -218,7 +218,6 @@ static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *fra
         fprintf(file, "section,%d", nodes[i]);
         write_point(file, r, frame, top, &point);
     }
-    free(nodes);
     for (int s = 0; s < SF_SECTION_STATIONS; s++) {
         if (!sf_section_inside(&station[s]))
             continue;

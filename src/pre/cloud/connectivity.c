@@ -54,13 +54,13 @@ static void free_probes(probes *p) {
 
 static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p, sf_error *err) {
     unsigned long most = (unsigned long)(mesh->node_count + dual->face_count);
-    uint8_t *surface = sf_alloc(err, (unsigned long)mesh->node_count, 1, "surface nodes");
+    SF_OWNED uint8_t *surface = sf_alloc(err, (unsigned long)mesh->node_count, 1, "surface nodes");
     p->node = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *p->node, "surface nodes");
     p->position = sf_alloc(err, 3 * most, sizeof *p->position, "surface points");
     p->zero = sf_alloc(err, most, sizeof *p->zero, "surface points");
     p->near = sf_alloc(err, most, sizeof *p->near, "surface points");
     if (err->status != SF_OK)
-        goto done;
+        return err->status;
     for (int64_t f = 0; f < dual->face_count; f++)
         for (int k = 0; k < dual->face[f].size; k++)
             surface[dual->face[f].node[k]] = 1;
@@ -71,8 +71,6 @@ static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p
         mean_of(mesh, &p->node[p->count], 1, &p->position[3 * p->count]);
     for (int64_t f = 0; f < dual->face_count; f++, p->count++)
         mean_of(mesh, dual->face[f].node, dual->face[f].size, &p->position[3 * p->count]);
-done:
-    free(surface);
     return err->status;
 }
 
@@ -157,7 +155,7 @@ static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_erro
 static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *err) {
     int64_t parts = 0, least = 0;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    int64_t *cells = sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
+    SF_OWNED int64_t *cells = sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
     if (!cells)
         return err->status;
     for (int64_t c = 0; c < mesh->cell_count; c++)
@@ -181,12 +179,11 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
         "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm: " ADVICE
         ", or let them be bodies that touch each other (pad.separate = true)",
         (long long)parts, (long long)cells[least], low[0], low[1], low[2], high[0], high[1], high[2]);
-    free(cells);
     return err->status;
 }
 
 static sf_status check_parts(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    int64_t *parent = sf_sets_alone(mesh->cell_count, "connected cells", err);
+    SF_OWNED int64_t *parent = sf_sets_alone(mesh->cell_count, "connected cells", err);
     if (!parent)
         return err->status;
     for (int64_t f = 0; f < dual->inner_count; f++)
@@ -194,7 +191,6 @@ static sf_status check_parts(const sf_mesh *mesh, const sf_dual *dual, sf_error 
     for (int64_t c = 0; c < mesh->cell_count && err->status == SF_OK; c++)
         if (sf_sets_find(parent, c) != 0)
             refuse_parts(mesh, parent, err);
-    free(parent);
     return err->status;
 }
 
@@ -209,11 +205,11 @@ static int64_t corner(const sf_mesh *mesh, int64_t cell, int32_t node) {
 /* Around every node the corners of cells are joined through the faces: bodies that only touch at a point or
  * along an edge would be a hinge. */
 static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    int64_t corners = mesh->cell_ptr[mesh->cell_count],
-            *parent = sf_sets_alone(corners, "connected cells", err);
-    int64_t *root = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *root, "connected cells");
+    int64_t corners = mesh->cell_ptr[mesh->cell_count];
+    SF_OWNED int64_t *parent = sf_sets_alone(corners, "connected cells", err);
+    SF_OWNED int64_t *root = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *root, "connected cells");
     if (err->status != SF_OK)
-        goto done;
+        return err->status;
     for (int64_t f = 0; f < dual->inner_count; f++)
         for (int k = 0; k < 4; k++) {
             const sf_inner_face *face = &dual->inner[f];
@@ -235,9 +231,6 @@ static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error
             break;
         }
     }
-done:
-    free(parent);
-    free(root);
     return err->status;
 }
 
@@ -352,7 +345,7 @@ static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dua
     double place, slack;
     if (!find_plane(mesh, set, &axis, &place, &slack))
         return SF_OK;
-    uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "nodes of a symmetry plane");
+    SF_OWNED uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "nodes of a symmetry plane");
     for (int g = 0; member && g < c->symmetry_count; g++) { /* a plane may be that of several groups */
         const sf_node_set *any = sf_mesh_find_set(mesh, c->symmetry_group[g]);
         for (int64_t k = 0; any && k < any->count; k++)
@@ -373,7 +366,6 @@ static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dua
                 "in none of these groups: it would be free (a crack in a symmetry plane cannot be modelled)",
                 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], set->name);
     }
-    free(member);
     return err->status;
 }
 

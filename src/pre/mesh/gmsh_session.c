@@ -88,7 +88,7 @@ static char *mesh(sf_gmsh *session, const sf_geo_source *source, sf_error *err) 
 sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
     const sf_meshed *open = &session->open;
     const char *unconfined = getenv("SOFTFALL_UNCONFINED");
-    char *files = NULL;
+    SF_OWNED char *files = NULL;
     sf_meshed_free(&session->open);
     snprintf(session->file, sizeof session->file, "%s", source->path);
     if ((unconfined && *unconfined) || !sf_mesh_store_find(session->store, source, &session->open, &files))
@@ -98,7 +98,6 @@ sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *
     snprintf(session->version, sizeof session->version, "%s%s", open->data.version,
              open->confined ? "" : " (unconfined)");
     add_files(session, files, err);
-    free(files);
     return err->status;
 }
 
@@ -349,8 +348,8 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
                                const sf_pad_volumes *volumes, double unit, const sf_raw_mesh *raw,
                                sf_error *err) {
     const sf_geo_data *data = &session->open.data;
-    sf_tag_index *index = sf_raw_mesh_index(raw, err);
-    uint8_t *mark = index ? mark_chosen(raw, index, err) : NULL;
+    SF_OWNED sf_tag_index *index = sf_raw_mesh_index(raw, err);
+    SF_OWNED uint8_t *mark = index ? mark_chosen(raw, index, err) : NULL;
     for (size_t k = 0; mark && k < data->block_count && err->status == SF_OK; k++) {
         const sf_geo_block *block = &data->block[k];
         if (block->dimension != 3 || chosen_of(chosen, volumes->count, block->entity))
@@ -368,8 +367,6 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
                 session->file, block->entity, *name ? " of the group \"" : " (of no named group)", name,
                 *name ? "\"" : "", 1e3 * unit * at[0], 1e3 * unit * at[1], 1e3 * unit * at[2]);
     }
-    free(mark);
-    free(index);
     return err->status;
 }
 

@@ -25,7 +25,7 @@ typedef struct orienter {
 
 static sf_status find_neighbours(orienter *o, sf_error *err) {
     int64_t count = 3 * o->surface->triangle_count;
-    sf_half_edge *edge = sf_half_edges(o->surface->triangle_count, o->surface->triangle, err);
+    SF_OWNED sf_half_edge *edge = sf_half_edges(o->surface->triangle_count, o->surface->triangle, err);
     for (int64_t k = 0; edge && k < count; k++)
         o->beyond[k] = -1;
     for (int64_t first = 0, end; edge && first < count; first = end) {
@@ -37,7 +37,6 @@ static sf_status find_neighbours(orienter *o, sf_error *err) {
             o->twisted[edge[first + k].slot] = edge[first].rises == edge[first + 1].rises;
         }
     }
-    free(edge);
     return err->status;
 }
 
@@ -283,7 +282,7 @@ static sf_status write_hull(const hull_builder *b, double unit, sf_surface *s, s
     size_t most = 0;
     for (size_t i = 0; i < b->count; i++)
         most += is_hull(b, i) ? 2 : 0;
-    int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "nodes of the missile");
+    SF_OWNED int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "nodes of the missile");
     s->hull_position = sf_alloc(err, 3 * raw->node_count, sizeof(double), "nodes of the missile");
     s->hull_triangle = sf_alloc(err, 3 * most, sizeof(int32_t), "surface of the missile");
     if (err->status == SF_OK) {
@@ -296,7 +295,6 @@ static sf_status write_hull(const hull_builder *b, double unit, sf_surface *s, s
             if (is_hull(b, i))
                 add_face(b, &b->list[i], number, s);
     }
-    free(number);
     return err->status;
 }
 

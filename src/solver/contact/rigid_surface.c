@@ -42,7 +42,7 @@ static void build_normals(sf_missile_surface *s, int64_t triangles) {
 }
 
 static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf_error *err) {
-    sf_half_edge *edge = sf_half_edges(triangles, s->triangle, err);
+    SF_OWNED sf_half_edge *edge = sf_half_edges(triangles, s->triangle, err);
     for (int64_t first = 0, end; edge && first < 3 * triangles; first = end) {
         double sum[3] = {0};
         end = sf_half_edges_end(edge, first, 3 * triangles);
@@ -55,7 +55,6 @@ static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf
             s->rim_edge[edge[first].slot] = s->rim_vertex[edge[first].low] = s->rim_vertex[edge[first].high] =
                 1;
     }
-    free(edge);
     return err->status;
 }
 
@@ -232,7 +231,7 @@ sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvi
     memset(anvil, 0, sizeof *anvil);
     if (m->rest_count == 0)
         return SF_OK;
-    double *load = sf_alloc(err, (unsigned long)m->node_count, sizeof *load, "weight of the pad");
+    SF_OWNED double *load = sf_alloc(err, (unsigned long)m->node_count, sizeof *load, "weight of the pad");
     if (load)
         add_loads(m, rows, load);
     for (int64_t i = 0; load && i < m->node_count; i++)
@@ -244,7 +243,6 @@ sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvi
             anvil->node[anvil->count] = (int32_t)i;
             anvil->pull[anvil->count++][2] = -load[i];
         }
-    free(load);
     if (err->status != SF_OK)
         sf_anvil_free(anvil);
     return err->status;

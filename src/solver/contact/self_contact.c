@@ -246,7 +246,7 @@ static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
 
 static sf_status list_candidates(const sf_skin *skin, sf_state *s, sf_error *err) {
     facets f;
-    uint8_t *used = sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact");
+    SF_OWNED uint8_t *used = sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact");
     neighbourhood n = {sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact"),
                        sf_alloc(err, (unsigned long)skin->count, sizeof *n.list, "candidates of contact"), 0};
     double reach = s->self_room = NEAR * skin->spacing;
@@ -256,7 +256,6 @@ static sf_status list_candidates(const sf_skin *skin, sf_state *s, sf_error *err
         list_nodes(skin, s, used);
     }
     facets_free(&f);
-    free(used);
     free(n.is_near);
     free(n.list);
     return err->status;

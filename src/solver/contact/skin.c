@@ -9,7 +9,7 @@
 
 static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     unsigned long nodes = (unsigned long)(m->node_count + m->support_node_count);
-    int32_t *place = sf_alloc(err, nodes, sizeof *place, "skin of the pad");
+    SF_OWNED int32_t *place = sf_alloc(err, nodes, sizeof *place, "skin of the pad");
     skin->facet_count = m->skin_count + m->support_triangle_count;
     skin->node = sf_alloc(err, nodes, sizeof *skin->node, "skin of the pad");
     skin->facet = sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof *skin->facet, "skin of the pad");
@@ -25,7 +25,6 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->support_triangle_count; k++)
         skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
     skin->count = skin->moving + m->support_node_count;
-    free(place);
     return err->status;
 }
 
@@ -82,7 +81,7 @@ static sf_status find_normals(sf_skin *skin, sf_error *err) {
 
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
     static const double ON_PLANE = 1e-6; /* of the thickness */
-    uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
+    SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
     skin->held = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
     skin->rests = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
     for (int64_t k = 0; err->status == SF_OK && k < m->fixed_count; k++)
@@ -100,7 +99,6 @@ static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
                 fabs(skin->rest[3 * p + axis] - place) < ON_PLANE * m->thickness)
                 skin->held[p] |= (uint8_t)(1 << axis);
         }
-    free(mark);
     return err->status;
 }
 

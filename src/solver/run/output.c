@@ -78,7 +78,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         /* clang-format on */
     };
     size_t count = sizeof item / sizeof item[0];
-    for (size_t k = m->support_count > 0 ? 0 : 2; k < count; k++)
+    for (size_t k = m->support_triangle_count > 0 ? 0 : 2; k < count; k++)
         if (sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err) !=
             SF_OK)
             return err->status;
