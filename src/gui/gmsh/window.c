@@ -23,8 +23,7 @@ static sf_status take_error(const char *path, sf_error *err) {
     gmshLoggerGet(&line, &count, &unasked);
     for (size_t k = 0; k < count; k++) {
         if (strncmp(line[k], "Error", 5) == 0) /* as softfall-pre says it */
-            SF_FAIL(err, SF_ERR_INPUT, "%s: gmsh, reading: %s", path,
-                    line[k] + 5 + strspn(line[k] + 5, " :"));
+            SF_REFUSE(err, "%s: gmsh, reading: %s", path, line[k] + 5 + strspn(line[k] + 5, " :"));
         gmshFree(line[k]);
     }
     gmshFree(line);
@@ -39,7 +38,7 @@ sf_status sf_geometry_show(const char *path, const char *opened, sf_error *err) 
     gmshOpen(*opened ? opened : path, &failed);
     take_error(path, err);
     if (err->status == SF_OK && failed != 0)
-        SF_FAIL(err, SF_ERR_INPUT, "gmsh cannot read the geometry %s", path);
+        SF_REFUSE(err, "gmsh cannot read the geometry %s", path);
     return err->status;
 }
 

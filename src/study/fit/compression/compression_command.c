@@ -102,7 +102,7 @@ static sf_status fit_and_write(sf_study *study, const sf_compression_job *job,
 
 static sf_status run(sf_study *study, void *own, sf_error *err) {
     sf_compression_job *job = own;
-    sf_compression_config config = {0};
+    SF_OWNED_BY(sf_compression_config_free) sf_compression_config config = {0};
     job->path = study->input;
     job->directory = study->directory;
     job->command = study->command;
@@ -121,7 +121,6 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
             kind->free(fit);
     }
     free(fit);
-    sf_compression_config_free(&config);
     return err->status;
 }
 

@@ -5,7 +5,7 @@
  * strain. */
 #include "study/fit/compression/compression_kind.h"
 
-#include "material/hyperfoam.h"
+#include "base/text.h"
 #include "material/unloading.h"
 #include "report/row.h"
 #include "study/fit/least_squares.h"
@@ -284,12 +284,11 @@ static void describe_misfit(const fitted *fit, char text[MISFIT_SIZE]) {
     } parts[] = {{"stress while loading", fit->stress_rms},
                  {"lateral strain", fit->lateral_rms},
                  {"stress of unloading", fit->unloading.rms}};
-    int used =
-        snprintf(text, MISFIT_SIZE, "the fit does not describe this test, rms over the largest value:");
+    snprintf(text, MISFIT_SIZE, "the fit does not describe this test, rms over the largest value:");
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         if (isfinite(parts[k].rms))
-            used += snprintf(text + used, MISFIT_SIZE - (size_t)used, "%s %s %.2g %%", k > 0 ? "," : "",
-                             parts[k].name, 100 * parts[k].rms);
+            sf_text_add(text, MISFIT_SIZE, "%s %s %.2g %%", k > 0 ? "," : "", parts[k].name,
+                        100 * parts[k].rms);
 }
 
 static void title(FILE *out, const void *place) {

@@ -278,7 +278,7 @@ static sf_table_layout lateral_layout(void) {
 /* Rows up to the largest strain: loading. Ascending afterwards. */
 static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_error *err) {
     const sf_table_layout layout = lateral_layout();
-    sf_table table = {0};
+    SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(sf_table_read(path, &layout, &table, err));
     int64_t end = 0;
     for (int64_t i = 1; i < table.count; i++)
@@ -287,7 +287,6 @@ static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_e
     data->lateral_at = table.value[0];
     data->lateral = table.value[1];
     table.value[0] = table.value[1] = NULL;
-    sf_table_free(&table);
     for (int i = 1; i < data->lateral_count; i++)
         for (int k = i; k > 0 && data->lateral_at[k] < data->lateral_at[k - 1]; k--) {
             double at = data->lateral_at[k], side = data->lateral[k];

@@ -137,14 +137,13 @@ static sf_status search_loading(const sf_compression_model *model, gsl_vector *b
 
 static sf_status try_form(const sf_compression_data *data, sf_compression_form form, sf_candidate *candidate,
                           sf_error *err) {
-    sf_compression_model model;
+    SF_OWNED_BY(sf_compression_model_free) sf_compression_model model = {0};
     SF_TRY(sf_compression_model_init(data, form, &model, err));
     SF_VECTOR *x = sf_vector((size_t)model.parameter_count, err);
     double n = points_of(data, false);
     if (err->status == SF_OK && search_loading(&model, x, &candidate->chi2, err) == SF_OK)
         *candidate = (sf_candidate){true, model.loading_count, candidate->chi2,
                                     n * log(candidate->chi2 / n) + model.loading_count * log(n)};
-    sf_compression_model_free(&model);
     return err->status;
 }
 

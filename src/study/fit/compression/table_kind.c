@@ -48,10 +48,11 @@ static void compare_test(const sf_compression_fit *fit, int k, sf_table_test *ou
 static sf_status compare_card(sf_table_result *r, sf_error *err) {
     const sf_compression_data *d = &r->fit.data;
     const sf_material material = sf_foam_material(&r->card);
-    sf_material_law law;
-    SF_TRY(sf_material_law_build(&material, &law, err));
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     SF_OWNED double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
-    for (int k = 0, first = 0; stress && k < d->config->test_count; k++) {
+    SF_TRY(err->status);
+    SF_TRY(sf_material_law_build(&material, &law, err));
+    for (int k = 0, first = 0; k < d->config->test_count; k++) {
         const sf_compression_test *t = &d->config->test[k];
         sf_material_point_drive(&law, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
         for (int i = first; i < first + t->count; i++)
@@ -59,8 +60,7 @@ static sf_status compare_card(sf_table_result *r, sf_error *err) {
                 fmax(r->card_percent, 100 * fabs(stress[i] - r->fit.stress[i]) / counted(&r->fit, i));
         first += t->count;
     }
-    sf_material_law_free(&law);
-    return err->status;
+    return SF_OK;
 }
 
 /* ---- the entry ---- */
@@ -275,14 +275,13 @@ static sf_status compare_cube(const sf_foam_card *card, double rate, double turn
     int loading = test->count < BLOCKS ? test->count : BLOCKS;
     sf_foam_card point = *card;
     const sf_material material = sf_foam_material(&point);
-    sf_material_law law;
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     point.damp = 0;
     SF_TRY(sf_material_law_build(&material, &law, err));
     memcpy(strain, test->strain, (size_t)loading * sizeof *strain);
     strain[loading] = turn;
     memcpy(&strain[loading + 1], &test->strain[loading], (size_t)(test->count - loading) * sizeof *strain);
     sf_material_point_drive(&law, rate, POINT_STEP, test->count + 1, strain, stress);
-    sf_material_law_free(&law);
     for (int i = 0; i < test->count; i++) {
         test->point[i] = stress[i < loading ? i : i + 1];
         largest = fmax(largest, test->point[i]);
@@ -297,10 +296,9 @@ static sf_status compare_cube(const sf_foam_card *card, double rate, double turn
 
 static sf_status read_cube(const char *path, const sf_foam_card *card, const sf_compression_test *lab,
                            double turn_time, cube_test *test, sf_error *err) {
-    sf_results r;
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
     SF_TRY(sf_results_open(path, &r, err));
     average_blocks(&r, sf_results_cross_section(&r), turn_time, test);
-    sf_results_close(&r);
     return compare_cube(card, lab->rate, lab->largest_strain, test, err);
 }
 
@@ -337,13 +335,12 @@ static sf_status simulate(const sf_table_result *r, const sf_compression_job *jo
         snprintf(friction, sizeof friction, "missile.friction=%s", job->friction);
         drop.overrides[drop.override_count++] = friction;
     }
-    sf_runner_result result;
+    SF_OWNED_BY(sf_runner_result_free) sf_runner_result result = {0};
     SF_TRY(write_motion(motion, lab->largest_strain * c->specimen.side, turn_time, err));
     SF_TRY(sf_material_write(real, name, &quick, &text, err));
     SF_TRY(sf_runner_run(&runner, &drop, &result, err));
     test->energy_error = result.energy_error;
     read_cube(result.path, &r->card, lab, turn_time, test, err);
-    sf_runner_result_free(&result);
     return err->status;
 }
 

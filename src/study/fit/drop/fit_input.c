@@ -109,9 +109,8 @@ static sf_status check_solid_fraction(const sf_config *config, sf_config_item *r
 /* Only this law's parameters are identified; the first case gives the input its card with its curves. */
 static sf_status take_material(sf_material *material, bool first, sf_fit_input *in, sf_error *err) {
     if (material->law != &sf_low_density_foam)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s is of the law %s; the parameters that drops identify are those of %s",
-                       in->material_path, material->law->name, sf_low_density_foam.name);
+        return SF_REFUSE(err, "%s is of the law %s; the parameters that drops identify are those of %s",
+                         in->material_path, material->law->name, sf_low_density_foam.name);
     if (first) {
         in->form.base = *sf_foam_card_of(material);
         sf_foam_card_of(material)->curves = (sf_law_curves){0};
@@ -122,23 +121,20 @@ static sf_status take_material(sf_material *material, bool first, sf_fit_input *
 static sf_status read_case(const sf_fit_drop *drop, const char *material, bool first, sf_fit_input *in,
                            sf_error *err) {
     const sf_sink sink = sf_program_sink("softfall-fit");
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     SF_TRY(sf_case_read(drop->case_path, 1, &material, &sink, &c, err));
-    take_material(&c.material, first, in, err);
-    sf_case_free(&c);
-    return err->status;
+    return take_material(&c.material, first, in, err);
 }
 
 /* Checks the coarse drop as the runner will make it: the material, then the keys. */
 static sf_status check_coarse(const sf_fit_drop *drop, const char *material, const sf_fit_input *in,
                               sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     const char *overrides[1 + SF_RUNNER_OVERRIDES] = {material};
     memcpy(&overrides[1], in->coarse, sizeof in->coarse);
     if (sf_case_read(drop->case_path, 1 + in->coarse_count, overrides, NULL, &c, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "coarse_set: %.800s", inner.text);
-    sf_case_free(&c);
     return SF_OK;
 }
 
@@ -169,11 +165,9 @@ static sf_status read_material(const sf_config *config, sf_config_item *root, sf
     snprintf(in->title, sizeof in->title, "%s", title);
     snprintf(override, sizeof override, "material=@%s", in->material_path);
     if (in->drop_count == 0) {
-        sf_material material;
-        if (sf_case_read_material(in->material_path, &material, err) == SF_OK)
-            take_material(&material, true, in, err);
-        sf_material_free(&material);
-        SF_TRY(err->status);
+        SF_OWNED_BY(sf_material_free) sf_material material = {0};
+        SF_TRY(sf_case_read_material(in->material_path, &material, err));
+        SF_TRY(take_material(&material, true, in, err));
     }
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
         SF_TRY(read_case(&in->drop[k], override, k == 0, in, err));
@@ -238,12 +232,11 @@ static sf_status read_start(const sf_config *config, sf_config_item *holder, sf_
 /* The start must make a curve. */
 static sf_status check_start(const sf_config *config, sf_config_item *root, const sf_fit_input *in,
                              sf_error *err) {
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     sf_error inner = SF_ERROR_INIT;
     sf_config_item *group = config_setting_get_member(root, "start");
     if (sf_foam_form_card(&in->form, in->start, &card, &inner) != SF_OK)
         return sf_config_refuse(config, group ? group : root, err, "start: %s", inner.text);
-    sf_foam_card_free(&card);
     return SF_OK;
 }
 
@@ -462,7 +455,7 @@ static void put_label(sf_fit_input *in) {
 }
 
 sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_error *err) {
-    sf_config config;
+    SF_OWNED_BY(sf_config_close) sf_config config = {0};
     *in = (sf_fit_input){.model = model};
     if (sf_config_open(path, &config, err) == SF_OK &&
         sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err) == SF_OK) {
@@ -482,7 +475,6 @@ sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_er
         if (err->status == SF_OK)
             put_label(in);
     }
-    sf_config_close(&config);
     return err->status;
 }
 

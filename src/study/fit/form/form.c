@@ -191,14 +191,12 @@ static const double RATE_REFERENCE = 1;     /* s-1, the same; drops are far abov
 sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err) {
     double solid = form->solid_density, foam = form->base.density;
     if (!(solid >= LEAST_SOLID && solid <= MOST_SOLID))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3", solid,
-                       LEAST_SOLID, MOST_SOLID);
+        return SF_REFUSE(err, "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3",
+                         solid, LEAST_SOLID, MOST_SOLID);
     if (!(foam < MOST_FRACTION * solid))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than half solid", solid,
-            foam);
+        return SF_REFUSE(
+            err, "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than half solid",
+            solid, foam);
     return SF_OK;
 }
 
