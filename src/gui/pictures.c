@@ -320,17 +320,16 @@ static sf_status show_outcome(const sf_results *r, sf_error *err) {
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS;
     clear_outcome();
-    if (sf_figures_compute(r, FILTER, &f, err) == SF_OK) {
-        sf_verdict_compute(r, &f, &limits, &verdict);
-        sf_verdict_line(&verdict, line, sizeof line);
-        put(VERDICT, sf_verdict_phrase(verdict.grade), line,
-            verdict.grade == SF_GRADE_VALID     ? GOOD
-            : verdict.grade == SF_GRADE_REMARKS ? FAIR
-                                                : BAD);
-        if (f.touched) {
-            show_limits(&f, &verdict);
-            show_motion(&f);
-        }
+    SF_TRY(sf_figures_compute(r, FILTER, &f, err));
+    sf_verdict_compute(r, &f, &limits, &verdict);
+    sf_verdict_line(&verdict, line, sizeof line);
+    put(VERDICT, sf_verdict_phrase(verdict.grade), line,
+        verdict.grade == SF_GRADE_VALID     ? GOOD
+        : verdict.grade == SF_GRADE_REMARKS ? FAIR
+                                            : BAD);
+    if (f.touched) {
+        show_limits(&f, &verdict);
+        show_motion(&f);
     }
     return err->status;
 }

@@ -484,21 +484,10 @@ static sf_status read_number(csv *file, const char *name, const char *text, doub
 
 static sf_status append(csv *file, const double value[2], sf_error *err) {
     sf_table *table = file->table;
-    if (table->count == table->capacity) {
-        int64_t capacity = table->capacity ? 2 * table->capacity : 64;
-        for (int c = 0; c < 2; c++) {
-            double *grown = realloc(table->value[c], (size_t)capacity * sizeof *grown);
-            if (!grown)
-                return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what,
-                               file->path);
-            table->value[c] = grown;
-        }
-        int *lines = realloc(table->line, (size_t)capacity * sizeof *lines);
-        if (!lines)
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
-        table->line = lines;
-        table->capacity = capacity;
-    }
+    if (!sf_grow(&table->value[0], (size_t)table->count, sizeof *value) ||
+        !sf_grow(&table->value[1], (size_t)table->count, sizeof *value) ||
+        !sf_grow(&table->line, (size_t)table->count, sizeof *table->line))
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
     for (int c = 0; c < 2; c++)
         table->value[c][table->count] = value[c];
     table->line[table->count] = file->line;
@@ -569,8 +558,6 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
         return err->status;
     return append(file, point.value, err);
 }
-
-/* ---- the whole ---- */
 
 static bool holds_point(const csv *file, char *line) {
     sf_table_cells cells;

@@ -98,26 +98,25 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
     SF_TRY(sf_results_open(path, &r, err));
     if (sf_figures_compute(&r, 1000, &f, err) == SF_OK && !f.touched)
         SF_FAIL(err, SF_ERR_INPUT, "the missile of %s never touched the pad", path);
-    if (err->status == SF_OK) {
-        *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
-                                  .hic = f.injury.hic.value,
-                                  .hic_window = f.injury.hic.t2 - f.injury.hic.t1,
-                                  .contact_time = f.rebound_time - r.contact_time,
-                                  .v0 = f.v0,
-                                  .v_rebound = f.v_rebound,
-                                  .max_indentation = f.max_indentation,
-                                  .max_local_strain = f.max_local_strain,
-                                  .energy_error = f.energy_error,
-                                  .nodes = r.node_count,
-                                  .steps = r.steps,
-                                  .curve = f.filtered};
-        judge(&r, &f, out);
-        write_record(at, &r, &f, out);
-        f.filtered = (sf_series){0};
-        if (take_layers(&r, &f, out, err) == SF_OK)
-            take_figures(&r, &f, out, err);
-        finish_result(path, out, err);
-    }
+    SF_TRY(err->status);
+    *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
+                              .hic = f.injury.hic.value,
+                              .hic_window = f.injury.hic.t2 - f.injury.hic.t1,
+                              .contact_time = f.rebound_time - r.contact_time,
+                              .v0 = f.v0,
+                              .v_rebound = f.v_rebound,
+                              .max_indentation = f.max_indentation,
+                              .max_local_strain = f.max_local_strain,
+                              .energy_error = f.energy_error,
+                              .nodes = r.node_count,
+                              .steps = r.steps,
+                              .curve = f.filtered};
+    judge(&r, &f, out);
+    write_record(at, &r, &f, out);
+    f.filtered = (sf_series){0};
+    if (take_layers(&r, &f, out, err) == SF_OK)
+        take_figures(&r, &f, out, err);
+    finish_result(path, out, err);
     return err->status;
 }
 

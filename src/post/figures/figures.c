@@ -144,11 +144,10 @@ static sf_status find_peak(const sf_results *r, const double *const channel[3], 
     static const double none[3] = {0};
     const double first[3] = {channel[0][0], channel[1][0], channel[2][0]};
     SF_OWNED_BY(sf_series_free) sf_series curve = {0};
-    if (filter_resultant(r, channel, known ? first : none, none, 1, f, &curve, err) == SF_OK) {
-        int64_t row = sf_series_peak(&curve);
-        *peak = curve.value[row];
-        *time = curve.time[row];
-    }
+    SF_TRY(filter_resultant(r, channel, known ? first : none, none, 1, f, &curve, err));
+    int64_t row = sf_series_peak(&curve);
+    *peak = curve.value[row];
+    *time = curve.time[row];
     return err->status;
 }
 

@@ -204,8 +204,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
         return SF_OK;
     SF_TRY(read_tests(file, root, "predict", true, c, err));
     SF_TRY(sf_cycle_record_read(file, root, &c->cycles, err));
-    return sf_form_request_read(file, root, c->density, c->damp, c->modulus_range, c->test_count, c->test,
-                                c->predicted_count, c->predicted, &c->form, err);
+    return sf_form_request_read(file, root, c, err);
 }
 
 /* ---- requirements on all tests together ---- */

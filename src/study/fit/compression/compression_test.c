@@ -557,8 +557,6 @@ static void condense(sf_compression_test *t) {
     t->loading = loading;
 }
 
-/* ---- the whole ---- */
-
 static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
                      sf_compression_test *t) {
     static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};

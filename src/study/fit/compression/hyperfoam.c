@@ -291,24 +291,21 @@ static void describe_misfit(const fitted *fit, char text[MISFIT_SIZE]) {
                         100 * parts[k].rms);
 }
 
-static void title(FILE *out, const void *place) {
-    const fitted *f = place;
-    int terms = f->config->hyperfoam.terms;
-    fprintf(out, "%s: hyperfoam of %d term%s\n", f->config->name, terms, terms > 1 ? "s" : "");
-}
-
 static void describe(FILE *out, const void *place, bool comments) {
     const fitted *fit = place;
     const sf_compression_test *t = fit->test;
     const bool *at_bound = fit->unloading.at_bound;
     char misfit[MISFIT_SIZE];
+    int terms = fit->request->terms;
+    if (!comments)
+        fprintf(out, "%s: hyperfoam of %d term%s\n", fit->config->name, terms, terms > 1 ? "s" : "");
     if (comments)
         fprintf(out, " from\n  %s at %.6g 1/s, to a strain of %.4g\n", t->path, t->rate, t->largest_strain);
     if (comments && !fit->is_good) {
         describe_misfit(fit, misfit);
         fprintf(out, "WARNING: %s\n", misfit);
     }
-    for (int k = 0; k < fit->request->terms; k++)
+    for (int k = 0; k < terms; k++)
         put_term(out, fit, k);
     fprintf(out, "  -ln(lateral stretch)/ln(axial stretch): %.3g at 1 %% strain, %.3g at %.3g %%\n",
             fit->poisson[0], fit->poisson[1], 100 * t->largest_strain);
@@ -400,7 +397,6 @@ const sf_compression_kind sf_compression_hyperfoam = {.label = "hyperfoam",
                                                       .run = run,
 
                                                       .material = material_of,
-                                                      .title = title,
                                                       .describe = describe,
                                                       .points = put_points,
                                                       .json = put_json,

@@ -122,8 +122,6 @@ static sf_status commit(const char *directory, const sf_drop_average *average, s
     return err->status;
 }
 
-/* ---- the whole ---- */
-
 static sf_status report(sf_study *study, const models *all, char *warning, size_t size, sf_error *err) {
     const sf_drop_average *average = all->average.models > 0 ? &all->average : NULL;
     const sf_drop_fit *best = average ? average->model[sf_drop_average_best(average)]->fit : &all->fit[0];

@@ -418,8 +418,6 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
     }
 }
 
-/* ---- the whole ---- */
-
 /* Covariance of the fit's foam parameters, and that of the z before the data. */
 static void fill_start(const sf_drop_inference *in, double *start, double *covariance) {
     int n = in->parameters, unknowns = in->fit->input->unknown_count;
