@@ -271,6 +271,7 @@ static void set_clock(record *r, sf_reference *reference) {
 /* Takes the zero line of each axis away, and forms the resultant anew. */
 static sf_status take_zero_away(record *r, sf_reference *reference, sf_error *err) {
     SF_OWNED_BY(sf_series_free) sf_series pulse = reference->raw;
+    reference->raw = (sf_series){0};
     for (int k = 0; k < r->axes; k++) {
         double offset = 0;
         SF_TRY(sf_record_offset(&pulse, &r->axis[k], &offset, err));
@@ -283,7 +284,6 @@ static sf_status take_zero_away(record *r, sf_reference *reference, sf_error *er
             r->axis[k].value[i] -= offset;
         reference->offset = r->axes == 1 ? offset : hypot(reference->offset, offset);
     }
-    reference->raw = (sf_series){0};
     return make_resultant(r->axis, r->axes, &reference->raw, err);
 }
 
