@@ -273,16 +273,15 @@ static sf_status split_set(const sf_mesh *mesh, const sf_dual *dual, const sf_la
     for (int64_t i = 0; mark && i < n; i++)
         count += mark[i];
     int32_t *node = sf_alloc(err, (unsigned long)count, sizeof *node, "a node set");
-    if (err->status == SF_OK) {
-        free(set->node);
-        free(set->face);
-        set->node = node;
-        set->face = NULL;
-        set->count = set->face_count = 0;
-        for (int64_t i = 0; i < n; i++)
-            if (mark[i])
-                set->node[set->count++] = (int32_t)i;
-    }
+    SF_TRY(err->status);
+    free(set->node);
+    free(set->face);
+    set->node = node;
+    set->face = NULL;
+    set->count = set->face_count = 0;
+    for (int64_t i = 0; i < n; i++)
+        if (mark[i])
+            set->node[set->count++] = (int32_t)i;
     return err->status;
 }
 

@@ -159,8 +159,8 @@ static claim *list_claims(const sf_geo_data *data, int dimension, bool names, si
 /* Two groups of one name, or an entity in two named groups: which of them is meant? */
 static sf_status check_groups(const sf_gmsh *session, int dimension, sf_error *err) {
     size_t names = 0, entities = 0;
-    claim *name = list_claims(&session->open.data, dimension, true, &names, err),
-          *entity = list_claims(&session->open.data, dimension, false, &entities, err);
+    SF_OWNED claim *name = list_claims(&session->open.data, dimension, true, &names, err),
+                   *entity = list_claims(&session->open.data, dimension, false, &entities, err);
     for (size_t i = 1; name && i < names && err->status == SF_OK; i++)
         if (strcmp(name[i - 1].group->name, name[i].group->name) == 0)
             SF_REFUSE(err, "%s has two %s groups called \"%s\" (physical tags %d and %d)", session->file,
@@ -169,8 +169,6 @@ static sf_status check_groups(const sf_gmsh *session, int dimension, sf_error *e
         if (entity[i - 1].entity == entity[i].entity && entity[i - 1].group != entity[i].group)
             SF_REFUSE(err, "%s: %s %d belongs to two groups, \"%s\" and \"%s\"", session->file,
                       kind_of(dimension), entity[i].entity, entity[i - 1].group->name, entity[i].group->name);
-    free(name);
-    free(entity);
     return err->status;
 }
 
@@ -414,9 +412,9 @@ sf_status sf_gmsh_read_mesh(sf_gmsh *session, const char *pad_group, double unit
 sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, double unit, sf_mesh *mesh,
                               sf_error *err) {
     const sf_geo_data *data = &session->open.data;
-    sf_raw_mesh raw = {0};
+    SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     memset(mesh, 0, sizeof *mesh);
-    const sf_geo_group **chosen =
+    SF_OWNED const sf_geo_group **chosen =
         sf_alloc(err, (unsigned long)volumes->count, sizeof *chosen, "the pad's volumes");
     if (!chosen || read_volumes(session, volumes, unit, chosen, &raw, err) != SF_OK)
         goto done;
@@ -426,8 +424,6 @@ sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, d
             goto done;
     sf_mesh_assemble(&raw, volumes->count, unit, mesh, err);
 done:
-    free(chosen);
-    sf_raw_mesh_free(&raw);
     return err->status;
 }
 
@@ -444,19 +440,17 @@ static sf_status read_missile(const sf_gmsh *session, const char *surface_group,
 
 sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                                sf_error *err) {
-    sf_raw_mesh raw = {0};
+    SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     memset(surface, 0, sizeof *surface);
     if (read_missile(session, surface_group, &raw, err) == SF_OK)
         sf_surface_assemble(&raw, unit, surface, err);
-    sf_raw_mesh_free(&raw);
     return err->status;
 }
 
 sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                             sf_error *err) {
-    sf_raw_mesh raw = {0};
+    SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     if (read_missile(session, surface_group, &raw, err) == SF_OK)
         sf_hull_assemble(&raw, unit, surface, err);
-    sf_raw_mesh_free(&raw);
     return err->status;
 }

@@ -285,16 +285,15 @@ static sf_status write_hull(const hull_builder *b, double unit, sf_surface *s, s
     SF_OWNED int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "nodes of the missile");
     s->hull_position = sf_alloc(err, 3 * raw->node_count, sizeof(double), "nodes of the missile");
     s->hull_triangle = sf_alloc(err, 3 * most, sizeof(int32_t), "surface of the missile");
-    if (err->status == SF_OK) {
-        s->hull_node_count = (int64_t)raw->node_count;
-        for (size_t n = 0; n < raw->node_count; n++)
-            number[n] = (int32_t)n;
-        for (size_t n = 0; n < 3 * raw->node_count; n++)
-            s->hull_position[n] = unit * raw->xyz[n];
-        for (size_t i = 0; i < b->count; i++)
-            if (is_hull(b, i))
-                add_face(b, &b->list[i], number, s);
-    }
+    SF_TRY(err->status);
+    s->hull_node_count = (int64_t)raw->node_count;
+    for (size_t n = 0; n < raw->node_count; n++)
+        number[n] = (int32_t)n;
+    for (size_t n = 0; n < 3 * raw->node_count; n++)
+        s->hull_position[n] = unit * raw->xyz[n];
+    for (size_t i = 0; i < b->count; i++)
+        if (is_hull(b, i))
+            add_face(b, &b->list[i], number, s);
     return err->status;
 }
 

@@ -146,14 +146,13 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
         entries = put_phi(m, c, c->row[r].other, -1, entries);
         c->row_ptr[r + 1] = entries;
     }
-    if (err->status == SF_OK && list_touched(m, c, place, err) == SF_OK) {
-        c->node_ptr =
-            sf_alloc(err, (unsigned long)c->touched_count + 1, sizeof *c->node_ptr, "constraint lists");
-        for (int64_t k = 0; k < entries; k++)
-            c->row_place[k] = place[c->row_place[k]];
-        if (err->status == SF_OK)
-            list_by_node(c);
-    }
+    SF_TRY(err->status);
+    SF_TRY(list_touched(m, c, place, err));
+    c->node_ptr = sf_alloc(err, (unsigned long)c->touched_count + 1, sizeof *c->node_ptr, "constraint lists");
+    for (int64_t k = 0; k < entries; k++)
+        c->row_place[k] = place[c->row_place[k]];
+    if (err->status == SF_OK)
+        list_by_node(c);
     return err->status;
 }
 
