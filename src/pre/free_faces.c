@@ -197,7 +197,7 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
 }
 
 sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error *err) {
-    faces f;
+    SF_OWNED_BY(faces_free) faces f = {0};
     int64_t first = -1;
     unheld[0] = NAN;
     SF_TRY(faces_find(m, &f, err));
@@ -217,6 +217,5 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
         m->skin_alone = !itself;
         f.node = NULL;
     }
-    faces_free(&f);
     return err->status;
 }

@@ -321,7 +321,7 @@ static sf_status find_motions(holder *h, sf_hold *hold, sf_error *err) {
 }
 
 sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
-    body_list bodies;
+    SF_OWNED_BY(free_bodies) body_list bodies = {0};
     *hold = (sf_hold){0};
     SF_TRY(find_bodies(m, &bodies, err));
     holder h = {.model = m, .bodies = &bodies};
@@ -333,7 +333,6 @@ sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
             (long long)bodies.count, MOST_BODIES);
     else if (find_motions(&h, hold, err) == SF_OK)
         find_underside(m, hold);
-    free_bodies(&bodies);
     return err->status;
 }
 

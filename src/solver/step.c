@@ -91,37 +91,20 @@ static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed)
     return fastest;
 }
 
-/* Where the foam has to stay. */
-typedef struct confines {
-    double floor, plane[2]; /* m, of the anvil, -INFINITY: there is none; of symmetry planes, NAN likewise */
-} confines;
-
-static confines find_confines(const sf_model *m) {
-    double low[3], high[3];
-    confines c;
-    sf_box3(m->node_count, m->position, low, high);
-    c.floor = m->anvil.depth > 0 ? high[2] - m->anvil.depth : -INFINITY;
-    for (int axis = 0; axis < 2; axis++)
-        if (!sf_symmetry_plane(m, axis, &c.plane[axis]))
-            c.plane[axis] = NAN;
-    return c;
-}
-
 /* Returns what the foam at node i has passed through by more than its spacing, NULL: nothing. Of the missile
  * half of it counts, since larger gaps are not known, and of the anvil, which holds the base alone, a fifth
- * of the thickness, as in the verdict. */
+ * of the thickness, as in the verdict. `plane`: the places (m) of symmetry planes and anvil, NAN: none. */
 static const char *find_passed(const sf_model *m, const sf_operators *op, const sf_state *s,
-                               const confines *c, int64_t i) {
+                               const double plane[3], int64_t i) {
     static const double SHARE = 0.2;
     double x[3], normal[3], gap, least = m->spacing[i];
     const double *rest = &m->position[3 * i];
     for (int r = 0; r < 3; r++)
         x[r] = rest[r] + s->d[3 * i + r];
-    if (x[2] < c->floor - fmax(least, SHARE * m->thickness))
+    if (x[2] < plane[2] - fmax(least, SHARE * m->thickness))
         return "the anvil";
     for (int axis = 0; axis < 2; axis++)
-        if (fabs(x[axis] - c->plane[axis]) > least &&
-            (x[axis] - c->plane[axis]) * (rest[axis] - c->plane[axis]) < 0)
+        if (fabs(x[axis] - plane[axis]) > least && (x[axis] - plane[axis]) * (rest[axis] - plane[axis]) < 0)
             return "a symmetry plane";
     bool inside = sf_missile_near(m, &s->missile, &op->surface, x, 0) &&
                   sf_missile_gap(m, &s->missile, &op->surface, x, &gap, normal) && gap < -0.5 * least;
@@ -131,9 +114,13 @@ static const char *find_passed(const sf_model *m, const sf_operators *op, const 
 /* Fails where foam has passed through anvil, missile or a symmetry plane; faces of the foam and supports:
  * contact/self_contact.h. */
 static sf_status check_passed(const sf_model *m, const sf_operators *op, const sf_state *s, sf_error *err) {
-    const confines c = find_confines(m);
+    double low[3], high[3], plane[3];
+    sf_box3(m->node_count, m->position, low, high);
+    for (int axis = 0; axis < 2; axis++)
+        plane[axis] = sf_symmetry_plane(m, axis, &plane[axis]) ? plane[axis] : NAN;
+    plane[2] = m->anvil.depth > 0 ? high[2] - m->anvil.depth : NAN;
     for (int64_t i = 0; i < m->node_count; i++) {
-        const char *through = find_passed(m, op, s, &c, i);
+        const char *through = find_passed(m, op, s, plane, i);
         const double *x = &m->position[3 * i], *d = &s->d[3 * i];
         if (through)
             return SF_FAIL(

@@ -138,14 +138,12 @@ static sf_status check_cell(const sf_mesh *mesh, const sf_grid *grid, const prob
 
 /* Wherever bodies overlap, the surface of one lies in the other. */
 static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    probes p = {0};
-    sf_grid grid = {0};
+    SF_OWNED_BY(free_probes) probes p = {0};
+    SF_OWNED_BY(sf_grid_free) sf_grid grid = {0};
     if (take_probes(mesh, dual, &p, err) == SF_OK &&
         sf_grid_build(&grid, p.count, p.position, p.zero, err) == SF_OK)
         for (int64_t c = 0; c < mesh->cell_count && err->status == SF_OK; c++)
             check_cell(mesh, &grid, &p, c, err);
-    sf_grid_free(&grid);
-    free_probes(&p);
     return err->status;
 }
 

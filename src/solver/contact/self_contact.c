@@ -245,7 +245,7 @@ static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
 }
 
 static sf_status list_candidates(const sf_skin *skin, sf_state *s, sf_error *err) {
-    facets f;
+    SF_OWNED_BY(facets_free) facets f = {0};
     SF_OWNED uint8_t *used = sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact");
     neighbourhood n = {sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact"),
                        sf_alloc(err, (unsigned long)skin->count, sizeof *n.list, "candidates of contact"), 0};
@@ -255,7 +255,6 @@ static sf_status list_candidates(const sf_skin *skin, sf_state *s, sf_error *err
             choose_candidates(skin, s, p, reach, &f, &n, used);
         list_nodes(skin, s, used);
     }
-    facets_free(&f);
     free(n.is_near);
     free(n.list);
     return err->status;
