@@ -66,5 +66,9 @@ sf_status sf_compression_test_read(const sf_compression_source *source, sf_compr
                                    sf_error *err);
 void sf_compression_test_free(sf_compression_test *test);
 
+/* Value of y at a place by interpolation over `count` places x, ascending or descending; beyond the ends that
+ * of the end. */
+double sf_compression_at(int count, const double *x, const double *y, double place);
+
 /* Stress of loading at a strain, by interpolation; below the first strain that of the first point. */
 double sf_compression_loading_stress(const sf_compression_test *test, double strain);
