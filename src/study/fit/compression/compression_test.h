@@ -34,7 +34,7 @@ typedef struct sf_compression_source {
     bool toe;         /* correct the toe */
     sf_inversion invert;
     double contact_force;         /* N, displacement is zero where the force rises to it; 0: as in the file */
-    const char *specimen, *cycle; /* of a file that holds several (io/table_heading.h); NULL: the only one,
+    const char *specimen, *cycle; /* of a file that holds several (io/table_csv.h); NULL: the only one,
                                      and the first cycle */
     const char *heading;          /* of a file without one; NULL */
 } sf_compression_source;
