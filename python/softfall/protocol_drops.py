@@ -308,7 +308,7 @@ def _point(p: Protocol, spot: Spot, point: Mapping[str, Any], runs: Path) -> Dro
     if point["failed"]:
         return drop
     drop.figures = take_figures(p.figures, {key: value for key, value in point.items() if isinstance(value, (int, float))}, None)
-    for path in runs.glob(f"h{spot.height:.3f}m-*/results.h5"):
+    for path in runs.glob(f"h{spot.height:.4g}m-*/results.h5"):
         kept = re.search(r"^a_max_g (\S+)$", path.with_name("figures.txt").read_text(encoding="utf-8"), re.M) if path.with_name("figures.txt").exists() else None
         if kept and abs(float.fromhex(kept.group(1)) / point["a_max_g"] - 1) < 1e-7:
             drop.source = str(path)
