@@ -180,7 +180,8 @@ static int64_t count_names(const char *path, const char *prefix, uint64_t *bytes
     int64_t count = 0;
     *bytes = 0;
     while (list && (entry = readdir(list)) != NULL) {
-        if (strncmp(entry->d_name, prefix, strlen(prefix)) != 0)
+        if (strncmp(entry->d_name, prefix, strlen(prefix)) != 0 || strcmp(entry->d_name, ".") == 0 ||
+            strcmp(entry->d_name, "..") == 0)
             continue;
         count++;
         if (fstatat(handle, entry->d_name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(info.st_mode))
@@ -257,7 +258,7 @@ void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count
     if (!name_file(folder, kind, key, path) || sf_folder_own(folder, &none) != SF_OK)
         return;
     uint64_t bytes;
-    char *all = join(count, part, &size);
+    SF_OWNED char *all = join(count, part, &size);
     count_names(folder, "", &bytes);
     if (all && bytes + size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
         head h = {.key = key, .size = size, .hash = sf_hash(SF_HASH_START, all, size)};
@@ -266,5 +267,4 @@ void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count
         fwrite(all, 1, size, file.file);
         sf_replace_close(&file, &none);
     }
-    free(all);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/cells.h"
 
+#include "base/sets.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,11 +44,6 @@ typedef struct face {
     int32_t node[4], sorted[4]; /* -1 in the fourth place of a triangle, in the first of the sorted ones */
 } face;
 
-static int by_node(const void *a, const void *b) {
-    const int32_t *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 /* The order is that of the bytes: the triangles of model.h5, and with them the bits of a run, follow it. */
 static int by_nodes(const void *a, const void *b) {
     return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
@@ -64,7 +60,7 @@ static int64_t list_faces(const sf_cells *c, face *out) {
             for (int v = 0; v < 4; v++)
                 to->node[v] = faces[f][v] < 0 ? -1 : c->node[c->ptr[k] + faces[f][v]];
             memcpy(to->sorted, to->node, sizeof to->sorted);
-            qsort(to->sorted, 4, sizeof *to->sorted, by_node);
+            qsort(to->sorted, 4, sizeof *to->sorted, sf_by_number);
         }
         count += n;
     }
@@ -85,7 +81,7 @@ static int64_t keep_single(face *list, int64_t count) {
 
 /* Numbers the nodes of the faces in the order of the mesh. */
 static sf_status number_nodes(const sf_cells *c, const face *list, sf_skin_faces *s, sf_error *err) {
-    int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's skin");
+    SF_OWNED int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's skin");
     s->node = sf_alloc(err, (unsigned long)c->node_count, sizeof *s->node, "the pad's skin");
     s->face = sf_alloc(err, (unsigned long)s->face_count, sizeof *s->face, "the pad's skin");
     for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++)
@@ -100,13 +96,12 @@ static sf_status number_nodes(const sf_cells *c, const face *list, sf_skin_faces
         int32_t node = list[k / 4].node[k % 4];
         s->face[k / 4][k % 4] = node < 0 ? -1 : place[node];
     }
-    free(place);
     return err->status;
 }
 
 sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err) {
     int64_t count = list_faces(c, NULL);
-    face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
+    SF_OWNED face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
     *s = (sf_skin_faces){0};
     if (!list)
         return err->status;
@@ -114,7 +109,6 @@ sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err)
     qsort(list, (size_t)count, sizeof *list, by_nodes);
     s->face_count = keep_single(list, count);
     number_nodes(c, list, s, err);
-    free(list);
     return err->status;
 }
 

@@ -3,10 +3,8 @@
 
 #include "base/text.h"
 #include "build_info.h"
-#include "report/row.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- texts ---- */
 

@@ -27,8 +27,7 @@ typedef struct sf_compression_kind {
     void (*free)(void *fit); /* NULL: the fit owns nothing */
     /* The fitted material; its arrays stay those of the fit. */
     sf_material (*material)(const void *fit);
-    /* The first line of the summary, and the lines that follow it and stand in material.cfg (`comments`). */
-    void (*title)(FILE *out, const void *fit);
+    /* The summary or, with `comments`, what stands of it in material.cfg. */
     void (*describe)(FILE *out, const void *fit, bool comments);
     /* The contents of fit.csv, and the members of fit.json. */
     void (*points)(FILE *file, const void *fit);
@@ -46,3 +45,6 @@ extern const sf_compression_kind sf_compression_tables, sf_compression_form_kind
 /* Stress (Pa, compression positive), lateral strain and W (J m-3) of a hyperfoam in loading with free sides
  * at an axial strain; `lateral` is also the start of the search. */
 double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double *lateral, double *energy);
+
+/* softfall-fit compression FIT.cfg -o DIR; argv[0] is the name of the program. Returns the exit code. */
+int sf_fit_compression_main(int argc, char **argv);

@@ -48,9 +48,9 @@ static void put_unknowns(FILE *out, const sf_form_fit *fit) {
 static void put_unloading(FILE *out, const sf_form_unloading *u) {
     fputs("  unloading:", out);
     for (int k = 0; k < 3; k++)
-        fprintf(out, "%s %s %.4g%s", k ? "," : "", unloading_names[k], u->value[k],
-                u->at_bound[k] ? AT_BOUND : "");
-    fprintf(out, "; rms %.2g %% of the largest stress", 100 * u->rms);
+        fprintf(out, "%s %s %.4g%s", k ? "," : "", unloading_names[k], u->fit.value[k],
+                u->fit.at_bound[k] ? AT_BOUND : "");
+    fprintf(out, "; rms %.2g %% of the largest stress", 100 * u->fit.rms);
     fprintf(out, isfinite(u->factor_rms) ? ", rms of the factor %.2g\n" : " (in the first of the cycles)\n",
             u->factor_rms);
 }
@@ -84,16 +84,13 @@ static void put_cycles(FILE *out, const sf_form_fit *fit) {
     fputs("\n  Not in the law: permanent set, and the fall of the stress at the largest strain.\n", out);
 }
 
-static void title(FILE *out, const void *place) {
-    const sf_form_fit *fit = place;
-    fprintf(out, "%s: curve_form = \"%s\"\n", fit->config->name, fit->config->form.form.curve->name);
-}
-
 static void describe(FILE *out, const void *place, bool comments) {
     const sf_form_fit *fit = place;
     const sf_compression_config *c = fit->config;
     if (comments)
         fputc('\n', out);
+    else
+        fprintf(out, "%s: curve_form = \"%s\"\n", c->name, c->form.form.curve->name);
     if (comments && sf_form_fit_is_poor(fit))
         fprintf(out, "WARNING: %s\n", POOR_WARNING);
     fprintf(out, "Curve: %s.\nRate: %s.\n", c->form.form.curve->formula, sf_form_rate_names[c->form.rate]);
@@ -216,13 +213,13 @@ static void json_unknowns(sf_json *json, const sf_form_fit *fit) {
 static void json_unloading(sf_json *json, const char *key, const sf_form_unloading *u) {
     sf_json_open(json, key, '{');
     for (int k = 0; k < 3; k++)
-        sf_json_number(json, unloading_names[k], u->value[k]);
+        sf_json_number(json, unloading_names[k], u->fit.value[k]);
     sf_json_open(json, "at_bound", '[');
     for (int k = 0; k < 3; k++)
-        if (u->at_bound[k])
+        if (u->fit.at_bound[k])
             sf_json_text(json, NULL, unloading_names[k]);
     sf_json_close(json, ']');
-    SF_JSON_NUMBERS(json, {"rms", u->rms}, {"factor_rms", u->factor_rms});
+    SF_JSON_NUMBERS(json, {"rms", u->fit.rms}, {"factor_rms", u->factor_rms});
     sf_json_close(json, '}');
 }
 
@@ -273,7 +270,6 @@ const sf_compression_kind sf_compression_form_kind = {.label = "",
                                                       .run = run,
                                                       .free = release,
                                                       .material = material_of,
-                                                      .title = title,
                                                       .describe = describe,
                                                       .points = put_points,
                                                       .json = put_json,

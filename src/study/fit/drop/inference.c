@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/drop/inference.h"
 
+#include "study/fit/least_squares.h"
 #include "study/run_folder.h"
 #include "io/process.h"
 #include "material/foam_card.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -96,26 +96,24 @@ static sf_status respond(const sf_drop_inference *in, const double *u, const dou
                          int last, double *y, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     double full[SF_MAPPING_MAX_PARAMETERS];
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     fit_parameters(in, u, full);
     SF_TRY(delta ? sf_drop_inference_card(in, full, delta, &card, err)
                  : sf_drop_fit_card(fit->input, full, &card, err));
-    if (sf_foam_check_shared(&card, err) == SF_OK)
-        sf_drop_fit_respond(fit, first, last, &card, NULL, y, err);
-    sf_foam_card_free(&card);
-    for (int k = fit->row[first]; k < fit->row[last] && err->status == SF_OK; k++)
+    SF_TRY(sf_foam_check_shared(&card, err));
+    SF_TRY(sf_drop_fit_respond(fit, first, last, &card, NULL, y, err));
+    for (int k = fit->row[first]; k < fit->row[last]; k++)
         y[k] += in->offset[k];
-    return err->status;
+    return SF_OK;
 }
 
 /* Measured less corrected surrogate [data]. False: the columns fail. */
 static bool find_residual(const sf_drop_inference *in, const double *u, double *residual) {
     sf_error err = SF_ERROR_INIT;
-    double *y = sf_alloc(&err, (unsigned long)responses_of(in->fit), sizeof *y, "responses");
+    SF_OWNED double *y = sf_alloc(&err, (unsigned long)responses_of(in->fit), sizeof *y, "responses");
     if (y && respond(in, u, NULL, 0, in->fit->measured_drops, y, &err) == SF_OK)
         for (int i = 0; i < in->data; i++)
             residual[i] = in->fit->measured[in->data_row[i]] - y[in->data_row[i]];
-    free(y);
     return err.status == SF_OK;
 }
 
@@ -153,11 +151,11 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     int n = responses_of(fit), measured = fit->row[fit->measured_drops];
     double full[SF_MAPPING_MAX_PARAMETERS];
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     in->offset = sf_alloc(err, (unsigned long)n, sizeof(double), "responses");
     fit_parameters(in, fit->result.u, full);
-    if (err->status != SF_OK || sf_drop_fit_card(fit->input, full, &card, err) != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
+    SF_TRY(sf_drop_fit_card(fit->input, full, &card, err));
     sf_drop_fit_respond(fit, fit->measured_drops, fit->input->drop_count, &card, NULL, in->offset, err);
     for (int k = 0; k < n; k++)
         in->offset[k] = k < measured ? fit->result.offset[k] : fit->y[k] - in->offset[k];
@@ -165,7 +163,6 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
             if (*fit->simulated[d].failure || !isfinite(in->offset[fit->row[d] + kind]))
                 in->offset[fit->row[d] + kind] = mean_offset(fit, kind);
-    sf_foam_card_free(&card);
     return err->status;
 }
 
@@ -173,13 +170,10 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
 static sf_status respond_raised(const sf_drop_inference *in, int place, double sign, double *y,
                                 sf_error *err) {
     double delta[PLACES] = {0};
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     delta[place] = sign * RAISE;
-    if (sf_drop_inference_card(in, in->fit->result.u, delta, &card, err) == SF_OK) {
-        sf_drop_fit_respond(in->fit, 0, in->fit->input->drop_count, &card, NULL, y, err);
-        sf_foam_card_free(&card);
-    }
-    return err->status;
+    SF_TRY(sf_drop_inference_card(in, in->fit->result.u, delta, &card, err));
+    return sf_drop_fit_respond(in->fit, 0, in->fit->input->drop_count, &card, NULL, y, err);
 }
 
 /* The response that a quantity is. */
@@ -190,31 +184,28 @@ static int row_of(const sf_drop_inference *in, int q) {
 static sf_status find_jacobian(sf_drop_inference *in, sf_error *err) {
     unsigned long n = (unsigned long)responses_of(in->fit);
     in->jacobian = sf_alloc(err, n * PLACES, sizeof(double), "responses");
-    double *high = sf_alloc(err, n * PLACES, sizeof *high, "responses"),
-           *low = sf_alloc(err, n * PLACES, sizeof *low, "responses");
-    if (err->status == SF_OK) {
-        sf_error failure[PLACES];
+    SF_OWNED double *high = sf_alloc(err, n * PLACES, sizeof *high, "responses"),
+                    *low = sf_alloc(err, n * PLACES, sizeof *low, "responses");
+    SF_TRY(err->status);
+    sf_error failure[PLACES];
 #pragma omp parallel for schedule(dynamic)
-        for (int b = 0; b < PLACES; b++) {
-            failure[b] = (sf_error)SF_ERROR_INIT;
-            if (respond_raised(in, b, 1, &high[(unsigned long)b * n], &failure[b]) == SF_OK)
-                respond_raised(in, b, -1, &low[(unsigned long)b * n], &failure[b]);
+    for (int b = 0; b < PLACES; b++) {
+        failure[b] = (sf_error)SF_ERROR_INIT;
+        if (respond_raised(in, b, 1, &high[(unsigned long)b * n], &failure[b]) == SF_OK)
+            respond_raised(in, b, -1, &low[(unsigned long)b * n], &failure[b]);
+    }
+    for (unsigned long b = 0; b < PLACES && err->status == SF_OK; b++) {
+        *err = failure[b];
+        for (unsigned long k = 0; k < n; k++) {
+            double slope = (high[b * n + k] - low[b * n + k]) / (2 * RAISE);
+            in->jacobian[k * PLACES + b] = isfinite(slope) ? slope : 0;
         }
-        for (unsigned long b = 0; b < PLACES && err->status == SF_OK; b++) {
-            *err = failure[b];
-            for (unsigned long k = 0; k < n; k++) {
-                double slope = (high[b * n + k] - low[b * n + k]) / (2 * RAISE);
-                in->jacobian[k * PLACES + b] = isfinite(slope) ? slope : 0;
-            }
-            for (int q = 0; q < in->quantities; q++) {
-                unsigned long k = (unsigned long)row_of(in, q);
-                bool known = isfinite(high[b * n + k] - low[b * n + k]);
-                in->steep = in->steep || (!known && in->fit->columns[in->quantity[q].drop].count > 0);
-            }
+        for (int q = 0; q < in->quantities; q++) {
+            unsigned long k = (unsigned long)row_of(in, q);
+            bool known = isfinite(high[b * n + k] - low[b * n + k]);
+            in->steep = in->steep || (!known && in->fit->columns[in->quantity[q].drop].count > 0);
         }
     }
-    free(high);
-    free(low);
     return err->status;
 }
 
@@ -272,30 +263,24 @@ static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf
                                    sf_error *err) {
     unsigned long n = (unsigned long)in->data;
     double place[PLACES], kernel[PLACES * PLACES];
-    int *which = sf_alloc(err, n, sizeof *which, "data");
+    SF_OWNED int *which = sf_alloc(err, n, sizeof *which, "data");
     int effects = (in->fit->measured_drops + 1) * SF_FIT_SAMPLES;
-    double *jacobian = sf_alloc(err, n * PLACES, sizeof *jacobian, "responses"),
-           *base = sf_alloc(err, n * n, sizeof *base, "covariances"),
-           *effect = sf_alloc(err, n * (unsigned long)effects, sizeof *effect, "responses");
+    SF_OWNED double *jacobian = sf_alloc(err, n * PLACES, sizeof *jacobian, "responses"),
+                    *base = sf_alloc(err, n * n, sizeof *base, "covariances"),
+                    *effect = sf_alloc(err, n * (unsigned long)effects, sizeof *effect, "responses");
     for (int b = 0; b < PLACES; b++)
         place[b] = PLACE_WIDTH * b;
     sf_kernel_fill(PLACES, place, LENGTH, kernel);
-    if (err->status == SF_OK) {
-        int count = select_data(in, left_out, which);
-        for (int i = 0; i < count; i++) {
-            memcpy(&jacobian[i * PLACES], &in->jacobian[in->data_row[which[i]] * PLACES],
-                   PLACES * sizeof *jacobian);
-            fill_effects(in->fit, in->data_row[which[i]], &effect[i * effects]);
-            for (int j = 0; j < count; j++)
-                base[i * count + j] = in->base[which[i] * in->data + which[j]];
-        }
-        sf_discrepancy_build(count, PLACES, jacobian, kernel, effects, effect, base, out, err);
+    SF_TRY(err->status);
+    int count = select_data(in, left_out, which);
+    for (int i = 0; i < count; i++) {
+        memcpy(&jacobian[i * PLACES], &in->jacobian[in->data_row[which[i]] * PLACES],
+               PLACES * sizeof *jacobian);
+        fill_effects(in->fit, in->data_row[which[i]], &effect[i * effects]);
+        for (int j = 0; j < count; j++)
+            base[i * count + j] = in->base[which[i] * in->data + which[j]];
     }
-    free(which);
-    free(jacobian);
-    free(base);
-    free(effect);
-    return err->status;
+    return sf_discrepancy_build(count, PLACES, jacobian, kernel, effects, effect, base, out, err);
 }
 
 /* ln of what makes the cut priors integrate to one. */
@@ -399,21 +384,18 @@ bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64
     sf_error err = SF_ERROR_INIT;
     double x[SF_DISCREPANCY_MOST];
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
-    double *residual = sf_alloc(&err, (unsigned long)in->data, sizeof *residual, "data");
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_taus2);
-    bool found = residual && random && find_residual(in, u, residual);
-    if (found) {
-        gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
-        sf_discrepancy_draw(&in->all, residual, size, random, delta, x);
-        fill_error(size, x, error);
-        for (int d = in->fit->measured_drops; own && d < in->fit->input->drop_count; d++)
-            for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
-                own[d * SF_FIT_SAMPLES + kind] =
-                    sf_drop_kind_get(kind)->model_sd * (x[kind] + size.kappa * gsl_ran_ugaussian(random));
-    }
-    gsl_rng_free(random);
-    free(residual);
-    return found;
+    SF_OWNED double *residual = sf_alloc(&err, (unsigned long)in->data, sizeof *residual, "data");
+    SF_RANDOM *random = gsl_rng_alloc(gsl_rng_taus2);
+    if (!residual || !random || !find_residual(in, u, residual))
+        return false;
+    gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
+    sf_discrepancy_draw(&in->all, residual, size, random, delta, x);
+    fill_error(size, x, error);
+    for (int d = in->fit->measured_drops; own && d < in->fit->input->drop_count; d++)
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            own[d * SF_FIT_SAMPLES + kind] =
+                sf_drop_kind_get(kind)->model_sd * (x[kind] + size.kappa * gsl_ran_ugaussian(random));
+    return true;
 }
 
 /* Logarithms of what is predicted, of the foam of this state with a delta drawn. */
@@ -423,7 +405,7 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
     double delta[PLACES], own[SF_FIT_MAX_DROPS * SF_FIT_SAMPLES];
     sf_response_error error;
     sf_error err = SF_ERROR_INIT;
-    double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
+    SF_OWNED double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
     bool known = y && !sf_process_stopped() && sf_drop_inference_draw(in, u, seed, delta, &error, own) &&
                  respond(in, u, in->steep ? delta : NULL, fit->measured_drops, fit->input->drop_count, y,
                          &err) == SF_OK;
@@ -434,10 +416,7 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
         for (int b = 0; known && !in->steep && b < PLACES; b++)
             quantity[q] += in->jacobian[row * PLACES + b] * delta[b];
     }
-    free(y);
 }
-
-/* ---- the whole ---- */
 
 /* Covariance of the fit's foam parameters, and that of the z before the data. */
 static void fill_start(const sf_drop_inference *in, double *start, double *covariance) {

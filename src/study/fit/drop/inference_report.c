@@ -3,7 +3,6 @@
 
 #include "report/html.h"
 #include <math.h>
-#include <string.h>
 
 static const double THREE[] = {0.025, 0.5, 0.975};
 
@@ -429,8 +428,6 @@ sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, s
     sf_staging_close(f, "posterior.csv", err);
     return err->status;
 }
-
-/* ---- lines ---- */
 
 void sf_inference_comment(FILE *f, const sf_drop_average *a) {
     fprintf(f,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/joint.h"
+#include "study/fit/drop/fit_input.h"
 
 #include "base/hash.h"
 #include "base/units.h"
@@ -8,7 +8,6 @@
 #include "study/column.h"
 #include "study/fit/compression/compression_config.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double LEAST_STRESS = 0.02; /* of the largest, in the scatter */
@@ -173,7 +172,7 @@ static void take_points(const sf_compression_test *t, sf_joint_test *out) {
 static sf_status take_test(const sf_config *config, sf_config_item *entry,
                            const sf_compression_source *source, sf_joint *joint, sf_error *err) {
     sf_joint_test *test = &joint->test[joint->test_count];
-    sf_compression_test read;
+    SF_OWNED_BY(sf_compression_test_free) sf_compression_test read = {0};
     sf_error inner = SF_ERROR_INIT;
     /* the text of the file, at whatever rate it is said to be, is that of no other test */
     SF_TRY(sf_plain_hash(source->path, NULL, SF_PLAIN_TEXT, &test->file, err));
@@ -188,13 +187,11 @@ static sf_status take_test(const sf_config *config, sf_config_item *entry,
     snprintf(test->interpretation, sizeof test->interpretation, "%s: %.500s", source->path,
              read.interpretation);
     if (test->loading < LEAST_POINTS)
-        sf_config_refuse(config, config_setting_get_member(entry, "file"), err,
-                         "%s: loading from a strain of %.3g to %.3g holds %d of the points %g apart that are "
-                         "compared; at least %d are needed",
-                         source->path, read.strain[0], read.largest_strain, test->loading, GRID,
-                         LEAST_POINTS);
-    sf_compression_test_free(&read);
-    SF_TRY(err->status);
+        return sf_config_refuse(
+            config, config_setting_get_member(entry, "file"), err,
+            "%s: loading from a strain of %.3g to %.3g holds %d of the points %g apart that are "
+            "compared; at least %d are needed",
+            source->path, read.strain[0], read.largest_strain, test->loading, GRID, LEAST_POINTS);
     joint->rows += test->count;
     joint->test_count++;
     return SF_OK;
@@ -203,7 +200,7 @@ static sf_status take_test(const sf_config *config, sf_config_item *entry,
 static sf_status read_test(const sf_config *config, sf_config_item *entry, sf_joint *joint, sf_error *err) {
     sf_joint_test *test = &joint->test[joint->test_count];
     sf_compression_source source = {0};
-    char *path = NULL;
+    SF_OWNED char *path = NULL;
     *test = (sf_joint_test){.sd = 0.05};
     SF_TRY(sf_config_names(config, entry, "name|file|sd|" SF_COMPRESSION_SOURCE_KEYS, err));
     SF_TRY(read_name(config, entry, "compression", joint->test_count + 1, test->name, err));
@@ -212,9 +209,7 @@ static sf_status read_test(const sf_config *config, sf_config_item *entry, sf_jo
     SF_TRY(sf_config_file(config, entry, "file", true, &path, err));
     source.path = path;
     test->rate = source.rate;
-    take_test(config, entry, &source, joint, err);
-    free(path);
-    return err->status;
+    return take_test(config, entry, &source, joint, err);
 }
 
 /* ---- cushion curves ---- */
@@ -233,7 +228,7 @@ static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *e
                                               "peak|deceleration|acceleration|*beschleunigung|*verzögerung"},
                                     .kind = {SF_PRESSURE, SF_ACCELERATION},
                                     .unit = {0, SF_STANDARD_GRAVITY}};
-    sf_table table;
+    SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count > SF_JOINT_POINTS)
         SF_FAIL(err, SF_ERR_INPUT, "%s: %lld points; at most %d are taken", path, (long long)table.count,
@@ -250,7 +245,6 @@ static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *e
     }
     snprintf(out->interpretation, sizeof out->interpretation, "%s: %.383s, %d points", path,
              table.interpretation, out->count);
-    sf_table_free(&table);
     return err->status;
 }
 
@@ -334,7 +328,7 @@ static sf_status read_cushion(const sf_config *config, sf_config_item *entry, sf
                               sf_error *err) {
     sf_joint_cushion *cushion = &joint->cushion[joint->cushion_count];
     sf_error inner = SF_ERROR_INIT;
-    char *path = NULL;
+    SF_OWNED char *path = NULL;
     sf_config_item *points = config_setting_get_member(entry, "points"),
                    *energy = config_setting_get_member(entry, "stress_energy"),
                    *file = config_setting_get_member(entry, "file");
@@ -357,7 +351,6 @@ static sf_status read_cushion(const sf_config *config, sf_config_item *entry, sf
                 config_setting_source_line(entry));
     else if (path)
         sf_plain_hash(path, NULL, SF_PLAIN_TEXT, &cushion->file, err);
-    free(path);
     SF_TRY(err->status);
     SF_TRY(check_cushion(config, entry, joint, err));
     joint->rows += cushion->count;
