@@ -119,7 +119,7 @@ def _other_place(p: Protocol, pad: Case, condition: Condition, position: Positio
     except NumericError as error:
         notes.append(f"drops at {name} are not weighed: {error}")
         return None
-    if found and "draws" in found.summary["posterior"]:
+    if found and "draws" in (found.summary["posterior"] or {}):
         place = advice.read_place(name, found.folder, other.name, other.cost)
         if all(trend.freedom > 0 for trend in place.trend):
             return place

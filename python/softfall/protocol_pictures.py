@@ -122,7 +122,7 @@ def _draw_search(ax: Any, figure: Figure, search: Search, colour: str, prefix: s
         d = np.log(h) - fit["centre"]
         ax.plot(h, [figure.of(float(value)) for value in np.exp(fit["c0"] + fit["c1"] * d + fit["c2"] * d**2)], "--", color=colour, lw=1.2)
     band = search.folder / "cfh_band.csv"
-    if not band.exists() or search.summary.get("posterior") is None:
+    if not band.exists() or "draws" not in (search.summary["posterior"] or {}):  # it may be of an earlier run
         return
     heights = [point["height_m"] for point in search.summary["points"]]
     with open(band, newline="", encoding="utf-8") as stream:
