@@ -282,8 +282,8 @@ SEARCH_FILTER, NO_LIMIT = 1000, 1e6  # of softfall-cfh; a limit that no drop rea
 
 
 def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
-           options: Mapping[str, Any], limits: tuple[float | None, float | None] | None = None) -> Search:
-    """Runs softfall-cfh below a folder, and reads its drops. `limits` of a_max (g) and HIC are those of the protocol unless given."""
+           options: Mapping[str, Any], limits: tuple[float | None, float | None] | None = None, shown: bool = True) -> Search:
+    """Runs softfall-cfh below a folder, and reads its drops if they are shown. `limits` of a_max (g) and HIC are those of the protocol unless given."""
     folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
     a_max, hic_value = limits or (p.limit_of("a_max_g"), p.limit_of("hic"))
@@ -293,7 +293,8 @@ def search(p: Protocol, case: Case, condition: Condition, position: Position, fo
                          *programs.options(given)])
     found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
     height = found.summary["critical_fall_height"].get("height_m")
-    found.drops = [_point(p, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs") for point in found.summary["points"]]
+    if shown:
+        found.drops = [_point(p, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs") for point in found.summary["points"]]
     if options.get("views") and height:
         drop = case.copy()
         drop["missile.velocity"] = f"{speed(height):.12g} m/s"

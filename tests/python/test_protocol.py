@@ -116,7 +116,7 @@ def test_every_protocol_reads_and_names_what_is_unconfirmed():
     ('[result]', '[advice]\ntests = [{ rate = "10 Hz" }]\n[result]', "advice: test 1: rate: '10 Hz' is no strain rate"),
     ('[result]', '[advice]\ntests = [{ rate = "10 1/s", cost = 0 }]\n[result]', "test 1: cost = 0 is not above 0"),
     ('[result]', '[advice]\nmissiles = [{ name = "flat" }]\n[result]', "missile 1: flat has neither geometry, mass nor keys"),
-    ('[result]', '[advice]\nmissiles = [{ name = "a", mass = "1 kg" }, { name = "a", mass = "2 kg" }]\n[result]', "missile 2: name 'a' is empty or that of another"),
+    ('[result]', '[advice]\nmissiles = [{ name = "a", mass = "1 kg" }, { name = "a", mass = "2 kg" }]\n[result]', "missile 2: name 'a' is empty, that of another missile"),
     ('[result]', '[advice]\nmissile = "flat"\n[result]', "advice: there is no key 'missile'"),
     ('[missile]', '[missile', "TOML|Expected"),
     ('[missile]', '[misile]', r"the group \[missile\] is missing"),
@@ -403,7 +403,7 @@ def test_later_drops_of_a_foam_with_memory_are_simulated_and_count(remembering, 
 
 def test_a_critical_height_is_that_of_the_drops_that_count(remembering, tmp_path):
     text = re.sub(r"conditions = \[.*?\n\]\n", "", (protocol.folder() / "f1292.toml").read_text(), flags=re.S)
-    (tmp_path / "mine.toml").write_text(re.sub(r'geometry = .*\n|parameters = .*\n', "", text))
+    (tmp_path / "mine.toml").write_text(re.sub(r'(?m)^(geometry|parameters) = .*\n', "", text))
     result = softfall_protocol(tmp_path / "mine.toml", "--pad", remembering, *SERIES, "-o", tmp_path / "out")
     assert result.returncode == 0, result.stderr
     told = json.loads((tmp_path / "out/protocol.json").read_text())
