@@ -30,6 +30,7 @@ INK = [0.13, 0.13, 0.15]
 GREY = [0.45, 0.45, 0.48]
 COLOURS = ["ecece6", "9ecae1", "3d85c6", "35a583", "f2d24b", "ec7a32", "b2182b", "67001f"]
 MISSILE_COLOUR = [0.62, 0.65, 0.70]
+SUPPORT_COLOUR = [0.66, 0.58, 0.47]
 DECADES = 3            # of the logarithmic scale
 EYE = [-0.2, -0.9, 0.36]  # direction from the drop to the camera
 ANGLE = 20.0           # degrees, of the camera
@@ -66,6 +67,8 @@ class Drop:
         self.pad, self.cut = self.parts(self.block("pad"), "pad")
         self.show_pad()
         self.missile = self.missile_cut = None
+        if DROP.get("support"):
+            self.show_support(*self.parts(self.block("support"), "support"))
         if DROP["missile"]:
             body = self.block("missile")
             self.missile, self.missile_cut = self.parts(self.smooth(body), "missile")
@@ -189,6 +192,15 @@ class Drop:
         line.DiffuseColor = line.AmbientColor = INK
         line.LineWidth = 2.5
         line.Visibility = int(not self.whole)
+
+    def show_support(self, whole, behind):
+        for source in (whole, behind):
+            display = simple.Show(source, self.view)
+            display.Representation = "Surface"
+            display.ColorArrayName = ["POINTS", ""]
+            display.DiffuseColor = display.AmbientColor = SUPPORT_COLOUR
+            display.Ambient = 0.25
+            display.Visibility = int((source is whole) == self.whole)
 
     def show_text(self, source, location, size):
         shown = simple.Show(source, self.view)

@@ -57,7 +57,7 @@ static void use_example(const program_place *p, const char *name) {
                   name);
 }
 
-#define SUPPORT(file) "--set pad.fixed=[] --set geometry.support_file='\"geo/" file ".geo\"' "
+#define SUPPORT(file) "--set pad.fixed=[] --set support.file='\"geo/" file ".geo\"' "
 #define COARSE_PAD "--set geometry.parameters.fine_spacing=10.0 --set geometry.parameters.outer_spacing=20.0 "
 
 static void a_flat_slab_acts_as_the_anvil(void **state) {
@@ -73,12 +73,46 @@ static void a_flat_slab_acts_as_the_anvil(void **state) {
     assert_relative(rough.base, resting.base, 0.01);
     assert_true(slab.penetration < 0.001 * 10 && rough.penetration < 0.001 * 10);
     /* Its triangles may be of any size. */
-    figures large =
-        run(p, COARSE_PAD SUPPORT("slab") "--set geometry.support_parameters='{ element_size = 90.0; }'");
+    figures large = run(p, COARSE_PAD SUPPORT("slab") "--set support.parameters='{ element_size = 90.0; }'");
     assert_relative(large.a_max, rough.a_max, 1e-6);
     /* A hole under the missile makes it softer; the foam hangs in it and does not pass through its rim. */
-    figures hole = run(p, COARSE_PAD SUPPORT("slab") "--set geometry.support_parameters='{ hole = 100.0; }'");
+    figures hole = run(p, COARSE_PAD SUPPORT("slab") "--set support.parameters='{ hole = 100.0; }'");
     assert_true(hole.a_max < 0.8 * rough.a_max && hole.penetration < 0.05 * 10);
+}
+
+/* Two strips and the rest of the plane below a pad: each transmits its part, and all act as one slab does. */
+static const char STRIP[] =
+    "SetFactory(\"OpenCASCADE\");\nDefineConstant[ from = 0, to = 300 ];\n"
+    "Box(1) = {from,-300,-5,to-from,600,5}; Delete{ Volume{:}; }\n"
+    "Physical Surface(\"support\") = Surface{:}; Mesh.MeshSizeMin = 30; Mesh.MeshSizeMax = 30;\n";
+
+static void several_supports_share_the_load(void **state) {
+    const program_place *p = *state;
+    use_example(p, "eva50-v4.5");
+    program_write_text(p, "geo/strip.geo", STRIP);
+    figures slab = run(p, COARSE_PAD SUPPORT("slab") "--set support.friction=0.0"),
+            plane = run(p, COARSE_PAD "--set pad.fixed=[] --set support.plane='[0.0, 0.0, 2.0]' --set "
+                                      "support.friction=0.0");
+    assert_relative(plane.a_max, slab.a_max, 1e-4);
+    assert_relative(largest_in_history(p, "support_force_1_N"), plane.base, 1e-5);
+    program_write_text(
+        p, "strips.cfg",
+        "@include \"case.cfg\"\nsupports = ( { file = \"geo/strip.geo\"; parameters = { from = -45; to = 45; }; "
+        "friction = 0.0; }, { file = \"geo/strip.geo\"; parameters = { from = 45; }; friction = 0.0; } );\n");
+    program_shell(p, "mv case.cfg one.cfg && sed 's#case.cfg#one.cfg#' strips.cfg > case.cfg");
+    figures both = run(p, COARSE_PAD "--set pad.fixed=[]");
+    static const char *const shown[] = {"out/report.html",     "#7a5c3a",          "out/view.html",
+                                        "\"support\":",        "out/pad.xdmf",     ":/support/position",
+                                        "out/pad_paraview.py", "\"support\": True"};
+    for (int k = 0; k < 8; k += 2)
+        assert_int_equal(program_shell(p, "grep -qF -- '%s' %s", shown[k + 1], shown[k]).code, 0);
+    double inner = largest_in_history(p, "support_force_1_N"),
+           outer = largest_in_history(p, "support_force_2_N");
+    print_message("forces %.1f and %.1f N of %.1f N\n", inner, outer, both.base);
+    assert_relative(both.a_max, slab.a_max, 0.01);
+    assert_true(inner > 0.2 * both.base && outer > 0.02 * both.base &&
+                inner + outer >= both.base * (1 - 1e-9));
+    assert_true(inner < both.base && largest_in_history(p, "support_force_3_N") == 0);
 }
 
 /* The bits do not depend on the threads, nor on where a run is resumed. */
@@ -88,7 +122,7 @@ static void the_bits_are_the_same(void **state) {
     program_succeed(
         p, "pre", "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 %s",
         COARSE_PAD SUPPORT(
-            "slab") "--set geometry.support_parameters='{ hole = 60.0; }' --set solver.end_time='\"9 ms\"'");
+            "slab") "--set support.parameters='{ hole = 60.0; }' --set solver.end_time='\"9 ms\"'");
     program_succeed(p, "solve", "m.h5 -o one.h5 --force -t 1");
     program_succeed(p, "solve", "m.h5 -o two.h5 --force -t 2");
     program_succeed(p, "solve", "m.h5 -o three.h5 --force -t 2 --end-time '6 ms'");
@@ -105,10 +139,11 @@ static void the_bits_are_the_same(void **state) {
 static void a_support_moves_with_its_case(void **state) {
     const program_place *p = *state;
     use_example(p, "post");
-    program_shell(p,
-                  "sed -i 's#missile_file = #support_file = \"geo/round_post.geo\"; support_parameters = { "
-                  "element_size = 13.0; };\\n    missile_file = #; s#^material:#pad: { fixed = []; "
-                  "mesh_error_limit = 10.0; };\\nmaterial:#; s#spacing = 5.0#spacing = 13.0#' case.cfg");
+    program_shell(
+        p, "sed -i 's#^material:#supports = ( { file = \"geo/round_post.geo\"; parameters = { element_size = "
+           "13.0; }; }, { plane = [0.0, 0.0, 1.0]; place = \"-98 mm\"; } );\\n"
+           "pad: { fixed = []; mesh_error_limit = 10.0; };\\nmaterial:#; s#spacing = 5.0#spacing = 13.0#' "
+           "case.cfg");
     program_succeed(p, "new", "own --from case.cfg");
     program_succeed(p, "pre", "case.cfg -o m.h5 --force --set solver.end_time='2 ms'");
     program_succeed(p, "pre", "own/case.cfg -o own.h5 --force --set solver.end_time='2 ms'");
@@ -127,7 +162,7 @@ static void a_post_in_a_tube_acts_as_glue_does(void **state) {
     figures glued = run(p, coarse);
     double thickness = program_file_number(p, "out/summary.json", "thickness_mm");
     snprintf(words, sizeof words, "%s%s%s", coarse, SUPPORT("round_post"),
-             "--set support.friction=1.0 --set geometry.support_parameters='{ element_size = 10.0; }'");
+             "--set support.friction=1.0 --set support.parameters='{ element_size = 10.0; }'");
     figures post = run(p, words);
     assert_relative(program_file_number(p, "out/summary.json", "thickness_mm"), thickness, 0.01);
     assert_relative(post.a_max, glued.a_max, 0.02);
@@ -205,21 +240,34 @@ static void wrong_supports_are_refused(void **state) {
         const char *words, *sentence;
     } bad[] = {
         {SUPPORT("slab") "--set support.friction=-0.1", "support.friction"},
+        {SUPPORT("slab") "--set support.plane='[0.0, 0.0, 1.0]'", "either the surface of a file"},
+        {SUPPORT("slab") "--set support.place='\"1 mm\"'", "support.place has no meaning"},
+        {"--set support.plane='[0.0, 0.0, 0.0]'", "either the surface of a file"},
+        {"--set support.plane='[0.0, 0.0, 1.0]' --set support.group='\"a\"'", "support.group has no meaning"},
+        {"--set pad.fixed=[] --set support.plane='[0.0, 0.0, 1.0]' --set support.place='\"3 mm\"'",
+         "3 mm inside the support"},
+        {"--set pad.fixed=[] --set support.plane='[1.0, 0.0, 0.0]' --set support.place='\"-250 mm\"'",
+         "before it within the pad's thickness"},
+        {SUPPORT("slab") "--set supports.a.plane='[0.0, 0.0, 1.0]'", "in place of a group support"},
+        {"--set pad.fixed=[] --set supports.a.plane='[0.0, 0.0, 1.0]' --set supports.b.plane='[0.0, 0.0, 1.0]' "
+         "--set supports.b.place='\"2 mm\"'",
+         "support 2: pad and support overlap"},
+        {"--set supports.a.plane='[0.0, 0.0, 1.0]' --set supports.a.frction=0.1",
+         "did you mean \"friction\""},
         {SUPPORT("slab") "--set support.group='\"nothing\"'", "nothing"},
         {SUPPORT("empty"), "it holds no mesh"},
         {SUPPORT("none"), "cannot be read"},
-        {"--set support.friction=0.1", "no meaning without geometry.support_file"},
-        {"--set geometry.support_parameters='{ side = 100.0; }'", "no meaning without geometry.support_file"},
-        {SUPPORT("shift") "--set geometry.support_parameters='{ z = -3.0; }'", "2 mm inside the support"},
-        {SUPPORT("shift") "--set geometry.support_parameters='{ z = 1.0; w = 6.0; x = 15.0; y = 15.0; }'",
+        {"--set support.friction=0.1", "either the surface of a file"},
+        {"--set support.parameters='{ side = 100.0; }'", "either the surface of a file"},
+        {SUPPORT("shift") "--set support.parameters='{ z = -3.0; }'", "2 mm inside the support"},
+        {SUPPORT("shift") "--set support.parameters='{ z = 1.0; w = 6.0; x = 15.0; y = 15.0; }'",
          "inside the pad"},
-        {SUPPORT("shift") "--set geometry.support_parameters='{ z = -80.0; }'",
+        {SUPPORT("shift") "--set support.parameters='{ z = -80.0; }'",
          "before it within the pad's thickness"},
-        {SUPPORT("shift") "--set geometry.support_parameters='{ z = 60.0; }'",
-         "the missile meets the support"},
-        {SUPPORT("shift") "--set geometry.support_parameters='{ x = 2000.0; }'",
+        {SUPPORT("shift") "--set support.parameters='{ z = 60.0; }'", "the missile meets the support"},
+        {SUPPORT("shift") "--set support.parameters='{ x = 2000.0; }'",
          "before it within the pad's thickness"},
-        {SUPPORT("slab") "--set geometry.support_parameters='{ side = 420.0; element_size = 1.9; }'",
+        {SUPPORT("slab") "--set support.parameters='{ side = 420.0; element_size = 1.9; }'",
          "mesh the support coarser"}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         refuse(p, bad[k].words, bad[k].sentence);
@@ -235,9 +283,9 @@ static void the_missile_stops_at_a_support(void **state) {
         "Mesh.MeshSizeMin = 10; Mesh.MeshSizeMax = 10;\n");
     program_write_text(
         p, "case.cfg",
-        "geometry: { file = \"geo/cube.geo\"; missile_file = \"geo/platen.geo\"; support_file = \"geo/wall.geo\";\n"
+        "geometry: { file = \"geo/cube.geo\"; missile_file = \"geo/platen.geo\"; \n"
         "  length_unit = \"mm\"; parameters = { side = 40.0; spacing = 10.0; }; missile_parameters = { side = 200.0; }; };\n"
-        "pad: { fixed = []; mesh_error_limit = 10.0; };\n"
+        "pad: { fixed = []; mesh_error_limit = 10.0; };\nsupport: { file = \"geo/wall.geo\"; };\n"
         "material: {\n@include \"materials/eva35.cfg\"\n};\n"
         "missile: { motion = \"motion.csv\"; shape = \"surface\"; };\nsolver: { end_time = \"8 ms\"; };\n");
     program_write_text(p, "motion.csv", "time_ms,displacement_mm\n0,0\n8,8\n");
@@ -250,6 +298,7 @@ static void the_missile_stops_at_a_support(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flat_slab_acts_as_the_anvil),
+        cmocka_unit_test(several_supports_share_the_load),
         cmocka_unit_test(the_bits_are_the_same),
         cmocka_unit_test(a_support_moves_with_its_case),
         cmocka_unit_test(a_post_in_a_tube_acts_as_glue_does),

@@ -19,7 +19,8 @@ cd "$folder"
 "$bin/softfall-pre" -o rest.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set pad.base=resting examples/compression/case.cfg >/dev/null
 "$bin/softfall-pre" -o skin.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set pad.self_contact=on examples/compression/case.cfg >/dev/null
 "$bin/softfall-pre" -o support.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set 'pad.fixed=[]' \
-    --set 'geometry.support_file="../../geo/slab.geo"' --set 'geometry.support_parameters={side=80.0; element_size=40.0;}' \
+    --set 'supports.a.file="../../geo/slab.geo"' --set 'supports.a.parameters={side=80.0; element_size=40.0;}' \
+    --set 'supports.b.plane=[0.0, 0.0, 1.0]' --set 'supports.b.friction=0.1' \
     --set 'membrane.faces=["top"]' --set membrane.E='1 MPa' --set membrane.thickness='1 mm' --set membrane.density='1000 kg/m3' \
     examples/compression/case.cfg >/dev/null
 cp support.h5 "$corpus/model/support.h5"

@@ -147,6 +147,16 @@ void sf_rigid_product(const double matrix[6], const double v[3], double out[3]);
 void sf_rigid_turn(const double inertia[6], const double q[4], const double momentum[3], double dt,
                    double turn[3]);
 
+/* Normal of a triangle, of twice its area. */
+static inline void sf_triangle_normal(const double *a, const double *b, const double *c, double out[3]) {
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        u[k] = b[k] - a[k];
+        v[k] = c[k] - a[k];
+    }
+    sf_cross3(u, v, out);
+}
+
 /* Finds the point of a triangle that is nearest to x (Ericson 2005, section 5.1.5). `feature`: where it lies,
  * 0-2 vertex, 3-5 edge, 6 face. */
 static inline void sf_triangle_nearest(const double *a, const double *b, const double *c, const double x[3],

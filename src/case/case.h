@@ -14,7 +14,7 @@ enum {
     SF_CASE_MAX_PARAMETERS = 64,
     SF_CASE_MAX_TIMES = 256,
     SF_CASE_MAX_LAYERS = 32,
-    SF_GEOMETRIES = 3 /* of pad, missile and support */
+    SF_GEOMETRIES = 2 + SF_SUPPORTS /* of pad, missile and supports */
 };
 
 /* A variable of a .geo file set by the case; plain numbers, in the geometry's own length unit. */
@@ -31,6 +31,15 @@ typedef struct sf_geo_source {
     sf_geo_parameter parameter[SF_CASE_MAX_PARAMETERS];
     double unit; /* m per unit that it has or is to have; 0: not known */
 } sf_geo_source;
+
+/* A rigid fixed body that the pad may touch: a surface of a geometry, or a plane. */
+typedef struct sf_case_support {
+    sf_geo_source source;          /* path NULL: a plane */
+    char group[SF_CASE_NAME_SIZE]; /* physical surface group of the geometry */
+    double normal[3];              /* -, unit, of a plane, into the free half-space, in the geometry's axes */
+    double place;                  /* m, of a plane along its normal from the origin */
+    double friction;               /* -, Coulomb coefficient of the pad against it */
+} sf_case_support;
 
 enum { SF_BASE_GLUED, SF_BASE_SMOOTH, SF_BASE_RESTING }; /* pad.base, in the order of its words */
 enum { SF_SELF_CONTACT_AUTO, SF_SELF_CONTACT_ON, SF_SELF_CONTACT_OFF }; /* pad.self_contact, likewise */
@@ -65,6 +74,7 @@ typedef struct sf_case {
     double temperature;                    /* K, of the pad; 0: not given */
     bool temperature_acts;                 /* a material has curves at several temperatures */
     int self_contact;                      /* SF_SELF_CONTACT_* */
+    int64_t separate;                      /* 1: the pad may be of several bodies */
     bool stabilised;                       /* kernel.stabilisation is given */
     double self_friction;                  /* -, Coulomb coefficient of the pad against itself */
     double mesh_error_limit;               /* -, expected error of a_max above which the case is refused */
@@ -98,12 +108,13 @@ typedef struct sf_case {
     sf_run_options run;
     int frame_time_count;                 /* further frames, beside run.frame_interval */
     double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */
-    char about[3][SF_CASE_NAME_SIZE]; /* sample, laboratory, conditions: words for the report; "": not given */
+    char about[3]
+              [SF_CASE_NAME_SIZE]; /* sample, laboratory, conditions: words for the report; "": not given */
 
-    sf_geo_source support;                 /* path NULL: there is none */
-    char support_group[SF_CASE_NAME_SIZE]; /* physical surface group of the rigid supports */
-    double support_friction;               /* -, Coulomb coefficient of the pad against them */
-    int membrane_count;                    /* surface groups with a cover without cells */
+    int support_count;
+    bool support_alone; /* the only one is the group `support`, not one of the list `supports` */
+    sf_case_support support[SF_SUPPORTS];
+    int membrane_count; /* surface groups with a cover without cells */
     char membrane_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     sf_membrane_card membrane_card;
 } sf_case;

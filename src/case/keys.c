@@ -7,6 +7,7 @@
 #include <string.h>
 
 #define AT(member) .offset = offsetof(sf_case, member)
+#define OF_SUPPORT(member) .in_support = true, .offset = offsetof(sf_case_support, member)
 #define POSITIVE .low = 0.0, .low_open = true
 /* Frame fields as words and as the default, "[\"displacement\", ...]". */
 #define WORD(constant, name, ...) #name
@@ -28,10 +29,6 @@ static const sf_key keys[] = {
      "values for the DefineConstant parameters of `file`, in its own units"},
     {"geometry", "missile_parameters", SF_KEY_PARAMETERS, "", AT(missile),
      "the same for `missile_file`"},
-    {"geometry", "support_file", SF_KEY_PATH, "", AT(support.path),
-     "geometry of rigid fixed bodies of any shape that the pad may touch, in the coordinates of `file`; absent: there are none"},
-    {"geometry", "support_parameters", SF_KEY_PARAMETERS, "", AT(support),
-     "the same for `support_file`"},
     {"geometry", "time_limit", SF_KEY_QUANTITY, "\"600 s\"", AT(mesh_time_limit),
      "processor time that gmsh may take for each geometry", .quantity = SF_TIME, .low = 1.0, .high = 1e7, .idle = true},
     /* pad */
@@ -60,6 +57,8 @@ static const sf_key keys[] = {
     {"pad", "loose_interfaces", SF_KEY_NAMES, "[]", AT(loose_name),
      "pairs of layers that only touch, [\"NAME/NAME\"]: they slide with `self_friction`, open and close",
      .count_offset = offsetof(sf_case, loose_count)},
+    {"pad", "separate", SF_KEY_BOOL, "false", AT(separate),
+     "the pad may be of several bodies, which touch each other as its faces do; each is at rest until something touches it"},
     {"pad", "self_contact", SF_KEY_CHOICE, "\"auto\"", AT(self_contact),
      "contact of the pad's free faces with each other and with the anvil: `auto` where a face has another one, or the anvil, before it within the pad's thickness",
      .words = "auto|on|off"},
@@ -115,11 +114,19 @@ static const sf_key keys[] = {
     {"missile", "angular_velocity", SF_KEY_QUANTITIES, "", AT(angular_velocity),
      "of a free missile when it first touches the pad, in the pose of its geometry, about x, y and z; absent: none",
      .quantity = SF_ANGULAR_VELOCITY, .low = -1e3, .high = 1e3, .count_offset = offsetof(sf_case, angular_velocity_count), .lengths = {3}},
-    /* support */
-    {"support", "group", SF_KEY_NAME, "\"support\"", AT(support_group),
-     "physical surface of the rigid bodies of `geometry.support_file` that the pad touches; it may have several parts"},
-    {"support", "friction", SF_KEY_NUMBER, "0.5", AT(support_friction),
-     "Coulomb coefficient of the pad against them; the default is an assumption, as that of `pad.friction`", .high = 10.0},
+    /* support, or each of `supports` */
+    {"support", "file", SF_KEY_PATH, "", OF_SUPPORT(source.path),
+     "geometry of a rigid fixed body of any shape that the pad may touch, in the coordinates of `geometry.file`; several supports: `supports = ( { file = ...; }, ... )`"},
+    {"support", "parameters", SF_KEY_PARAMETERS, "", OF_SUPPORT(source),
+     "values for its DefineConstant parameters"},
+    {"support", "group", SF_KEY_NAME, "\"support\"", OF_SUPPORT(group),
+     "physical surface of `file` that the pad touches; it may have several parts"},
+    {"support", "plane", SF_KEY_VECTOR, "", OF_SUPPORT(normal),
+     "in place of `file`: a plane, by its normal towards the pad, in the geometry's axes"},
+    {"support", "place", SF_KEY_QUANTITY, "\"0 mm\"", OF_SUPPORT(place),
+     "of the plane, along its normal from the origin", .quantity = SF_LENGTH, .low = -1e3, .high = 1e3},
+    {"support", "friction", SF_KEY_NUMBER, "0.5", OF_SUPPORT(friction),
+     "Coulomb coefficient of the pad against it; the default is an assumption, as that of `pad.friction`", .high = 10.0},
     /* membrane */
     {"membrane", "faces", SF_KEY_NAMES, "[]", AT(membrane_group),
      "physical surfaces of the pad that a thin elastic cover without cells lies on, glued to them; `E`, `thickness` and `density` go with it",

@@ -49,6 +49,7 @@ typedef struct sf_key {
     size_t count_offset; /* SF_KEY_NAMES, SF_KEY_TIMES, SF_KEY_QUANTITIES */
     int lengths[2];      /* SF_KEY_QUANTITIES; the second may be 0 */
     bool in_card;        /* a parameter of the law */
+    bool in_support;     /* of a support: the offset is in sf_case_support */
     bool idle;           /* its value cannot change a drop: it does not count in sf_case.values */
 } sf_key;
 

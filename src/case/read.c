@@ -46,7 +46,7 @@ static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, 
     else if (u->count > 1)
         snprintf(more, sizeof more, "; unknown too: %s", u->others);
     if (strcmp(u->group, "") == 0)
-        strncat(names, ", materials", sizeof names - strlen(names) - 1);
+        strncat(names, ", materials, supports", sizeof names - strlen(names) - 1);
     else if (strcmp(u->group, reader->material_group) == 0)
         strncat(names, ", " SF_RESPONSE_ERROR, sizeof names - strlen(names) - 1);
     if (*u->group)
@@ -65,7 +65,7 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
         char inner[SF_CASE_GROUP_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
         if (sf_case_find_key(&reader->keys, group, name) || item == reader->layers ||
-            sf_case_is_response_error(reader, group, name))
+            (!*group && strcmp(name, "supports") == 0) || sf_case_is_response_error(reader, group, name))
             continue;
         if (length >= (int)sizeof inner || !sf_case_is_group(&reader->keys, inner))
             add_unknown(u, item, group);
@@ -92,8 +92,7 @@ static bool names_files(const sf_key *key) {
 }
 
 /* Hashes the parameters of a geometry in any order: a --set text puts its own behind the others. */
-static void hash_parameters(sf_case *out, const sf_key *key) {
-    const sf_geo_source *source = (const sf_geo_source *)((const char *)out + key->offset);
+static void hash_parameters(sf_case *out, const sf_key *key, const sf_geo_source *source) {
     uint64_t sum = 0;
     for (int k = 0; k < source->parameter_count; k++) {
         const sf_geo_parameter *p = &source->parameter[k];
@@ -104,11 +103,13 @@ static void hash_parameters(sf_case *out, const sf_key *key) {
 }
 
 /* `detail`: the value in SI. Texts end with a zero: no two lists of values look the same. */
-static void hash_value(sf_case *out, const sf_key *key, const char *name, const char *text,
+static void hash_value(const sf_case_reader *reader, const sf_key *key, const char *name, const char *text,
                        const char *detail) {
+    sf_case *out = reader->out;
     const char *const part[] = {name, text, detail};
     if (key->kind == SF_KEY_PARAMETERS)
-        hash_parameters(out, key);
+        hash_parameters(out, key,
+                        (const sf_geo_source *)(const void *)(sf_case_home(reader, key) + key->offset));
     for (int k = 0; k < 3 && key->kind != SF_KEY_PARAMETERS && !names_files(key) && !key->idle; k++)
         out->values = sf_hash_bytes(out->values, part[k], strlen(part[k]) + 1);
 }
@@ -145,7 +146,7 @@ static void tell_value(const sf_case_reader *reader, const sf_key *key, const co
                                  .of_material = key->in_card || key->kind == SF_KEY_LAW,
                                  .words = key->words,
                                  .help = key->description};
-    if (reader->listener && !reader->material_only)
+    if (reader->listener && !reader->material_only && !(key->in_support && reader->supports))
         reader->listener->hear(reader->listener->user, &value);
 }
 
@@ -162,9 +163,12 @@ static void list_value(sf_case_reader *reader, const sf_key *key, const config_s
         fputs("(absent)", value);
     fclose(value);
     char name[SF_CASE_GROUP_SIZE];
-    snprintf(name, sizeof name, "%s.%s", key->group, key->name);
+    if (key->in_support && reader->supports)
+        snprintf(name, sizeof name, "supports.%d.%s", reader->support + 1, key->name);
+    else
+        snprintf(name, sizeof name, "%s.%s", key->group, key->name);
     fprintf(reader->listing, "%-34s %-24s %-24s %s\n", name, text ? text : "", detail, origin);
-    hash_value(reader->out, key, name, text ? text : "", detail);
+    hash_value(reader, key, name, text ? text : "", detail);
     tell_value(reader, key, setting, text ? text : "", strcmp(origin, "given") == 0);
     free(text);
 }
@@ -187,13 +191,32 @@ static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_erro
 }
 
 static sf_status read_layers(sf_case_reader *reader, sf_error *err);
+static sf_status read_supports(sf_case_reader *reader, size_t first, sf_error *err);
+
+/* Reads the value of row `k` of the keys from its setting; NULL: it is not given. */
+static sf_status read_key(sf_case_reader *reader, size_t k, const config_setting_t *setting, sf_error *err) {
+    const sf_key *key = &reader->keys.key[k];
+    char detail[128] = "-";
+    reader->given[k] = setting != NULL;
+    if (key->kind == SF_KEY_LAW)
+        snprintf(detail, sizeof detail, "%s", reader->material->law->name);
+    if (setting) {
+        SF_TRY(sf_case_read_value(reader, key, setting, detail, sizeof detail, err));
+        list_value(reader, key, setting, detail, "given");
+    } else if (!key->fallback) {
+        return sf_case_missing_key(reader, key, err);
+    } else if (*key->fallback == '\0') {
+        list_value(reader, key, NULL, detail, "default");
+    } else {
+        return read_default(reader, key, err);
+    }
+    return SF_OK;
+}
 
 static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
     for (size_t k = 0; k < reader->keys.count; k++) {
         const sf_key *key = &reader->keys.key[k];
         const config_setting_t *group = config_lookup(&reader->config, key->group);
-        const config_setting_t *setting = group ? config_setting_get_member(group, key->name) : NULL;
-        char detail[128] = "-";
         bool of_material = key->in_card || key->kind == SF_KEY_LAW;
         if (reader->material_only && !of_material)
             continue;
@@ -203,19 +226,10 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
             SF_TRY(sf_case_read_response_error(reader, err));
         if (reader->layers && of_material)
             continue;
-        reader->given[k] = setting != NULL;
-        if (key->kind == SF_KEY_LAW)
-            snprintf(detail, sizeof detail, "%s", reader->material->law->name);
-        if (setting) {
-            SF_TRY(sf_case_read_value(reader, key, setting, detail, sizeof detail, err));
-            list_value(reader, key, setting, detail, "given");
-        } else if (!key->fallback) {
-            return sf_case_missing_key(reader, key, err);
-        } else if (*key->fallback == '\0') {
-            list_value(reader, key, NULL, detail, "default");
-        } else if (read_default(reader, key, err) != SF_OK) {
-            return err->status;
-        }
+        if (!key->in_support)
+            SF_TRY(read_key(reader, k, group ? config_setting_get_member(group, key->name) : NULL, err));
+        else if (!reader->keys.key[k - 1].in_support)
+            SF_TRY(read_supports(reader, k, err));
     }
     return SF_OK;
 }
@@ -239,7 +253,11 @@ static void complete(const sf_case_reader *reader, sf_case *c) {
     sf_mat3_apply(turn, c->angular_velocity);
     sf_mat3_apply(turn, c->centre);
     sf_sym3_turn(turn, c->inertia);
-    c->pad.unit = c->missile.unit = c->support.unit = c->length_unit;
+    c->pad.unit = c->missile.unit = c->length_unit;
+    for (int k = 0; k < c->support_count; k++) {
+        c->support[k].source.unit = c->length_unit;
+        sf_unit3(c->support[k].normal);
+    }
     if (c->motion_count > 0)
         card->gravity = 0.0;
     c->position_given = sf_case_is_given(reader, "missile", "position");
@@ -307,6 +325,53 @@ static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
         read_layer(reader, setting, &c->layer[k], err);
     }
     return err->status;
+}
+
+/* A support is a surface of a file, or a plane. `group`: its settings; NULL: there is none. */
+static sf_status check_support(const sf_case_reader *reader, const config_setting_t *group, sf_error *err) {
+    const sf_case_support *s = &reader->out->support[reader->support];
+    bool plane = sf_dot3(s->normal, s->normal) > 0;
+    if (group && plane == (s->source.path != NULL))
+        return SF_REFUSE_AT(
+            reader, group, err,
+            "a support is either the surface of a file, { file = \"post.geo\"; }, or a plane with "
+            "the normal towards the pad, { plane = [0.0, 0.0, 1.0]; }");
+    const config_setting_t *wrong =
+        group ? config_setting_get_member(group, plane ? "parameters" : "place") : NULL;
+    if (group && plane && !wrong)
+        wrong = config_setting_get_member(group, "group");
+    if (wrong)
+        return SF_REFUSE_AT(reader, wrong, err, "support.%s has no meaning for a support that is %s",
+                            config_setting_name(wrong), plane ? "a plane" : "the surface of a file");
+    return SF_OK;
+}
+
+/* Reads the group `support`, or each of the list `supports`, by the rows of the keys from `first` on. */
+static sf_status read_supports(sf_case_reader *reader, size_t first, sf_error *err) {
+    sf_case *c = reader->out;
+    const config_setting_t *one = config_lookup(&reader->config, "support"),
+                           *several = reader->supports = config_lookup(&reader->config, "supports");
+    int count = several ? config_setting_length(several) : one != NULL;
+    if (several && (one || count < 1 || count > SF_SUPPORTS || config_setting_is_array(several)))
+        return SF_REFUSE_AT(reader, several, err,
+                            "supports must be a list of 1 to %d supports, in place of a group support: "
+                            "supports = ( { file = \"post.geo\"; }, { plane = [0.0, 0.0, 1.0]; } )",
+                            SF_SUPPORTS);
+    for (int n = 0; n < count || n == 0; n++) {
+        const config_setting_t *group = several ? config_setting_get_elem(several, (unsigned)n) : one;
+        if (several && !config_setting_is_group(group))
+            return SF_REFUSE_AT(reader, group, err, "a support must be a group: { file = \"post.geo\"; }");
+        if (several)
+            SF_TRY(check_names(reader, group, "support", err));
+        reader->support = n;
+        for (size_t k = first; k < reader->keys.count && reader->keys.key[k].in_support; k++)
+            SF_TRY(read_key(reader, k,
+                            group ? config_setting_get_member(group, reader->keys.key[k].name) : NULL, err));
+        SF_TRY(check_support(reader, group, err));
+    }
+    c->support_count = count;
+    c->support_alone = one != NULL;
+    return SF_OK;
 }
 
 /* The group `materials`, if there is one; `parted`: the case file has it, and no group `material`. */
@@ -439,7 +504,8 @@ void sf_case_free(sf_case *c) {
     free(c->geometry_files);
     free(c->pad.path);
     free(c->missile.path);
-    free(c->support.path);
+    for (int k = 0; k < SF_SUPPORTS; k++)
+        free(c->support[k].source.path);
     sf_material_free(&c->material);
     for (int k = 0; c->layer && k < c->layer_count; k++)
         sf_material_free(&c->layer[k]);

@@ -23,6 +23,8 @@ typedef struct sf_case_reader {
     char material_group[SF_KEY_GROUP_SIZE]; /* "material", or "materials.NAME" */
     bool given[SF_KEY_MAX];                 /* per row of `keys` */
     bool material_only;                     /* read the keys of the material, and no others */
+    const config_setting_t *supports;       /* the list `supports`; NULL: there is at most `support` */
+    int support;                            /* under construction */
     const sf_sink *sink;                    /* borrowed */
     FILE *listing;                          /* the parameters text under construction */
     size_t listing_size;
@@ -37,6 +39,13 @@ typedef struct sf_case_origin {
     unsigned line;
     char text[];
 } sf_case_origin;
+
+/* The structure of which a key's value is a member. */
+static inline char *sf_case_home(const sf_case_reader *reader, const sf_key *key) {
+    return key->in_card      ? reader->material->card
+           : key->in_support ? (char *)&reader->out->support[reader->support]
+                             : (char *)reader->out;
+}
 
 /* "file:line", or "--set key=value" for a setting that came from the command line. */
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out);

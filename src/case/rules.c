@@ -271,6 +271,9 @@ static sf_status check_interfaces(const sf_case_reader *reader, sf_error *err) {
     }
     if (c->loose_count > 0 && c->self_contact == SF_SELF_CONTACT_OFF)
         return REFUSE_AT("pad.loose_interfaces", "pad.loose_interfaces need pad.self_contact");
+    if (c->separate && c->self_contact == SF_SELF_CONTACT_OFF)
+        return REFUSE_AT("pad.separate",
+                         "pad.separate: bodies touch each other by pad.self_contact, which is \"off\"");
     return SF_OK;
 }
 
@@ -310,10 +313,10 @@ static sf_status check_resting(const sf_case_reader *reader, sf_error *err) {
 /* The base: surfaces that no other key holds or moves. */
 static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
     const sf_case *c = reader->out;
-    if (c->fixed_count + c->sliding_count == 0 && !c->support.path)
+    if (c->fixed_count + c->sliding_count + c->support_count == 0)
         return REFUSE(
             "pad.fixed",
-            "at least one surface must hold the pad, here or in pad.sliding, or a support (geometry.support_file)");
+            "at least one surface must hold the pad, here or in pad.sliding, or a support (support.file)");
     if (sf_case_is_given(reader, "pad", "base") && c->fixed_count == 0)
         return REFUSE("pad.base", "pad.fixed names no surface that it could apply to");
     for (int g = 0; g < c->fixed_count && sf_case_is_given(reader, "pad", "base"); g++) {
@@ -339,11 +342,6 @@ sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
         return REFUSE_AT(
             "geometry.missile_parameters",
             "geometry.missile_parameters are given but no geometry.missile_file that they belong to");
-    static const char no_support[] = " has no meaning without geometry.support_file";
-    if (!c->support.path &&
-        (refuse_given(reader, "geometry", "support_parameters", no_support, err) != SF_OK ||
-         refuse_given(reader, "support", "group|friction", no_support, err) != SF_OK))
-        return err->status;
     if (check_membrane(reader, err) != SF_OK || check_base(reader, err) != SF_OK ||
         check_direction(reader, err) != SF_OK || check_freedom(reader, err) != SF_OK)
         return err->status;

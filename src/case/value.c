@@ -350,7 +350,7 @@ static sf_status (*const readers[])(const slot *s) = {
 
 sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                              char *detail, size_t size, sf_error *err) {
-    char *whole = key->in_card ? reader->material->card : (char *)reader->out;
+    char *whole = sf_case_home(reader, key);
     const slot s = {reader, key,  setting, whole + key->offset, (int *)(void *)(whole + key->count_offset),
                     detail, size, err};
     return readers[key->kind] ? readers[key->kind](&s) : SF_OK; /* the law is taken before all others */

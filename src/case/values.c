@@ -165,6 +165,8 @@ bool sf_case_key_is_file(const char *path) {
     sf_key_list list;
     char text[SF_KEY_GROUP_SIZE];
     const char *layer = strncmp(path, "materials.", 10) == 0 ? strchr(path + 10, '.') : NULL;
+    if (strncmp(path, "supports.", 9) == 0)
+        return strcmp(strrchr(path, '.'), ".file") == 0;
     snprintf(text, sizeof text, "%s%s", layer ? "material" : "", layer ? layer : path);
     size_t length = strlen(text), entry = length > 5 && strcmp(text + length - 5, ".file") == 0 ? 5 : 0;
     for (int law = 0; sf_law_get(law); law++) {

@@ -101,8 +101,8 @@ static sf_status read_case(sf_session *s, sf_error *err) {
                 SF_OK &&
             (!fresh.missile.path || add_geometry(fresh.missile.path, "geometry.missile_parameters",
                                                  &fresh.missile, before, &s->fields, err) == SF_OK) &&
-            fresh.support.path)
-            add_geometry(fresh.support.path, "geometry.support_parameters", &fresh.support, before,
+            fresh.support_alone && fresh.support[0].source.path)
+            add_geometry(fresh.support[0].source.path, "support.parameters", &fresh.support[0].source, before,
                          &s->fields, err);
     }
     if (err->status != SF_OK)

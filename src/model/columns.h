@@ -70,6 +70,10 @@ const sf_frame_field_info *sf_frame_field_get(sf_frame_field field);
     X(contact_force, "N", "contact_force_N", 1, "on the missile, against its direction of motion", "")                 \
     X(friction_force, "N", "friction_force_N", 1, "tangential part of it", "along the same direction")                 \
     X(base_reaction, "N", "base_reaction_N", 1, "force of the base on the pad, z", "positive: the base pushes up")     \
+    X(support_force_1, "N", "support_force_1_N", 1, "resultant of the forces of support 1 on the pad", "by the order of `supports`; 0 without it") \
+    X(support_force_2, "N", "support_force_2_N", 1, "the same of support 2", "")                                       \
+    X(support_force_3, "N", "support_force_3_N", 1, "the same of support 3", "")                                       \
+    X(support_force_4, "N", "support_force_4_N", 1, "the same of support 4", "")                                       \
     X(energy_kinetic_missile, "J", "energy_kinetic_missile_J", 1, "kinetic energy of the missile", "")                 \
     X(energy_kinetic_pad, "J", "energy_kinetic_pad_J", 1, "kinetic energy of the pad", "")                             \
     X(energy_stored, "J", "energy_stored_J", 1, "recoverable energy of the foam", "")                                  \

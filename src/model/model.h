@@ -68,6 +68,9 @@ typedef struct sf_anvil_card {
     double friction; /* -, Coulomb coefficient against a resting pad */
 } sf_anvil_card;
 
+/* Most rigid supports of a pad; each has a column of the history. */
+enum { SF_SUPPORTS = 4 };
+
 /* Deepest place, of the spacing, from which a node begins to touch a face from outside. */
 #define SF_CONTACT_ENTRY 0.01
 
@@ -161,15 +164,18 @@ typedef struct sf_model {
     int64_t skin_count;
     int32_t *skin_triangle; /* [skin_count][3] nodes */
     double skin_friction;   /* -, Coulomb coefficient between them */
-    int64_t skin_alone;     /* 1: they touch the support only */
+    int64_t skin_alone;     /* 1: they touch the supports only */
+    int64_t skin_watched;   /* 1: they pass through each other, which ends the run */
 
-    /* Rigid fixed bodies that the skin may touch; triangles turned outwards. Nodes at sharp edges are there
-     * once for each side. */
+    /* Rigid fixed bodies that the skin may touch; triangles turned outwards, of one support after the other.
+     * Nodes at sharp edges are there once for each side. */
+    int64_t support_count;    /* 0 to SF_SUPPORTS */
+    double *support_friction; /* [support_count] -, Coulomb coefficient of the pad against each */
     int64_t support_node_count;
     int64_t support_triangle_count; /* 0: there are none */
     double *support_position;       /* [support_node_count][3] m */
     int32_t *support_triangle;      /* [support_triangle_count][3] */
-    double support_friction;        /* -, Coulomb coefficient of the pad against them */
+    uint8_t *support_part;          /* [support_triangle_count] the support that each belongs to */
     double support_travel; /* m, of the missile along its direction until it touches them; 0: it never does */
 
     /* The membrane on faces of the pad; its mass is among those of the nodes. A quadrangle is there by both

@@ -143,12 +143,13 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"anvil depth (m)", m->anvil.depth, 0, 1e3},
         {"skin friction", m->skin_friction, 0, 10},
         {"skin alone", (double)m->skin_alone, 0, 1},
+        {"skin watched", (double)m->skin_watched, 0, (double)m->skin_alone},
         {"membrane modulus (Pa)", m->membrane.modulus, m->membrane_count > 0 ? 1e-9 : 0, 1e12},
         {"membrane Poisson's ratio", m->membrane.poisson, 0, 0.5},
         {"membrane thickness (m)", m->membrane.thickness, m->membrane_count > 0 ? 1e-12 : 0, 1},
         {"membrane density (kg/m3)", m->membrane.density, 0, 1e5},
         {"fabric membrane", (double)m->membrane.fabric, 0, 1},
-        {"support friction", m->support_friction, 0, 10},
+        {"number of supports", (double)m->support_count, m->support_triangle_count > 0, SF_SUPPORTS},
         {"missile's way to the support (m)", m->support_travel, 0, 1e6},
         {"anvil friction", m->anvil.friction, 0, 10},
         {"symmetry factor", (double)m->symmetry_factor, 1, 4},
@@ -193,6 +194,17 @@ static sf_status check_surface(const char *name, int64_t count, const int32_t *t
         if (triangle[k] < 0 || triangle[k] >= nodes)
             return SF_FAIL(err, SF_ERR_MODEL, "%s triangle %lld refers to node %d, of 0 to %lld", name,
                            (long long)k / 3, triangle[k], (long long)nodes - 1);
+    return SF_OK;
+}
+
+static sf_status check_supports(const sf_model *m, sf_error *err) {
+    SF_TRY(check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count, err));
+    for (int64_t k = 0; k < m->support_triangle_count; k++)
+        if (m->support_part[k] >= m->support_count)
+            return SF_FAIL(err, SF_ERR_MODEL, "support triangle %lld is of support %d, of 0 to %lld",
+                           (long long)k, m->support_part[k], (long long)m->support_count - 1);
+    for (int64_t k = 0; k < m->support_count; k++)
+        SF_TRY(check_bound("support friction", m->support_friction[k], 0, 10, err));
     return SF_OK;
 }
 
@@ -327,8 +339,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
     if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
         check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
         check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
-        check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count,
-                      err) != SF_OK)
+        check_supports(m, err) != SF_OK)
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
         return err->status;

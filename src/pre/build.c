@@ -167,12 +167,11 @@ static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dua
 static sf_status report_gaps(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *layers, sf_model *m,
                              sf_build_report *report, sf_error *err) {
     sf_domains gaps;
-    double *support = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *support, "supports");
+    SF_OWNED double *support = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *support, "supports");
     for (int64_t i = 0; support && i < layers->first[layers->count]; i++)
         support[layers->origin[i]] = fmax(support[layers->origin[i]], m->support[i]);
     if (support && sf_domains_find_gaps(mesh, dual, support, &gaps, err) == SF_OK)
         report_domains(&gaps.figures, &report->domains);
-    free(support);
     m->slit_fraction = (double)report->domains.hidden_count / (double)mesh->node_count;
     return err->status;
 }
@@ -220,7 +219,7 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
     sf_dual dual = {0};
     if (sf_mesh_check(mesh, &report->mesh_volume, err) != SF_OK || sf_cloud_reorder(mesh, err) != SF_OK ||
         sf_dual_build(mesh, &dual, err) != SF_OK || sf_group_check(c, mesh, &dual, err) != SF_OK ||
-        sf_connectivity_check(mesh, &dual, err) != SF_OK ||
+        sf_connectivity_check(mesh, &dual, c->separate, err) != SF_OK ||
         sf_layers_build(c, mesh, &dual, layers, err) != SF_OK)
         goto done;
     sf_cloud_hash(mesh, report->mesh_hash);
@@ -292,7 +291,7 @@ static int32_t contact_point(const sf_layers *layers, const sf_model *m, int32_t
  * nodes becomes that of the points. */
 static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const sf_node_set *set,
                                double *area, int64_t *count, sf_error *err) {
-    uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
+    SF_OWNED uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
     int32_t *list = sf_alloc(err, (unsigned long)set->count, sizeof *list, "contact points");
     *count = 0;
     for (int64_t k = 0; point && k < set->count; k++) {
@@ -303,7 +302,6 @@ static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const
     for (int32_t i = 0; point && list && i < (int32_t)m->node_count; i++)
         if (point[i])
             list[(*count)++] = i;
-    free(point);
     if (err->status == SF_OK)
         return list;
     free(list);
@@ -312,42 +310,41 @@ static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const
 
 /* Likewise of the resting nodes, 1 in `rest`. */
 static sf_status gather_rest(const sf_layers *layers, const sf_model *m, uint8_t *rest, sf_error *err) {
-    uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "resting nodes");
+    SF_OWNED uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "resting nodes");
     for (int32_t i = 0; point && i < (int32_t)m->node_count; i++)
         if (rest[i])
             point[contact_point(layers, m, i)] = 1;
     if (point)
         memcpy(rest, point, (size_t)m->node_count);
-    free(point);
     return err->status;
 }
 
 /* Groups to constrained nodes (with their components) and contact points. */
 static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_layers *layers,
                             double *contact_area, sf_model *m, sf_build_report *report, sf_error *err) {
-    uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
-    uint8_t *base = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
-    uint8_t *rest = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    SF_OWNED uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    SF_OWNED uint8_t *base = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    SF_OWNED uint8_t *rest = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
     const sf_base_marks marks = {mask, base, rest};
-    int32_t *contact = NULL;
+    SF_OWNED int32_t *contact = NULL;
     int64_t points = 0;
     if (err->status != SF_OK || mark_symmetry(c, mesh, m, mask, err) != SF_OK)
-        goto done;
+        return err->status;
     if (sf_base_mark(c, mesh, m, &marks, err) != SF_OK || gather_rest(layers, m, rest, err) != SF_OK ||
         sf_base_rest(c, &marks, m, err) != SF_OK || sf_layers_hold(layers, mask, base, m, err) != SF_OK)
-        goto done;
+        return err->status;
     for (int64_t i = 0; i < m->node_count; i++)
         m->fixed_count += mask[i] != 0;
     const sf_node_set *set = sf_group_need(mesh, "pad.contact", c->contact_group, err);
     if (!set || !(contact = gather_contact(layers, m, set, contact_area, &points, err)))
-        goto done;
+        return err->status;
     m->contact_node = sf_alloc(err, (unsigned long)points, sizeof *m->contact_node, "contact points");
     m->contact_area = sf_alloc(err, (unsigned long)points, sizeof *m->contact_area, "contact points");
     m->fixed_node = sf_alloc(err, (unsigned long)m->fixed_count, sizeof *m->fixed_node, "constraints");
     m->fixed_mask = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     m->fixed_base = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     if (err->status != SF_OK)
-        goto done;
+        return err->status;
     /* A node that is held altogether cannot give way to the missile: it is no contact point. */
     for (int64_t k = 0; k < points; k++)
         if (mask[contact[k]] != (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
@@ -370,11 +367,6 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_laye
         m->fixed_mask[used] = mask[i];
         m->fixed_base[used++] = base[i];
     }
-done:
-    free(contact);
-    free(mask);
-    free(base);
-    free(rest);
     return err->status;
 }
 
@@ -657,13 +649,13 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
                          const sf_sink *sink, sf_error *err) {
     memset(m, 0, sizeof *m);
     memset(report, 0, sizeof *report);
-    double *contact_area = NULL;
+    SF_OWNED double *contact_area = NULL;
     sf_layers layers = {0};
     int64_t critical = 0;
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
         sf_hold_find(m, &report->hold, err) == SF_OK && (sf_layers_loosen(c, m), true) &&
-        sf_support_take(c, mesh->support, m, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
+        sf_support_take(c, mesh, m, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
         find_skin(c, m, report, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
         estimate_mesh_error(m, report);
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
@@ -675,7 +667,6 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
         }
     }
     sf_layers_free(&layers);
-    free(contact_area);
     if (err->status != SF_OK)
         sf_model_free(m);
     return err->status;

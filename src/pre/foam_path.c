@@ -79,13 +79,9 @@ static void find_centroid(const sf_model *m, const triangle *t, double out[3]) {
 /* The cosine between the triangle's outward normal and the missile's direction. */
 static double facing(const sf_model *m, const triangle *t) {
     const double *x[3];
-    double a[3], b[3], normal[3];
+    double normal[3];
     corners(m, t, x);
-    for (int k = 0; k < 3; k++) {
-        a[k] = x[1][k] - x[0][k];
-        b[k] = x[2][k] - x[0][k];
-    }
-    sf_cross3(a, b, normal);
+    sf_triangle_normal(x[0], x[1], x[2], normal);
     return sf_dot3(normal, m->missile.direction) / sqrt(sf_dot3(normal, normal));
 }
 

@@ -41,17 +41,13 @@ typedef struct shape {
 
 static shape shape_of(const sf_model *m, const int32_t node[3]) {
     shape s = {{0}, {0}, 0};
-    double side[2][3];
-    const double *a = &m->position[3 * (int64_t)node[0]];
-    for (int k = 1; k < 3; k++)
-        for (int r = 0; r < 3; r++)
-            side[k - 1][r] = m->position[3 * (int64_t)node[k] + r] - a[r];
-    sf_cross3(side[0], side[1], s.normal);
-    double size = sqrt(sf_dot3(s.normal, s.normal));
-    for (int r = 0; r < 3; r++) {
-        s.centroid[r] = a[r] + (side[0][r] + side[1][r]) / 3;
-        s.normal[r] /= size > 0 ? size : 1;
-    }
+    const double *x[3];
+    for (int k = 0; k < 3; k++)
+        x[k] = &m->position[3 * (int64_t)node[k]];
+    sf_triangle_normal(x[0], x[1], x[2], s.normal);
+    sf_unit3(s.normal);
+    for (int r = 0; r < 3; r++)
+        s.centroid[r] = x[0][r] + ((x[1][r] - x[0][r]) + (x[2][r] - x[0][r])) / 3;
     for (int k = 0; k < 3; k++) {
         double arm[3];
         for (int r = 0; r < 3; r++)
@@ -104,7 +100,7 @@ static void faces_free(faces *f) {
 
 static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
     int64_t all = 0;
-    uint8_t *mark = mark_nodes(m, err);
+    SF_OWNED uint8_t *mark = mark_nodes(m, err);
     *f = (faces){0};
     if (mark && sf_skin_triangles(m, &all, &f->node, err) == SF_OK) {
         f->shape = sf_alloc(err, (unsigned long)all, sizeof *f->shape, "skin of the pad");
@@ -123,7 +119,6 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
         memcpy(&f->position[3 * k], s.centroid, sizeof s.centroid);
     }
     sf_box3(m->node_count, m->position, f->low, f->high);
-    free(mark);
     if (err->status == SF_OK && f->count > 0)
         sf_grid_build(&f->grid, f->count, f->position, f->radius, err);
     if (err->status != SF_OK)
@@ -186,7 +181,7 @@ static bool meets_image(const sf_model *m, const shape *s, double length) {
 /* *first: a face that can touch another one, its image, or the anvil; -1: none can. */
 static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first, sf_error *err) {
     static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
-    int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
+    SF_OWNED int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
     double anvil = f->high[2] - m->anvil.depth;
     *first = -1;
     for (int64_t i = 0; near && i < f->count && *first < 0; i++) {
@@ -198,16 +193,15 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
              (meets_image(m, s, length) || meets_face(m, f, i, length, near))))
             *first = i;
     }
-    free(near);
     return err->status;
 }
 
 sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error *err) {
-    faces f;
+    SF_OWNED_BY(faces_free) faces f = {0};
     int64_t first = -1;
     unheld[0] = NAN;
     SF_TRY(faces_find(m, &f, err));
-    if (f.count > 0 && c->loose_count > 0)
+    if (f.count > 0 && (c->loose_count > 0 || c->separate))
         first = 0;
     else if (f.count > 0)
         find_touching(m, &f, &first, err);
@@ -215,13 +209,13 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
          itself = !off && (first >= 0 || c->self_contact == SF_SELF_CONTACT_ON);
     if (first >= 0 && off)
         memcpy(unheld, f.shape[first].centroid, sizeof f.shape[first].centroid);
-    if (err->status == SF_OK && f.count > 0 && (itself || m->support_triangle_count > 0)) {
+    m->skin_watched = off && first >= 0;
+    if (err->status == SF_OK && f.count > 0 && (itself || m->skin_watched || m->support_triangle_count > 0)) {
         m->skin_count = f.count;
         m->skin_triangle = f.node;
         m->skin_friction = c->self_friction;
         m->skin_alone = !itself;
         f.node = NULL;
     }
-    faces_free(&f);
     return err->status;
 }

@@ -59,7 +59,7 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
     int64_t count = count_faces(m);
     int64_t *place = sf_sets_alone(m->node_count, "parts of the pad", err),
             *parent = sf_sets_alone(m->cell_count, "parts of the pad", err);
-    cell_face *face = sf_alloc(err, (unsigned long)count, sizeof *face, "faces of the cells");
+    SF_OWNED cell_face *face = sf_alloc(err, (unsigned long)count, sizeof *face, "faces of the cells");
     if (err->status == SF_OK) {
         for (int64_t k = 0; k < m->tie_count; k++)
             if (m->tie_mask[k] == ALL)
@@ -73,7 +73,6 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
             parent[c] = sf_sets_find(parent, c);
     }
     free(place);
-    free(face);
     if (err->status == SF_OK)
         return parent;
     free(parent);
@@ -105,12 +104,11 @@ static void number_bodies(const sf_model *m, int32_t *number, body_list *b) {
 
 static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
     unsigned long cells = (unsigned long)m->cell_count;
-    int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
+    SF_OWNED int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
     b->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *b->node, "parts of the pad");
     b->first = sf_alloc(err, cells, sizeof *b->first, "parts of the pad");
     if (err->status == SF_OK && (b->cell = join_cells(m, err)))
         number_bodies(m, number, b);
-    free(number);
     return err->status;
 }
 
@@ -323,7 +321,7 @@ static sf_status find_motions(holder *h, sf_hold *hold, sf_error *err) {
 }
 
 sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
-    body_list bodies;
+    SF_OWNED_BY(free_bodies) body_list bodies = {0};
     *hold = (sf_hold){0};
     SF_TRY(find_bodies(m, &bodies, err));
     holder h = {.model = m, .bodies = &bodies};
@@ -335,7 +333,6 @@ sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
             (long long)bodies.count, MOST_BODIES);
     else if (find_motions(&h, hold, err) == SF_OK)
         find_underside(m, hold);
-    free_bodies(&bodies);
     return err->status;
 }
 
@@ -375,9 +372,11 @@ void sf_hold_warn(const sf_hold *hold, const sf_model *m, const sf_sink *sink) {
             "pad.fixed, pad.sliding: %.3g %% of the nodes of the pad's underside (z = %.4g mm) are held along z: "
             "the rest hangs free",
             100 * hold->underside, 1e3 * hold->underside_low);
+    double friction = m->anvil.friction;
+    for (int64_t k = 0; k < m->support_count; k++)
+        friction = fmax(friction, m->support_friction[k]);
     for (int c = 0; c < 2; c++)
-        if (hold->slides[c] && m->missile.direction[c] != 0 && !(m->anvil.friction > 0) &&
-            !(m->support_friction > 0))
+        if (hold->slides[c] && m->missile.direction[c] != 0 && !(friction > 0))
             sf_sink_tell(
                 sink, SF_WARNING,
                 "nothing holds the pad along %c, where missile.direction has the component %g: it will slide "

@@ -4,6 +4,7 @@
 #include "base/mat3.h"
 #include "io/h5.h"
 #include "pre/mesh/gmsh_session.h"
+#include "pre/rigid_support.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +25,7 @@ static void turn_points(const double turn[9], int64_t count, double *position) {
 }
 
 /* Turns the pad's face upwards. */
-static void turn_up(const double up[3], sf_mesh *mesh, sf_surface *surface, sf_surface *support) {
+static void turn_up(const double up[3], sf_mesh *mesh, sf_surface *surface) {
     double turn[9];
     if (up[2] == 1)
         return;
@@ -33,13 +34,30 @@ static void turn_up(const double up[3], sf_mesh *mesh, sf_surface *surface, sf_s
     turn_points(turn, surface->node_count, surface->position);
     turn_points(turn, surface->hull_node_count, surface->hull_position);
     turn_points(turn, 1, surface->origin);
-    turn_points(turn, support->node_count, support->position);
+    for (int k = 0; k < mesh->support_count; k++)
+        turn_points(turn, mesh->support[k].node_count, mesh->support[k].position);
 }
 
-/* Pad mesh, missile surface and support surface, each from a geometry of its own; that of the missile may be
- * the pad's, the support may be absent. */
-static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_surface *support,
-                               char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
+/* Reads the surfaces of the supports; the mesh borrows them. */
+static sf_status read_supports(sf_gmsh *session, const sf_case *c, sf_mesh *mesh,
+                               sf_surface support[SF_SUPPORTS], sf_error *err) {
+    mesh->support = support;
+    for (int k = 0; k < c->support_count && err->status == SF_OK; k++) {
+        const sf_case_support *s = &c->support[k];
+        mesh->support_count++;
+        if (!s->source.path)
+            sf_support_plane(s, mesh, &support[k], err);
+        else if (sf_gmsh_load(session, &s->source, err) == SF_OK)
+            sf_gmsh_read_surface(session, s->group, c->length_unit, &support[k], err);
+    }
+    return err->status;
+}
+
+/* Pad mesh, missile surface and the supports' surfaces, each from a geometry of its own; that of the missile
+ * may be the pad's. */
+static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
+                               sf_surface support[SF_SUPPORTS], char libraries[SF_LIBRARIES_SIZE],
+                               const sf_sink *sink, sf_error *err) {
     sf_gmsh *session = NULL;
     if (sf_gmsh_begin(&session, err) == SF_OK) {
         session->store = c->store;
@@ -50,11 +68,8 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface, s
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, err);
     if (err->status == SF_OK && c->freedom == SF_MISSILE_FREE)
         sf_gmsh_read_hull(session, c->surface_group, c->length_unit, surface, err);
-    if (err->status == SF_OK && c->support.path && sf_gmsh_load(session, &c->support, err) == SF_OK)
-        sf_gmsh_read_surface(session, c->support_group, c->length_unit, support, err);
-    if (err->status == SF_OK)
-        turn_up(c->up, mesh, surface, support);
-    mesh->support = c->support.path ? support : NULL;
+    if (err->status == SF_OK && read_supports(session, c, mesh, support, err) == SF_OK)
+        turn_up(c->up, mesh, surface);
     free(c->geometry_files);
     c->geometry_files = NULL;
     if (err->status == SF_OK && !(c->geometry_files = strdup(session->files)))
@@ -67,12 +82,14 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface, s
 
 sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
                         char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
+    sf_surface surface = {0}, support[SF_SUPPORTS] = {0};
     sf_mesh mesh = {0};
-    sf_surface surface = {0}, support = {0};
     memset(model, 0, sizeof *model);
-    if (read_geometry(c, &mesh, &surface, &support, libraries, sink, err) == SF_OK &&
+    if (read_geometry(c, &mesh, &surface, support, libraries, sink, err) == SF_OK &&
         sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
-        if (sf_hold_check(&report->hold, model, err) == SF_OK && report->contact_held)
+        bool held =
+            c->separate && report->hold.rows[2] > 0; /* bodies lie where they are until they are hit */
+        if ((held || sf_hold_check(&report->hold, model, err) == SF_OK) && report->contact_held)
             SF_REFUSE(
                 err,
                 "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or pad.sliding",
@@ -81,7 +98,8 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
             sf_model_free(model);
     }
     sf_surface_free(&surface);
-    sf_surface_free(&support);
+    for (int k = 0; k < SF_SUPPORTS; k++)
+        sf_surface_free(&support[k]);
     sf_mesh_free(&mesh);
     return err->status;
 }

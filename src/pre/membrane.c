@@ -60,12 +60,9 @@ void sf_membrane_weigh(sf_model *m) {
     double area = m->membrane.density * m->membrane.thickness;
     for (int64_t t = 0; t < m->membrane_count; t++) {
         const int32_t *node = &m->membrane_triangle[3 * t];
-        double side[2][3], normal[3];
-        for (int k = 0; k < 2; k++)
-            for (int r = 0; r < 3; r++)
-                side[k][r] =
-                    m->position[3 * (int64_t)node[k + 1] + r] - m->position[3 * (int64_t)node[0] + r];
-        sf_cross3(side[0], side[1], normal);
+        double normal[3];
+        sf_triangle_normal(&m->position[3 * (int64_t)node[0]], &m->position[3 * (int64_t)node[1]],
+                           &m->position[3 * (int64_t)node[2]], normal);
         for (int k = 0; k < 3; k++)
             m->mass[node[k]] += area * m->membrane_share[t] * sqrt(sf_dot3(normal, normal)) / 6;
     }

@@ -5,20 +5,9 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "base/triangle.h"
 
-/* An edge of a triangle, with the direction in which the triangle runs through it. */
-typedef struct side {
-    int32_t low, high; /* nodes, low < high */
-    int32_t forwards;  /* 1: from low to high */
-} side;
-
-static int compare_side(const void *a, const void *b) {
-    const side *p = a, *q = b;
-    int first = (p->low > q->low) - (p->low < q->low), second = (p->high > q->high) - (p->high < q->high);
-    return first ? first : second ? second : p->forwards - q->forwards;
-}
-
-static sf_status refuse_edge(const side *s, int64_t count, const double *position, sf_error *err) {
+static sf_status refuse_edge(const sf_half_edge *s, int64_t count, const double *position, sf_error *err) {
     const double *a = &position[3 * (int64_t)s->low], *b = &position[3 * (int64_t)s->high];
     return SF_FAIL(
         err, SF_ERR_MODEL,
@@ -30,33 +19,25 @@ static sf_status refuse_edge(const side *s, int64_t count, const double *positio
         1e3 * a[0], 1e3 * a[1], 1e3 * a[2], 1e3 * b[0], 1e3 * b[1], 1e3 * b[2]);
 }
 
-static sf_status take_sides(int64_t node_count, int64_t triangle_count, const int32_t *triangle, side *list,
-                            sf_error *err) {
-    for (int64_t k = 0; k < 3 * triangle_count; k++) {
-        int32_t a = triangle[k], b = triangle[k % 3 == 2 ? k - 2 : k + 1];
-        if (a < 0 || a >= node_count || a == b)
+static sf_status check_nodes(int64_t node_count, int64_t triangle_count, const int32_t *triangle,
+                             sf_error *err) {
+    for (int64_t k = 0; k < 3 * triangle_count; k++)
+        if (triangle[k] < 0 || triangle[k] >= node_count ||
+            triangle[k] == triangle[k % 3 == 2 ? k - 2 : k + 1])
             return SF_FAIL(err, SF_ERR_MODEL, "triangle %lld of the surface has no three nodes",
                            (long long)(k / 3));
-        list[k] = (side){a < b ? a : b, a < b ? b : a, a < b};
-    }
     return SF_OK;
 }
 
 static sf_status check_closed(int64_t node_count, const double *position, int64_t triangle_count,
                               const int32_t *triangle, sf_error *err) {
-    int64_t count = 3 * triangle_count, same = 0;
-    SF_OWNED side *list = sf_alloc(err, (unsigned long)count, sizeof *list, "edges of a surface");
-    if (!list || take_sides(node_count, triangle_count, triangle, list, err) != SF_OK)
-        goto done;
-    qsort(list, (size_t)count, sizeof *list, compare_side);
-    for (int64_t k = 0; k < count && err->status == SF_OK; k += same) {
-        for (same = 1;
-             k + same < count && list[k + same].low == list[k].low && list[k + same].high == list[k].high;)
-            same++;
-        if (same != 2 || list[k].forwards == list[k + 1].forwards)
-            refuse_edge(&list[k], same, position, err);
+    SF_TRY(check_nodes(node_count, triangle_count, triangle, err));
+    SF_OWNED sf_half_edge *edge = sf_half_edges(triangle_count, triangle, err);
+    for (int64_t k = 0, end; edge && k < 3 * triangle_count && err->status == SF_OK; k = end) {
+        end = sf_half_edges_end(edge, k, 3 * triangle_count);
+        if (end != k + 2 || edge[k].rises == edge[k + 1].rises)
+            refuse_edge(&edge[k], end - k, position, err);
     }
-done:
     return err->status;
 }
 

@@ -227,7 +227,7 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
         (long long)m->contact_count);
     if (m->rest_count > 0)
         append(out, ", %lld rest on the anvil", (long long)m->rest_count);
-    if (m->skin_count > 0)
+    if (!m->skin_alone ? m->skin_count > 0 : m->support_triangle_count > 0)
         append(out, ", %lld faces may touch %s%s", (long long)m->skin_count,
                m->skin_alone ? "" : "each other or the anvil",
                m->support_triangle_count == 0 ? ""

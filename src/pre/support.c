@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/mat3.h"
 #include "pre/impact.h"
 
 const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {
@@ -55,10 +56,9 @@ static void mark_glued(const sf_node_set *set, const sf_base_marks *marks) {
 }
 
 static double lowest_node(const sf_model *m) {
-    double low = INFINITY;
-    for (int64_t i = 0; i < m->node_count; i++)
-        low = fmin(low, m->position[3 * i + 2]);
-    return low;
+    double low[3], high[3];
+    sf_box3(m->node_count, m->position, low, high);
+    return low[2];
 }
 
 /* The anvil is a plane below the whole pad. */

@@ -113,6 +113,7 @@ typedef struct sf_partial {
     X(double, given_back, , "J", "largest sum so far of what dissipation of single nodes has given back")             \
     X(int64_t, contact_unsettled, , "1", "steps whose sweeps did not reach their tolerance")                           \
     X(double, base_reaction, [3], "N", "of the base on the pad")                                                       \
+    X(double, support_force, [SF_SUPPORTS], "N", "resultant of each support on the pad")                               \
     X(double, constraint_residual, , "m s-1", "largest |G v|, when last measured")                                     \
     X(double, largest_compression, , "1", "1 - smallest principal stretch of all domains")                             \
     X(double, smallest_jacobian, , "1", "smallest det F of all domains")                                               \

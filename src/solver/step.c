@@ -13,7 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { RESIDUAL_INTERVAL = 16 }; /* steps between measurements of |G v| */
+/* Steps between measurements of |G v|, and between looks for foam that passed through something. */
+enum { RESIDUAL_INTERVAL = 16, PASSAGE_INTERVAL = 16 };
 
 /* Fails on a domain with det F <= 0, or with det F or a stable step that is NaN or infinite. */
 static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *err) {
@@ -90,24 +91,53 @@ static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed)
     return fastest;
 }
 
-/* True if foam has come through the plane of the anvil, which holds the base alone. */
-static bool is_below_anvil(const sf_model *m, const sf_state *s) {
-    static const double DEPTH = 0.1; /* of the spacing */
-    double top = -INFINITY;
-    for (int64_t i = 0; i < m->node_count; i++)
-        top = fmax(top, m->position[3 * i + 2]);
-    for (int64_t i = 0; m->anvil.depth > 0 && i < m->node_count; i++)
-        if (m->position[3 * i + 2] + s->d[3 * i + 2] < top - m->anvil.depth - DEPTH * m->spacing[i])
-            return true;
-    return false;
+/* Returns what the foam at node i has passed through by more than its spacing, NULL: nothing. Of the missile
+ * half of it counts, since larger gaps are not known, and of the anvil, which holds the base alone, a fifth
+ * of the thickness, as in the verdict. `plane`: the places (m) of symmetry planes and anvil, NAN: none. */
+static const char *find_passed(const sf_model *m, const sf_operators *op, const sf_state *s,
+                               const double plane[3], int64_t i) {
+    static const double SHARE = 0.2;
+    double x[3], normal[3], gap, least = m->spacing[i];
+    const double *rest = &m->position[3 * i];
+    for (int r = 0; r < 3; r++)
+        x[r] = rest[r] + s->d[3 * i + r];
+    if (x[2] < plane[2] - fmax(least, SHARE * m->thickness))
+        return "the anvil";
+    for (int axis = 0; axis < 2; axis++)
+        if (fabs(x[axis] - plane[axis]) > least && (x[axis] - plane[axis]) * (rest[axis] - plane[axis]) < 0)
+            return "a symmetry plane";
+    bool inside = sf_missile_near(m, &s->missile, &op->surface, x, 0) &&
+                  sf_missile_gap(m, &s->missile, &op->surface, x, &gap, normal) && gap < -0.5 * least;
+    return inside ? "the missile" : NULL;
+}
+
+/* Fails where foam has passed through anvil, missile or a symmetry plane; faces of the foam and supports:
+ * contact/self_contact.h. */
+static sf_status check_passed(const sf_model *m, const sf_operators *op, const sf_state *s, sf_error *err) {
+    double low[3], high[3], plane[3];
+    sf_box3(m->node_count, m->position, low, high);
+    for (int axis = 0; axis < 2; axis++)
+        plane[axis] = sf_symmetry_plane(m, axis, &plane[axis]) ? plane[axis] : NAN;
+    plane[2] = m->anvil.depth > 0 ? high[2] - m->anvil.depth : NAN;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        const char *through = find_passed(m, op, s, plane, i);
+        const double *x = &m->position[3 * i], *d = &s->d[3 * i];
+        if (through)
+            return SF_FAIL(
+                err, SF_ERR_NUMERIC,
+                "at t = %.6g s the foam has passed through %s, at (%.4g, %.4g, %.4g) mm (undeformed "
+                "(%.4g, %.4g, %.4g) mm): pad.self_contact = \"on\" keeps it from anvil and symmetry "
+                "planes, pad.contact names the faces that the missile stops at",
+                s->time, through, 1e3 * (x[0] + d[0]), 1e3 * (x[1] + d[1]), 1e3 * (x[2] + d[2]), 1e3 * x[0],
+                1e3 * x[1], 1e3 * x[2]);
+    }
+    return SF_OK;
 }
 
 /* Returns the likely cause of contact or stabilisation that feeds the pad. */
 static const char *cause_of_feeding(const sf_model *m, const sf_state *s) {
     static const double CRUSHED = 0.95;
-    return m->skin_count == 0 && is_below_anvil(m, s)
-               ? "foam has passed through the anvil; pad.self_contact = \"on\" keeps it above"
-           : m->skin_count > 0 && m->run.stabilisation < SF_FOLD_STABILISATION &&
+    return m->skin_count > 0 && !m->skin_alone && m->run.stabilisation < SF_FOLD_STABILISATION &&
                    s->ledger.stabilisation < s->ledger.contact
                ? "foam that folds needs a larger kernel.stabilisation, such as 0.3"
            : s->smallest_jacobian <= 0
@@ -143,7 +173,7 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
                    "%.3g s); fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: %s",
                    s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt,
                    (long long)node, x[0], x[1], x[2], speed,
-                   m->skin_count > 0 || is_below_anvil(m, s)
+                   m->skin_count > 0
                        ? cause_of_feeding(m, s)
                        : "the run is unstable or the limit too strict; try a smaller solver.step_safety");
 }
@@ -239,6 +269,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_constraint_project(&op->constraint, &held);
     sf_wrench below = {{0}, {0}};
     sf_self_contact_outside(&op->skin, s, false, &below);
+    sf_self_contact_supports(m, &op->skin, s);
     s->penetration = fmax(s->penetration, s->self_penetration);
     for (int r = 0; r < 3; r++)
         s->base_reaction[r] = held.base[r] + s->anvil_force[r] + below.force[r];
@@ -256,6 +287,8 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)
         return err->status;
+    if (s->step % PASSAGE_INTERVAL == 0)
+        SF_TRY(check_passed(m, op, s, err));
     return check_energy(m, s, err);
 }
 

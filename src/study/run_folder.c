@@ -185,7 +185,7 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
 }
 
 const sf_geo_source *sf_campaign_geometry(const sf_case *c, int k) {
-    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support;
+    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support[k - 2].source;
 }
 
 char *sf_campaign_geometry_list(const char *path, const char *text) {

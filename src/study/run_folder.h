@@ -46,7 +46,7 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 /* The part of it that is of the case alone, without geometry files and programs. */
 uint64_t sf_campaign_case_hash(const sf_case *c);
 
-/* Geometry k of SF_GEOMETRIES: the pad's, the missile's, the support's; without a path there is none. */
+/* Geometry k of SF_GEOMETRIES: the pad's, the missile's, each support's; without a path there is none. */
 const sf_geo_source *sf_campaign_geometry(const sf_case *c, int k);
 
 /* Returns the list of the files that the geometries read, at `text` of the HDF5 file `path` (docs/formats.md,

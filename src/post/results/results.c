@@ -92,6 +92,11 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
         check_indices(r->surface_triangle, 3 * r->surface_triangle_count, r->surface_node_count,
                       "/model/surface_triangle", err) != SF_OK)
         return err->status;
+    if (check_finite(r->support_position, 3 * r->support_node_count, "/model/support_position", err) !=
+            SF_OK ||
+        check_indices(r->support_triangle, 3 * r->support_triangle_count, r->support_node_count,
+                      "/model/support_triangle", err) != SF_OK)
+        return err->status;
     if (r->surface_node_count < 1)
         return SF_FAIL(err, SF_ERR_IO, "/model/surface_position is empty: the missile has no surface");
     for (int64_t i = 0; i < r->node_count; i++)
@@ -367,6 +372,14 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         read_array(r, "/model/surface_triangle", SF_H5_I32, &r->surface_triangle_count, 3,
                    &r->surface_triangle, err))
         return err->status;
+    if (sf_h5_exists(r->file, "/model/support_position")) {
+        r->support_node_count = r->support_triangle_count = -1;
+        if (read_array(r, "/model/support_position", SF_H5_F64, &r->support_node_count, 3,
+                       &r->support_position, err) ||
+            read_array(r, "/model/support_triangle", SF_H5_I32, &r->support_triangle_count, 3,
+                       &r->support_triangle, err))
+            return err->status;
+    }
     SF_TRY(read_integer(r, "/model/symmetry_factor", &r->symmetry_factor, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/thickness", &r->thickness, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/density", &r->density, err));
@@ -542,6 +555,8 @@ void sf_results_close(sf_results *results) {
     free(results->cell_node);
     free(results->surface_position);
     free(results->surface_triangle);
+    free(results->support_position);
+    free(results->support_triangle);
     free(results->node_layer);
     free(results->layer_name);
     free(results->layer_names);

@@ -47,8 +47,12 @@ typedef struct sf_results {
     int32_t *cell_node; /* [cell_nnz] VTK order */
     int64_t surface_node_count;
     int64_t surface_triangle_count;
-    double *surface_position;  /* [surface_node_count][3] m, missile at t = 0 */
-    int32_t *surface_triangle; /* [surface_triangle_count][3] */
+    double *surface_position;   /* [surface_node_count][3] m, missile at t = 0 */
+    int32_t *surface_triangle;  /* [surface_triangle_count][3] */
+    int64_t support_node_count; /* 0: no rigid support, or the file does not say */
+    int64_t support_triangle_count;
+    double *support_position;  /* [support_node_count][3] m, of the rigid supports */
+    int32_t *support_triangle; /* [support_triangle_count][3] */
     int64_t symmetry_factor;
     double symmetry_place[2]; /* m, of the symmetry planes normal to x and y; NaN: none, or the file does not
                                  say */

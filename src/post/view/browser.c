@@ -64,7 +64,9 @@ static int64_t count_fitting(const page *p, int64_t nodes, bool inside) {
     const sf_results *r = p->results;
     int64_t index = nodes > HIGHEST_CODE ? 4 : 2;
     int64_t fixed = index * (4 * p->skin.face_count + 3 * r->surface_triangle_count) +
-                    6 * r->surface_node_count + (inside ? index * r->cell_nnz + r->cell_count : 4 * nodes);
+                    6 * r->surface_node_count + 6 * r->support_node_count +
+                    4 * 3 * r->support_triangle_count +
+                    (inside ? index * r->cell_nnz + r->cell_count : 4 * nodes);
     double frame = 6.0 + 2.0 * count_fields(p), room = (p->bytes - OVERHEAD) * 3 / 4 - (double)fixed;
     return room > 0 ? (int64_t)(room / (frame * (double)nodes + 256)) : 0;
 }
@@ -77,7 +79,8 @@ static bool choose(page *p) {
     p->node_count = p->inside ? r->node_count : p->skin.node_count;
     if (!p->inside)
         fitting = count_fitting(p, p->node_count, false);
-    p->wide = p->node_count > HIGHEST_CODE;
+    p->wide = p->node_count > HIGHEST_CODE || r->surface_node_count > HIGHEST_CODE ||
+              r->support_node_count > HIGHEST_CODE;
     p->frame_count = fitting < all ? fitting : all;
     return p->frame_count >= (all < 2 ? all : 2);
 }
@@ -257,6 +260,16 @@ static void put_missile(page *p) {
     sf_json_close(&p->json, '}');
 }
 
+static void put_supports(page *p) {
+    const sf_results *r = p->results;
+    if (r->support_triangle_count == 0)
+        return;
+    sf_json_open(&p->json, "support", '{');
+    put_quantised(p, "position", r->support_position, r->support_node_count, 3);
+    put_indices(p, "triangle", r->support_triangle, 3 * r->support_triangle_count);
+    sf_json_close(&p->json, '}');
+}
+
 /* The curve that the time runs along, with few enough of its points. */
 static void put_curve(page *p) {
     const sf_figures *f = p->report->summary->figures;
@@ -337,7 +350,8 @@ static sf_status write_facts(page *p, sf_error *err) {
     const sf_results *r = p->results;
     double place[2], axis[2];
     bool known = sf_axis_planes(r, place);
-    int64_t numbers = 3 * (p->node_count + r->surface_node_count + r->surface_triangle_count) +
+    int64_t numbers = 3 * (p->node_count + r->surface_node_count + r->surface_triangle_count +
+                           r->support_node_count + r->support_triangle_count) +
                       4 * p->skin.face_count + r->cell_nnz; /* more than the longest array has */
     p->value = sf_alloc(err, 3 * (unsigned long)p->node_count, sizeof *p->value, "view.html");
     p->coded = sf_alloc(err, (unsigned long)numbers, 4, "view.html");
@@ -353,6 +367,7 @@ static sf_status write_facts(page *p, sf_error *err) {
     put_skin(p);
     put_cells(p);
     put_missile(p);
+    put_supports(p);
     put_curve(p);
     put_frames(p, err);
     sf_json_close(&p->json, '}');
@@ -378,7 +393,7 @@ sf_status sf_browser_write(const sf_staging *output, const sf_report *report, co
                             r->cell_type,  r->cell_ptr,   r->cell_node};
     page p = {.report = report, .results = r, .made = made, .bytes = megabytes * 1e6};
     sf_error problem = SF_ERROR_INIT;
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     *warning = '\0';
     if (made->frames == 0 || megabytes == 0)
         return SF_OK;
@@ -397,6 +412,5 @@ sf_status sf_browser_write(const sf_staging *output, const sf_report *report, co
     sf_shown_free(&p.shown);
     free(p.value);
     free(p.coded);
-    free(text);
     return err->status;
 }

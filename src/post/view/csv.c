@@ -239,21 +239,19 @@ sf_status sf_section_write(const sf_staging *output, const sf_results *results, 
                            sf_error *err) {
     const sf_frame_head *head = peak_head(results);
     SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
-    FILE *file = NULL;
     *written = false;
     if (!head)
         return SF_OK;
     if (sf_frame_read(results, head, &frame, err) != SF_OK || !frame.field[SF_FRAME_VON_MISES])
-        goto done;
-    file = sf_staging_open(output, "section.csv", err);
+        return err->status;
+    FILE *file = sf_staging_open(output, "section.csv", err);
     if (!file)
-        goto done;
+        return err->status;
     fputs("set,node,x_mm,y_mm,z_mm,depth_mm,displacement_x_mm,displacement_y_mm,displacement_z_mm,von_mises_"
           "kPa,stress_zz_kPa,largest_compression_1\n",
           file);
     write_rows(file, results, &frame, err);
     if (sf_staging_close(file, "section.csv", err) == SF_OK)
         *written = true;
-done:
     return err->status;
 }

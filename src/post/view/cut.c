@@ -177,15 +177,14 @@ bool sf_cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t t, do
     return cross_triangle(cut, (const double *const[3]){x[0], x[1], x[2]}, end);
 }
 
-static sf_status cut_missile(sf_cut *cut, sf_error *err) {
-    const sf_results *r = cut->results;
-    cut->missile[0] = INFINITY;
-    cut->missile[1] = -INFINITY;
-    for (int64_t t = 0; t < r->surface_triangle_count; t++) {
+/* Appends the parts of the triangles in the plane to the outline. */
+static sf_status cut_surface(sf_cut *cut, int64_t count, const double *position, const int32_t *triangle,
+                             sf_error *err) {
+    for (int64_t t = 0; t < count; t++) {
         double segment[2][2];
         const double *corner[3];
         for (int k = 0; k < 3; k++)
-            corner[k] = &r->surface_position[3 * (int64_t)r->surface_triangle[3 * t + k]];
+            corner[k] = &position[3 * (int64_t)triangle[3 * t + k]];
         if (!cross_triangle(cut, corner, segment))
             continue;
         void *grown = grow(cut->outline, cut->outline_count, &cut->outline_room, sizeof *cut->outline, err);
@@ -193,12 +192,21 @@ static sf_status cut_missile(sf_cut *cut, sf_error *err) {
             return err->status;
         cut->outline = grown;
         memcpy(cut->outline[cut->outline_count++], segment, sizeof *cut->outline);
-        for (int k = 0; k < 2; k++) {
-            cut->missile[0] = fmin(cut->missile[0], segment[k][0]);
-            cut->missile[1] = fmax(cut->missile[1], segment[k][0]);
-        }
     }
     return SF_OK;
+}
+
+static sf_status cut_bodies(sf_cut *cut, sf_error *err) {
+    const sf_results *r = cut->results;
+    cut->missile[0] = INFINITY;
+    cut->missile[1] = -INFINITY;
+    SF_TRY(cut_surface(cut, r->surface_triangle_count, r->surface_position, r->surface_triangle, err));
+    cut->support_first = cut->outline_count;
+    for (int64_t k = 0; k < 2 * cut->outline_count; k++) {
+        cut->missile[0] = fmin(cut->missile[0], cut->outline[k / 2][k % 2][0]);
+        cut->missile[1] = fmax(cut->missile[1], cut->outline[k / 2][k % 2][0]);
+    }
+    return cut_surface(cut, r->support_triangle_count, r->support_position, r->support_triangle, err);
 }
 
 /* The plane, and whether the pad goes on beyond the missile's axis as its mirror image. */
@@ -222,7 +230,7 @@ sf_status sf_cut_make(const sf_results *results, sf_cut *cut, sf_error *err) {
     *cut = (sf_cut){.results = results};
     find_plane(cut);
     if (cut_cells(cut, err) == SF_OK)
-        cut_missile(cut, err);
+        cut_bodies(cut, err);
     return err->status;
 }
 
@@ -358,7 +366,7 @@ static void put_lines(const layout *l, const sf_frame *frame) {
 
 static int64_t outline_count(const layout *l) {
     const sf_results *r = l->cut->results;
-    return r->turns ? r->surface_triangle_count : l->cut->outline_count;
+    return r->turns ? r->surface_triangle_count : l->cut->support_first;
 }
 
 /* Piece k of the missile's outline in that frame; x and z of both ends. */
@@ -371,14 +379,19 @@ static bool find_outline(const layout *l, const sf_frame_head *head, int64_t k, 
     return true;
 }
 
-static void put_missile(const layout *l, const sf_frame_head *head) {
-    fputs("<path fill=\"none\" stroke=\"#101820\" stroke-width=\"1.8\" stroke-linecap=\"round\" d=\"M0 0",
-          l->svg);
+/* Draws the missile in that frame; NULL: the supports. */
+static void put_body(const layout *l, const sf_frame_head *head) {
+    fprintf(l->svg,
+            "<path fill=\"none\" stroke=\"%s\" stroke-width=\"1.8\" stroke-linecap=\"round\" d=\"M0 0",
+            head ? "#101820" : "#7a5c3a");
     for (int side = 0; side <= (int)l->cut->mirrored; side++)
-        for (int64_t k = 0; k < outline_count(l); k++) {
+        for (int64_t k = head ? 0 : l->cut->support_first;
+             k < (head ? outline_count(l) : l->cut->outline_count); k++) {
             sf_corner end[2];
             double x[2][2];
-            if (!find_outline(l, head, k, x))
+            if (!head)
+                memcpy(x, l->cut->outline[k], sizeof x);
+            else if (!find_outline(l, head, k, x))
                 continue;
             for (int e = 0; e < 2; e++)
                 end[e] = place(l, side ? 2 * l->cut->axis - x[e][0] : x[e][0], x[e][1], 0);
@@ -401,7 +414,8 @@ static void put_panel(const layout *l, const sf_picture *picture, int k) {
         put_band(l, picture->frame, band);
     if (l->style->lines)
         put_lines(l, picture->frame);
-    put_missile(l, picture->head);
+    put_body(l, NULL);
+    put_body(l, picture->head);
     fputs("</svg>\n", l->svg);
 }
 
@@ -451,7 +465,7 @@ static void lay_out(layout *l, const sf_picture *pictures, int count) {
         }
     l->x[0] = cut->mirrored ? cut->axis - half : fmax(cut->axis - half, cut->x[0] - 0.02 * half);
     l->x[1] = cut->mirrored ? cut->axis + half : fmin(cut->axis + half, cut->x[1] + 0.02 * half);
-    l->z[0] = cut->z[0] - 0.01 * thickness;
+    l->z[0] = cut->z[0] - (cut->results->support_triangle_count > 0 ? 0.15 : 0.01) * thickness;
     l->z[1] =
         fmin(top, cut->z[1] + (isfinite(l->style->half_width) ? 0.35 : 0.75) * thickness) + 0.02 * thickness;
     l->high = find_largest(cut, pictures, count, l->style->field);

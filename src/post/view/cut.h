@@ -43,7 +43,8 @@ typedef struct sf_cut {
     int64_t line_count, line_room;
     sf_cut_point (*line)[2]; /* of the faces of the cells */
     int64_t outline_count, outline_room;
-    double (*outline)[2][2]; /* m, x and z of both ends: of the missile's triangles at t = 0 */
+    double (*outline)[2][2]; /* m, x and z of both ends: of the missile's triangles at t = 0, and of */
+    int64_t support_first;   /* the supports' triangles from this one on */
 } sf_cut;
 
 /* Release with sf_cut_free, also after a failure. */

@@ -110,11 +110,10 @@ static sf_status read_run(overlay_run *r, sf_error *err) {
 
 /* A whole number of the summary; 0: the file does not say. */
 static sf_status read_count(const sf_h5 *file, const char *path, int64_t *value, sf_error *err) {
-    int64_t *data = NULL;
+    SF_OWNED int64_t *data = NULL;
     *value = 0;
     if (sf_h5_exists(file, path) && sf_h5_read(file, path, SF_H5_I64, 0, NULL, (void **)&data, err) == SF_OK)
         *value = *data;
-    free(data);
     return err->status;
 }
 
@@ -413,7 +412,7 @@ int sf_overlay_main(int argc, char **argv) {
                "the drops on one pad, of which the first file names them all."};
     static char name[] = "softfall-post compare", name_of_series[] = "softfall-post series";
     sf_error err = SF_ERROR_INIT;
-    overlay *o = sf_alloc(&err, 1, sizeof *o, "the runs");
+    SF_OWNED overlay *o = sf_alloc(&err, 1, sizeof *o, "the runs");
     if (o && sf_program_begin(argv, &err) == SF_OK) {
         o->command = sf_command_line(argc, argv);
         o->series = strcmp(argv[1], "series") == 0;
@@ -427,6 +426,5 @@ int sf_overlay_main(int argc, char **argv) {
     }
     if (o)
         release(o);
-    free(o);
     return sf_error_report(&err, "softfall-post");
 }

@@ -65,8 +65,9 @@ static void put_facts(FILE *f, const sf_results *r, const sf_xdmf *made) {
     put_mirrors(f, r);
     put_optional(f, "sphere", r->sphere_radius);
     put_optional(f, "peak", made->peak_time);
-    fprintf(f, "    \"missile\": %s, \"driven\": %s,\n", r->surface_triangle_count > 0 ? "True" : "False",
-            r->driven ? "True" : "False");
+    fprintf(f, "    \"missile\": %s, \"support\": %s, \"driven\": %s,\n",
+            r->surface_triangle_count > 0 ? "True" : "False",
+            r->support_triangle_count > 0 ? "True" : "False", r->driven ? "True" : "False");
     put_colouring(f, made);
     fputs("}", f);
 }
@@ -87,7 +88,7 @@ sf_status sf_template_read(const char *name, const char *mark, char **text, sf_e
 
 sf_status sf_paraview_write(const sf_staging *output, const sf_results *r, const sf_xdmf *made, char *warning,
                             size_t size, sf_error *err) {
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     sf_error problem = SF_ERROR_INIT;
     *warning = '\0';
     if (made->frames == 0)
@@ -110,7 +111,6 @@ sf_status sf_paraview_write(const sf_staging *output, const sf_results *r, const
         fputs(line + strlen(FACTS), f);
         sf_staging_close(f, STATE, err);
     }
-    free(text);
     return err->status;
 }
 
@@ -181,7 +181,8 @@ sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error 
                            STATE,      "--film",
                            film,       "--picture",
                            PICTURE,    NULL};
-    char *log = sf_staging_path(output, LOG, err), reason[256];
+    SF_OWNED char *log = sf_staging_path(output, LOG, err);
+    char reason[256];
     int code = 0;
     if (!log)
         return err->status;
@@ -205,6 +206,5 @@ sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error 
                 *reason ? ": " : "", reason);
     }
     sf_staging_remove(output, LOG);
-    free(log);
     return err->status;
 }

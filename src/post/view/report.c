@@ -54,7 +54,8 @@ static void begin_block(FILE *page, const char *heading) {
 
 /* `layer` NULL: of a pad of one material. */
 static void put_material(FILE *page, const char *case_text, const char *parameters, const char *layer) {
-    char *origin = sf_origin_material(case_text, layer), heading[SF_ORIGIN_NAME_SIZE + 32],
+    SF_OWNED char *origin = sf_origin_material(case_text, layer);
+    char heading[SF_ORIGIN_NAME_SIZE + 32],
          group[SF_ORIGIN_NAME_SIZE + 16];
     snprintf(heading, sizeof heading, "Material%s%s", layer ? " of the layer " : "", layer ? layer : "");
     snprintf(group, sizeof group, "material%s%s.", layer ? "s." : "", layer ? layer : "");
@@ -71,7 +72,6 @@ static void put_material(FILE *page, const char *case_text, const char *paramete
     sf_html_block_end(page);
     sf_html_columns_end(page);
     sf_html_block_end(page);
-    free(origin);
 }
 
 void sf_origin_put_material(FILE *page, const char *case_text, const char *parameters) {
@@ -253,7 +253,7 @@ static void put_bodies(const page *p) {
 static void put_curve(const page *p, const sf_staging *output) {
     char warning[320];
     const sf_figures *f = p->figures;
-    char *svg = sf_chart_svg(output, sf_plot_name(f), "softfall-post", warning, sizeof warning);
+    SF_OWNED char *svg = sf_chart_svg(output, sf_plot_name(f), "softfall-post", warning, sizeof warning);
     if (!svg)
         sf_html_figure(p->file, NULL, "%s.", warning);
     else if (f->driven)
@@ -264,16 +264,14 @@ static void put_curve(const page *p, const sf_staging *output) {
     else
         sf_html_figure(p->file, svg, "Missile: %s%s, filtered with CFC %.0f, over time.", f->acceleration,
                        f->passed, f->cfc);
-    free(svg);
 }
 
 /* The picture that came with the film. */
 static void put_scene(const page *p, const sf_staging *output) {
-    char *scene = sf_html_png(output, "pad.png");
+    SF_OWNED char *scene = sf_html_png(output, "pad.png");
     if (scene)
         sf_html_figure(p->file, scene,
                        "The same in ParaView (pad_paraview.py), all of the pad behind the missile's axis.");
-    free(scene);
 }
 
 /* The page that came before this one; a report that is moved alone has a link to nothing. */
@@ -428,9 +426,8 @@ static void count_cells(const sf_results *r, char *text, size_t size) {
 }
 
 static void put_text_fact(const page *p, sf_html_table *table, const char *title, const char *path) {
-    char *text = sf_origin_text(p->results, path);
+    SF_OWNED char *text = sf_origin_text(p->results, path);
     sf_html_fact(table, title, "%s", text && *text ? text : "not recorded in this file");
-    free(text);
 }
 
 static void put_mesh(const page *p, sf_html_table *table) {
@@ -468,9 +465,9 @@ static void put_version(const page *p, sf_html_table *table, const char *title, 
 }
 
 static void put_command(const page *p) {
-    char *pre = sf_origin_text(p->results, "/provenance/model/command_line");
-    char *solve = sf_origin_text(p->results, "/provenance/command_line");
-    char *all = NULL;
+    SF_OWNED char *pre = sf_origin_text(p->results, "/provenance/model/command_line");
+    SF_OWNED char *solve = sf_origin_text(p->results, "/provenance/command_line");
+    SF_OWNED char *all = NULL;
     if (pre && solve &&
         asprintf(&all, "%s\n%s\n%s", *pre ? pre : "(softfall-pre: not recorded)",
                  *solve ? solve : "(softfall-solve: not recorded)", p->report->command_line) >= 0) {
@@ -479,9 +476,6 @@ static void put_command(const page *p) {
         sf_html_pre(p->file, all);
         sf_html_block_end(p->file);
     }
-    free(all);
-    free(pre);
-    free(solve);
 }
 
 /* Mesh and versions, and the energies beside them. */
@@ -529,10 +523,9 @@ void sf_report_title(const sf_results *r, char *title, size_t size) {
 
 static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
     char title[SF_REPORT_TITLE_SIZE];
-    char *subtitle = sf_origin_title(p->case_text);
+    SF_OWNED char *subtitle = sf_origin_title(p->case_text);
     sf_report_title(p->results, title, sizeof title);
     p->file = sf_html_begin(output, title, subtitle && *subtitle ? subtitle : NULL, err);
-    free(subtitle);
     return err->status;
 }
 

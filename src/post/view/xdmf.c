@@ -110,7 +110,7 @@ static sf_status put_integers(const store *s, const char *path, const char *desc
 static sf_status write_topology(const store *s, sf_error *err) {
     const sf_results *r = s->results;
     int64_t length = r->cell_nnz + r->cell_count, k = 0;
-    int32_t *mixed = sf_alloc(err, (unsigned long)length, sizeof *mixed, "the topology");
+    SF_OWNED int32_t *mixed = sf_alloc(err, (unsigned long)length, sizeof *mixed, "the topology");
     if (!mixed)
         return err->status;
     for (int64_t c = 0; c < r->cell_count; c++) {
@@ -120,7 +120,6 @@ static sf_status write_topology(const store *s, sf_error *err) {
     }
     put_integers(s, "/pad/topology", "XDMF mixed topology: code of each cell, then its vertices", SF_H5_I32,
                  length, 1, mixed, err);
-    free(mixed);
     if (err->status == SF_OK && r->surface_triangle_count > 0)
         put_integers(s, "/missile/triangle", "triangles of the missile's surface", SF_H5_I32,
                      r->surface_triangle_count, 3, r->surface_triangle, err);
@@ -131,7 +130,7 @@ static sf_status write_topology(const store *s, sf_error *err) {
  * its nodes do. */
 static sf_status write_materials(const store *s, sf_error *err) {
     const sf_results *r = s->results;
-    uint8_t *material = sf_alloc(err, (unsigned long)r->cell_count, sizeof *material, "materials of cells");
+    SF_OWNED uint8_t *material = sf_alloc(err, (unsigned long)r->cell_count, sizeof *material, "materials of cells");
     for (int64_t c = 0; c < r->cell_count && err->status == SF_OK; c++)
         material[c] = r->layer_count > 0 ? r->node_layer[r->cell_node[r->cell_ptr[c]]] : 0;
     if (err->status == SF_OK &&
@@ -140,7 +139,6 @@ static sf_status write_materials(const store *s, sf_error *err) {
         r->layer_count > 0)
         put_integers(s, "/pad/layer", "number of the layer of each node", SF_H5_U8, r->node_count, 1,
                      r->node_layer, err);
-    free(material);
     return err->status;
 }
 
@@ -148,7 +146,7 @@ static sf_status write_materials(const store *s, sf_error *err) {
  * surface, `head`, by the missile's place. */
 static sf_status write_points(const store *s, const sf_h5_info *info, int64_t count, const double *position,
                               const double *displacement, const sf_frame_head *head, sf_error *err) {
-    double *moved = sf_alloc(err, 3 * (unsigned long)count, sizeof *moved, info->description);
+    SF_OWNED double *moved = sf_alloc(err, 3 * (unsigned long)count, sizeof *moved, info->description);
     if (!moved)
         return err->status;
     for (int64_t i = 0; i < count; i++)
@@ -158,8 +156,17 @@ static sf_status write_points(const store *s, const sf_h5_info *info, int64_t co
             for (int64_t k = 3 * i; k < 3 * i + 3; k++)
                 moved[k] = position[k] + (displacement ? displacement[k] : 0);
     put(s, info, count, 3, moved, err);
-    free(moved);
     return err->status;
+}
+
+static sf_status write_supports(const store *s, sf_error *err) {
+    const sf_results *r = s->results;
+    if (r->support_triangle_count == 0)
+        return SF_OK;
+    SF_TRY(put_integers(s, "/support/triangle", "triangles of the rigid supports", SF_H5_I32,
+                        r->support_triangle_count, 3, r->support_triangle, err));
+    return write_points(s, &(sf_h5_info){"/support/position", "m", "positions of their nodes"},
+                        r->support_node_count, r->support_position, NULL, NULL, err);
 }
 
 /* The row of the history of that time, or the last before it. */
@@ -183,7 +190,7 @@ static sf_status write_missile_arrays(const store *s, const sf_frame_head *head,
                                        [ACCELERATION] = {sf_figures_reading(r, row)},
                                        [FORCE] = {r->history.contact_force[row]}};
     sf_results_place(r, head, r->sphere_centre, value[CENTRE]);
-    double *all = sf_alloc(err, 3 * (unsigned long)n, sizeof *all, "arrays of the missile");
+    SF_OWNED double *all = sf_alloc(err, 3 * (unsigned long)n, sizeof *all, "arrays of the missile");
     for (int k = 0; k < missile_array_count(r) && err->status == SF_OK; k++) {
         const struct missile_array *a = &missile_arrays[k];
         char path[96];
@@ -192,7 +199,6 @@ static sf_status write_missile_arrays(const store *s, const sf_frame_head *head,
             all[i] = value[k][i % a->components];
         put(s, &(sf_h5_info){path, a->units, a->description}, n, a->components, all, err);
     }
-    free(all);
     return err->status;
 }
 
@@ -288,7 +294,8 @@ static sf_status write_data(const char *path, sf_results *r, const sf_xdmf_optio
     store s = {.results = r, .full = options->full};
     SF_TRY(sf_h5_create(path, &s.file, err));
     if (sf_provenance_write(s.file, "softfall-paraview", &provenance, err) == SF_OK &&
-        write_topology(&s, err) == SF_OK && write_materials(&s, err) == SF_OK)
+        write_topology(&s, err) == SF_OK && write_materials(&s, err) == SF_OK &&
+        write_supports(&s, err) == SF_OK)
         write_frames(&s, r, shown, err);
     sf_h5_close(&s.file, err->status == SF_OK ? err : &ignored);
     return err->status;
@@ -351,16 +358,30 @@ static void put_pad(const scene *x, const sf_results *r, int fields, double time
     fputs("        </Grid>\n", x->file);
 }
 
-static void put_missile(const scene *x, const sf_results *r, double time, int64_t index) {
-    if (r->surface_triangle_count == 0)
-        return;
-    put_grid_start(x, "missile", time);
+static void put_triangles(const scene *x, const char *name, double time, int64_t count) {
+    put_grid_start(x, name, time);
     fprintf(x->file,
             "          <Topology TopologyType=\"Triangle\" NumberOfElements=\"%lld\"><DataItem "
             "Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" Dimensions=\"%lld "
-            "3\">%s:/missile/triangle</DataItem></Topology>\n"
+            "3\">%s:/%s/triangle</DataItem></Topology>\n"
             "          <Geometry GeometryType=\"XYZ\">",
-            (long long)r->surface_triangle_count, (long long)r->surface_triangle_count, x->data);
+            (long long)count, (long long)count, x->data, name);
+}
+
+static void put_supports(const scene *x, const sf_results *r, double time) {
+    if (r->support_triangle_count == 0)
+        return;
+    put_triangles(x, "support", time, r->support_triangle_count);
+    fprintf(x->file,
+            "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%lld 3\">"
+            "%s:/support/position</DataItem></Geometry>\n        </Grid>\n",
+            x->precision, (long long)r->support_node_count, x->data);
+}
+
+static void put_missile(const scene *x, const sf_results *r, double time, int64_t index) {
+    if (r->surface_triangle_count == 0)
+        return;
+    put_triangles(x, "missile", time, r->surface_triangle_count);
     put_float_item(x, index, "missile_position", r->surface_node_count, 3);
     fputs("</Geometry>\n", x->file);
     for (int k = 0; k < missile_array_count(r); k++)
@@ -375,6 +396,7 @@ static void put_frame(const scene *x, const sf_results *r, int fields, double ti
             (long long)index, time);
     put_pad(x, r, fields, time, index);
     put_missile(x, r, time, index);
+    put_supports(x, r, time);
     fputs("      </Grid>\n", x->file);
 }
 
@@ -401,10 +423,9 @@ static sf_status name_data(const sf_staging *output, const char *path, char data
     uint64_t hash = 0;
     SF_TRY(sf_plain_hash(path, NULL, SF_PLAIN_ANY, &hash, err));
     snprintf(data, SF_XDMF_NAME_SIZE, "pad-%016llx.h5", (unsigned long long)hash);
-    char *named = sf_staging_path(output, data, err);
+    SF_OWNED char *named = sf_staging_path(output, data, err);
     if (named && rename(path, named) != 0)
         SF_FAIL(err, SF_ERR_IO, "%s cannot be renamed to %s", path, data);
-    free(named);
     return err->status;
 }
 
@@ -423,7 +444,7 @@ static sf_xdmf tell(const sf_shown *shown) {
 sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_xdmf_options *options,
                         char data[SF_XDMF_NAME_SIZE], sf_xdmf *made, sf_error *err) {
     sf_shown shown = {0};
-    char *path = sf_staging_path(output, NEW_DATA, err);
+    SF_OWNED char *path = sf_staging_path(output, NEW_DATA, err);
     if (path && sf_shown_find(results, &shown, err) == SF_OK)
         write_data(path, results, options, &shown, err);
     if (path && shown.count == 0)
@@ -432,7 +453,6 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_
         write_text(output, results, &shown, data, options->full, err);
     *made = tell(&shown);
     sf_shown_free(&shown);
-    free(path);
     return err->status;
 }
 

@@ -38,7 +38,7 @@ sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
     SF_OWNED int32_t *rank = sf_alloc(err, (unsigned long)n, sizeof *rank, "node order");
     SF_OWNED double *moved = sf_alloc(err, 3 * (unsigned long)n, sizeof *moved, "node order");
     if (err->status != SF_OK)
-        goto done;
+        return err->status;
     for (int64_t k = 0; k < 3 * n; k++)
         low[k % 3] = fmin(low[k % 3], mesh->position[k]);
     for (int64_t k = 0; k < 3 * n; k++)
@@ -67,7 +67,6 @@ sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
             mesh->set[s].node[k] = rank[mesh->set[s].node[k]];
         qsort(mesh->set[s].node, (size_t)mesh->set[s].count, sizeof(int32_t), sf_by_number);
     }
-done:
     return err->status;
 }
 

@@ -54,13 +54,13 @@ static void free_probes(probes *p) {
 
 static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p, sf_error *err) {
     unsigned long most = (unsigned long)(mesh->node_count + dual->face_count);
-    uint8_t *surface = sf_alloc(err, (unsigned long)mesh->node_count, 1, "surface nodes");
+    SF_OWNED uint8_t *surface = sf_alloc(err, (unsigned long)mesh->node_count, 1, "surface nodes");
     p->node = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *p->node, "surface nodes");
     p->position = sf_alloc(err, 3 * most, sizeof *p->position, "surface points");
     p->zero = sf_alloc(err, most, sizeof *p->zero, "surface points");
     p->near = sf_alloc(err, most, sizeof *p->near, "surface points");
     if (err->status != SF_OK)
-        goto done;
+        return err->status;
     for (int64_t f = 0; f < dual->face_count; f++)
         for (int k = 0; k < dual->face[f].size; k++)
             surface[dual->face[f].node[k]] = 1;
@@ -71,8 +71,6 @@ static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p
         mean_of(mesh, &p->node[p->count], 1, &p->position[3 * p->count]);
     for (int64_t f = 0; f < dual->face_count; f++, p->count++)
         mean_of(mesh, dual->face[f].node, dual->face[f].size, &p->position[3 * p->count]);
-done:
-    free(surface);
     return err->status;
 }
 
@@ -140,14 +138,12 @@ static sf_status check_cell(const sf_mesh *mesh, const sf_grid *grid, const prob
 
 /* Wherever bodies overlap, the surface of one lies in the other. */
 static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    probes p = {0};
-    sf_grid grid = {0};
+    SF_OWNED_BY(free_probes) probes p = {0};
+    SF_OWNED_BY(sf_grid_free) sf_grid grid = {0};
     if (take_probes(mesh, dual, &p, err) == SF_OK &&
         sf_grid_build(&grid, p.count, p.position, p.zero, err) == SF_OK)
         for (int64_t c = 0; c < mesh->cell_count && err->status == SF_OK; c++)
             check_cell(mesh, &grid, &p, c, err);
-    sf_grid_free(&grid);
-    free_probes(&p);
     return err->status;
 }
 
@@ -157,7 +153,7 @@ static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_erro
 static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *err) {
     int64_t parts = 0, least = 0;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    int64_t *cells = sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
+    SF_OWNED int64_t *cells = sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
     if (!cells)
         return err->status;
     for (int64_t c = 0; c < mesh->cell_count; c++)
@@ -178,14 +174,14 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
     SF_REFUSE(
         err,
         "the pad is in %lld parts that share no faces of cells: the smallest, of %lld cells, lies between (%.4g, "
-        "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm: " ADVICE,
+        "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm: " ADVICE
+        ", or let them be bodies that touch each other (pad.separate = true)",
         (long long)parts, (long long)cells[least], low[0], low[1], low[2], high[0], high[1], high[2]);
-    free(cells);
     return err->status;
 }
 
 static sf_status check_parts(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    int64_t *parent = sf_sets_alone(mesh->cell_count, "connected cells", err);
+    SF_OWNED int64_t *parent = sf_sets_alone(mesh->cell_count, "connected cells", err);
     if (!parent)
         return err->status;
     for (int64_t f = 0; f < dual->inner_count; f++)
@@ -193,7 +189,6 @@ static sf_status check_parts(const sf_mesh *mesh, const sf_dual *dual, sf_error 
     for (int64_t c = 0; c < mesh->cell_count && err->status == SF_OK; c++)
         if (sf_sets_find(parent, c) != 0)
             refuse_parts(mesh, parent, err);
-    free(parent);
     return err->status;
 }
 
@@ -208,11 +203,11 @@ static int64_t corner(const sf_mesh *mesh, int64_t cell, int32_t node) {
 /* Around every node the corners of cells are joined through the faces: bodies that only touch at a point or
  * along an edge would be a hinge. */
 static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    int64_t corners = mesh->cell_ptr[mesh->cell_count],
-            *parent = sf_sets_alone(corners, "connected cells", err);
-    int64_t *root = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *root, "connected cells");
+    int64_t corners = mesh->cell_ptr[mesh->cell_count];
+    SF_OWNED int64_t *parent = sf_sets_alone(corners, "connected cells", err);
+    SF_OWNED int64_t *root = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *root, "connected cells");
     if (err->status != SF_OK)
-        goto done;
+        return err->status;
     for (int64_t f = 0; f < dual->inner_count; f++)
         for (int k = 0; k < 4; k++) {
             const sf_inner_face *face = &dual->inner[f];
@@ -234,14 +229,11 @@ static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error
             break;
         }
     }
-done:
-    free(parent);
-    free(root);
     return err->status;
 }
 
-sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
-    if (check_overlap(mesh, dual, err) != SF_OK || check_parts(mesh, dual, err) != SF_OK)
+sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, bool separate, sf_error *err) {
+    if (check_overlap(mesh, dual, err) != SF_OK || (!separate && check_parts(mesh, dual, err) != SF_OK))
         return err->status;
     return check_hinges(mesh, dual, err);
 }
@@ -351,7 +343,7 @@ static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dua
     double place, slack;
     if (!find_plane(mesh, set, &axis, &place, &slack))
         return SF_OK;
-    uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "nodes of a symmetry plane");
+    SF_OWNED uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "nodes of a symmetry plane");
     for (int g = 0; member && g < c->symmetry_count; g++) { /* a plane may be that of several groups */
         const sf_node_set *any = sf_mesh_find_set(mesh, c->symmetry_group[g]);
         for (int64_t k = 0; any && k < any->count; k++)
@@ -372,7 +364,6 @@ static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dua
                 "in none of these groups: it would be free (a crack in a symmetry plane cannot be modelled)",
                 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], set->name);
     }
-    free(member);
     return err->status;
 }
 

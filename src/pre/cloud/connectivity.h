@@ -5,12 +5,13 @@
 #include "pre/cloud/dual.h"
 #include "pre/mesh/mesh.h"
 
-/* Checks that the pad is one body: its parts share cell faces, and no cells lie in each other. */
+/* Checks that the pad is one body, or several with `separate`: its parts share cell faces, and no cells lie
+ * in each other. */
 
 /* SF_ERR_INPUT, with the place, if a node or a face of the pad's surface lies inside a cell, if the cells are
- * not all connected through faces, or if those around a node are not. The cost is linear in the number of
- * cells. */
-sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, sf_error *err);
+ * not all connected through faces (unless `separate`), or if those around a node are not. The cost is linear
+ * in the number of cells. */
+sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, bool separate, sf_error *err);
 
 /* Checks that the surface groups that a case names lie on the surface of the pad; where cells are missing
  * they do not. */

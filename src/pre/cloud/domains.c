@@ -559,7 +559,8 @@ sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const 
                                 const double *spacing, double volume, sf_invariants *out, sf_error *err) {
     int64_t n = mesh->node_count;
     *out = (sf_invariants){0};
-    double *balance = sf_alloc(err, 3 * (unsigned long)n, sizeof *balance, "invariants"), total = 0;
+    SF_OWNED double *balance = sf_alloc(err, 3 * (unsigned long)n, sizeof *balance, "invariants");
+    double total = 0;
     SF_TRY(err->status);
     sf_domains_boundary_integral(mesh, dual, d, balance);
     for (int64_t i = 0; i < n; i++) {
@@ -573,7 +574,6 @@ sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const 
     for (int64_t k = 0; k < 3 * n; k++)
         out->telescope = fmax(out->telescope, fabs(balance[k]) / (spacing[k / 3] * spacing[k / 3]));
     out->volume = fabs(total / volume - 1);
-    free(balance);
     return SF_OK;
 }
 

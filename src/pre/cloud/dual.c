@@ -197,15 +197,11 @@ void sf_dual_free(sf_dual *dual) {
 }
 
 static void triangle(const double a[3], const double b[3], const double c[3], sf_facet_triangle *out) {
-    double u[3], v[3];
+    sf_triangle_normal(a, b, c, out->area);
     for (int k = 0; k < 3; k++) {
         out->centroid[k] = (a[k] + b[k] + c[k]) / 3;
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-    }
-    sf_cross3(u, v, out->area);
-    for (int k = 0; k < 3; k++)
         out->area[k] *= 0.5;
+    }
 }
 
 static void mean_of(const sf_mesh *mesh, int count, const int32_t *cell_node, const int *local,

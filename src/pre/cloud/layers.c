@@ -40,7 +40,8 @@ static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layer
         return SF_REFUSE(err, "the layers have %lu nodes; at most %d are supported", all, INT32_MAX);
     l->origin = sf_alloc(err, all, sizeof *l->origin, "layers");
     l->copy = sf_alloc(err, all, sizeof *l->copy, "layers");
-    int64_t *next = sf_alloc(err, (unsigned long)l->count, sizeof *next, "layers"), copies = 0;
+    SF_OWNED int64_t *next = sf_alloc(err, (unsigned long)l->count, sizeof *next, "layers");
+    int64_t copies = 0;
     if (err->status == SF_OK)
         memcpy(next, l->first, (size_t)l->count * sizeof *next);
     for (int64_t i = 0; err->status == SF_OK && i < mesh->node_count; i++) {
@@ -51,7 +52,6 @@ static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layer
             }
         l->copy_ptr[i + 1] = copies;
     }
-    free(next);
     return err->status;
 }
 
@@ -96,13 +96,9 @@ static sf_status check_pairs(const sf_case *c, const pair_table *pairs, sf_error
 /* The component along the normal of a face; 0 if it is not normal to an axis. */
 static uint8_t normal_component(const sf_mesh *mesh, const sf_inner_face *face) {
     const int32_t *node = &face->node[face->node[0] < 0];
-    const double *p = &mesh->position[3 * (int64_t)node[0]];
-    double u[3], v[3], n[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = mesh->position[3 * (int64_t)node[1] + k] - p[k];
-        v[k] = mesh->position[3 * (int64_t)node[2] + k] - p[k];
-    }
-    sf_cross3(u, v, n);
+    double n[3];
+    sf_triangle_normal(&mesh->position[3 * (int64_t)node[0]], &mesh->position[3 * (int64_t)node[1]],
+                       &mesh->position[3 * (int64_t)node[2]], n);
     double length = sqrt(sf_dot3(n, n));
     for (int k = 0; k < 3; k++)
         if (hypot(n[(k + 1) % 3], n[(k + 2) % 3]) <= ALONG_AXIS * length)

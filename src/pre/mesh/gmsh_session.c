@@ -416,13 +416,12 @@ sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, d
     SF_OWNED const sf_geo_group **chosen =
         sf_alloc(err, (unsigned long)volumes->count, sizeof *chosen, "the pad's volumes");
     if (!chosen || read_volumes(session, volumes, unit, chosen, &raw, err) != SF_OK)
-        goto done;
+        return err->status;
     for (size_t g = 0; g < data->group_count; g++)
         if (data->group[g].dimension == 2 && *data->group[g].name &&
             read_faces(session, &data->group[g], &raw, err) != SF_OK)
-            goto done;
+            return err->status;
     sf_mesh_assemble(&raw, volumes->count, unit, mesh, err);
-done:
     return err->status;
 }
 

@@ -63,7 +63,8 @@ typedef struct sf_mesh {
     int set_count;
     sf_node_set *set;     /* [set_count] every physical surface group whose nodes belong to the pad */
     int64_t orphan_count; /* nodes of the geometry that no cell of any volume uses (counted, not kept) */
-    sf_surface *support;  /* of the rigid bodies that the pad may touch; NULL: none; borrowed */
+    sf_surface *support;  /* [support_count] of the rigid bodies that the pad may touch; borrowed */
+    int support_count;
 } sf_mesh;
 
 void sf_mesh_free(sf_mesh *mesh);

@@ -60,11 +60,11 @@ static bool is_section_same(const section *s) {
     return true;
 }
 
-/* A section for the pad's geometry, and one for those of missile and support if there are any. */
+/* A section for the pad's geometry, and one for those of missile and supports if there are any. */
 bool sf_geometry_files_are_same(const char *const folder[SF_GEOMETRIES], const char *files) {
     static const char head[] = SF_GMSH_FILES_OF "\n";
     for (int k = 0; k < SF_GEOMETRIES; k++) {
-        if (k > 0 && *folder[k] == '\0')
+        if (k > 0 && (!folder[k] || *folder[k] == '\0'))
             continue;
         if (strncmp(files, head, sizeof head - 1) != 0)
             return false;
@@ -114,7 +114,7 @@ static bool are_files_same(const sf_geo_source *source, const char *files) {
     if (snprintf(folder, sizeof folder, "%.*s", length > 1 ? length - 1 : length, source->path) >=
         (int)sizeof folder)
         return false;
-    const char *const folders[SF_GEOMETRIES] = {length > 0 ? folder : ".", "", ""};
+    const char *const folders[SF_GEOMETRIES] = {length > 0 ? folder : "."};
     return sf_geometry_files_are_same(folders, files);
 }
 

@@ -10,8 +10,8 @@
 #define SF_GMSH_UNKNOWN_FILES "unknown"
 
 /* True if every file of the list has the content that it had, and none got options beside it. `folder`:
- * those of the geometries of pad, missile and support, where paths in the list begin; "" without one. False,
- * too, where the list does not know all files. */
+ * those of the geometries of pad, missile and supports, where paths in the list begin; "" or NULL without
+ * one. False, too, where the list does not know all files. */
 bool sf_geometry_files_are_same(const char *const folder[SF_GEOMETRIES], const char *files);
 
 /* The mesh of a geometry, kept in a store (io/folder.h) for the drops of a campaign: as gmsh made it, with

@@ -9,24 +9,10 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
+#include "base/triangle.h"
 #include "pre/mesh/mesh_raw.h"
 
 static const double EDGE_ON = 1e-3; /* share of the area: below it a surface faces neither way */
-
-typedef struct use {
-    int32_t low, high;
-    int64_t slot; /* 3 triangle + edge */
-    bool rising;  /* the triangle runs from low to high */
-} use;
-
-static int by_ends(const void *a, const void *b) {
-    const use *p = a, *q = b;
-    if (p->low != q->low)
-        return p->low < q->low ? -1 : 1;
-    if (p->high != q->high)
-        return p->high < q->high ? -1 : 1;
-    return (p->slot > q->slot) - (p->slot < q->slot);
-}
 
 typedef struct orienter {
     const sf_surface *surface;
@@ -39,27 +25,19 @@ typedef struct orienter {
 
 static sf_status find_neighbours(orienter *o, sf_error *err) {
     int64_t count = 3 * o->surface->triangle_count;
-    const int32_t *node = o->surface->triangle;
-    SF_OWNED use *list = sf_alloc(err, (size_t)count, sizeof *list, "edges of the missile");
-    SF_TRY(err->status);
-    for (int64_t k = 0; k < count; k++) {
-        int32_t a = node[k], b = node[k % 3 == 2 ? k - 2 : k + 1];
-        list[k] = (use){a < b ? a : b, a < b ? b : a, k, a < b};
+    SF_OWNED sf_half_edge *edge = sf_half_edges(o->surface->triangle_count, o->surface->triangle, err);
+    for (int64_t k = 0; edge && k < count; k++)
         o->beyond[k] = -1;
-    }
-    qsort(list, (size_t)count, sizeof *list, by_ends);
-    for (int64_t first = 0, end; first < count; first = end) {
-        for (end = first + 1;
-             end < count && list[end].low == list[first].low && list[end].high == list[first].high; end++)
-            ;
+    for (int64_t first = 0, end; edge && first < count; first = end) {
+        end = sf_half_edges_end(edge, first, count);
         if (end - first != 2)
             continue;
         for (int k = 0; k < 2; k++) {
-            o->beyond[list[first + k].slot] = list[first + 1 - k].slot / 3;
-            o->twisted[list[first + k].slot] = list[first].rising == list[first + 1].rising;
+            o->beyond[edge[first + k].slot] = edge[first + 1 - k].slot / 3;
+            o->twisted[edge[first + k].slot] = edge[first].rises == edge[first + 1].rises;
         }
     }
-    return SF_OK;
+    return err->status;
 }
 
 static const double *vertex(const sf_surface *s, int64_t triangle, int corner) {
@@ -67,12 +45,7 @@ static const double *vertex(const sf_surface *s, int64_t triangle, int corner) {
 }
 
 static void area_vector(const sf_surface *s, int64_t t, double area[3]) {
-    double u[3], v[3];
-    for (int c = 0; c < 3; c++) {
-        u[c] = vertex(s, t, 1)[c] - vertex(s, t, 0)[c];
-        v[c] = vertex(s, t, 2)[c] - vertex(s, t, 0)[c];
-    }
-    sf_cross3(u, v, area);
+    sf_triangle_normal(vertex(s, t, 0), vertex(s, t, 1), vertex(s, t, 2), area);
     for (int c = 0; c < 3; c++)
         area[c] *= 0.5;
 }

@@ -10,16 +10,10 @@ enum { COMPONENTS = 3 };
 
 /* Sets of nodes with the same component of u_h, as trees; NULL if nothing is tied. */
 typedef struct joined {
-    int32_t *parent[COMPONENTS]; /* [node_count] each */
+    int64_t *parent[COMPONENTS]; /* [node_count] each */
     uint8_t *held;               /* [node_count] SF_FIX_* bits */
     int32_t *next; /* [node_count] ring of the nodes at one place, over all ties whatever they join */
 } joined;
-
-static int32_t leader(int32_t *parent, int32_t i) {
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
 
 static bool in_ring(const int32_t *next, int32_t from, int32_t node) {
     int32_t i = from;
@@ -32,18 +26,15 @@ static bool in_ring(const int32_t *next, int32_t from, int32_t node) {
 }
 
 static void join(const sf_model *m, joined *j) {
-    for (int32_t i = 0; i < (int32_t)m->node_count; i++) {
+    for (int32_t i = 0; i < (int32_t)m->node_count; i++)
         j->next[i] = i;
-        for (int r = 0; r < COMPONENTS; r++)
-            j->parent[r][i] = i;
-    }
     for (int64_t k = 0; k < m->fixed_count; k++)
         j->held[m->fixed_node[k]] = m->fixed_mask[k];
     for (int64_t t = 0; t < m->tie_count; t++) {
         int32_t a = m->tie_node[t], b = m->tie_other[t], swap = j->next[a];
         for (int r = 0; r < COMPONENTS; r++)
             if ((m->tie_mask[t] >> r) & 1)
-                j->parent[r][leader(j->parent[r], b)] = leader(j->parent[r], a);
+                sf_sets_join(j->parent[r], a, b);
         if (in_ring(j->next, a, b))
             continue;
         j->next[a] = j->next[b]; /* two rings become one */
@@ -56,7 +47,7 @@ static sf_status join_alloc(const sf_model *m, joined *j, sf_error *err) {
     if (m->tie_count == 0)
         return SF_OK;
     for (int r = 0; r < COMPONENTS; r++)
-        j->parent[r] = sf_alloc(err, n, sizeof *j->parent[r], "contact rows");
+        j->parent[r] = sf_sets_alone(m->node_count, "contact rows", err);
     j->held = sf_alloc(err, n, 1, "contact rows");
     j->next = sf_alloc(err, n, sizeof *j->next, "contact rows");
     if (err->status == SF_OK)
@@ -74,7 +65,8 @@ static void join_free(joined *j) {
 /* True if nodes of one place move as one: each component is tied, or held in both. */
 static bool move_as_one(const joined *j, int32_t a, int32_t b) {
     for (int r = 0; r < COMPONENTS; r++)
-        if (!((j->held[a] & j->held[b]) >> r & 1) && leader(j->parent[r], a) != leader(j->parent[r], b))
+        if (!((j->held[a] & j->held[b]) >> r & 1) &&
+            sf_sets_find(j->parent[r], a) != sf_sets_find(j->parent[r], b))
             return false;
     return true;
 }

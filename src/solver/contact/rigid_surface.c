@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "base/triangle.h"
 
 /* Behind the rim of an open surface a point counts as inside only straight behind it: the part of its ray
  * across the rim's normal may be this much of the part along it, as on the rim of a quarter missile, whose
@@ -17,12 +18,6 @@ static void subtract(const double *a, const double *b, double out[3]) {
         out[k] = a[k] - b[k];
 }
 
-static void normalise(double a[3]) {
-    double length = sqrt(sf_dot3(a, a));
-    for (int k = 0; k < 3 && length > 0; k++)
-        a[k] /= length;
-}
-
 static const double *vertex(const sf_missile_surface *s, int64_t triangle, int corner) {
     return &s->position[3 * (int64_t)s->triangle[3 * triangle + corner]];
 }
@@ -31,15 +26,13 @@ static const double *vertex(const sf_missile_surface *s, int64_t triangle, int c
 static void build_normals(sf_missile_surface *s, int64_t triangles) {
     for (int64_t t = 0; t < triangles; t++) {
         double u[3], v[3];
-        subtract(vertex(s, t, 1), vertex(s, t, 0), u);
-        subtract(vertex(s, t, 2), vertex(s, t, 0), v);
-        sf_cross3(u, v, &s->normal[3 * t]);
-        normalise(&s->normal[3 * t]);
+        sf_triangle_normal(vertex(s, t, 0), vertex(s, t, 1), vertex(s, t, 2), &s->normal[3 * t]);
+        sf_unit3(&s->normal[3 * t]);
         for (int corner = 0; corner < 3; corner++) {
             subtract(vertex(s, t, (corner + 1) % 3), vertex(s, t, corner), u);
             subtract(vertex(s, t, (corner + 2) % 3), vertex(s, t, corner), v);
-            normalise(u);
-            normalise(v);
+            sf_unit3(u);
+            sf_unit3(v);
             double angle = acos(fmax(-1, fmin(1, sf_dot3(u, v))));
             for (int k = 0; k < 3; k++)
                 s->vertex_normal[3 * (int64_t)s->triangle[3 * t + corner] + k] +=
@@ -48,42 +41,21 @@ static void build_normals(sf_missile_surface *s, int64_t triangles) {
     }
 }
 
-typedef struct half_edge {
-    int32_t low, high;
-    int64_t slot; /* 3 * triangle + edge */
-} half_edge;
-
-static int by_ends(const void *a, const void *b) {
-    const half_edge *x = a, *y = b;
-    if (x->low != y->low)
-        return x->low < y->low ? -1 : 1;
-    if (x->high != y->high)
-        return x->high < y->high ? -1 : 1;
-    return (x->slot > y->slot) - (x->slot < y->slot);
-}
-
 static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf_error *err) {
-    SF_OWNED half_edge *edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *edge, "missile edges");
-    SF_TRY(err->status);
-    for (int64_t k = 0; k < 3 * triangles; k++) {
-        int32_t a = s->triangle[k], b = s->triangle[k % 3 == 2 ? k - 2 : k + 1];
-        edge[k] = (half_edge){a < b ? a : b, a < b ? b : a, k};
-    }
-    qsort(edge, 3 * (size_t)triangles, sizeof *edge, by_ends);
-    for (int64_t first = 0, end; first < 3 * triangles; first = end) {
+    SF_OWNED sf_half_edge *edge = sf_half_edges(triangles, s->triangle, err);
+    for (int64_t first = 0, end; edge && first < 3 * triangles; first = end) {
         double sum[3] = {0};
-        for (end = first;
-             end < 3 * triangles && edge[end].low == edge[first].low && edge[end].high == edge[first].high;
-             end++)
+        end = sf_half_edges_end(edge, first, 3 * triangles);
+        for (int64_t k = first; k < end; k++)
             for (int c = 0; c < 3; c++)
-                sum[c] += s->normal[3 * (edge[end].slot / 3) + c];
+                sum[c] += s->normal[3 * (edge[k].slot / 3) + c];
         for (int64_t k = first; k < end; k++)
             memcpy(&s->edge_normal[3 * edge[k].slot], sum, sizeof sum);
         if (end == first + 1)
             s->rim_edge[edge[first].slot] = s->rim_vertex[edge[first].low] = s->rim_vertex[edge[first].high] =
                 1;
     }
-    return SF_OK;
+    return err->status;
 }
 
 static int64_t clamp_bin(const sf_missile_surface *s, int axis, double x) {
@@ -93,15 +65,7 @@ static int64_t clamp_bin(const sf_missile_surface *s, int axis, double x) {
 
 /* Bins of width `reach` over the plan; each triangle goes to every bin its grown box meets. */
 static sf_status build_bins(sf_missile_surface *s, int64_t nodes, int64_t triangles, sf_error *err) {
-    for (int a = 0; a < 3; a++) {
-        s->low[a] = INFINITY;
-        s->high[a] = -INFINITY;
-    }
-    for (int64_t i = 0; i < nodes; i++)
-        for (int a = 0; a < 3; a++) {
-            s->low[a] = fmin(s->low[a], s->position[3 * i + a]);
-            s->high[a] = fmax(s->high[a], s->position[3 * i + a]);
-        }
+    sf_box3(nodes, s->position, s->low, s->high);
     for (int a = 0; a < 2; a++)
         s->bins[a] = (int64_t)((s->high[a] - s->low[a]) / s->reach) + 1;
     int64_t bins = s->bins[0] * s->bins[1];
@@ -234,7 +198,7 @@ static bool triangles_gap(const sf_missile_surface *s, const double x[3], double
     bool near = best < 1e-12 * s->reach * s->reach;
     for (int k = 0; k < 3; k++)
         normal[k] = near ? outward[k] : side * ray[k];
-    normalise(normal);
+    sf_unit3(normal);
     return true;
 }
 

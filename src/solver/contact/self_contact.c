@@ -52,12 +52,8 @@ static void move_nodes(const sf_model *m, const sf_skin *skin, sf_state *s, doub
 
 static void facet_normal(const sf_skin *skin, const sf_state *s, int64_t f, double normal[3]) {
     const int32_t *n = &skin->facet[3 * f];
-    double side[2][3];
-    for (int k = 0; k < 2; k++)
-        for (int r = 0; r < 3; r++)
-            side[k][r] =
-                s->self_position[3 * (int64_t)n[k + 1] + r] - s->self_position[3 * (int64_t)n[0] + r];
-    sf_cross3(side[0], side[1], normal);
+    sf_triangle_normal(&s->self_position[3 * (int64_t)n[0]], &s->self_position[3 * (int64_t)n[1]],
+                       &s->self_position[3 * (int64_t)n[2]], normal);
 }
 
 /* True if plane k may stop the node: not if it is held there, or rests on the anvil already. */
@@ -212,8 +208,9 @@ static void choose_candidates(const sf_skin *skin, sf_state *s, int64_t p, doubl
     int32_t *own = &s->self_candidate[CANDIDATES * p], near[MOST];
     bool across = skin->moving < skin->count, rigid = sf_skin_is_rigid(skin, p), stopped = false;
     int count = 0, most = across ? OF_PAD : CANDIDATES;
-    int64_t found =
-        skin->alone || rigid ? 0 : sf_grid_query(&f->pad, &s->self_position[3 * p], reach, MOST, near);
+    int64_t found = (skin->alone && !skin->watched) || rigid
+                        ? 0
+                        : sf_grid_query(&f->pad, &s->self_position[3 * p], reach, MOST, near);
     if (found > 0)
         find_neighbourhood(skin, p, n);
     for (int64_t k = 0; k < found && k < MOST && count < most; k++)
@@ -248,8 +245,8 @@ static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
 }
 
 static sf_status list_candidates(const sf_skin *skin, sf_state *s, sf_error *err) {
-    facets f;
-    uint8_t *used = sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact");
+    SF_OWNED_BY(facets_free) facets f = {0};
+    SF_OWNED uint8_t *used = sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact");
     neighbourhood n = {sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact"),
                        sf_alloc(err, (unsigned long)skin->count, sizeof *n.list, "candidates of contact"), 0};
     double reach = s->self_room = NEAR * skin->spacing;
@@ -258,8 +255,6 @@ static sf_status list_candidates(const sf_skin *skin, sf_state *s, sf_error *err
             choose_candidates(skin, s, p, reach, &f, &n, used);
         list_nodes(skin, s, used);
     }
-    facets_free(&f);
-    free(used);
     free(n.is_near);
     free(n.list);
     return err->status;
@@ -382,17 +377,29 @@ static bool goes_on(const sf_skin *skin, int64_t last, int64_t f) {
     return false;
 }
 
-/* The partner that node p touches at the end of the step: of those that it may touch, the nearest. */
-static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touch *out) {
+/* False for a pair of the pad with itself that is only watched. */
+static bool acts(const sf_skin *skin, int64_t p, int64_t f) {
+    return !skin->watched || f < 0 || sf_skin_is_rigid(skin, p) || sf_skin_is_rigid(skin, skin->facet[3 * f]);
+}
+
+/* The partner that node p touches at the end of the step: of those that it may touch, the nearest. Without
+ * one, `passed`: the pair that the node was in, if it has become deeper than DEEPEST; its node is -1
+ * otherwise. */
+static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touch *out, touch *passed) {
     const int32_t *own = &s->self_candidate[CANDIDATES * p];
     double spacing = skin->size[p], best = INFINITY, back = -RETURN * s->dt, ahead[3];
     for (int k = 0; k < CANDIDATES && own[k] != NOTHING; k++) {
         touch q;
-        double deepest = goes_on(skin, (int64_t)s->self_partner[p], own[k]) ? DEEPEST : SF_CONTACT_ENTRY;
-        if (!meet_facet(skin, s, p, own[k], &q) || q.gap < -deepest * spacing || fabs(q.gap) >= best)
+        bool on = goes_on(skin, (int64_t)s->self_partner[p], own[k]);
+        double deepest = on ? DEEPEST : SF_CONTACT_ENTRY;
+        if (!meet_facet(skin, s, p, own[k], &q) || fabs(q.gap) >= best)
+            continue;
+        if (on && q.gap < -deepest * spacing && q.gap > -2 * deepest * spacing)
+            *passed = q;
+        if (q.gap < -deepest * spacing)
             continue;
         relative(skin, &q, s->self_step, ahead);
-        if (fmax(q.gap, back) + sf_dot3(ahead, q.normal) >= 0)
+        if ((acts(skin, p, own[k]) ? fmax(q.gap, back) : q.gap) + sf_dot3(ahead, q.normal) >= 0)
             continue;
         best = fabs(q.gap);
         *out = q;
@@ -408,6 +415,8 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touc
         out->normal[plane->axis] = plane->side;
         best = fabs(height);
     }
+    if (best < INFINITY)
+        passed->node = -1;
     return best < INFINITY;
 }
 
@@ -457,15 +466,15 @@ typedef struct solve {
     double *mobility;  /* kg-1 */
     double (*step)[3]; /* m */
     double shift;      /* s2, dt times the distance of the half steps */
+    touch passed;      /* a pair whose node has passed through the facet; node -1: there is none */
 } solve;
 
 /* The mirror image moves along a symmetry plane as the pad does. */
 static double friction_of(const sf_model *m, const sf_skin *skin, const touch *pair) {
     if (pair->facet < FIRST_PLANE - SF_SKIN_ANVIL)
         return 0;
-    bool on_support = sf_skin_is_rigid(skin, pair->node) ||
-                      (pair->facet >= 0 && sf_skin_is_rigid(skin, skin->facet[3 * pair->facet]));
-    return on_support ? m->support_friction : m->skin_friction;
+    int support = sf_skin_support(m, skin, pair->node, pair->facet);
+    return support >= 0 ? m->support_friction[support] : m->skin_friction;
 }
 
 /* One Gauss-Seidel update of the force on a pair's node; returns the size of its change. */
@@ -554,7 +563,11 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         }
         touch *found = &w->pair[w->count];
         double old = sqrt(sf_dot3(q, q));
-        if (!find_partner(skin, s, p, found)) {
+        touch passed = {.node = -1};
+        bool touches = find_partner(skin, s, p, found, &passed);
+        if (passed.node >= 0)
+            w->passed = passed;
+        if (!touches) {
             s->self_partner[p] = NOTHING;
             memset(q, 0, 3 * sizeof *q);
             continue;
@@ -564,6 +577,8 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
                 q[r] = old * found->normal[r];
         s->self_partner[p] = (double)found->facet;
         memcpy(&s->self_weight[3 * p], found->weight, sizeof found->weight);
+        if (!acts(skin, p, found->facet))
+            continue;
         s->self_penetration = fmax(s->self_penetration, -found->gap);
         found->gap = fmax(found->gap, -RETURN * s->dt);
         w->mobility[w->count] = mobility_of(m, skin, found, s->self_push);
@@ -584,6 +599,23 @@ static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf
                 s->self_push[3 * i + r] += rows->value[e] / m->mass[i] * q[r];
         }
     }
+}
+
+static sf_status fail_passed(const sf_model *m, const sf_skin *skin, const sf_state *s, const touch *pair,
+                             sf_error *err) {
+    int support = sf_skin_support(m, skin, pair->node, pair->facet);
+    const double *x = &s->self_position[3 * pair->node], *rest = &skin->rest[3 * pair->node];
+    char through[40] = "another face of the foam";
+    if (support >= 0)
+        snprintf(through, sizeof through, "support %d", support + 1);
+    return SF_FAIL(
+        err, SF_ERR_NUMERIC,
+        "at t = %.6g s the foam has passed through %s by %.3g mm, at (%.4g, %.4g, %.4g) mm (undeformed "
+        "(%.4g, %.4g, %.4g) mm): %s",
+        s->time, through, -1e3 * pair->gap, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], 1e3 * rest[0], 1e3 * rest[1],
+        1e3 * rest[2],
+        skin->watched && support < 0 ? "pad.self_contact = \"on\" keeps its faces apart"
+                                     : "take a finer mesh there, or a smaller solver.step_safety");
 }
 
 sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
@@ -607,9 +639,12 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
     solve w = {.shift = s->dt * dt_v,
                .pair = sf_alloc(err, most, sizeof *w.pair, "pairs in contact"),
                .mobility = sf_alloc(err, most, sizeof *w.mobility, "pairs in contact"),
-               .step = sf_alloc(err, most, sizeof *w.step, "pairs in contact")};
+               .step = sf_alloc(err, most, sizeof *w.step, "pairs in contact"),
+               .passed.node = -1};
     if (err->status == SF_OK)
         find_pairs(m, skin, s, &w);
+    if (w.passed.node >= 0)
+        fail_passed(m, skin, s, &w.passed, err);
     if (w.count > 0) {
         for (int64_t a = 0; a < w.count; a++)
             scatter(m, skin, &w.pair[a], &s->self_force[3 * w.pair[a].node], true, s->self_push);
@@ -641,5 +676,21 @@ void sf_self_contact_outside(const sf_skin *skin, const sf_state *s, bool symmet
         else if (facet < 0 ? facet != NOTHING && (symmetry || !symmetric)
                            : sf_skin_is_rigid(skin, skin->facet[3 * facet]))
             sf_wrench_add(outside, &s->self_position[3 * p], q);
+    }
+}
+
+void sf_self_contact_supports(const sf_model *m, const sf_skin *skin, sf_state *s) {
+    double force[SF_SUPPORTS][3] = {{0}}, place;
+    for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
+        int64_t p = s->self_close[k], facet = (int64_t)s->self_partner[p];
+        int support = facet != NOTHING ? sf_skin_support(m, skin, p, facet) : -1;
+        for (int r = 0; r < 3 && support >= 0; r++)
+            force[support][r] +=
+                sf_skin_is_rigid(skin, p) ? -s->self_force[3 * p + r] : s->self_force[3 * p + r];
+    }
+    for (int k = 0; k < m->support_count; k++) {
+        for (int axis = 0; axis < 2; axis++)
+            force[k][axis] *= !sf_symmetry_plane(m, axis, &place);
+        s->support_force[k] = sqrt(sf_dot3(force[k], force[k]));
     }
 }

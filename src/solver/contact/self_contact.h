@@ -16,5 +16,8 @@
 sf_status sf_self_contact_solve(const sf_model *model, const sf_operators *operators, sf_state *state,
                                 sf_error *err);
 
-/* Adds the forces of anvil and support on the skin, and those of the symmetry planes with `symmetry`. */
+/* Sets support_force. */
+void sf_self_contact_supports(const sf_model *model, const sf_skin *skin, sf_state *state);
+
+/* Adds the forces of anvil and supports on the skin, and those of the symmetry planes with `symmetry`. */
 void sf_self_contact_outside(const sf_skin *skin, const sf_state *state, bool symmetry, sf_wrench *outside);

@@ -9,7 +9,7 @@
 
 static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     unsigned long nodes = (unsigned long)(m->node_count + m->support_node_count);
-    int32_t *place = sf_alloc(err, nodes, sizeof *place, "skin of the pad");
+    SF_OWNED int32_t *place = sf_alloc(err, nodes, sizeof *place, "skin of the pad");
     skin->facet_count = m->skin_count + m->support_triangle_count;
     skin->node = sf_alloc(err, nodes, sizeof *skin->node, "skin of the pad");
     skin->facet = sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof *skin->facet, "skin of the pad");
@@ -25,7 +25,6 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->support_triangle_count; k++)
         skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
     skin->count = skin->moving + m->support_node_count;
-    free(place);
     return err->status;
 }
 
@@ -66,14 +65,10 @@ static sf_status find_normals(sf_skin *skin, sf_error *err) {
         sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof(double), "skin of the pad");
     for (int64_t f = 0; err->status == SF_OK && f < skin->facet_count; f++) {
         const double *x[3];
-        double side[2][3], *normal = &skin->facet_normal[3 * f];
+        double *normal = &skin->facet_normal[3 * f];
         for (int k = 0; k < 3; k++)
             x[k] = &skin->rest[3 * (int64_t)skin->facet[3 * f + k]];
-        for (int r = 0; r < 3; r++) {
-            side[0][r] = x[1][r] - x[0][r];
-            side[1][r] = x[2][r] - x[0][r];
-        }
-        sf_cross3(side[0], side[1], normal);
+        sf_triangle_normal(x[0], x[1], x[2], normal);
         for (int k = 0; k < 3; k++)
             for (int r = 0; r < 3; r++)
                 skin->normal[3 * (int64_t)skin->facet[3 * f + k] + r] += normal[r];
@@ -86,7 +81,7 @@ static sf_status find_normals(sf_skin *skin, sf_error *err) {
 
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
     static const double ON_PLANE = 1e-6; /* of the thickness */
-    uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
+    SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
     skin->held = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
     skin->rests = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
     for (int64_t k = 0; err->status == SF_OK && k < m->fixed_count; k++)
@@ -104,19 +99,14 @@ static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
                 fabs(skin->rest[3 * p + axis] - place) < ON_PLANE * m->thickness)
                 skin->held[p] |= (uint8_t)(1 << axis);
         }
-    free(mark);
     return err->status;
 }
 
 static void find_planes(const sf_model *m, sf_skin *skin) {
-    double top = -INFINITY, low[2] = {INFINITY, INFINITY}, place;
-    for (int64_t i = 0; i < m->node_count; i++) {
-        top = fmax(top, m->position[3 * i + 2]);
-        for (int axis = 0; axis < 2; axis++)
-            low[axis] = fmin(low[axis], m->position[3 * i + axis]);
-    }
+    double low[3], high[3], place;
+    sf_box3(m->node_count, m->position, low, high);
     if (m->anvil.depth > 0)
-        skin->plane[SF_SKIN_ANVIL] = (sf_skin_plane){2, top - m->anvil.depth, 1};
+        skin->plane[SF_SKIN_ANVIL] = (sf_skin_plane){2, high[2] - m->anvil.depth, 1};
     for (int axis = 0; axis < 2; axis++)
         if (sf_symmetry_plane(m, axis, &place))
             skin->plane[SF_SKIN_SYMMETRY_X + axis] =
@@ -175,7 +165,7 @@ static sf_status build_rows(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
-    *skin = (sf_skin){.spacing = INFINITY, .alone = m->skin_alone};
+    *skin = (sf_skin){.spacing = INFINITY, .alone = m->skin_alone, .watched = m->skin_watched};
     if (m->skin_count == 0)
         return SF_OK;
     if (number_nodes(m, skin, err) != SF_OK || place_nodes(m, skin, err) != SF_OK ||

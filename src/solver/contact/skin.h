@@ -30,7 +30,8 @@ typedef struct sf_skin {
     uint8_t *rests;    /* [count] 1: the anvil presses the node in the missile's solve (contact.h) */
     double *normal;    /* [count][3] outward at rest, unit */
     double *facet_normal; /* [facet_count][3] likewise */
-    bool alone;           /* the pad touches the support only */
+    bool alone;           /* the pad touches the supports only */
+    bool watched;         /* its pairs with itself have no forces */
     sf_skin_plane plane[SF_SKIN_PLANES];
     double spread;  /* -, largest sum |Phi| of a node */
     double spacing; /* m, smallest of the skin */
@@ -42,4 +43,10 @@ void sf_skin_free(sf_skin *skin);
 
 static inline bool sf_skin_is_rigid(const sf_skin *skin, int64_t node) {
     return node >= skin->moving;
+}
+
+/* The support in a pair of node and facet (below 0: a plane); -1: none. */
+static inline int sf_skin_support(const sf_model *model, const sf_skin *skin, int64_t node, int64_t facet) {
+    int64_t own = sf_skin_is_rigid(skin, node) ? skin->ring[skin->ring_ptr[node]] : facet;
+    return own >= model->skin_count ? model->support_part[own - model->skin_count] : -1;
 }

@@ -39,6 +39,8 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         const void *data;
     } item[] = {
         /* clang-format off */
+        {{"/model/support_position", "m", "surfaces of the rigid supports"}, SF_H5_F64, 2, {m->support_node_count, 3}, m->support_position},
+        {{"/model/support_triangle", "1", "their triangles"}, SF_H5_I32, 2, {m->support_triangle_count, 3}, m->support_triangle},
         {{"/model/position", "m", "reference position of the nodes"}, SF_H5_F64, 2, {m->node_count, 3}, m->position},
         {{"/model/volume", "m3", "volume of the smoothing domains"}, SF_H5_F64, 1, {m->node_count, 0}, m->volume},
         {{"/model/cell_type", "1", "XDMF topology code"}, SF_H5_U8, 1, {m->cell_count, 0}, m->cell_type},
@@ -75,7 +77,8 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/missile_direction", "1", "direction of motion"}, SF_H5_F64, 1, {3, 0}, sf_missile_direction(m)},
         /* clang-format on */
     };
-    for (size_t k = 0; k < sizeof item / sizeof item[0]; k++)
+    size_t count = sizeof item / sizeof item[0];
+    for (size_t k = m->support_triangle_count > 0 ? 0 : 2; k < count; k++)
         if (sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err) !=
             SF_OK)
             return err->status;
