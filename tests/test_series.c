@@ -28,6 +28,9 @@ static program_result make_model(const program_place *p, const char *name, const
         fixture_source(EXAMPLE), name, coarse, fixture_source("tests/materials/eva35_first.cfg"), more);
 }
 
+static const char *const WHOLE =
+    "--set geometry.parameters.quarter=0 --set geometry.missile_parameters.quarter=0";
+
 static int set_up(void **state) {
     const program_place *p = program_group_set_up(state);
     assert_int_equal(make_model(p, "series.h5", "--set series.drops=3 --set series.interval='\"90 s\"'").code,
@@ -143,11 +146,110 @@ static void another_pad_is_refused(void **state) {
     expect(program_run(p, "post", "series s.h5 s-3.h5 -o x"), "not drop 2");
 }
 
+/* A number of a CSV row by the name of its column. */
+static double column_of(const char *csv, int row, const char *name) {
+    int column = 0;
+    const char *at = csv;
+    for (; strncmp(at, name, strlen(name)) != 0 || !strchr(",\n", at[strlen(name)]); at = strchr(at, ',') + 1)
+        column++;
+    return number(csv, row, column);
+}
+
+/* Each drop of the list is that of a model made for it alone, and begins where the one before has left the
+ * pad. */
+static void drops_of_a_list_are_their_own(void **state) {
+    const program_place *p = *state;
+    char more[512];
+    snprintf(more, sizeof more,
+             "%s --set series.drops='( {}, { velocity = \"3.5 m/s\"; position = [\"40 mm\", \"0 mm\"]; "
+             "interval = \"5 s\"; }, { mass = \"3 kg\"; } )' --set series.interval='\"90 s\"'",
+             WHOLE);
+    assert_int_equal(make_model(p, "list.h5", more).code, 0);
+    snprintf(more, sizeof more,
+             "%s --set missile.velocity='\"3.5 m/s\"' --set missile.position='[\"40 mm\", \"0 mm\"]'", WHOLE);
+    assert_int_equal(make_model(p, "aside.h5", more).code, 0);
+    program_succeed(p, "solve", "list.h5 -o l.h5 --threads 2");
+    program_succeed(p, "solve", "aside.h5 -o a-2.h5 --start-from l.h5 --pause '5 s' --threads 1");
+    assert_same_drop(p, "l-2.h5", "a-2.h5");
+    program_shell(p, "mv l-3.h5 kept.h5; rm l-3.h5.restart");
+    program_succeed(p, "solve", "--restart l.h5 --threads 1");
+    run_assert_same(p, "kept.h5", "l-3.h5");
+    program_succeed(p, "post", "series l.h5 -o listed");
+    program_bytes csv = program_read_file(program_path(p, "listed/series.csv"));
+    assert_true(column_of(csv.data, 2, "v0_m_s") == 3.5 && column_of(csv.data, 3, "v0_m_s") == 4.5);
+    assert_true(fabs(column_of(csv.data, 2, "x_mm") - column_of(csv.data, 1, "x_mm") - 40) < 0.5);
+    assert_true(column_of(csv.data, 2, "pause_s") == 5 && column_of(csv.data, 3, "pause_s") == 90);
+    free(csv.data);
+    program_assert_page(p, "listed/report.html", "The pad before the drop");
+    program_assert_page(p, "listed/report.html", "differ in speed or place");
+    program_shell(p, "cp aside.h5 list-3.h5; rm l-3.h5 l-3.h5.restart");
+    expect(program_run(p, "solve", "--restart l.h5"), "is not the model of drop 3");
+    program_shell(p, "rm list-3.h5");
+    expect(program_run(p, "solve", "--restart l.h5"), "list-3.h5");
+}
+
+/* The softening at the start is (1 - q) of what unloading has kept back at the largest energy; recovery takes
+ * of it, and where the missile was it is largest. */
+static void first_frame_shows_what_is_left(void **state) {
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    double *now = NULL, *rested = NULL, largest = 0;
+    int64_t count = -1;
+    sf_h5 *second = program_open_h5(p, "s-2.h5"), *first = program_open_h5(p, "s.h5");
+    program_succeed(p, "solve",
+                    "single.h5 -o late.h5 --start-from s.h5 --pause '8 hour' --end-time '0.2 ms'");
+    sf_h5 *late = program_open_h5(p, "late.h5");
+    assert_false(sf_h5_exists(first, "/frames/000000/softening"));
+    assert_int_equal(
+        sf_h5_read(second, "/frames/000000/softening", SF_H5_F64, 1, &count, (void **)&now, &err), SF_OK);
+    assert_int_equal(
+        sf_h5_read(late, "/frames/000000/softening", SF_H5_F64, 1, &count, (void **)&rested, &err), SF_OK);
+    /* q is reload plus what recovery gives back of the rest: log10(1 + t / 1 s) decades, 0.1 each */
+    double fresh = 1 - 0.1 * log10(1 + 90), later = 1 - 0.1 * log10(1 + 8 * 3600.0);
+    for (int64_t k = 0; k < count; k++) {
+        largest = fmax(largest, now[k]);
+        assert_true(now[k] >= 0 && fabs(rested[k] * fresh - now[k] * later) <= 1e-9 * now[k]);
+    }
+    assert_true(largest > 1e4);
+    free(now);
+    free(rested);
+    sf_h5_close(&first, &err);
+    sf_h5_close(&second, &err);
+    sf_h5_close(&late, &err);
+}
+
+static void expect_list(const program_place *p, const char *list, const char *words) {
+    char more[512];
+    snprintf(more, sizeof more, "--set series.drops='%s'", list);
+    expect(make_model(p, "x.h5", more), words);
+    assert_int_not_equal(access(program_path(p, "x.h5"), F_OK), 0);
+    assert_int_not_equal(access(program_path(p, "x-2.h5"), F_OK), 0);
+}
+
+static void wrong_lists_are_refused(void **state) {
+    const program_place *p = *state;
+    expect_list(p, "( {}, {} )", "an interval of each drop");
+    expect_list(p, "( { interval = \"9 s\"; }, { interval = \"9 s\"; } )", "nothing was before the first");
+    expect_list(p, "( {}, 3 )", "drop 2 is a plain number");
+    expect_list(p, "( )", "at least 1");
+    expect_list(p, "( {}, { interval = \"0 s\"; } )", "series.interval");
+    expect_list(p, "( {}, { interval = 9; } )", "series.interval");
+    expect_list(p, "( {}, { interval = \"9 s\"; speed = \"3 m/s\"; } )", "unknown key \"speed\"");
+    expect_list(p, "( {}, { interval = \"9 s\"; velocity = \"3 kg\"; } )", "missile.velocity");
+    expect_list(p, "( {}, { interval = \"9 s\"; velocity = \"-3 m/s\"; } )", "missile.velocity");
+    expect_list(p, "( {}, { interval = \"9 s\"; position = [\"30 mm\", \"0 mm\"]; } )", "symmetry plane");
+    expect_list(p, "( {}, { interval = \"9 s\"; position = [\"9 m\", \"0 mm\"]; } )", "missile.position");
+    assert_int_equal(make_model(p, "one.h5", "--set series.drops='( { velocity = \"4.5 m/s\"; } )'").code, 0);
+    program_succeed(p, "solve", "one.h5 -o one-of-list.h5 --threads 1");
+    assert_same_drop(p, "s.h5", "one-of-list.h5");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(later_drops_are_harder),        cmocka_unit_test(bits_are_those_of_single_runs),
-        cmocka_unit_test(a_series_goes_on_where_it_was), cmocka_unit_test(wrong_series_are_refused),
-        cmocka_unit_test(another_pad_is_refused),
+        cmocka_unit_test(later_drops_are_harder),         cmocka_unit_test(bits_are_those_of_single_runs),
+        cmocka_unit_test(a_series_goes_on_where_it_was),  cmocka_unit_test(wrong_series_are_refused),
+        cmocka_unit_test(another_pad_is_refused),         cmocka_unit_test(drops_of_a_list_are_their_own),
+        cmocka_unit_test(first_frame_shows_what_is_left), cmocka_unit_test(wrong_lists_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

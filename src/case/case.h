@@ -35,6 +35,12 @@ typedef struct sf_geo_source {
 enum { SF_BASE_GLUED, SF_BASE_SMOOTH, SF_BASE_RESTING }; /* pad.base, in the order of its words */
 enum { SF_SELF_CONTACT_AUTO, SF_SELF_CONTACT_ON, SF_SELF_CONTACT_OFF }; /* pad.self_contact, likewise */
 
+/* A drop of a series. */
+typedef struct sf_case_drop {
+    double interval; /* s, from the drop before */
+    bool own;        /* its missile is not that of the first drop, or falls another way */
+} sf_case_drop;
+
 typedef struct sf_case {
     char *path;       /* as given */
     char *text;       /* the case file with its includes in place, --set lines appended as comments; owned */
@@ -96,6 +102,9 @@ typedef struct sf_case {
     double *motion_time;          /* [motion_count] s; owned until moved into a model, like the next */
     double *motion_displacement;  /* [motion_count] m, along the direction */
     sf_run_options run;
+    double drops;                      /* -, of a series on one pad, a whole number; 1: a single drop */
+    double interval;                   /* s, from one of them to the next; 0: not given */
+    sf_case_drop drop[SF_SERIES_MOST]; /* of a series; interval of each from the second on */
     int frame_time_count;                 /* further frames, beside run.frame_interval */
     double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */
     char about[3][SF_CASE_NAME_SIZE]; /* sample, laboratory, conditions: words for the report; "": not given */

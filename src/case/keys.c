@@ -152,10 +152,11 @@ static const sf_key keys[] = {
     {"solver", "stop_after_rebound", SF_KEY_BOOL, "true", AT(run.stop_after_rebound),
      "end when the missile has left the pad upwards"},
     /* series */
-    {"series", "drops", SF_KEY_NUMBER, "1.0", AT(run.drops),
-     "number of drops on the same pad, one after the other; each has a results file of its own", .low = 1.0, .high = 20.0},
-    {"series", "interval", SF_KEY_QUANTITY, "", AT(run.interval),
-     "from one drop to the next, in which the pad recovers (`material.memory`); required with `drops` above 1",
+    {"series", "drops", SF_KEY_DROPS, "1.0", AT(drops),
+     "number of drops on the same pad, one after the other, each with a results file of its own; or a list of them, each a group of the `interval` before it and keys of the group `missile`, which hold for it instead of those there: ( { }, { interval = \"90 s\"; velocity = \"5 m/s\"; } )",
+     .low = 1.0, .high = SF_SERIES_MOST},
+    {"series", "interval", SF_KEY_QUANTITY, "", AT(interval),
+     "from one drop to the next, in which the pad recovers (`material.memory`); required for drops without an `interval` of their own",
      .quantity = SF_TIME, .low = 0.1, .high = 1e7},
     /* output */
     {"output", "acceleration", SF_KEY_CHOICE, "\"accelerometer\"", AT(kinematic),

@@ -23,6 +23,7 @@ typedef struct sf_case_reader {
     char material_group[SF_KEY_GROUP_SIZE]; /* "material", or "materials.NAME" */
     bool given[SF_KEY_MAX];                 /* per row of `keys` */
     bool material_only;                     /* read the keys of the material, and no others */
+    int drop;                               /* of the series, from 1; 0: a material alone */
     const sf_sink *sink;                    /* borrowed */
     FILE *listing;                          /* the parameters text under construction */
     size_t listing_size;
@@ -89,3 +90,5 @@ sf_status sf_case_read_response_error(sf_case_reader *reader, sf_error *err);
 
 /* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
+/* Puts what the list `series.drops` says of a drop, from 1, into the group `missile`. */
+sf_status sf_case_take_drop(sf_case_reader *reader, int drop, sf_error *err);

@@ -366,24 +366,27 @@ static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
                   100 * c->run.energy_limit);
 }
 
-/* A series of drops; a single one leaves no trace. */
+/* The drops of a series, with the interval before each. */
 static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
-    sf_run_options *run = &reader->out->run;
-    bool series = run->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
+    sf_case *c = reader->out;
+    bool series = c->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
     const char *wrong =
-        run->drops != floor(run->drops) ? "the number of drops is a whole number"
-        : series && !has_interval       ? "a series needs series.interval, such as \"90 s\""
-        : !series && has_interval       ? "an interval belongs to a series: give series.drops, from 2 on"
-        : series && reader->out->motion_count > 0
+        c->drops != floor(c->drops) ? "the number of drops is a whole number"
+        : !series && has_interval   ? "an interval belongs to a series: give series.drops, from 2 on"
+        : c->drop[0].interval > 0   ? "nothing was before the first drop: it has no interval"
+        : series && c->motion_count > 0
             ? "a prescribed motion is no series of drops: put its cycles into missile.motion"
-        : series && !run->stop_after_rebound
+        : series && !c->run.stop_after_rebound
             ? "a series needs solver.stop_after_rebound: each drop ends when the missile has left"
             : NULL;
-    if (wrong)
-        return REFUSE_AT("series.drops", "series.drops = %g: %s", run->drops, wrong);
-    if (!series)
-        run->drops = 0;
-    return SF_OK;
+    for (int k = 1; k < c->drops && !wrong; k++) {
+        c->drop[k].interval = c->drop[k].interval > 0 ? c->drop[k].interval : c->interval;
+        if (!(c->drop[k].interval > 0))
+            wrong =
+                "a series needs series.interval, such as \"90 s\", or an interval of each drop from the second "
+                "on";
+    }
+    return wrong ? REFUSE_AT("series.drops", "series.drops = %g: %s", c->drops, wrong) : SF_OK;
 }
 
 /* A temperature that changes nothing would look as if it did. */

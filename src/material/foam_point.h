@@ -81,6 +81,9 @@ void sf_foam_point_update(const sf_foam_options *options, const sf_foam_kind *ki
 void sf_foam_point_rest(const sf_foam_options *options, double pause,
                         double history[SF_LAW_HISTORY][SF_LANES]);
 
+/* sf_law.softening. */
+double sf_foam_point_softening(const sf_foam_options *options, double (*history)[SF_LANES], int lane);
+
 /* For an overstress: advances the filtered rate, of the most compressed direction (theory eq. 22). */
 void sf_foam_point_filter(const sf_foam_options *options, double dt, sf_law_batch *batch,
                           const sf_foam_rate *rate);

@@ -198,6 +198,10 @@ static void rest(const void *numbers, double pause, double (*kept)[SF_LANES]) {
     sf_foam_point_rest(&((const sf_hyperfoam *)numbers)->options, pause, kept);
 }
 
+static double softening(const void *numbers, double (*kept)[SF_LANES], int lane) {
+    return sf_foam_point_softening(&((const sf_hyperfoam *)numbers)->options, kept, lane);
+}
+
 static double energy(const void *numbers, double strain) {
     return confined(numbers, strain).energy;
 }
@@ -237,6 +241,7 @@ const sf_law sf_hyperfoam_law = {
     .release = free,
     .update = update,
     .rest = rest,
+    .softening = softening,
     .energy = energy,
     .uniaxial = uniaxial,
 };

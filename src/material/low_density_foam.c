@@ -418,6 +418,10 @@ static void rest(const void *numbers, double pause, double (*kept)[SF_LANES]) {
     sf_foam_point_rest(&((const sf_foam *)numbers)->options, pause, kept);
 }
 
+static double softening(const void *numbers, double (*kept)[SF_LANES], int lane) {
+    return sf_foam_point_softening(&((const sf_foam *)numbers)->options, kept, lane);
+}
+
 static double energy(const void *numbers, double strain) {
     const sf_foam *foam = numbers;
     double stress, slope, w;
@@ -453,6 +457,7 @@ const sf_law sf_low_density_foam = {
     .release = release,
     .update = update,
     .rest = rest,
+    .softening = softening,
     .energy = energy,
     .uniaxial = uniaxial,
 };

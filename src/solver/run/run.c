@@ -293,8 +293,8 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         write_count(file, "/summary/interactions", "(domain, node) pairs", m->domain_nnz, err) != SF_OK ||
         write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) !=
             SF_OK ||
-        (m->run.drops > 1 &&
-         write_count(file, "/summary/drops", "drops of the series", (int64_t)m->run.drops, err) != SF_OK) ||
+        (m->series_count > 1 &&
+         write_count(file, "/summary/drops", "drops of the series", m->series_count, err) != SF_OK) ||
         (s->drop > 1 &&
          (write_count(file, "/summary/drop", "number of the drop on this pad, from 1", s->drop, err) !=
               SF_OK ||
