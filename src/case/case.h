@@ -68,8 +68,7 @@ typedef struct sf_case {
     bool symmetry_given;
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
-    double temperature;                    /* K, of the pad; 0: not given */
-    bool temperature_acts;                 /* a material has curves at several temperatures */
+    bool temperature_acts;                 /* a material depends on the pad's temperature */
     int self_contact;                      /* SF_SELF_CONTACT_* */
     bool stabilised;                       /* kernel.stabilisation is given */
     double self_friction;                  /* -, Coulomb coefficient of the pad against itself */

@@ -272,7 +272,7 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
  */
 static sf_status take_temperature(sf_case_reader *reader, const config_setting_t *setting, sf_error *err) {
     sf_law_curves *card = sf_material_curves(reader->material);
-    const double *t = card->curve_rate, at = reader->out->temperature;
+    const double *t = card->curve_rate, at = reader->out->run.temperature;
     int64_t last = card->curve_count - 1, k = 0;
     sf_case_curve curve = {0};
     if (last < 1 || at == 0)
@@ -295,7 +295,7 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
             reader->material_group, at - 273.15, t[k] - 273.15, t[k + 1] - 273.15);
         sf_law_curves_free(card);
         add_curve(card, 0, &curve, err);
-        reader->out->temperature_acts = true;
+        reader->out->temperature_acts = reader->thermal = true;
     }
     sf_case_curve_free(&curve);
     return err->status;

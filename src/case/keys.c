@@ -71,8 +71,8 @@ static const sf_key keys[] = {
     {"pad", "thickness_tolerance", SF_KEY_QUANTITY, "\"1 mm\"", AT(run.thickness_tolerance),
      "standard deviation of the thickness from pad to pad: it makes `a_max_scatter` and `hic_scatter` of the report, and changes no drop",
      .quantity = SF_LENGTH, .high = 1.0},
-    {"pad", "temperature", SF_KEY_QUANTITY, "", AT(temperature),
-     "of the pad, at which the law takes its curves among those of several temperatures (`material.curves`)",
+    {"pad", "temperature", SF_KEY_QUANTITY, "", AT(run.temperature),
+     "of the pad, at which the law takes its curves among those of several temperatures (`material.curves`), or its rates (`material.shift`)",
      .quantity = SF_TEMPERATURE, .low = 100.0, .high = 600.0},
     /* material: the law; its parameters follow (solver/material) */
     {"material", "law", SF_KEY_LAW, "", AT(material.law), "material law; its parameters follow"},

@@ -22,6 +22,7 @@ typedef struct sf_case_reader {
     sf_material *material;                  /* under construction */
     char material_group[SF_KEY_GROUP_SIZE]; /* "material", or "materials.NAME" */
     bool given[SF_KEY_MAX];                 /* per row of `keys` */
+    bool thermal;                           /* the material has curves at several temperatures */
     bool material_only;                     /* read the keys of the material, and no others */
     int drop;                               /* of the series, from 1; 0: a material alone */
     const sf_sink *sink;                    /* borrowed */

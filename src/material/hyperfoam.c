@@ -53,6 +53,7 @@ static const sf_parameter parameters[] = {
     SF_FOAM_MEMORIES,
     SF_FOAM_RATE_FACTOR("strain rate of the terms"),
     SF_FOAM_RATE_FILTER("in `rate_factor`", sf_foam_has_rate_factor),
+    SF_FOAM_SHIFTS,
     SF_FOAM_INFORMED,
     TERM(0, "material.term_1", NULL, NULL),
     TERM(1, "material.term_2", "\"0 kPa\"", "2.0"),
@@ -122,7 +123,7 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
             return SF_FAIL(err, SF_ERR_INPUT, "%s.mu is missing", groups[k]);
     }
     sf_error inner = SF_ERROR_INIT;
-    SF_TRY(sf_foam_check_shared_keys(&foam->shared, given, place, err));
+    SF_TRY(sf_foam_check_shared_keys(&foam->shared, false, given, place, err));
     if (check_terms(foam, place, &inner) != SF_OK)
         return SF_FAIL(err, SF_ERR_INPUT, "%s", inner.text);
     return SF_OK;
@@ -240,6 +241,7 @@ const sf_law sf_hyperfoam_law = {
     .build = build,
     .release = free,
     .update = update,
+    .shift = sf_foam_shift,
     .rest = rest,
     .softening = softening,
     .energy = energy,

@@ -265,6 +265,7 @@ static const sf_parameter parameters[] = {
      .words = "none", .word_value = NO_CUTOFF, SF_FOAM_IN("kPa", 1e3), .acts = has_cutoff},
     SF_FOAM_RATE_FACTOR("strain rate of `curve`"),
     SF_FOAM_RATE_FILTER("that chooses among `curves` or acts in `rate_factor`", has_rates),
+    SF_FOAM_SHIFTS,
     SF_FOAM_INFORMED,
     {"material.densification", "rule", SF_PARAMETER_CHOICE, "\"H1\"", AT(densification_rule),
      "law beyond the table: H1: A + B/(1 - strain)^n; H2: A + B/(limit - strain)^m; value and slope continuous",
@@ -338,7 +339,7 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
         return refuse(
             err, place, "material",
             "material.curve is missing: the compression curve's CSV file (or curves: several of them)");
-    SF_TRY(sf_foam_check_shared_keys(&foam->shared, given, place, err));
+    SF_TRY(sf_foam_check_shared_keys(&foam->shared, foam->curve_count > 1, given, place, err));
     sf_error inner = SF_ERROR_INIT;
     *place = "material.rate_factor";
     if (check(foam, &inner) != SF_OK)
@@ -456,6 +457,7 @@ const sf_law sf_low_density_foam = {
     .build = build,
     .release = release,
     .update = update,
+    .shift = sf_foam_shift,
     .rest = rest,
     .softening = softening,
     .energy = energy,

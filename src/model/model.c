@@ -176,6 +176,8 @@ static const sf_model_field fields[] = {
                  "standard deviation of the missile's speed over it"),
     LATER_SCALAR(run.thickness_tolerance, F64, "/run/thickness_tolerance", "m",
                  "standard deviation of the pad's thickness"),
+    LATER_SCALAR(run.temperature, F64, "/run/temperature", "K",
+                 "of the pad, to which the materials are taken; 0: not given"),
     LATER_SCALAR(series_count, I64, "/series/count", "1", "drops of a series on one pad; 0: a single drop"),
     OPTIONAL_ARRAY(series_interval, F64, series_count, "/series/interval", "s",
                    "from the drop before to each; 0 of the first"),

@@ -97,6 +97,7 @@ typedef struct sf_run_options {
     int64_t kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
     double speed_scatter;       /* -, standard deviation of the missile's speed over it, for figures only */
     double thickness_tolerance; /* m, standard deviation of the pad's thickness, for figures only */
+    double temperature;         /* K, of the pad, to which its materials are taken; 0: not given */
 } sf_run_options;
 
 typedef struct sf_model {

@@ -161,6 +161,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"step limit (s)", m->run.step_limit, 1e-12, 1e3},
         {"stabilisation coefficient", m->run.stabilisation, 0, 10},
         {"energy limit", m->run.energy_limit, 1e-9, 1e9},
+        {"temperature (K)", m->run.temperature, 0, 600},
         {"drops of a series", (double)m->series_count, 0, SF_SERIES_MOST},
         {"frame interval (s)", m->run.frame_interval, 1e-9, 1e3},
         {"number of frames", m->run.end_time / m->run.frame_interval, 0, SF_MOST_FRAMES},
