@@ -5,38 +5,12 @@
 
 #include "material/unloading.h"
 
-bool sf_foam_has_length(const void *card) {
-    return ((const sf_foam_shared *)card)->damp_length > 0;
-}
-bool sf_foam_has_maxwell(const void *card) {
-    return ((const sf_foam_shared *)card)->maxwell_modulus > 0;
-}
-bool sf_foam_has_kelvin(const void *card) {
-    return ((const sf_foam_shared *)card)->kelvin_viscosity > 0;
-}
-bool sf_foam_has_rate_factor(const void *card) {
-    return ((const sf_foam_shared *)card)->rate_factor > 0;
-}
-bool sf_foam_has_informed(const void *card) {
-    return ((const sf_foam_shared *)card)->informed_strain > 0;
-}
-
-bool sf_foam_has_wlf(const void *card) {
-    return ((const sf_foam_shared *)card)->shift_c1 > 0 || ((const sf_foam_shared *)card)->shift_c2 > 0;
-}
-bool sf_foam_has_arrhenius(const void *card) {
-    return ((const sf_foam_shared *)card)->shift_energy > 0;
-}
-bool sf_foam_has_shift(const void *card) {
-    return ((const sf_foam_shared *)card)->shift_reference > 0;
-}
-
-bool sf_foam_has_memory(const void *card) {
-    return sf_memory_acts(&((const sf_foam_shared *)card)->memory);
-}
-bool sf_foam_has_recovery(const void *card) {
-    return ((const sf_foam_shared *)card)->memory.recovery > 0;
-}
+#define HAS(name, condition)                                                                                 \
+    bool sf_foam_has_##name(const void *card) {                                                              \
+        const sf_foam_shared *foam = card;                                                                   \
+        return foam->condition;                                                                              \
+    }
+SF_FOAM_ACTS(HAS)
 
 sf_status sf_foam_check_shared(const void *card, sf_error *err) {
     const sf_foam_shared *foam = card;

@@ -63,16 +63,21 @@ static inline sf_foam_card *sf_foam_card_of(const sf_material *material) {
 /* Parameters that the foam laws share, as rows of their lists: members of sf_foam_shared, with which each
  * card begins. And the rules that join them. */
 
-bool sf_foam_has_length(const void *card);
-bool sf_foam_has_maxwell(const void *card);
-bool sf_foam_has_kelvin(const void *card);
-bool sf_foam_has_rate_factor(const void *card);
-bool sf_foam_has_informed(const void *card);
-bool sf_foam_has_wlf(const void *card);
-bool sf_foam_has_arrhenius(const void *card);
-bool sf_foam_has_shift(const void *card);
-bool sf_foam_has_memory(const void *card);
-bool sf_foam_has_recovery(const void *card);
+/* X(name, condition): sf_foam_has_NAME(card) says whether a parameter acts. */
+#define SF_FOAM_ACTS(X)                                                                                      \
+    X(length, damp_length > 0)                                                                               \
+    X(maxwell, maxwell_modulus > 0)                                                                          \
+    X(kelvin, kelvin_viscosity > 0)                                                                          \
+    X(rate_factor, rate_factor > 0)                                                                          \
+    X(informed, informed_strain > 0)                                                                         \
+    X(wlf, shift_c1 + foam->shift_c2 > 0)                                                                    \
+    X(arrhenius, shift_energy > 0)                                                                           \
+    X(shift, shift_reference > 0)                                                                            \
+    X(memory, memory.reload + foam->memory.recovery > 0)                                                     \
+    X(recovery, memory.recovery > 0)
+#define SF_FOAM_HAS(name, condition) bool sf_foam_has_##name(const void *card);
+SF_FOAM_ACTS(SF_FOAM_HAS)
+#undef SF_FOAM_HAS
 
 /* Checks the bounds that SHAPE and ALPHA have together; SF_ERR_MODEL. */
 sf_status sf_foam_check_shared(const void *card, sf_error *err);

@@ -337,7 +337,8 @@ static sf_memory_point memory_of(double (*history)[SF_LANES], int lane) {
     return point;
 }
 
-void sf_foam_point_rest(const sf_foam_options *foam, double pause, double history[SF_LAW_HISTORY][SF_LANES]) {
+void sf_foam_point_rest(const void *numbers, double pause, double (*history)[SF_LANES]) {
+    const sf_foam_options *foam = numbers;
     double left = exp(-foam->maxwell_rate * pause);
     for (int l = 0; l < SF_LANES; l++) {
         sf_memory_point point = memory_of(history, l);
@@ -351,7 +352,8 @@ void sf_foam_point_rest(const sf_foam_options *foam, double pause, double histor
     }
 }
 
-double sf_foam_point_softening(const sf_foam_options *foam, double (*history)[SF_LANES], int lane) {
+double sf_foam_point_softening(const void *numbers, double (*history)[SF_LANES], int lane) {
+    const sf_foam_options *foam = numbers;
     sf_memory_point point = memory_of(history, lane);
     double q = sf_memory_acts(&foam->memory) ? sf_memory_factor(&foam->memory, &point) : 0;
     return (1 - q) * (1 - foam->hu) * foam->unloading.whole * history[SF_FOAM_PEAK][lane];

@@ -170,13 +170,7 @@ static void rest_bounds(const void *card, double length, double *tangent, double
 
 /* ---- points ---- */
 
-static const sf_history_variable history[] = {
-    {"peak", "J m-3", SF_FOAM_PEAK, 1, NULL},
-    {"rate", "s-1", SF_FOAM_RATE, 1, sf_foam_has_rate_factor},
-    {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
-    {"overstress", "Pa", SF_FOAM_OVERSTRESS, 6, sf_foam_has_rate_factor},
-    {"memory", "SI", SF_FOAM_MEMORY, 4, sf_foam_has_memory},
-};
+static const sf_history_variable history[] = SF_FOAM_HISTORY(sf_foam_has_rate_factor);
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {
     sf_hyperfoam *foam = sf_alloc(err, 1, sizeof *foam, "hyperfoam");
@@ -186,21 +180,9 @@ static sf_status build(const void *card, void **numbers, sf_error *err) {
     return err->status;
 }
 
-static void update(const void *numbers, double dt, sf_law_batch *batch) {
-    sf_hyperfoam_update(numbers, dt, batch);
-}
-
 static sf_hyperfoam_point confined(const sf_hyperfoam *foam, double strain) {
     const double stretch[3] = {1 - fmin(strain, 1 - 1e-6), 1, 1};
     return sf_hyperfoam_evaluate(foam, stretch);
-}
-
-static void rest(const void *numbers, double pause, double (*kept)[SF_LANES]) {
-    sf_foam_point_rest(&((const sf_hyperfoam *)numbers)->options, pause, kept);
-}
-
-static double softening(const void *numbers, double (*kept)[SF_LANES], int lane) {
-    return sf_foam_point_softening(&((const sf_hyperfoam *)numbers)->options, kept, lane);
 }
 
 static double energy(const void *numbers, double strain) {
@@ -240,10 +222,10 @@ const sf_law sf_hyperfoam_law = {
     .history_count = sizeof history / sizeof history[0],
     .build = build,
     .release = free,
-    .update = update,
+    .update = sf_hyperfoam_update,
     .shift = sf_foam_shift,
-    .rest = rest,
-    .softening = softening,
+    .rest = sf_foam_point_rest,
+    .softening = sf_foam_point_softening,
     .energy = energy,
     .uniaxial = uniaxial,
 };
@@ -314,7 +296,8 @@ static SF_KERNEL void loading(const void *numbers, double stretch[3][SF_LANES], 
     }
 }
 
-void sf_hyperfoam_update(const sf_hyperfoam *foam, double dt, sf_law_batch *b) {
+void sf_hyperfoam_update(const void *numbers, double dt, sf_law_batch *b) {
+    const sf_hyperfoam *foam = numbers;
     const sf_foam_kind kind = {.numbers = foam, .rest = foam->rest, .loading = loading};
     sf_foam_point_update(&foam->options, &kind, dt, b);
 }

@@ -208,15 +208,6 @@ static sf_status write_series(const overlay *o, sf_error *err) {
     return sf_staging_close(csv, "series.csv", err);
 }
 
-/* True if the drops are not all of one speed and place. */
-static bool drops_differ(const overlay *o) {
-    bool differ = false;
-    for (int k = 1; k < o->count; k++)
-        differ = differ || o->run[k].figures.v0 != o->run[0].figures.v0 ||
-                 memcmp(o->run[k].place, o->run[0].place, sizeof o->run[0].place) != 0;
-    return differ;
-}
-
 /* The pad before each later drop. */
 static void put_pads(FILE *page, const overlay *o) {
     for (int k = 1; k < o->count; k++) {
@@ -238,9 +229,12 @@ static void put_series(FILE *page, const overlay *o) {
     sf_html_cell(&t, "over the first");
     sf_html_cell(&t, "HIC");
     sf_html_cell(&t, "over the first");
+    bool differ = false; /* in speed or place */
     for (int k = 0; k <= o->count; k++) {
         sf_html_row(&t);
         const overlay_run *r = &o->run[k < o->count ? k : 0];
+        differ = differ || r->figures.v0 != o->run->figures.v0 || r->place[0] != o->run->place[0] ||
+                 r->place[1] != o->run->place[1];
         if (k == o->count) {
             sf_html_cell(&t, "mean of %d to %d", o->mean[0], o->mean[1]);
             sf_html_cell(&t, "–");
@@ -258,7 +252,7 @@ static void put_series(FILE *page, const overlay *o) {
     sf_html_note(
         page,
         "series.csv has them too. What a material remembers is as good as its data: see material.memory.%s",
-        drops_differ(o) ? " The drops differ in speed or place: what grows over the first is not the foam's "
+        differ ? " The drops differ in speed or place: what grows over the first is not the foam's "
                           "softening alone."
                         : "");
     put_pads(page, o);
