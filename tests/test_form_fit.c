@@ -121,12 +121,13 @@ static void a_known_foam_is_found(void **state) {
     assert_near(&fit, SF_PARAMETER_HU, 0.15, 0.02);
     assert_near(&fit, SF_PARAMETER_SHAPE, 0.8, 0.02);
     assert_near(&fit, SF_PARAMETER_ALPHA, 0.4, 0.02);
-    assert_true(fit.loading_rms < 1e-5 && fit.unloading.rms < 1e-5 && fit.unloading_of_one.rms > 0.005);
+    assert_true(fit.loading_rms < 1e-5 && fit.unloading.fit.rms < 1e-5 &&
+                fit.unloading_of_one.fit.rms > 0.005);
     for (int k = 0; k < 2; k++)
         assert_true(fit.predicted[k].loading_rms < 1e-5 && fit.predicted[k].unloading_rms < 1e-5);
     assert_true(fabs(fit.test[0].returned_measured - fit.test[0].returned_fitted) < 2e-3);
     assert_true(fit.card.rate_factor == fit.value[SF_PARAMETER_RATE_FACTOR] &&
-                fit.card.rate_reference == 0.01 && fit.card.hysteresis_alpha == fit.unloading.value[2]);
+                fit.card.rate_reference == 0.01 && fit.card.hysteresis_alpha == fit.unloading.fit.value[2]);
     sf_form_fit_free(&fit);
     sf_compression_config_free(&config);
     program_tear_down(&place);
@@ -156,7 +157,7 @@ static void leap_is_a_gas_foam_with_solid_fraction(void **state) {
                 fit.value[SF_PARAMETER_SOLID_FRACTION] < 0.11);
     /* its loop needs ALPHA, and returns 70 % of the energy */
     assert_true(fit.unloading.factor_rms < 0.027 && fit.unloading_of_one.factor_rms > 0.03);
-    assert_true(fit.unloading.value[2] > 0.1 && fit.unloading.value[2] < 0.6);
+    assert_true(fit.unloading.fit.value[2] > 0.1 && fit.unloading.fit.value[2] < 0.6);
     assert_true(fabs(fit.test[0].returned_measured - 0.70) < 0.01);
     assert_true(fabs(fit.test[0].returned_fitted - 0.70) < 0.01);
     sf_form_fit_free(&fit);

@@ -9,7 +9,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import re
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Iterator, Mapping, Sequence
@@ -19,11 +18,10 @@ import numpy as np
 from .errors import InputError
 
 CRITERIA = ("a_max_g", "hic")
-MESH_SIZE, MESH_HIC = 0.78, 1.3  # as in softfall-cfh (docs/cfh.md, "The interval")
 REPEATS, TRUTHS, LEAST_DRAWS = 32, 128, 8
 MOST_SHIFT, MISFIT = 1.0, -12.0
 SAME = 0.01  # of a logarithm: drops of one pad are never told apart by less
-TEST_STRAINS, TEST_SCATTER = (0.3, 0.5, 0.7), 0.04  # of a compression test; specimens of one foam scatter by that
+TEST_STRAINS = (0.3, 0.5, 0.7)  # at which a compression test tells the stress
 
 
 @dataclass(frozen=True)
@@ -37,14 +35,25 @@ class Drop:
 
 @dataclass(frozen=True)
 class Choice:
-    """A measurement that could be next: its cost in drops, the expected loss after it, and the fall of the loss for each drop."""
+    """A measurement that could be next: its cost, the expected loss after it, and the fall of the loss over the cost."""
 
     name: str
+    kind: str  # "drop", "test", or the name of another missile
     cost: float
     loss: float
     gain: float
     place: str = ""  # of a drop
     height: float = math.nan  # m
+
+
+@dataclass(frozen=True)
+class Test:
+    """A compression test that could be next: the stress that each draw has in it, the standard deviation of its ln, and its cost."""
+
+    name: str
+    stress: np.ndarray  # [draws][strains]
+    error: float
+    cost: float
 
 
 @dataclass(frozen=True)
@@ -77,7 +86,7 @@ class Trend:
 
 @dataclass(frozen=True)
 class Place:
-    """What softfall-cfh knows of a condition and a position: for each draw ln(figure) over ln(height), the errors of the model, the scatter."""
+    """What softfall-cfh knows of a condition, a position and a missile: for each draw ln(figure) over ln(height), the errors of the model, the scatter."""
 
     name: str
     log_height: np.ndarray  # [grid]
@@ -85,10 +94,12 @@ class Place:
     shared: np.ndarray  # [2][draws]
     own_sd: np.ndarray  # [2][draws]
     scatter: np.ndarray  # [2][grid], standard deviation of ln(figure) from drop to drop
-    mesh: float
+    mesh: np.ndarray  # [2]
     fit: np.ndarray  # [2]
     trend: tuple[Trend, ...]  # of the columns' errors, for each figure
     notes: tuple[str, ...] = ()  # what is not known of it
+    missile: str = ""  # another one than that of the protocol: nothing is judged by its drops
+    cost: float = 1.0  # of a drop
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -104,7 +115,7 @@ def _columns(path: Path) -> dict[str, np.ndarray]:
     return {name: table[:, k] for k, name in enumerate(rows[0])}
 
 
-def read_place(name: str, folder: Path) -> Place:
+def read_place(name: str, folder: Path, missile: str = "", cost: float = 1.0) -> Place:
     """Reads the output of softfall-cfh --posterior. InputError: it has no draws."""
     summary = json.loads((folder / "cfh.json").read_text(encoding="utf-8"))
     if not (folder / "cfh_curves.csv").exists() or not (folder / "cfh_draws.csv").exists():
@@ -121,10 +132,11 @@ def read_place(name: str, folder: Path) -> Place:
     error = np.nan_to_num(np.array([draws[key] for key in ("a_max_shared_1", "hic_shared_1", "a_max_sd_1", "hic_sd_1")]))
     scatter = np.maximum(np.nan_to_num(np.array([band["a_max_scatter_1"], band["hic_scatter_1"]])), SAME)
     fit = np.array([posterior.get(f"fit_scatter_{key}") or 0.0 for key in ("a_max", "hic")])
+    mesh = (posterior["expected_mesh_error"] or 0.0) * posterior["mesh_error_factor"] * np.array([1.0, posterior["mesh_error_hic_factor"]])
     crossing = np.log(np.clip(np.nan_to_num(draws["height_m"], nan=height[-1]), height[0], height[-1]))
     trends = tuple(_trend(told, posterior["checks"], key, crossing) for told, key in zip(posterior["columns_error"], ("a_max", "hic")))
-    return Place(name, np.log(height), value, error[:2], error[2:], scatter, posterior.get("expected_mesh_error") or 0.0, fit, trends,
-                 tuple(_doubts(name, posterior, trends, band)))
+    return Place(name, np.log(height), value, error[:2], error[2:], scatter, mesh, fit, trends,
+                 tuple(_doubts(name, posterior, trends, band)), missile, cost)
 
 
 def _trend(told: Mapping[str, Any], checks: Sequence[Mapping[str, Any]], key: str, crossing: np.ndarray) -> Trend:
@@ -168,13 +180,23 @@ class Pads:
         self.log_weight = np.zeros(self.draw.size)
         self.misfit = 0.0  # ln of the likelihood of the worst drop at the pad that fits it best
         self.offset, self.shift = {}, {}
-        n, freedom = self.draw.size, max(1, min(trend.freedom for place in places for trend in place.trend))
-        mesh, student = random.standard_normal(n), random.standard_t(freedom, n)  # all places are of one pad, and of one way to compute it
-        size = np.array([MESH_SIZE, MESH_SIZE * MESH_HIC])[:, None]
-        for place in places:
+        n, mesh = self.draw.size, random.standard_normal(self.draw.size)  # all places are of one pad, and of one way to compute it
+        student = {"": random.standard_t(max(1, min(trend.freedom for place in self.judged for trend in place.trend)), n)}
+        for place in sorted(places, key=lambda place: place.missile != ""):
             own = random.standard_normal((2, n)) * place.own_sd[:, self.draw]
-            self.offset[place.name] = place.shared[:, self.draw] + own + size * place.mesh * mesh + place.fit[:, None] * random.standard_normal((2, n))
-            self.shift[place.name] = [np.clip(t.shift[self.draw] + t.remainder[self.draw] * student, -MOST_SHIFT, MOST_SHIFT) for t in place.trend]
+            fit = place.fit[:, None] * random.standard_normal((2, n))
+            self.offset[place.name] = place.shared[:, self.draw] + own + place.mesh[:, None] * mesh + fit
+            if place.missile:  # draws state errors of the missile of their fit, and each missile has columns of its own
+                self.offset[place.name] += np.sqrt((place.shared**2).mean(axis=1, keepdims=True)) * random.standard_normal((2, n))
+                if place.missile not in student:
+                    student[place.missile] = random.standard_t(max(1, min(trend.freedom for trend in place.trend)), n)
+            self.shift[place.name] = [np.clip(t.shift[self.draw] + t.remainder[self.draw] * student[place.missile], -MOST_SHIFT, MOST_SHIFT)
+                                      for t in place.trend]
+
+    @property
+    def judged(self) -> list[Place]:
+        """The places with the missile of the protocol."""
+        return [place for place in self.places.values() if not place.missile]
 
     def predict(self, place: str, height: float) -> np.ndarray:
         """Returns ln(figure) [2][pads] at a height (m); inf: the foam collapses."""
@@ -262,7 +284,7 @@ class Question:
 
 
 def _heights_of(pads: Pads, q: Question) -> np.ndarray:
-    return np.min([pads.crossing(place, q.limits) for place in pads.places], axis=0)
+    return np.min([pads.crossing(place, q.limits) for place in (place.name for place in pads.judged)], axis=0)
 
 
 def quantiles(order: np.ndarray, value: np.ndarray, weight: np.ndarray) -> np.ndarray:
@@ -280,9 +302,9 @@ class _Loss:
         self.order = np.argsort(self.height)
         if q.heights:
             self.passes = np.ones(self.height.size, bool)
-            for place in pads.places:
+            for place in pads.judged:
                 for h in q.heights:
-                    value = pads.predict(place, h)
+                    value = pads.predict(place.name, h)
                     for c, limit in enumerate(q.limits):
                         self.passes &= value[c] < math.log(limit) if limit is not None else True
         else:
@@ -318,16 +340,17 @@ def _drop_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, place:
     measured = predicted[:, truths] + sd[:, None] * np.random.default_rng(2).standard_normal(TRUTHS)
     measured = np.where(np.isinf(measured), np.nan, measured)
     likelihood = np.stack([_log_likelihood(measured[:, m], predicted, sd) for m in range(TRUTHS)])
-    after = _expected(loss, weight, likelihood)
-    return Choice(f"a drop from {height:.4g} m, {place}", 1, after, now - after, place, height)
+    after, cost = _expected(loss, weight, likelihood), pads.places[place].cost
+    return Choice(f"a drop from {height:.4g} m, {place}", pads.places[place].missile or "drop", cost, after, (now - after) / cost, place, height)
 
 
-def _test_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, stress: np.ndarray, cost: float) -> Choice:
-    truths, of = _truths(weight), np.log(stress[pads.draw])
-    measured = of[truths] + TEST_SCATTER * np.random.default_rng(3).standard_normal((TRUTHS, stress.shape[1]))
-    likelihood = -0.5 * (((measured[:, None] - of) / TEST_SCATTER) ** 2).mean(axis=2)
+def _test_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, test: Test) -> Choice:
+    """What scatters from specimen to specimen moves the stress at all strains together: three tell no more than one, so their mean counts."""
+    truths, of = _truths(weight), np.log(test.stress[pads.draw])
+    measured = of[truths] + test.error * np.random.default_rng(3).standard_normal((TRUTHS, 1))
+    likelihood = -0.5 * (((measured[:, None] - of) / test.error) ** 2).mean(axis=2)
     after = _expected(loss, weight, likelihood)
-    return Choice("a slow compression test, for softfall-fit drop", cost, after, (now - after) / cost)
+    return Choice(test.name, "test", test.cost, after, (now - after) / test.cost)
 
 
 def candidate_heights(place: Place, q: Question, median: float) -> list[float]:
@@ -335,16 +358,21 @@ def candidate_heights(place: Place, q: Question, median: float) -> list[float]:
     low, high = place.ends
     middle = min(max(median, low), high / 1.2)
     about = {float(f"{middle * part:.2g}") for part in np.linspace(0.6, 1.2, 9)}
-    asked = {*q.heights, *([] if math.isnan(q.required) else [q.required])}
+    asked = set() if place.missile else {*q.heights, *([] if math.isnan(q.required) else [q.required])}
     return sorted(h for h in about | asked if low <= h <= high)
 
 
-def advise(pads: Pads, q: Question, stress: np.ndarray | None = None, test_cost: float = 3.0) -> Advice:
-    """Returns the state of knowledge and the choices.
+def _median_height(pads: Pads, q: Question, place: Place, weight: np.ndarray, judged: float) -> float:
+    """Returns the height about which drops at a place are tried: `judged`, the critical one, or that of another missile."""
+    if not place.missile:
+        return judged
+    height = pads.crossing(place.name, q.limits)
+    return float(quantiles(np.argsort(height), height, weight)[1])
 
-    `stress` [draws][strains]: of a compression test of each draw (None: no such test), which costs as much as `test_cost` drops.
-    """
-    for place in pads.places.values():
+
+def advise(pads: Pads, q: Question, tests: Sequence[Test] = ()) -> Advice:
+    """Returns the state of knowledge and the choices, among them compression tests."""
+    for place in pads.judged:
         low, high = place.ends
         for h in (*q.heights, *([] if math.isnan(q.required) else [q.required])):
             if not low <= h <= high:
@@ -357,27 +385,11 @@ def advise(pads: Pads, q: Question, stress: np.ndarray | None = None, test_cost:
     if pads.misfit < MISFIT or pads.effective_draws < LEAST_DRAWS:
         return replace(known, problem=f"what was measured leaves {pads.effective_draws:.1f} of {pads.draws} draws, or fits none: the foam is none of them. Give these "
                        "drops to softfall-fit drop, and begin anew with its posterior and without them")
-    if any(trend.freedom == 0 for place in pads.places.values() for trend in place.trend):
+    if any(trend.freedom == 0 for place in pads.judged for trend in place.trend):
         return replace(known, problem="the error of the columns is not known, as no draw was simulated with success")
     if now <= q.bound:
         return replace(known, decision=share > 0.5 if q.decides else None, stop=True)
-    choices = [_drop_choice(pads, loss, weight, now, name, h) for name, place in pads.places.items() for h in candidate_heights(place, q, height[1])]
-    if stress is not None:
-        choices.append(_test_choice(pads, loss, weight, now, stress, test_cost))
+    choices = [_drop_choice(pads, loss, weight, now, name, h) for name, place in pads.places.items()
+               for h in candidate_heights(place, q, _median_height(pads, q, place, weight, height[1]))]
+    choices += [_test_choice(pads, loss, weight, now, test) for test in tests]
     return replace(known, choices=sorted(choices, key=lambda c: -c.gain))
-
-
-def test_stresses(folder: Path) -> np.ndarray | None:
-    """Returns the stress [draws][strains] at TEST_STRAINS of the first curve of each draw-NNN.cfg; None: a draw has no curve as a file."""
-    stress = []
-    for path in sorted(folder.glob("draw-*.cfg"), key=lambda path: int(re.sub(r"\D", "", path.stem) or 0)):
-        named = re.search(r'^\s*curves?\s*=[^"]*"([^"]+\.csv)"', path.read_text(encoding="utf-8"), re.M)
-        if not named:
-            return None
-        with open(path.parent / named.group(1), newline="", encoding="utf-8") as stream:
-            rows = list(csv.reader(line for line in stream if not line.startswith("#")))
-        if len(rows) < 3 or rows[0][0].strip() != "strain" or float(rows[-1][0]) < TEST_STRAINS[-1]:
-            return None
-        table = np.array([row[:2] for row in rows[1:]], float)
-        stress.append(np.interp(TEST_STRAINS, table[:, 0], table[:, 1]))
-    return np.array(stress) if stress else None

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Mapping, Sequence
 
-from . import programs
+from . import library, programs
 from .curves import STANDARD_GRAVITY
 from .errors import InputError
 
@@ -71,6 +71,29 @@ class Position:
 
 
 @dataclass(frozen=True)
+class Missile:
+    """Another missile, a drop of which may be advised: the keys of the case that it sets, and what a drop costs."""
+
+    name: str
+    keys: Mapping[str, Any]
+    cost: float
+
+
+@dataclass(frozen=True)
+class CompressionTest:
+    """A compression test that may be advised: its strain rate (1/s), what it costs, and the standard deviation of ln(stress)."""
+
+    rate: float
+    cost: float
+    error: float
+
+
+DROP_COST, MISSILE_COST = 1.0, 2.0  # defaults: a drop is the unit, and the missile is exchanged for the other drop
+TEST_ERROR = 0.04  # specimens of one foam scatter by that
+TESTS = (CompressionTest(0.01, 3.0, TEST_ERROR), CompressionTest(10.0, 6.0, TEST_ERROR))  # of a testing machine, of a servo-hydraulic one
+
+
+@dataclass(frozen=True)
 class Protocol:
     """A protocol as its file has it. Lengths in m."""
 
@@ -92,6 +115,9 @@ class Protocol:
     area: float  # m2, of the platen of a cushion curve
     figures: tuple[Figure, ...]
     clauses: tuple[Clause, ...]
+    drop_cost: float = DROP_COST  # of --advise, as the next two
+    others: tuple[Missile, ...] = ()
+    tests: tuple[CompressionTest, ...] = TESTS
 
     def limit_of(self, key: str) -> float | None:
         """Returns the least limit of a value in summary.json, over all figures that are made of it; None: there is none."""
@@ -125,6 +151,22 @@ def length(text: Any, where: str) -> float:
         value = math.nan
     if not math.isfinite(value):
         raise InputError(f'{where}: {text!r} is no length; it is a text with a number and one of {", ".join(_UNITS)}, such as "1.5 m"')
+    return value
+
+
+def strain_rate(text: Any, where: str) -> float:
+    """Returns a strain rate such as "0.01 1/s" in 1/s; InputError names the place.
+
+    >>> strain_rate("10 1/s", "x"), strain_rate("6 1/min", "x")
+    (10.0, 0.1)
+    """
+    found = re.fullmatch(r"\s*([\d.]+(?:e[+-]?\d+)?) *(1/s|s-1|1/min|1/h)\s*", text) if isinstance(text, str) else None
+    try:
+        value = float(found.group(1)) / {"1/s": 1, "s-1": 1, "1/min": 60, "1/h": 3600}[found.group(2)] if found else 0.0
+    except ValueError:
+        value = 0.0
+    if not 0 < value <= 1e6:
+        raise InputError(f'{where}: {text!r} is no strain rate up to 1e6 1/s; it is a text with a number above 0 and 1/s, 1/min or 1/h, such as "0.01 1/s"')
     return value
 
 
@@ -192,16 +234,18 @@ def read(name: str) -> Protocol:
     if kind not in KINDS:
         raise InputError(f"{path}: result: kind {kind!r} is none of {', '.join(KINDS)}")
     rounding = result.take("rounding", str, None)
+    advice = _Group(f"{path}: advice", top.take("advice", dict, {}))
     figures = tuple(_figure(path, k, table) for k, table in enumerate(top.take("figure", list), 1))
     clauses = tuple(_clause(path, k, table) for k, table in enumerate(top.take("clause", list), 1))
     made = Protocol(
         name=path.stem, path=path, title=title, standard=standard, kind=kind, missile=_missile(path, missile),
-        filter=_filter(path, missile), **_drops(path, drops, kind), figures=figures, clauses=clauses,
+        filter=_filter(path, missile), **_drops(path, drops, kind), figures=figures, clauses=clauses, **_advice(path, advice),
         rounding=length(rounding, f"{path}: result: rounding") if rounding else 0.0)
     result.end("kind and rounding")
     missile.end("geometry, parameters, mass, keys and filter")
     drops.end("conditions, positions, heights, masses, area, count, interval and counted")
-    top.end("title, standard, missile, drops, figure, result and clause")
+    advice.end("drop_cost, missiles and tests")
+    top.end("title, standard, missile, drops, figure, result, clause and advice")
     _check(made)
     return made
 
@@ -215,7 +259,10 @@ def _figure(path: Path, number: int, table: Any) -> Figure:
         raise InputError(f"{group.where}: factor {factor:g} is not above 0")
     if limit is not None and (limit - offset) / factor <= 0:
         raise InputError(f"{group.where}: limit {limit:g} is not above {offset:g}, which the figure has at a value of 0")
-    figure = Figure(group.take("key", str), None if limit is None else float(limit), 1e-3 * window, group.take("name", str, ""), factor, offset)
+    key = group.take("key", str)
+    if key != key.lower() and key.lower() in library.RECORD_FIGURES:
+        raise InputError(f'{group.where}: there is no figure key = "{key}"; it is "{key.lower()}"')
+    figure = Figure(key, None if limit is None else float(limit), 1e-3 * window, group.take("name", str, ""), factor, offset)
     group.end("key, limit, least_window_ms, name, factor and offset")
     return figure
 
@@ -249,6 +296,33 @@ def _missile(path: Path, group: _Group) -> dict[str, Any]:
         keys["missile.mass"] = mass
     keys.update(group.take("keys", dict, {}))
     return keys
+
+
+def _cost(group: _Group, key: str, default: float) -> float:
+    value = float(group.take(key, (int, float), default))
+    if not 0 < value < math.inf:
+        raise InputError(f"{group.where}: {key} = {value:g} is not above 0")
+    return value
+
+
+def _advice(path: Path, group: _Group) -> dict[str, Any]:
+    """Returns what --advise may rank beside drops of the protocol, and the costs."""
+    others, tests, given = [], [], "tests" in group.left
+    for k, table in enumerate(group.take("missiles", list, []), 1):
+        one = _Group(f"{group.where}: missile {k}", table)
+        name, cost = one.take("name", str).strip(), _cost(one, "cost", MISSILE_COST)
+        others.append(Missile(name, _missile(path, one), cost))
+        if not name or any(other.name == name for other in others[:-1]):
+            raise InputError(f"{one.where}: name {name!r} is empty or that of another missile")
+        if not others[-1].keys:
+            raise InputError(f"{one.where}: {name} has neither geometry, mass nor keys, by which it would be another missile")
+        one.end("name, cost, geometry, parameters, mass and keys")
+    for k, table in enumerate(group.take("tests", list, []), 1):
+        one = _Group(f"{group.where}: test {k}", table)
+        tests.append(CompressionTest(strain_rate(one.take("rate", str), f"{one.where}: rate"), _cost(one, "cost", TESTS[0].cost),
+                                     _cost(one, "error", TEST_ERROR)))
+        one.end("rate, cost and error")
+    return {"drop_cost": _cost(group, "drop_cost", DROP_COST), "others": tuple(others), **({"tests": tuple(tests)} if given else {})}
 
 
 def _filter(path: Path, group: _Group) -> float:

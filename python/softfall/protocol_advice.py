@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The next drop of a protocol: its places by softfall-cfh, its measured drops, and the advice as a result of the page."""
+"""The next measurement of a protocol: its places by softfall-cfh, its measured drops, and the advice as a result of the page."""
 from __future__ import annotations
 
 import math
@@ -10,10 +10,11 @@ import numpy as np
 
 from . import advice
 from .case import Case
-from .errors import InputError
+from .errors import InputError, NumericError
+from .foam_draws import test_stresses
 from .judge import Line, Outcome
-from .protocol import Figure, Protocol
-from .protocol_drops import Drop, Drops, case_at, folder_name, search
+from .protocol import Condition, Figure, Missile, Position, Protocol
+from .protocol_drops import Drop, Drops, Search, case_at, folder_name, search, search_notes
 
 LISTED = 10
 
@@ -45,7 +46,7 @@ def _measured(p: Protocol, drops: Drops, pads: advice.Pads, notes: list[str]) ->
     """Returns the drops that can be learnt from: the first on each spot, as the draws are foams without memory."""
     made = []
     for drop in drops.drops:
-        at, named = f"{drop.spot.condition}, {drop.spot.position}", f"drop {drop.number} at {drop.spot} is left out"
+        at, named = _place_name(drop.spot.condition, drop.spot.position, drop.spot.missile), f"drop {drop.number} at {drop.spot} is left out"
         if not drop.is_usable:
             notes.append(f"{named}: it is not to be used ({drop.note})")
         elif drop.number > 1:
@@ -71,17 +72,63 @@ def _expected(pads: advice.Pads, question: advice.Question, drop: advice.Drop) -
                        "" if low <= drop.figures[c] <= high else "outside of what was expected before it")
 
 
-def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str, required: float, bound: float | None,
-           options: Mapping[str, Any]) -> tuple[advice.Advice, Outcome]:
-    """Returns the advice of a protocol on a pad after some drops, and what the page says of it. Simulated drops are kept below `output`."""
-    question, notes, places = _question(p, required, bound), list[str](), []
+CHECKS = 3  # draws that are simulated of another missile: nothing is judged by its drops
+
+
+def _place_name(condition: str, position: str, missile: str) -> str:
+    return ", ".join([condition, position, *([f"missile {missile}"] if missile else [])])
+
+
+def _places(p: Protocol, pad: Case, output: Path, posterior: str, options: Mapping[str, Any], notes: list[str]) -> tuple[list[advice.Place], list[Search]]:
+    """Returns what is known of drops at each place, with the missile of the protocol and with others, and the searches of the first."""
+    places, searches = [], []
     for condition in p.conditions:
         for position in p.positions:
             case = case_at(p, pad, condition, position, notes)
-            if case is not None:
-                folder = output / folder_name(condition.name, position.name)
-                places.append(advice.read_place(f"{condition.name}, {position.name}",
-                                                search(p, case, condition, position, folder, posterior, options).folder))
+            if case is None:
+                continue
+            searches.append(search(p, case, condition, position, output / folder_name(condition.name, position.name), posterior, options))
+            places.append(advice.read_place(_place_name(condition.name, position.name, ""), searches[-1].folder, cost=p.drop_cost))
+            for other in p.others:
+                made = _other_place(p, pad, condition, position, other, output, posterior, options, notes)
+                places += [made] if made else []
+    return places, searches
+
+
+def _other_place(p: Protocol, pad: Case, condition: Condition, position: Position, other: Missile, output: Path, posterior: str,
+                 options: Mapping[str, Any], notes: list[str]) -> advice.Place | None:
+    """Returns what is known of drops of another missile; None, with a note, if it is too little."""
+    name, folder = _place_name(condition.name, position.name, other.name), output / folder_name(condition.name, position.name, other.name)
+    try:
+        case = case_at(p, pad, condition, position, [], other.keys)
+        found = search(p, case, condition, position, folder, posterior, {**options, "check_drops": CHECKS}) if case else None
+    except InputError as error:
+        raise InputError(f"{p.path}: advice: missile {other.name}: {error}") from None
+    except NumericError as error:
+        notes.append(f"drops at {name} are not weighed: {error}")
+        return None
+    place = advice.read_place(name, found.folder, other.name, other.cost) if found and (found.folder / "cfh_draws.csv").exists() else None
+    if place and all(trend.freedom > 0 for trend in place.trend):
+        return place
+    notes.append(f"drops at {name} are not weighed: too few draws were simulated with success")
+    return None
+
+
+def _tests(p: Protocol, posterior: Path, notes: list[str]) -> list[advice.Test]:
+    """Returns the compression tests of a protocol, as the draws expect them."""
+    try:
+        return [advice.Test(f"a compression test at {test.rate:g} 1/s, for softfall-fit drop", test_stresses(posterior, test.rate, advice.TEST_STRAINS),
+                            test.error, test.cost) for test in p.tests]
+    except InputError as error:
+        notes.append(f"compression tests are not weighed: {error}")
+        return []
+
+
+def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str, required: float, bound: float | None,
+           options: Mapping[str, Any]) -> tuple[advice.Advice, Outcome, Drops]:
+    """Returns the advice of a protocol on a pad after some drops, what the page says of it, and what was simulated, below `output`."""
+    question, notes = _question(p, required, bound), list[str]()
+    places, searches = _places(p, pad, output, posterior, options, notes)
     if not places:
         raise InputError(f"nothing of the protocol can be simulated: {'; '.join(notes)}")
     pads, lines = advice.Pads(places), list[Line]()
@@ -89,7 +136,8 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
     for drop in _measured(p, measured, pads, notes):
         lines += _expected(pads, question, drop)
         pads.learn(drop)
-    told = advice.advise(pads, question, advice.test_stresses(Path(posterior)))
+    told = advice.advise(pads, question, _tests(p, Path(posterior), notes))
+    notes += measured.missing
     if any(line.note for line in lines):
         notes.append("some measured figures were not expected: the foam may be none of the draws")
     notes.append(f"{pads.effective_draws:.0f} of {pads.draws} draws are left after what was measured")
@@ -102,9 +150,8 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
     if 1 not in p.counted:
         outcome.passed = None if told.decision else told.decision
         outcome.stated += ", by first drops, and not decided for those that count"
-    if any(figure.least_window for figure in p.figures):
-        notes.append("what is expected of HIC counts windows of every length")
-    return told, outcome
+    notes += search_notes(p, searches)
+    return told, outcome, Drops(searches=searches)
 
 
 def _stated(p: Protocol, question: advice.Question, told: advice.Advice) -> str:
@@ -119,5 +166,8 @@ def _stated(p: Protocol, question: advice.Question, told: advice.Advice) -> str:
 
 
 def rows(told: advice.Advice) -> list[list[str]]:
-    """Returns the best choices as rows of a table."""
-    return [[choice.name, f"{choice.cost:g}", f"{100 * choice.loss:.1f}", f"{100 * choice.gain:.2f}"] for choice in told.choices[:LISTED]]
+    """Returns the best choices as rows of a table, and the best one of each missile and the best test if these are not among them."""
+    best = {choice.kind: k for k, choice in reversed(list(enumerate(told.choices)))}
+    listed = sorted({*range(min(LISTED, len(told.choices))), *best.values()})
+    return [[str(k + 1), choice.name, f"{choice.cost:g}", f"{100 * choice.loss:.1f}", f"{100 * choice.gain:.2f}"] for k, choice in
+            ((k, told.choices[k]) for k in listed)]

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-import csv
 import hashlib
 import json
 import math
 import re
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Iterable, Mapping
 
@@ -17,14 +16,11 @@ import numpy as np
 
 from . import programs
 from .case import Case
-from .curves import STANDARD_GRAVITY, hic
+from .curves import hic
 from .drop import Verdict, later_results, read_results
-from .errors import Error, InputError, NumericError
-from .protocol import Condition, Figure, Position, Protocol, length, speed
-from .record import read_record
+from .errors import Error, InputError, NumericError, failure
+from .protocol import Condition, Figure, Position, Protocol, speed
 from .study import Table, sweep
-
-OPTIONS = ("column", "columns", "heading", "scale", "rate", "impact", "invert", "zero")
 
 
 @dataclass(frozen=True)
@@ -35,9 +31,10 @@ class Spot:
     position: str
     height: float
     mass: str = ""
+    missile: str = ""  # another one than that of the protocol
 
     def __str__(self) -> str:
-        return ", ".join(part for part in (self.condition, self.position, f"{self.height:g} m", self.mass) if part)
+        return ", ".join(part for part in (self.condition, self.position, f"{self.height:g} m", self.mass, self.missile) if part)
 
 
 @dataclass
@@ -63,23 +60,29 @@ class Drop:
 
 @dataclass
 class Search:
-    """A critical height of softfall-cfh at one position: the members of its cfh.json that a result needs."""
+    """A critical height of softfall-cfh at one position: its cfh.json, and the drops that it simulated."""
 
     condition: str
     position: str
     folder: Path
     summary: dict[str, Any]
     view: Path | None = None  # as that of a drop, at the critical height
+    drops: list[Drop] = field(default_factory=list)
 
 
 @dataclass
 class Drops:
-    """All drops of one kind; `missing`: what of the protocol they do not have, in sentences."""
+    """All drops of one kind; `missing`: what of the protocol they do not have, and what looks wrong in them, in sentences."""
 
     drops: list[Drop] = field(default_factory=list)
     searches: list[Search] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
     stands_in: bool = False  # the first drop on a spot stands for those that count
+
+    @property
+    def all(self) -> list[Drop]:
+        """Those of the searches, too, which are no spots of the protocol."""
+        return [*(drop for search in self.searches for drop in search.drops), *self.drops]
 
 
 def hic_from(time: Any, deceleration: Any, least: float) -> float:
@@ -112,7 +115,7 @@ def _mesh_error(verdict: Verdict) -> float:
     return value or 0.0
 
 
-def _take_figures(figures: Iterable[Figure], known: Mapping[str, Any], curve: tuple[Any, Any] | None) -> dict[str, float]:
+def take_figures(figures: Iterable[Figure], known: Mapping[str, Any], curve: tuple[Any, Any] | None) -> dict[str, float]:
     """Returns the figures of a protocol; one that needs a least window of HIC is computed from the curve."""
     taken = {}
     for figure in figures:
@@ -132,26 +135,32 @@ def folder_name(*parts: str) -> str:
     return "-".join(re.sub(r"[^\w.]+", "_", part) for part in parts)
 
 
-def case_at(p: Protocol, pad: Case, condition: Condition, position: Position, missing: list[str]) -> Case | None:
-    """Returns the case of a condition and a position; None, with a sentence in `missing`, if it does not have their keys."""
+def case_at(p: Protocol, pad: Case, condition: Condition, position: Position, missing: list[str],
+            missile: Mapping[str, Any] | None = None) -> Case | None:
+    """Returns the case of a condition, a position and a missile (by default that of the protocol); None, with a sentence in `missing`, if it
+    does not have the keys of the first two."""
     if pad["series.drops"] != 1:
         raise InputError(f"{pad.path}: series.drops = {pad['series.drops']}: leave the group series out, as the protocol says how many drops there are")
     case = pad.copy()
-    case.update(p.missile)
+    try:
+        case.update(p.missile if missile is None else missile)
+    except InputError as error:
+        raise InputError(f"{p.path}: missile, on {pad.path}: {str(error).removeprefix('--set ')}") from None
     for what, keys in ((f"condition {condition.name}", condition.keys),
                        (f"position {position.name}", {"missile.position": [f"{1e3 * x:g} mm" for x in position.at]} if position.at else {})):
         try:
             case.update(keys)
         except InputError as error:
-            missing.append(f"{what} is not simulated: {error}")
+            missing.append(f"{what} is not simulated: {str(error).removeprefix('--set ')}")
             return None
     return case
 
 
-def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None, draws: int | None = None, **options: Any) -> Drops:
+def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None, draws: int | None = None, beside: Drops | None = None,
+             **options: Any) -> Drops:
     """Simulates the drops of a protocol on the pad of a case, below `output`. What is there is used again.
 
-    `posterior`: a folder of draws of the foam. `options` are those of softfall-sweep and softfall-cfh: jobs, threads, engine, profile; `views` is
+    `posterior`: a folder of draws of the foam. `beside`: measured drops, from whose heights a place of a search is simulated, too. `options` are those of softfall-sweep and softfall-cfh: jobs, threads, engine, profile; `views` is
     softfall-sweep's, and makes the view at a critical height.
     """
     made = Drops()
@@ -170,15 +179,26 @@ def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None,
                 made.drops += _series(p, case, condition, position, folder, made, options)
             elif p.kind == "critical height" and not p.heights:
                 made.searches.append(search(p, case, condition, position, folder, posterior, options))
+                made.searches[-1].drops += _beside(p, case, condition, position, folder, made.searches[-1], beside, options)
             else:
                 made.drops += _sweep(p, case, condition, position, folder, posterior, draws, options)
     if posterior and any(drop.number > 1 for drop in made.drops):
         made.missing.append("draws of the foam are not used where later drops are simulated: there is no interval")
     if not made.drops and not made.searches:
         raise InputError(f"nothing of the protocol can be simulated: {'; '.join(made.missing)}")
-    if any(figure.least_window for figure in p.figures) and made.searches:
-        made.missing.append("the search counts windows of HIC of every length")
+    made.missing += search_notes(p, made.searches)
     return made
+
+
+def search_notes(p: Protocol, searches: Iterable[Search]) -> list[str]:
+    """Returns what searches do otherwise than the protocol asks, where it changed figures of their drops by more than their digits."""
+    asked = "windows of HIC of every length" if any(figure.least_window for figure in p.figures) else ""
+    asked = " and ".join(part for part in (asked, f"CFC {SEARCH_FILTER}" if p.filter != SEARCH_FILTER else "") if part)
+    changed = [abs(figure.value_of(drop.figures[figure.label]) / point[figure.key] - 1) for one in searches
+               for drop, point in zip(one.drops, one.summary["points"]) for figure in p.figures
+               if figure.key in ("a_max_g", "hic") and drop.source and point.get(figure.key) and figure.label in drop.figures]
+    largest = max(changed, default=0.0)
+    return [f"the search takes {asked}, which changes the figures of its drops by up to {largest:.2%}"] if asked and largest > 1e-6 else []
 
 
 SEARCH_WIDTH, SEARCH_MOST = 1.02, 8  # of the heights on both sides of a limit; series of a search
@@ -251,15 +271,19 @@ def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapp
                 continue
             result = read_results(path)
             result.post(filter=int(p.filter))
-            drops.append(Drop(spot, number, str(path), _take_figures(p.figures, result.figures, result.curve()), str(result.verdict),
+            drops.append(Drop(spot, number, str(path), take_figures(p.figures, result.figures, result.curve()), str(result.verdict),
                               "; ".join(result.verdict.remarks), result.curve(), mesh_error=_mesh_error(result.verdict)))
             if options.get("views"):  # they have all fields
                 drops[-1].view = read_results(path, output=place / f"view-{number}").report().parent
     return drops
 
 
+SEARCH_FILTER = 1000  # of softfall-cfh
+
+
 def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
-            options: Mapping[str, Any]) -> Search:
+           options: Mapping[str, Any]) -> Search:
+    """Runs softfall-cfh below a folder, and reads its drops."""
     folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
     given = {"limit_g": p.limit_of("a_max_g") or 1e6, "limit_hic": p.limit_of("hic") or 1e9, "posterior": posterior,
@@ -268,12 +292,45 @@ def search(p: Protocol, case: Case, condition: Condition, position: Position, fo
                          *programs.options(given)])
     found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
     height = found.summary["critical_fall_height"].get("height_m")
+    found.drops = [_point(p, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs") for point in found.summary["points"]]
     if options.get("views") and height:
         drop = case.copy()
         drop["missile.velocity"] = f"{speed(height):.12g} m/s"
         with contextlib.suppress(NumericError):  # a height between drops that worked may be one at which the foam locks up
             found.view = drop.run(threads=options.get("threads"), output=folder / "view", force=True).report().parent
     return found
+
+
+def _point(p: Protocol, spot: Spot, point: Mapping[str, Any], runs: Path) -> Drop:
+    """Returns a drop of a search. Its curve is of those results of its height, also of earlier inputs, that have its figures."""
+    drop = Drop(spot, 1, "", grade="do not use" if point["failed"] else point["grade"] or "", note=point["note"] or "")
+    if point["failed"]:
+        return drop
+    drop.figures = take_figures(p.figures, {key: value for key, value in point.items() if isinstance(value, (int, float))}, None)
+    for path in runs.glob(f"h{spot.height:.3f}m-*/results.h5"):
+        kept = re.search(r"^a_max_g (\S+)$", path.with_name("figures.txt").read_text(encoding="utf-8"), re.M) if path.with_name("figures.txt").exists() else None
+        if kept and abs(float.fromhex(kept.group(1)) / point["a_max_g"] - 1) < 1e-7:
+            drop.source = str(path)
+            drop.figures, drop.curve, drop.mesh_error = _read(p, path)
+    return drop
+
+
+def _read(p: Protocol, path: Path) -> tuple[dict[str, float], tuple[Any, Any], float]:
+    """Returns the figures, the curve and the expected error of the mesh of results."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        result = read_results(path)
+        result.post(filter=int(p.filter))
+        curve = result.curve()
+        return take_figures(p.figures, result.figures, curve), curve, _mesh_error(result.verdict)
+
+
+def _beside(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, there: Search, measured: Drops | None,
+            options: Mapping[str, Any]) -> list[Drop]:
+    """Returns the drops from the heights that were measured at a place, as far as its search has not simulated them."""
+    heights = {drop.spot.height for drop in measured.drops if (drop.spot.condition, drop.spot.position) == (condition.name, position.name)} if measured else set()
+    new = tuple(sorted(heights - {drop.spot.height for drop in there.drops}))
+    return _sweep(replace(p, heights=new), case, condition, position, folder / "measured_heights", None, None, options) if new else []
 
 
 def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
@@ -290,7 +347,10 @@ def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, fo
     plan = {key: value for key, value in plan.items() if value != []}
     folder.mkdir(parents=True, exist_ok=True)
     folder /= "sweep"
-    sweep(plan, output=folder, **options)
+    try:
+        sweep(plan, output=folder, **options)
+    except Error as error:  # a user does not know the plan that is written here
+        raise failure(re.sub(rf"softfall-sweep: {re.escape(str(folder))}\.cfg:\d+: ", f"{p.path}, on {case.path}: ", str(error)), error.code) from None
     return _rows(p, condition, position, folder)
 
 
@@ -314,151 +374,14 @@ def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -
             drop.grade = "do not use"
             continue
         if drop.curve is None:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                result = read_results(results)
-                result.post(filter=int(p.filter))
-                drop.curve, own, drop.mesh_error = result.curve(), result.figures, _mesh_error(result.verdict)
-            drop.figures = _take_figures(p.figures, own, drop.curve)
+            drop.figures, drop.curve, drop.mesh_error = _read(p, results)
         if "foam" in cell:
-            drop.draws[cell["foam"]] = _take_figures(p.figures, {key: float(text) for key, text in cell.items()
+            drop.draws[cell["foam"]] = take_figures(p.figures, {key: float(text) for key, text in cell.items()
                                                                  if key in {f.key for f in p.figures} and text}, None)
     for drop in drops.values():
         if len(drop.draws) > 1:
             drop.figures = {key: float(np.median([values[key] for values in drop.draws.values()])) for key in drop.figures}
     return list(drops.values())
-
-
-# ---- measured ----
-
-def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: bool = True) -> Drops:
-    """Reads the measured drops of a folder: by its list.csv, or by a pattern of names such as "{position}_{height}_{drop}.csv".
-
-    list.csv has a row for each file: file, condition, position, height, drop, mass, and options of the record (column, scale, rate, ...).
-    A name that the protocol lacks, two files for one drop, a missing drop (if the test is `complete`) and a record that cannot be read are
-    refused before anything is judged. Of a test that is not complete a drop may have any height.
-    """
-    if not folder.is_dir():
-        raise InputError(f"there is no folder {folder}")
-    rows = _listed(folder) if (folder / "list.csv").exists() and not pattern else _matched(folder, pattern)
-    files: dict[str, str] = {}
-    for where, row in rows:
-        if row["file"] in files:
-            raise InputError(f"{where}: {row['file']} is the record of {files[row['file']]} already")
-        files[row["file"]] = where
-    made = Drops([_measured(p, folder, where, row, complete) for where, row in rows])
-    seen: dict[tuple[Spot, int], str] = {}
-    for drop in made.drops:
-        key = (drop.spot, drop.number)
-        if key in seen:
-            raise InputError(f"{seen[key]} and {drop.source} are both drop {drop.number} at {drop.spot}")
-        seen[key] = drop.source
-    if complete:
-        _refuse_missing(p, folder, set(seen))
-    return made
-
-
-def _listed(folder: Path) -> list[tuple[str, dict[str, str]]]:
-    with open(folder / "list.csv", newline="", encoding="utf-8-sig") as stream:
-        reader = csv.DictReader(stream)
-        known = {"file", "condition", "position", "height", "drop", "mass", *OPTIONS}
-        unknown = [name for name in reader.fieldnames or [] if name not in known]
-        if "file" not in (reader.fieldnames or []) or unknown:
-            raise InputError(f"{folder / 'list.csv'}: {'there is no column ' + repr(unknown[0]) if unknown else 'the column file is missing'}; "
-                             f"there are {', '.join(sorted(known))}")
-        return [(f"{folder / 'list.csv'}:{reader.line_num}", {key: (value or "").strip() for key, value in row.items() if key})
-                for row in reader]
-
-
-def _matched(folder: Path, pattern: str | None) -> list[tuple[str, dict[str, str]]]:
-    if not pattern:
-        raise InputError(f"{folder} has no list.csv: write one (file, condition, position, height, drop), or give a pattern of the names")
-    parts = re.split(r"\{(\w+)\}", pattern)
-    unknown = [name for name in parts[1::2] if name not in ("condition", "position", "height", "drop", "mass")]
-    if unknown or len(parts) < 3:
-        raise InputError(f"pattern {pattern!r}: {{{unknown[0]}}}" if unknown else f"pattern {pattern!r} names nothing" +
-                         "; {condition}, {position}, {height}, {drop} and {mass} may be named")
-    regex = re.compile("".join(re.escape(part) if k % 2 == 0 else f"(?P<{part}>.+?)" for k, part in enumerate(parts)) + r"\Z")
-    found = [(str(path), {"file": path.name, **match.groupdict()}) for path in sorted(folder.iterdir()) if (match := regex.match(path.name))]
-    if not found:
-        raise InputError(f"no file of {folder} is named {pattern}")
-    return found
-
-
-def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], complete: bool) -> Drop:
-    def name(key: str, entries: Iterable[Any]) -> str:
-        names = [entry.name for entry in entries]
-        value = row.get(key) or (names[0] if len(names) == 1 else "")
-        if value not in names:
-            raise InputError(f"{where}: the protocol has no {key} {value!r}; there are {', '.join(names)}")
-        return value
-
-    if not row.get("height") and len(p.heights) != 1:
-        raise InputError(f"{where}: height is missing")
-    height = length(row["height"].replace("_", " "), where) if row.get("height") else p.heights[0]
-    if p.heights and complete:
-        height_there = min(p.heights, key=lambda h: abs(h - height))
-        if abs(height_there - height) > 1e-3:
-            raise InputError(f"{where}: the protocol has no height of {height:g} m; there are {', '.join(f'{h:g} m' for h in p.heights)}")
-        height = height_there
-    mass = row.get("mass", "")
-    if p.masses and mass not in p.masses or mass and not p.masses:
-        raise InputError(f"{where}: " + (f"the protocol has no mass {mass!r}; there are {', '.join(p.masses)}" if p.masses else
-                                         "the column mass belongs to a protocol with drops.masses, and this one has one missile"))
-    number = row.get("drop") or "1"
-    if not number.isdigit() or not 1 <= int(number) <= p.count:
-        raise InputError(f"{where}: drop {number} is none of the {p.count} of the protocol")
-    spot = Spot(name("condition", p.conditions), name("position", p.positions), height, mass)
-    path = folder / row["file"]
-    options: dict[str, Any] = {key: row[key] for key in OPTIONS if row.get(key)}
-    for flag in ("invert", "zero"):
-        if flag in options:
-            if options[flag] not in ("yes", "no"):
-                raise InputError(f"{where}: {flag} is yes or no, not {options[flag]!r}")
-            options[flag] = options[flag] == "yes"
-    try:
-        record = read_record(path, filter=int(p.filter), **options)
-    except Error as error:
-        raise InputError(f"{where}: {error}") from None
-    curve = (record.time, record.deceleration)
-    taken = _take_figures(p.figures, record.figures, curve)
-    drop = Drop(spot, int(number), str(path), taken, str(record.verdict), "; ".join(record.verdict.remarks), curve)
-    _check_pulse(drop)
-    absent = [figure.label for figure in p.figures if figure.limit is not None and figure.label not in taken]
-    if absent:
-        raise InputError(f"{where}: a measured record has no {absent[0]}, which the protocol limits")
-    return drop
-
-
-LEAST_CHANGE, MOST_CHANGE = 0.7, 2.2  # of the velocity, over that of a free fall: a guided fall without rebound, an elastic one
-
-
-def _check_pulse(drop: Drop) -> None:
-    """Takes a record that cannot be of a fall from its height as one that is not to be used: of another unit, or of another drop."""
-    time, value = (np.asarray(part, float) for part in drop.curve or ((), ()))
-    change = STANDARD_GRAVITY * float(np.sum(0.5 * (value[1:] + value[:-1]) * np.diff(time)))
-    ratio = change / speed(drop.spot.height)
-    if not LEAST_CHANGE <= ratio <= MOST_CHANGE:
-        drop.grade = "do not use"
-        drop.note = "; ".join(part for part in (drop.note, f"its velocity changes by {change:.3g} m/s, {ratio:.2g} times that of a fall from {drop.spot.height:g} m; "
-                              f"{LEAST_CHANGE:g} to {MOST_CHANGE:g} can be: another unit, or another drop") if part)
-
-
-def _refuse_missing(p: Protocol, folder: Path, seen: set[tuple[Spot, int]]) -> None:
-    """Refuses drops that the protocol has and the folder lacks. Heights of a search are those that were measured."""
-    heights = p.heights or tuple(sorted({spot.height for spot, _ in seen}))
-    spots = {(Spot(c.name, q.name, h, m), k) for c in p.conditions for q in p.positions for h in heights
-             for m in (p.masses or ("",)) for k in range(1, p.count + 1)}
-    if not p.heights:  # each position of a search has its own heights, but all drops of each, and at least one
-        spots = {(spot, k) for spot, _ in seen for k in range(1, p.count + 1)}
-        empty = [(c.name, q.name) for c in p.conditions for q in p.positions
-                 if not any(spot.condition == c.name and spot.position == q.name for spot, _ in seen)]
-        if empty:
-            raise InputError(f"{folder}: there is no drop of {', '.join(empty[0])}")
-    absent = sorted(spots - seen, key=lambda entry: (str(entry[0]), entry[1]))
-    if absent:
-        more = f", and {len(absent) - 10} more" if len(absent) > 10 else ""
-        raise InputError(f"{folder}: missing: " + ", ".join(f"drop {number} at {spot}" for spot, number in absent[:10]) + more)
 
 
 def figures_of(drops: Iterable[Drop], key: str, counted: Iterable[int]) -> float:

@@ -21,7 +21,8 @@ from .errors import Error, InputError
 from .judge import judge
 from .protocol import CAUTION, Protocol, length, names, read
 from .protocol_advice import advise
-from .protocol_drops import Drop, Drops, measure, simulate
+from .protocol_drops import Drop, Drops, simulate
+from .protocol_measured import measure
 from .protocol_report import FIELDS, write
 from .rating import rate
 
@@ -58,7 +59,7 @@ def compare(p: Protocol, measured: Drops, simulated: Drops) -> list[dict[str, An
     by_number = {(drop.spot, drop.number): drop for drop in measured.drops}
     first = {drop.spot: drop for drop in sorted(measured.drops, key=lambda d: d.number, reverse=True)}
     pairs = []
-    for drop in simulated.drops:
+    for drop in simulated.all:
         other = first.get(drop.spot) if simulated.stands_in else by_number.get((drop.spot, drop.number))
         if other is not None and drop.curve is not None and other.is_usable and drop.is_usable:
             pairs.append(_pair(p, other, drop))
@@ -118,9 +119,9 @@ def perform(o: argparse.Namespace) -> str:
         output.mkdir(parents=True, exist_ok=True)
         if o.advise:
             required = length(o.required, "--required") if o.required else math.nan
-            told, outcomes["advice"] = advise(p, pad, parts.get("measured", Drops()), output / "drops", o.posterior, required, o.bound, options)
+            told, outcomes["advice"], parts["simulated"] = advise(p, pad, parts.get("measured", Drops()), output / "drops", o.posterior, required, o.bound, options)
         else:
-            parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, **options)
+            parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, parts.get("measured"), **options)
     if not o.advise:
         outcomes = {what: judge(p, drops) for what, drops in parts.items()}
         pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []

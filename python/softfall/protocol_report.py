@@ -12,16 +12,14 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 from urllib.parse import quote
 
-import numpy as np
-
 from . import library
 from .advice import Advice
 from .judge import Outcome
-from .protocol import CAUTION, Protocol
+from .protocol import CAUTION, Protocol, speed
 from .protocol_advice import rows
-from .protocol_drops import Drop, Drops
+from .protocol_drops import Drops
+from .protocol_pictures import curve_picture, height_picture
 
-MOST_PANELS = 12
 FIELDS = ("laboratory", "address", "sample", "order", "date", "conditioning", "operator", "remarks", "photo")
 
 _STYLE = """body{font:15px/1.45 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}h1{font-size:1.5em}h2{font-size:1.15em;
@@ -59,37 +57,6 @@ def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return f"<table><tr>{head}</tr>{body}</table>"
 
 
-def _curves(parts: Mapping[str, Drops]) -> str:
-    """Returns the filtered curves as SVG, a panel for each spot: simulated ones dashed."""
-    import matplotlib
-    matplotlib.use("agg")
-    import matplotlib.pyplot as plt
-    spots: dict[str, list[tuple[str, Drop]]] = {}
-    for what, drops in parts.items():
-        for drop in drops.drops:
-            if drop.curve is not None and (str(drop.spot) in spots or len(spots) < MOST_PANELS):
-                spots.setdefault(str(drop.spot), []).append((what, drop))
-    if not spots:
-        return ""
-    rows = math.ceil(len(spots) / 2)
-    figure, axes = plt.subplots(rows, min(2, len(spots)), figsize=(8, 0.6 + 2.4 * rows), layout="constrained", squeeze=False, sharex=True, sharey=True)
-    for ax in axes.flat[len(spots):]:
-        ax.set_visible(False)
-    for ax, (spot, shown) in zip(axes.flat, spots.items()):
-        for what, drop in shown:
-            time, value = (np.asarray(part, float) for part in drop.curve)  # type: ignore[union-attr]
-            contact = time[int(np.argmax(value > 0.05 * value.max()))]
-            ax.plot(1e3 * (time - contact), value, "--" if what == "simulated" and len(parts) > 1 else "-", lw=1.1, label=f"{what}, drop {drop.number}")
-        ax.set_title(spot, fontsize=9)
-        ax.set(xlabel="time from 5 % of the peak (ms)", ylabel="deceleration (g)")
-        ax.legend(fontsize=7)
-    text = io.StringIO()
-    with plt.rc_context({"svg.hashsalt": "softfall"}):
-        figure.savefig(text, format="svg", metadata={"Date": None})
-    plt.close(figure)
-    return "<figure>" + text.getvalue()[text.getvalue().index("<svg"):] + "</figure>"
-
-
 def _result(what: str, outcome: Outcome) -> str:
     kind = {True: " good", False: " bad", None: ""}[outcome.passed]
     more = []
@@ -120,15 +87,15 @@ def _set_up(p: Protocol, told: Mapping[str, str]) -> str:
 
 def _drop_table(p: Protocol, parts: Mapping[str, Drops], output: Path) -> str:
     keys = [figure.label for figure in p.figures]
-    rows = [[what, drop.spot.condition, drop.spot.position, f"{drop.spot.height:g}", drop.spot.mass, str(drop.number),
-             *(_number(drop.figures.get(key, math.nan)) for key in keys), drop.grade, drop.note, _links(drop.view, output)]
-            for what, drops in parts.items() for drop in drops.drops]
+    rows = [[what, drop.spot.condition, drop.spot.position, drop.spot.missile, f"{drop.spot.height:g}", f"{speed(drop.spot.height):.3f}", drop.spot.mass,
+             str(drop.number), *(_number(drop.figures.get(key, math.nan)) for key in keys), drop.grade, drop.note, _links(drop.view, output)]
+            for what, drops in parts.items() for drop in sorted(drops.all, key=lambda drop: (drop.spot.condition, drop.spot.position, drop.spot.height))]
     found = [[search.condition, search.position, _links(search.view, output)] for drops in parts.values() for search in drops.searches
              if search.view]
     searches = "<h2>Drops at the critical height</h2>" + _table(["condition", "position", "look"], found) if found else ""
     if not rows:
         return searches
-    return searches + "<h2>Drops</h2>" + _table(["", "condition", "position", ">height (m)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note", "look"], rows)
+    return searches + "<h2>Drops</h2>" + _table(["", "condition", "position", "missile", ">height (m)", ">speed of free fall (m/s)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note", "look"], rows)
 
 
 def _choices(advice: Advice | None) -> str:
@@ -136,9 +103,10 @@ def _choices(advice: Advice | None) -> str:
         return ""
     loss = "length of the 95 % interval over the height" if math.isnan(advice.probability) else "probability of a wrong decision"
     listed = rows(advice)
-    return "<h2>The next measurement</h2>" + _table(["measurement", ">cost (drops)", ">expected loss after it (%)", ">fall of the loss for each drop (%)"], listed) + (
-        f'<p class="note">The {len(listed)} best of {len(advice.choices)}. The loss is the {loss}; now it is {100 * advice.loss:.1f} %. Expected over the draws of the foam, '
-        "the errors of the model, and the scatter of drops by speed and thickness. A measured drop of any height stands in list.csv with this height.</p>")
+    return "<h2>The next measurement</h2>" + _table([">rank", "measurement", ">cost", ">expected loss after it (%)", ">fall of the loss over the cost (%)"], listed) + (
+        f'<p class="note">The best of {len(advice.choices)}, and the best one of each kind. The loss is the {loss}; now it is {100 * advice.loss:.1f} %. Expected over the '
+        "draws of the foam, the errors of the model, and the scatter of drops by speed and thickness, or of specimens. A measured drop of any height stands in list.csv with "
+        "this height, one of another missile with its name in the column missile.</p>")
 
 
 def _clauses(p: Protocol) -> str:
@@ -159,16 +127,16 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
         f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(p.title)}</title>'
         f"<style>{_STYLE}</style>", _header(p, laboratory, photo), *(_result(what, outcome) for what, outcome in outcomes.items()),
         "<h2>Notes, and what was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
-        _choices(advice), _set_up(p, told or {}), _drop_table(p, parts, output), _curves(parts), compared, _clauses(p),
+        _choices(advice), _set_up(p, told or {}), _drop_table(p, parts, output), height_picture(p, parts), curve_picture(parts), compared, _clauses(p),
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
     _replace(output / "report.html", page)
     _replace(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(["kind", "condition", "position", "height_m", "mass", "drop", *(figure.label for figure in p.figures), "grade", "note", "source"])
+    table.writerow(["kind", "condition", "position", "missile", "height_m", "mass", "drop", *(figure.label for figure in p.figures), "grade", "note", "source"])
     for what, drops in parts.items():
-        for drop in drops.drops:
-            table.writerow([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position)), f"{drop.spot.height:g}", drop.spot.mass,
+        for drop in drops.all:
+            table.writerow([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position, drop.spot.missile)), f"{drop.spot.height:g}", drop.spot.mass,
                            drop.number, *(drop.figures.get(figure.label, "") for figure in p.figures), drop.grade, _cell(drop.note), _cell(drop.source)])
     _replace(output / "drops.csv", text.getvalue())
 
@@ -191,9 +159,9 @@ def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Out
     return {"caution": CAUTION, "protocol": p.name, "title": p.title, "standard": p.standard, "laboratory": dict(laboratory),
             "results": {what: {"stated": o.stated, "passed": o.passed, "value_m": _plain(o.value), "low_m": _plain(o.low), "high_m": _plain(o.high),
                                "probability": o.probability, "lines": lines(o), "notes": o.notes} for what, o in outcomes.items()},
-            "drops": [{"kind": what, "condition": d.spot.condition, "position": d.spot.position, "height_m": d.spot.height, "mass": d.spot.mass,
+            "drops": [{"kind": what, "condition": d.spot.condition, "position": d.spot.position, "missile": d.spot.missile, "height_m": d.spot.height, "mass": d.spot.mass,
                        "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "grade": d.grade, "note": d.note,
-                       "source": d.source, "view": None if d.view is None else str(d.view)} for what, drops in parts.items() for d in drops.drops],
+                       "source": d.source, "view": None if d.view is None else str(d.view)} for what, drops in parts.items() for d in drops.all],
             "comparison": [{key: _plain(value) for key, value in pair.items()} for pair in pairs],
             "advice": advice and {"probability": _plain(advice.probability), "height_m": [_plain(h) for h in advice.height], "loss": _plain(advice.loss),
                                   "bound": advice.bound, "stop": advice.stop, "decision": advice.decision, "problem": advice.problem,

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "model/model.h"
-#include "io/provenance.h"
 #include <stdio.h>
 
 _Static_assert((int)SOFTFALL_INPUT == SF_ERR_INPUT && (int)SOFTFALL_FILE == SF_ERR_IO &&

@@ -55,6 +55,12 @@ void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const cha
     return block;
 }
 
+void sf_release(void *pointer) {
+    void *block;
+    memcpy(&block, pointer, sizeof block);
+    free(block);
+}
+
 void sf_sink_tell(const sf_sink *sink, sf_severity severity, const char *format, ...) {
     char sentence[1024];
     va_list args;

@@ -36,9 +36,8 @@ typedef struct sf_error {
 /* Refuses what the user gave. */
 #define SF_REFUSE(err, ...) SF_FAIL(err, SF_ERR_INPUT, __VA_ARGS__)
 
-/* Leaves the function with the status of `call` unless that is SF_OK. For a sequence of calls in a function
- * that returns sf_status and has nothing to release; where something must be released, chain the calls in one
- * condition or use `goto done`. */
+/* Leaves the function with the status of `call` unless that is SF_OK. Where something must be released, let its
+ * variable be SF_OWNED, chain the calls in one condition, or use `goto done`. */
 #define SF_TRY(call)                                                                                         \
     do {                                                                                                     \
         sf_status sf_try_status = (call);                                                                    \
@@ -52,6 +51,14 @@ sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int l
 /* Replaces control characters by blanks: texts of files stand in sentences, and their line ends and escapes
  * must not reach the terminal. */
 void sf_error_clean(char *sentence);
+
+/* A variable that is released, by free() or by the function that is named, at the end of its block; it has a
+ * value from its declaration on. Who takes what it points to sets it to NULL. */
+#define SF_OWNED SF_OWNED_BY(sf_release)
+#define SF_OWNED_BY(function) __attribute__((cleanup(function)))
+
+/* Calls free() with the pointer at this address. */
+void sf_release(void *pointer);
 
 /* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
  * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */

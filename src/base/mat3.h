@@ -146,3 +146,45 @@ void sf_rigid_product(const double matrix[6], const double v[3], double out[3]);
  * of Euler's equations, whose steps keep |L| and the kinetic energy. Second order, symmetric in time. */
 void sf_rigid_turn(const double inertia[6], const double q[4], const double momentum[3], double dt,
                    double turn[3]);
+
+/* Finds the point of a triangle that is nearest to x (Ericson 2005, section 5.1.5). `feature`: where it lies,
+ * 0-2 vertex, 3-5 edge, 6 face. */
+static inline void sf_triangle_nearest(const double *a, const double *b, const double *c, const double x[3],
+                                       double out[3], int *feature) {
+    double ab[3], ac[3], ap[3], bp[3], cp[3], s = 0, t = 0;
+    for (int k = 0; k < 3; k++) {
+        ab[k] = b[k] - a[k];
+        ac[k] = c[k] - a[k];
+        ap[k] = x[k] - a[k];
+        bp[k] = x[k] - b[k];
+        cp[k] = x[k] - c[k];
+    }
+    double d1 = sf_dot3(ab, ap), d2 = sf_dot3(ac, ap), d3 = sf_dot3(ab, bp), d4 = sf_dot3(ac, bp),
+           d5 = sf_dot3(ab, cp), d6 = sf_dot3(ac, cp);
+    double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    if (d1 <= 0 && d2 <= 0) {
+        *feature = 0;
+    } else if (d3 >= 0 && d4 <= d3) {
+        *feature = 1;
+        s = 1;
+    } else if (d6 >= 0 && d5 <= d6) {
+        *feature = 2;
+        t = 1;
+    } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        *feature = 3;
+        s = d1 / (d1 - d3);
+    } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        *feature = 4;
+        t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        s = 1 - t;
+    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        *feature = 5;
+        t = d2 / (d2 - d6);
+    } else {
+        *feature = 6;
+        s = vb / (va + vb + vc);
+        t = vc / (va + vb + vc);
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] + s * ab[k] + t * ac[k];
+}

@@ -201,7 +201,7 @@ static void *wait_for_all(void *gate) {
 
 sf_status sf_program_try_threads(int threads, sf_error *err) {
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
-    pthread_t *thread = sf_alloc(err, (unsigned long)threads, sizeof *thread, "the threads");
+    SF_OWNED pthread_t *thread = sf_alloc(err, (unsigned long)threads, sizeof *thread, "the threads");
     int count = 0, failed = 0;
     if (!thread)
         return err->status;
@@ -213,7 +213,6 @@ sf_status sf_program_try_threads(int threads, sf_error *err) {
     pthread_mutex_unlock(&gate);
     for (int k = 0; k < count; k++)
         pthread_join(thread[k], NULL);
-    free(thread);
     if (failed != 0)
         return SF_FAIL(
             err, SF_ERR_MEMORY,

@@ -4,7 +4,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include "case/grammar.h"
 
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out) {
     const sf_case_origin *origin = setting ? config_setting_get_hook(setting) : NULL;

@@ -5,7 +5,6 @@
 #include "gui/fields.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
-#include "io/process.h"
 #include "io/replace.h"
 
 #include <inttypes.h>

@@ -63,12 +63,11 @@ static void read_included(const char *path, const char *text, sf_geo_names *name
 }
 
 static sf_status read_depth(const char *path, sf_geo_names *names, int depth, sf_error *err) {
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     size_t size = 0;
     SF_TRY(sf_plain_read(path, "geometry", LARGEST, &text, &size, err));
     sf_geo_names_scan(text, names);
     read_included(path, text, names, depth);
-    free(text);
     return SF_OK;
 }
 
@@ -167,7 +166,7 @@ static void keep_changes(const sf_fields *before, sf_fields *fields) {
 
 sf_status sf_fields_read(const char *case_path, const sf_sink *sink, sf_fields *fields, sf_case *out,
                          sf_error *err) {
-    sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
+    SF_OWNED sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
     const sf_case_listener listener = {hear, fields};
     if (!before)
         return err->status;
@@ -179,7 +178,6 @@ sf_status sf_fields_read(const char *case_path, const sf_sink *sink, sf_fields *
         keep_changes(before, fields);
     else
         *fields = *before;
-    free(before);
     return err->status;
 }
 

@@ -2,7 +2,6 @@
 #include "gui/pictures.h"
 
 #include "base/units.h"
-#include "gui/gmsh/window.h"
 #include "io/h5.h"
 #include "io/plain_file.h"
 #include "model/cells.h"
@@ -114,11 +113,18 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
 }
 
 /* The faces that belong to one cell only, in the length unit `unit`. Release with sf_shape_free. */
+static sf_status make_shape(const sf_cells *cells, const missile_surface *missile, double unit, sf_shape *s,
+                            sf_error *err) {
+    *s = (sf_shape){.unit = unit};
+    if (find_skin(cells, s, err) != SF_OK || take_missile(missile, s, err) != SF_OK)
+        sf_shape_free(s);
+    return err->status;
+}
+
 static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
     const sf_cells cells = {m->node_count, m->cell_count, m->position,
                             m->cell_type,  m->cell_ptr,   m->cell_node};
     double place;
-    *s = (sf_shape){.unit = unit};
     missile_surface missile = {
         m->surface_triangle_count, m->surface_position,
         m->surface_triangle,       m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0,
@@ -126,21 +132,16 @@ static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_
     for (int d = 0; d < 2; d++)
         if (sf_symmetry_plane(m, d, &place))
             missile.plane[d] = place;
-    if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
-        sf_shape_free(s);
-    return err->status;
+    return make_shape(&cells, &missile, unit, s, err);
 }
 
 sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_error *err) {
     const sf_cells cells = {r->node_count, r->cell_count, r->position,
                             r->cell_type,  r->cell_ptr,   r->cell_node};
-    *s = (sf_shape){.unit = unit};
     const missile_surface missile = {r->surface_triangle_count, r->surface_position,
                                      r->surface_triangle,       r->sphere_radius,
                                      r->sphere_centre,          {r->symmetry_place[0], r->symmetry_place[1]}};
-    if (find_skin(&cells, s, err) != SF_OK || take_missile(&missile, s, err) != SF_OK)
-        sf_shape_free(s);
-    return err->status;
+    return make_shape(&cells, &missile, unit, s, err);
 }
 
 void sf_shape_free(sf_shape *s) {
@@ -203,7 +204,7 @@ static const char *const keys[SF_CHECK_ENTRIES] = {
 
 sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err) {
     sf_h5 *file = NULL;
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     out->count = 0;
     if (sf_h5_open(model, &file, err) == SF_OK)
         sf_h5_read_text(file, "/provenance/report", &text, err);
@@ -215,7 +216,6 @@ sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err
         snprintf(e->name, sizeof e->name, "3Checks/%02d%s", k, name);
         out->count++;
     }
-    free(text);
     sf_error ignored = SF_ERROR_INIT; /* nothing was written */
     sf_h5_close(&file, &ignored);
     return err->status;
@@ -234,30 +234,25 @@ void sf_checks_clear(const sf_check_entries *checks) {
         sf_window_remove(checks->entry[k].name);
 }
 
+/* The last line that begins with `prefix`; NULL: there is none. */
+static const char *last_line(const char *text, const char *prefix) {
+    const char *last = NULL;
+    for (const char *line = text; *line; line = strchrnul(line, '\n'), line += *line == '\n')
+        last = strncmp(line, prefix, strlen(prefix)) == 0 ? line : last;
+    return last;
+}
+
 void sf_checks_sentence(const char *text, char *out, size_t size) {
-    const char *last = NULL, *line = text;
+    const char *last = last_line(text, "softfall-");
     *out = '\0';
-    while (line && *line) {
-        const char *end = strchr(line, '\n');
-        if (*line != '\n' && strncmp(line, "softfall-", 9) == 0)
-            last = line;
-        line = end ? end + 1 : NULL;
-    }
     const char *colon = last ? strstr(last, ": ") : NULL;
     if (colon)
         snprintf(out, size, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
 }
 
 void sf_checks_progress(const char *text, char *out, size_t size) {
-    const char *last = NULL, *line = text;
     size_t used = 0;
-    while (line && *line) {
-        const char *end = strchr(line, '\n');
-        if (strncmp(line, "t ", 2) == 0)
-            last = line;
-        line = end ? end + 1 : NULL;
-    }
-    for (; last && *last && *last != '\n' && used + 1 < size; last++)
+    for (const char *last = last_line(text, "t "); last && *last && *last != '\n' && used + 1 < size; last++)
         if (*last != ' ' || (used > 0 && out[used - 1] != ' '))
             out[used++] = *last;
     out[used] = '\0';
@@ -322,7 +317,7 @@ static void show_motion(const sf_figures *f) {
  * touched has what is known. */
 static sf_status show_outcome(const sf_results *r, sf_error *err) {
     char line[SF_VERDICT_LINE_SIZE];
-    sf_figures f = {0};
+    SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS;
     clear_outcome();
@@ -338,26 +333,25 @@ static sf_status show_outcome(const sf_results *r, sf_error *err) {
             show_motion(&f);
         }
     }
-    sf_figures_free(&f);
     return err->status;
 }
 
 static void plot(const char *title, int64_t count, const double *time, const double *value, double scale) {
-    double *x = malloc(2 * (size_t)count * sizeof *x + 1), *y = x ? x + count : NULL;
+    SF_OWNED double *x = malloc(2 * (size_t)count * sizeof *x + 1);
+    double *y = x ? x + count : NULL;
     for (int64_t k = 0; x && k < count; k++) {
         x[k] = 1e3 * time[k];
         y[k] = value[k] / scale;
     }
     if (x)
         sf_view_plot(title, "t [ms]", count, x, y);
-    free(x);
 }
 
 /* The curve of the figures so far, filtered as they are; the raw one, and its title says so, of a run that
  * has no figures yet. */
 static void plot_outcome(const sf_results *r) {
     const sf_history *h = &r->history;
-    sf_figures f = {0};
+    SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     sf_error none = SF_ERROR_INIT;
     char title[64];
     if (sf_figures_compute(r, FILTER, &f, &none) == SF_OK) {
@@ -367,7 +361,6 @@ static void plot_outcome(const sf_results *r) {
     } else {
         plot("raw, along the direction [g]", h->rows, h->time, h->acceleration, SF_STANDARD_GRAVITY);
     }
-    sf_figures_free(&f);
 }
 
 /* ---- frames ---- */
@@ -383,7 +376,7 @@ static void show_missile(sf_pictures *p, const sf_case *c, const sf_pictures_pla
     sf_body body = {.node_count = n, .position = t->corner, .face_count = t->count};
     sf_error none = SF_ERROR_INIT;
     body.face = sf_alloc(&none, 4 * (unsigned long)t->count + 1, sizeof *body.face, "the missile's picture");
-    double *move = sf_alloc(&none, 3 * (unsigned long)n + 1, sizeof *move, "the missile's picture");
+    SF_OWNED double *move = sf_alloc(&none, 3 * (unsigned long)n + 1, sizeof *move, "the missile's picture");
     sf_geometry_box(low, high);
     shift[2] = high[2] - t->low[2] + place->gap / unit;
     for (int d = 0; d < 2 && place->given; d++)
@@ -399,7 +392,6 @@ static void show_missile(sf_pictures *p, const sf_case *c, const sf_pictures_pla
     if (none.status == SF_OK && sf_view_begin(SF_PICTURE_MISSILE, "missile", &body, &none) == SF_OK)
         sf_view_add(SF_PICTURE_MISSILE, 0, 0, &body, move, NULL);
     free(body.face);
-    free(move);
 }
 
 /* Removes the results from the window, and releases their shape. */
@@ -458,7 +450,7 @@ static sf_status begin_pictures(sf_pictures *p, sf_error *err) {
 void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit) {
     sf_error err = SF_ERROR_INIT;
     sf_model m = {0};
-    double *zero = NULL;
+    SF_OWNED double *zero = NULL;
     forget(p);
     if (sf_model_read(path, &m, NULL, &err) == SF_OK &&
         shape_of_model(&m, length_unit, &p->shape, &err) == SF_OK && begin_pictures(p, &err) == SF_OK) {
@@ -469,7 +461,6 @@ void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit
         sf_view_add(SF_PICTURE_PAD, 0, 0, &p->shape.pad, zero, zero);
         sf_view_add(SF_PICTURE_MISSILE, 0, 0, &p->shape.missile, zero, NULL);
     }
-    free(zero);
     sf_model_free(&m);
     sf_shape_free(&p->shape);
 }

@@ -4,7 +4,6 @@
 #include "gui/activity.h"
 #include "gui/fields.h"
 #include "gui/gmsh/window.h"
-#include "model/model.h"
 #include "post/results/results.h"
 #include <limits.h>
 #include <stddef.h>

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/session.h"
 
-#include "gui/activity.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
-#include "io/process.h"
 #include "io/replace.h"
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +11,7 @@
 static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder",
                   TARGET[] = "1Drop/7save to folder";
 static const char BAD[] = "LightCoral";
+enum { PRODUCT = SF_RUN_PATH_SIZE + 64 }; /* size of the path of a file of the report */
 
 /* ---- what is told ---- */
 
@@ -87,17 +86,16 @@ static void show_folder(const sf_session *s) {
 
 static sf_status add_geometry(const char *path, const char *group, const sf_geo_source *source,
                               const sf_fields *before, sf_fields *fields, sf_error *err) {
-    sf_geo_names *names = sf_alloc(err, 1, sizeof *names, "names of parameters");
+    SF_OWNED sf_geo_names *names = sf_alloc(err, 1, sizeof *names, "names of parameters");
     if (names && sf_geo_names_read(path, names, err) == SF_OK)
         sf_fields_add_geometry(group, names, source, before, fields);
-    free(names);
     return err->status;
 }
 
 /* Reads the case anew. */
 static sf_status read_case(sf_session *s, sf_error *err) {
     sf_case fresh;
-    sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
+    SF_OWNED sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
     if (!before)
         return err->status;
     *before = s->fields;
@@ -114,13 +112,12 @@ static sf_status read_case(sf_session *s, sf_error *err) {
     }
     if (err->status != SF_OK)
         s->fields = *before; /* with what the user has changed */
-    free(before);
     return err->status;
 }
 
 /* The sentence of the case with the values of the window, as the programs would say it. */
 static sf_status check_values(sf_session *s, sf_error *err) {
-    sf_overrides o;
+    SF_OWNED_BY(sf_overrides_free) sf_overrides o = {0};
     sf_case c;
     if (sf_fields_overrides(&s->fields, &o, err) == SF_OK &&
         sf_case_read(s->case_path, o.count, (const char *const *)o.text, NULL, &c, err) == SF_OK) {
@@ -128,7 +125,6 @@ static sf_status check_values(sf_session *s, sf_error *err) {
             c.position_given, {c.missile_position[0], c.missile_position[1]}, c.missile_card.gap};
         sf_case_free(&c);
     }
-    sf_overrides_free(&o);
     return err->status;
 }
 
@@ -241,21 +237,19 @@ static void read_log(const sf_session *s, char **text) {
 }
 
 static sf_status start_pre(sf_session *s, sf_error *err) {
-    sf_overrides o = {0};
+    SF_OWNED_BY(sf_overrides_free) sf_overrides o = {0};
     if (locate(s, &o, err) == SF_OK && open_log(s, err) == SF_OK)
         sf_programs_pre(&s->child, s->case_path, &s->at, s->cache, o.count, (const char *const *)o.text,
                         s->log, err);
-    sf_overrides_free(&o);
     return err->status;
 }
 
 static sf_status start_save(sf_session *s, sf_error *err) {
-    sf_overrides o = {0};
+    SF_OWNED_BY(sf_overrides_free) sf_overrides o = {0};
     char folder[PATH_MAX];
     sf_window_text(TARGET, folder, sizeof folder);
     if (locate(s, &o, err) == SF_OK && open_log(s, err) == SF_OK)
         sf_programs_save(&s->child, s->case_path, folder, o.count, (const char *const *)o.text, s->log, err);
-    sf_overrides_free(&o);
     return err->status;
 }
 
@@ -272,7 +266,7 @@ static void show_results(sf_session *s, bool whole) {
  * run. */
 static void remove_results(sf_session *s) {
     static const char *const products[] = {"report.html", "view.html", "pad.xdmf"};
-    char path[SF_RUN_PATH_SIZE + 64];
+    char path[PRODUCT];
     sf_folder_remove_file(s->at.figures);
     sf_folder_remove_file(s->at.results);
     for (size_t k = 0; k < sizeof products / sizeof products[0]; k++) {
@@ -335,10 +329,9 @@ static void start(sf_session *s) {
 
 /* A finished run of the same values is shown at once. */
 static void show_finished(sf_session *s) {
-    sf_overrides o = {0};
+    SF_OWNED_BY(sf_overrides_free) sf_overrides o = {0};
     sf_error none = SF_ERROR_INIT;
     bool finished = name_run(s, &o, &none) == SF_OK && sf_run_folder_is_finished(&s->at);
-    sf_overrides_free(&o);
     if (!finished) {
         s->at.path[0] = '\0';
         return;
@@ -410,13 +403,12 @@ static void end_program(sf_session *s, int code) {
                      : code == SF_INTERRUPTED || before == SF_STOPPING || before == SF_CANCELLING
                          ? SF_CHILD_INTERRUPTED
                          : SF_CHILD_FAILED;
-    char *log = NULL;
+    SF_OWNED char *log = NULL;
     close_log(s);
     read_log(s, &log);
     if (before == SF_RUNNING && event == SF_CHILD_FAILED && s->resuming &&
         !s->told) { /* it cannot be resumed */
         sf_error err = SF_ERROR_INIT;
-        free(log);
         if (start_solve(s, false, &err) != SF_OK) {
             s->activity = SF_FAILED;
             unlock(s);
@@ -434,7 +426,6 @@ static void end_program(sf_session *s, int code) {
         start(s);
     else
         tell_done(s);
-    free(log);
     if (sf_activity_is_busy(s->activity))
         return;
     unlock(s);
@@ -442,14 +433,14 @@ static void end_program(sf_session *s, int code) {
 }
 
 static void tell_progress(sf_session *s) {
-    char *log = NULL, line[400], text[480];
+    SF_OWNED char *log = NULL;
+    char line[400], text[480];
     read_log(s, &log);
     sf_checks_progress(log ? log : "", line, sizeof line);
     s->told = s->told || *line;
     snprintf(text, sizeof text, "%s: %s", sf_activity_name(s->activity), line);
     if (*line)
         tell(s, false, text);
-    free(log);
 }
 
 void sf_session_refresh(sf_session *s) {
@@ -481,21 +472,20 @@ static void check_edits(sf_session *s) {
         begin_anew(s, false);
 }
 
-static bool has_report(const sf_session *s) {
-    char path[SF_RUN_PATH_SIZE + 64];
-    snprintf(path, sizeof path, "%s/report/report.html", s->at.path);
+/* The path of a file of the report; false: there is none. */
+static bool has_product(const sf_session *s, const char *name, char path[PRODUCT]) {
+    snprintf(path, PRODUCT, "%s/report/%s", s->at.path, name);
     return *s->at.path && is_there(path);
 }
 
-/* The path of a file of the report; false, and told: there is none. */
-static bool find_product(sf_session *s, const char *name, char *path, size_t size) {
+/* The same; that there is none is told. */
+static bool find_product(sf_session *s, const char *name, char path[PRODUCT]) {
     char text[160];
-    snprintf(path, size, "%s/report/%s", s->at.path, name);
-    if (*s->at.path && is_there(path))
-        return true;
+    bool found = has_product(s, name, path);
     snprintf(text, sizeof text, "there is no %s yet: Run makes it", name);
-    tell(s, true, text);
-    return false;
+    if (!found)
+        tell(s, true, text);
+    return found;
 }
 
 static void leave(sf_session *s, const char *program, const char *argument) {
@@ -505,20 +495,19 @@ static void leave(sf_session *s, const char *program, const char *argument) {
 }
 
 static void open_report(sf_session *s) {
-    char path[SF_RUN_PATH_SIZE + 64];
-    if (!find_product(s, "report.html", path, sizeof path))
+    char path[PRODUCT];
+    if (!find_product(s, "report.html", path))
         return;
     leave(s, "xdg-open", path);
-    snprintf(path, sizeof path, "%s/report/view.html", s->at.path);
-    if (is_there(path)) /* a large model may have none */
+    if (has_product(s, "view.html", path)) /* a large model may have none */
         leave(s, "xdg-open", path);
 }
 
 /* By the state that softfall-post writes, if there is one. */
 static void open_paraview(sf_session *s) {
     static const char script[] = "--script=";
-    char path[SF_RUN_PATH_SIZE + 64], argument[sizeof path + sizeof script];
-    if (!find_product(s, "pad.xdmf", path, sizeof path))
+    char path[PRODUCT], argument[sizeof path + sizeof script];
+    if (!find_product(s, "pad.xdmf", path))
         return;
     snprintf(argument, sizeof argument, "%s%s/report/pad_paraview.py", script, s->at.path);
     leave(s, "paraview", is_there(argument + strlen(script)) ? argument : path);
@@ -527,15 +516,13 @@ static void open_paraview(sf_session *s) {
 /* The run that is shown is that of the values, of the files that they name, and of what its geometry has
  * read, as they are now. */
 static bool is_shown(sf_session *s) {
-    sf_overrides o = {0};
+    SF_OWNED_BY(sf_overrides_free) sf_overrides o = {0};
     sf_error none = SF_ERROR_INIT;
     char shown[PATH_MAX];
     snprintf(shown, sizeof shown, "%s", s->at.path);
     sf_plain_clear();
-    bool same = name_run(s, &o, &none) == SF_OK && strcmp(s->at.path, shown) == 0 &&
-                sf_run_folder_is_finished(&s->at);
-    sf_overrides_free(&o);
-    return same;
+    return name_run(s, &o, &none) == SF_OK && strcmp(s->at.path, shown) == 0 &&
+           sf_run_folder_is_finished(&s->at);
 }
 
 static void press(sf_session *s, sf_event event) {
@@ -548,7 +535,8 @@ static void press(sf_session *s, sf_event event) {
         show_finished(s); /* Mesh, Save case or Stop of the report came after it */
     }
     sf_activity before = s->activity;
-    if (run && before == SF_DONE && has_report(s))
+    char path[PRODUCT];
+    if (run && before == SF_DONE && has_product(s, "report.html", path))
         return; /* the run of these values is what is shown */
     s->activity = sf_activity_next(s->activity, event);
     if (s->activity == before && event != SF_PRESS_STOP && sf_activity_is_busy(before))

@@ -3,7 +3,6 @@
 #pragma once
 #include "study/run_folder.h"
 #include "gui/fields.h"
-#include "gui/gmsh/window.h"
 #include "gui/pictures.h"
 #include "gui/activity.h"
 #include "io/process.h"

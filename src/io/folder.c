@@ -257,7 +257,7 @@ void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count
     if (!name_file(folder, kind, key, path) || sf_folder_own(folder, &none) != SF_OK)
         return;
     uint64_t bytes;
-    char *all = join(count, part, &size);
+    SF_OWNED char *all = join(count, part, &size);
     count_names(folder, "", &bytes);
     if (all && bytes + size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
         head h = {.key = key, .size = size, .hash = sf_hash(SF_HASH_START, all, size)};
@@ -266,5 +266,4 @@ void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count
         fwrite(all, 1, size, file.file);
         sf_replace_close(&file, &none);
     }
-    free(all);
 }

@@ -18,8 +18,8 @@ enum { SF_H5_PIECE_SIZE = 1 << 20, SF_H5_DEFLATE = 4 }; /* bytes; level of defla
 struct sf_h5 {
     hid_t id;
     char *path;
-    bool alone;    /* no link is followed, not even into its own folder */
-    char *checked; /* [NAME_MAX + 1] the file of that folder whose seal was checked last */
+    bool alone;                 /* no link is followed, not even into its own folder */
+    char checked[NAME_MAX + 1]; /* the file of that folder whose seal was checked last */
 };
 
 static hid_t native_type(sf_h5_type type) {
@@ -34,18 +34,23 @@ static size_t type_size(sf_h5_type type) {
 }
 
 static sf_status wrap(hid_t id, const char *path, bool alone, sf_h5 **file, sf_error *err) {
-    sf_h5 *made = malloc(sizeof *made);
-    char *copy = strdup(path), *checked = calloc(NAME_MAX + 1, 1);
-    if (!made || !copy || !checked) {
+    sf_h5 *made = calloc(1, sizeof *made);
+    if (!made || !(made->path = strdup(path))) {
         free(made);
-        free(copy);
-        free(checked);
         H5Fclose(id);
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory opening %s", path);
     }
-    *made = (sf_h5){id, copy, alone, checked};
+    made->id = id;
+    made->alone = alone;
     *file = made;
     return SF_OK;
+}
+
+/* Lets a name of the library go at the end of its block: hid_t KEPT space = ...; below 0: none. */
+#define KEPT SF_OWNED_BY(let_go)
+static void let_go(hid_t *id) {
+    if (*id >= 0)
+        H5Idec_ref(*id);
 }
 
 /* Before the first call. HDF5's own cleaning up at exit crashes after a file that could not be closed (a full
@@ -113,7 +118,6 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
         status = SF_FAIL(err, SF_ERR_IO, "closing %s failed: its last data may be missing (disk full?)",
                          (*file)->path);
     free((*file)->path);
-    free((*file)->checked);
     free(*file);
     *file = NULL;
     return status;
@@ -180,7 +184,7 @@ static int open_part(const sf_h5 *file, const char *folder, const char *name, hi
         return LINK_ELSEWHERE;
     if (strcmp(file->checked, name) != 0 && sf_seal_check(path, &problem) != SF_OK)
         return LINK_DAMAGED;
-    snprintf(file->checked, NAME_MAX + 1, "%s", name);
+    snprintf(((sf_h5 *)file)->checked, NAME_MAX + 1, "%s", name);
     *part = open_plain(path, &problem);
     return *part < 0 ? LINK_DAMAGED : LINK_HARD;
 }
@@ -270,24 +274,19 @@ static hid_t make_space(int rank, const int64_t *dims) {
 /* Replaces an attribute of an open object. */
 static sf_status put_attribute(const sf_h5 *file, hid_t object, const char *name, hid_t type,
                                const void *value, sf_error *err) {
-    hid_t space = make_space(0, NULL);
+    KEPT hid_t space = make_space(0, NULL);
     if (H5Aexists(object, name) > 0)
         H5Adelete(object, name);
-    hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    herr_t result = attribute < 0 ? -1 : H5Awrite(attribute, type, value);
-    if (attribute >= 0)
-        H5Aclose(attribute);
-    H5Sclose(space);
-    return result < 0 ? SF_FAIL(err, SF_ERR_IO, "%s: attribute %s cannot be written", file->path, name)
-                      : SF_OK;
+    KEPT hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    if (attribute < 0 || H5Awrite(attribute, type, value) < 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s: attribute %s cannot be written", file->path, name);
+    return SF_OK;
 }
 
 static sf_status string_attribute(const sf_h5 *file, hid_t object, const char *name, const char *text,
                                   sf_error *err) {
-    hid_t type = text_type(text);
-    put_attribute(file, object, name, type, text, err);
-    H5Tclose(type);
-    return err->status;
+    KEPT hid_t type = text_type(text);
+    return put_attribute(file, object, name, type, text, err);
 }
 
 /* Links that are made with the groups above them. */
@@ -301,27 +300,24 @@ static hid_t make_groups(void) {
  * list, or H5P_DEFAULT. */
 static sf_status create_dataset(sf_h5 *file, const sf_h5_info *info, hid_t type, hid_t space, hid_t storage,
                                 hid_t *keep, sf_error *err) {
-    hid_t links = make_groups();
-    hid_t set = H5Dcreate2(file->id, info->path, type, space, links, storage, H5P_DEFAULT);
-    H5Pclose(links);
+    KEPT hid_t links = make_groups();
+    KEPT hid_t set = H5Dcreate2(file->id, info->path, type, space, links, storage, H5P_DEFAULT);
     if (set < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: dataset %s cannot be created", file->path, info->path);
-    if (string_attribute(file, set, "units", info->units, err) != SF_OK ||
-        string_attribute(file, set, "description", info->description, err) != SF_OK) {
-        H5Dclose(set);
-        return err->status;
-    }
+    SF_TRY(string_attribute(file, set, "units", info->units, err));
+    SF_TRY(string_attribute(file, set, "description", info->description, err));
     *keep = set;
+    set = -1;
     return SF_OK;
 }
 
 /* Reads rows of an open dataset into `out`, or writes them from `in`. A scalar is one row. */
 static bool move_rows(hid_t set, hid_t type, int64_t first, int64_t rows, void *out, const void *in) {
-    hid_t space = H5Dget_space(set);
+    KEPT hid_t space = H5Dget_space(set);
     hsize_t start[H5S_MAX_RANK] = {(hsize_t)first}, count[H5S_MAX_RANK];
     int rank = H5Sget_simple_extent_dims(space, count, NULL);
     count[0] = (hsize_t)rows;
-    hid_t memory = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, count, NULL);
+    KEPT hid_t memory = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, count, NULL);
     herr_t result = 0;
     if (H5Sget_simple_extent_npoints(memory) > 0) {
         if (rank > 0)
@@ -330,19 +326,15 @@ static bool move_rows(hid_t set, hid_t type, int64_t first, int64_t rows, void *
             result = out ? H5Dread(set, type, memory, space, H5P_DEFAULT, out)
                          : H5Dwrite(set, type, memory, space, H5P_DEFAULT, in);
     }
-    H5Sclose(memory);
-    H5Sclose(space);
     return result >= 0;
 }
 
 sf_status sf_h5_rows_begin(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank,
                            const int64_t *dims, sf_h5_rows *rows, sf_error *err) {
-    hid_t set = -1, space = make_space(rank, dims);
-    sf_status status = create_dataset(file, info, native_type(type), space, H5P_DEFAULT, &set, err);
-    H5Sclose(space);
+    KEPT hid_t space = make_space(rank, dims);
     *rows = (sf_h5_rows){
-        .file = file, .path = info->path, .type = type, .count = rank == 0 ? 1 : dims[0], .set = set};
-    return status;
+        .file = file, .path = info->path, .type = type, .count = rank == 0 ? 1 : dims[0], .set = -1};
+    return create_dataset(file, info, native_type(type), space, H5P_DEFAULT, &rows->set, err);
 }
 
 sf_status sf_h5_rows_add(sf_h5_rows *rows, int64_t count, const void *data, sf_error *err) {
@@ -393,16 +385,14 @@ static hid_t packed_storage(int rank, const int64_t *dims, size_t item_size) {
 
 sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, bool single, int rank,
                              const int64_t *dims, const void *data, sf_error *err) {
-    hid_t stored = single && type == SF_H5_F64 ? H5T_NATIVE_FLOAT : native_type(type), set = -1,
-          space = make_space(rank, dims);
-    hid_t storage = packed_storage(rank, dims, H5Tget_size(stored));
+    hid_t stored = single && type == SF_H5_F64 ? H5T_NATIVE_FLOAT : native_type(type), set = -1;
+    KEPT hid_t space = make_space(rank, dims);
+    KEPT hid_t storage = packed_storage(rank, dims, H5Tget_size(stored));
     create_dataset(file, info, stored, space, storage, &set, err);
     bool written = set < 0 || H5Sget_simple_extent_npoints(space) == 0 ||
                    H5Dwrite(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
     if ((set >= 0 && H5Dclose(set) < 0) || !written)
         SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
-    H5Pclose(storage);
-    H5Sclose(space);
     return err->status;
 }
 
@@ -411,24 +401,19 @@ sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, 
 }
 
 sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text, sf_error *err) {
-    hid_t type = text_type(text), space = make_space(0, NULL), set = -1;
-    sf_status status = create_dataset(file, info, type, space, H5P_DEFAULT, &set, err);
-    if (status == SF_OK && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0)
-        status = SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
-    if (set >= 0)
-        H5Dclose(set);
-    H5Sclose(space);
-    H5Tclose(type);
-    return status;
+    KEPT hid_t type = text_type(text), space = make_space(0, NULL), set = -1;
+    SF_TRY(create_dataset(file, info, type, space, H5P_DEFAULT, &set, err));
+    if (H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
+    return SF_OK;
 }
 
 /* Data of other files (external, virtual) would let a file refer to data outside it, and a filter
  * (compression) lets a small file claim a large memory: softfall writes neither and refuses both. */
 static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, sf_error *err) {
-    hid_t creation = H5Dget_create_plist(set);
+    KEPT hid_t creation = H5Dget_create_plist(set);
     H5D_layout_t layout = H5Pget_layout(creation);
     int external = H5Pget_external_count(creation), filters = H5Pget_nfilters(creation);
-    H5Pclose(creation);
     if (external != 0 || layout == H5D_VIRTUAL || layout == H5D_LAYOUT_ERROR)
         return SF_FAIL(err, SF_ERR_IO, "%s: the data of %s are in another file, which is not read",
                        file->path, path);
@@ -468,13 +453,12 @@ static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, s
  * A header may claim any extent: the items must be stored, and within the size of the file. */
 static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, size_t item_size, int rank,
                              int64_t *dims, unsigned long *count, sf_error *err) {
-    hid_t space = H5Dget_space(set);
+    KEPT hid_t space = H5Dget_space(set);
     int found = H5Sget_simple_extent_ndims(space);
     H5S_class_t kind = H5Sget_simple_extent_type(space);
     hsize_t extent[SF_H5_MAX_RANK] = {0};
     if (found == rank)
         H5Sget_simple_extent_dims(space, extent, NULL);
-    H5Sclose(space);
     if (found != rank || kind == H5S_NULL)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s has rank %d, expected %d", file->path, path, found, rank);
     uint64_t bytes = item_size;
@@ -501,10 +485,9 @@ static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, siz
 static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h5_type type, int rank,
                             int64_t *dims, void **data, sf_error *err) {
     unsigned long count = 0;
-    hid_t stored = H5Dget_type(set);
+    KEPT hid_t stored = H5Dget_type(set);
     H5T_class_t expected = type == SF_H5_F64 ? H5T_FLOAT : H5T_INTEGER, found = H5Tget_class(stored);
     size_t size = H5Tget_size(stored);
-    H5Tclose(stored);
     if (found != expected)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
                        expected == H5T_FLOAT ? "floating-point" : "integer");
@@ -520,19 +503,16 @@ static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h
 
 sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
                      void **data, sf_error *err) {
-    hid_t set = -1;
+    KEPT hid_t set = -1;
     *data = NULL;
     SF_TRY(open_dataset(file, path, &set, err));
-    read_items(file, path, set, type, rank, dims, data, err);
-    H5Dclose(set);
-    return err->status;
+    return read_items(file, path, set, type, rank, dims, data, err);
 }
 
 sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err) {
-    void *data = NULL;
+    SF_OWNED void *data = NULL;
     SF_TRY(sf_h5_read(file, path, SF_H5_F64, 0, NULL, &data, err));
     *value = *(double *)data;
-    free(data);
     return SF_OK;
 }
 
@@ -547,38 +527,29 @@ static char *text_buffer(hid_t type, hid_t space, uint64_t limit) {
 
 sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_error *err) {
     *text = NULL;
-    hid_t set = -1;
+    KEPT hid_t set = -1;
     SF_TRY(open_dataset(file, path, &set, err));
-    hid_t type = H5Dget_type(set), space = H5Dget_space(set);
-    char *buffer = text_buffer(type, space, size_of_file(set));
-    if (!buffer || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0) {
-        free(buffer);
-        SF_FAIL(err, SF_ERR_IO, "%s: %s is not a readable text", file->path, path);
-    } else {
-        *text = buffer;
-    }
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Dclose(set);
-    return err->status;
+    KEPT hid_t type = H5Dget_type(set), space = H5Dget_space(set);
+    SF_OWNED char *buffer = text_buffer(type, space, size_of_file(set));
+    if (!buffer || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0)
+        return SF_FAIL(err, SF_ERR_IO, "%s: %s is not a readable text", file->path, path);
+    *text = buffer;
+    buffer = NULL;
+    return SF_OK;
 }
 
 static sf_status set_attribute(sf_h5 *file, const char *object, const char *name, hid_t type,
                                const void *value, sf_error *err) {
-    hid_t id = H5Oopen(file->id, object, H5P_DEFAULT);
+    KEPT hid_t id = H5Oopen(file->id, object, H5P_DEFAULT);
     if (id < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s has no object %s", file->path, object);
-    put_attribute(file, id, name, type, value, err);
-    H5Oclose(id);
-    return err->status;
+    return put_attribute(file, id, name, type, value, err);
 }
 
 sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text,
                               sf_error *err) {
-    hid_t type = text_type(text);
-    set_attribute(file, object, name, type, text, err);
-    H5Tclose(type);
-    return err->status;
+    KEPT hid_t type = text_type(text);
+    return set_attribute(file, object, name, type, text, err);
 }
 
 sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value,
@@ -600,44 +571,37 @@ static sf_status open_attribute(const sf_h5 *file, const char *object, const cha
 
 sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char *name, char *text,
                               size_t size, sf_error *err) {
-    hid_t id = -1;
+    KEPT hid_t id = -1;
     SF_TRY(open_attribute(file, object, name, &id, err));
-    hid_t type = H5Aget_type(id), space = H5Aget_space(id);
-    char *buffer = text_buffer(type, space, SF_H5_ATTRIBUTE_SIZE);
+    KEPT hid_t type = H5Aget_type(id), space = H5Aget_space(id);
+    SF_OWNED char *buffer = text_buffer(type, space, SF_H5_ATTRIBUTE_SIZE);
     if (!buffer || H5Aread(id, type, buffer) < 0)
-        SF_FAIL(err, SF_ERR_IO, "%s: attribute %s of %s is not a readable text", file->path, name, object);
-    else
-        snprintf(text, size, "%s", buffer);
-    free(buffer);
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Aclose(id);
-    return err->status;
+        return SF_FAIL(err, SF_ERR_IO, "%s: attribute %s of %s is not a readable text", file->path, name,
+                       object);
+    snprintf(text, size, "%s", buffer);
+    return SF_OK;
 }
 
 sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const char *name, int64_t *value,
                                   sf_error *err) {
-    hid_t id = -1;
+    KEPT hid_t id = -1;
     SF_TRY(open_attribute(file, object, name, &id, err));
-    hid_t space = H5Aget_space(id);
+    KEPT hid_t space = H5Aget_space(id);
     if (H5Sget_simple_extent_npoints(space) != 1 || H5Aread(id, H5T_NATIVE_INT64, value) < 0)
-        SF_FAIL(err, SF_ERR_IO, "%s: attribute %s of %s is not one integer", file->path, name, object);
-    H5Sclose(space);
-    H5Aclose(id);
-    return err->status;
+        return SF_FAIL(err, SF_ERR_IO, "%s: attribute %s of %s is not one integer", file->path, name, object);
+    return SF_OK;
 }
 
 /* All rows of a dataset of `items` items to one of the same shape, some of them at a time. */
 static sf_status copy_rows(const sf_h5 *from, const char *path, hid_t set, hid_t type, int64_t items,
                            sf_h5 *to, hid_t made, sf_error *err) {
-    hid_t space = H5Dget_space(set);
+    KEPT hid_t space = H5Dget_space(set);
     hsize_t extent[H5S_MAX_RANK] = {1};
     H5Sget_simple_extent_dims(space, extent, NULL);
-    H5Sclose(space);
     int64_t rows = (int64_t)extent[0], row_size = items / rows * (int64_t)H5Tget_size(type);
     int64_t piece = row_size < SF_H5_COPY_SIZE ? SF_H5_COPY_SIZE / row_size : 1;
     piece = piece < rows ? piece : rows;
-    void *data = sf_alloc(err, (unsigned long)piece, (unsigned long)row_size, path);
+    SF_OWNED void *data = sf_alloc(err, (unsigned long)piece, (unsigned long)row_size, path);
     for (int64_t first = 0; first < rows && err->status == SF_OK; first += piece) {
         int64_t count = piece < rows - first ? piece : rows - first;
         if (!move_rows(set, type, first, count, data, NULL))
@@ -645,14 +609,14 @@ static sf_status copy_rows(const sf_h5 *from, const char *path, hid_t set, hid_t
         else if (!move_rows(made, type, first, count, NULL, data))
             SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);
     }
-    free(data);
     return err->status;
 }
 
 /* One plain dataset with its two attributes. */
 static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf_h5 *to, sf_error *err) {
     char units[128], description[512];
-    hid_t type = H5Dget_type(set), space = H5Dget_space(set), made = -1;
+    KEPT hid_t type = H5Dget_type(set), space = H5Dget_space(set);
+    hid_t made = -1;
     hssize_t items = H5Sget_simple_extent_npoints(space);
     size_t size = H5Tget_size(type);
     if (sf_h5_get_attribute(from, path, "units", units, sizeof units, err) == SF_OK &&
@@ -665,15 +629,13 @@ static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf
         copy_rows(from, path, set, type, items, to, made, err);
     if (made >= 0 && H5Dclose(made) < 0)
         SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);
-    H5Sclose(space);
-    H5Tclose(type);
     return err->status;
 }
 
 /* Not by H5Ocopy, which crashes when the disk is full (HDF5 1.10). */
 sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *err) {
     int64_t members = sf_h5_group_size(from, path);
-    hid_t set = -1;
+    KEPT hid_t set = -1;
     for (int64_t k = 0; k < members && err->status == SF_OK; k++) {
         char name[128], member[512];
         if (sf_h5_group_member(from, path, k, name, sizeof name, err) != SF_OK)
@@ -684,16 +646,12 @@ sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *e
     }
     if (members >= 0 || open_dataset(from, path, &set, err) != SF_OK)
         return err->status;
-    copy_dataset(from, path, set, to, err);
-    H5Dclose(set);
-    return err->status;
+    return copy_dataset(from, path, set, to, err);
 }
 
 sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error *err) {
-    hid_t links = make_groups();
-    herr_t result = H5Lcreate_external(target, path, file->id, path, links, H5P_DEFAULT);
-    H5Pclose(links);
-    if (result < 0)
+    KEPT hid_t links = make_groups();
+    if (H5Lcreate_external(target, path, file->id, path, links, H5P_DEFAULT) < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: no link %s to %s can be made", file->path, path, target);
     return SF_OK;
 }

@@ -31,9 +31,8 @@ static char *join(const char *directory, const char *name, sf_error *err) {
 
 static bool file_exists(const char *directory, const char *name) {
     sf_error ignored = SF_ERROR_INIT;
-    char *path = join(directory, name, &ignored);
+    SF_OWNED char *path = join(directory, name, &ignored);
     bool found = path && sf_replace_exists(path);
-    free(path);
     return found;
 }
 
@@ -138,9 +137,8 @@ char *sf_staging_path(const sf_staging *output, const char *name, sf_error *err)
 }
 
 FILE *sf_staging_open(const sf_staging *output, const char *name, sf_error *err) {
-    char *path = sf_staging_path(output, name, err);
+    SF_OWNED char *path = sf_staging_path(output, name, err);
     FILE *file = path ? sf_replace_create(path, err) : NULL;
-    free(path);
     return file;
 }
 
@@ -157,10 +155,9 @@ bool sf_staging_has(const sf_staging *output, const char *name) {
 
 void sf_staging_remove(const sf_staging *output, const char *name) {
     sf_error ignored = SF_ERROR_INIT;
-    char *path = sf_staging_path(output, name, &ignored);
+    SF_OWNED char *path = sf_staging_path(output, name, &ignored);
     if (path)
         unlink(path);
-    free(path);
 }
 
 sf_status sf_staging_commit(sf_staging *output, sf_error *err) {

@@ -2,7 +2,6 @@
 #include "io/table_csv.h"
 
 #include "base/text.h"
-#include "io/table_heading.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -134,7 +133,7 @@ static char data_separator(const csv *file, const char *line) {
 static sf_status try_heading(csv *file, const char *line, const char *below, char separator,
                              const sf_table_layout *layout, sf_table_heading *heading, sf_error *err) {
     sf_table_cells cells, below_cells = {0};
-    char *text = copy_utf8(line), *under = copy_utf8(below);
+    SF_OWNED char *text = copy_utf8(line), *under = copy_utf8(below);
     *heading = (sf_table_heading){.place = {-1, -1}, .part = {-1, -1}};
     if (!text || (below && !under)) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
@@ -148,8 +147,6 @@ static sf_status try_heading(csv *file, const char *line, const char *below, cha
             sf_table_heading_read(layout, &cells, below_cells.count <= SF_TABLE_COLUMNS ? &below_cells : NULL,
                                   &file->units, heading, err);
     }
-    free(text);
-    free(under);
     return err->status;
 }
 
@@ -160,7 +157,7 @@ static bool is_good(const sf_table_heading *heading) {
 /* The best heading that the line can be, of any layout and separator; `rest` is the text below it. */
 static sf_status try_line(csv *file, const char *line, const char *rest, const sf_table_layout *layouts,
                           int count, int *which, sf_table_heading *best, char *separator, sf_error *err) {
-    char *below = copy_content(rest);
+    SF_OWNED char *below = copy_content(rest);
     *best = (sf_table_heading){.found = -1};
     for (const char *s = SEPARATORS; *s && err->status == SF_OK; s++)
         for (int k = 0; k < count && err->status == SF_OK; k++) {
@@ -176,7 +173,6 @@ static sf_status try_line(csv *file, const char *line, const char *rest, const s
                 *separator = *s;
             }
         }
-    free(below);
     return err->status;
 }
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
 #include "material/foam_point.h"
 
 /* Compressible hyperfoam of Ogden and Storakers (theory, section "Hyperfoam"), of 1 to 3 terms:

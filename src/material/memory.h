@@ -5,7 +5,6 @@
  * at q, what is loaded further is lost; hence no path creates energy, whatever q does. q falls with the
  * unloadings that a point has passed, and grows with time at rest. */
 #pragma once
-#include <math.h>
 #include <stdbool.h>
 
 #include "material/unloading.h"

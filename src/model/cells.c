@@ -85,7 +85,7 @@ static int64_t keep_single(face *list, int64_t count) {
 
 /* Numbers the nodes of the faces in the order of the mesh. */
 static sf_status number_nodes(const sf_cells *c, const face *list, sf_skin_faces *s, sf_error *err) {
-    int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's skin");
+    SF_OWNED int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's skin");
     s->node = sf_alloc(err, (unsigned long)c->node_count, sizeof *s->node, "the pad's skin");
     s->face = sf_alloc(err, (unsigned long)s->face_count, sizeof *s->face, "the pad's skin");
     for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++)
@@ -100,13 +100,12 @@ static sf_status number_nodes(const sf_cells *c, const face *list, sf_skin_faces
         int32_t node = list[k / 4].node[k % 4];
         s->face[k / 4][k % 4] = node < 0 ? -1 : place[node];
     }
-    free(place);
     return err->status;
 }
 
 sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err) {
     int64_t count = list_faces(c, NULL);
-    face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
+    SF_OWNED face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
     *s = (sf_skin_faces){0};
     if (!list)
         return err->status;
@@ -114,7 +113,6 @@ sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err)
     qsort(list, (size_t)count, sizeof *list, by_nodes);
     s->face_count = keep_single(list, count);
     number_nodes(c, list, s, err);
-    free(list);
     return err->status;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 #include <math.h>
 #include <stdbool.h>
-#include <stddef.h>
 
 /* The checks of a good run: a value of each beyond its first bound is a remark on the run's figures, beyond
  * the second they are not to be used. This list is the only one of them; the verdict of softfall-post

@@ -101,10 +101,9 @@ static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, 
 }
 
 static sf_status read_scalar(const sf_h5 *h5, const char *path, sf_h5_type type, void *to, sf_error *err) {
-    void *data = NULL;
+    SF_OWNED void *data = NULL;
     SF_TRY(sf_h5_read(h5, path, type, 0, NULL, &data, err));
     memcpy(to, data, 8);
-    free(data);
     return SF_OK;
 }
 

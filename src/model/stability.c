@@ -2,10 +2,10 @@
 #include "model/stability.h"
 
 #include "base/mat3.h"
-#include <stdlib.h>
 
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err) {
-    double *share = sf_alloc(err, (unsigned long)model->node_count, sizeof *share, "stability constants");
+    SF_OWNED double *share =
+        sf_alloc(err, (unsigned long)model->node_count, sizeof *share, "stability constants");
     if (!share)
         return err->status;
     for (int64_t l = 0; l < model->node_count; l++)
@@ -29,7 +29,6 @@ sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err
         }
         c[l] = model->volume[l] * sf_sym3_largest(sum);
     }
-    free(share);
     return SF_OK;
 }
 
@@ -51,8 +50,8 @@ static double gradients(const sf_model *m, const int32_t node[3], double length[
 sf_status sf_stability_membrane(const sf_model *m, double *load, sf_error *err) {
     const sf_membrane_card *card = &m->membrane;
     double plane = card->modulus * card->thickness / (1 - card->poisson * card->poisson);
-    double *stiff = sf_alloc(err, (unsigned long)m->node_count, sizeof *stiff, "membrane");
-    double *column = sf_alloc(err, (unsigned long)m->node_count, sizeof *column, "membrane");
+    SF_OWNED double *stiff = sf_alloc(err, (unsigned long)m->node_count, sizeof *stiff, "membrane");
+    SF_OWNED double *column = sf_alloc(err, (unsigned long)m->node_count, sizeof *column, "membrane");
     *load = 0;
     for (int64_t t = 0; err->status == SF_OK && t < m->membrane_count; t++) {
         const int32_t *node = &m->membrane_triangle[3 * t];
@@ -69,7 +68,5 @@ sf_status sf_stability_membrane(const sf_model *m, double *load, sf_error *err) 
             row += fabs(m->phi_value[e]) * column[m->phi_node[e]] / m->mass[m->phi_node[e]];
         *load = fmax(*load, row * stiff[i]);
     }
-    free(column);
-    free(stiff);
     return err->status;
 }

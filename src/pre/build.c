@@ -3,15 +3,12 @@
 #include "pre/free_faces.h"
 
 #include "base/mat3.h"
-#include "model/model.h"
 #include "model/stability.h"
 #include "pre/support.h"
 #include "material/laws.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/connectivity.h"
 #include "pre/cloud/domain_store.h"
-#include "pre/cloud/domains.h"
-#include "pre/drop_check.h"
 #include "pre/foam_path.h"
 #include "pre/membrane.h"
 #include "pre/missile_body.h"
@@ -21,7 +18,6 @@
 #include "pre/impact.h"
 #include "pre/mesh/missile_shape.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -7,10 +7,8 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "base/triangle.h"
 #include "model/flight.h"
 #include "model/good_run.h"
-#include "model/model.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/missile_body.h"
 

@@ -2,7 +2,6 @@
 #include "pre/impact.h"
 #include "pre/mesh/missile_shape.h"
 
-#include "model/model.h"
 #include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,6 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "base/triangle.h"
 #include "pre/free_faces.h"
 #include "pre/mesh/missile_shape.h"
 

@@ -4,7 +4,8 @@
 #include "build_info.h"
 #include "base/program.h"
 #include "base/error.h"
-#include "study/fit/commands.h"
+#include "study/fit/compression/compression_kind.h"
+#include "study/fit/drop/drop_report.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -293,21 +293,19 @@ char *sf_chart_svg(const sf_staging *output, const char *name, const char *progr
     char picture[NAME_SIZE], *element = NULL;
     run(output, name, "svg", program, warning, size);
     snprintf(picture, sizeof picture, "%s.svg", name);
-    char *text = take_file(output, picture);
+    SF_OWNED char *text = take_file(output, picture);
     if (text && !*warning)
         element = sf_gnuplot_element(text, name);
     if (!element && !*warning)
         snprintf(warning, size, "%s was drawn, but cannot be read", picture);
-    free(text);
     return element;
 }
 
 void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, const char *program,
                      const char *caption) {
     char warning[320];
-    char *svg = sf_chart_svg(output, name, program, warning, sizeof warning);
+    SF_OWNED char *svg = sf_chart_svg(output, name, program, warning, sizeof warning);
     sf_html_figure(page, svg, "%s.", svg ? caption : warning);
-    free(svg);
 }
 
 sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *warning, size_t size,

@@ -248,7 +248,7 @@ static char *table_headings(sf_rows rows) {
 }
 
 void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records) {
-    char *headings = table_headings(rows);
+    SF_OWNED char *headings = table_headings(rows);
     sf_html_table table = sf_html_table_begin(page, kind, headings ? headings : "");
     for (int64_t k = 0; k < records.count; k++) {
         sf_html_row(&table);
@@ -257,7 +257,6 @@ void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records r
                 put_html_cell(&table, &rows.row[c], record_at(records, k));
     }
     sf_html_table_end(&table);
-    free(headings);
 }
 
 /* ---- text ---- */

@@ -8,7 +8,6 @@
  * same momentum times the pad's thickness. Both hold to rounding, whatever the step: theory, section
  * "Ledger". */
 #pragma once
-#include "solver/operators.h"
 #include "solver/state.h"
 
 /* Force (N) and moment (N m, about the origin) on the pad of all that is outside the balance: constraints,

@@ -2,7 +2,6 @@
 #include "solver/missile.h"
 
 #include "model/flight.h"
-#include "model/model.h"
 #include "base/mat3.h"
 #include <string.h>
 

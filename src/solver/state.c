@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "model/flight.h"
-#include "model/model.h"
 
 static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy, see start_driven */
 

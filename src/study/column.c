@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "base/units.h"
-#include "post/figures/signal.h"
 
 /* ---- columns below the missile ---- */
 

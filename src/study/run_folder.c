@@ -4,7 +4,6 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "build_info.h"
-#include "case/case.h"
 #include "io/folder.h"
 #include "io/h5.h"
 #include "io/plain_file.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/runner.h"
 
-#include "study/batch.h"
 #include "study/run_folder.h"
 #include "base/hash.h"
 #include "base/units.h"

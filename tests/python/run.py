@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the tests of the Python package: run.py SOURCE. Exit code 77 if a package of Debian is missing, except under SF_NO_SKIP=1."""
+"""Runs the tests of the Python package: run.py FILE [OPTION...]. Exit code 77 if a package of Debian is missing, except under SF_NO_SKIP=1."""
 import importlib.util
 import os
 import subprocess
@@ -12,4 +12,4 @@ if missing:
     print(f"the tests of the Python package need {', '.join(missing)} for {sys.executable}")
     sys.exit(1 if os.environ.get("SF_NO_SKIP") == "1" else 77)
 sys.exit(subprocess.call([sys.executable, "-W", "error::SyntaxWarning", "-m", "pytest", "-q", "-p", "no:cacheprovider",
-                          os.path.join(sys.argv[1], "tests/python"), *sys.argv[2:]]))
+                          *sys.argv[1:]]))

@@ -12,14 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+static int unasked; /* gmsh's code of a failure that nobody asks for */
+
 /* ---- window ---- */
 
 /* The first error among gmsh's lines since gmshLoggerStart, which this ends. */
 static sf_status take_error(const char *path, sf_error *err) {
     char **line = NULL;
     size_t count = 0;
-    int ierr = 0;
-    gmshLoggerGet(&line, &count, &ierr);
+    gmshLoggerGet(&line, &count, &unasked);
     for (size_t k = 0; k < count; k++) {
         if (strncmp(line[k], "Error", 5) == 0) /* as softfall-pre says it */
             SF_FAIL(err, SF_ERR_INPUT, "%s: gmsh, reading: %s", path,
@@ -27,7 +28,7 @@ static sf_status take_error(const char *path, sf_error *err) {
         gmshFree(line[k]);
     }
     gmshFree(line);
-    gmshLoggerStop(&ierr);
+    gmshLoggerStop(&unasked);
     return err->status;
 }
 
@@ -43,8 +44,7 @@ sf_status sf_geometry_show(const char *path, const char *opened, sf_error *err) 
 }
 
 void sf_geometry_box(double low[3], double high[3]) {
-    int ierr = 0;
-    gmshModelGetBoundingBox(-1, -1, &low[0], &low[1], &low[2], &high[0], &high[1], &high[2], &ierr);
+    gmshModelGetBoundingBox(-1, -1, &low[0], &low[1], &low[2], &high[0], &high[1], &high[2], &unasked);
 }
 
 static void measure(sf_triangles *s) {
@@ -65,12 +65,12 @@ static sf_status take_triangles(sf_triangles *out, sf_error *err) {
            parameters = 0, positions = 0;
     size_t largest = 0;
     double *position = NULL, *parameter = NULL;
-    int ierr = 0;
-    gmshModelMeshGetElementsByType(2, &element, &elements, &corner, &corners, -1, 0, 1, &ierr);
-    gmshModelMeshGetNodes(&node, &nodes, &position, &positions, &parameter, &parameters, -1, -1, 0, 0, &ierr);
+    gmshModelMeshGetElementsByType(2, &element, &elements, &corner, &corners, -1, 0, 1, &unasked);
+    gmshModelMeshGetNodes(&node, &nodes, &position, &positions, &parameter, &parameters, -1, -1, 0, 0,
+                          &unasked);
     for (size_t k = 0; k < nodes; k++)
         largest = node[k] > largest ? node[k] : largest;
-    double *place = sf_alloc(err, 3 * (largest + 1), sizeof *place, "the missile's picture");
+    SF_OWNED double *place = sf_alloc(err, 3 * (largest + 1), sizeof *place, "the missile's picture");
     out->corner = sf_alloc(err, 3 * corners, sizeof *out->corner, "the missile's picture");
     for (size_t k = 0; k < nodes && err->status == SF_OK; k++)
         memcpy(&place[3 * node[k]], &position[3 * k], 3 * sizeof *place);
@@ -78,7 +78,6 @@ static sf_status take_triangles(sf_triangles *out, sf_error *err) {
         if (corner[k] <= largest)
             memcpy(&out->corner[3 * k], &place[3 * corner[k]], 3 * sizeof *place);
     out->count = err->status == SF_OK ? (int64_t)(corners / 3) : 0;
-    free(place);
     gmshFree(element);
     gmshFree(corner);
     gmshFree(node);
@@ -100,16 +99,14 @@ sf_status sf_geometry_read_surface(const char *path, sf_triangles *surface, sf_e
 }
 
 void sf_geometry_clear(void) {
-    int ierr = 0;
-    gmshClear(&ierr);
+    gmshClear(&unasked);
 }
 
 #define ACTION "ONELAB/Action"
 
 /* An option of gmsh. */
 static void set_gmsh_option(const char *name, double value) {
-    int ierr = 0;
-    gmshOptionSetNumber(name, value, &ierr);
+    gmshOptionSetNumber(name, value, &unasked);
 }
 
 static int initialize(void) {
@@ -151,7 +148,6 @@ static void look_from_the_side(void) {
 }
 
 sf_status sf_window_start(sf_error *err) {
-    int ierr = 0;
     if (initialize() != 0)
         return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot be started");
     write_nothing();
@@ -162,7 +158,7 @@ sf_status sf_window_start(sf_error *err) {
     set_gmsh_option("General.GraphicsHeight", 900);
     set_gmsh_option("Geometry.PointSize", 0);
     gmshOptionSetString("General.GraphicsFontEngine", "StringTexture",
-                        &ierr); /* the other one drops blanks */
+                        &unasked); /* the other one drops blanks */
     return SF_OK;
 }
 
@@ -227,34 +223,29 @@ sf_status sf_window_open(sf_error *err) {
 }
 
 bool sf_window_wait(double seconds) {
-    int ierr = 0;
-    if (gmshFltkIsAvailable(&ierr) != 1)
+    if (gmshFltkIsAvailable(&unasked) != 1)
         return false;
     events.is_waiting = true;
-    gmshFltkWait(seconds, &ierr);
+    gmshFltkWait(seconds, &unasked);
     events.is_waiting = false;
-    return gmshFltkIsAvailable(&ierr) == 1;
+    return gmshFltkIsAvailable(&unasked) == 1;
 }
 
 void sf_window_end(void) {
-    int ierr = 0;
-    gmshFinalize(&ierr);
+    gmshFinalize(&unasked);
 }
 
 void sf_window_say(const char *text) {
-    int ierr = 0;
-    gmshFltkSetStatusMessage(text, 0, &ierr);
+    gmshFltkSetStatusMessage(text, 0, &unasked);
 }
 
 void sf_window_refresh(void) {
-    int ierr = 0;
-    gmshFltkUpdate(&ierr);
-    gmshGraphicsDraw(&ierr);
+    gmshFltkUpdate(&unasked);
+    gmshGraphicsDraw(&unasked);
 }
 
 void sf_window_close_branch(const char *name) {
-    int ierr = 0;
-    gmshFltkCloseTreeItem(name, &ierr);
+    gmshFltkCloseTreeItem(name, &unasked);
 }
 
 /* ---- entries ---- */
@@ -283,17 +274,14 @@ bool sf_window_number(const char *name, double *number) {
 }
 
 static void set_entry(const char *name, const char *text) {
-    char *copy = strdup(text);
+    SF_OWNED char *copy = strdup(text);
     void *const list = &copy; /* char ** in gmsh 4.8, const char *const * in 4.13 */
-    int ierr = 0;
     if (copy)
-        gmshOnelabSetString(name, list, 1, &ierr);
-    free(copy);
+        gmshOnelabSetString(name, list, 1, &unasked);
 }
 
 void sf_window_set_number(const char *name, double number) {
-    int ierr = 0;
-    gmshOnelabSetNumber(name, &number, 1, &ierr);
+    gmshOnelabSetNumber(name, &number, 1, &unasked);
 }
 
 bool sf_window_take_action(char *action, size_t size) {
@@ -354,13 +342,12 @@ static void put_attributes(sf_json *json, const sf_entry *e) {
 }
 
 static void send(const char *json) {
-    int ierr = 0;
-    gmshOnelabSet(json, "json", &ierr);
+    gmshOnelabSet(json, "json", &unasked);
 }
 
 void sf_window_put(const sf_entry *e) {
     bool number = e->kind == SF_ENTRY_WORD || e->kind == SF_ENTRY_FLAG || e->kind == SF_ENTRY_NUMBER;
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     size_t size = 0;
     sf_json json = {.file = open_memstream(&text, &size), .empty = true};
     if (!json.file)
@@ -384,12 +371,10 @@ void sf_window_put(const sf_entry *e) {
     sf_json_close(&json, '}');
     fclose(json.file);
     send(text);
-    free(text);
 }
 
 void sf_window_remove(const char *name) {
-    int ierr = 0;
-    gmshOnelabClear(name, &ierr);
+    gmshOnelabClear(name, &unasked);
 }
 
 /* Sends an entry of a geometry again, with `addition` at its end: of two members of one name the last counts.
@@ -418,8 +403,7 @@ void sf_window_lock_number(const char *name) {
 void sf_window_visit_numbers(void (*visit)(void *user, const char *name), void *user) {
     char **names = NULL;
     size_t count = 0;
-    int ierr = 0;
-    gmshOnelabGetNames(&names, &count, "", &ierr);
+    gmshOnelabGetNames(&names, &count, "", &unasked);
     for (size_t k = 0; k < count; k++) {
         double value;
         if (sf_window_number(names[k], &value))
@@ -502,17 +486,15 @@ static void set_text(int tag, const char *option, const char *value) {
 }
 
 static void remove_view(int tag) {
-    int ierr = 0;
     if (has_view(tag))
-        gmshViewRemove(tag, &ierr);
+        gmshViewRemove(tag, &unasked);
 }
 
 /* The faces of so many corners as elements of the model's one entity. */
 static sf_status add_faces(const sf_body *b, int corners, size_t *first, sf_error *err) {
     size_t count = 0;
-    int ierr = 0;
-    size_t *tag = sf_alloc(err, (unsigned long)b->face_count, sizeof *tag, "a picture"),
-           *node = sf_alloc(err, (unsigned long)b->face_count, 4 * sizeof *node, "a picture");
+    SF_OWNED size_t *tag = sf_alloc(err, (unsigned long)b->face_count, sizeof *tag, "a picture"),
+                    *node = sf_alloc(err, (unsigned long)b->face_count, 4 * sizeof *node, "a picture");
     for (int64_t k = 0; k < b->face_count && err->status == SF_OK; k++) {
         if ((b->face[4 * k + 3] < 0 ? 3 : 4) != corners)
             continue;
@@ -522,23 +504,19 @@ static sf_status add_faces(const sf_body *b, int corners, size_t *first, sf_erro
     }
     if (count > 0 && err->status == SF_OK)
         gmshModelMeshAddElementsByType(1, corners == 3 ? TRIANGLE : QUADRANGLE, tag, count, node,
-                                       count * (size_t)corners, &ierr);
-    free(tag);
-    free(node);
+                                       count * (size_t)corners, &unasked);
     return err->status;
 }
 
 static sf_status add_mesh(const sf_body *b, sf_error *err) {
-    int ierr = 0;
     size_t first = 1;
-    size_t *tag = sf_alloc(err, (unsigned long)b->node_count, sizeof *tag, "a picture");
+    SF_OWNED size_t *tag = sf_alloc(err, (unsigned long)b->node_count, sizeof *tag, "a picture");
     for (int64_t k = 0; k < b->node_count && tag; k++)
         tag[k] = (size_t)k + 1;
-    gmshModelAddDiscreteEntity(2, 1, NULL, 0, &ierr);
+    gmshModelAddDiscreteEntity(2, 1, NULL, 0, &unasked);
     if (tag)
         gmshModelMeshAddNodes(2, 1, tag, (size_t)b->node_count, b->position, 3 * (size_t)b->node_count, NULL,
-                              0, &ierr);
-    free(tag);
+                              0, &unasked);
     if (err->status == SF_OK && add_faces(b, 3, &first, err) == SF_OK)
         add_faces(b, 4, &first, err);
     return err->status;
@@ -578,18 +556,17 @@ static void dress(sf_picture which, double largest) {
 
 sf_status sf_view_begin(sf_picture which, const char *title, const sf_body *body, sf_error *err) {
     char *shown = NULL;
-    int ierr = 0;
     sf_view_remove(which);
     name_model(which);
-    gmshModelGetCurrent(&shown, &ierr);
-    gmshModelAdd(models[which], &ierr);
+    gmshModelGetCurrent(&shown, &unasked);
+    gmshModelAdd(models[which], &unasked);
     add_mesh(body, err);
     if (shown)
-        gmshModelSetCurrent(shown, &ierr);
+        gmshModelSetCurrent(shown, &unasked);
     gmshFree(shown);
     if (which == SF_PICTURE_PAD)
-        gmshViewAdd("von Mises stress [kPa]", VALUES + (int)which, &ierr);
-    gmshViewAdd(title, MOVES + (int)which, &ierr);
+        gmshViewAdd("von Mises stress [kPa]", VALUES + (int)which, &unasked);
+    gmshViewAdd(title, MOVES + (int)which, &unasked);
     largest_value = 0;
     dress(which, 1);
     return err->status;
@@ -598,20 +575,18 @@ sf_status sf_view_begin(sf_picture which, const char *title, const sf_body *body
 void sf_view_add(sf_picture which, int frame, double time, const sf_body *body, const double *displacement,
                  const double *value) {
     sf_error err = SF_ERROR_INIT;
-    int ierr = 0;
     size_t count = (size_t)body->node_count;
-    size_t *tag = sf_alloc(&err, count, sizeof *tag, "a picture");
+    SF_OWNED size_t *tag = sf_alloc(&err, count, sizeof *tag, "a picture");
     for (size_t k = 0; k < count && tag; k++)
         tag[k] = k + 1;
     if (tag && value)
         gmshViewAddHomogeneousModelData(VALUES + (int)which, frame, models[which], "NodeData", tag, count,
-                                        (double *)value, count, time, 1, 0, &ierr);
+                                        (double *)value, count, time, 1, 0, &unasked);
     if (tag)
         gmshViewAddHomogeneousModelData(MOVES + (int)which, frame, models[which], "NodeData", tag, count,
-                                        (double *)displacement, 3 * count, time, 3, 0, &ierr);
+                                        (double *)displacement, 3 * count, time, 3, 0, &unasked);
     for (size_t k = 0; k < count && value; k++)
         largest_value = fmax(largest_value, value[k]);
-    free(tag);
     dress(which, largest_value > 0 ? largest_value : 1);
 }
 
@@ -626,14 +601,13 @@ void sf_view_show_frame(int frame) {
 
 void sf_view_plot(const char *title, const char *x_label, int64_t count, const double *x, const double *y) {
     enum { TAG = MOVES + SF_PICTURE_CURVE };
-    int ierr = 0;
-    double *data = malloc(4 * (size_t)count * sizeof *data + 1);
+    SF_OWNED double *data = malloc(4 * (size_t)count * sizeof *data + 1);
     remove_view(TAG);
     for (int64_t k = 0; data && k < count; k++)
         memcpy(&data[4 * k], (double[]){x[k], 0, 0, y[k]}, 4 * sizeof *data);
     if (data && count > 1) {
-        gmshViewAdd(title, TAG, &ierr);
-        gmshViewAddListData(TAG, "SP", (int)count, data, 4 * (size_t)count, &ierr);
+        gmshViewAdd(title, TAG, &unasked);
+        gmshViewAddListData(TAG, "SP", (int)count, data, 4 * (size_t)count, &unasked);
         set_option(TAG, "Type", GRAPH);
         set_option(TAG, "AutoPosition", TOP_RIGHT);
         set_text(TAG, "AxesLabelX", x_label);
@@ -644,5 +618,4 @@ void sf_view_plot(const char *title, const char *x_label, int64_t count, const d
         set_option(TAG, "NbIso", 5);
         set_option(TAG, "IntervalsType", 2);
     }
-    free(data);
 }

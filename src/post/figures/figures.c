@@ -3,8 +3,6 @@
 
 #include "base/mat3.h"
 #include "base/units.h"
-#include "post/figures/strain_field.h"
-#include "post/results/results.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <math.h>

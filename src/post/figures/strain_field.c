@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/strain_field.h"
 
-#include "post/results/results.h"
-
 #include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stddef.h>

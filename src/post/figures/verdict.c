@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/verdict.h"
 
-#include "base/units.h"
 #include "base/text.h"
 #include "post/results/results.h"
 #include <stdio.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/results/results.h"
 
-#include "base/mat3.h"
 #include "io/provenance.h"
 #include "io/replace.h"
 #include "model/cells.h"

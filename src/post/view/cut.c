@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "model/model.h"
 #include <stdio.h>
 
 /* A point closer to an end than this part of the thickness is at the end. */

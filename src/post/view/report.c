@@ -13,7 +13,6 @@
 #include "post/view/plot.h"
 #include "post/view/report_picture.h"
 #include "report/chart.h"
-#include "report/html.h"
 
 /* Without the brackets and quotes of the case's syntax. */
 static void tidy(char *value) {

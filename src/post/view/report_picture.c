@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/report_picture.h"
 
-#include "base/units.h"
 #include "report/chart.h"
 #include "post/view/cut.h"
 #include "post/view/plot.h"

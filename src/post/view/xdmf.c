@@ -9,12 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/units.h"
 #include "io/plain_file.h"
 #include "io/provenance.h"
 #include "io/replace.h"
 #include "post/figures/figures.h"
-#include "post/results/results.h"
 
 enum { SPEED, ACCELERATION, FORCE, CENTRE /* only of an exact sphere: the last */, MISSILE_ARRAYS };
 

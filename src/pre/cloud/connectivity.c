@@ -9,8 +9,6 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "pre/cloud/cloud.h"
-#include "pre/mesh/mesh.h"
 
 #define ADVICE                                                                                                 \
     "fuse the volumes, so that their meshes share nodes and faces (in gmsh BooleanUnion, BooleanFragments or " \

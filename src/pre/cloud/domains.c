@@ -4,7 +4,6 @@
 #include "pre/cloud/domains.h"
 
 #include "pre/cloud/mls.h"
-#include "pre/cloud/cloud.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "pre/mesh/mesh.h"
 
 typedef struct raw_edge {
     int32_t low, high;

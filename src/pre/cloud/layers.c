@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "pre/cloud/dual.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

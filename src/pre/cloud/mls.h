@@ -4,7 +4,6 @@
 
 #include "base/grid.h"
 #include "base/error.h"
-#include "pre/cloud/cloud.h"
 #include "pre/cloud/dual.h"
 #include "pre/mesh/mesh.h"
 

@@ -2,7 +2,6 @@
 #include "pre/mesh/gmsh_session.h"
 
 #include "pre/mesh/mesh_raw.h"
-#include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesher_protocol.h"
 
 #include <limits.h>

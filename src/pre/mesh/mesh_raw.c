@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "pre/mesh/mesh.h"
 
 void sf_raw_mesh_free(sf_raw_mesh *raw) {
     free(raw->tag);

@@ -11,7 +11,6 @@
 #include "base/hash.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
-#include "pre/mesh/mesher.h"
 
 enum { PATH_SIZE = 2 * PATH_MAX };
 

@@ -23,7 +23,6 @@
 #include "build_info.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include "pre/mesh/broker.h"
 #include "pre/mesh/geo_parameters.h"
 #include "pre/mesh/mesher_protocol.h"
 

@@ -9,7 +9,6 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "pre/mesh/mesh.h"
 #include "pre/mesh/mesh_raw.h"
 
 static const double EDGE_ON = 1e-3; /* share of the area: below it a surface faces neither way */

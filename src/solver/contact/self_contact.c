@@ -8,7 +8,6 @@
 #include "base/grid.h"
 #include "base/mat3.h"
 #include "base/lanes.h"
-#include "base/triangle.h"
 
 /* Partners of a node: a facet, or one of these. */
 enum { NOTHING = -1, FIRST_PLANE = -2 }; /* plane k: FIRST_PLANE - k */

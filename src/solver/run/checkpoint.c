@@ -8,7 +8,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/h5.h"
 #include "io/replace.h"
 
 static const sf_member members[] = {

@@ -10,10 +10,8 @@
 #include <unistd.h>
 
 #include "io/folder.h"
-#include "io/replace.h"
 #include "model/columns.h"
 #include "model/flight.h"
-#include "model/model.h"
 #include "solver/missile.h"
 #include "solver/run/frame.h"
 

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "io/h5.h"
 
 static const double PEAK_GROWTH = 1.001; /* of the acceleration from one kept maximum to the next */
 

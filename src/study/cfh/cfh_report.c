@@ -3,10 +3,8 @@
 
 #include "base/text.h"
 #include "build_info.h"
-#include "report/row.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- texts ---- */
 
@@ -302,6 +300,7 @@ static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     SF_JSON_NUMBERS(json, {"draws", s->draws}, {"draws_above", s->above}, {"draws_below", s->below},
                     {"draws_collapsed", s->collapsed}, {"draws_beyond_simulated", s->beyond},
                     {"repeats", SF_CFH_REPEATS}, {"expected_mesh_error", s->mesh_error},
+                    {"mesh_error_factor", SF_CFH_MESH_SIZE}, {"mesh_error_hic_factor", SF_CFH_MESH_HIC},
                     {"fit_scatter_a_max", s->fit_scatter[SF_CFH_A_MAX]},
                     {"fit_scatter_hic", s->fit_scatter[SF_CFH_HIC]});
     for (int part = 0; part < SF_CFH_PARTS; part++)
@@ -349,11 +348,10 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
 /* The interval of the fit says how well a quadratic fits, not how well the height is known. */
 static void put_fit(sf_json *json, const sf_cfh_report *r, const sf_cfh_crossing *crossing) {
     const sf_cfh_fit *fit = &crossing->fit;
-    double margin = sf_cfh_rig_margin(r->rig, crossing->margin),
+    double margin = sf_cfh_rig_margin(r->rig, crossing->margin), none = fit->count ? 0 : NAN,
            on_rig = sf_cfh_rig_height(r->rig, crossing->height);
     sf_json_open(json, "fit", '{');
     sf_json_text(json, "form", "ln(value) = c0 + c1 d + c2 d^2, d = ln(height_m) - centre");
-    double none = fit->count ? 0 : NAN;
     SF_JSON_NUMBERS(json, {"centre", fit->centre + none}, {"c0", fit->c[0] + none}, {"c1", fit->c[1] + none},
                     {"c2", fit->c[2] + none}, {"points", fit->count}, {"rms_residual", fit->rms + none});
     sf_json_bool(json, "bracketed", crossing->bracketed);

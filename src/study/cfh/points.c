@@ -2,7 +2,6 @@
 #include "study/cfh/points.h"
 
 #include "base/units.h"
-#include "io/table_csv.h"
 
 #include <assert.h>
 #include <gsl/gsl_cdf.h>

@@ -9,7 +9,6 @@
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
 static const double STRENGTH = 0.85; /* width at the ends over width in the middle: (1 - .) / (1 + .) */
 static const double FOOT = 0.02;     /* strain over which a foam leaves its linear range */
@@ -157,8 +156,8 @@ static sf_status accumulate(const sf_scatter_branch *b, sf_spline *spline, gsl_m
 static sf_status solve(const sf_scatter_branch *b, sf_spline *spline, smoothing *out, sf_error *err) {
     size_t n = (size_t)spline->count;
     double row[SF_SPLINE_COEFFICIENTS];
-    gsl_matrix *normal = sf_matrix(n, n, err);
-    gsl_vector *right = sf_vector(n, err);
+    SF_MATRIX *normal = sf_matrix(n, n, err);
+    SF_VECTOR *right = sf_vector(n, err);
     if (err->status == SF_OK && accumulate(b, spline, normal, right) != SF_OK)
         SF_FAIL(err, SF_ERR_NUMERIC, "a branch of %d points cannot be smoothed", b->count);
     if (err->status == SF_OK)
@@ -172,8 +171,6 @@ static sf_status solve(const sf_scatter_branch *b, sf_spline *spline, smoothing 
         double deviation = (b->y[i] - b->smooth[i]) / b->sigma[i];
         out->weighted += deviation * deviation;
     }
-    gsl_matrix_free(normal);
-    gsl_vector_free(right);
     return err->status;
 }
 

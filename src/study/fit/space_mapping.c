@@ -82,8 +82,8 @@ static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
 /* Their Jacobian by central differences: absolute steps, as the parameters are logarithms. */
 static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobian) {
     sf_error err = SF_ERROR_INIT;
-    gsl_vector *at = sf_vector(x->size, &err), *high = sf_vector(jacobian->size1, &err),
-               *low = sf_vector(jacobian->size1, &err);
+    SF_VECTOR *at = sf_vector(x->size, &err), *high = sf_vector(jacobian->size1, &err),
+              *low = sf_vector(jacobian->size1, &err);
     for (size_t j = 0; j < x->size && err.status == SF_OK; j++) {
         gsl_vector_memcpy(at, x);
         gsl_vector_set(at, j, gsl_vector_get(x, j) + DIFFERENCE);
@@ -94,9 +94,6 @@ static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobi
         gsl_vector_scale(high, 1 / (2 * DIFFERENCE));
         gsl_matrix_set_col(jacobian, j, high);
     }
-    gsl_vector_free(at);
-    gsl_vector_free(high);
-    gsl_vector_free(low);
     return err.status == SF_OK ? GSL_SUCCESS : GSL_ENOMEM;
 }
 
@@ -131,8 +128,8 @@ static sf_status differentiate(const anchor *a, double *jacobian, sf_error *err)
     const sf_mapping_problem *p = a->problem;
     double u[SF_MAPPING_MAX_PARAMETERS];
     size_t n = (size_t)p->responses;
-    double *plus = sf_alloc(err, n, sizeof *plus, "responses"),
-           *minus = sf_alloc(err, n, sizeof *minus, "responses");
+    SF_OWNED double *plus = sf_alloc(err, n, sizeof *plus, "responses"),
+                    *minus = sf_alloc(err, n, sizeof *minus, "responses");
     for (int j = 0; j < p->parameters && err->status == SF_OK; j++) {
         memcpy(u, a->u, (size_t)p->parameters * sizeof *u);
         u[j] = a->u[j] + DIFFERENCE;
@@ -143,8 +140,6 @@ static sf_status differentiate(const anchor *a, double *jacobian, sf_error *err)
         for (int i = 0; i < p->responses && err->status == SF_OK; i++)
             jacobian[i * p->parameters + j] = (plus[i] - minus[i]) / (2 * DIFFERENCE);
     }
-    free(plus);
-    free(minus);
     return err->status;
 }
 
@@ -178,25 +173,22 @@ static int collect_information(const sf_mapping_problem *p, const double *jacobi
  * shows; degrees of freedom: data less trace(J C J^T). */
 static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_result *r, sf_error *err) {
     size_t n = (size_t)p->parameters;
-    gsl_matrix *a = sf_matrix(n, n, err), *c = sf_matrix(n, n, err);
-    if (err->status == SF_OK) {
-        double effective = 0;
-        int data = collect_information(p, r->corrected, a);
-        invert_information(p, a, 1, c);
-        for (size_t j = 0; j < n; j++)
-            for (size_t k = 0; k < n; k++)
-                effective += gsl_matrix_get(a, j, k) * gsl_matrix_get(c, k, j);
-        r->freedom = data - effective;
-        /* the residuals contradict the stated standard deviations (chi-squared, 5 %) */
-        bool misses = r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
-        r->scale = scaled && misses ? sqrt(r->misfit / r->freedom) : 1;
-        invert_information(p, a, r->scale, c);
-        for (size_t j = 0; j < n; j++)
-            for (size_t k = 0; k < n; k++)
-                r->covariance[j][k] = gsl_matrix_get(c, j, k);
-    }
-    gsl_matrix_free(a);
-    gsl_matrix_free(c);
+    SF_MATRIX *a = sf_matrix(n, n, err), *c = sf_matrix(n, n, err);
+    SF_TRY(err->status);
+    double effective = 0;
+    int data = collect_information(p, r->corrected, a);
+    invert_information(p, a, 1, c);
+    for (size_t j = 0; j < n; j++)
+        for (size_t k = 0; k < n; k++)
+            effective += gsl_matrix_get(a, j, k) * gsl_matrix_get(c, k, j);
+    r->freedom = data - effective;
+    /* the residuals contradict the stated standard deviations (chi-squared, 5 %) */
+    bool misses = r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
+    r->scale = scaled && misses ? sqrt(r->misfit / r->freedom) : 1;
+    invert_information(p, a, r->scale, c);
+    for (size_t j = 0; j < n; j++)
+        for (size_t k = 0; k < n; k++)
+            r->covariance[j][k] = gsl_matrix_get(c, j, k);
     return err->status;
 }
 
@@ -284,23 +276,20 @@ static sf_status regress_matrix(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     size_t n = (size_t)p->parameters, responses = (size_t)p->responses;
     const double *first = p->first_matrix;
-    gsl_matrix *a = sf_matrix(n, n, err), *b = sf_matrix(responses, n, err);
-    if (err->status == SF_OK) {
-        for (size_t k = 0; k < responses * n; k++)
-            b->data[k] = first && isfinite(first[k]) ? first[k] / (SLOPE * SLOPE) : 0;
-        for (size_t j = 0; j < n; j++)
-            gsl_matrix_set(a, j, j, 1 / (SLOPE * SLOPE));
-        for (int k = 0; k < s->count; k++)
-            add_secant(s, k, a, b);
-        gsl_linalg_cholesky_decomp1(a);
-        for (size_t i = 0; i < responses; i++) {
-            gsl_vector_view row = gsl_matrix_row(b, i);
-            gsl_linalg_cholesky_svx(a, &row.vector);
-            memcpy(&s->result->matrix[i * n], row.vector.data, n * sizeof(double));
-        }
+    SF_MATRIX *a = sf_matrix(n, n, err), *b = sf_matrix(responses, n, err);
+    SF_TRY(err->status);
+    for (size_t k = 0; k < responses * n; k++)
+        b->data[k] = first && isfinite(first[k]) ? first[k] / (SLOPE * SLOPE) : 0;
+    for (size_t j = 0; j < n; j++)
+        gsl_matrix_set(a, j, j, 1 / (SLOPE * SLOPE));
+    for (int k = 0; k < s->count; k++)
+        add_secant(s, k, a, b);
+    gsl_linalg_cholesky_decomp1(a);
+    for (size_t i = 0; i < responses; i++) {
+        gsl_vector_view row = gsl_matrix_row(b, i);
+        gsl_linalg_cholesky_svx(a, &row.vector);
+        memcpy(&s->result->matrix[i * n], row.vector.data, n * sizeof(double));
     }
-    gsl_matrix_free(a);
-    gsl_matrix_free(b);
     return err->status;
 }
 

@@ -13,7 +13,6 @@
 #pragma once
 #include "base/error.h"
 #include <stdbool.h>
-#include <stdio.h>
 
 enum { SF_MAPPING_MAX_PARAMETERS = 47 };
 

@@ -7,7 +7,6 @@
 #include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum {
     CHECKED_PART = 40, /* one row of so many is a check, within bounds */

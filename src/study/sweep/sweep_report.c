@@ -7,8 +7,6 @@
 #include "report/html.h"
 #include "report/row.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { LISTED = 50, CELLS_LISTED = 200 };
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/commands.h"
 
 #include "io/plain_file.h"
 #include "study/fit/compression/compression_kind.h"

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/compression_config.h"
 
-#include "study/config.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 const char *const sf_rate_model_names[] = {"none", "log", "maxwell", "curves", "auto"};
@@ -124,7 +122,7 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, bool pr
                            sf_compression_config *c, sf_error *err) {
     sf_compression_test test;
     sf_error inner = SF_ERROR_INIT;
-    char *path = NULL;
+    SF_OWNED char *path = NULL;
     sf_compression_source source = {.toe = c->toe};
     if (sf_config_names(file, entry, "file|" SF_COMPRESSION_SOURCE_KEYS, err) == SF_OK &&
         sf_compression_source_read(file, entry, c->specimen, &source, err) == SF_OK &&
@@ -141,7 +139,6 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, bool pr
         else
             sf_compression_test_free(&test);
     }
-    free(path);
     return err->status;
 }
 

@@ -46,3 +46,6 @@ extern const sf_compression_kind sf_compression_tables, sf_compression_form_kind
 /* Stress (Pa, compression positive), lateral strain and W (J m-3) of a hyperfoam in loading with free sides
  * at an axial strain; `lateral` is also the start of the search. */
 double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double *lateral, double *energy);
+
+/* softfall-fit compression FIT.cfg -o DIR; argv[0] is the name of the program. Returns the exit code. */
+int sf_fit_compression_main(int argc, char **argv);

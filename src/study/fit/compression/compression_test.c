@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/compression_test.h"
 
+#include "base/text.h"
 #include "case/curves.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,6 +23,221 @@ void sf_compression_test_free(sf_compression_test *test) {
     free(test->stress);
     free(test->line);
     memset(test, 0, sizeof *test);
+}
+
+/* ---- loading and unloading of the law in the points: one cycle, without rests, from a strain of zero on
+ * ---- */
+
+static const double JITTER = 5e-4; /* strain by which scatter may turn it back */
+
+/* Bounds of the toe correction. */
+static const double TOE_RANGE = 0.15;  /* strain up to which the steepest part is looked for */
+static const double TOE_WIDTH = 0.01;  /* strain of that part, with TOE_POINTS points at least */
+static const double TOE_LARGEST = 0.1; /* strain that it may take away */
+static const double EQUAL = 1e-6;      /* relative difference of slopes that counts as none */
+enum { TOE_POINTS = 5 };
+
+/* ---- cycles ---- */
+
+enum { MOST_CYCLES = 10000 };
+
+/* Point `from` becomes point `to`, with the strain counted from `zero`. */
+static void move_point(sf_compression_test *t, int from, int to, double zero) {
+    t->strain[to] = t->strain[from] - zero;
+    t->stress[to] = t->stress[from];
+    t->line[to] = t->line[from];
+}
+
+static void find_largest(sf_compression_test *t) {
+    t->largest_strain = t->largest_stress = 0;
+    for (int i = 0; i < t->count; i++) {
+        t->largest_strain = fmax(t->largest_strain, t->strain[i]);
+        t->largest_stress = fmax(t->largest_stress, t->stress[i]);
+    }
+}
+
+/* The first point of cycle `k` from 1, the cycle ending before the next begins; the number of cycles is k - 1
+ * if it is not there. A cycle ends where the strain has fallen and rises again, by a tenth of the largest
+ * each.
+ */
+static int begin_of_cycle(const sf_compression_test *t, int k) {
+    double turn = 0.1 * t->largest_strain, highest = t->count > 0 ? t->strain[0] : 0, lowest = 0;
+    int cycle = 1, at = 0;
+    bool falls = false;
+    for (int i = 0; i < t->count; i++) {
+        if (cycle == k)
+            return at;
+        highest = falls ? highest : fmax(highest, t->strain[i]);
+        if (!falls && t->strain[i] < highest - turn) {
+            falls = true;
+            lowest = t->strain[i];
+            at = i;
+        }
+        if (falls && t->strain[i] < lowest) {
+            lowest = t->strain[i];
+            at = i;
+        }
+        if (falls && t->strain[i] > lowest + turn) {
+            falls = false;
+            highest = t->strain[i];
+            cycle++;
+        }
+    }
+    return cycle >= k ? at : -1;
+}
+
+/* Keeps one cycle of the strain: that of the number, or the first of several. */
+static sf_status take_cycle(const char *chosen, sf_compression_test *t, sf_error *err) {
+    int cycles = 1;
+    while (cycles < MOST_CYCLES && begin_of_cycle(t, cycles + 1) >= 0)
+        cycles++;
+    long number = chosen ? strtol(chosen, NULL, 10) : 1;
+    if (number < 1 || number > cycles)
+        return SF_FAIL(err, SF_ERR_INPUT, "%s: cycle %s was asked for; the strain has %d", t->path,
+                       chosen ? chosen : "1", cycles);
+    if (cycles == 1)
+        return SF_OK;
+    int first = begin_of_cycle(t, (int)number), end = t->count;
+    if (number < cycles)
+        end = begin_of_cycle(t, (int)number + 1);
+    t->count = end - first;
+    for (int i = 0; i < t->count; i++)
+        move_point(t, first + i, i, 0);
+    find_largest(t);
+    t->cycle = (int)number;
+    t->cycles = cycles;
+    return SF_OK;
+}
+
+/* ---- rests ---- */
+
+static const double RELAXED = 0.02; /* part of the stress that a rest loses */
+enum { REST_POINTS = 3 };
+
+/* The last point of the rest that begins at `i`; `i` if none does. */
+static int end_of_rest(const sf_compression_test *t, int i) {
+    int last = i;
+    while (last + 1 < t->count && fabs(t->strain[last + 1] - t->strain[i]) <= JITTER)
+        last++;
+    bool rests = last - i >= REST_POINTS && t->stress[last] < (1 - RELAXED) * t->stress[i] &&
+                 t->stress[i] > RELAXED * t->largest_stress;
+    return rests ? last : i;
+}
+
+/* Leaves out the rests: at least three points within the jitter of the strain while the stress falls by 2 %.
+ * During loading the points until the stress is back belong to the rest. */
+static void leave_rests_out(sf_compression_test *t) {
+    int kept = 0, top = 0;
+    for (int i = 0; i < t->count; i++)
+        top = t->strain[i] > t->strain[top] ? i : top;
+    double highest = t->strain[top];
+    for (int i = 0; i < t->count; i++) {
+        move_point(t, i, kept++, 0);
+        int last = end_of_rest(t, i);
+        if (last == i)
+            continue;
+        bool turn = t->strain[last] >= highest - JITTER;
+        double before = t->stress[i];
+        while (!turn && last + 1 < t->count && t->strain[last + 1] >= t->strain[i] - JITTER &&
+               t->stress[last + 1] < before)
+            last++;
+        t->dwell += last - i;
+        i = last;
+    }
+    t->count = kept;
+    find_largest(t);
+}
+
+/* ---- toe ---- */
+
+/* Straight line through the points first to last of a branch: slope, and strain at zero stress. */
+static double line_through(const sf_compression_test *t, int first, int last, double *zero) {
+    double n = last - first + 1, strain = 0, stress = 0, product = 0, square = 0;
+    for (int i = first; i <= last; i++) {
+        strain += t->strain[i] / n;
+        stress += t->stress[i] / n;
+    }
+    for (int i = first; i <= last; i++) {
+        product += (t->strain[i] - strain) * (t->stress[i] - stress);
+        square += (t->strain[i] - strain) * (t->strain[i] - strain);
+    }
+    double slope = square > 0 ? product / square : 0;
+    *zero = slope > 0 ? strain - stress / slope : 0;
+    return slope;
+}
+
+/* The window of loading, below TOE_RANGE, in which the stress rises most steeply. False without a window. */
+static bool steepest(const sf_compression_test *t, int *first, int *last, double *zero, bool *at_end) {
+    double best = 0;
+    for (int i = 0, k = 0; i < t->loading && t->strain[i] <= TOE_RANGE; i++) {
+        double crossing;
+        while (k < t->loading - 1 && (t->strain[k] < t->strain[i] + TOE_WIDTH || k < i + TOE_POINTS - 1))
+            k++;
+        if (k < i + TOE_POINTS - 1 || t->strain[k] > TOE_RANGE)
+            break;
+        double slope = line_through(t, i, k, &crossing);
+        *at_end = slope > (1 + EQUAL) * best;
+        if (*at_end) {
+            best = slope;
+            *first = i;
+            *last = k;
+            *zero = crossing;
+        }
+    }
+    return best > 0;
+}
+
+/* Removes points of the toe and shifts the strain. */
+static void shift_zero(sf_compression_test *t, int first, double zero) {
+    int to = 0, loading = 0;
+    for (int i = first; i < t->count; i++) {
+        if (t->strain[i] < zero)
+            continue;
+        move_point(t, i, to++, zero);
+        loading += i < t->loading;
+    }
+    t->count = to;
+    t->loading = loading;
+    t->toe = zero;
+    t->largest_strain -= zero;
+}
+
+/* The strain that a stress at zero strain stands for, by the slope of the first percent; 0: below 0.1 %. */
+static double preload_of(const sf_compression_test *t) {
+    static const double RANGE = 0.01, LEAST = 1e-3, PART = 0.05;
+    int last = 0;
+    double zero = 0;
+    while (last + 1 < t->loading && t->strain[last] < t->strain[0] + RANGE)
+        last++;
+    double slope = last + 1 >= TOE_POINTS ? line_through(t, 0, last, &zero) : 0;
+    bool loaded = t->strain[0] <= JITTER && t->stress[0] > PART * t->stress[last];
+    zero = slope > 0 ? t->strain[0] - t->stress[0] / slope : 0;
+    return loaded && zero < -LEAST ? -zero : 0;
+}
+
+/* The strain counts from where the toe (steepest straight part) or a preload puts its zero. */
+static sf_status correct_toe(sf_compression_test *t, sf_error *err) {
+    int first = 0, last = 0;
+    double zero = 0;
+    bool at_end = false;
+    if (!steepest(t, &first, &last, &zero, &at_end) || at_end)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: the toe cannot be corrected: loading has no steepest straight part below a strain of "
+            "%g %% (leave toe_correction out)",
+            t->path, 100 * TOE_RANGE);
+    if (zero > TOE_LARGEST)
+        return SF_FAIL(
+            err, SF_ERR_INPUT,
+            "%s: the toe correction would be a strain of %.3g %%, more than %g %%: cut the approach off "
+            "the file",
+            t->path, 100 * zero, 100 * TOE_LARGEST);
+    double preload = preload_of(t);
+    if (preload > 0)
+        shift_zero(t, 0, -preload);
+    else if (zero > 0)
+        shift_zero(t, first, zero);
+    return SF_OK;
 }
 
 /* ---- reading ---- */
@@ -124,7 +338,7 @@ static sf_status begin_at_contact(const sf_compression_source *source, sf_compre
     for (int i = first; i < t->count; i++) {
         if (i > top && t->strain[i] < zero) /* the crosshead leaves the specimen */
             continue;
-        sf_compression_move(t, i, kept++, zero);
+        move_point(t, i, kept++, zero);
     }
     t->count = kept;
     return SF_OK;
@@ -148,7 +362,7 @@ static sf_status take_table(const sf_compression_source *source, const table_ter
     }
     if (source->contact_force > 0)
         SF_TRY(begin_at_contact(source, t, err));
-    sf_compression_find_largest(t);
+    find_largest(t);
     return SF_OK;
 }
 
@@ -164,13 +378,13 @@ static sf_status refuse_turn(const sf_compression_test *t, const table_terms *te
                    t->line[first]);
 }
 
-/* Refuses a fall of more than SF_COMPRESSION_JITTER below what was reached before the largest strain, and
+/* Refuses a fall of more than JITTER below what was reached before the largest strain, and
  * such a rise after it. */
 static sf_status check_turns(const sf_compression_test *t, const table_terms *terms, sf_error *err) {
     double highest = t->count > 0 ? t->strain[0] : 0, lowest = INFINITY;
     for (int i = 1; i < t->loading; i++) {
         highest = fmax(highest, t->strain[i]);
-        if (t->strain[i] >= highest - SF_COMPRESSION_JITTER)
+        if (t->strain[i] >= highest - JITTER)
             continue;
         int again = i + 1; /* there is one, as the largest strain follows */
         while (again < t->loading - 1 && t->strain[again] <= t->strain[again - 1])
@@ -179,7 +393,7 @@ static sf_status check_turns(const sf_compression_test *t, const table_terms *te
     }
     for (int i = t->loading; i < t->count; i++) {
         lowest = fmin(lowest, t->strain[i]);
-        if (t->strain[i] > lowest + SF_COMPRESSION_JITTER)
+        if (t->strain[i] > lowest + JITTER)
             return refuse_turn(t, terms, i, t->loading, err);
     }
     return SF_OK;
@@ -303,15 +517,15 @@ static sf_status check_test(const sf_compression_source *source, sf_compression_
         lowest = fmin(lowest, t->strain[i]);
     for (int i = 0; i < t->count && -lowest > t->largest_strain; i++) /* tension, not a later cycle */
         SF_TRY(check_row(t, i, terms, err));
-    SF_TRY(sf_compression_take_cycle(t->cycle ? NULL : source->cycle, t, err));
+    SF_TRY(take_cycle(t->cycle ? NULL : source->cycle, t, err));
     for (int i = 0; i < t->count; i++)
         SF_TRY(check_row(t, i, terms, err));
-    sf_compression_leave_rests_out(t);
+    leave_rests_out(t);
     SF_TRY(split_branches(t, terms, err));
     if (source->toe)
-        SF_TRY(sf_compression_correct_toe(t, err));
+        SF_TRY(correct_toe(t, err));
     else
-        t->preload = sf_compression_preload(t);
+        t->preload = preload_of(t);
     SF_TRY(check_size(t, err));
     SF_TRY(check_sign(t, terms, err));
     SF_TRY(check_loading(t, terms, err));
@@ -346,42 +560,39 @@ static void condense(sf_compression_test *t) {
 
 /* ---- the whole ---- */
 
-static void append(sf_compression_test *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void append(sf_compression_test *t, const char *format, ...) {
-    size_t used = strlen(t->interpretation);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(t->interpretation + used, sizeof t->interpretation - used, format, arguments);
-    va_end(arguments);
-}
-
 static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
                      sf_compression_test *t) {
     static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};
-    append(t, "%.383s", table->interpretation);
+    sf_text_add(t->interpretation, sizeof t->interpretation, "%.383s", table->interpretation);
     if (machine)
-        append(t, ", over %.5g mm2 and %.5g mm", 1e6 * source->area, 1e3 * source->thickness);
-    append(t, ", %d points of loading and %d of unloading%s", t->loading, t->count - t->loading,
-           inverted[source->invert]);
+        sf_text_add(t->interpretation, sizeof t->interpretation, ", over %.5g mm2 and %.5g mm",
+                    1e6 * source->area, 1e3 * source->thickness);
+    sf_text_add(t->interpretation, sizeof t->interpretation, ", %d points of loading and %d of unloading%s",
+                t->loading, t->count - t->loading, inverted[source->invert]);
     if (t->cycles > 1)
-        append(t, ", cycle %d of %d", t->cycle, t->cycles);
+        sf_text_add(t->interpretation, sizeof t->interpretation, ", cycle %d of %d", t->cycle, t->cycles);
     if (source->contact_force > 0)
-        append(t, ", zero at a force of %.4g N", source->contact_force);
+        sf_text_add(t->interpretation, sizeof t->interpretation, ", zero at a force of %.4g N",
+                    source->contact_force);
     if (t->dwell > 0)
-        append(t, ", without %d points of a rest under strain, during which the stress relaxed", t->dwell);
+        sf_text_add(t->interpretation, sizeof t->interpretation,
+                    ", without %d points of a rest under strain, during which the stress relaxed", t->dwell);
     if (t->tension > 0)
-        append(t, ", %d points in tension at the end set to zero", t->tension);
+        sf_text_add(t->interpretation, sizeof t->interpretation,
+                    ", %d points in tension at the end set to zero", t->tension);
     if (t->preload > 0)
-        append(t,
-               ", begins under a load that stands for a strain of %.3g %% (preload or zero of the load cell: "
-               "toe_correction takes it away)",
-               100 * t->preload);
+        sf_text_add(
+            t->interpretation, sizeof t->interpretation,
+            ", begins under a load that stands for a strain of %.3g %% (preload or zero of the load cell: "
+            "toe_correction takes it away)",
+            100 * t->preload);
     if (t->sorted > 0)
-        append(t, ", jitter of %d points sorted", t->sorted);
+        sf_text_add(t->interpretation, sizeof t->interpretation, ", jitter of %d points sorted", t->sorted);
     if (source->toe)
-        append(t, t->toe < 0 ? ", %.3g %% added that a preload had hidden" : ", toe of %.3g %% taken away",
-               100 * fabs(t->toe));
-    append(t, ", %.4g 1/s", t->rate);
+        sf_text_add(t->interpretation, sizeof t->interpretation,
+                    t->toe < 0 ? ", %.3g %% added that a preload had hidden" : ", toe of %.3g %% taken away",
+                    100 * fabs(t->toe));
+    sf_text_add(t->interpretation, sizeof t->interpretation, ", %.4g 1/s", t->rate);
 }
 
 sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,

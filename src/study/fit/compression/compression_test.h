@@ -68,25 +68,3 @@ void sf_compression_test_free(sf_compression_test *test);
 
 /* Stress of loading at a strain, by interpolation; below the first strain that of the first point. */
 double sf_compression_loading_stress(const sf_compression_test *test, double strain);
-
-/* ---- internal: test_shape.c ---- */
-
-/* Keeps one cycle of the strain: that of the number, or the first of several. SF_ERR_INPUT: there is none of
- * this number. Needs strain, stress, line and largest strain. */
-sf_status sf_compression_take_cycle(const char *chosen, sf_compression_test *test, sf_error *err);
-
-/* Leaves out the rests: at least three points within the jitter of the strain while the stress falls by 2 %.
- */
-void sf_compression_leave_rests_out(sf_compression_test *test);
-
-/* The strain counts from where the toe (steepest straight part) or a preload puts its zero. */
-sf_status sf_compression_correct_toe(sf_compression_test *test, sf_error *err);
-
-/* The strain that a stress at zero strain stands for, by the slope of the first percent; 0: below 0.1 %. */
-double sf_compression_preload(const sf_compression_test *test);
-
-/* Point `from` becomes point `to`, with the strain counted from `zero`. */
-void sf_compression_move(sf_compression_test *test, int from, int to, double zero);
-void sf_compression_find_largest(sf_compression_test *test);
-
-extern const double SF_COMPRESSION_JITTER; /* strain by which scatter may turn it back */

@@ -3,7 +3,6 @@
 
 #include "material/curve.h"
 #include "study/fit/compression/point_model.h"
-#include "study/fit/least_squares.h"
 #include "material/unloading.h"
 #include <gsl/gsl_errno.h>
 #include <math.h>
@@ -18,17 +17,11 @@ static const double FALL_WEIGHT[] = {100, 3e3, 1e5};
 enum { FALL_WEIGHTS = sizeof FALL_WEIGHT / sizeof *FALL_WEIGHT };
 static const double FAR = 1e3;          /* deviation where there is no stress */
 static const double RIDGE = 1e-4;       /* holds what the tests do not determine near its median */
-static const double AT_BOUND = 1e-3;    /* of the range */
 static const double POOR = 0.1;         /* rms over the largest stress */
 static const double NO_FIT = 1;         /* the same */
 static const double UNDETERMINED = 1;   /* relative standard error */
 static const double AWAY = 1.5;         /* standard deviations of the prior, of the other starts */
 static const double LEAST_RATIO = 0.05; /* part of the largest W above which f is compared */
-static const double UNLOADING_LEAST[3] = {1e-4, 0.05, 0.1}, UNLOADING_RANGE[3] = {1 - 1e-4, 20, 4.9};
-
-static double logistic(double x) {
-    return 1 / (1 + exp(-x));
-}
 
 /* ---- loading ---- */
 
@@ -45,7 +38,7 @@ typedef struct problem {
 /* ln of a parameter between the bounds of its table, from the real line. */
 static double parameter_of(sf_foam_parameter p, double x) {
     const sf_parameter_info *about = sf_parameter_get(p);
-    return exp(log(about->low) + log(about->high / about->low) * logistic(x));
+    return exp(log(about->low) + log(about->high / about->low) * sf_logistic(x));
 }
 
 static double real_of(sf_foam_parameter p, double value) {
@@ -140,13 +133,15 @@ static sf_status init_problem(const sf_compression_config *config, problem *p, s
 }
 
 /* Start 0: the medians; then each unknown up and down from there. */
-static void put_start(const sf_form_request *r, int start, gsl_vector *x) {
+static bool put_start(void *data, int start, gsl_vector *x) {
+    const sf_form_request *r = ((const problem *)data)->request;
     for (int k = 0; k < r->unknown_count; k++) {
         sf_foam_parameter p = r->unknown[k];
         double away = start == 2 * k + 1 ? AWAY : start == 2 * k + 2 ? -AWAY : 0;
         gsl_vector_set(x, (size_t)k,
                        real_of(p, r->start[p] * exp(away * sf_foam_form_prior_sd(&r->form, p))));
     }
+    return start <= 2 * r->unknown_count;
 }
 
 static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix *covariance, double sum,
@@ -157,9 +152,9 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
            variance = sum / fmax(1, p->points - r->unknown_count) * serial;
     for (int k = 0; k < r->unknown_count; k++) {
         const sf_parameter_info *about = sf_parameter_get(r->unknown[k]);
-        double part = logistic(gsl_vector_get(x, (size_t)k)),
+        double part = sf_logistic(gsl_vector_get(x, (size_t)k)),
                slope = log(about->high / about->low) * part * (1 - part);
-        fit->at_bound[k] = part < AT_BOUND || part > 1 - AT_BOUND;
+        fit->at_bound[k] = sf_is_at_end(part);
         fit->error[k] = fit->at_bound[k]
                             ? NAN
                             : slope * sqrt(variance * gsl_matrix_get(covariance, (size_t)k, (size_t)k));
@@ -167,75 +162,35 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
 }
 
 static sf_status fit_loading(problem *p, sf_form_fit *fit, sf_error *err) {
+    const char *form = p->request->form.curve->name;
     size_t size = (size_t)p->request->unknown_count, count = (size_t)p->points + 1 + size;
-    gsl_vector *x = gsl_vector_alloc(size), *best = gsl_vector_alloc(size), *out = gsl_vector_alloc(count);
-    gsl_matrix *covariance = gsl_matrix_alloc(size, size);
-    double least = INFINITY;
-    for (int start = 0; start <= 2 * p->request->unknown_count; start++) {
-        put_start(p->request, start, x);
-        double sum = sf_least_squares(deviate, p, count, x, NULL);
-        if (sum < least) {
-            least = sum;
-            gsl_vector_memcpy(best, x);
-        }
-    }
+    SF_VECTOR *best = gsl_vector_alloc(size), *out = gsl_vector_alloc(count);
+    SF_MATRIX *covariance = gsl_matrix_alloc(size, size);
+    double least = sf_least_squares_from(put_start, deviate, p, count, best), sum = 0;
     for (int k = 0; k < FALL_WEIGHTS && isfinite(least); k++) {
         p->fall_weight = FALL_WEIGHT[k];
         least = sf_least_squares(deviate, p, count, best, covariance);
     }
-    if (isfinite(least)) {
-        take_values(p, best, fit->value);
-        deviate(best, p, out);
-        double sum = 0;
-        for (int i = 0; i < p->points; i++)
-            sum += p->reduced[i] * p->reduced[i];
-        fit->loading_rms = sqrt(sum / p->points);
-        take_errors(p, best, covariance, least, fit);
-        if (!(fit->loading_rms < NO_FIT))
-            SF_FAIL(
-                err, SF_ERR_NUMERIC,
-                "the best curve of curve_form = \"%s\" deviates from the tests by more than their largest "
-                "stress (rms)",
-                p->request->form.curve->name);
-    } else {
-        SF_FAIL(err, SF_ERR_NUMERIC, "no search for the parameters of curve_form = \"%s\" converges",
-                p->request->form.curve->name);
-    }
-    gsl_vector_free(x);
-    gsl_vector_free(best);
-    gsl_vector_free(out);
-    gsl_matrix_free(covariance);
-    return err->status;
+    if (!isfinite(least))
+        return SF_FAIL(err, SF_ERR_NUMERIC, "no search for the parameters of curve_form = \"%s\" converges",
+                       form);
+    take_values(p, best, fit->value);
+    deviate(best, p, out);
+    for (int i = 0; i < p->points; i++)
+        sum += p->reduced[i] * p->reduced[i];
+    fit->loading_rms = sqrt(sum / p->points);
+    take_errors(p, best, covariance, least, fit);
+    if (!(fit->loading_rms < NO_FIT))
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "the best curve of curve_form = \"%s\" deviates from the tests by more than their "
+                       "largest stress (rms)",
+                       form);
+    return SF_OK;
 }
 
 /* ---- unloading ---- */
 
-/* Points of unloading of all fitted tests. */
-typedef struct unloading {
-    int count;
-    bool one;                                     /* ALPHA = 1 */
-    double *measured, *loading, *viscous, *ratio; /* [count], stresses over their test's largest; W over its
-                                                     largest */
-} unloading;
-
-static void take_unloading(const unloading *u, const gsl_vector *x, double value[3]) {
-    for (size_t k = 0; k < 3; k++)
-        value[k] =
-            k == 2 && u->one ? 1 : UNLOADING_LEAST[k] + UNLOADING_RANGE[k] * logistic(gsl_vector_get(x, k));
-}
-
-static int deviate_unloading(const gsl_vector *x, void *data, gsl_vector *out) {
-    const unloading *u = data;
-    double value[3];
-    take_unloading(u, x, value);
-    for (int k = 0; k < u->count; k++)
-        gsl_vector_set(out, (size_t)k,
-                       sf_unloading_factor(value[0], value[1], value[2], u->ratio[k]) * u->loading[k] +
-                           u->viscous[k] - u->measured[k]);
-    return GSL_SUCCESS;
-}
-
-static double factor_rms(const unloading *u, const double value[3]) {
+static double factor_rms(const sf_unloading_points *u, const double value[3]) {
     double sum = 0;
     int count = 0;
     for (int k = 0; k < u->count; k++) {
@@ -248,32 +203,11 @@ static double factor_rms(const unloading *u, const double value[3]) {
     return sqrt(sum / count);
 }
 
-static sf_form_unloading fit_unloading(unloading *u, bool one) {
-    static const double starts[][3] = {{-2, -3, -2}, {-3, -4, -3}, {-2, -1, -1.5}, {-5, -2, -3}};
-    sf_form_unloading out = {.rms = NAN};
-    gsl_vector *x = gsl_vector_alloc(one ? 2 : 3), *best = gsl_vector_alloc(one ? 2 : 3);
-    double least = INFINITY;
+static sf_form_unloading fit_unloading(sf_unloading_points *u, bool one) {
     u->one = one;
-    for (size_t s = 0; s < sizeof starts / sizeof *starts; s++) {
-        for (size_t k = 0; k < x->size; k++)
-            gsl_vector_set(x, k, starts[s][k]);
-        double sum = sf_least_squares(deviate_unloading, u, (size_t)u->count, x, NULL);
-        if (sum < least) {
-            least = sum;
-            gsl_vector_memcpy(best, x);
-        }
-    }
-    if (isfinite(least)) {
-        take_unloading(u, best, out.value);
-        for (size_t k = 0; k < x->size; k++) {
-            double part = logistic(gsl_vector_get(best, k));
-            out.at_bound[k] = part < AT_BOUND || part > 1 - AT_BOUND;
-        }
-        out.rms = sqrt(least / u->count);
-        out.factor_rms = factor_rms(u, out.value);
-    }
-    gsl_vector_free(x);
-    gsl_vector_free(best);
+    sf_form_unloading out = {.fit = sf_unloading_search(u)};
+    if (isfinite(out.fit.rms))
+        out.factor_rms = factor_rms(u, out.fit.value);
     return out;
 }
 
@@ -297,7 +231,7 @@ static double viscous_at(const sf_form_fit *fit, const sf_compression_test *t, i
     return viscous;
 }
 
-static void list_unloading(const sf_form_fit *fit, const sf_curve *curve, unloading *u) {
+static void list_unloading(const sf_form_fit *fit, const sf_curve *curve, sf_unloading_points *u) {
     for (int k = 0; k < fit->config->test_count; k++) {
         const sf_compression_test *t = &fit->config->test[k];
         sf_compression_walk walk = {0};
@@ -317,26 +251,25 @@ static void list_unloading(const sf_form_fit *fit, const sf_curve *curve, unload
 }
 
 static sf_status fit_all_unloading(sf_form_fit *fit, const sf_curve *curve, sf_error *err) {
-    unloading u = {0};
+    sf_unloading_points u = {.scale = 1, .starts = 4};
     unsigned long count = 0;
     for (int k = 0; k < fit->config->test_count; k++)
         count += (unsigned long)(fit->config->test[k].count - fit->config->test[k].loading);
     fit->has_unloading = count > 3;
     if (!fit->has_unloading)
         return SF_OK;
-    u.measured = sf_alloc(err, 4 * count, sizeof(double), "unloading");
-    if (err->status == SF_OK) {
-        u.loading = u.measured + count;
-        u.viscous = u.loading + count;
-        u.ratio = u.viscous + count;
-        list_unloading(fit, curve, &u);
-        fit->unloading_of_one = fit_unloading(&u, true);
-        fit->unloading = fit_unloading(&u, false);
-        if (!isfinite(fit->unloading.rms))
-            SF_FAIL(err, SF_ERR_NUMERIC, "no search for HU, SHAPE and ALPHA converges");
-    }
-    free(u.measured); /* and all behind it */
-    return err->status;
+    SF_OWNED double *all = sf_alloc(err, 4 * count, sizeof *all, "unloading");
+    SF_TRY(err->status);
+    u.measured = all;
+    u.loading = u.measured + count;
+    u.viscous = u.loading + count;
+    u.ratio = u.viscous + count;
+    list_unloading(fit, curve, &u);
+    fit->unloading_of_one = fit_unloading(&u, true);
+    fit->unloading = fit_unloading(&u, false);
+    return isfinite(fit->unloading.fit.rms)
+               ? SF_OK
+               : SF_FAIL(err, SF_ERR_NUMERIC, "no search for HU, SHAPE and ALPHA converges");
 }
 
 /* Energy (J m-3) below points, by trapezoids; positive for ascending strain. */
@@ -356,7 +289,7 @@ double sf_form_rms(const double *measured, double largest, const double *stress,
 
 static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, const sf_compression_test *t,
                              sf_form_test *out, sf_error *err) {
-    const double *u = fit->unloading.value;
+    const double *u = fit->unloading.fit.value;
     sf_compression_walk walk = {0};
     double peak, energy;
     bool back = fit->has_unloading && t->count > t->loading;
@@ -394,11 +327,9 @@ static sf_status follow_all(sf_form_fit *fit, const sf_curve *curve, sf_error *e
 }
 
 sf_status sf_form_fit_follow(sf_form_fit *fit, sf_error *err) {
-    sf_curve curve = {0};
-    if (sf_curve_build(&fit->card, 0, &curve, err) == SF_OK)
-        follow_all(fit, &curve, err);
-    sf_curve_free(&curve);
-    return err->status;
+    SF_OWNED_BY(sf_curve_free) sf_curve curve = {0};
+    SF_TRY(sf_curve_build(&fit->card, 0, &curve, err));
+    return follow_all(fit, &curve, err);
 }
 
 /* ---- all ---- */
@@ -417,21 +348,20 @@ static sf_status make_card(sf_form_fit *fit, sf_error *err) {
 static void take_hysteresis(sf_form_fit *fit) {
     if (!fit->has_unloading)
         return;
-    fit->value[SF_PARAMETER_HU] = fit->card.hysteresis_hu = fit->unloading.value[0];
-    fit->value[SF_PARAMETER_SHAPE] = fit->card.hysteresis_shape = fit->unloading.value[1];
-    fit->value[SF_PARAMETER_ALPHA] = fit->card.hysteresis_alpha = fit->unloading.value[2];
+    fit->value[SF_PARAMETER_HU] = fit->card.hysteresis_hu = fit->unloading.fit.value[0];
+    fit->value[SF_PARAMETER_SHAPE] = fit->card.hysteresis_shape = fit->unloading.fit.value[1];
+    fit->value[SF_PARAMETER_ALPHA] = fit->card.hysteresis_alpha = fit->unloading.fit.value[2];
 }
 
 sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit, sf_error *err) {
     problem p;
-    sf_curve curve = {0};
+    SF_OWNED_BY(sf_curve_free) sf_curve curve = {0};
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     *fit = (sf_form_fit){.config = config};
     if (init_problem(config, &p, err) == SF_OK && fit_loading(&p, fit, err) == SF_OK &&
         make_card(fit, err) == SF_OK && sf_curve_build(&fit->card, 0, &curve, err) == SF_OK &&
         fit_all_unloading(fit, &curve, err) == SF_OK && follow_all(fit, &curve, err) == SF_OK)
         take_hysteresis(fit);
-    sf_curve_free(&curve);
     free(p.strain); /* and all behind it */
     gsl_set_error_handler(handler);
     if (err->status != SF_OK)

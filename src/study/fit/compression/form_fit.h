@@ -5,12 +5,11 @@
  * from unloading. */
 #pragma once
 #include "study/fit/compression/compression_config.h"
+#include "study/fit/least_squares.h"
 
-/* HU, SHAPE and ALPHA of unloading; NaN without unloading. */
+/* Unloading. */
 typedef struct sf_form_unloading {
-    double value[3];
-    bool at_bound[3];
-    double rms;        /* -, of the stress, over the largest of its test */
+    sf_unloading_fit fit;
     double factor_rms; /* -, of f = stress of unloading over that of loading by the form */
 } sf_form_unloading;
 

@@ -48,9 +48,9 @@ static void put_unknowns(FILE *out, const sf_form_fit *fit) {
 static void put_unloading(FILE *out, const sf_form_unloading *u) {
     fputs("  unloading:", out);
     for (int k = 0; k < 3; k++)
-        fprintf(out, "%s %s %.4g%s", k ? "," : "", unloading_names[k], u->value[k],
-                u->at_bound[k] ? AT_BOUND : "");
-    fprintf(out, "; rms %.2g %% of the largest stress", 100 * u->rms);
+        fprintf(out, "%s %s %.4g%s", k ? "," : "", unloading_names[k], u->fit.value[k],
+                u->fit.at_bound[k] ? AT_BOUND : "");
+    fprintf(out, "; rms %.2g %% of the largest stress", 100 * u->fit.rms);
     fprintf(out, isfinite(u->factor_rms) ? ", rms of the factor %.2g\n" : " (in the first of the cycles)\n",
             u->factor_rms);
 }
@@ -216,13 +216,13 @@ static void json_unknowns(sf_json *json, const sf_form_fit *fit) {
 static void json_unloading(sf_json *json, const char *key, const sf_form_unloading *u) {
     sf_json_open(json, key, '{');
     for (int k = 0; k < 3; k++)
-        sf_json_number(json, unloading_names[k], u->value[k]);
+        sf_json_number(json, unloading_names[k], u->fit.value[k]);
     sf_json_open(json, "at_bound", '[');
     for (int k = 0; k < 3; k++)
-        if (u->at_bound[k])
+        if (u->fit.at_bound[k])
             sf_json_text(json, NULL, unloading_names[k]);
     sf_json_close(json, ']');
-    SF_JSON_NUMBERS(json, {"rms", u->rms}, {"factor_rms", u->factor_rms});
+    SF_JSON_NUMBERS(json, {"rms", u->fit.rms}, {"factor_rms", u->factor_rms});
     sf_json_close(json, '}');
 }
 

@@ -16,10 +16,8 @@
 enum { STARTS = 6, MISFIT_SIZE = 256 };
 static const char AT_BOUND_WORDS[] = " (at its bound)";
 static const double LARGEST_NU = 0.45, LARGEST_ALPHA = 49, LEAST_ALPHA = 0.02;
-static const double AT_BOUND = 1e-3; /* of the range */
-static const double POOR = 0.1;      /* rms over the largest value */
-/* HU, SHAPE, ALPHA. */
-static const double UNLOADING_LEAST[3] = {1e-4, 0.05, 0.1}, UNLOADING_RANGE[3] = {1 - 1e-4, 20, 4.9};
+static const double AT_BOUND = 1e-3;                          /* of the range */
+static const double POOR = 0.1;                               /* rms over the largest value */
 static const double starts[STARTS] = {40, 14, 4, -1, -3, -8}; /* of alpha: from yield to densification */
 
 /* A test with its lateral strain, and what is fitted to it. */
@@ -31,12 +29,11 @@ typedef struct fitted {
     double error[SF_HYPERFOAM_TERMS][3];  /* standard errors: mu over mu, alpha, nu; NaN: not fitted, or at
                                              its bound */
     bool at_bound[SF_HYPERFOAM_TERMS][3]; /* mu (never), alpha, nu */
-    bool unloading_at_bound[3];           /* HU, SHAPE, ALPHA */
-    double poisson[2];    /* -, -ln(lateral stretch)/ln(axial stretch), at 1 % strain and at the largest */
-    double stress_rms;    /* -, of the deviations while loading, over the largest stress */
-    double lateral_rms;   /* -, the same of the lateral strain; NaN: none */
-    double unloading_rms; /* -, of the stress of unloading, over the largest; NaN: none */
-    bool is_good;         /* no deviation exceeds a tenth of the largest value */
+    double poisson[2];  /* -, -ln(lateral stretch)/ln(axial stretch), at 1 % strain and at the largest */
+    double stress_rms;  /* -, of the deviations while loading, over the largest stress */
+    double lateral_rms; /* -, the same of the lateral strain; NaN: none */
+    sf_unloading_fit unloading; /* its rms is NaN: none */
+    bool is_good;               /* no deviation exceeds a tenth of the largest value */
 } fitted;
 
 double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double *lateral, double *energy) {
@@ -49,23 +46,18 @@ double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double 
     return -p.t[0];
 }
 
-/* A problem of least squares: the terms, or the numbers of unloading. */
+/* The problem of least squares. */
 typedef struct problem {
     const sf_compression_test *test;
     const sf_hyperfoam_request *request;
     sf_hyperfoam_card card;
     int terms;
+    int choice[SF_HYPERFOAM_TERMS]; /* of the starts, descending */
     double largest_lateral;
-    const double *loading,
-        *ratio; /* [count - loading] of unloading: stress of loading in Pa, W over largest */
 } problem;
 
 static int per_term(const problem *p) {
     return p->request->lateral_count > 0 ? 3 : 2;
-}
-
-static double logistic(double x) {
-    return 1 / (1 + exp(-x));
 }
 
 /* Parameters of a term: ln mu, alpha (bounded smoothly), nu likewise. */
@@ -78,7 +70,7 @@ static void take_terms(const problem *p, const gsl_vector *x, sf_hyperfoam_card 
         t->alpha = LARGEST_ALPHA * tanh(alpha / LARGEST_ALPHA);
         t->alpha = fabs(t->alpha) < LEAST_ALPHA ? copysign(LEAST_ALPHA, t->alpha) : t->alpha;
         if (each == 3)
-            t->nu = LARGEST_NU * logistic(gsl_vector_get(x, (size_t)(each * k + 2)));
+            t->nu = LARGEST_NU * sf_logistic(gsl_vector_get(x, (size_t)(each * k + 2)));
     }
 }
 
@@ -106,26 +98,6 @@ static int deviate(const gsl_vector *x, void *data, gsl_vector *out) {
     return GSL_SUCCESS;
 }
 
-static void take_unloading(const gsl_vector *x, sf_hyperfoam_card *card) {
-    card->hysteresis_hu = UNLOADING_LEAST[0] + UNLOADING_RANGE[0] * logistic(gsl_vector_get(x, 0));
-    card->hysteresis_shape = UNLOADING_LEAST[1] + UNLOADING_RANGE[1] * logistic(gsl_vector_get(x, 1));
-    card->hysteresis_alpha = UNLOADING_LEAST[2] + UNLOADING_RANGE[2] * logistic(gsl_vector_get(x, 2));
-}
-
-static int deviate_unloading(const gsl_vector *x, void *data, gsl_vector *out) {
-    const problem *p = data;
-    const sf_compression_test *t = p->test;
-    sf_hyperfoam_card card;
-    take_unloading(x, &card);
-    for (int i = t->loading; i < t->count; i++) {
-        int k = i - t->loading;
-        double factor = sf_unloading_factor(card.hysteresis_hu, card.hysteresis_shape, card.hysteresis_alpha,
-                                            p->ratio[k]);
-        gsl_vector_set(out, (size_t)k, (factor * p->loading[k] - t->stress[i]) / t->largest_stress);
-    }
-    return GSL_SUCCESS;
-}
-
 /* The next choice of `terms` different starts, descending; false: there is none. */
 static bool next_choice(int terms, int choice[SF_HYPERFOAM_TERMS]) {
     for (int k = terms - 1; k >= 0; k--)
@@ -147,18 +119,19 @@ static double start_modulus(const problem *p, double alpha) {
     return log(fmax(1, t->stress[t->loading / 2]) / (p->terms * fmax(stress, 1e-6)));
 }
 
-static void start(const problem *p, const int choice[SF_HYPERFOAM_TERMS], gsl_vector *x) {
+static bool start(void *data, int number, gsl_vector *x) {
+    problem *p = data;
     int each = per_term(p);
+    if (number > 0 && !next_choice(p->terms, p->choice))
+        return false;
     for (int k = 0; k < p->terms; k++) {
-        gsl_vector_set(x, (size_t)(each * k), start_modulus(p, starts[choice[k]]));
-        gsl_vector_set(x, (size_t)(each * k + 1), LARGEST_ALPHA * atanh(starts[choice[k]] / LARGEST_ALPHA));
+        gsl_vector_set(x, (size_t)(each * k), start_modulus(p, starts[p->choice[k]]));
+        gsl_vector_set(x, (size_t)(each * k + 1),
+                       LARGEST_ALPHA * atanh(starts[p->choice[k]] / LARGEST_ALPHA));
         if (each == 3)
             gsl_vector_set(x, (size_t)(each * k + 2), -1);
     }
-}
-
-static bool is_at_end(double part) {
-    return part < AT_BOUND || part > 1 - AT_BOUND;
+    return true;
 }
 
 static void find_bounds(const problem *p, const gsl_vector *x, fitted *fit) {
@@ -166,7 +139,8 @@ static void find_bounds(const problem *p, const gsl_vector *x, fitted *fit) {
     for (int k = 0; k < p->terms; k++) {
         double alpha = fabs(fit->card.term[k].alpha);
         fit->at_bound[k][1] = alpha <= LEAST_ALPHA || alpha > (1 - AT_BOUND) * LARGEST_ALPHA;
-        fit->at_bound[k][2] = each == 3 && is_at_end(logistic(gsl_vector_get(x, (size_t)(each * k + 2))));
+        fit->at_bound[k][2] =
+            each == 3 && sf_is_at_end(sf_logistic(gsl_vector_get(x, (size_t)(each * k + 2))));
     }
 }
 
@@ -177,7 +151,7 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
         for (int j = 0; j < 3; j++) {
             size_t at = (size_t)(each * k + j);
             bool is_fitted = k < p->terms && j < each;
-            double part = is_fitted && j == 2 ? logistic(gsl_vector_get(x, at)) : 0;
+            double part = is_fitted && j == 2 ? sf_logistic(gsl_vector_get(x, at)) : 0;
             double bend = fit->card.term[k].alpha / LARGEST_ALPHA; /* tanh, as take_terms() has it */
             double scale = j == 2 ? LARGEST_NU * part * (1 - part) : j == 1 ? 1 - bend * bend : 1;
             fit->error[k][j] = is_fitted && !fit->at_bound[k][j]
@@ -189,64 +163,40 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
 static sf_status fit_terms(problem *p, fitted *fit, sf_error *err) {
     size_t size = (size_t)(per_term(p) * p->terms);
     size_t count = (size_t)(p->test->loading + p->request->lateral_count);
-    gsl_vector *x = gsl_vector_alloc(size), *best = gsl_vector_alloc(size);
-    gsl_matrix *covariance = gsl_matrix_alloc(size, size);
-    int choice[SF_HYPERFOAM_TERMS] = {0, 1, 2};
-    double least = INFINITY;
-    do {
-        start(p, choice, x);
-        double sum = sf_least_squares(deviate, p, count, x, NULL);
-        if (sum < least) {
-            least = sum;
-            gsl_vector_memcpy(best, x);
-        }
-    } while (next_choice(p->terms, choice));
+    SF_VECTOR *best = gsl_vector_alloc(size);
+    SF_MATRIX *covariance = gsl_matrix_alloc(size, size);
+    double least = sf_least_squares_from(start, deviate, p, count, best);
     if (isfinite(least))
         least = sf_least_squares(deviate, p, count, best, covariance);
-    if (isfinite(least)) {
-        take_terms(p, best, &fit->card);
-        find_bounds(p, best, fit);
-        take_errors(p, best, covariance, least / (double)(count > size ? count - size : 1), fit);
-    } else {
-        SF_FAIL(err, SF_ERR_NUMERIC, "no search for %d terms of the hyperfoam converges", p->terms);
-    }
-    gsl_vector_free(x);
-    gsl_vector_free(best);
-    gsl_matrix_free(covariance);
-    return err->status;
+    if (!isfinite(least))
+        return SF_FAIL(err, SF_ERR_NUMERIC, "no search for %d terms of the hyperfoam converges", p->terms);
+    take_terms(p, best, &fit->card);
+    find_bounds(p, best, fit);
+    take_errors(p, best, covariance, least / (double)(count > size ? count - size : 1), fit);
+    return SF_OK;
 }
 
-static sf_status fit_unloading(problem *p, fitted *fit, sf_error *err) {
-    const sf_compression_test *t = p->test;
+static sf_status fit_unloading(const sf_compression_test *t, fitted *fit, sf_error *err) {
     sf_hyperfoam foam = sf_hyperfoam_build(&fit->card);
-    size_t count = (size_t)(t->count - t->loading);
-    double lateral = 0, peak = 0, *loading = sf_alloc(err, count, sizeof *loading, "unloading"),
-           *ratio = sf_alloc(err, count, sizeof *ratio, "unloading");
-    gsl_vector *x = gsl_vector_alloc(3);
-    if (err->status == SF_OK) {
-        sf_hyperfoam_free_stress(&foam, t->largest_strain, &lateral, &peak);
-        for (size_t k = 0; k < count; k++) {
-            loading[k] =
-                sf_hyperfoam_free_stress(&foam, fmax(0, t->strain[t->loading + (int)k]), &lateral, &ratio[k]);
-            ratio[k] = fmin(1, ratio[k] / peak);
-        }
-        p->loading = loading;
-        p->ratio = ratio;
-        gsl_vector_set(x, 0, -2);
-        gsl_vector_set(x, 1, -3);
-        gsl_vector_set(x, 2, -2);
-        double sum = sf_least_squares(deviate_unloading, p, count, x, NULL);
-        if (isfinite(sum)) {
-            take_unloading(x, &fit->card);
-            for (size_t k = 0; k < 3; k++)
-                fit->unloading_at_bound[k] = is_at_end(logistic(gsl_vector_get(x, k)));
-            fit->unloading_rms = sqrt(sum / (double)count);
-        }
+    int count = t->count - t->loading;
+    double lateral = 0, peak = 0;
+    SF_OWNED double *loading = sf_alloc(err, 2 * (unsigned long)count, sizeof *loading, "unloading");
+    SF_TRY(err->status);
+    sf_unloading_points points = {count,           t->stress + t->loading, loading, NULL,
+                                  loading + count, t->largest_stress,      false,   1};
+    sf_hyperfoam_free_stress(&foam, t->largest_strain, &lateral, &peak);
+    for (int k = 0; k < count; k++) {
+        double *ratio = &points.ratio[k];
+        loading[k] = sf_hyperfoam_free_stress(&foam, fmax(0, t->strain[t->loading + k]), &lateral, ratio);
+        *ratio = fmin(1, *ratio / peak);
     }
-    gsl_vector_free(x);
-    free(loading);
-    free(ratio);
-    return err->status;
+    fit->unloading = sf_unloading_search(&points);
+    if (isfinite(fit->unloading.rms)) {
+        fit->card.hysteresis_hu = fit->unloading.value[0];
+        fit->card.hysteresis_shape = fit->unloading.value[1];
+        fit->card.hysteresis_alpha = fit->unloading.value[2];
+    }
+    return SF_OK;
 }
 
 static void measure(const problem *p, fitted *fit) {
@@ -265,7 +215,7 @@ static void measure(const problem *p, fitted *fit) {
     fit->stress_rms = sqrt(stress / t->loading) / t->largest_stress;
     fit->lateral_rms =
         p->request->lateral_count ? sqrt(side / p->request->lateral_count) / p->largest_lateral : NAN;
-    fit->is_good = !(fit->stress_rms > POOR || fit->lateral_rms > POOR || fit->unloading_rms > POOR);
+    fit->is_good = !(fit->stress_rms > POOR || fit->lateral_rms > POOR || fit->unloading.rms > POOR);
 }
 
 /* HU, SHAPE and ALPHA are fitted after the terms; nu is that of every term if no lateral strain was
@@ -287,16 +237,16 @@ static sf_status run(const sf_compression_config *config, void *place, sf_error 
                              .rate_filter_time = 1e-4,
                              .stable_to = 0.9,
                              .informed_strain = t->largest_strain},
-                    .unloading_rms = NAN};
+                    .unloading.rms = NAN};
     for (int k = 0; k < r->terms; k++)
         fit->card.term[k].nu = r->nu;
-    problem p = {.test = t, .request = r, .card = fit->card, .terms = r->terms};
+    problem p = {.test = t, .request = r, .card = fit->card, .terms = r->terms, .choice = {0, 1, 2}};
     for (int i = 0; i < r->lateral_count; i++)
         p.largest_lateral = fmax(p.largest_lateral, fabs(r->lateral[i]));
     p.largest_lateral = fmax(p.largest_lateral, 0.01); /* a foam without lateral strain */
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     if (fit_terms(&p, fit, err) == SF_OK && t->count - t->loading > 3)
-        fit_unloading(&p, fit, err);
+        fit_unloading(t, fit, err);
     if (err->status == SF_OK)
         measure(&p, fit);
     gsl_set_error_handler(handler);
@@ -333,7 +283,7 @@ static void describe_misfit(const fitted *fit, char text[MISFIT_SIZE]) {
         double rms;
     } parts[] = {{"stress while loading", fit->stress_rms},
                  {"lateral strain", fit->lateral_rms},
-                 {"stress of unloading", fit->unloading_rms}};
+                 {"stress of unloading", fit->unloading.rms}};
     int used =
         snprintf(text, MISFIT_SIZE, "the fit does not describe this test, rms over the largest value:");
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
@@ -351,7 +301,7 @@ static void title(FILE *out, const void *place) {
 static void describe(FILE *out, const void *place, bool comments) {
     const fitted *fit = place;
     const sf_compression_test *t = fit->test;
-    const bool *at_bound = fit->unloading_at_bound;
+    const bool *at_bound = fit->unloading.at_bound;
     char misfit[MISFIT_SIZE];
     if (comments)
         fprintf(out, " from\n  %s at %.6g 1/s, to a strain of %.4g\n", t->path, t->rate, t->largest_strain);
@@ -367,12 +317,12 @@ static void describe(FILE *out, const void *place, bool comments) {
     if (isfinite(fit->lateral_rms))
         fprintf(out, ", lateral strain %.2g %% of the largest", 100 * fit->lateral_rms);
     fputs("\n", out);
-    if (isfinite(fit->unloading_rms))
+    if (isfinite(fit->unloading.rms))
         fprintf(out,
                 "  unloading: HU %.4g%s, SHAPE %.4g%s, ALPHA %.4g%s; rms %.2g %% of the largest stress\n",
                 fit->card.hysteresis_hu, at_bound[0] ? AT_BOUND_WORDS : "", fit->card.hysteresis_shape,
                 at_bound[1] ? AT_BOUND_WORDS : "", fit->card.hysteresis_alpha,
-                at_bound[2] ? AT_BOUND_WORDS : "", 100 * fit->unloading_rms);
+                at_bound[2] ? AT_BOUND_WORDS : "", 100 * fit->unloading.rms);
     if (comments)
         fprintf(out, "Beyond that strain and at other rates it is extrapolation. +-: standard errors.\n");
 }
@@ -437,10 +387,10 @@ static void put_json(sf_json *json, const void *place, const char *path) {
     sf_json_bool(json, "describes_the_test", f->is_good);
     SF_JSON_NUMBERS(json, {"HU", f->card.hysteresis_hu}, {"SHAPE", f->card.hysteresis_shape},
                     {"ALPHA", f->card.hysteresis_alpha});
-    sf_json_bool(json, "HU_at_bound", f->unloading_at_bound[0]);
-    sf_json_bool(json, "SHAPE_at_bound", f->unloading_at_bound[1]);
-    sf_json_bool(json, "ALPHA_at_bound", f->unloading_at_bound[2]);
-    sf_json_number(json, "unloading_rms", f->unloading_rms);
+    sf_json_bool(json, "HU_at_bound", f->unloading.at_bound[0]);
+    sf_json_bool(json, "SHAPE_at_bound", f->unloading.at_bound[1]);
+    sf_json_bool(json, "ALPHA_at_bound", f->unloading.at_bound[2]);
+    sf_json_number(json, "unloading_rms", f->unloading.rms);
 }
 
 static const char *const outputs[] = {"fit.csv", "fit.json", "material.cfg", NULL};

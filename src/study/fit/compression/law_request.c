@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/compression/law_request.h"
+#include "study/fit/compression/compression_config.h"
 
 #include "io/table_csv.h"
 #include "material/hyperfoam.h"
@@ -308,7 +308,7 @@ static sf_status read_test(const sf_config *file, sf_config_item *root, sf_hyper
                            sf_compression_test *test, sf_error *err) {
     sf_config_item *tests, *entry;
     sf_compression_source source = {0};
-    char *path = NULL, *lateral = NULL;
+    SF_OWNED char *path = NULL, *lateral = NULL;
     sf_error inner = SF_ERROR_INIT;
     SF_TRY(sf_config_list(file, root, "tests", true, 8, &tests, err));
     entry = config_setting_get_elem(tests, 0);
@@ -328,8 +328,6 @@ static sf_status read_test(const sf_config *file, sf_config_item *root, sf_hyper
             SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
                     config_setting_source_line(entry));
     }
-    free(path);
-    free(lateral);
     return err->status;
 }
 

@@ -7,7 +7,6 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_multifit_nlinear.h>
-#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,7 +92,7 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
         gsl_multifit_nlinear_scale_levenberg; /* parameters are logarithms: a flat one stays where it is */
     gsl_multifit_nlinear_workspace *w =
         n > p ? gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, n, p) : NULL;
-    gsl_vector *start = sf_vector(p, err);
+    SF_VECTOR *start = sf_vector(p, err);
     double chi2 = INFINITY;
     int info;
     if (n > p && !w)
@@ -111,7 +110,6 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
         }
     }
     gsl_multifit_nlinear_free(w);
-    gsl_vector_free(start);
     gsl_matrix_free(context.change);
     free(context.stress);
     return isfinite(chi2) ? chi2 : INFINITY;
@@ -122,7 +120,7 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
 static sf_status search_loading(const sf_compression_model *model, gsl_vector *best, double *chi2,
                                 sf_error *err) {
     int starts = model->form.rate == SF_RATE_MAXWELL ? MAXWELL_STARTS : 1;
-    gsl_vector *x = sf_vector((size_t)model->parameter_count, err);
+    SF_VECTOR *x = sf_vector((size_t)model->parameter_count, err);
     *chi2 = INFINITY;
     for (int k = 0; k < starts && err->status == SF_OK; k++) {
         sf_compression_guess(model, (k + 1.0) / (starts + 1), x);
@@ -132,7 +130,6 @@ static sf_status search_loading(const sf_compression_model *model, gsl_vector *b
             gsl_vector_memcpy(best, x);
         }
     }
-    gsl_vector_free(x);
     return err->status;
 }
 
@@ -142,12 +139,11 @@ static sf_status try_form(const sf_compression_data *data, sf_compression_form f
                           sf_error *err) {
     sf_compression_model model;
     SF_TRY(sf_compression_model_init(data, form, &model, err));
-    gsl_vector *x = sf_vector((size_t)model.parameter_count, err);
+    SF_VECTOR *x = sf_vector((size_t)model.parameter_count, err);
     double n = points_of(data, false);
     if (err->status == SF_OK && search_loading(&model, x, &candidate->chi2, err) == SF_OK)
         *candidate = (sf_candidate){true, model.loading_count, candidate->chi2,
                                     n * log(candidate->chi2 / n) + model.loading_count * log(n)};
-    gsl_vector_free(x);
     sf_compression_model_free(&model);
     return err->status;
 }
@@ -246,7 +242,7 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
 }
 
 static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e, sf_error *err) {
-    double *gradient =
+    SF_OWNED double *gradient =
         sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
     SF_TRY(err->status);
     e->present = true;
@@ -263,7 +259,6 @@ static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e
             "for strains beyond theirs";
     else if (follows)
         e->note = "follows from value and slope where densification starts (A = 0)";
-    free(gradient);
     return SF_OK;
 }
 
@@ -335,7 +330,7 @@ static void place_table(sf_compression_fit *fit) {
 }
 
 static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
-    double *gradient =
+    SF_OWNED double *gradient =
         sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
     SF_TRY(err->status);
     sf_rate_model rate = fit->model.form.rate;
@@ -347,7 +342,6 @@ static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
                 sf_compression_curve(&fit->model, fit->parameters, r, fit->table_strain[k], gradient);
             fit->table_error[r][k] = sf_compression_error(fit, gradient);
         }
-    free(gradient);
     return SF_OK;
 }
 
@@ -373,7 +367,7 @@ static double search_unloading(const sf_compression_model *model, gsl_vector *x,
     static const double starts[][3] = {
         {-2, -1, 0}, {-4, -2, -1}, {0, 0, -1.5}, {-5, 1, 1}}; /* on the real line */
     size_t first = first_of(model, true), count = count_of(model, true);
-    gsl_vector *trial = sf_vector(x->size, err);
+    SF_VECTOR *trial = sf_vector(x->size, err);
     double best = search(model, true, x, NULL, err);
     for (size_t s = 0; s < sizeof starts / sizeof *starts && err->status == SF_OK; s++) {
         gsl_vector_memcpy(trial, x);
@@ -385,7 +379,6 @@ static double search_unloading(const sf_compression_model *model, gsl_vector *x,
             gsl_vector_memcpy(x, trial);
         }
     }
-    gsl_vector_free(trial);
     return best;
 }
 
@@ -397,7 +390,7 @@ static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
     if (fit->model.form.alpha)
         return SF_OK;
     SF_TRY(sf_compression_model_init(&fit->data, form, &model, err));
-    gsl_vector *x = sf_vector((size_t)model.parameter_count, err);
+    SF_VECTOR *x = sf_vector((size_t)model.parameter_count, err);
     if (err->status == SF_OK) {
         sf_compression_guess(&model, 0.5, x);
         for (size_t k = 0; k < fit->parameters->size; k++) /* ALPHA is the last */
@@ -413,7 +406,6 @@ static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
             x = without;
         }
     }
-    gsl_vector_free(x);
     sf_compression_model_free(&model);
     return err->status;
 }
@@ -424,35 +416,30 @@ static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *loa
                                   const gsl_matrix *unloading, sf_error *err) {
     const sf_compression_data *d = &fit->data;
     const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true), n = (size_t)d->count;
-    gsl_matrix *change = sf_matrix(n, p1 + p2, err), *cross = sf_matrix(p2, p1, err),
-               *g = sf_matrix(p2, p1, err), *gc = sf_matrix(p2, p1, err);
+    SF_MATRIX *change = sf_matrix(n, p1 + p2, err), *cross = sf_matrix(p2, p1, err),
+              *g = sf_matrix(p2, p1, err), *gc = sf_matrix(p2, p1, err);
     gsl_matrix_view c11 = gsl_matrix_submatrix(fit->covariance, 0, 0, p1, p1),
                     c21 = gsl_matrix_submatrix(fit->covariance, p1, 0, p2, p1),
                     c12 = gsl_matrix_submatrix(fit->covariance, 0, p1, p1, p2),
                     c22 = gsl_matrix_submatrix(fit->covariance, p1, p1, p2, p2);
-    if (err->status == SF_OK) {
-        sf_compression_predict(&fit->model, fit->parameters, fit->stress, change);
-        for (size_t i = 0; i < n; i++) {
-            gsl_vector_view row = gsl_matrix_row(change, i);
-            gsl_vector_scale(&row.vector, d->unloading[i] ? 1 / d->sigma[i] : 0);
-        }
-        gsl_matrix_view j1 = gsl_matrix_submatrix(change, 0, 0, n, p1),
-                        j2 = gsl_matrix_submatrix(change, 0, p1, n, p2);
-        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, &j2.matrix, &j1.matrix, 0, cross);
-        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, -1, unloading, cross, 0, g);
-        gsl_matrix_memcpy(&c11.matrix, loading);
-        gsl_matrix_scale(&c11.matrix, fit->side[0].factor * fit->side[0].serial);
-        gsl_matrix_memcpy(&c22.matrix, unloading);
-        gsl_matrix_scale(&c22.matrix, fit->side[1].factor * fit->side[1].serial);
-        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, g, &c11.matrix, 0, gc);
-        gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, gc, g, 1, &c22.matrix);
-        gsl_matrix_memcpy(&c21.matrix, gc);
-        gsl_matrix_transpose_memcpy(&c12.matrix, gc);
+    SF_TRY(err->status);
+    sf_compression_predict(&fit->model, fit->parameters, fit->stress, change);
+    for (size_t i = 0; i < n; i++) {
+        gsl_vector_view row = gsl_matrix_row(change, i);
+        gsl_vector_scale(&row.vector, d->unloading[i] ? 1 / d->sigma[i] : 0);
     }
-    gsl_matrix_free(change);
-    gsl_matrix_free(cross);
-    gsl_matrix_free(g);
-    gsl_matrix_free(gc);
+    gsl_matrix_view j1 = gsl_matrix_submatrix(change, 0, 0, n, p1),
+                    j2 = gsl_matrix_submatrix(change, 0, p1, n, p2);
+    gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, &j2.matrix, &j1.matrix, 0, cross);
+    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, -1, unloading, cross, 0, g);
+    gsl_matrix_memcpy(&c11.matrix, loading);
+    gsl_matrix_scale(&c11.matrix, fit->side[0].factor * fit->side[0].serial);
+    gsl_matrix_memcpy(&c22.matrix, unloading);
+    gsl_matrix_scale(&c22.matrix, fit->side[1].factor * fit->side[1].serial);
+    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, g, &c11.matrix, 0, gc);
+    gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, gc, g, 1, &c22.matrix);
+    gsl_matrix_memcpy(&c21.matrix, gc);
+    gsl_matrix_transpose_memcpy(&c12.matrix, gc);
     return err->status;
 }
 

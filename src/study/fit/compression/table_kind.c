@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The entry of the tables, a spline with rate terms and a densification law: its files and words. */
-#include "study/fit/compression/table_result.h"
+#include "study/fit/compression/table_fit.h"
 
 #include "build_info.h"
 #include "io/folder.h"
@@ -50,7 +50,7 @@ static sf_status compare_card(sf_table_result *r, sf_error *err) {
     const sf_material material = sf_foam_material(&r->card);
     sf_material_law law;
     SF_TRY(sf_material_law_build(&material, &law, err));
-    double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
+    SF_OWNED double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
     for (int k = 0, first = 0; stress && k < d->config->test_count; k++) {
         const sf_compression_test *t = &d->config->test[k];
         sf_material_point_drive(&law, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
@@ -59,7 +59,6 @@ static sf_status compare_card(sf_table_result *r, sf_error *err) {
                 fmax(r->card_percent, 100 * fabs(stress[i] - r->fit.stress[i]) / counted(&r->fit, i));
         first += t->count;
     }
-    free(stress);
     sf_material_law_free(&law);
     return err->status;
 }

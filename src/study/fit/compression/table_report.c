@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.html of the tables, and fit.png with data against fit over the whole range and at the foot,
  * deviations below. */
-#include "study/fit/compression/table_result.h"
+#include "study/fit/compression/table_fit.h"
 
 #include "build_info.h"
 #include "report/chart.h"
 #include <math.h>
-#include <stdlib.h>
 
 /* ---- words and rows ---- */
 

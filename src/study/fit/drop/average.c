@@ -94,7 +94,7 @@ static void add_states(const sf_drop_inference *in, const double *column, int wi
 
 static sf_status take_quantiles(weighted *w, int count, const double *probability, double *value,
                                 sf_error *err) {
-    size_t *order = sf_alloc(err, (unsigned long)w->count, sizeof *order, "samples");
+    SF_OWNED size_t *order = sf_alloc(err, (unsigned long)w->count, sizeof *order, "samples");
     double all = 0;
     SF_TRY(err->status);
     gsl_sort_index(order, w->value, 1, (size_t)w->count);
@@ -109,7 +109,6 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
         if (w->count > 0)
             value[q] = w->value[order[s > 0 ? s - 1 : 0]];
     }
-    free(order);
     return SF_OK;
 }
 

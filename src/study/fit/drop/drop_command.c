@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/commands.h"
 
 #include "base/program.h"
 #include "io/folder.h"
 #include "study/fit/drop/drop_report.h"
 #include "study/setup.h"
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The models of the file, each with its fit and posterior. */
 typedef struct models {
@@ -213,7 +210,7 @@ int sf_fit_drop_main(int argc, char **argv) {
         .run = run,
     };
     sf_error err = SF_ERROR_INIT;
-    models *all = sf_alloc(&err, 1, sizeof *all, "the models");
+    SF_OWNED models *all = sf_alloc(&err, 1, sizeof *all, "the models");
     if (!all)
         return sf_error_report(&err, program.name);
     int code = sf_study_main(argc, argv, &program, all);
@@ -222,6 +219,5 @@ int sf_fit_drop_main(int argc, char **argv) {
         sf_drop_fit_free(&all->fit[m]);
         sf_fit_input_free(&all->input[m]);
     }
-    free(all);
     return code;
 }

@@ -4,7 +4,6 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "build_info.h"
@@ -283,7 +282,7 @@ static void put_provenance(FILE *f, const sf_drop_fit *fit, const sf_drop_averag
 
 static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *average,
                                 const char *input_path, const sf_staging *output, sf_error *err) {
-    char *provenance = NULL;
+    SF_OWNED char *provenance = NULL;
     size_t size = 0;
     sf_foam_card card;
     double low;
@@ -299,7 +298,6 @@ static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *a
         sf_material_write_checked(output->aside, fit->input->material_name, &material, &text, err);
         sf_foam_card_free(&card);
     }
-    free(provenance);
     return err->status;
 }
 

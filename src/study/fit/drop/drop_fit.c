@@ -4,7 +4,6 @@
 #include "study/material_file.h"
 #include "base/hash.h"
 #include "io/process.h"
-#include "post/figures/compare.h"
 #include "material/low_density_foam.h"
 #include "material/foam_card.h"
 #include <limits.h>
@@ -217,8 +216,8 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
 static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, sf_error *err) {
     double given[SF_MAPPING_MAX_PARAMETERS] = {0};
     unsigned long n = (unsigned long)fit->row[fit->measured_drops];
-    double *with = sf_alloc(err, n, sizeof *with, "responses"),
-           *without = sf_alloc(err, n, sizeof *with, "responses");
+    SF_OWNED double *with = sf_alloc(err, n, sizeof *with, "responses"),
+                    *without = sf_alloc(err, n, sizeof *with, "responses");
     memcpy(given, u, (size_t)fit->parameters * sizeof *u);
     for (int d = 0; d < fit->measured_drops; d++)
         if (fit->speed[d] >= 0)
@@ -227,8 +226,6 @@ static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, 
         surrogate((void *)fit, given, without, err) == SF_OK)
         for (unsigned long k = 0; k < n; k++)
             y[k] += with[k] - without[k];
-    free(with);
-    free(without);
     return err->status;
 }
 
@@ -262,7 +259,8 @@ static sf_status leave_one_out(sf_drop_fit *fit, const sf_mapping_problem *probl
     const sf_fit_input *in = fit->input;
     size_t n = (size_t)problem->responses;
     double u[SF_MAPPING_MAX_PARAMETERS];
-    double *sd = sf_alloc(err, n, sizeof *sd, "responses"), *y = sf_alloc(err, n, sizeof *y, "responses");
+    SF_OWNED double *sd = sf_alloc(err, n, sizeof *sd, "responses"),
+                    *y = sf_alloc(err, n, sizeof *y, "responses");
     bool others = fit->measured_drops > 1 || in->joint.rows > 0;
     for (int k = 0; k < fit->row[in->drop_count]; k++)
         fit->without[k] = NAN;
@@ -274,8 +272,6 @@ static sf_status leave_one_out(sf_drop_fit *fit, const sf_mapping_problem *probl
             memcpy(&fit->without[fit->row[d]], &y[fit->row[d]],
                    (size_t)(fit->row[d + 1] - fit->row[d]) * sizeof *y);
     }
-    free(sd);
-    free(y);
     return err->status;
 }
 
@@ -331,7 +327,8 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
 /* Finds the change of the measured responses with the curve in each bin. */
 static sf_status locate_information(sf_drop_fit *fit, sf_error *err) {
     size_t n = (size_t)fit->row[fit->measured_drops];
-    double *y = sf_alloc(err, n, sizeof *y, "responses"), *base = sf_alloc(err, n, sizeof *base, "responses");
+    SF_OWNED double *y = sf_alloc(err, n, sizeof *y, "responses"),
+                    *base = sf_alloc(err, n, sizeof *base, "responses");
     if (err->status == SF_OK)
         sf_drop_fit_columns(fit, 0, fit->measured_drops, SF_FIT_NOWHERE, fit->result.u, base, err);
     for (int b = 0; b < SF_FIT_STRAIN_BINS && err->status == SF_OK; b++) {
@@ -340,8 +337,6 @@ static sf_status locate_information(sf_drop_fit *fit, sf_error *err) {
             fit->information[b] +=
                 isinf(fit->sd[k]) ? 0 : pow((y[k] - base[k]) / (SF_FIT_RAISE * fit->sd[k]), 2);
     }
-    free(y);
-    free(base);
     return err->status;
 }
 
@@ -351,8 +346,8 @@ static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
     int first = fit->row[fit->measured_drops], last = fit->row[in->drop_count];
     double u[SF_MAPPING_MAX_PARAMETERS];
-    double *high = sf_alloc(err, (unsigned long)last, sizeof *high, "responses"),
-           *low = sf_alloc(err, (unsigned long)last, sizeof *low, "responses");
+    SF_OWNED double *high = sf_alloc(err, (unsigned long)last, sizeof *high, "responses"),
+                    *low = sf_alloc(err, (unsigned long)last, sizeof *low, "responses");
     for (int j = 0; j < in->unknown_count && err->status == SF_OK; j++) {
         memcpy(u, fit->result.u, sizeof u);
         u[j] += step;
@@ -366,8 +361,6 @@ static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
         for (int k = first; k < last; k++)
             fit->gradient[k * fit->parameters + j] = (high[k] - low[k]) / (2 * step);
     }
-    free(high);
-    free(low);
     return err->status;
 }
 

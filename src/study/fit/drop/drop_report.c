@@ -2,7 +2,6 @@
 #include "study/fit/drop/drop_report.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "build_info.h"
 #include "report/chart.h"

@@ -56,3 +56,6 @@ int sf_drop_chain_list(const sf_drop_fit *fit, sf_chain_shown shown[SF_SIGNAL_CH
 /* fit-curve.csv, fit-drops.csv, fit.gp with fit.png, and the material file with its comments. */
 sf_status sf_drop_files_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
                               const sf_staging *output, char *warning, size_t size, sf_error *err);
+
+/* softfall-fit drop FIT.cfg -o DIR; argv[0] is the name of the program. Returns the exit code. */
+int sf_fit_drop_main(int argc, char **argv);

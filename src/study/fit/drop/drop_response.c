@@ -370,7 +370,7 @@ void sf_fit_memory_add(sf_fit_memory *m, uint64_t key, size_t count, const doubl
     if (!m || m->file < 0 || size > LARGEST - m->end)
         return;
     sf_error none = SF_ERROR_INIT;
-    char *record = sf_alloc(&none, 1, size, "record");
+    SF_OWNED char *record = sf_alloc(&none, 1, size, "record");
     if (record) {
         const head h = {key, count};
         memcpy(record, &h, sizeof h);
@@ -384,5 +384,4 @@ void sf_fit_memory_add(sf_fit_memory *m, uint64_t key, size_t count, const doubl
         close(m->file);
         m->file = -1;
     }
-    free(record);
 }

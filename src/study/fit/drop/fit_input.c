@@ -2,7 +2,6 @@
 #include "base/program.h"
 #include "study/fit/drop/fit_input.h"
 
-#include "study/config.h"
 #include "io/plain_file.h"
 #include "case/case.h"
 #include "material/low_density_foam.h"

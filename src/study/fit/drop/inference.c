@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/drop/inference.h"
 
+#include "study/fit/least_squares.h"
 #include "study/run_folder.h"
 #include "io/process.h"
 #include "material/foam_card.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -111,11 +111,10 @@ static sf_status respond(const sf_drop_inference *in, const double *u, const dou
 /* Measured less corrected surrogate [data]. False: the columns fail. */
 static bool find_residual(const sf_drop_inference *in, const double *u, double *residual) {
     sf_error err = SF_ERROR_INIT;
-    double *y = sf_alloc(&err, (unsigned long)responses_of(in->fit), sizeof *y, "responses");
+    SF_OWNED double *y = sf_alloc(&err, (unsigned long)responses_of(in->fit), sizeof *y, "responses");
     if (y && respond(in, u, NULL, 0, in->fit->measured_drops, y, &err) == SF_OK)
         for (int i = 0; i < in->data; i++)
             residual[i] = in->fit->measured[in->data_row[i]] - y[in->data_row[i]];
-    free(y);
     return err.status == SF_OK;
 }
 
@@ -190,31 +189,28 @@ static int row_of(const sf_drop_inference *in, int q) {
 static sf_status find_jacobian(sf_drop_inference *in, sf_error *err) {
     unsigned long n = (unsigned long)responses_of(in->fit);
     in->jacobian = sf_alloc(err, n * PLACES, sizeof(double), "responses");
-    double *high = sf_alloc(err, n * PLACES, sizeof *high, "responses"),
-           *low = sf_alloc(err, n * PLACES, sizeof *low, "responses");
-    if (err->status == SF_OK) {
-        sf_error failure[PLACES];
+    SF_OWNED double *high = sf_alloc(err, n * PLACES, sizeof *high, "responses"),
+                    *low = sf_alloc(err, n * PLACES, sizeof *low, "responses");
+    SF_TRY(err->status);
+    sf_error failure[PLACES];
 #pragma omp parallel for schedule(dynamic)
-        for (int b = 0; b < PLACES; b++) {
-            failure[b] = (sf_error)SF_ERROR_INIT;
-            if (respond_raised(in, b, 1, &high[(unsigned long)b * n], &failure[b]) == SF_OK)
-                respond_raised(in, b, -1, &low[(unsigned long)b * n], &failure[b]);
+    for (int b = 0; b < PLACES; b++) {
+        failure[b] = (sf_error)SF_ERROR_INIT;
+        if (respond_raised(in, b, 1, &high[(unsigned long)b * n], &failure[b]) == SF_OK)
+            respond_raised(in, b, -1, &low[(unsigned long)b * n], &failure[b]);
+    }
+    for (unsigned long b = 0; b < PLACES && err->status == SF_OK; b++) {
+        *err = failure[b];
+        for (unsigned long k = 0; k < n; k++) {
+            double slope = (high[b * n + k] - low[b * n + k]) / (2 * RAISE);
+            in->jacobian[k * PLACES + b] = isfinite(slope) ? slope : 0;
         }
-        for (unsigned long b = 0; b < PLACES && err->status == SF_OK; b++) {
-            *err = failure[b];
-            for (unsigned long k = 0; k < n; k++) {
-                double slope = (high[b * n + k] - low[b * n + k]) / (2 * RAISE);
-                in->jacobian[k * PLACES + b] = isfinite(slope) ? slope : 0;
-            }
-            for (int q = 0; q < in->quantities; q++) {
-                unsigned long k = (unsigned long)row_of(in, q);
-                bool known = isfinite(high[b * n + k] - low[b * n + k]);
-                in->steep = in->steep || (!known && in->fit->columns[in->quantity[q].drop].count > 0);
-            }
+        for (int q = 0; q < in->quantities; q++) {
+            unsigned long k = (unsigned long)row_of(in, q);
+            bool known = isfinite(high[b * n + k] - low[b * n + k]);
+            in->steep = in->steep || (!known && in->fit->columns[in->quantity[q].drop].count > 0);
         }
     }
-    free(high);
-    free(low);
     return err->status;
 }
 
@@ -272,29 +268,24 @@ static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf
                                    sf_error *err) {
     unsigned long n = (unsigned long)in->data;
     double place[PLACES], kernel[PLACES * PLACES];
-    int *which = sf_alloc(err, n, sizeof *which, "data");
+    SF_OWNED int *which = sf_alloc(err, n, sizeof *which, "data");
     int effects = (in->fit->measured_drops + 1) * SF_FIT_SAMPLES;
-    double *jacobian = sf_alloc(err, n * PLACES, sizeof *jacobian, "responses"),
-           *base = sf_alloc(err, n * n, sizeof *base, "covariances"),
-           *effect = sf_alloc(err, n * (unsigned long)effects, sizeof *effect, "responses");
+    SF_OWNED double *jacobian = sf_alloc(err, n * PLACES, sizeof *jacobian, "responses"),
+                    *base = sf_alloc(err, n * n, sizeof *base, "covariances"),
+                    *effect = sf_alloc(err, n * (unsigned long)effects, sizeof *effect, "responses");
     for (int b = 0; b < PLACES; b++)
         place[b] = PLACE_WIDTH * b;
     sf_kernel_fill(PLACES, place, LENGTH, kernel);
-    if (err->status == SF_OK) {
-        int count = select_data(in, left_out, which);
-        for (int i = 0; i < count; i++) {
-            memcpy(&jacobian[i * PLACES], &in->jacobian[in->data_row[which[i]] * PLACES],
-                   PLACES * sizeof *jacobian);
-            fill_effects(in->fit, in->data_row[which[i]], &effect[i * effects]);
-            for (int j = 0; j < count; j++)
-                base[i * count + j] = in->base[which[i] * in->data + which[j]];
-        }
-        sf_discrepancy_build(count, PLACES, jacobian, kernel, effects, effect, base, out, err);
+    SF_TRY(err->status);
+    int count = select_data(in, left_out, which);
+    for (int i = 0; i < count; i++) {
+        memcpy(&jacobian[i * PLACES], &in->jacobian[in->data_row[which[i]] * PLACES],
+               PLACES * sizeof *jacobian);
+        fill_effects(in->fit, in->data_row[which[i]], &effect[i * effects]);
+        for (int j = 0; j < count; j++)
+            base[i * count + j] = in->base[which[i] * in->data + which[j]];
     }
-    free(which);
-    free(jacobian);
-    free(base);
-    free(effect);
+    sf_discrepancy_build(count, PLACES, jacobian, kernel, effects, effect, base, out, err);
     return err->status;
 }
 
@@ -399,8 +390,8 @@ bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64
     sf_error err = SF_ERROR_INIT;
     double x[SF_DISCREPANCY_MOST];
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
-    double *residual = sf_alloc(&err, (unsigned long)in->data, sizeof *residual, "data");
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_taus2);
+    SF_OWNED double *residual = sf_alloc(&err, (unsigned long)in->data, sizeof *residual, "data");
+    SF_RANDOM *random = gsl_rng_alloc(gsl_rng_taus2);
     bool found = residual && random && find_residual(in, u, residual);
     if (found) {
         gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
@@ -411,8 +402,6 @@ bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64
                 own[d * SF_FIT_SAMPLES + kind] =
                     sf_drop_kind_get(kind)->model_sd * (x[kind] + size.kappa * gsl_ran_ugaussian(random));
     }
-    gsl_rng_free(random);
-    free(residual);
     return found;
 }
 
@@ -423,7 +412,7 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
     double delta[PLACES], own[SF_FIT_MAX_DROPS * SF_FIT_SAMPLES];
     sf_response_error error;
     sf_error err = SF_ERROR_INIT;
-    double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
+    SF_OWNED double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
     bool known = y && !sf_process_stopped() && sf_drop_inference_draw(in, u, seed, delta, &error, own) &&
                  respond(in, u, in->steep ? delta : NULL, fit->measured_drops, fit->input->drop_count, y,
                          &err) == SF_OK;
@@ -434,7 +423,6 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
         for (int b = 0; known && !in->steep && b < PLACES; b++)
             quantity[q] += in->jacobian[row * PLACES + b] * delta[b];
     }
-    free(y);
 }
 
 /* ---- the whole ---- */

@@ -3,7 +3,6 @@
 
 #include "report/html.h"
 #include <math.h>
-#include <string.h>
 
 static const double THREE[] = {0.025, 0.5, 0.975};
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/joint.h"
+#include "study/fit/drop/fit_input.h"
 
 #include "base/hash.h"
 #include "base/units.h"
@@ -8,7 +8,6 @@
 #include "study/column.h"
 #include "study/fit/compression/compression_config.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double LEAST_STRESS = 0.02; /* of the largest, in the scatter */
@@ -203,7 +202,7 @@ static sf_status take_test(const sf_config *config, sf_config_item *entry,
 static sf_status read_test(const sf_config *config, sf_config_item *entry, sf_joint *joint, sf_error *err) {
     sf_joint_test *test = &joint->test[joint->test_count];
     sf_compression_source source = {0};
-    char *path = NULL;
+    SF_OWNED char *path = NULL;
     *test = (sf_joint_test){.sd = 0.05};
     SF_TRY(sf_config_names(config, entry, "name|file|sd|" SF_COMPRESSION_SOURCE_KEYS, err));
     SF_TRY(read_name(config, entry, "compression", joint->test_count + 1, test->name, err));
@@ -213,7 +212,6 @@ static sf_status read_test(const sf_config *config, sf_config_item *entry, sf_jo
     source.path = path;
     test->rate = source.rate;
     take_test(config, entry, &source, joint, err);
-    free(path);
     return err->status;
 }
 
@@ -334,7 +332,7 @@ static sf_status read_cushion(const sf_config *config, sf_config_item *entry, sf
                               sf_error *err) {
     sf_joint_cushion *cushion = &joint->cushion[joint->cushion_count];
     sf_error inner = SF_ERROR_INIT;
-    char *path = NULL;
+    SF_OWNED char *path = NULL;
     sf_config_item *points = config_setting_get_member(entry, "points"),
                    *energy = config_setting_get_member(entry, "stress_energy"),
                    *file = config_setting_get_member(entry, "file");
@@ -357,7 +355,6 @@ static sf_status read_cushion(const sf_config *config, sf_config_item *entry, sf
                 config_setting_source_line(entry));
     else if (path)
         sf_plain_hash(path, NULL, SF_PLAIN_TEXT, &cushion->file, err);
-    free(path);
     SF_TRY(err->status);
     SF_TRY(check_cushion(config, entry, joint, err));
     joint->rows += cushion->count;

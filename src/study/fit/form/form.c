@@ -2,7 +2,6 @@
 #include "study/fit/form/form.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "material/curve.h"
@@ -25,7 +24,7 @@ sf_foam_parameter sf_parameter_find(const char *name) {
 
 static const sf_curve_form *const forms[SF_CURVE_FORMS] = {
 #define SF_CURVE_FORM(form) &sf_form_##form,
-#include "study/fit/form/forms.def"
+    SF_CURVE_FORM_LIST(SF_CURVE_FORM)
 #undef SF_CURVE_FORM
 };
 
@@ -42,9 +41,7 @@ const sf_curve_form *sf_curve_form_find(const char *name) {
 
 const char *sf_curve_form_words(void) {
 #define SF_CURVE_FORM(form) "|" #form
-    static const char words[] =
-#include "study/fit/form/forms.def"
-        ;
+    static const char words[] = SF_CURVE_FORM_LIST(SF_CURVE_FORM);
 #undef SF_CURVE_FORM
     return words + 1;
 }

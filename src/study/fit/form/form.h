@@ -75,7 +75,7 @@ sf_foam_parameter sf_parameter_find(const char *name);
 
 /* Forms of the loading curve of a foam, for identification: nominal stress against compressive strain as a
  * function of a few parameters, with what is known of them beforehand (theory, section "Forms of the loading
- * curve"). Each is an entry of the table forms.def. Pure functions of a set of values [SF_PARAMETER_COUNT] in
+ * curve"). Each is an entry of SF_CURVE_FORM_LIST. Pure functions of a set of values [SF_PARAMETER_COUNT] in
  * SI (parameter.h). */
 
 /* A parameter of a form. */
@@ -102,13 +102,16 @@ typedef struct sf_curve_form {
     void (*stress)(const double *value, int count, const double *strain, double *stress);
 } sf_curve_form;
 
+/* The forms, in the order of the documents; each is an entry sf_form_NAME of curve_forms.c. */
+#define SF_CURVE_FORM_LIST(X) X(gas) X(gas_solid) X(rusch) X(avalle) X(spline) X(table)
+
 #define SF_CURVE_FORM(form) extern const sf_curve_form sf_form_##form;
-#include "study/fit/form/forms.def"
+SF_CURVE_FORM_LIST(SF_CURVE_FORM)
 #undef SF_CURVE_FORM
 
 enum {
 #define SF_CURVE_FORM(form) SF_CURVE_FORM_##form,
-#include "study/fit/form/forms.def"
+    SF_CURVE_FORM_LIST(SF_CURVE_FORM)
 #undef SF_CURVE_FORM
     SF_CURVE_FORMS
 };

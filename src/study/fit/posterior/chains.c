@@ -160,19 +160,17 @@ static sf_status learn(walk *w, int count, const walker *list, sf_error *err) {
     for (int c = 0; c < count; c++)
         for (int k = 0; k < list[c].tried; k++, all++)
             best = fmax(best, list[c].tried_density[k]);
-    double *u = sf_alloc(err, all * n, sizeof *u, "states"), *y = sf_alloc(err, all * m, sizeof *y, "states");
-    if (err->status == SF_OK) {
-        for (int c = 0; c < count; c++)
-            for (size_t k = 0; k < (size_t)list[c].tried; k++)
-                if (list[c].tried_density[k] > best - FAR) {
-                    memcpy(&u[(size_t)near * n], &list[c].tried_u[k * n], n * sizeof *u);
-                    memcpy(&y[(size_t)near++ * m], &list[c].tried_y[k * m], m * sizeof *y);
-                }
-        sf_emulator_free(&w->emulator);
-        sf_emulator_fit((int)n, (int)m, near, u, y, &w->emulator, err);
-    }
-    free(u);
-    free(y);
+    SF_OWNED double *u = sf_alloc(err, all * n, sizeof *u, "states"),
+                    *y = sf_alloc(err, all * m, sizeof *y, "states");
+    SF_TRY(err->status);
+    for (int c = 0; c < count; c++)
+        for (size_t k = 0; k < (size_t)list[c].tried; k++)
+            if (list[c].tried_density[k] > best - FAR) {
+                memcpy(&u[(size_t)near * n], &list[c].tried_u[k * n], n * sizeof *u);
+                memcpy(&y[(size_t)near++ * m], &list[c].tried_y[k * m], m * sizeof *y);
+            }
+    sf_emulator_free(&w->emulator);
+    sf_emulator_fit((int)n, (int)m, near, u, y, &w->emulator, err);
     return err->status;
 }
 
@@ -321,7 +319,7 @@ static sf_status place_all(const work *w, sf_error *err) {
 /* The proposals from the round's states of all chains; unchanged where they span no volume. */
 static sf_status match(work *w, sf_error *err) {
     int n = w->target->parameters, round = w->options->round, count = w->options->chains * round;
-    double *all = sf_alloc(err, (unsigned long)(count * n), sizeof *all, "samples");
+    SF_OWNED double *all = sf_alloc(err, (unsigned long)(count * n), sizeof *all, "samples");
     sf_mixture proposal, jump;
     sf_error none = SF_ERROR_INIT;
     SF_TRY(err->status);
@@ -332,7 +330,6 @@ static sf_status match(work *w, sf_error *err) {
         w->walk.jump = jump;
         w->walk.proposal = proposal;
     }
-    free(all);
     return err->status;
 }
 

@@ -27,8 +27,8 @@ static gsl_matrix_view matrix(double *a, int rows, int columns) {
 /* K = R R^T by its eigenvectors, as K is almost singular. */
 static sf_status find_root(const double *kernel, int n, double *root, sf_error *err) {
     gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc((size_t)n);
-    gsl_matrix *copy = sf_matrix((size_t)n, (size_t)n, err);
-    gsl_vector *value = sf_vector((size_t)n, err);
+    SF_MATRIX *copy = sf_matrix((size_t)n, (size_t)n, err);
+    SF_VECTOR *value = sf_vector((size_t)n, err);
     if (w && err->status == SF_OK) {
         gsl_matrix_view out = matrix(root, n, n);
         memcpy(copy->data, kernel, (size_t)(n * n) * sizeof *kernel);
@@ -38,8 +38,6 @@ static sf_status find_root(const double *kernel, int n, double *root, sf_error *
                 root[i * n + j] *= sqrt(fmax(0, gsl_vector_get(value, (size_t)j)));
     }
     gsl_eigen_symmv_free(w);
-    gsl_matrix_free(copy);
-    gsl_vector_free(value);
     return err->status;
 }
 

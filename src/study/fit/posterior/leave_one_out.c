@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/posterior/leave_one_out.h"
 
+#include "study/fit/least_squares.h"
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_sort.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- importance sampling ---- */
 
@@ -36,23 +36,19 @@ sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixtur
                                sf_evidence *e, sf_error *err) {
     int n = target->parameters;
     *e = (sf_evidence){.draws = draws};
-    double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws"),
-           *weight = sf_alloc(err, (unsigned long)draws, sizeof *weight, "draws");
-    gsl_rng *random = sf_random(sf_seed_of(seed, 0), err);
-    if (err->status == SF_OK) {
-        for (int k = 0; k < draws; k++)
-            sf_mixture_draw(mixture, random, &u[k * n]);
+    SF_OWNED double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws"),
+                    *weight = sf_alloc(err, (unsigned long)draws, sizeof *weight, "draws");
+    SF_RANDOM *random = sf_random(sf_seed_of(seed, 0), err);
+    SF_TRY(err->status);
+    for (int k = 0; k < draws; k++)
+        sf_mixture_draw(mixture, random, &u[k * n]);
 #pragma omp parallel for schedule(dynamic, 8)
-        for (int k = 0; k < draws; k++)
-            weight[k] = sf_target_at(target, &u[k * n]) - sf_mixture_log_density(mixture, &u[k * n]);
-        e->log_value = sf_log_mean(draws, weight);
-        e->effective = effective_size(draws, weight);
-        e->error = e->effective > 0 ? sqrt(fmax(0, 1 / e->effective - 1. / draws)) : INFINITY;
-        e->trusted = e->effective >= 100 && e->effective >= draws / 50.;
-    }
-    gsl_rng_free(random);
-    free(u);
-    free(weight);
+    for (int k = 0; k < draws; k++)
+        weight[k] = sf_target_at(target, &u[k * n]) - sf_mixture_log_density(mixture, &u[k * n]);
+    e->log_value = sf_log_mean(draws, weight);
+    e->effective = effective_size(draws, weight);
+    e->error = e->effective > 0 ? sqrt(fmax(0, 1 / e->effective - 1. / draws)) : INFINITY;
+    e->trusted = e->effective >= 100 && e->effective >= draws / 50.;
     return err->status;
 }
 
@@ -93,31 +89,25 @@ double sf_pareto_smooth(int count, double *weight, sf_error *err) {
     int tail = (int)fmin(0.2 * count, 3 * sqrt(count));
     if (tail < LEAST)
         return INFINITY;
-    size_t *order = sf_alloc(err, (unsigned long)count, sizeof *order, "weights");
-    double *x = sf_alloc(err, (unsigned long)tail, sizeof *x, "weights"), shape = INFINITY, scale;
-    if (order && x) {
-        gsl_sort_index(order, weight, 1, (size_t)count);
-        double largest = weight[order[count - 1]], cut = exp(weight[order[count - tail - 1]] - largest);
-        for (int k = 0; k < tail; k++)
-            x[k] = exp(weight[order[count - tail + k]] - largest) - cut;
-        if (x[tail - 1] - x[0] < 1e-12) {
-            shape = -INFINITY; /* all alike: nothing to smooth */
-        } else {
-            for (int k = 0; k < tail; k++) /* ties with the cut */
-                x[k] = fmax(x[k], 1e-15);
-            shape = fit_tail(tail, x, &scale);
-            for (int k = 0; k < tail && isfinite(shape); k++) {
-                double away = -log1p(-(k + 0.5) / tail), /* the quantile of an exponential distribution */
-                    by = fabs(shape) < 1e-9 ? scale * away : scale * expm1(shape * away) / shape;
-                weight[order[count - tail + k]] = largest + fmin(0, log(cut + by));
-            }
-            if (!isfinite(shape))
-                shape = INFINITY;
-        }
+    SF_OWNED size_t *order = sf_alloc(err, (unsigned long)count, sizeof *order, "weights");
+    SF_OWNED double *x = sf_alloc(err, (unsigned long)tail, sizeof *x, "weights");
+    if (!order || !x)
+        return INFINITY;
+    gsl_sort_index(order, weight, 1, (size_t)count);
+    double largest = weight[order[count - 1]], cut = exp(weight[order[count - tail - 1]] - largest), scale;
+    for (int k = 0; k < tail; k++)
+        x[k] = exp(weight[order[count - tail + k]] - largest) - cut;
+    if (x[tail - 1] - x[0] < 1e-12)
+        return -INFINITY;          /* all alike: nothing to smooth */
+    for (int k = 0; k < tail; k++) /* ties with the cut */
+        x[k] = fmax(x[k], 1e-15);
+    double shape = fit_tail(tail, x, &scale);
+    for (int k = 0; k < tail && isfinite(shape); k++) {
+        double away = -log1p(-(k + 0.5) / tail), /* the quantile of an exponential distribution */
+            by = fabs(shape) < 1e-9 ? scale * away : scale * expm1(shape * away) / shape;
+        weight[order[count - tail + k]] = largest + fmin(0, log(cut + by));
     }
-    free(order);
-    free(x);
-    return shape;
+    return isfinite(shape) ? shape : INFINITY;
 }
 
 /* ---- weights of models ---- */
@@ -136,32 +126,26 @@ void sf_evidence_weights(int models, const double *value, double *weight) {
 
 sf_status sf_predictive_weights(int models, int groups, const double *log_density, uint64_t seed,
                                 double *weight, sf_error *err) {
-    double *share = sf_alloc(err, (unsigned long)groups, sizeof *share, "weights"),
-           *alpha = sf_alloc(err, (unsigned long)groups, sizeof *alpha, "weights"),
-           *sum = sf_alloc(err, 2 * (unsigned long)models, sizeof *sum, "weights"), *part = sum + models;
-    gsl_rng *random = sf_random(sf_seed_of(seed, 77), err);
-    if (err->status == SF_OK) {
-        for (int g = 0; g < groups; g++)
-            alpha[g] = 1;
-        for (int m = 0; m < models; m++)
-            weight[m] = 0;
-        for (int b = 0; b < BOOTSTRAPS; b++) {
-            gsl_ran_dirichlet(random, (size_t)groups, alpha, share);
-            for (int m = 0; m < models; m++) {
-                sum[m] = 0;
-                for (int g = 0; g < groups; g++)
-                    sum[m] += groups * share[g] * log_density[m * groups + g];
-            }
-            sf_evidence_weights(models, sum, part);
-            for (int m = 0; m < models; m++)
-                weight[m] += part[m] / BOOTSTRAPS;
+    SF_OWNED double *share = sf_alloc(err, 2 * (unsigned long)(groups + models), sizeof *share, "weights");
+    SF_RANDOM *random = sf_random(sf_seed_of(seed, 77), err);
+    SF_TRY(err->status);
+    double *alpha = share + groups, *sum = alpha + groups, *part = sum + models;
+    for (int g = 0; g < groups; g++)
+        alpha[g] = 1;
+    for (int m = 0; m < models; m++)
+        weight[m] = 0;
+    for (int b = 0; b < BOOTSTRAPS; b++) {
+        gsl_ran_dirichlet(random, (size_t)groups, alpha, share);
+        for (int m = 0; m < models; m++) {
+            sum[m] = 0;
+            for (int g = 0; g < groups; g++)
+                sum[m] += groups * share[g] * log_density[m * groups + g];
         }
+        sf_evidence_weights(models, sum, part);
+        for (int m = 0; m < models; m++)
+            weight[m] += part[m] / BOOTSTRAPS;
     }
-    gsl_rng_free(random);
-    free(share);
-    free(alpha);
-    free(sum);
-    return err->status;
+    return SF_OK;
 }
 
 /* ---- groups of data left out ---- */
@@ -200,7 +184,7 @@ static double *split_all(const sf_grouped *g, const double *sample, int count, s
 /* By weights 1 / p(y_g | others, u); `scratch` [count]. */
 static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
                        sf_error *err) {
-    double *sum = sf_alloc(err, (unsigned long)count, sizeof *sum, "weights");
+    SF_OWNED double *sum = sf_alloc(err, (unsigned long)count, sizeof *sum, "weights");
     SF_TRY(err->status);
     for (int s = 0; s < count; s++)
         scratch[s] = -all[s * groups + g];
@@ -209,7 +193,6 @@ static sf_status weigh(const double *all, int groups, int g, int count, double *
     for (int s = 0; s < count; s++)
         sum[s] = scratch[s] + all[s * groups + g];
     out->log_density = sf_log_mean(count, sum) - sf_log_mean(count, scratch);
-    free(sum);
     return err->status;
 }
 
@@ -224,25 +207,21 @@ static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
                               .shape = g->target.shape,
                               .respond = respond};
     sf_chains_options own = *options;
-    sf_chains chains;
+    SF_OWNED_BY(sf_chains_free) sf_chains chains = {0};
     own.seed = sf_seed_of(options->seed, (uint64_t)(500 + group));
     sf_moments(whole->parameters, whole->chains * whole->kept, whole->sample, mean, covariance);
     for (int i = 0; i < whole->parameters * whole->parameters; i++)
         covariance[i] *= WIDER;
-    if (sf_chains_run(&target, mean, covariance, &own, &chains, err) == SF_OK) {
-        int count = chains.chains * chains.kept;
-        double *all = split_all(g, chains.sample, count, err);
-        if (all) {
-            for (int s = 0; s < count; s++)
-                all[s] = all[s * g->groups + group];
-            out->log_density = sf_log_mean(count, all);
-            out->sampled = true;
-            out->converged = chains.converged;
-        }
-        free(all);
-    }
-    sf_chains_free(&chains);
-    return err->status;
+    SF_TRY(sf_chains_run(&target, mean, covariance, &own, &chains, err));
+    int count = chains.chains * chains.kept;
+    SF_OWNED double *all = split_all(g, chains.sample, count, err);
+    SF_TRY(err->status);
+    for (int s = 0; s < count; s++)
+        all[s] = all[s * g->groups + group];
+    out->log_density = sf_log_mean(count, all);
+    out->sampled = true;
+    out->converged = chains.converged;
+    return SF_OK;
 }
 
 /* ---- draws of a wider mixture ---- */
@@ -255,6 +234,11 @@ typedef struct wide {
     double *weight, *conditional; /* [count], [count][groups] */
 } wide;
 
+static void free_wide(wide *w) {
+    free(w->weight);
+    free(w->conditional);
+}
+
 static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const sf_leave_options *options,
                            wide *w, sf_error *err) {
     static const double FREEDOM = 5;
@@ -262,72 +246,58 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
     sf_mixture m;
     *w = (wide){.weight = sf_alloc(err, (unsigned long)draws, sizeof(double), "draws"),
                 .conditional = sf_alloc(err, (unsigned long)(draws * g->groups), sizeof(double), "draws")};
-    double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws");
-    gsl_rng *random = sf_random(sf_seed_of(options->chains.seed, 700), err);
-    if (err->status == SF_OK &&
-        sf_mixture_fit(n, chains->chains * chains->kept, chains->sample, FREEDOM, &m, err) == SF_OK) {
-        for (int p = 0; p < m.parts; p++) {
-            for (int i = 0; i < n; i++)
-                for (int j = 0; j <= i; j++)
-                    m.part[p].factor[i][j] *= STRETCH;
-            m.part[p].log_norm -= n * log(STRETCH);
-        }
-        for (int k = 0; k < draws; k++)
-            sf_mixture_draw(&m, random, &u[k * n]);
-#pragma omp parallel for schedule(dynamic, 8)
-        for (int k = 0; k < draws; k++)
-            w->weight[k] = g->split(g->target.context, &u[k * n], NULL, &w->conditional[k * g->groups]) -
-                           sf_mixture_log_density(&m, &u[k * n]);
-        w->count = draws;
+    SF_OWNED double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws");
+    SF_RANDOM *random = sf_random(sf_seed_of(options->chains.seed, 700), err);
+    SF_TRY(err->status);
+    SF_TRY(sf_mixture_fit(n, chains->chains * chains->kept, chains->sample, FREEDOM, &m, err));
+    for (int p = 0; p < m.parts; p++) {
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j <= i; j++)
+                m.part[p].factor[i][j] *= STRETCH;
+        m.part[p].log_norm -= n * log(STRETCH);
     }
-    gsl_rng_free(random);
-    free(u);
-    return err->status;
+    for (int k = 0; k < draws; k++)
+        sf_mixture_draw(&m, random, &u[k * n]);
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int k = 0; k < draws; k++) {
+        double weight = g->split(g->target.context, &u[k * n], NULL, &w->conditional[k * g->groups]) -
+                        sf_mixture_log_density(&m, &u[k * n]);
+        w->weight[k] = isfinite(weight) ? weight : -INFINITY;
+    }
+    w->count = draws;
+    return SF_OK;
 }
 
-/* log p(group | others) by the weights; true if enough draws count. */
-static bool take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out) {
-    double most = -INFINITY, most_all = -INFINITY, sum = 0, squares = 0, all = 0;
+/* log p(group | others) by the weights, if enough draws count; `out->drawn` tells. */
+static sf_status take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out,
+                           sf_error *err) {
+    SF_OWNED double *others = sf_alloc(err, (unsigned long)w->count, sizeof *others, "draws");
+    SF_TRY(err->status);
     for (int k = 0; k < w->count; k++)
-        if (isfinite(w->weight[k])) {
-            most = fmax(most, w->weight[k] - w->conditional[k * groups + group]);
-            most_all = fmax(most_all, w->weight[k]);
-        }
-    for (int k = 0; k < w->count && isfinite(most); k++)
-        if (isfinite(w->weight[k])) {
-            double weight = exp(w->weight[k] - w->conditional[k * groups + group] - most);
-            sum += weight;
-            squares += weight * weight;
-            all += exp(w->weight[k] - most_all);
-        }
-    if (!(squares > 0) || sum * sum / squares < effective)
-        return false;
-    out->log_density = log(all) + most_all - log(sum) - most;
-    out->drawn = out->converged = true;
-    return true;
+        others[k] = isinf(w->weight[k]) ? -INFINITY : w->weight[k] - w->conditional[k * groups + group];
+    out->drawn = out->converged = w->count > 0 && effective_size(w->count, others) >= effective;
+    if (out->drawn)
+        out->log_density = sf_log_mean(w->count, w->weight) - sf_log_mean(w->count, others);
+    return SF_OK;
 }
 
 sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const sf_leave_options *options,
                            sf_left_out *out, sf_error *err) {
     int count = chains->chains * chains->kept;
-    wide w = {0};
+    SF_OWNED_BY(free_wide) wide w = {0};
     if (g->groups > MOST_GROUPS)
         return SF_FAIL(err, SF_ERR_INPUT, "%d groups of data: at most %d are left out one by one", g->groups,
                        MOST_GROUPS);
-    double *all = split_all(g, chains->sample, count, err),
-           *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");
+    SF_OWNED double *all = split_all(g, chains->sample, count, err),
+                    *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");
     for (int k = 0; k < g->groups && err->status == SF_OK; k++) {
         out[k] = (sf_left_out){.converged = false};
         if (weigh(all, g->groups, k, count, scratch, &out[k], err) != SF_OK || out[k].converged)
             continue;
         if (options->draws > 0 && w.count == 0 && draw_wide(g, chains, options, &w, err) != SF_OK)
             break;
-        if (!take_wide(&w, g->groups, k, options->effective, &out[k]))
+        if (take_wide(&w, g->groups, k, options->effective, &out[k], err) == SF_OK && !out[k].drawn)
             sample(g, k, chains, &options->chains, &out[k], err);
     }
-    free(w.weight);
-    free(w.conditional);
-    free(all);
-    free(scratch);
     return err->status;
 }

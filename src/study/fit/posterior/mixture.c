@@ -149,8 +149,8 @@ static sf_status find_axis(samples *s, sf_error *err) {
             c[i * n + j] /= sd[i] * sd[j];
     gsl_matrix_view a = gsl_matrix_view_array(c, (size_t)n, (size_t)n);
     gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc((size_t)n);
-    gsl_vector *value = sf_vector((size_t)n, err);
-    gsl_matrix *vector = sf_matrix((size_t)n, (size_t)n, err);
+    SF_VECTOR *value = sf_vector((size_t)n, err);
+    SF_MATRIX *vector = sf_matrix((size_t)n, (size_t)n, err);
     if (w && err->status == SF_OK) {
         gsl_eigen_symmv(&a.matrix, value, vector, w);
         size_t first = gsl_vector_max_index(value);
@@ -161,14 +161,12 @@ static sf_status find_axis(samples *s, sf_error *err) {
         }
     }
     gsl_eigen_symmv_free(w);
-    gsl_vector_free(value);
-    gsl_matrix_free(vector);
     return err->status;
 }
 
 /* First shares: equal slices along the axis. */
 static sf_status slice(const samples *s, int parts, sf_error *err) {
-    double *sorted = sf_alloc(err, (unsigned long)s->count, sizeof *sorted, "samples");
+    SF_OWNED double *sorted = sf_alloc(err, (unsigned long)s->count, sizeof *sorted, "samples");
     SF_TRY(err->status);
     memcpy(sorted, s->position, (size_t)s->count * sizeof *sorted);
     gsl_sort(sorted, 1, (size_t)s->count);
@@ -178,7 +176,6 @@ static sf_status slice(const samples *s, int parts, sf_error *err) {
             bool below = p == parts - 1 || s->position[k] < sorted[s->count * (p + 1) / parts];
             s->share[p * s->count + k] = above && below;
         }
-    free(sorted);
     return SF_OK;
 }
 
@@ -256,19 +253,16 @@ static int choose_parts(samples *half, int rest, double freedom) {
 sf_status sf_mixture_fit(int n, int count, const double *u, double freedom, sf_mixture *m, sf_error *err) {
     if (n < 1 || n > N || count < 2 * (n + 1))
         return SF_FAIL(err, SF_ERR_NUMERIC, "%d samples are too few to describe %d parameters", count, n);
-    double *share = sf_alloc(err, (unsigned long)count * SF_MIXTURE_MOST, sizeof *share, "samples"),
-           *position = sf_alloc(err, (unsigned long)count, sizeof *position, "samples");
-    if (err->status == SF_OK) {
-        samples all = {.n = n, .count = count, .u = u, .share = share, .position = position}, half = all;
-        int parts = 1;
-        half.count = count / 2;
-        if (find_axis(&half, err) == SF_OK)
-            parts = choose_parts(&half, count - half.count, freedom);
-        if (err->status == SF_OK && find_axis(&all, err) == SF_OK)
-            match(&all, parts, freedom, m, err);
-    }
-    free(share);
-    free(position);
+    SF_OWNED double *share = sf_alloc(err, (unsigned long)count * SF_MIXTURE_MOST, sizeof *share, "samples"),
+                    *position = sf_alloc(err, (unsigned long)count, sizeof *position, "samples");
+    SF_TRY(err->status);
+    samples all = {.n = n, .count = count, .u = u, .share = share, .position = position}, half = all;
+    int parts = 1;
+    half.count = count / 2;
+    if (find_axis(&half, err) == SF_OK)
+        parts = choose_parts(&half, count - half.count, freedom);
+    if (err->status == SF_OK && find_axis(&all, err) == SF_OK)
+        match(&all, parts, freedom, m, err);
     return err->status;
 }
 
@@ -373,17 +367,14 @@ sf_status sf_emulator_fit(int parameters, int responses, int count, const double
         return SF_OK;
     list_terms(e, degree);
     unsigned long terms = (unsigned long)e->terms, all = terms * (unsigned long)responses;
-    double *gram = sf_alloc(err, terms * terms, sizeof *gram, "an emulator"),
-           *right = sf_alloc(err, all, sizeof *right, "an emulator");
+    SF_OWNED double *gram = sf_alloc(err, terms * terms, sizeof *gram, "an emulator"),
+                    *right = sf_alloc(err, all, sizeof *right, "an emulator");
     e->coefficient = sf_alloc(err, all, sizeof(double), "an emulator");
-    if (err->status == SF_OK) {
-        sf_error singular = SF_ERROR_INIT;
-        add_points(e, count, u, y, gram, right);
-        if (solve(e, gram, right, &singular) != SF_OK)
-            sf_emulator_free(e);
-    }
-    free(gram);
-    free(right);
+    SF_TRY(err->status);
+    sf_error singular = SF_ERROR_INIT;
+    add_points(e, count, u, y, gram, right);
+    if (solve(e, gram, right, &singular) != SF_OK)
+        sf_emulator_free(e);
     return err->status;
 }
 

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pictures of a protocol's page, as SVG: curves of the drops, and figures over the height."""
+from __future__ import annotations
+
+import csv
+import io
+import math
+from typing import Any, Mapping
+
+import numpy as np
+
+from .protocol import Figure, Protocol
+from .protocol_drops import Drop, Drops, Search, figures_of
+
+MOST_PANELS, MOST_PLACES = 12, 6
+
+
+def _plots(rows: int, columns: int, height: float) -> tuple[Any, Any]:
+    """Returns a figure of matplotlib and its axes [rows][columns]."""
+    import matplotlib
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+    return plt.subplots(rows, columns, figsize=(8, height), layout="constrained", squeeze=False)
+
+
+def _svg(figure: Any) -> str:
+    """Returns a figure as an element of the page; the same one has the same bytes."""
+    import matplotlib.pyplot as plt
+    text = io.StringIO()
+    with plt.rc_context({"svg.hashsalt": "softfall"}):
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    plt.close(figure)
+    return "<figure>" + text.getvalue()[text.getvalue().index("<svg"):] + "</figure>"
+
+
+def _by_height(drops: list[Drop]) -> dict[float, list[Drop]]:
+    heights: dict[float, list[Drop]] = {}
+    for drop in drops:
+        heights.setdefault(drop.spot.height, []).append(drop)
+    return dict(sorted(heights.items()))
+
+
+# ---- curves ----
+
+def curve_picture(parts: Mapping[str, Drops]) -> str:
+    """Returns the filtered curves: a panel for each spot with simulated ones dashed, and one for all other drops of a search."""
+    spots: dict[str, list[tuple[str, Drop, str]]] = {}
+    measured = {drop.spot for drop in parts.get("measured", Drops()).drops}
+    for what, drops in parts.items():
+        searched = {id(drop) for one in drops.searches for drop in one.drops}
+        for drop in drops.all:
+            together = id(drop) in searched and drop.spot not in measured
+            name = f"{drop.spot.condition}, {drop.spot.position}, the search" if together else str(drop.spot)
+            if drop.curve is not None and (name in spots or len(spots) < MOST_PANELS):
+                spots.setdefault(name, []).append((what, drop, f"{drop.spot.height:g} m" if together else f"{what}, drop {drop.number}"))
+    if not spots:
+        return ""
+    rows = math.ceil(len(spots) / 2)
+    figure, axes = _plots(rows, min(2, len(spots)), 0.6 + 2.4 * rows)
+    for ax in axes.flat[len(spots):]:
+        ax.set_visible(False)
+    for ax, (name, shown) in zip(axes.flat, spots.items()):
+        for what, drop, label in shown:
+            time, value = (np.asarray(part, float) for part in drop.curve)  # type: ignore[union-attr]
+            contact = time[int(np.argmax(value > 0.05 * value.max()))]
+            ax.plot(1e3 * (time - contact), value, "--" if what == "simulated" and len(parts) > 1 else "-", lw=1.1, label=label)
+        ax.set_title(name, fontsize=9)
+        ax.set(xlabel="time from 5 % of the peak (ms)", ylabel="deceleration (g)")
+        ax.sharex(axes[0, 0])
+        ax.sharey(axes[0, 0])
+        ax.legend(fontsize=7)
+    return _svg(figure)
+
+
+# ---- figures over the height ----
+
+def height_picture(p: Protocol, parts: Mapping[str, Drops]) -> str:
+    """Returns each limited figure over the height: the curve of the search with its drops, and the measured drops beside; "" of other protocols."""
+    figures = [figure for figure in p.figures if figure.limit is not None] if p.kind == "critical height" else []
+    places = list(dict.fromkeys((drop.spot.condition, drop.spot.position) for drops in parts.values() for drop in drops.all if not drop.spot.missile))
+    if not figures or not places:
+        return ""
+    chart, axes = _plots(1, len(figures), 3.6)
+    for ax, figure in zip(axes[0], figures):
+        for k, place in enumerate(places[:MOST_PLACES]):
+            _draw_place(ax, p, figure, place, parts, f"C{k}", len(places) > 1)
+        ax.axhline(figure.limit, color="0.4", lw=1, ls=":")
+        ax.annotate(f"limit {figure.limit:g}", (1, figure.limit), xycoords=("axes fraction", "data"), fontsize=7, ha="right", va="bottom")
+        ax.set(xlabel="height of free fall (m)", ylabel=figure.label)
+        ax.legend(fontsize=7)
+    more = f'<p class="note">The first {MOST_PLACES} of {len(places)} places.</p>' if len(places) > MOST_PLACES else ""
+    return "<h2>Figures over the height</h2>" + _svg(chart) + more
+
+
+def _draw_place(ax: Any, p: Protocol, figure: Figure, place: tuple[str, str], parts: Mapping[str, Drops], colour: str, named: bool) -> None:
+    """Draws a place: measured drops filled, and the mean of those that count; simulated ones hollow, with their curve."""
+    prefix = ", ".join(place) + ", " if named else ""
+    for what, drops in parts.items():
+        here = [drop for drop in drops.all if (drop.spot.condition, drop.spot.position) == place and not drop.spot.missile and drop.is_usable
+                and figure.label in drop.figures]
+        if not here:
+            continue
+        style = {"mfc": colour} if what == "measured" else {"mfc": "none"}
+        ax.plot([d.spot.height for d in here], [d.figures[figure.label] for d in here], "o" if what == "measured" else "s", color=colour, ms=4,
+                label=f"{prefix}{what} drops", **style)
+        search = next((one for one in drops.searches if (one.condition, one.position) == place), None)
+        if search:
+            _draw_search(ax, figure, search, colour, prefix)
+            continue
+        spots = _by_height(here)
+        means = [figures_of(group, figure.label, p.counted if len(group) == p.count else (group[0].number,)) for group in spots.values()]
+        if len(spots) > 1:
+            ax.plot(list(spots), means, "-" if what == "measured" else "--", color=colour, lw=1, label=f"{prefix}{what}, those that count" if p.count > 1 else None)
+
+
+def _draw_search(ax: Any, figure: Figure, search: Search, colour: str, prefix: str) -> None:
+    """Draws the fit of softfall-cfh through the drops that it uses, and the band of the draws if there are any."""
+    key = {"a_max_g": "a_max", "hic": "HIC"}[figure.key]
+    fit = next(one["fit"] for one in search.summary["criteria"] if one["criterion"] == key)
+    used = [point["height_m"] for point in search.summary["points"] if point[f"{key.lower()}_residual"] is not None]
+    if fit["centre"] is not None and not fit["bracketed"] and len(used) > 1:
+        h = np.geomspace(min(used), max(used), 100)
+        d = np.log(h) - fit["centre"]
+        ax.plot(h, [figure.of(float(value)) for value in np.exp(fit["c0"] + fit["c1"] * d + fit["c2"] * d**2)], "--", color=colour, lw=1.2,
+                label=f"{prefix}fit of the simulated drops")
+    band = search.folder / "cfh_band.csv"
+    if not band.exists() or search.summary.get("posterior") is None:
+        return
+    heights = [point["height_m"] for point in search.summary["points"]]
+    with open(band, newline="", encoding="utf-8") as stream:
+        rows = [row for row in csv.DictReader(stream) if 0.8 * min(heights) <= float(row["height_m"]) <= 1.2 * max(heights)]
+    name = "a_max_{}_g" if key == "a_max" else "hic_{}_1"
+    edges = [[figure.of(float(row[name.format(side)] or "nan")) for row in rows] for side in ("low", "high")]
+    ax.fill_between([float(row["height_m"]) for row in rows], *edges, color=colour, alpha=0.12, lw=0, label=f"{prefix}95 % of the draws, foam alone")
