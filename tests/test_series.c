@@ -108,7 +108,7 @@ static void expect(program_result r, const char *words) {
 static void wrong_series_are_refused(void **state) {
     const program_place *p = *state;
     expect(make_model(p, "x.h5", "--set series.drops=2.5 --set series.interval='\"90 s\"'"), "whole number");
-    expect(make_model(p, "x.h5", "--set series.drops=2"), "needs series.interval");
+    expect(make_model(p, "x.h5", "--set series.drops=2"), "or series.interval");
     expect(make_model(p, "x.h5", "--set series.interval='\"90 s\"'"), "belongs to a series");
     expect(make_model(p, "x.h5", "--set series.drops=2 --set series.interval='\"0 s\"'"), "series.interval");
     expect(make_model(
@@ -181,7 +181,7 @@ static void drops_of_a_list_are_their_own(void **state) {
     assert_true(column_of(csv.data, 2, "pause_s") == 5 && column_of(csv.data, 3, "pause_s") == 90);
     free(csv.data);
     program_assert_page(p, "listed/report.html", "The pad before the drop");
-    program_assert_page(p, "listed/report.html", "differ in speed or place");
+    program_assert_page(p, "listed/report.html", "differ in speed, mass or place");
     program_shell(p, "cp aside.h5 list-3.h5; rm l-3.h5 l-3.h5.restart");
     expect(program_run(p, "solve", "--restart l.h5"), "is not the model of drop 3");
     program_shell(p, "rm list-3.h5");
@@ -228,7 +228,7 @@ static void expect_list(const program_place *p, const char *list, const char *wo
 
 static void wrong_lists_are_refused(void **state) {
     const program_place *p = *state;
-    expect_list(p, "( {}, {} )", "an interval of each drop");
+    expect_list(p, "( {}, {} )", "or series.interval");
     expect_list(p, "( { interval = \"9 s\"; }, { interval = \"9 s\"; } )", "nothing was before the first");
     expect_list(p, "( {}, 3 )", "drop 2 is a plain number");
     expect_list(p, "( )", "at least 1");

@@ -102,12 +102,15 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
 
 enum { MOST_CURVES = 64 };
 
+/* `array`: the address of a pointer from malloc, to `had` bytes. */
 static bool append(void *array, size_t had, const void *more, size_t bytes) {
-    char *grown = realloc(*(void **)array, had + bytes);
+    void *before;
+    memcpy(&before, array, sizeof before);
+    char *grown = realloc(before, had + bytes);
     if (!grown)
         return false;
     memcpy(grown + had, more, bytes);
-    *(void **)array = grown;
+    memcpy(array, &grown, sizeof grown);
     return true;
 }
 

@@ -247,14 +247,14 @@ sf_status sf_case_override(config_t *config, const char *text, sf_error *err) {
 }
 
 sf_status sf_case_take_drop(sf_case_reader *reader, int drop, sf_error *err) {
-    const config_setting_t *list = config_lookup(&reader->config, "series.drops"), *item = NULL;
     const copy_source source = {.source = &reader->source};
-    if (list && config_setting_is_list(list))
-        item = config_setting_get_elem(list, (unsigned)drop - 1);
-    config_setting_t *missile =
-        item && config_setting_is_group(item)
-            ? enter_group(config_root_setting(&reader->config), "missile", "series.drops")
-            : NULL;
+    const config_setting_t *list = config_lookup(&reader->config, "series.drops"),
+                           *item = list && config_setting_is_list(list)
+                                       ? config_setting_get_elem(list, (unsigned)drop - 1)
+                                       : NULL;
+    if (!item || !config_setting_is_group(item))
+        return SF_OK;
+    config_setting_t *missile = enter_group(config_root_setting(&reader->config), "missile", "series.drops");
     for (int k = 0; missile && k < config_setting_length(item); k++) {
         const config_setting_t *own = config_setting_get_elem(item, (unsigned)k);
         const char *name = config_setting_name(own);

@@ -405,9 +405,7 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
     for (int k = 1; k < c->drops && !wrong; k++) {
         c->drop[k].interval = c->drop[k].interval > 0 ? c->drop[k].interval : c->interval;
         if (!(c->drop[k].interval > 0))
-            wrong =
-                "a series needs series.interval, such as \"90 s\", or an interval of each drop from the second "
-                "on";
+            wrong = "each drop from the second on needs an interval: its own, or series.interval";
     }
     return wrong ? REFUSE_AT("series.drops", "series.drops = %g: %s", c->drops, wrong) : SF_OK;
 }

@@ -72,7 +72,8 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
     const sf_sink sink = sf_program_sink("softfall-pre");
     int64_t own[SF_SERIES_MOST] = {0};
     sf_model_series_file(o->output, drop, output, sizeof output);
-    if (check_output(o, output, err) != SF_OK || read_drop(o, drop, &sink, &c, err) != SF_OK ||
+    if (check_output(o, output, err) != SF_OK ||
+        read_drop(o, drop, drop == 1 ? &sink : NULL, &c, err) != SF_OK ||
         (drop == 1 && check_drops(o, &c, err) != SF_OK))
         goto done;
     for (int k = 1; drop == 1 && k < c.drops && err->status == SF_OK; k++)

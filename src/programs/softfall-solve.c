@@ -262,11 +262,8 @@ static sf_status check_own(const series *all, int64_t k, const char hash[SF_MODE
     snprintf(own, sizeof own, "%016llx", (unsigned long long)all->own[k - 1]);
     if (all->own[k - 1] == 0 || strcmp(own, hash) == 0)
         return SF_OK;
-    return SF_REFUSE(
-        err,
-        "%s is not the model of drop %lld in the series of %s: its hash is %s, that in the series "
-        "%s; softfall-pre makes them together",
-        all->next, (long long)k, all->model, hash, own);
+    return SF_REFUSE(err, "%s is not the model of drop %lld that softfall-pre made with %s: hash %s, not %s",
+                     all->next, (long long)k, all->model, hash, own);
 }
 
 /* Checks a series beyond the model of its first drop. */

@@ -229,12 +229,13 @@ static void put_series(FILE *page, const overlay *o) {
     sf_html_cell(&t, "over the first");
     sf_html_cell(&t, "HIC");
     sf_html_cell(&t, "over the first");
-    bool differ = false; /* in speed or place */
+    bool differ = false; /* in speed, mass or place */
     for (int k = 0; k <= o->count; k++) {
         sf_html_row(&t);
         const overlay_run *r = &o->run[k < o->count ? k : 0];
-        differ = differ || r->figures.v0 != o->run->figures.v0 || r->place[0] != o->run->place[0] ||
-                 r->place[1] != o->run->place[1];
+        differ = differ || r->figures.v0 != o->run->figures.v0 ||
+                 r->results.missile_mass != o->run->results.missile_mass ||
+                 memcmp(r->place, o->run->place, sizeof r->place) != 0;
         if (k == o->count) {
             sf_html_cell(&t, "mean of %d to %d", o->mean[0], o->mean[1]);
             sf_html_cell(&t, "–");
@@ -252,7 +253,7 @@ static void put_series(FILE *page, const overlay *o) {
     sf_html_note(
         page,
         "series.csv has them too. What a material remembers is as good as its data: see material.memory.%s",
-        differ ? " The drops differ in speed or place: what grows over the first is not the foam's "
+        differ ? " The drops differ in speed, mass or place: what grows over the first is not the foam's "
                           "softening alone."
                         : "");
     put_pads(page, o);

@@ -130,10 +130,7 @@ char *sf_report_picture_before(const sf_results *r, char *text, size_t size, sf_
     if (r->frame_count == 0 || r->frames[0].time > 0 || !sf_h5_exists(r->file, "/frames/000000/softening") ||
         sf_frame_read(r, &r->frames[0], &frame, err) != SF_OK || !frame.field[SF_FRAME_DISPLACEMENT] ||
         sf_cut_make(r, &cut, err) != SF_OK || cut.polygon_count == 0) {
-        snprintf(
-            text, size,
-            "No picture of the pad before the drop: results.h5 holds no displacement and softening at its "
-            "start.");
+        snprintf(text, size, "No picture: results.h5 holds no displacement and softening at the start.");
     } else {
         const sf_picture_style style = {.field = SF_FRAME_SOFTENING,
                                         .factor = 1e-3,
@@ -142,8 +139,8 @@ char *sf_report_picture_before(const sf_results *r, char *text, size_t size, sf_
         const sf_picture picture = {"before the drop", &r->frames[0], &frame};
         snprintf(
             text, size,
-            "The pad before the drop, softened by those before it: the energy by which loading, up to the "
-            "largest so far, takes up less than that of new foam.");
+            "The pad before the drop: the energy by which loading, up to the largest so far, takes up less "
+            "than that of new foam.");
         svg = sf_picture_draw(&cut, &picture, 1, &style, err);
     }
     sf_cut_free(&cut);
