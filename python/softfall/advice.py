@@ -100,6 +100,7 @@ class Place:
     notes: tuple[str, ...] = ()  # what is not known of it
     missile: str = ""  # another one than that of the protocol: nothing is judged by its drops
     cost: float = 1.0  # of a drop
+    highest: float = math.inf  # m, of a drop that was simulated and can be used
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -118,10 +119,9 @@ def _columns(path: Path) -> dict[str, np.ndarray]:
 def read_place(name: str, folder: Path, missile: str = "", cost: float = 1.0) -> Place:
     """Reads the output of softfall-cfh --posterior. InputError: it has no draws."""
     summary = json.loads((folder / "cfh.json").read_text(encoding="utf-8"))
-    if not (folder / "cfh_curves.csv").exists() or not (folder / "cfh_draws.csv").exists():
-        why = (summary.get("posterior") or {}).get("no_interval") or "it was made without --posterior"
-        raise InputError(f"{folder}: no draws of the foam, which advice needs: {why}")
-    posterior = summary["posterior"]
+    posterior = summary["posterior"] or {"no_interval": "it was made without --posterior"}
+    if "draws" not in posterior:
+        raise InputError(f"{folder}: no draws of the foam, which advice needs: {posterior['no_interval']}")
     curves, draws, band = (_columns(folder / f"cfh_{part}.csv") for part in ("curves", "draws", "band"))
     height = band["height_m"]
     count = len(draws["draw_1"])
@@ -136,7 +136,7 @@ def read_place(name: str, folder: Path, missile: str = "", cost: float = 1.0) ->
     crossing = np.log(np.clip(np.nan_to_num(draws["height_m"], nan=height[-1]), height[0], height[-1]))
     trends = tuple(_trend(told, posterior["checks"], key, crossing) for told, key in zip(posterior["columns_error"], ("a_max", "hic")))
     return Place(name, np.log(height), value, error[:2], error[2:], scatter, mesh, fit, trends,
-                 tuple(_doubts(name, posterior, trends, band)), missile, cost)
+                 tuple(_doubts(name, posterior, trends, band)), missile, cost, summary["critical_fall_height"]["highest_simulated_m"] or math.inf)
 
 
 def _trend(told: Mapping[str, Any], checks: Sequence[Mapping[str, Any]], key: str, crossing: np.ndarray) -> Trend:
@@ -367,7 +367,7 @@ def _median_height(pads: Pads, q: Question, place: Place, weight: np.ndarray, ju
     if not place.missile:
         return judged
     height = pads.crossing(place.name, q.limits)
-    return float(quantiles(np.argsort(height), height, weight)[1])
+    return min(float(quantiles(np.argsort(height), height, weight)[1]), place.highest / 1.2)
 
 
 def advise(pads: Pads, q: Question, tests: Sequence[Test] = ()) -> Advice:

@@ -8,7 +8,7 @@ from typing import Any
 
 from .curves import STANDARD_GRAVITY
 from .protocol import Protocol
-from .protocol_drops import Drop, Drops, Search, Spot, figures_of
+from .protocol_drops import NO_LIMIT, Drop, Drops, Search, Spot, figures_of
 
 MESH_HIC = 1.3  # expected error of HIC from the mesh over that of a_max, SF_CFH_MESH_HIC of softfall-cfh (docs/cfh.md)
 
@@ -162,10 +162,18 @@ def _take_search(p: Protocol, search: Search, made: Outcome) -> tuple[float, boo
     heights = [point["height_m"] for point in search.summary["points"]]
     verdict, value = found["verdict"], found.get("height_m")
     note = "" if verdict == "found" else verdict
-    interval = [found.get(key) if found.get(key) is not None else math.nan for key in ("height_low_m", "height_high_m")]
-    made.lines.append(Line(of, str(found.get("deciding") or ""), math.nan if value is None else value, None, None, *interval, note))
+    low, high = (math.nan if found.get(key) is None else float(found[key]) for key in ("height_low_m", "height_high_m"))
+    first = Line(of, str(found.get("deciding") or ""), math.nan if value is None else float(value), None, None, low, high, note)
+    made.lines.append(first)
+    for one in search.summary["criteria"]:
+        limit, height = one.get("limit_g", one.get("limit")), one["height_m"]
+        if one["criterion"] == first.figure:
+            first.limit = limit
+        elif limit < NO_LIMIT and verdict == "found":
+            made.lines.append(Line(of, one["criterion"], math.nan if height is None else height, limit,
+                                   note="" if height else f"{one['state']} up to {found['highest_simulated_m']:g} m"))
     if verdict == "found":
-        return value, True
+        return first.value, True
     if verdict.startswith("above"):
         return max(heights), False
     if verdict.startswith("below"):

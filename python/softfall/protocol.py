@@ -380,9 +380,9 @@ def _area(text: str, where: str) -> float:
 
 def _check(p: Protocol) -> None:
     """Refuses what contradicts itself, and a group without a clause: nobody could say where its numbers are from."""
-    for what, entries in (("condition", p.conditions), ("position", p.positions)):
-        doubles = {entry.name for entry in entries if sum(other.name == entry.name for other in entries) > 1}
-        if doubles or not entries:
+    for what, names_of in (("condition", [one.name for one in p.conditions]), ("position", [one.name for one in p.positions])):
+        doubles = {name for name in names_of if names_of.count(name) > 1}
+        if doubles or not names_of:
             raise InputError(f"{p.path}: drops: {'two ' + what + 's are named ' + repr(doubles.pop()) if doubles else 'no ' + what}")
     if p.kind != "critical height" and not p.heights:
         raise InputError(f"{p.path}: drops: heights is missing (only a critical height is searched for)")

@@ -11,7 +11,7 @@ import numpy as np
 from . import advice
 from .case import Case
 from .errors import InputError, NumericError
-from .foam_draws import test_stresses
+from .foam_draws import compression_stresses
 from .judge import Line, Outcome
 from .protocol import Condition, Figure, Missile, Position, Protocol
 from .protocol_drops import Drop, Drops, Search, case_at, folder_name, search, search_notes
@@ -72,7 +72,7 @@ def _expected(pads: advice.Pads, question: advice.Question, drop: advice.Drop) -
                        "" if low <= drop.figures[c] <= high else "outside of what was expected before it")
 
 
-CHECKS = 3  # draws that are simulated of another missile: nothing is judged by its drops
+CHECKS, BELOW = 3, 0.95  # draws that are simulated of another missile, as nothing is judged by its drops; of the figures of a drop
 
 
 def _place_name(condition: str, position: str, missile: str) -> str:
@@ -95,21 +95,34 @@ def _places(p: Protocol, pad: Case, output: Path, posterior: str, options: Mappi
     return places, searches
 
 
+def _search_other(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str, options: Mapping[str, Any]) -> Search | None:
+    """Returns a search of another missile with draws; where no limit is reached, its draws are checked by those of its highest drop that can be used."""
+    first = search(p, case, condition, position, folder, None, options)
+    usable = [point for point in first.summary["points"] if not point["failed"]]
+    if len(usable) < 2:
+        return None
+    reached = first.summary["critical_fall_height"]["verdict"] == "found"
+    highest = max(usable, key=lambda point: point["height_m"])
+    limits = None if reached else (BELOW * highest["a_max_g"], BELOW * highest["hic"])
+    return search(p, case, condition, position, folder, posterior, {**options, "check_drops": CHECKS}, limits)
+
+
 def _other_place(p: Protocol, pad: Case, condition: Condition, position: Position, other: Missile, output: Path, posterior: str,
                  options: Mapping[str, Any], notes: list[str]) -> advice.Place | None:
     """Returns what is known of drops of another missile; None, with a note, if it is too little."""
     name, folder = _place_name(condition.name, position.name, other.name), output / folder_name(condition.name, position.name, other.name)
     try:
         case = case_at(p, pad, condition, position, [], other.keys)
-        found = search(p, case, condition, position, folder, posterior, {**options, "check_drops": CHECKS}) if case else None
+        found = _search_other(p, case, condition, position, folder, posterior, {**options, "views": None}) if case else None
     except InputError as error:
         raise InputError(f"{p.path}: advice: missile {other.name}: {error}") from None
     except NumericError as error:
         notes.append(f"drops at {name} are not weighed: {error}")
         return None
-    place = advice.read_place(name, found.folder, other.name, other.cost) if found and (found.folder / "cfh_draws.csv").exists() else None
-    if place and all(trend.freedom > 0 for trend in place.trend):
-        return place
+    if found and "draws" in found.summary["posterior"]:
+        place = advice.read_place(name, found.folder, other.name, other.cost)
+        if all(trend.freedom > 0 for trend in place.trend):
+            return place
     notes.append(f"drops at {name} are not weighed: too few draws were simulated with success")
     return None
 
@@ -117,7 +130,7 @@ def _other_place(p: Protocol, pad: Case, condition: Condition, position: Positio
 def _tests(p: Protocol, posterior: Path, notes: list[str]) -> list[advice.Test]:
     """Returns the compression tests of a protocol, as the draws expect them."""
     try:
-        return [advice.Test(f"a compression test at {test.rate:g} 1/s, for softfall-fit drop", test_stresses(posterior, test.rate, advice.TEST_STRAINS),
+        return [advice.Test(f"a compression test at {test.rate:g} 1/s, for softfall-fit drop", compression_stresses(posterior, test.rate, advice.TEST_STRAINS),
                             test.error, test.cost) for test in p.tests]
     except InputError as error:
         notes.append(f"compression tests are not weighed: {error}")

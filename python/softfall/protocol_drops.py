@@ -278,15 +278,16 @@ def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapp
     return drops
 
 
-SEARCH_FILTER = 1000  # of softfall-cfh
+SEARCH_FILTER, NO_LIMIT = 1000, 1e6  # of softfall-cfh; a limit that no drop reaches
 
 
 def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
-           options: Mapping[str, Any]) -> Search:
-    """Runs softfall-cfh below a folder, and reads its drops."""
+           options: Mapping[str, Any], limits: tuple[float | None, float | None] | None = None) -> Search:
+    """Runs softfall-cfh below a folder, and reads its drops. `limits` of a_max (g) and HIC are those of the protocol unless given."""
     folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
-    given = {"limit_g": p.limit_of("a_max_g") or 1e6, "limit_hic": p.limit_of("hic") or 1e9, "posterior": posterior,
+    a_max, hic_value = limits or (p.limit_of("a_max_g"), p.limit_of("hic"))
+    given = {"limit_g": a_max or NO_LIMIT, "limit_hic": hic_value or NO_LIMIT, "posterior": posterior,
              "force": (folder / "cfh.json").exists(), **options, "views": None}
     programs.run("cfh", [str(case.path), f"--output={folder}", *(f"--set={key}={text}" for key, text in case.overrides.items()),
                          *programs.options(given)])
@@ -341,9 +342,9 @@ def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, fo
     if posterior:
         factors.append({"key": "material", "name": "foam", "posterior": str(Path(posterior).absolute()),
                         **({"draws": draws} if draws else {})})
-    plan = {"case": str(case.path), "set": [f"{key}={text}" for key, text in case.overrides.items()], "factors": factors,
-            "figures": [{"key": figure.key, **({"limit": figure.value_of(figure.limit)} if figure.limit is not None else {})}
-                        for figure in p.figures]}
+    figures: list[dict[str, Any]] = [{"key": figure.key} if figure.limit is None else {"key": figure.key, "limit": figure.value_of(figure.limit)}
+                                     for figure in p.figures]
+    plan = {"case": str(case.path), "set": [f"{key}={text}" for key, text in case.overrides.items()], "factors": factors, "figures": figures}
     plan = {key: value for key, value in plan.items() if value != []}
     folder.mkdir(parents=True, exist_ok=True)
     folder /= "sweep"

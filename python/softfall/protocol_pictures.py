@@ -15,12 +15,12 @@ from .protocol_drops import Drop, Drops, Search, figures_of
 MOST_PANELS, MOST_PLACES = 12, 6
 
 
-def _plots(rows: int, columns: int, height: float) -> tuple[Any, Any]:
-    """Returns a figure of matplotlib and its axes [rows][columns]."""
+def _plots(rows: int, columns: int, height: float, share: bool = False) -> Any:
+    """Returns a figure of matplotlib and its axes [rows][columns], which may share their scales."""
     import matplotlib
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
-    return plt.subplots(rows, columns, figsize=(8, height), layout="constrained", squeeze=False)
+    return plt.subplots(rows, columns, figsize=(8, height), layout="constrained", squeeze=False, sharex=share, sharey=share)
 
 
 def _svg(figure: Any) -> str:
@@ -56,7 +56,7 @@ def curve_picture(parts: Mapping[str, Drops]) -> str:
     if not spots:
         return ""
     rows = math.ceil(len(spots) / 2)
-    figure, axes = _plots(rows, min(2, len(spots)), 0.6 + 2.4 * rows)
+    figure, axes = _plots(rows, min(2, len(spots)), 0.6 + 2.4 * rows, share=True)
     for ax in axes.flat[len(spots):]:
         ax.set_visible(False)
     for ax, (name, shown) in zip(axes.flat, spots.items()):
@@ -66,10 +66,8 @@ def curve_picture(parts: Mapping[str, Drops]) -> str:
             ax.plot(1e3 * (time - contact), value, "--" if what == "simulated" and len(parts) > 1 else "-", lw=1.1, label=label)
         ax.set_title(name, fontsize=9)
         ax.set(xlabel="time from 5 % of the peak (ms)", ylabel="deceleration (g)")
-        ax.sharex(axes[0, 0])
-        ax.sharey(axes[0, 0])
         ax.legend(fontsize=7)
-    return _svg(figure)
+    return "<h2>Curves</h2>" + _svg(figure)
 
 
 # ---- figures over the height ----
@@ -81,36 +79,36 @@ def height_picture(p: Protocol, parts: Mapping[str, Drops]) -> str:
     if not figures or not places:
         return ""
     chart, axes = _plots(1, len(figures), 3.6)
+    one = len({condition for condition, _ in places}) == 1
     for ax, figure in zip(axes[0], figures):
         for k, place in enumerate(places[:MOST_PLACES]):
-            _draw_place(ax, p, figure, place, parts, f"C{k}", len(places) > 1)
+            _draw_place(ax, p, figure, place, parts, f"C{k}", (place[1] if one else ", ".join(place)) + ", " if len(places) > 1 else "")
         ax.axhline(figure.limit, color="0.4", lw=1, ls=":")
-        ax.annotate(f"limit {figure.limit:g}", (1, figure.limit), xycoords=("axes fraction", "data"), fontsize=7, ha="right", va="bottom")
+        ax.annotate(f"limit {figure.limit:g}", (0.02, figure.limit), xycoords=("axes fraction", "data"), fontsize=7, va="bottom")
         ax.set(xlabel="height of free fall (m)", ylabel=figure.label)
-        ax.legend(fontsize=7)
-    more = f'<p class="note">The first {MOST_PLACES} of {len(places)} places.</p>' if len(places) > MOST_PLACES else ""
-    return "<h2>Figures over the height</h2>" + _svg(chart) + more
+    axes[0, -1].legend(fontsize=7, loc="lower right")
+    told = ["Filled: measured drops, hollow: simulated ones. Full lines join the measured means of the drops that count; dashed lines are the fit of the simulated drops, or join them."]
+    told += [f"The first {MOST_PLACES} of {len(places)} places."] if len(places) > MOST_PLACES else []
+    return "<h2>Figures over the height</h2>" + _svg(chart) + f'<p class="note">{" ".join(told)}</p>'
 
 
-def _draw_place(ax: Any, p: Protocol, figure: Figure, place: tuple[str, str], parts: Mapping[str, Drops], colour: str, named: bool) -> None:
+def _draw_place(ax: Any, p: Protocol, figure: Figure, place: tuple[str, str], parts: Mapping[str, Drops], colour: str, prefix: str) -> None:
     """Draws a place: measured drops filled, and the mean of those that count; simulated ones hollow, with their curve."""
-    prefix = ", ".join(place) + ", " if named else ""
     for what, drops in parts.items():
         here = [drop for drop in drops.all if (drop.spot.condition, drop.spot.position) == place and not drop.spot.missile and drop.is_usable
                 and figure.label in drop.figures]
         if not here:
             continue
-        style = {"mfc": colour} if what == "measured" else {"mfc": "none"}
-        ax.plot([d.spot.height for d in here], [d.figures[figure.label] for d in here], "o" if what == "measured" else "s", color=colour, ms=4,
-                label=f"{prefix}{what} drops", **style)
+        filled = what == "measured"
+        ax.plot([d.spot.height for d in here], [d.figures[figure.label] for d in here], "o" if filled else "s", color=colour, ms=4, mfc=colour if filled else "none",
+                label=f"{prefix}{what}")
         search = next((one for one in drops.searches if (one.condition, one.position) == place), None)
         if search:
             _draw_search(ax, figure, search, colour, prefix)
             continue
         spots = _by_height(here)
-        means = [figures_of(group, figure.label, p.counted if len(group) == p.count else (group[0].number,)) for group in spots.values()]
-        if len(spots) > 1:
-            ax.plot(list(spots), means, "-" if what == "measured" else "--", color=colour, lw=1, label=f"{prefix}{what}, those that count" if p.count > 1 else None)
+        ax.plot(list(spots), [figures_of(group, figure.label, p.counted if len(group) == p.count else (group[0].number,)) for group in spots.values()],
+                "-" if filled else "--", color=colour, lw=1)
 
 
 def _draw_search(ax: Any, figure: Figure, search: Search, colour: str, prefix: str) -> None:
@@ -121,8 +119,7 @@ def _draw_search(ax: Any, figure: Figure, search: Search, colour: str, prefix: s
     if fit["centre"] is not None and not fit["bracketed"] and len(used) > 1:
         h = np.geomspace(min(used), max(used), 100)
         d = np.log(h) - fit["centre"]
-        ax.plot(h, [figure.of(float(value)) for value in np.exp(fit["c0"] + fit["c1"] * d + fit["c2"] * d**2)], "--", color=colour, lw=1.2,
-                label=f"{prefix}fit of the simulated drops")
+        ax.plot(h, [figure.of(float(value)) for value in np.exp(fit["c0"] + fit["c1"] * d + fit["c2"] * d**2)], "--", color=colour, lw=1.2)
     band = search.folder / "cfh_band.csv"
     if not band.exists() or search.summary.get("posterior") is None:
         return

@@ -87,9 +87,10 @@ def _set_up(p: Protocol, told: Mapping[str, str]) -> str:
 
 def _drop_table(p: Protocol, parts: Mapping[str, Drops], output: Path) -> str:
     keys = [figure.label for figure in p.figures]
+    place = {(c.name, q.name): k for k, (c, q) in enumerate((c, q) for c in p.conditions for q in p.positions)}
     rows = [[what, drop.spot.condition, drop.spot.position, drop.spot.missile, f"{drop.spot.height:g}", f"{speed(drop.spot.height):.3f}", drop.spot.mass,
              str(drop.number), *(_number(drop.figures.get(key, math.nan)) for key in keys), drop.grade, drop.note, _links(drop.view, output)]
-            for what, drops in parts.items() for drop in sorted(drops.all, key=lambda drop: (drop.spot.condition, drop.spot.position, drop.spot.height))]
+            for what, drops in parts.items() for drop in sorted(drops.all, key=lambda drop: (place[drop.spot.condition, drop.spot.position], drop.spot.height))]
     found = [[search.condition, search.position, _links(search.view, output)] for drops in parts.values() for search in drops.searches
              if search.view]
     searches = "<h2>Drops at the critical height</h2>" + _table(["condition", "position", "look"], found) if found else ""

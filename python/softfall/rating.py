@@ -107,4 +107,5 @@ def rate(reference_time: Any, reference: Any, time: Any, values: Any, interval: 
     scores = [_corridor(p, q), max(0.0, 1 - abs(shift) / (MOST_SHIFT * p.size)), max(0.0, 1 - _warp(near, moved) / MAGNITUDE)]
     slope, other = _slopes(near), _slopes(moved)
     scores.append(max(0.0, 1 - np.abs(other - slope).sum() / np.abs(slope).sum() / SLOPE))
-    return Rating(*(float(score) for score in scores), float(np.dot(WEIGHTS, scores)))
+    corridor, phase, magnitude, steepness = (float(score) for score in scores)
+    return Rating(corridor, phase, magnitude, steepness, float(np.dot(WEIGHTS, scores)))

@@ -2,6 +2,7 @@
 #include "base/error.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,6 +54,17 @@ void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const cha
     }
     memset(block, 0, bytes ? bytes : 64);
     return block;
+}
+
+bool sf_grow(void *array, size_t count, size_t size) {
+    void *block, *more;
+    memcpy(&block, array, sizeof block);
+    if (count & (count - 1)) /* it has a power of two */
+        return true;
+    if (!(more = realloc(block, (count ? 2 * count : 1) * size)))
+        return false;
+    memcpy(array, &more, sizeof more);
+    return true;
 }
 
 void sf_release(void *pointer) {

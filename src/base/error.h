@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
+#include <stdbool.h>
+#include <stddef.h>
 
 /* Status codes and the error record that every fallible softfall function fills.
  *
@@ -36,8 +38,8 @@ typedef struct sf_error {
 /* Refuses what the user gave. */
 #define SF_REFUSE(err, ...) SF_FAIL(err, SF_ERR_INPUT, __VA_ARGS__)
 
-/* Leaves the function with the status of `call` unless that is SF_OK. Where something must be released, let its
- * variable be SF_OWNED, chain the calls in one condition, or use `goto done`. */
+/* Leaves the function with the status of `call` unless that is SF_OK. Where something must be released, let
+ * its variable be SF_OWNED, chain the calls in one condition, or use `goto done`. */
 #define SF_TRY(call)                                                                                         \
     do {                                                                                                     \
         sf_status sf_try_status = (call);                                                                    \
@@ -63,6 +65,10 @@ void sf_release(void *pointer);
 /* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
  * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
 void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);
+
+/* Makes room behind `count` elements of so many bytes: `array` is the address of the pointer to them, which
+ * only this function has made, from NULL on. False: out of memory, and nothing has changed. */
+bool sf_grow(void *array, size_t count, size_t size);
 
 /* A sink receives warnings and notes: a function that may produce some takes a sink from its caller. Only
  * the programs print. */

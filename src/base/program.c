@@ -322,8 +322,6 @@ sf_status sf_program_read_texts(const char *option, const char *text, void *text
     return SF_OK;
 }
 
-/* ---- the end ---- */
-
 int sf_error_report(const sf_error *err, const char *program) {
     sf_error last = *err;
     errno = 0;

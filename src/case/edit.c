@@ -168,7 +168,7 @@ static char *name_whole(void *folder, const char *path, const char *name, sf_err
 
 /* Writes the value of a --set text as it stands in a case: libconfig's syntax if it is that, else a text. */
 static sf_status put_value(const char *path, const char *value, char *folder, FILE *out, sf_error *err) {
-    char *line = NULL;
+    SF_OWNED char *line = NULL;
     size_t size = 0;
     bool one = false;
     sf_edit_settings files = {0};
@@ -186,20 +186,18 @@ static sf_status put_value(const char *path, const char *value, char *folder, FI
     if (sf_case_edit_find(line, true, &files, err) == SF_OK)
         sf_case_edit_write(line, strlen(path) + 1, size, &files, name_whole, folder, out, err);
     free(files.setting);
-    free(line);
     return err->status;
 }
 
 /* Writes the file of a "group=@file" as a group that includes it. */
 static sf_status put_file(const char *file, FILE *out, sf_error *err) {
-    char *whole = sf_path_whole(NULL, file, err), *text = whole ? sf_case_load_marked(file, true, err) : NULL;
+    SF_OWNED char *whole = sf_path_whole(NULL, file, err),
+                  *text = whole ? sf_case_load_marked(file, true, err) : NULL;
     if (text) {
         size_t size = strlen(text);
         fprintf(out, "{\n#%c@include \"%s\"\n%s%s#%c\n}", SF_CASE_BEGIN, whole, text,
                 size > 0 && text[size - 1] != '\n' ? "\n" : "", SF_CASE_END);
     }
-    free(whole);
-    free(text);
     return err->status;
 }
 

@@ -173,7 +173,7 @@ static void free_shape_frame(sf_shape_frame *f) {
 
 static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const sf_frame_head *head,
                                   sf_shape_frame *out, sf_error *err) {
-    sf_frame fields = {{0}};
+    SF_OWNED_BY(sf_frame_free) sf_frame fields = {{0}};
     *out = (sf_shape_frame){0};
     SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err));
     out->pad = sf_alloc(err, 3 * (unsigned long)s->pad.node_count, sizeof(double), "a frame");
@@ -188,7 +188,6 @@ static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const 
         for (int d = 0; d < 3; d++)
             out->missile[3 * k + d] = (place[d] - s->missile_position[3 * k + d]) / s->unit;
     }
-    sf_frame_free(&fields);
     if (err->status != SF_OK)
         free_shape_frame(out);
     return err->status;
@@ -321,17 +320,16 @@ static sf_status show_outcome(const sf_results *r, sf_error *err) {
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS;
     clear_outcome();
-    if (sf_figures_compute(r, FILTER, &f, err) == SF_OK) {
-        sf_verdict_compute(r, &f, &limits, &verdict);
-        sf_verdict_line(&verdict, line, sizeof line);
-        put(VERDICT, sf_verdict_phrase(verdict.grade), line,
-            verdict.grade == SF_GRADE_VALID     ? GOOD
-            : verdict.grade == SF_GRADE_REMARKS ? FAIR
-                                                : BAD);
-        if (f.touched) {
-            show_limits(&f, &verdict);
-            show_motion(&f);
-        }
+    SF_TRY(sf_figures_compute(r, FILTER, &f, err));
+    sf_verdict_compute(r, &f, &limits, &verdict);
+    sf_verdict_line(&verdict, line, sizeof line);
+    put(VERDICT, sf_verdict_phrase(verdict.grade), line,
+        verdict.grade == SF_GRADE_VALID     ? GOOD
+        : verdict.grade == SF_GRADE_REMARKS ? FAIR
+                                            : BAD);
+    if (f.touched) {
+        show_limits(&f, &verdict);
+        show_motion(&f);
     }
     return err->status;
 }
@@ -449,7 +447,7 @@ static sf_status begin_pictures(sf_pictures *p, sf_error *err) {
 /* Pad and missile as softfall-pre has made them. */
 void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit) {
     sf_error err = SF_ERROR_INIT;
-    sf_model m = {0};
+    SF_OWNED_BY(sf_model_free) sf_model m = {0};
     SF_OWNED double *zero = NULL;
     forget(p);
     if (sf_model_read(path, &m, NULL, &err) == SF_OK &&
@@ -461,7 +459,6 @@ void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit
         sf_view_add(SF_PICTURE_PAD, 0, 0, &p->shape.pad, zero, zero);
         sf_view_add(SF_PICTURE_MISSILE, 0, 0, &p->shape.missile, zero, NULL);
     }
-    sf_model_free(&m);
     sf_shape_free(&p->shape);
 }
 
@@ -490,7 +487,7 @@ static void add_frames(sf_pictures *p, const sf_results *r, sf_error *err) {
  * next look finds that. */
 void sf_pictures_show_results(sf_pictures *p, const char *path, double length_unit, bool whole) {
     sf_error err = SF_ERROR_INIT;
-    sf_results r;
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
     sf_watch_stamp now = sf_watch_stamp_of(path);
     if (now.inode == 0 || (!whole && sf_watch_same(&now, &p->seen)))
         return;
@@ -510,7 +507,6 @@ void sf_pictures_show_results(sf_pictures *p, const char *path, double length_un
         show_outcome(&r, &err);
     if (err.status == SF_OK)
         p->seen = now;
-    sf_results_close(&r);
     sf_window_refresh();
 }
 

@@ -26,21 +26,12 @@ enum { BLOCK = 1 << 16 };
 
 static struct {
     pthread_mutex_t lock;
-    size_t count, capacity;
+    size_t count;
     sf_plain_record *entry;
 } list = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static bool append(sf_plain_record record) {
-    if (list.count == list.capacity) {
-        size_t capacity = list.capacity ? 2 * list.capacity : 32;
-        sf_plain_record *grown = realloc(list.entry, capacity * sizeof *grown);
-        if (!grown)
-            return false;
-        list.entry = grown;
-        list.capacity = capacity;
-    }
-    record.path = strdup(record.path);
-    if (!record.path)
+    if (!sf_grow(&list.entry, list.count, sizeof record) || !(record.path = strdup(record.path)))
         return false;
     list.entry[list.count++] = record;
     return true;
@@ -104,26 +95,18 @@ void sf_plain_clear(void) {
         free((char *)list.entry[k].path);
     free(list.entry);
     list.entry = NULL;
-    list.count = list.capacity = 0;
+    list.count = 0;
     pthread_mutex_unlock(&list.lock);
 }
 
 /* ---- opening ---- */
 
-/* Returns the kind of a file that is not plain; NULL if it is plain. */
-static const char *other_kind(mode_t mode) {
-    switch (mode & S_IFMT) {
-    case S_IFREG:
-        return NULL;
-    case S_IFDIR:
-        return "a folder";
-    case S_IFIFO:
-        return "a pipe";
-    case S_IFSOCK:
-        return "a socket";
-    default:
-        return "a device";
-    }
+const char *sf_plain_kind(mode_t mode) {
+    return S_ISREG(mode)    ? NULL
+           : S_ISDIR(mode)  ? "a folder"
+           : S_ISFIFO(mode) ? "a pipe"
+           : S_ISSOCK(mode) ? "a socket"
+                            : "a device";
 }
 
 /* The file system makes the contents up while they are read. */
@@ -143,7 +126,7 @@ static bool is_made_up(long type) {
 }
 
 static sf_status refuse_kind(const char *path, const char *what, const struct stat *info, sf_error *err) {
-    const char *kind = other_kind(info->st_mode);
+    const char *kind = sf_plain_kind(info->st_mode);
     return kind ? SF_REFUSE(err, NAMED " is not a plain file: it is %s", NAME(what, path), kind) : SF_OK;
 }
 

@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "base/error.h"
 
@@ -70,6 +71,9 @@ char *sf_path_whole(const char *folder, const char *path, sf_error *err);
 
 /* The part of whole paths below `folder`; NULL: `path` is not below it. Points into `path`. */
 const char *sf_path_below(const char *folder, const char *path);
+
+/* What is not plain, "a folder"; NULL if the mode is that of a plain file. */
+const char *sf_plain_kind(mode_t mode);
 
 /* The length of the folder part of a path, without the slash but of "/"; 0: none. */
 size_t sf_path_folder_length(const char *path);

@@ -16,8 +16,6 @@
 #include <time.h>
 #include <unistd.h>
 
-/* ---- a file in place of another ---- */
-
 #define PARTIAL ".partial-"
 enum { TOKEN_DIGITS = 8, SEAL_SIZE = 24 /* io/replace.h */ };
 
@@ -67,15 +65,12 @@ bool sf_replace_exists(const char *path) {
     return lstat(path, &info) == 0 || errno != ENOENT;
 }
 
-static const char *kind(mode_t mode) {
-    return S_ISDIR(mode) ? "a folder" : S_ISFIFO(mode) ? "a pipe" : S_ISSOCK(mode) ? "a socket" : "a device";
-}
-
 /* `info`: of what has the name already. */
 static sf_status check_present(const char *path, const struct stat *info, sf_error *err) {
     const char *input = sf_plain_name(info->st_dev, info->st_ino);
     if (!S_ISREG(info->st_mode))
-        return SF_REFUSE(err, "the output %s cannot be written: it is %s", path, kind(info->st_mode));
+        return SF_REFUSE(err, "the output %s cannot be written: it is %s", path,
+                         sf_plain_kind(info->st_mode));
     if (input)
         return SF_REFUSE(err, "the output %s would replace an input, %s: give another name", path, input);
     return SF_OK;
@@ -158,7 +153,7 @@ sf_status sf_replace_commit(const char *partial, const char *path, sf_error *err
     if (sync_handle(sf_replace_reopen(partial)) != 0)
         SF_FAIL(err, SF_ERR_IO, "%s cannot be brought to the disk: %s", partial, strerror(errno));
     else if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-        SF_FAIL(err, SF_ERR_IO, "%s cannot be written: it is %s", path, kind(info.st_mode));
+        SF_FAIL(err, SF_ERR_IO, "%s cannot be written: it is %s", path, sf_plain_kind(info.st_mode));
     else if (rename(partial, path) != 0)
         SF_FAIL(err, SF_ERR_IO, "%s cannot be renamed to %s: %s", partial, path, strerror(errno));
     if (err->status != SF_OK)

@@ -29,21 +29,13 @@ static char *join(const char *directory, const char *name, sf_error *err) {
     return path;
 }
 
-static bool file_exists(const char *directory, const char *name) {
-    sf_error ignored = SF_ERROR_INIT;
-    SF_OWNED char *path = join(directory, name, &ignored);
-    bool found = path && sf_replace_exists(path);
-    return found;
-}
-
 /* Each file that is there may be replaced: it is plain and not an input. */
 static sf_status check_files(const char *directory, const char *const *names, bool force, sf_error *err) {
     for (; *names && err->status == SF_OK; names++) {
-        char *path = join(directory, *names, err);
+        SF_OWNED char *path = join(directory, *names, err);
         if (path && sf_replace_check(path, err) == SF_OK && !force && sf_replace_exists(path))
             SF_REFUSE(err, "%s already holds %s: give another directory, or --force to replace it", directory,
                       *names);
-        free(path);
     }
     return err->status;
 }
@@ -100,14 +92,9 @@ static void remove_stale(const char *directory) {
         closedir(listing);
 }
 
-static char *name_staging(const char *directory, sf_error *err) {
-    char name[64];
-    snprintf(name, sizeof name, STAGING "%d-XXXXXX", (int)getpid());
-    return join(directory, name, err);
-}
-
 sf_status sf_staging_begin(const char *directory, const char *const *names, bool force, sf_staging *output,
                            sf_error *err) {
+    char name[64];
     *output = (sf_staging){.names = names};
     output->directory = strdup(directory);
     if (!output->directory)
@@ -115,18 +102,15 @@ sf_status sf_staging_begin(const char *directory, const char *const *names, bool
     if (make_directory(output, force, err) != SF_OK)
         goto failed;
     remove_stale(directory);
-    output->aside = name_staging(directory, err);
-    if (!output->aside)
-        goto failed;
-    if (!mkdtemp(output->aside)) {
+    snprintf(name, sizeof name, STAGING "%d-XXXXXX", (int)getpid());
+    output->aside = join(directory, name, err);
+    if (output->aside && !mkdtemp(output->aside)) {
         SF_FAIL(err, SF_ERR_IO, "cannot write in %s: %s", directory, strerror(errno));
         free(output->aside);
         output->aside = NULL;
-        goto failed;
     }
-    if (sf_folder_own(output->aside, err) != SF_OK)
-        goto failed;
-    return SF_OK;
+    if (output->aside && sf_folder_own(output->aside, err) == SF_OK)
+        return SF_OK;
 failed:
     sf_staging_end(output);
     return err->status;
@@ -138,8 +122,7 @@ char *sf_staging_path(const sf_staging *output, const char *name, sf_error *err)
 
 FILE *sf_staging_open(const sf_staging *output, const char *name, sf_error *err) {
     SF_OWNED char *path = sf_staging_path(output, name, err);
-    FILE *file = path ? sf_replace_create(path, err) : NULL;
-    return file;
+    return path ? sf_replace_create(path, err) : NULL;
 }
 
 sf_status sf_staging_close(FILE *file, const char *name, sf_error *err) {
@@ -150,7 +133,9 @@ sf_status sf_staging_close(FILE *file, const char *name, sf_error *err) {
 }
 
 bool sf_staging_has(const sf_staging *output, const char *name) {
-    return file_exists(output->aside ? output->aside : output->directory, name);
+    sf_error ignored = SF_ERROR_INIT;
+    SF_OWNED char *path = join(output->aside ? output->aside : output->directory, name, &ignored);
+    return path && sf_replace_exists(path);
 }
 
 void sf_staging_remove(const sf_staging *output, const char *name) {
@@ -163,16 +148,14 @@ void sf_staging_remove(const sf_staging *output, const char *name) {
 sf_status sf_staging_commit(sf_staging *output, sf_error *err) {
     SF_TRY(check_files(output->directory, output->names, true, err));
     for (const char *const *name = output->names; *name && err->status == SF_OK; name++) {
-        char *from = join(output->aside, *name, err);
-        char *to = from ? join(output->directory, *name, err) : NULL;
+        SF_OWNED char *from = join(output->aside, *name, err);
+        SF_OWNED char *to = from ? join(output->directory, *name, err) : NULL;
         if (to && access(from, F_OK) != 0) {
             if (unlink(to) != 0 && errno != ENOENT)
                 SF_FAIL(err, SF_ERR_IO, "cannot remove the old %s: %s", to, strerror(errno));
         } else if (to) {
             sf_replace_commit(from, to, err);
         }
-        free(from);
-        free(to);
     }
     SF_TRY(err->status);
     if (output->created)
@@ -196,17 +179,6 @@ void sf_staging_end(sf_staging *output) {
 
 /* ---- a new folder of folders ---- */
 
-static bool is_empty(const char *path) {
-    DIR *list = opendir(path);
-    const struct dirent *entry;
-    int count = 0;
-    while (list && (entry = readdir(list)) != NULL)
-        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-    if (list)
-        closedir(list);
-    return list && count == 0;
-}
-
 static sf_status check_place(const char *path, bool *there, sf_error *err) {
     struct stat info;
     if (!*path)
@@ -217,7 +189,7 @@ static sf_status check_place(const char *path, bool *there, sf_error *err) {
     if (*there && access(path, W_OK | X_OK) != 0)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be written in: %s", path, strerror(errno));
     if (*there)
-        return is_empty(path)
+        return sf_folder_count(path, "") == 0
                    ? SF_OK
                    : SF_REFUSE(err, "the folder %s exists and is not empty: give another name", path);
     return sf_replace_check_folder(path, err);
@@ -273,15 +245,7 @@ static bool is_made(const sf_tree *tree, const char *name) {
 
 /* Notes the name of what is made next. */
 static sf_status note(sf_tree *tree, const char *name, size_t length, sf_error *err) {
-    if (tree->count == tree->capacity) {
-        int capacity = tree->capacity ? 2 * tree->capacity : 16;
-        char **grown = realloc(tree->made, (size_t)capacity * sizeof *grown);
-        if (!grown)
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of %s", tree->path);
-        tree->made = grown;
-        tree->capacity = capacity;
-    }
-    char *copy = strndup(name, length);
+    char *copy = sf_grow(&tree->made, (size_t)tree->count, sizeof *tree->made) ? strndup(name, length) : NULL;
     if (!copy)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of %s", tree->path);
     tree->made[tree->count++] = copy;

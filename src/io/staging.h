@@ -56,7 +56,7 @@ typedef struct sf_tree {
     char *path;  /* where it will be */
     char *aside; /* where it is made, on the same file system; NULL: moved or removed */
     bool there;  /* `path` is an empty folder already, which stays */
-    int count, capacity;
+    int count;
     char **made; /* [count] files and folders in `aside`, relative, each after the folder that holds it */
 } sf_tree;
 

@@ -386,13 +386,12 @@ static sf_status choose_rows(csv *file, sf_error *err) {
         }
         int listed = list_parts(file, k, list);
         bool there = false;
-        size_t used = 0;
+        *line = '\0';
         if (listed < 0)
             *place = -1;
         for (int i = 0; i < listed; i++) {
             there = there || (chosen && is_part(list[i], chosen));
-            if (used < sizeof line)
-                used += (size_t)snprintf(line + used, sizeof line - used, "%s%s", i ? ", " : "", list[i]);
+            sf_text_add(line, sizeof line, "%s%s", i ? ", " : "", list[i]);
         }
         if (listed > 1 && !chosen)
             return SF_REFUSE(err, "%s holds the %s %s: %s%s", file->path, names[k], line,
@@ -485,21 +484,10 @@ static sf_status read_number(csv *file, const char *name, const char *text, doub
 
 static sf_status append(csv *file, const double value[2], sf_error *err) {
     sf_table *table = file->table;
-    if (table->count == table->capacity) {
-        int64_t capacity = table->capacity ? 2 * table->capacity : 64;
-        for (int c = 0; c < 2; c++) {
-            double *grown = realloc(table->value[c], (size_t)capacity * sizeof *grown);
-            if (!grown)
-                return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what,
-                               file->path);
-            table->value[c] = grown;
-        }
-        int *lines = realloc(table->line, (size_t)capacity * sizeof *lines);
-        if (!lines)
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
-        table->line = lines;
-        table->capacity = capacity;
-    }
+    if (!sf_grow(&table->value[0], (size_t)table->count, sizeof *value) ||
+        !sf_grow(&table->value[1], (size_t)table->count, sizeof *value) ||
+        !sf_grow(&table->line, (size_t)table->count, sizeof *table->line))
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
     for (int c = 0; c < 2; c++)
         table->value[c][table->count] = value[c];
     table->line[table->count] = file->line;
@@ -571,8 +559,6 @@ static sf_status read_point(csv *file, char *line, sf_error *err) {
     return append(file, point.value, err);
 }
 
-/* ---- the whole ---- */
-
 static bool holds_point(const csv *file, char *line) {
     sf_table_cells cells;
     sf_table_split(line, file->separator, false, &cells);
@@ -601,15 +587,17 @@ static void describe(const csv *file) {
     const char *separator = file->separator == '\t' ? "tab" : file->separator == ' ' ? "blanks" : NULL;
     char *out = file->table->interpretation;
     size_t size = SF_TABLE_INTERPRETATION;
-    int used = separator ? snprintf(out, size, "separator %s", separator)
-                         : snprintf(out, size, "separator \"%c\"", file->separator);
-    used += snprintf(out + used, size - (size_t)used, ", decimal %s", file->comma ? "comma" : "point");
+    if (separator)
+        snprintf(out, size, "separator %s", separator);
+    else
+        snprintf(out, size, "separator \"%c\"", file->separator);
+    sf_text_add(out, size, ", decimal %s", file->comma ? "comma" : "point");
     for (int c = 0; c < 2; c++) {
-        used += snprintf(out + used, size - (size_t)used, ", %s", file->layout->column[c]);
+        sf_text_add(out, size, ", %s", file->layout->column[c]);
         if (h->unit[c][0])
-            used += snprintf(out + used, size - (size_t)used, " in %s", h->unit[c]);
+            sf_text_add(out, size, " in %s", h->unit[c]);
         if (h->title[c][0])
-            used += snprintf(out + used, size - (size_t)used, " (\"%s\")", h->title[c]);
+            sf_text_add(out, size, " (\"%s\")", h->title[c]);
     }
 }
 
@@ -644,16 +632,13 @@ static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, 
         file->separator == ',' && h->exact[0] && h->exact[1] && !file->passed && !h->unit_line;
     if (h->columns > 0)
         describe(file);
-    size_t used = strlen(file->table->interpretation);
+    char *told = file->table->interpretation;
     if (file->passed)
-        used += (size_t)snprintf(file->table->interpretation + used, SF_TABLE_INTERPRETATION - used,
-                                 ", heading in line %d", heading_line);
-    if (footer && used < SF_TABLE_INTERPRETATION)
-        used += (size_t)snprintf(file->table->interpretation + used, SF_TABLE_INTERPRETATION - used,
-                                 ", without what stands from line %d on", footer);
-    if (file->lost && used < SF_TABLE_INTERPRETATION)
-        snprintf(file->table->interpretation + used, SF_TABLE_INTERPRETATION - used,
-                 ", %d lost samples (NaN)", file->lost);
+        sf_text_add(told, SF_TABLE_INTERPRETATION, ", heading in line %d", heading_line);
+    if (footer)
+        sf_text_add(told, SF_TABLE_INTERPRETATION, ", without what stands from line %d on", footer);
+    if (file->lost)
+        sf_text_add(told, SF_TABLE_INTERPRETATION, ", %d lost samples (NaN)", file->lost);
     return SF_OK;
 }
 

@@ -80,7 +80,6 @@ enum { SF_TABLE_INTERPRETATION = 384 };
 
 typedef struct sf_table {
     int64_t count;
-    int64_t capacity;
     double *value[2];                /* [count] SI, or the layout's units; owned */
     int *line;                       /* [count] in the file; owned */
     double scale[2];                 /* from the file's units to those of the values */

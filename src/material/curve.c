@@ -68,13 +68,12 @@ static sf_status build_densification(const sf_foam_card *foam, double stress, do
                                      sf_curve *curve, sf_error *err) {
     double start = curve->start, limit = foam->densification_limit, exponent = foam->densification_exponent;
     if (!(limit > start))
-        return SF_FAIL(err, SF_ERR_INPUT, "the densification limit %g is not beyond its start %g", limit,
-                       start);
+        return SF_REFUSE(err, "the densification limit %g is not beyond its start %g", limit, start);
     if (!(slope > 0 && stress > 0))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "the compression curve is flat (stress %g Pa, slope %g Pa) at the strain %g where "
-                       "densification starts",
-                       stress, slope, start);
+        return SF_REFUSE(err,
+                         "the compression curve is flat (stress %g Pa, slope %g Pa) at the strain %g where "
+                         "densification starts",
+                         stress, slope, start);
     if (!(exponent > 0))
         exponent = sf_densification_natural_exponent(start, limit, stress, slope);
     curve->beyond = sf_densification_join(start, limit, exponent, stress, slope, energy);
@@ -106,13 +105,12 @@ static void steffen_slopes(int64_t count, const double *x, const double *y, doub
 
 static sf_status check_points(int64_t index, int64_t count, const double *x, sf_error *err) {
     if (count < 3)
-        return SF_FAIL(err, SF_ERR_INPUT, "compression curve %lld has %lld points; it needs at least 3",
-                       (long long)index, (long long)count);
+        return SF_REFUSE(err, "compression curve %lld has %lld points; it needs at least 3", (long long)index,
+                         (long long)count);
     for (int64_t i = 1; i < count; i++)
         if (!(x[i] > x[i - 1]))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "the strains of compression curve %lld are not ascending: %g after %g",
-                           (long long)index, x[i], x[i - 1]);
+            return SF_REFUSE(err, "the strains of compression curve %lld are not ascending: %g after %g",
+                             (long long)index, x[i], x[i - 1]);
     return SF_OK;
 }
 
@@ -165,12 +163,11 @@ sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curv
     int64_t first = foam->curve_ptr[index], count = foam->curve_ptr[index + 1] - first;
     const double *x = &foam->curve_strain[first], *y = &foam->curve_stress[first];
     *curve = (sf_curve){0};
-    if (check_points(index, count, x, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_points(index, count, x, err));
     curve->start = foam->densification_start > 0 ? foam->densification_start : x[count - 1];
     if (curve->start > x[count - 1])
-        return SF_FAIL(err, SF_ERR_INPUT, "densification starts at strain %g, but the curve ends at %g",
-                       curve->start, x[count - 1]);
+        return SF_REFUSE(err, "densification starts at strain %g, but the curve ends at %g", curve->start,
+                         x[count - 1]);
     curve->step = curve->start / SF_CURVE_INTERVALS;
     curve->piece = sf_alloc(err, SF_CURVE_INTERVALS, sizeof *curve->piece, "curve table");
     double *slopes = sf_alloc(err, (unsigned long)count, sizeof *slopes, "curve slopes");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/cells.h"
 
+#include "base/sets.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,11 +44,6 @@ typedef struct face {
     int32_t node[4], sorted[4]; /* -1 in the fourth place of a triangle, in the first of the sorted ones */
 } face;
 
-static int by_node(const void *a, const void *b) {
-    const int32_t *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 /* The order is that of the bytes: the triangles of model.h5, and with them the bits of a run, follow it. */
 static int by_nodes(const void *a, const void *b) {
     return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
@@ -64,7 +60,7 @@ static int64_t list_faces(const sf_cells *c, face *out) {
             for (int v = 0; v < 4; v++)
                 to->node[v] = faces[f][v] < 0 ? -1 : c->node[c->ptr[k] + faces[f][v]];
             memcpy(to->sorted, to->node, sizeof to->sorted);
-            qsort(to->sorted, 4, sizeof *to->sorted, by_node);
+            qsort(to->sorted, 4, sizeof *to->sorted, sf_by_number);
         }
         count += n;
     }

@@ -428,7 +428,7 @@ static sf_status check_blades(const sf_model *m, const edge *list, sf_error *err
 }
 
 static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
-    edge *list = m->missile.shape == SF_SHAPE_SURFACE ? list_edges(m, err) : NULL;
+    SF_OWNED edge *list = m->missile.shape == SF_SHAPE_SURFACE ? list_edges(m, err) : NULL;
     for (int axis = 0; axis < 2 && err->status == SF_OK; axis++) {
         double place = 0;
         const char *name = NULL;
@@ -439,7 +439,6 @@ static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_
     }
     if (list && err->status == SF_OK)
         check_blades(m, list, err);
-    free(list);
     return err->status;
 }
 

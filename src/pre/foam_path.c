@@ -38,13 +38,12 @@ typedef struct hit {
 /* ---- the pad's surface ---- */
 
 static sf_status find_surface(const sf_model *m, surface_of_pad *out, sf_error *err) {
-    int32_t *node = NULL;
+    SF_OWNED int32_t *node = NULL;
     *out = (surface_of_pad){0};
     if (sf_skin_triangles(m, &out->count, &node, err) == SF_OK)
         out->list = sf_alloc(err, (unsigned long)out->count, sizeof *out->list, "surface of the pad");
     for (int64_t i = 0; out->list && i < out->count; i++)
         memcpy(out->list[i].node, &node[3 * i], sizeof out->list[i].node);
-    free(node);
     return err->status;
 }
 
@@ -221,7 +220,7 @@ static sf_status check_between(const sf_model *m, const surface_of_pad *pad, sf_
 sf_status sf_foam_path_measure(sf_model *m, sf_error *between, sf_error *err) {
     double extent = m->thickness, slack = SAME * extent;
     surface_of_pad pad;
-    uint8_t *mark = mark_nodes(m, err);
+    SF_OWNED uint8_t *mark = mark_nodes(m, err);
     if (mark && find_surface(m, &pad, err) == SF_OK) {
         int64_t first = find_touched(m, &pad, mark);
         const path least = first < 0 ? (path){0, 0} : shortest_path(m, &pad, mark, first, slack);
@@ -232,6 +231,5 @@ sf_status sf_foam_path_measure(sf_model *m, sf_error *between, sf_error *err) {
         check_between(m, &pad, between);
         free(pad.list);
     }
-    free(mark);
     return err->status;
 }

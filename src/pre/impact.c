@@ -75,7 +75,8 @@ static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, 
     const bool plane[2] = {sf_symmetry_plane(m, 0, &place[0]), sf_symmetry_plane(m, 1, &place[1])};
     int64_t count = 0;
     bool at_node = false;
-    double *angle = sf_alloc(err, 4 * (unsigned long)m->contact_count, sizeof *angle, "impact point");
+    SF_OWNED double *angle =
+        sf_alloc(err, 4 * (unsigned long)m->contact_count, sizeof *angle, "impact point");
     if (!angle)
         return err->status;
     for (int image = 0; image < 4; image++) {
@@ -96,7 +97,6 @@ static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, 
     for (int64_t k = 1; k < count; k++)
         *gap = fmax(*gap, angle[k] - angle[k - 1]);
     *gap = at_node ? 0 : *gap;
-    free(angle);
     return SF_OK;
 }
 

@@ -21,7 +21,7 @@ static void add_face(const sf_mesh *mesh, const sf_layers *l, const sf_boundary_
 static sf_status add_group(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
                            const sf_node_set *set, uint8_t *taken, sf_model *m, sf_error *err) {
     int64_t before = m->membrane_count;
-    uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "membrane");
+    SF_OWNED uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "membrane");
     for (int64_t k = 0; member && k < set->count; k++)
         member[set->node[k]] = 1;
     for (int64_t f = 0; member && f < dual->face_count && err->status == SF_OK; f++) {
@@ -34,7 +34,6 @@ static sf_status add_group(const sf_mesh *mesh, const sf_dual *dual, const sf_la
         else if (inside)
             add_face(mesh, l, face, m);
     }
-    free(member);
     if (err->status == SF_OK && m->membrane_count == before)
         SF_REFUSE(err, "membrane.faces: no face of the group \"%s\" is on the surface of the pad", set->name);
     return err->status;
@@ -45,7 +44,7 @@ sf_status sf_membrane_take(const sf_case *c, const sf_mesh *mesh, const sf_dual 
     unsigned long most = 4 * (unsigned long)dual->face_count;
     if (c->membrane_count == 0)
         return SF_OK;
-    uint8_t *taken = sf_alloc(err, (unsigned long)dual->face_count, 1, "membrane");
+    SF_OWNED uint8_t *taken = sf_alloc(err, (unsigned long)dual->face_count, 1, "membrane");
     m->membrane = c->membrane_card;
     m->membrane_triangle = sf_alloc(err, 3 * most, sizeof *m->membrane_triangle, "membrane");
     m->membrane_share = sf_alloc(err, most, sizeof *m->membrane_share, "membrane");
@@ -54,7 +53,6 @@ sf_status sf_membrane_take(const sf_case *c, const sf_mesh *mesh, const sf_dual 
         if (set)
             add_group(mesh, dual, l, set, taken, m, err);
     }
-    free(taken);
     return err->status;
 }
 

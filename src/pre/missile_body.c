@@ -45,7 +45,7 @@ static sf_status take_sides(int64_t node_count, int64_t triangle_count, const in
 static sf_status check_closed(int64_t node_count, const double *position, int64_t triangle_count,
                               const int32_t *triangle, sf_error *err) {
     int64_t count = 3 * triangle_count, same = 0;
-    side *list = sf_alloc(err, (unsigned long)count, sizeof *list, "edges of a surface");
+    SF_OWNED side *list = sf_alloc(err, (unsigned long)count, sizeof *list, "edges of a surface");
     if (!list || take_sides(node_count, triangle_count, triangle, list, err) != SF_OK)
         goto done;
     qsort(list, (size_t)count, sizeof *list, compare_side);
@@ -57,7 +57,6 @@ static sf_status check_closed(int64_t node_count, const double *position, int64_
             refuse_edge(&list[k], same, position, err);
     }
 done:
-    free(list);
     return err->status;
 }
 

@@ -82,9 +82,9 @@ static sf_status run_group(const options *o, const sf_manifest *m, const char *o
     int count = last - first;
     const sf_manifest_run *run = &m->run[first];
     sf_runner runner = {.folder = m->runs, .threads = o->threads, .log = stdout};
-    sf_runner_drop *drop = sf_alloc(err, (unsigned long)count, sizeof *drop, "drops");
-    sf_error *failure = sf_alloc(err, (unsigned long)count, sizeof *failure, "failures");
-    uint64_t *key = sf_alloc(err, (unsigned long)count, sizeof *key, "keys");
+    SF_OWNED sf_runner_drop *drop = sf_alloc(err, (unsigned long)count, sizeof *drop, "drops");
+    SF_OWNED sf_error *failure = sf_alloc(err, (unsigned long)count, sizeof *failure, "failures");
+    SF_OWNED uint64_t *key = sf_alloc(err, (unsigned long)count, sizeof *key, "keys");
     for (int k = 0; err->status == SF_OK && k < count; k++)
         drop[k] = run[k].drop;
     for (int k = 0; err->status == SF_OK && k < count; k++)
@@ -92,9 +92,6 @@ static sf_status run_group(const options *o, const sf_manifest *m, const char *o
     if (err->status == SF_OK && check_keys(count, run, key, err) == SF_OK &&
         sf_runner_simulate_each(&runner, count, drop, failure, err) == SF_OK)
         finish_group(outcome, count, run, failure, err);
-    free(drop);
-    free(failure);
-    free(key);
     return err->status;
 }
 
@@ -118,7 +115,7 @@ static sf_status list_runs(const sf_manifest *m, sf_error *err) {
 
 static sf_status run(const options *o, sf_error *err) {
     char outcome[SF_PATH_SIZE + 64], file[PATH_MAX];
-    sf_manifest m = {0};
+    SF_OWNED_BY(sf_manifest_free) sf_manifest m = {0};
     if (!realpath(o->manifest, file))
         SF_REFUSE(err, "the manifest %s cannot be read: %s", o->manifest, strerror(errno));
     else if (sf_manifest_read(file, &m, err) == SF_OK && chdir(m.folder) != 0)
@@ -128,7 +125,6 @@ static sf_status run(const options *o, sf_error *err) {
         run_group(o, &m, outcome, err);
     } else if (err->status == SF_OK)
         list_runs(&m, err);
-    sf_manifest_free(&m);
     return err->status;
 }
 

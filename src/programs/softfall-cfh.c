@@ -90,14 +90,13 @@ static sf_status parse_list(const sf_units *units, const char *option, char *lis
 static sf_status read_heights(const char *option, const char *text, void *values, sf_error *err) {
     options *o = values;
     sf_units *units = NULL;
-    char *copy = strdup(text);
+    SF_OWNED char *copy = strdup(text);
     o->list_count = 0;
     if (!copy)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %s", option);
     else if (sf_units_open(&units, err) == SF_OK)
         parse_list(units, option, copy, o, err);
     sf_units_close(&units);
-    free(copy);
     return err->status;
 }
 
@@ -325,7 +324,7 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     sf_cfh_rig rig = sf_cfh_free_fall();
     sf_cfh_points points = {0};
     sf_cfh_result result;
-    sf_cfh_spread spread = {0};
+    SF_OWNED_BY(sf_cfh_spread_free) sf_cfh_spread spread = {0};
     SF_TRY(check_options(o, err));
     SF_TRY(sf_study_check(study, output_names, err));
     if ((o->rig_path && sf_cfh_rig_read(o->rig_path, &rig, err) != SF_OK) ||
@@ -351,7 +350,6 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
         simulate(study, s, &report, &points, &result, &spread, err) == SF_OK &&
         write_output(study, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)
         *err = result.problem;
-    sf_cfh_spread_free(&spread);
     return err->status;
 }
 

@@ -184,7 +184,7 @@ static const sf_study_program program = {
 
 int main(int argc, char **argv) {
     sf_error err = SF_ERROR_INIT;
-    job *j = sf_alloc(&err, 1, sizeof *j, "the plan");
+    SF_OWNED job *j = sf_alloc(&err, 1, sizeof *j, "the plan");
     if (!j)
         return sf_error_report(&err, program.name);
     mallopt(M_MMAP_THRESHOLD, LARGE_BLOCK);
@@ -192,6 +192,5 @@ int main(int argc, char **argv) {
     sf_analysis_free(&j->analysis);
     sf_runs_free(&j->runs);
     sf_plan_free(&j->plan);
-    free(j);
     return code;
 }

@@ -21,14 +21,12 @@
         va_end(arguments);                                                                                   \
     } while (0)
 
-/* Returns the array with room for one element more; NULL after a failure, which err has. */
-static void *grown(sf_chart *chart, void *array, size_t count, size_t size) {
-    if (chart->err->status != SF_OK)
-        return NULL;
-    void *more = (count & (count - 1)) == 0 ? realloc(array, (count ? 2 * count : 1) * size) : array;
-    if (!more)
+/* Makes room for one element more behind `array`, the address of the pointer; false after a failure, which
+ * err has. */
+static bool grow(sf_chart *chart, void *array, size_t count, size_t size) {
+    if (chart->err->status == SF_OK && !sf_grow(array, count, size))
         SF_FAIL(chart->err, SF_ERR_MEMORY, "out of memory for the picture %s", chart->name);
-    return more;
+    return chart->err->status == SF_OK;
 }
 
 sf_chart *sf_chart_new(const char *name, int width, int height, sf_error *err) {
@@ -80,14 +78,13 @@ void sf_chart_columns(sf_chart *chart, int columns) {
 sf_panel *sf_chart_panel(sf_chart *chart) {
     static const sf_axis automatic = {.low = NAN, .high = NAN};
     static sf_panel not_drawn;
-    sf_chart_panel_data **list = chart ? grown(chart, chart->panel, chart->panel_count, sizeof *list) : NULL;
-    if (list)
-        chart->panel = list;
-    sf_chart_panel_data *panel = list ? sf_alloc(chart->err, 1, sizeof *panel, "a picture") : NULL;
+    sf_chart_panel_data *panel = chart && grow(chart, &chart->panel, chart->panel_count, sizeof panel)
+                                     ? sf_alloc(chart->err, 1, sizeof *panel, "a picture")
+                                     : NULL;
     if (!panel)
         return &not_drawn;
     *panel = (sf_chart_panel_data){.shown = {.x = automatic, .y = automatic, .x2 = automatic}};
-    list[chart->panel_count++] = panel;
+    chart->panel[chart->panel_count++] = panel;
     return &panel->shown;
 }
 
@@ -111,12 +108,8 @@ void sf_axis_range(sf_axis *axis, double low, double high) {
 }
 
 void sf_axis_word(sf_chart *chart, sf_axis *axis, const char *word) {
-    char **list = chart ? grown(chart, axis->word, (size_t)axis->word_count, sizeof *list) : NULL;
-    if (!list)
-        return;
-    axis->word = list;
-    list[axis->word_count] = strdup(word);
-    if (list[axis->word_count])
+    if (chart && grow(chart, &axis->word, (size_t)axis->word_count, sizeof *axis->word) &&
+        (axis->word[axis->word_count] = strdup(word)))
         axis->word_count++;
 }
 
@@ -126,30 +119,23 @@ static sf_chart_panel_data *last_panel(const sf_chart *chart) {
                : NULL;
 }
 
-/* ---- series ---- */
-
 sf_series_data *sf_chart_series(sf_chart *chart, sf_series_style style, const char *title, ...) {
     sf_chart_panel_data *p = last_panel(chart);
-    sf_series_data **list = p ? grown(chart, p->series, p->series_count, sizeof *list) : NULL;
-    if (!list)
-        return NULL;
-    p->series = list;
-    sf_series_data *series = sf_alloc(chart->err, 1, sizeof *series, "a picture");
+    sf_series_data *series = p && grow(chart, &p->series, p->series_count, sizeof series)
+                                 ? sf_alloc(chart->err, 1, sizeof *series, "a picture")
+                                 : NULL;
     if (!series)
         return NULL;
     *series = (sf_series_data){.chart = chart, .style = style};
     if (title)
         FORMAT_INTO(series->title, title);
-    list[p->series_count++] = series;
+    p->series[p->series_count++] = series;
     return series;
 }
 
 void sf_series_add(sf_series_data *s, double x, double y, double low, double high) {
-    sf_series_value *list = s ? grown(s->chart, s->value, s->count, sizeof *list) : NULL;
-    if (!list)
-        return;
-    s->value = list;
-    list[s->count++] = (sf_series_value){x, y, low, high};
+    if (s && grow(s->chart, &s->value, s->count, sizeof *s->value))
+        s->value[s->count++] = (sf_series_value){x, y, low, high};
 }
 
 void sf_series_point(sf_series_data *s, double x, double y) {
@@ -165,26 +151,17 @@ void sf_series_points(sf_series_data *s, int64_t count, const double *x, const d
 
 void sf_series_label(sf_series_data *s, double x, double y, const char *format, ...) {
     char text[SF_CHART_TEXT];
-    char **list = s ? grown(s->chart, s->text, s->count, sizeof *list) : NULL;
-    if (!list)
-        return;
-    s->text = list;
     FORMAT_INTO(text, format);
-    list[s->count] = strdup(text);
-    if (list[s->count])
+    if (s && grow(s->chart, &s->text, s->count, sizeof *s->text) && (s->text[s->count] = strdup(text)))
         sf_series_point(s, x, y);
 }
-
-/* ---- marks ---- */
 
 void sf_chart_mark(sf_chart *chart, sf_mark_kind kind, double x, double y, const char *colour,
                    const char *text, ...) {
     sf_chart_panel_data *p = last_panel(chart);
-    sf_chart_mark_data *list = p ? grown(chart, p->mark, p->mark_count, sizeof *list) : NULL;
-    if (!list)
+    if (!p || !grow(chart, &p->mark, p->mark_count, sizeof *p->mark))
         return;
-    p->mark = list;
-    sf_chart_mark_data *m = &list[p->mark_count++];
+    sf_chart_mark_data *m = &p->mark[p->mark_count++];
     *m = (sf_chart_mark_data){.kind = kind, .colour = colour, .x[0] = x, .y[0] = y};
     if (text)
         FORMAT_INTO(m->text, text);

@@ -27,19 +27,12 @@ static void put_between(FILE *g, const char *before, const char *text, const cha
     fputs(after, g);
 }
 
-static void put_number(FILE *g, double value) {
+/* `other`: in place of a number that is not finite; "*" is an end of a range that gnuplot chooses. */
+static void put_number(FILE *g, double value, const char *other) {
     if (isfinite(value))
         fprintf(g, "%.9g", value);
     else
-        fputs("NaN", g);
-}
-
-/* An end of a range: "*" where gnuplot chooses. */
-static void put_end(FILE *g, double end) {
-    if (isfinite(end))
-        fprintf(g, "%.9g", end);
-    else
-        fputc('*', g);
+        fputs(other, g);
 }
 
 static bool is_drawable(const sf_series_value *v) {
@@ -90,7 +83,7 @@ static void put_data(FILE *g, const sf_chart *c) {
                 const double cell[4] = {s->value[i].x, s->value[i].y, s->value[i].low, s->value[i].high};
                 for (int j = 0; j < (isnan(cell[2]) ? 2 : 4); j++) {
                     fputs(j ? "," : "", g);
-                    put_number(g, cell[j]);
+                    put_number(g, cell[j], "NaN");
                 }
                 fputc('\n', g);
             }
@@ -102,9 +95,9 @@ static void put_data(FILE *g, const sf_chart *c) {
 
 static void put_axis(FILE *g, const char *name, const sf_axis *a) {
     fprintf(g, "set %srange [", name);
-    put_end(g, a->low);
+    put_number(g, a->low, "*");
     fputc(':', g);
-    put_end(g, a->high);
+    put_number(g, a->high, "*");
     fprintf(g, "]\nset %slabel", name);
     put_between(g, " ", a->hidden ? "" : a->label, "\n");
     if (*a->page_label) {

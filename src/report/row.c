@@ -172,8 +172,6 @@ const char *sf_row_shown(const sf_row *row, const void *record, const char *dash
 }
 #pragma GCC diagnostic pop
 
-/* ---- JSON ---- */
-
 void sf_row_json(sf_json *json, const sf_row *row, const void *record) {
     sf_value value = sf_row_value(row, record);
     if (!row->key)

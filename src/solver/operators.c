@@ -23,8 +23,7 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
         return err->status;
     if (owned)
         sf_model_drop_domain_nodes(owned);
-    if (sf_pairs_build(m, &op->pairs, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_pairs_build(m, &op->pairs, err));
     if (owned)
         sf_model_drop_edges(owned);
     if (sf_constraint_build(m, &op->constraint, err) != SF_OK ||

@@ -116,8 +116,7 @@ static sf_status start_driven(const sf_model *m, sf_state *s, sf_error *err) {
     for (int64_t k = 0; k < m->material_count; k++) {
         double part = 0;
         sf_material_law law;
-        if (sf_material_law_build(&m->material[k], &law, err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_material_law_build(&m->material[k], &law, err));
         for (int64_t i = 0; i < m->node_count; i++)
             part += m->node_material[i] == k ? m->mass[i] : 0;
         work += LEAST_WORK * law.law->energy(law.numbers, depth / m->thickness) * part /

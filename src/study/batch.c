@@ -78,23 +78,23 @@ static sf_status check_profile(const char *name, sf_error *err) {
                              "(package slurm-client of Debian)");
     if (is_profile(name) || is_profile_name(name))
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "--profile %s: there is no such profile of Snakemake: neither this folder nor one of this "
-                   "name in ~/.config/snakemake or /etc/xdg/snakemake has a config.yaml",
-                   name);
+    return SF_REFUSE(
+        err,
+        "--profile %s: there is no such profile of Snakemake: neither this folder nor one of this "
+        "name in ~/.config/snakemake or /etc/xdg/snakemake has a config.yaml",
+        name);
 }
 
 sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err) {
     if (sf_engine_is_local(engine) && engine->profile)
-        return SF_FAIL(err, SF_ERR_INPUT, "--profile %s: profiles are Snakemake's: add --engine snakemake",
-                       engine->profile);
+        return SF_REFUSE(err, "--profile %s: profiles are Snakemake's: add --engine snakemake",
+                         engine->profile);
     if (sf_engine_is_local(engine) && engine->per_job > 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "--per-job %d: jobs are Snakemake's: add --engine snakemake",
-                       engine->per_job);
+        return SF_REFUSE(err, "--per-job %d: jobs are Snakemake's: add --engine snakemake", engine->per_job);
     if (sf_engine_is_local(engine))
         return SF_OK;
     if (strcmp(engine->name, "snakemake") != 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "--engine %s: the engines are local and snakemake", engine->name);
+        return SF_REFUSE(err, "--engine %s: the engines are local and snakemake", engine->name);
     if (!sf_process_is_in_path("snakemake"))
         return missing(err);
     return engine->profile ? check_profile(engine->profile, err) : SF_OK;
@@ -182,8 +182,7 @@ int sf_manifest_group_size(int count, double seconds) {
 static sf_status check_text(const char *text, sf_error *err) {
     return !text || !strpbrk(text, "\t\n")
                ? SF_OK
-               : SF_FAIL(err, SF_ERR_INPUT, "a batch cannot hold \"%.200s\": it has a tab or a line end",
-                         text);
+               : SF_REFUSE(err, "a batch cannot hold \"%.200s\": it has a tab or a line end", text);
 }
 
 static sf_status check_drop(const sf_runner_drop *drop, sf_error *err) {
@@ -264,12 +263,12 @@ sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
     long wanted = count ? strtol(count, NULL, 10) : -1;
     if (strcmp(head, HEAD) != 0 || !m->folder || !m->runs || wanted < 0 || !rest ||
         (size_t)wanted > strlen(rest))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s is no manifest of a batch", path);
+        return SF_REFUSE(err, "%s is no manifest of a batch", path);
     m->run = sf_alloc(err, (unsigned long)wanted, sizeof *m->run, "runs");
     for (; err->status == SF_OK && m->count < wanted; m->count++)
         if (!rest || !take_run(strsep(&rest, "\n"), &m->run[m->count]))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: this is no line of a run: the manifest is damaged",
-                           path, m->count + 5);
+            return SF_REFUSE(err, "%s:%d: this is no line of a run: the manifest is damaged", path,
+                             m->count + 5);
     return err->status;
 }
 

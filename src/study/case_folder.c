@@ -75,7 +75,7 @@ static sf_status add_file(folder *f, const char *name, const char *path, char *t
 /* Adds the file at `path` as `name`; `hash`: of what was read of it, NULL: anything. */
 static sf_status copy_file(folder *f, const char *name, const char *path, const uint64_t *hash,
                            sf_error *err) {
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     size_t size = 0;
     if (sf_process_stopped())
         return SF_FAIL(err, SF_INTERRUPTED, "interrupted; %s was not made", f->request->folder);
@@ -84,7 +84,6 @@ static sf_status copy_file(folder *f, const char *name, const char *path, const 
         SF_FAIL(err, SF_ERR_IO, "%s has changed while it was read", path);
     else if (add_file(f, name, path, NULL, err) == SF_OK)
         sf_tree_put(&f->tree, name, text, size, err);
-    free(text);
     return err->status;
 }
 
@@ -247,7 +246,7 @@ static const char *write_include(const part *p, const char *at, FILE *out, sf_er
 
 /* Writes the file whose text begins at `at`, with those that it names. */
 static void write_part(const part *p, const char *at, sf_error *err) {
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     for (bool open = out; open && err->status == SF_OK;) {
@@ -261,7 +260,6 @@ static void write_part(const part *p, const char *at, sf_error *err) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of %s", p->path);
     if (err->status == SF_OK)
         sf_tree_put(&p->f->tree, p->name, text, size, err);
-    free(text);
 }
 
 /* The README: the first comment of the case, and what the folder was made of; the title may be true of the
@@ -270,7 +268,7 @@ static sf_status write_readme(folder *f, sf_error *err) {
     const sf_case_folder_request *q = f->request;
     const char *title = f->text + strspn(f->text, "# \t");
     int length = *f->text == '#' ? (int)strcspn(title, "\r\n") : 0;
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out)
@@ -296,14 +294,13 @@ static sf_status write_readme(folder *f, sf_error *err) {
     fclose(out);
     if (add_file(f, README_NAME, "", NULL, err) == SF_OK)
         sf_tree_put(&f->tree, README_NAME, text, size, err);
-    free(text);
     return err->status;
 }
 
 /* Writes the files of the new folder, the case with its --set texts first. */
 static sf_status write_files(folder *f, sf_error *err) {
     const sf_case_folder_request *q = f->request;
-    char *path = sf_path_whole(NULL, q->case_path, err);
+    SF_OWNED char *path = sf_path_whole(NULL, q->case_path, err);
     part whole = {f, path, CASE_NAME};
     f->case_folder = path ? sf_case_folder_of(path, err) : NULL;
     f->text = f->case_folder ? sf_case_load_marked(q->case_path, false, err) : NULL;
@@ -312,7 +309,6 @@ static sf_status write_files(folder *f, sf_error *err) {
     if (err->status == SF_OK && sf_case_edit_find(f->text, true, &f->named, err) == SF_OK &&
         add_file(f, CASE_NAME, path, NULL, err) == SF_OK && write_readme(f, err) == SF_OK)
         write_part(&whole, f->text, err);
-    free(path);
     return err->status;
 }
 
@@ -341,7 +337,7 @@ static sf_status check_reading(const folder *f, const sf_broker *read, const cha
 
 static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) {
     sf_meshed mesh[SF_GEOMETRIES] = {0};
-    char *root = sf_path_whole(NULL, f->tree.aside, err);
+    SF_OWNED char *root = sf_path_whole(NULL, f->tree.aside, err);
     if (root)
         mesh_each(c, mesh, err);
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
@@ -352,14 +348,13 @@ static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) 
                       f->request->case_path, sf_campaign_geometry(&f->c, k)->path);
     for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&mesh[k]);
-    free(root);
     return err->status;
 }
 
 /* The new folder is the same case, and needs no other. */
 static sf_status check(const folder *f, sf_error *err) {
     char path[PATH_SIZE];
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     sf_error inner = SF_ERROR_INIT;
     snprintf(path, sizeof path, "%s/" CASE_NAME, f->tree.aside);
     if (sf_case_read(path, 0, NULL, NULL, &c, &inner) != SF_OK)
@@ -371,7 +366,6 @@ static sf_status check(const folder *f, sf_error *err) {
                 f->request->case_path);
     else
         check_meshes(f, &c, err);
-    sf_case_free(&c);
     return err->status;
 }
 

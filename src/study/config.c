@@ -18,23 +18,21 @@ sf_status sf_config_refuse(const sf_config *config, const config_setting_t *sett
     va_end(args);
     int line = setting ? (int)config_setting_source_line(setting) : 0;
     if (line == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %s", config->path, sentence);
+        return SF_REFUSE(err, "%s: %s", config->path, sentence);
     const char *path = sf_case_source_find(&config->source, line, &line);
-    return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", path, line, sentence);
+    return SF_REFUSE(err, "%s:%d: %s", path, line, sentence);
 }
 
 sf_status sf_config_open(const char *path, sf_config *config, sf_error *err) {
     *config = (sf_config){.path = path};
     config_init(&config->config);
     config->folder = sf_case_folder_of(path, err);
-    char *text = config->folder ? sf_case_load_text(path, 0, NULL, &config->source, err) : NULL;
+    SF_OWNED char *text = config->folder ? sf_case_load_text(path, 0, NULL, &config->source, err) : NULL;
     if (text && !config_read_string(&config->config, text)) {
         int line = 0;
         const char *file = sf_case_source_find(&config->source, config_error_line(&config->config), &line);
-        SF_FAIL(err, SF_ERR_INPUT, "%s:%d: %s", file, line,
-                sf_case_syntax_phrase(config_error_text(&config->config)));
+        SF_REFUSE(err, "%s:%d: %s", file, line, sf_case_syntax_phrase(config_error_text(&config->config)));
     }
-    free(text);
     return err->status == SF_OK ? sf_units_open(&config->units, err) : err->status;
 }
 

@@ -84,43 +84,39 @@ static sf_status finish_result(const char *path, sf_runner_result *out, sf_error
 static void write_record(const sf_run_folder *at, const sf_results *r, const sf_figures *f,
                          const sf_runner_result *result) {
     bool finished = strcmp(r->status, "finished") == 0 || strcmp(r->status, "rebound") == 0;
-    char *geometry =
+    SF_OWNED char *geometry =
         finished ? sf_campaign_geometry_list(at->results, "/provenance/model/geometry_files") : NULL;
     if (geometry)
         sf_run_record_write(at->figures, at->results, r, f, result->grade, result->verdict, geometry);
-    free(geometry);
 }
 
 /* Writes the record of the figures, too. */
 static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
     const char *path = at->results;
-    sf_results r;
-    sf_figures f = {0};
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
+    SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     SF_TRY(sf_results_open(path, &r, err));
     if (sf_figures_compute(&r, 1000, &f, err) == SF_OK && !f.touched)
         SF_FAIL(err, SF_ERR_INPUT, "the missile of %s never touched the pad", path);
-    if (err->status == SF_OK) {
-        *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
-                                  .hic = f.injury.hic.value,
-                                  .hic_window = f.injury.hic.t2 - f.injury.hic.t1,
-                                  .contact_time = f.rebound_time - r.contact_time,
-                                  .v0 = f.v0,
-                                  .v_rebound = f.v_rebound,
-                                  .max_indentation = f.max_indentation,
-                                  .max_local_strain = f.max_local_strain,
-                                  .energy_error = f.energy_error,
-                                  .nodes = r.node_count,
-                                  .steps = r.steps,
-                                  .curve = f.filtered};
-        judge(&r, &f, out);
-        write_record(at, &r, &f, out);
-        f.filtered = (sf_series){0};
-        if (take_layers(&r, &f, out, err) == SF_OK)
-            take_figures(&r, &f, out, err);
-        finish_result(path, out, err);
-    }
-    sf_figures_free(&f);
-    sf_results_close(&r);
+    SF_TRY(err->status);
+    *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
+                              .hic = f.injury.hic.value,
+                              .hic_window = f.injury.hic.t2 - f.injury.hic.t1,
+                              .contact_time = f.rebound_time - r.contact_time,
+                              .v0 = f.v0,
+                              .v_rebound = f.v_rebound,
+                              .max_indentation = f.max_indentation,
+                              .max_local_strain = f.max_local_strain,
+                              .energy_error = f.energy_error,
+                              .nodes = r.node_count,
+                              .steps = r.steps,
+                              .curve = f.filtered};
+    judge(&r, &f, out);
+    write_record(at, &r, &f, out);
+    f.filtered = (sf_series){0};
+    if (take_layers(&r, &f, out, err) == SF_OK)
+        take_figures(&r, &f, out, err);
+    finish_result(path, out, err);
     return err->status;
 }
 
@@ -135,7 +131,7 @@ double sf_runner_figure(const sf_runner_result *result, const char *key) {
 
 /* Without the results: what has no figure is NaN or 0. False if there is no record of them. */
 static bool read_recorded(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
-    sf_run_record record;
+    SF_OWNED_BY(sf_run_record_free) sf_run_record record = {0};
     bool there = sf_run_record_read(at->figures, at->results, &record);
     if (there) {
         const double *f = record.figure;
@@ -157,7 +153,6 @@ static bool read_recorded(const sf_run_folder *at, sf_runner_result *out, sf_err
         snprintf(out->status, sizeof out->status, "%s", record.status);
         finish_result(at->results, out, err);
     }
-    sf_run_record_free(&record);
     return there;
 }
 
@@ -451,8 +446,8 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
     const sf_runner *runner = b->runner;
     char folder[SF_RUN_PATH_SIZE], path[SF_RUN_PATH_SIZE + 32], log[SF_RUN_PATH_SIZE + 32], complaint[320];
     struct stat before = {0}; /* of the log, which goes on */
-    sf_manifest m = {0};
-    uint64_t *key = sf_alloc(err, (unsigned long)b->count, sizeof *key, "keys");
+    SF_OWNED_BY(sf_manifest_free) sf_manifest m = {0};
+    SF_OWNED uint64_t *key = sf_alloc(err, (unsigned long)b->count, sizeof *key, "keys");
     int code = 0, size = choose_group_size(b);
     for (int k = 0; key && k < b->count; k++)
         key[k] = b->request[k].key;
@@ -483,8 +478,6 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
             look_again(b, &m, path, code, complaint, failure);
         }
     }
-    sf_manifest_free(&m);
-    free(key);
     return err->status;
 }
 
@@ -492,7 +485,7 @@ static sf_status simulate_pending(batch *b, sf_error *failure, sf_error *err) {
     if (b->pending_count == 0)
         return SF_OK;
     SF_TRY(sf_folder_own(b->runner->folder, err));
-    sf_error *own = sf_alloc(err, (unsigned long)b->pending_count, sizeof *own, "failures");
+    SF_OWNED sf_error *own = sf_alloc(err, (unsigned long)b->pending_count, sizeof *own, "failures");
     for (int k = 0; own && k < b->pending_count; k++)
         own[k] = (sf_error)SF_ERROR_INIT;
     if (own && sf_engine_is_local(&b->runner->engine))
@@ -501,7 +494,6 @@ static sf_status simulate_pending(batch *b, sf_error *failure, sf_error *err) {
         simulate_elsewhere(b, own, err);
     for (int k = 0; k < b->pending_count && own && err->status == SF_OK; k++)
         failure[b->pending[k]] = own[k];
-    free(own);
     return err->status;
 }
 
@@ -581,11 +573,10 @@ sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop 
 
 sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
                               sf_runner_result *result, sf_error *err) {
-    sf_error *failure = sf_alloc(err, (unsigned long)count, sizeof *failure, "failures");
+    SF_OWNED sf_error *failure = sf_alloc(err, (unsigned long)count, sizeof *failure, "failures");
     memset(result, 0, (size_t)count * sizeof *result);
     if (failure && sf_runner_run_each(runner, count, drop, result, failure, err) == SF_OK)
         decide(count, failure, err);
-    free(failure);
     return err->status;
 }
 

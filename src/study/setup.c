@@ -16,14 +16,13 @@ enum { LAST_GROUP = 9 };
 
 static sf_status read_per_job(const char *option, const char *text, void *per_job, sf_error *err) {
     if (!sf_whole_is(text, 1, 100000, per_job))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s %s: not a number from 1 to 100000", option, text);
+        return SF_REFUSE(err, "%s %s: not a number from 1 to 100000", option, text);
     return SF_OK;
 }
 
 static sf_status read_jobs(const char *option, const char *text, void *jobs, sf_error *err) {
     if (!sf_whole_is(text, 1, SF_PROCESS_JOBS, jobs))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s takes a number from 1 to %d, not \"%s\"", option,
-                       SF_PROCESS_JOBS, text);
+        return SF_REFUSE(err, "%s takes a number from 1 to %d, not \"%s\"", option, SF_PROCESS_JOBS, text);
     return SF_OK;
 }
 
@@ -83,7 +82,7 @@ static sf_status parse_command(int argc, char **argv, const sf_study_program *pr
 
 int sf_study_main(int argc, char **argv, const sf_study_program *program, void *own) {
     static char name[64]; /* "softfall-fit drop" */
-    char *words = sf_command_line(argc, argv);
+    SF_OWNED char *words = sf_command_line(argc, argv);
     sf_error err = SF_ERROR_INIT;
     sf_study study = {.lock = -1, .sink = sf_program_sink(program->name)};
     gsl_set_error_handler_off(); /* statuses are looked at */
@@ -100,7 +99,6 @@ int sf_study_main(int argc, char **argv, const sf_study_program *program, void *
     if (err.status == SF_OK && parse_command(argc, argv, program, &study, own, &err) == SF_OK)
         program->run(&study, own, &err);
     sf_staging_end(&study.output);
-    free(words);
     free(study.command);
     return sf_error_report(&err, program->name);
 }
@@ -108,7 +106,7 @@ int sf_study_main(int argc, char **argv, const sf_study_program *program, void *
 sf_status sf_study_check(sf_study *s, const char *const *names, sf_error *err) {
     SF_TRY(sf_engine_check(&s->engine, err));
     if ((size_t)snprintf(s->runs, sizeof s->runs, "%s/runs", s->directory) >= sizeof s->runs - 64)
-        return SF_FAIL(err, SF_ERR_INPUT, "the path of the output directory is too long");
+        return SF_REFUSE(err, "the path of the output directory is too long");
     return sf_staging_check(s->directory, names, s->force, err);
 }
 

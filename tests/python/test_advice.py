@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import softfall
-from softfall import advice, protocol
+from softfall import advice, foam_draws, protocol
 from test_protocol import MAT, softfall_protocol
 
 SOURCE = pathlib.Path(os.environ["SF_SOURCE_DIR"])
@@ -19,14 +19,14 @@ POSTERIOR = SOURCE / "examples/materials/eva35_posterior"
 SPREAD, SCATTER, SLOPE = 0.2, 0.05, 2.0
 
 
-def place(count=500, name="centre", scatter=SCATTER):
+def place(count=500, name="centre", scatter=SCATTER, mesh=0.0, **more):
     """ln y = ln 1000 + SLOPE ln h + SPREAD z, z at the quantiles of a normal distribution: the height at 1000 is exp(-SPREAD z / SLOPE) m."""
     z = np.sqrt(2) * np.array([inverse_erf(2 * (k + 0.5) / count - 1) for k in range(count)])
     log_height = np.linspace(math.log(0.2), math.log(5), 80)
     value = math.log(1000) + SLOPE * log_height[None, None, :] + SPREAD * z[None, :, None] + np.zeros((2, 1, 1))
     zero = np.zeros((2, count))
     trend = advice.Trend(zero[0], zero[0], 3)
-    return advice.Place(name, log_height, value, zero, zero, np.full((2, 80), scatter), 0.0, np.zeros(2), (trend, trend))
+    return advice.Place(name, log_height, value, zero, zero, np.full((2, 80), scatter), np.full(2, mesh), np.zeros(2), (trend, trend), **more)
 
 
 def inverse_erf(y):
@@ -95,11 +95,114 @@ def test_the_expected_loss_of_a_drop_has_its_value():
 def test_what_tells_more_comes_first():
     """A place with more scatter tells less; a dear test comes behind."""
     pads = advice.Pads([place(), place(name="corner", scatter=0.4)])
-    stress = np.exp(0.3 * np.linspace(-2, 2, 500))[:, None] * np.ones((1, 3))
-    told = advice.advise(pads, advice.Question((None, 1000.0), heights=(1.0,)), stress=stress, test_cost=50)
+    test = advice.Test("a compression test", np.exp(0.3 * np.linspace(-2, 2, 500))[:, None] * np.ones((1, 3)), 0.04, 50)
+    told = advice.advise(pads, advice.Question((None, 1000.0), heights=(1.0,)), [test])
     names = [choice.name for choice in told.choices]
-    assert names[0].endswith("centre") and names[-1].startswith("a slow compression test")
+    assert names[0].endswith("centre") and names[-1] == "a compression test"
     assert max(k for k, name in enumerate(names) if "centre" in name) < min(k for k, name in enumerate(names) if "corner" in name)
+
+
+WIDTH = advice.Question((None, 1000.0), bound=0.01)
+
+
+def width_after(error):
+    """The 95 % interval over the height after a measurement of ln y with a normal error: its length depends on no outcome."""
+    sd = 1 / math.sqrt(1 / SPREAD**2 + 1 / error**2) if error > 0 else 0
+    return 2 * math.sinh(1.96 * sd / SLOPE)
+
+
+def best(told, kind):
+    return next(choice for choice in told.choices if choice.kind == kind)
+
+
+def test_a_drop_narrows_the_interval_by_its_closed_form():
+    told = advice.advise(advice.Pads([place(200)]), WIDTH)
+    assert told.loss == pytest.approx(2 * math.sinh(1.96 * SPREAD / SLOPE), rel=0.01)
+    drop = best(told, "drop")
+    assert drop.loss == pytest.approx(width_after(SCATTER), rel=0.04) and drop.gain == pytest.approx(told.loss - drop.loss)
+
+
+def test_a_drop_of_another_missile_tells_less_by_its_own_errors_and_costs_more():
+    """An error of its model that both figures have adds to the scatter of the drop, in squares."""
+    own = 0.08
+    other = place(200, "centre, missile flat", mesh=own, missile="flat", cost=2.0)
+    pads = advice.Pads([place(200), other])
+    told = advice.advise(pads, WIDTH)
+    drop, flat = best(told, "drop"), best(told, "flat")
+    assert flat.loss == pytest.approx(width_after(math.hypot(SCATTER, own)), rel=0.04)
+    assert flat.cost == 2 and flat.gain == pytest.approx((told.loss - flat.loss) / 2) and drop.gain > 2 * flat.gain
+    soft = dataclasses.replace(other, value=other.value + 2.0)
+    for some in ([place(200)], [place(200), soft]):  # nothing is judged by its drops, whatever they are
+        assert advice._heights_of(advice.Pads(some), WIDTH) == pytest.approx(advice._heights_of(pads, WIDTH))
+    pads.learn(advice.Drop("centre, missile flat", 1.0, (math.nan, 1000.0)))
+    after = advice.advise(pads, WIDTH)
+    assert after.loss == pytest.approx(width_after(math.hypot(SCATTER, own)), rel=0.05)
+
+
+def test_the_errors_of_the_responses_hold_less_for_another_missile():
+    """Each draw states them for the missile of its fit: they are drawn once more, with their root mean square."""
+    shared = 0.1 * np.ones((2, 500))
+    own = dataclasses.replace(place(), shared=shared)
+    other = dataclasses.replace(place(name="other", missile="flat"), shared=shared)
+    pads = advice.Pads([own, other])
+    assert np.ptp(pads.offset["centre"]) == 0
+    assert pads.offset["other"].std() == pytest.approx(0.1, rel=0.02) and pads.offset["other"].mean() == pytest.approx(0.1, abs=0.002)
+
+
+@pytest.mark.parametrize("slope, error", [(1.0, 0.04), (0.5, 0.04), (1.0, 0.2)])
+def test_a_compression_test_narrows_the_interval_by_its_closed_form(slope, error):
+    """The ln of its stress is `slope` times that of the draws' figure: an error of the stress is 1 / slope times one of the figure."""
+    z = (place(200).value[1][:, 0] - place(200).value[1][:, 0].mean()) / SPREAD
+    stress = 1e5 * np.exp(slope * SPREAD * z)[:, None] * np.array([1.0, 2.0, 6.0])
+    told = advice.advise(advice.Pads([place(200)]), WIDTH, [advice.Test("a test", stress, error, 4.0)])
+    test = best(told, "test")
+    assert test.loss == pytest.approx(width_after(error / slope), rel=0.04)
+    assert test.gain == pytest.approx((told.loss - test.loss) / 4)
+
+
+def test_a_compression_test_of_what_the_drop_does_not_depend_on_tells_nothing():
+    stress = np.random.default_rng(5).lognormal(0, 0.3, (200, 1)) * np.ones((1, 3))
+    told = advice.advise(advice.Pads([place(200)]), WIDTH, [advice.Test("a test", stress, 0.04, 1.0)])
+    assert abs(best(told, "test").gain) < 0.2 * best(told, "drop").gain
+
+
+# ---- the stress of a draw in a compression test ----
+
+def write_draw(folder, text, rows="0,0\n0.3,50\n0.5,100\n0.9,400\n"):
+    (folder / "draw-001.csv").write_text("# made up\nstrain,stress_kPa\n" + rows)
+    (folder / "fast.csv").write_text("strain,stress_kPa\n0,0\n0.3,80\n0.5,90\n0.9,900\n")
+    (folder / "draw-001.cfg").write_text(text)
+
+
+def test_the_stress_of_a_draw_has_the_laws_of_its_rate(tmp_path):
+    write_draw(tmp_path, 'curve = "draw-001.csv";\nrate_factor = 0.3;\nrate_reference = "60 1/min";\n')
+    for rate, factor in ((0.01, 1.0), (1.0, 1.0), (100.0, 1.6)):
+        assert foam_draws.compression_stresses(tmp_path, rate, (0.3, 0.5))[0] == pytest.approx([50e3 * factor, 100e3 * factor])
+    write_draw(tmp_path, 'curves = ( { rate = "0.1 1/s"; file = "draw-001.csv"; }, { rate = "10 1/s"; file = "fast.csv"; } );\n')
+    for rate, expected in ((0.01, [50, 100]), (1.0, [65, 100]), (1e3, [80, 100])):  # a faster curve is at least as high
+        assert foam_draws.compression_stresses(tmp_path, rate, (0.3, 0.5))[0] == pytest.approx([1e3 * e for e in expected])
+
+
+@pytest.mark.parametrize("rate", [1.0, 5e3])
+def test_the_maxwell_branch_at_a_rate_is_that_of_its_differential_equation(rate):
+    strain, modulus, decay, viscosity, n = 0.6, 2e5, 5e3, 3.0, 40000
+    dt, s = strain / rate / n, 0.0
+    for k in range(n):  # of S' + decay S = modulus rate (1 - rate t), by the trapezoidal rule
+        force = modulus * rate * (1 - rate * (k + 0.5) * dt)
+        s = (s * (1 - decay * dt / 2) + force * dt) / (1 + decay * dt / 2)
+    expected = (1 - strain) * (s + viscosity * rate * (1 - strain))
+    assert foam_draws.viscous_stress(np.array([strain]), rate, modulus, decay, viscosity)[0] == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("text, rows, said", [
+    ('curve = "draw-001.csv";', "0,0\n0.2,50\n", "ends before a strain of 0.7"),
+    ('curves = ( { temperature = "5 degC"; file = "draw-001.csv"; } );', "0,0\n0.3,50\n0.9,90\n", "neither a curve nor curves at rates"),
+    ('curve = "draw-001.csv";\nED = "3 bar";', "0,0\n0.3,50\n0.9,90\n", "none of the units Pa, kPa, MPa"),
+])
+def test_a_draw_without_a_known_stress_is_told(tmp_path, text, rows, said):
+    write_draw(tmp_path, text + "\n", rows)
+    with pytest.raises(softfall.InputError, match=said):
+        foam_draws.compression_stresses(tmp_path, 1.0, (0.3, 0.7))
 
 
 def test_measuring_stops_and_decides():

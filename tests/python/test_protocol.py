@@ -112,6 +112,12 @@ def test_every_protocol_reads_and_names_what_is_unconfirmed():
     ('kind = "critical height"', 'kind = "height"', "none of pass, critical height, cushion curve"),
     ('limit = 100.0', 'limit = "100 g"', "is not a number without a unit"),
     ('key = "a_max_g"', 'key = "gadd"', "limits of a_max_g and hic alone"),
+    ('key = "hic"', 'key = "HIC"', 'there is no figure key = "HIC"; it is "hic"'),
+    ('[result]', '[advice]\ntests = [{ rate = "10 Hz" }]\n[result]', "advice: test 1: rate: '10 Hz' is no strain rate"),
+    ('[result]', '[advice]\ntests = [{ rate = "10 1/s", cost = 0 }]\n[result]', "test 1: cost = 0 is not above 0"),
+    ('[result]', '[advice]\nmissiles = [{ name = "flat" }]\n[result]', "missile 1: flat has neither geometry, mass nor keys"),
+    ('[result]', '[advice]\nmissiles = [{ name = "a", mass = "1 kg" }, { name = "a", mass = "2 kg" }]\n[result]', "missile 2: name 'a' is empty or that of another"),
+    ('[result]', '[advice]\nmissile = "flat"\n[result]', "advice: there is no key 'missile'"),
     ('[missile]', '[missile', "TOML|Expected"),
     ('[missile]', '[misile]', r"the group \[missile\] is missing"),
     ('mass = "4.6 kg"', 'mass = "4.6"', "mass '4.6' is not a number above 0 with one of kg"),
@@ -144,6 +150,33 @@ def test_measured_drops_are_judged_by_straight_lines_between_the_heights(measure
     assert len((tmp_path / "out/drops.csv").read_text().splitlines()) == 28
 
 
+def test_a_list_is_read_as_spreadsheets_write_it(measured, tmp_path):
+    """Separated by semicolons, with decimal commas, a comment, an empty row and UTF-16: the same result."""
+    text = (measured / "list.csv").read_text()
+    rows = ["# of the laboratory", *(row.replace(",", ";").replace(".9 m", ",9 m").replace("0.6 m", "0,6 m") for row in text.splitlines()), ";;;"]
+    rows[1] = rows[1].replace("file", "File")
+    assert "0,9 m" in rows[5] and "File;" in rows[1]
+    (measured / "list.csv").write_text("\r\n".join(rows), encoding="utf-16")
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 0 and "measured   0.75 m" in result.stdout, result.stderr
+
+
+def test_heights_that_look_exchanged_are_marked(measured, tmp_path):
+    """The velocity changes by what both heights allow, but a_max falls with the height."""
+    text = (measured / "list.csv").read_text()
+    for name in ("edge-0.9-2.csv", "edge-1.2-2.csv"):
+        assert f"\n{name}," in text
+    text = text.replace("edge-0.9-2.csv", "?").replace("edge-1.2-2.csv", "edge-0.9-2.csv").replace("?", "edge-1.2-2.csv")
+    (measured / "list.csv").write_text(text)
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 0 and "drops 2 at as it is, edge, 0.9 m and at as it is, edge, 1.2 m look exchanged" in result.stdout, result.stdout
+    told = json.loads((tmp_path / "out/protocol.json").read_text())
+    marked = {(d["position"], d["height_m"], d["drop"]) for d in told["drops"] if "looks exchanged" in d["note"]}
+    assert marked == {("edge", 0.9, 2), ("edge", 1.2, 2)}
+    plain = softfall_protocol(MAT, "--measured", MAT.parent, "-o", tmp_path / "plain")
+    assert "exchanged" not in plain.stdout
+
+
 def test_files_may_be_found_by_a_pattern(measured, tmp_path):
     (measured / "list.csv").unlink()
     for path in list(measured.glob("*-*-*.csv")):
@@ -162,6 +195,10 @@ def test_files_may_be_found_by_a_pattern(measured, tmp_path):
     ("edge-0.9-2.csv,edge,0.9 m,2", "gone.csv,edge,0.9 m,2", "gone.csv"),
     ("file,position", "flie,position", "there is no column 'flie'"),
     ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-1.csv,edge,0.9 m,2", "edge-0.9-1.csv is the record of"),
+    ("edge-0.9-2.csv,edge,0.9 m,2", "edge-0.9-2.csv,edge,0,9 m,2", "5 cells, and the heading 4; a number takes a decimal point"),
+    ("file,position,height,drop", "file,position,height,height", "the column height is there twice"),
+    ("edge-0.9-2.csv,edge,0.9 m,2", ",edge,0.9 m,2", "file is empty"),
+    ("file,position", "\u00e9\u00e9,position", "there is no column"),
 ])
 def test_a_wrong_list_is_refused_and_nothing_is_written(measured, tmp_path, old, new, said):
     text = (measured / "list.csv").read_text()
@@ -264,6 +301,57 @@ def test_a_critical_height_has_the_view_of_the_drop_from_there(case, tmp_path):
     assert [pathlib.Path(link).name for link in links] == ["report.html", "view.html"]
     told = json.loads((tmp_path / "out" / links[0]).with_name("summary.json").read_text())
     assert told["a_max_g"] == pytest.approx(80, rel=0.01)  # the limit of own.toml
+
+
+def test_a_search_shows_its_drops_beside_measured_ones(case, tmp_path):
+    """Each drop of softfall-cfh is a row with its figures and its curve; heights that were measured are simulated and compared."""
+    text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
+    text = re.sub(r"heights = .*", "", text.replace('kind = "pass"  ', 'kind = "critical height"  ')).replace("count = 2", "count = 1").replace("counted = [2]", "counted = [1]")
+    (tmp_path / "mine.toml").write_text(text)
+    drop = case.copy()
+    drop["missile.velocity"] = f"{protocol.speed(0.8)} m/s"
+    (tmp_path / "lab").mkdir()
+    np.savetxt(tmp_path / "lab/1.csv", np.column_stack(drop.run().curve()), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
+    (tmp_path / "lab/list.csv").write_text("file;height\n1.csv;0,8 m\n")
+    result = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "--measured", tmp_path / "lab", "-o", tmp_path / "out", *COARSE)
+    assert result.returncode == 0, result.stderr
+    told = json.loads((tmp_path / "out/protocol.json").read_text())
+    points = json.loads(next((tmp_path / "out/drops").glob("*/heights/cfh.json")).read_text())["points"]
+    shown = {d["height_m"]: d for d in told["drops"] if d["kind"] == "simulated"}
+    assert set(shown) == {point["height_m"] for point in points} | {0.8}
+    for point in points:
+        assert shown[point["height_m"]]["figures"]["a_max_g"] == pytest.approx(point["a_max_g"], rel=1e-8)
+        assert softfall.read_results(shown[point["height_m"]]["source"]).figures["a_max_g"] == pytest.approx(point["a_max_g"], rel=1e-8)
+    pair, = told["comparison"]
+    assert abs(pair["a_max_difference"]) < 2e-3 and pair["r2"] > 0.999
+    page = (tmp_path / "out/report.html").read_text()
+    assert "Figures over the height" in page and "Curves" in page and page.count("<svg") == 2 and "windows of HIC" not in page
+    rows = (tmp_path / "out/drops.csv").read_text().splitlines()
+    assert len(rows) == 1 + len(shown) + 1
+
+
+def test_a_least_window_that_matters_in_a_search_is_told():
+    p = protocol.read("en1177")
+    def told(hic):
+        search = protocol_drops.Search("as it is", "centre", pathlib.Path(), {"points": [{"a_max_g": 150.0, "hic": 1000.0}]},
+                                       drops=[Drop(Spot("as it is", "centre", 1.0), 1, "results.h5", {"a_max_g": 150.0, "hic": hic})])
+        return protocol_drops.search_notes(p, [search])
+    assert told(1000.0) == [] and "by up to 5.00%" in told(950.0)[0]
+
+
+def test_messages_name_the_protocol_and_not_the_plan_that_is_written(case, tmp_path):
+    text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
+    for old, new, said in (('key = "max_indentation_mm"', 'key = "gaddd"', r'mine.toml, on \S+case.cfg: "gaddd" is no figure'),
+                           ('# keys = { "missile.friction" = 0.3 }', 'keys = { "missile.frictio" = 0.3 }', r'mine.toml: missile, on \S+case.cfg: missile.frictio=0.3: unknown key')):
+        assert old in text
+        (tmp_path / "mine.toml").write_text(text.replace(old, new))
+        result = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "out", *COARSE)
+        assert result.returncode == 2 and re.search(said, result.stderr) and "sweep.cfg" not in result.stderr, result.stderr
+
+
+def test_the_error_of_the_mesh_is_that_of_softfall_cfh():
+    header = (SOURCE / "src/study/cfh/spread.h").read_text()
+    assert judge.MESH_HIC == float(re.search(r"#define SF_CFH_MESH_HIC (\S+)", header).group(1))
 
 
 SERIES = ["--set", "geometry.parameters.fine_spacing=20", "--set", "geometry.parameters.outer_spacing=20", "--set",

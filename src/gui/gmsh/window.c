@@ -23,8 +23,7 @@ static sf_status take_error(const char *path, sf_error *err) {
     gmshLoggerGet(&line, &count, &unasked);
     for (size_t k = 0; k < count; k++) {
         if (strncmp(line[k], "Error", 5) == 0) /* as softfall-pre says it */
-            SF_FAIL(err, SF_ERR_INPUT, "%s: gmsh, reading: %s", path,
-                    line[k] + 5 + strspn(line[k] + 5, " :"));
+            SF_REFUSE(err, "%s: gmsh, reading: %s", path, line[k] + 5 + strspn(line[k] + 5, " :"));
         gmshFree(line[k]);
     }
     gmshFree(line);
@@ -39,7 +38,7 @@ sf_status sf_geometry_show(const char *path, const char *opened, sf_error *err) 
     gmshOpen(*opened ? opened : path, &failed);
     take_error(path, err);
     if (err->status == SF_OK && failed != 0)
-        SF_FAIL(err, SF_ERR_INPUT, "gmsh cannot read the geometry %s", path);
+        SF_REFUSE(err, "gmsh cannot read the geometry %s", path);
     return err->status;
 }
 
@@ -299,10 +298,7 @@ static void put_words(sf_json *json, const char *words, bool labels) {
         size_t length = strcspn(at, "|");
         char word[64];
         snprintf(word, sizeof word, "%.*s", (int)length, at);
-        if (labels)
-            sf_json_integer(json, word, place);
-        else
-            sf_json_integer(json, NULL, place);
+        sf_json_integer(json, labels ? word : NULL, place);
         at += length + (at[length] == '|');
     }
 }
@@ -468,21 +464,23 @@ static bool has_view(int tag) {
     return found;
 }
 
+/* The name of an option of a view; false: there is no such view. */
+static bool name_option(int tag, const char *option, char name[64]) {
+    int ierr = 0, index = has_view(tag) ? gmshViewGetIndex(tag, &ierr) : -1;
+    snprintf(name, 64, "View[%d].%s", index, option);
+    return ierr == 0 && index >= 0;
+}
+
 static void set_option(int tag, const char *option, double value) {
     char name[64];
-    int ierr = 0, index = has_view(tag) ? gmshViewGetIndex(tag, &ierr) : -1;
-    if (ierr != 0 || index < 0)
-        return;
-    snprintf(name, sizeof name, "View[%d].%s", index, option);
-    set_gmsh_option(name, value);
+    if (name_option(tag, option, name))
+        set_gmsh_option(name, value);
 }
 
 static void set_text(int tag, const char *option, const char *value) {
     char name[64];
-    int ierr = 0, index = gmshViewGetIndex(tag, &ierr);
-    snprintf(name, sizeof name, "View[%d].%s", index, option);
-    if (ierr == 0 && index >= 0)
-        gmshOptionSetString(name, value, &ierr);
+    if (name_option(tag, option, name))
+        gmshOptionSetString(name, value, &unasked);
 }
 
 static void remove_view(int tag) {
@@ -508,11 +506,17 @@ static sf_status add_faces(const sf_body *b, int corners, size_t *first, sf_erro
     return err->status;
 }
 
-static sf_status add_mesh(const sf_body *b, sf_error *err) {
-    size_t first = 1;
-    SF_OWNED size_t *tag = sf_alloc(err, (unsigned long)b->node_count, sizeof *tag, "a picture");
+/* The tags of the nodes, from 1 on; from sf_alloc. */
+static size_t *number_nodes(const sf_body *b, sf_error *err) {
+    size_t *tag = sf_alloc(err, (unsigned long)b->node_count, sizeof *tag, "a picture");
     for (int64_t k = 0; k < b->node_count && tag; k++)
         tag[k] = (size_t)k + 1;
+    return tag;
+}
+
+static sf_status add_mesh(const sf_body *b, sf_error *err) {
+    size_t first = 1;
+    SF_OWNED size_t *tag = number_nodes(b, err);
     gmshModelAddDiscreteEntity(2, 1, NULL, 0, &unasked);
     if (tag)
         gmshModelMeshAddNodes(2, 1, tag, (size_t)b->node_count, b->position, 3 * (size_t)b->node_count, NULL,
@@ -576,9 +580,7 @@ void sf_view_add(sf_picture which, int frame, double time, const sf_body *body, 
                  const double *value) {
     sf_error err = SF_ERROR_INIT;
     size_t count = (size_t)body->node_count;
-    SF_OWNED size_t *tag = sf_alloc(&err, count, sizeof *tag, "a picture");
-    for (size_t k = 0; k < count && tag; k++)
-        tag[k] = k + 1;
+    SF_OWNED size_t *tag = number_nodes(body, &err);
     if (tag && value)
         gmshViewAddHomogeneousModelData(VALUES + (int)which, frame, models[which], "NodeData", tag, count,
                                         (double *)value, count, time, 1, 0, &unasked);
@@ -592,10 +594,8 @@ void sf_view_add(sf_picture which, int frame, double time, const sf_body *body, 
 
 void sf_view_show_frame(int frame) {
     for (int which = 0; which < SF_PICTURE_CURVE; which++) {
-        if (has_view(VALUES + which))
-            set_option(VALUES + which, "TimeStep", frame);
-        if (has_view(MOVES + which))
-            set_option(MOVES + which, "TimeStep", frame);
+        set_option(VALUES + which, "TimeStep", frame);
+        set_option(MOVES + which, "TimeStep", frame);
     }
 }
 

@@ -56,14 +56,13 @@ static double first_contact(const sf_history *h) {
 static sf_status filter(const sf_results *r, const sf_series *raw, double free_flight, const sf_figures *f,
                         sf_series *filtered, sf_error *err) {
     double lead = FREE_FLIGHT - (first_contact(&r->history) - r->history.time[0]);
-    sf_series before = {0}, uniform = {0};
+    SF_OWNED_BY(sf_series_free) sf_series before = {0}, uniform = {0};
     if (lead > 0 && sf_signal_lead_in(raw, lead, free_flight, &before, err) != SF_OK)
         return err->status;
     if (sf_signal_resample(lead > 0 ? &before : raw, f->rate, &uniform, err) == SF_OK) {
         sf_signal_pass(&f->chain, &uniform);
         sf_signal_filter_cfc(&uniform, f->cfc, filtered, err);
     }
-    sf_series_free(&before);
     sf_series_free(&uniform);
     return err->status;
 }
@@ -73,7 +72,7 @@ static sf_status filter_resultant(const sf_results *r, const double *const chann
                                   const double shift[3], double unit, const sf_figures *f, sf_series *out,
                                   sf_error *err) {
     const sf_history *h = &r->history;
-    sf_series raw = {0};
+    SF_OWNED_BY(sf_series_free) sf_series raw = {0};
     SF_TRY(sf_series_create(h->rows, &raw, err));
     memcpy(raw.time, h->time, (size_t)h->rows * sizeof *raw.time);
     for (int c = 0; c < 3 && err->status == SF_OK; c++) {
@@ -94,7 +93,6 @@ static sf_status filter_resultant(const sf_results *r, const double *const chann
     }
     for (int64_t i = 0; i < out->count && err->status == SF_OK; i++)
         out->value[i] = sqrt(out->value[i]);
-    sf_series_free(&raw);
     return err->status;
 }
 
@@ -145,13 +143,11 @@ static sf_status find_peak(const sf_results *r, const double *const channel[3], 
                            const sf_figures *f, double *peak, double *time, sf_error *err) {
     static const double none[3] = {0};
     const double first[3] = {channel[0][0], channel[1][0], channel[2][0]};
-    sf_series curve = {0};
-    if (filter_resultant(r, channel, known ? first : none, none, 1, f, &curve, err) == SF_OK) {
-        int64_t row = sf_series_peak(&curve);
-        *peak = curve.value[row];
-        *time = curve.time[row];
-    }
-    sf_series_free(&curve);
+    SF_OWNED_BY(sf_series_free) sf_series curve = {0};
+    SF_TRY(filter_resultant(r, channel, known ? first : none, none, 1, f, &curve, err));
+    int64_t row = sf_series_peak(&curve);
+    *peak = curve.value[row];
+    *time = curve.time[row];
     return err->status;
 }
 
@@ -161,7 +157,8 @@ static const double CRITICAL[3] = {66.25, 56.45, 42.87};
 
 static sf_status compute_bric(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
-    double *own = sf_alloc(err, (unsigned long)(3 * h->rows), sizeof *own, "angular velocity of the missile");
+    SF_OWNED double *own =
+        sf_alloc(err, (unsigned long)(3 * h->rows), sizeof *own, "angular velocity of the missile");
     f->bric = own ? 0 : NAN;
     for (int64_t k = 0; k < h->rows && own; k++) {
         const double q[4] = {h->quaternion_w[k], h->quaternion_x[k], h->quaternion_y[k], h->quaternion_z[k]},
@@ -178,7 +175,6 @@ static sf_status compute_bric(const sf_results *r, sf_figures *f, sf_error *err)
         find_peak(r, same, true, f, &peak, &time, err);
         f->bric = hypot(f->bric, peak / sqrt(3) / CRITICAL[axis]);
     }
-    free(own);
     return err->status;
 }
 
@@ -278,7 +274,7 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
 /* Computes figures of the fields at the peak, if the file has them; those of a failed run may be damaged. */
 static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *err) {
     sf_error problem = SF_ERROR_INIT;
-    sf_frame peak;
+    SF_OWNED_BY(sf_frame_free) sf_frame peak = {0};
     if (!r->has_peak) {
         f->layers = sf_layer_figures_compute(r, NULL, NULL, err);
         return err->status;
@@ -299,19 +295,17 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
     }
     if (compression)
         sf_strain_field_collapse(r, compression, peak.field[SF_FRAME_DISPLACEMENT], &f->local_collapse, err);
-    sf_frame_free(&peak);
     return err->status;
 }
 
 /* Raises *depth (m) to that of the deepest node of the frame below z = plane. */
 static sf_status add_depth(const sf_results *r, const sf_frame_head *head, double plane, double *depth,
                            sf_error *err) {
-    sf_frame frame;
+    SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
     SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT, &frame, err));
     const double *u = frame.field[SF_FRAME_DISPLACEMENT];
     for (int64_t i = 0; u && i < r->node_count; i++)
         *depth = fmax(*depth, plane - (r->position[3 * i + 2] + u[3 * i + 2]));
-    sf_frame_free(&frame);
     return SF_OK;
 }
 
@@ -464,7 +458,8 @@ static void estimate_lock_up(const sf_results *r, int64_t first, int64_t deepest
         energy -= shift * (w * gain - q * bend * (h->indentation[i] - h->indentation[i - 1]));
     }
     f->a_max_by_lock_up = -shift * (w * slope - q * bend / largest) - slope * energy / largest;
-    f->hic_by_lock_up = f->a_max_by_lock_up * share_of_hic(h, begin, largest, f->injury.hic.t2 - f->injury.hic.t1);
+    f->hic_by_lock_up =
+        f->a_max_by_lock_up * share_of_hic(h, begin, largest, f->injury.hic.t2 - f->injury.hic.t1);
 }
 
 /* The run has rebounded. Sets nothing of a driven or free missile, or where the force tells nothing. */

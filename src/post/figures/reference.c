@@ -155,7 +155,7 @@ static void keep_common(record *r, sf_table *table) {
 }
 
 static sf_status read_axis(record *r, const char *column, sf_error *err) {
-    sf_table table;
+    SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(read_column(r->options, column, &table, err));
     if (r->axes > 0)
         keep_common(r, &table);
@@ -166,7 +166,6 @@ static sf_status read_axis(record *r, const char *column, sf_error *err) {
         table.line = NULL;
         memcpy(r->interpretation, table.interpretation, sizeof r->interpretation);
     }
-    sf_table_free(&table);
     return SF_OK;
 }
 
@@ -271,7 +270,8 @@ static void set_clock(record *r, sf_reference *reference) {
 
 /* Takes the zero line of each axis away, and forms the resultant anew. */
 static sf_status take_zero_away(record *r, sf_reference *reference, sf_error *err) {
-    sf_series pulse = reference->raw;
+    SF_OWNED_BY(sf_series_free) sf_series pulse = reference->raw;
+    reference->raw = (sf_series){0};
     for (int k = 0; k < r->axes; k++) {
         double offset = 0;
         SF_TRY(sf_record_offset(&pulse, &r->axis[k], &offset, err));
@@ -284,8 +284,6 @@ static sf_status take_zero_away(record *r, sf_reference *reference, sf_error *er
             r->axis[k].value[i] -= offset;
         reference->offset = r->axes == 1 ? offset : hypot(reference->offset, offset);
     }
-    reference->raw = (sf_series){0};
-    sf_series_free(&pulse);
     return make_resultant(r->axis, r->axes, &reference->raw, err);
 }
 

@@ -184,7 +184,7 @@ static sf_status check_uniform(const sf_series *series, double *step, sf_error *
 sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *filtered, sf_error *err) {
     *filtered = (sf_series){0};
     double step = 0;
-    double *work = NULL;
+    SF_OWNED double *work = NULL;
     SF_TRY(sf_series_check(uniform, "the curve to filter", err));
     SF_TRY(check_uniform(uniform, &step, err));
     double pole = 2 * M_PI * cfc * 2.0775;
@@ -206,7 +206,6 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     memcpy(filtered->time, uniform->time, (size_t)uniform->count * sizeof(double));
     memcpy(filtered->value, work + pad, (size_t)uniform->count * sizeof(double));
 done:
-    free(work);
     return err->status;
 }
 
@@ -227,12 +226,11 @@ static bool take_uniform(const sf_series *raw, sf_series *uniform, sf_error *err
 }
 
 sf_status sf_signal_filter(const sf_series *raw, double cfc, sf_series *filtered, sf_error *err) {
-    sf_series uniform = {0};
+    SF_OWNED_BY(sf_series_free) sf_series uniform = {0};
     if (!take_uniform(raw, &uniform, err))
         sf_signal_resample(raw, sf_signal_rate(raw), &uniform, err);
     if (err->status == SF_OK)
         sf_signal_filter_cfc(&uniform, cfc, filtered, err);
-    sf_series_free(&uniform);
     return err->status;
 }
 

@@ -270,7 +270,7 @@ static double largest_slip(const sf_results *r, const double *displacement, cons
 }
 
 sf_status sf_layers_note_slip(sf_results *r, sf_error *err) {
-    sf_frame peak;
+    SF_OWNED_BY(sf_frame_free) sf_frame peak = {0};
     sf_error problem = SF_ERROR_INIT;
     if (r->layer_count == 0 || !r->has_peak ||
         sf_frame_read_fields(r, &r->peak, SF_FIELD_DISPLACEMENT, &peak, &problem) != SF_OK)
@@ -287,6 +287,5 @@ sf_status sf_layers_note_slip(sf_results *r, sf_error *err) {
             "along the undeformed normal, which is right for small slips",
             1e3 * slip, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     free(order);
-    sf_frame_free(&peak);
     return err->status;
 }

@@ -202,7 +202,8 @@ static int by_depth(const void *a, const void *b, void *positions) {
 static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *frame, sf_error *err) {
     double axis[2], top;
     sf_section_point station[SF_SECTION_STATIONS];
-    int32_t *nodes = sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
+    SF_OWNED int32_t *nodes =
+        sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
     size_t count = 0;
     if (!nodes)
         return err->status;
@@ -218,7 +219,6 @@ static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *fra
         fprintf(file, "section,%d", nodes[i]);
         write_point(file, r, frame, top, &point);
     }
-    free(nodes);
     for (int s = 0; s < SF_SECTION_STATIONS; s++) {
         if (!sf_section_inside(&station[s]))
             continue;
@@ -242,7 +242,7 @@ static const sf_frame_head *peak_head(const sf_results *r) {
 sf_status sf_section_write(const sf_staging *output, const sf_results *results, bool *written,
                            sf_error *err) {
     const sf_frame_head *head = peak_head(results);
-    sf_frame frame = {0};
+    SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
     FILE *file = NULL;
     *written = false;
     if (!head)
@@ -259,6 +259,5 @@ sf_status sf_section_write(const sf_staging *output, const sf_results *results, 
     if (sf_staging_close(file, "section.csv", err) == SF_OK)
         *written = true;
 done:
-    sf_frame_free(&frame);
     return err->status;
 }

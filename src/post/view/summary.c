@@ -99,13 +99,12 @@ static void put_verdict(sf_json *json, const sf_verdict *v) {
 /* Words of the case about the test; null: not given. */
 static void put_test(sf_json *json, const sf_results *r) {
     sf_origin_key key;
-    char *parameters = sf_origin_text(r, "/provenance/model/parameters");
+    SF_OWNED char *parameters = sf_origin_text(r, "/provenance/model/parameters");
     for (int k = 0; k < SF_ORIGIN_REPORT_KEYS; k++) {
         const char *name = sf_origin_report_keys[k];
         sf_json_text(json, name,
                      parameters && sf_origin_find_report(parameters, name, &key) ? key.value : NULL);
     }
-    free(parameters);
 }
 
 static void put_comparison(sf_json *json, const char *path, const sf_comparison *c) {

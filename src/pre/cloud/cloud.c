@@ -34,9 +34,9 @@ static uint64_t spread(uint64_t x) {
 sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
     int64_t n = mesh->node_count;
     double low[3] = {INFINITY, INFINITY, INFINITY}, extent = 0;
-    keyed_node *order = sf_alloc(err, (unsigned long)n, sizeof *order, "node order");
-    int32_t *rank = sf_alloc(err, (unsigned long)n, sizeof *rank, "node order");
-    double *moved = sf_alloc(err, 3 * (unsigned long)n, sizeof *moved, "node order");
+    SF_OWNED keyed_node *order = sf_alloc(err, (unsigned long)n, sizeof *order, "node order");
+    SF_OWNED int32_t *rank = sf_alloc(err, (unsigned long)n, sizeof *rank, "node order");
+    SF_OWNED double *moved = sf_alloc(err, 3 * (unsigned long)n, sizeof *moved, "node order");
     if (err->status != SF_OK)
         goto done;
     for (int64_t k = 0; k < 3 * n; k++)
@@ -68,9 +68,6 @@ sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
         qsort(mesh->set[s].node, (size_t)mesh->set[s].count, sizeof(int32_t), sf_by_number);
     }
 done:
-    free(order);
-    free(rank);
-    free(moved);
     return err->status;
 }
 

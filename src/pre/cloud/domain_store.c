@@ -53,7 +53,7 @@ static bool take(const sf_stored *found, int64_t nodes, double *support, sf_doma
     numbers h;
     void **array[PARTS - 1];
     size_t size[PARTS - 1], at = sizeof h, total = sizeof h;
-    double *supports = NULL;
+    SF_OWNED double *supports = NULL;
     if (found->size < sizeof h)
         return false;
     memcpy(&h, found->data, sizeof h);
@@ -75,7 +75,6 @@ static bool take(const sf_stored *found, int64_t nodes, double *support, sf_doma
         sf_domains_free(out);
         memset(out, 0, sizeof *out);
     }
-    free(supports);
     return whole;
 }
 

@@ -290,7 +290,7 @@ static void find_gap(builder *b) {
 static sf_status shape_at_nodes(builder *b, sf_error *err) {
     int64_t n = b->mesh->node_count, capacity = 64 * n, used = 0;
     sf_domains *out = b->out;
-    workspace *w = calloc(1, sizeof *w);
+    SF_OWNED workspace *w = calloc(1, sizeof *w);
     out->phi_ptr = sf_alloc(err, (unsigned long)n + 1, sizeof *out->phi_ptr, "shape functions");
     out->phi_node = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_node, "shape functions");
     out->phi_value = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_value, "shape functions");
@@ -312,7 +312,6 @@ static sf_status shape_at_nodes(builder *b, sf_error *err) {
     }
     if (w)
         merge_worst(out, w);
-    free(w);
     return err->status;
 }
 
@@ -410,7 +409,7 @@ static void finish_row(row_sum *row, double volume, int32_t *node, double *gradi
 static sf_status assemble_rows(builder *b, sf_error *err) {
     int64_t n = b->mesh->node_count, *corner = NULL;
     sf_domains *out = b->out;
-    int64_t *corner_ptr = list_corners(b, &corner, err);
+    SF_OWNED int64_t *corner_ptr = list_corners(b, &corner, err);
     row_sum row = {sf_alloc(err, (unsigned long)n, sizeof *row.slot, "row"), 0,
                    sf_alloc(err, (unsigned long)n, sizeof *row.node, "row"),
                    sf_alloc(err, 3 * (unsigned long)n, sizeof *row.sum, "row")};
@@ -439,7 +438,6 @@ static sf_status assemble_rows(builder *b, sf_error *err) {
         finish_row(&row, out->volume[i], &out->node[out->ptr[i]], &out->b[3 * out->ptr[i]]);
     }
 done:
-    free(corner_ptr);
     free(corner);
     free(row.slot);
     free(row.node);

@@ -44,7 +44,7 @@ static int64_t count_parts(const sf_mesh *mesh, bool edges) {
 
 static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t count = count_parts(mesh, true), k = 0;
-    raw_edge *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell edges");
+    SF_OWNED raw_edge *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell edges");
     if (!raw)
         return err->status;
     for (int64_t c = 0; c < mesh->cell_count; c++) {
@@ -73,7 +73,6 @@ static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
     }
     if (err->status == SF_OK)
         dual->use_ptr[dual->edge_count] = count;
-    free(raw);
     return err->status;
 }
 
@@ -277,7 +276,7 @@ static bool is_inside(const sf_boundary_face *face, const uint8_t *member) {
 
 sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, int layer,
                           double *area, sf_error *err) {
-    uint8_t *member = mark_members(mesh, set, err);
+    SF_OWNED uint8_t *member = mark_members(mesh, set, err);
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         const sf_boundary_face *face = &dual->face[f];
         if (layer != SF_ANY_LAYER && mesh->cell_layer[face->cell] != layer)
@@ -289,7 +288,6 @@ sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_nod
             area[face->node[k]] += length(part[0].area) + length(part[1].area);
         }
     }
-    free(member);
     return err->status;
 }
 
@@ -310,7 +308,7 @@ static void face_area(const sf_mesh *mesh, const sf_boundary_face *face, double 
 
 sf_status sf_surface_find_sides(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
                                 const double direction[3], sf_surface_sides *sides, sf_error *err) {
-    uint8_t *member = mark_members(mesh, set, err);
+    SF_OWNED uint8_t *member = mark_members(mesh, set, err);
     *sides = (sf_surface_sides){0};
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         double a[3];
@@ -321,6 +319,5 @@ sf_status sf_surface_find_sides(const sf_mesh *mesh, const sf_dual *dual, const 
         sides->area += length(a);
         sides->facing += fmax(0, -along);
     }
-    free(member);
     return err->status;
 }

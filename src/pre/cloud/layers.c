@@ -178,12 +178,11 @@ static void find_together(sf_layers *l) {
 sf_status sf_layers_build(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual, sf_layers *l,
                           sf_error *err) {
     *l = (sf_layers){.count = c->layer_count > 0 ? c->layer_count : 1};
-    uint8_t *used = mark_layers(mesh, l->count, err);
+    SF_OWNED uint8_t *used = mark_layers(mesh, l->count, err);
     if (used && number_nodes(mesh, used, l, err) == SF_OK)
         find_ties(c, mesh, dual, l, err);
     if (err->status == SF_OK && (l->together = sf_sets_alone(l->first[l->count], "ties between layers", err)))
         find_together(l);
-    free(used);
     if (err->status != SF_OK)
         sf_layers_free(l);
     return err->status;
@@ -234,14 +233,13 @@ sf_status sf_layers_part(const sf_mesh *mesh, const sf_layers *l, int layer, sf_
 
 sf_status sf_layers_area(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l, const sf_node_set *set,
                          double *area, sf_error *err) {
-    double *own = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *own, "areas");
+    SF_OWNED double *own = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *own, "areas");
     for (int layer = 0; own && layer < l->count && err->status == SF_OK; layer++) {
         memset(own, 0, (size_t)mesh->node_count * sizeof *own);
         if (sf_surface_area(mesh, dual, set, l->count > 1 ? layer : SF_ANY_LAYER, own, err) == SF_OK)
             for (int64_t i = l->first[layer]; i < l->first[layer + 1]; i++)
                 area[i] += own[l->origin[i]];
     }
-    free(own);
     return err->status;
 }
 
@@ -249,7 +247,7 @@ sf_status sf_layers_area(const sf_mesh *mesh, const sf_dual *dual, const sf_laye
  * face of the surface in it; where there is no such face, all. */
 static sf_status mark_copies(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
                              const sf_node_set *set, uint8_t *mark, sf_error *err) {
-    uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "a node set");
+    SF_OWNED uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "a node set");
     for (int64_t k = 0; member && k < set->count; k++)
         member[set->node[k]] = 1;
     for (int64_t f = 0; member && f < dual->face_count; f++) {
@@ -267,30 +265,27 @@ static sf_status mark_copies(const sf_mesh *mesh, const sf_dual *dual, const sf_
         for (int64_t i = first; marked == 0 && i < last; i++)
             mark[l->copy[i]] = 1;
     }
-    free(member);
     return err->status;
 }
 
 static sf_status split_set(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l, sf_node_set *set,
                            sf_error *err) {
     int64_t n = l->first[l->count], count = 0;
-    uint8_t *mark = sf_alloc(err, (unsigned long)n, 1, "a node set");
+    SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)n, 1, "a node set");
     if (mark)
         mark_copies(mesh, dual, l, set, mark, err);
     for (int64_t i = 0; mark && i < n; i++)
         count += mark[i];
     int32_t *node = sf_alloc(err, (unsigned long)count, sizeof *node, "a node set");
-    if (err->status == SF_OK) {
-        free(set->node);
-        free(set->face);
-        set->node = node;
-        set->face = NULL;
-        set->count = set->face_count = 0;
-        for (int64_t i = 0; i < n; i++)
-            if (mark[i])
-                set->node[set->count++] = (int32_t)i;
-    }
-    free(mark);
+    SF_TRY(err->status);
+    free(set->node);
+    free(set->face);
+    set->node = node;
+    set->face = NULL;
+    set->count = set->face_count = 0;
+    for (int64_t i = 0; i < n; i++)
+        if (mark[i])
+            set->node[set->count++] = (int32_t)i;
     return err->status;
 }
 

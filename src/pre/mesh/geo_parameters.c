@@ -104,13 +104,12 @@ static bool has_name(const name_list *list, const char *name) {
 /* The names in all texts; in the named file alone if the list is not complete. */
 static sf_status collect(const sf_geo_source *source, const sf_broker *read, bool complete, name_list *list,
                          sf_error *err) {
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     for (size_t k = 0; complete && k < read->count; k++)
         if (read->file[k].is_text)
             scan(read->file[k].text, list);
     if (!complete && sf_plain_read(source->path, "geometry", SF_PLAIN_ANY, &text, NULL, err) == SF_OK)
         scan(text, list);
-    free(text);
     return err->status;
 }
 
@@ -134,10 +133,9 @@ sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *
                                   sf_error *err) {
     if (source->parameter_count == 0)
         return SF_OK;
-    name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
+    SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
     if (list && collect(source, read, complete, list, err) == SF_OK)
         refuse_missing(source, list, err);
-    free(list);
     return err->status;
 }
 
@@ -150,16 +148,14 @@ static bool reads_others(const char *text) {
 
 sf_status sf_geo_parameters_check_alone(const sf_geo_source *source, sf_error *err) {
     const char *ending = source->path ? strrchr(source->path, '.') : NULL;
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     if (source->parameter_count == 0 || !ending || strcmp(ending, ".geo") != 0)
         return SF_OK;
-    name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
+    SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
     if (list && sf_plain_read(source->path, "geometry", SF_PLAIN_ANY, &text, NULL, err) == SF_OK &&
         !reads_others(text)) {
         scan(text, list);
         refuse_missing(source, list, err);
     }
-    free(text);
-    free(list);
     return err->status;
 }

@@ -88,7 +88,7 @@ static char *mesh(sf_gmsh *session, const sf_geo_source *source, sf_error *err) 
 sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *err) {
     const sf_meshed *open = &session->open;
     const char *unconfined = getenv("SOFTFALL_UNCONFINED");
-    char *files = NULL;
+    SF_OWNED char *files = NULL;
     sf_meshed_free(&session->open);
     snprintf(session->file, sizeof session->file, "%s", source->path);
     if ((unconfined && *unconfined) || !sf_mesh_store_find(session->store, source, &session->open, &files))
@@ -98,7 +98,6 @@ sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *
     snprintf(session->version, sizeof session->version, "%s%s", open->data.version,
              open->confined ? "" : " (unconfined)");
     add_files(session, files, err);
-    free(files);
     return err->status;
 }
 
@@ -160,8 +159,8 @@ static claim *list_claims(const sf_geo_data *data, int dimension, bool names, si
 /* Two groups of one name, or an entity in two named groups: which of them is meant? */
 static sf_status check_groups(const sf_gmsh *session, int dimension, sf_error *err) {
     size_t names = 0, entities = 0;
-    claim *name = list_claims(&session->open.data, dimension, true, &names, err),
-          *entity = list_claims(&session->open.data, dimension, false, &entities, err);
+    SF_OWNED claim *name = list_claims(&session->open.data, dimension, true, &names, err),
+                   *entity = list_claims(&session->open.data, dimension, false, &entities, err);
     for (size_t i = 1; name && i < names && err->status == SF_OK; i++)
         if (strcmp(name[i - 1].group->name, name[i].group->name) == 0)
             SF_REFUSE(err, "%s has two %s groups called \"%s\" (physical tags %d and %d)", session->file,
@@ -170,8 +169,6 @@ static sf_status check_groups(const sf_gmsh *session, int dimension, sf_error *e
         if (entity[i - 1].entity == entity[i].entity && entity[i - 1].group != entity[i].group)
             SF_REFUSE(err, "%s: %s %d belongs to two groups, \"%s\" and \"%s\"", session->file,
                       kind_of(dimension), entity[i].entity, entity[i - 1].group->name, entity[i].group->name);
-    free(name);
-    free(entity);
     return err->status;
 }
 
@@ -349,8 +346,8 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
                                const sf_pad_volumes *volumes, double unit, const sf_raw_mesh *raw,
                                sf_error *err) {
     const sf_geo_data *data = &session->open.data;
-    sf_tag_index *index = sf_raw_mesh_index(raw, err);
-    uint8_t *mark = index ? mark_chosen(raw, index, err) : NULL;
+    SF_OWNED sf_tag_index *index = sf_raw_mesh_index(raw, err);
+    SF_OWNED uint8_t *mark = index ? mark_chosen(raw, index, err) : NULL;
     for (size_t k = 0; mark && k < data->block_count && err->status == SF_OK; k++) {
         const sf_geo_block *block = &data->block[k];
         if (block->dimension != 3 || chosen_of(chosen, volumes->count, block->entity))
@@ -368,8 +365,6 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
                 session->file, block->entity, *name ? " of the group \"" : " (of no named group)", name,
                 *name ? "\"" : "", 1e3 * unit * at[0], 1e3 * unit * at[1], 1e3 * unit * at[2]);
     }
-    free(mark);
-    free(index);
     return err->status;
 }
 
@@ -417,9 +412,9 @@ sf_status sf_gmsh_read_mesh(sf_gmsh *session, const char *pad_group, double unit
 sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, double unit, sf_mesh *mesh,
                               sf_error *err) {
     const sf_geo_data *data = &session->open.data;
-    sf_raw_mesh raw = {0};
+    SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     memset(mesh, 0, sizeof *mesh);
-    const sf_geo_group **chosen =
+    SF_OWNED const sf_geo_group **chosen =
         sf_alloc(err, (unsigned long)volumes->count, sizeof *chosen, "the pad's volumes");
     if (!chosen || read_volumes(session, volumes, unit, chosen, &raw, err) != SF_OK)
         goto done;
@@ -429,8 +424,6 @@ sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, d
             goto done;
     sf_mesh_assemble(&raw, volumes->count, unit, mesh, err);
 done:
-    free(chosen);
-    sf_raw_mesh_free(&raw);
     return err->status;
 }
 
@@ -447,19 +440,17 @@ static sf_status read_missile(const sf_gmsh *session, const char *surface_group,
 
 sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                                sf_error *err) {
-    sf_raw_mesh raw = {0};
+    SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     memset(surface, 0, sizeof *surface);
     if (read_missile(session, surface_group, &raw, err) == SF_OK)
         sf_surface_assemble(&raw, unit, surface, err);
-    sf_raw_mesh_free(&raw);
     return err->status;
 }
 
 sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                             sf_error *err) {
-    sf_raw_mesh raw = {0};
+    SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     if (read_missile(session, surface_group, &raw, err) == SF_OK)
         sf_hull_assemble(&raw, unit, surface, err);
-    sf_raw_mesh_free(&raw);
     return err->status;
 }

@@ -226,7 +226,7 @@ static sf_status check_coinciding(const sf_mesh *mesh, sf_error *err) {
     double low[3], high[3];
     sf_box3(mesh->node_count, mesh->position, low, high);
     double tolerance = SAME_POINT * hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
-    sorted_node *order = sf_alloc(err, n, sizeof *order, "sorted nodes");
+    SF_OWNED sorted_node *order = sf_alloc(err, n, sizeof *order, "sorted nodes");
     if (!order)
         return err->status;
     for (size_t k = 0; k < n; k++) {
@@ -249,7 +249,6 @@ static sf_status check_coinciding(const sf_mesh *mesh, sf_error *err) {
             break;
         }
     }
-    free(order);
     return err->status;
 }
 

@@ -210,7 +210,7 @@ static int64_t count_faces(const sf_raw_mesh *raw, int group) {
 
 static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, const int32_t *number,
                             sf_mesh *mesh, sf_error *err) {
-    uint8_t *mark = sf_alloc(err, (size_t)mesh->node_count, 1, "node marks");
+    SF_OWNED uint8_t *mark = sf_alloc(err, (size_t)mesh->node_count, 1, "node marks");
     mesh->set = sf_alloc(err, (size_t)raw->group_count, sizeof *mesh->set, "node sets");
     for (int g = 0; mark && mesh->set && g < raw->group_count && err->status == SF_OK; g++) {
         sf_node_set *set = &mesh->set[mesh->set_count];
@@ -233,14 +233,13 @@ static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, c
             if (mark[n])
                 set->node[set->count++] = n;
     }
-    free(mark);
     return err->status;
 }
 
 sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_mesh *mesh, sf_error *err) {
     memset(mesh, 0, sizeof *mesh);
-    int32_t *number = NULL;
-    sf_tag_index *index = NULL;
+    SF_OWNED int32_t *number = NULL;
+    SF_OWNED sf_tag_index *index = NULL;
     if (raw->node_count > INT32_MAX)
         return SF_REFUSE(err, "the mesh has %zu nodes; at most %d are supported", raw->node_count, INT32_MAX);
     index = sf_raw_mesh_index(raw, err);
@@ -252,8 +251,6 @@ sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_m
         sf_mesh_orient(mesh);
     else
         sf_mesh_free(mesh);
-    free(number);
-    free(index);
     return err->status;
 }
 
@@ -397,7 +394,7 @@ static void decide(surface_builder *b, uint8_t *reverse) {
 static sf_status write_surface(const surface_builder *b, const uint8_t *reverse, double unit,
                                sf_surface *surface, sf_error *err) {
     const sf_raw_mesh *raw = b->raw;
-    int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "surface nodes");
+    SF_OWNED int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "surface nodes");
     for (size_t f = 0; number && f < raw->face_count; f++) {
         surface->triangle_count += face_size(raw, f) - 2;
         for (int a = 0; a < face_size(raw, f); a++)
@@ -427,14 +424,13 @@ static sf_status write_surface(const surface_builder *b, const uint8_t *reverse,
     }
     if (err->status == SF_OK && surface->node_count > 0)
         memcpy(surface->origin, surface->position, sizeof surface->origin);
-    free(number);
     return err->status;
 }
 
 sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err) {
     memset(surface, 0, sizeof *surface);
     surface_builder b = {.raw = raw};
-    uint8_t *reverse = NULL;
+    SF_OWNED uint8_t *reverse = NULL;
     if (prepare(&b, err) != SF_OK || match_cells(&b, err) != SF_OK)
         goto done;
     find_outward(&b);
@@ -444,7 +440,6 @@ sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *s
     decide(&b, reverse);
     write_surface(&b, reverse, unit, surface, err);
 done:
-    free(reverse);
     free(b.nodes);
     free(b.keys);
     free(b.outward);

@@ -40,7 +40,7 @@ typedef struct orienter {
 static sf_status find_neighbours(orienter *o, sf_error *err) {
     int64_t count = 3 * o->surface->triangle_count;
     const int32_t *node = o->surface->triangle;
-    use *list = sf_alloc(err, (size_t)count, sizeof *list, "edges of the missile");
+    SF_OWNED use *list = sf_alloc(err, (size_t)count, sizeof *list, "edges of the missile");
     if (!list)
         return err->status;
     for (int64_t k = 0; k < count; k++) {
@@ -60,7 +60,6 @@ static sf_status find_neighbours(orienter *o, sf_error *err) {
             o->twisted[list[first + k].slot] = list[first].rising == list[first + 1].rising;
         }
     }
-    free(list);
     return SF_OK;
 }
 
@@ -206,7 +205,7 @@ typedef struct hull_builder {
     cell_face *list; /* [count] sorted */
     size_t count;
     int64_t *parent; /* [cell_count] union of cells joined by faces */
-    uint8_t *ours;  /* [cell_count] by parent: of the missile */
+    uint8_t *ours;   /* [cell_count] by parent: of the missile */
 } hull_builder;
 
 static sf_status list_faces(hull_builder *b, sf_error *err) {
@@ -311,20 +310,18 @@ static sf_status write_hull(const hull_builder *b, double unit, sf_surface *s, s
     size_t most = 0;
     for (size_t i = 0; i < b->count; i++)
         most += is_hull(b, i) ? 2 : 0;
-    int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "nodes of the missile");
+    SF_OWNED int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "nodes of the missile");
     s->hull_position = sf_alloc(err, 3 * raw->node_count, sizeof(double), "nodes of the missile");
     s->hull_triangle = sf_alloc(err, 3 * most, sizeof(int32_t), "surface of the missile");
-    if (err->status == SF_OK) {
-        s->hull_node_count = (int64_t)raw->node_count;
-        for (size_t n = 0; n < raw->node_count; n++)
-            number[n] = (int32_t)n;
-        for (size_t n = 0; n < 3 * raw->node_count; n++)
-            s->hull_position[n] = unit * raw->xyz[n];
-        for (size_t i = 0; i < b->count; i++)
-            if (is_hull(b, i))
-                add_face(b, &b->list[i], number, s);
-    }
-    free(number);
+    SF_TRY(err->status);
+    s->hull_node_count = (int64_t)raw->node_count;
+    for (size_t n = 0; n < raw->node_count; n++)
+        number[n] = (int32_t)n;
+    for (size_t n = 0; n < 3 * raw->node_count; n++)
+        s->hull_position[n] = unit * raw->xyz[n];
+    for (size_t i = 0; i < b->count; i++)
+        if (is_hull(b, i))
+            add_face(b, &b->list[i], number, s);
     return err->status;
 }
 

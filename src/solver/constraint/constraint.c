@@ -134,7 +134,7 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
     for (int64_t r = 0; r < c->rows; r++)
         entries += phi_count(m, c->row[r].node) + phi_count(m, c->row[r].other);
     unsigned long all = (unsigned long)entries, rows = (unsigned long)c->rows;
-    int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "constraint lists");
+    SF_OWNED int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "constraint lists");
     c->row_ptr = sf_alloc(err, rows + 1, sizeof *c->row_ptr, "constraint lists");
     c->row_place = sf_alloc(err, all, sizeof *c->row_place, "constraint lists");
     c->row_phi = sf_alloc(err, all, sizeof *c->row_phi, "constraint lists");
@@ -146,15 +146,13 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
         entries = put_phi(m, c, c->row[r].other, -1, entries);
         c->row_ptr[r + 1] = entries;
     }
-    if (err->status == SF_OK && list_touched(m, c, place, err) == SF_OK) {
-        c->node_ptr =
-            sf_alloc(err, (unsigned long)c->touched_count + 1, sizeof *c->node_ptr, "constraint lists");
-        for (int64_t k = 0; k < entries; k++)
-            c->row_place[k] = place[c->row_place[k]];
-        if (err->status == SF_OK)
-            list_by_node(c);
-    }
-    free(place);
+    SF_TRY(err->status);
+    SF_TRY(list_touched(m, c, place, err));
+    c->node_ptr = sf_alloc(err, (unsigned long)c->touched_count + 1, sizeof *c->node_ptr, "constraint lists");
+    for (int64_t k = 0; k < entries; k++)
+        c->row_place[k] = place[c->row_place[k]];
+    if (err->status == SF_OK)
+        list_by_node(c);
     return err->status;
 }
 

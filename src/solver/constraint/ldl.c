@@ -274,7 +274,7 @@ static bool ends_with_next(const sf_ldl *f, const int32_t *list, int64_t j) {
 
 /* The lists of places, each once. */
 static sf_status share_lists(sf_ldl *f, sf_error *err) {
-    int32_t *all = f->place;
+    SF_OWNED int32_t *all = f->place;
     int64_t room = 0;
     f->place = NULL;
     for (int64_t j = 0; j < f->rows; j++) {
@@ -286,7 +286,6 @@ static sf_status share_lists(sf_ldl *f, sf_error *err) {
     for (int64_t j = 0; j < f->rows && f->place; j++)
         memcpy(&f->place[f->list[j]], &all[f->column[j]],
                (size_t)(f->column[j + 1] - f->column[j]) * sizeof *all);
-    free(all);
     return err->status;
 }
 
@@ -310,8 +309,8 @@ static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
             l = l ? l : w->l[c];
         }
     f->rows = w->rows;
-    int64_t *place = sf_alloc(err, rows, sizeof *place, "factor of the constraints");
-    int64_t *source = sf_alloc(err, rows, sizeof *source, "factor of the constraints");
+    SF_OWNED int64_t *place = sf_alloc(err, rows, sizeof *place, "factor of the constraints");
+    SF_OWNED int64_t *source = sf_alloc(err, rows, sizeof *source, "factor of the constraints");
     f->order = sf_alloc(err, rows, sizeof *f->order, "factor of the constraints");
     f->column = sf_alloc(err, rows + 1, sizeof *f->column, "factor of the constraints");
     f->trunk_from = sf_alloc(err, rows, sizeof *f->trunk_from, "factor of the constraints");
@@ -331,8 +330,6 @@ static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
                               sizeof *f->carried, "factor of the constraints");
     }
     free_tree(&t);
-    free(place);
-    free(source);
     return err->status;
 }
 

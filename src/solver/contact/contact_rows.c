@@ -116,13 +116,12 @@ static int64_t put_row(const sf_model *m, const joined *j, int32_t first, sf_con
 
 sf_status sf_contact_rows_build(const sf_model *m, sf_contact_rows *rows, sf_error *err) {
     int64_t points = sf_model_points(m);
-    int32_t *node = sf_alloc(err, (unsigned long)points, sizeof *node, "contact rows");
+    SF_OWNED int32_t *node = sf_alloc(err, (unsigned long)points, sizeof *node, "contact rows");
     memset(rows, 0, sizeof *rows);
     for (int64_t c = 0; node && c < points; c++)
         node[c] = (int32_t)sf_model_point_node(m, c);
     if (node)
         sf_contact_rows_of_nodes(m, points, node, rows, err);
-    free(node);
     return err->status;
 }
 
@@ -221,9 +220,9 @@ sf_status sf_contact_gram_build(const sf_model *m, const sf_contact_rows *rows, 
     transposed t = {0};
     memset(gram, 0, sizeof *gram);
     measure_points(m, rows, gram);
-    double *dense = sf_alloc(err, count, sizeof *dense, "contact matrix");
-    int32_t *list = sf_alloc(err, count, sizeof *list, "contact matrix");
-    uint8_t *seen = sf_alloc(err, count, 1, "contact matrix");
+    SF_OWNED double *dense = sf_alloc(err, count, sizeof *dense, "contact matrix");
+    SF_OWNED int32_t *list = sf_alloc(err, count, sizeof *list, "contact matrix");
+    SF_OWNED uint8_t *seen = sf_alloc(err, count, 1, "contact matrix");
     gram->ptr = sf_alloc(err, count + 1, sizeof *gram->ptr, "contact matrix");
     gram->diagonal = sf_alloc(err, count, sizeof *gram->diagonal, "contact matrix");
     if (err->status != SF_OK || transpose(m, rows, &t, err) != SF_OK)
@@ -255,9 +254,6 @@ done:
     free(t.ptr);
     free(t.point);
     free(t.phi);
-    free(dense);
-    free(list);
-    free(seen);
     if (err->status != SF_OK)
         sf_contact_gram_free(gram);
     return err->status;

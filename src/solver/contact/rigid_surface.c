@@ -63,7 +63,7 @@ static int by_ends(const void *a, const void *b) {
 }
 
 static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf_error *err) {
-    half_edge *edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *edge, "missile edges");
+    SF_OWNED half_edge *edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *edge, "missile edges");
     if (!edge)
         return err->status;
     for (int64_t k = 0; k < 3 * triangles; k++) {
@@ -84,7 +84,6 @@ static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf
             s->rim_edge[edge[first].slot] = s->rim_vertex[edge[first].low] = s->rim_vertex[edge[first].high] =
                 1;
     }
-    free(edge);
     return SF_OK;
 }
 
@@ -269,7 +268,7 @@ sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvi
     memset(anvil, 0, sizeof *anvil);
     if (m->rest_count == 0)
         return SF_OK;
-    double *load = sf_alloc(err, (unsigned long)m->node_count, sizeof *load, "weight of the pad");
+    SF_OWNED double *load = sf_alloc(err, (unsigned long)m->node_count, sizeof *load, "weight of the pad");
     if (load)
         add_loads(m, rows, load);
     for (int64_t i = 0; load && i < m->node_count; i++)
@@ -281,7 +280,6 @@ sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvi
             anvil->node[anvil->count] = (int32_t)i;
             anvil->pull[anvil->count++][2] = -load[i];
         }
-    free(load);
     if (err->status != SF_OK)
         sf_anvil_free(anvil);
     return err->status;

@@ -54,8 +54,8 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
     unsigned long n = (unsigned long)m->node_count;
     memset(h, 0, sizeof *h);
     h->group_count = (m->node_count + SF_GROUP - 1) / SF_GROUP;
-    uint8_t *seen = sf_alloc(err, n, 1, "group lists");
-    int32_t *place = sf_alloc(err, n, sizeof *place, "group lists");
+    SF_OWNED uint8_t *seen = sf_alloc(err, n, 1, "group lists");
+    SF_OWNED int32_t *place = sf_alloc(err, n, sizeof *place, "group lists");
     h->ptr = sf_alloc(err, (unsigned long)h->group_count + 1, sizeof *h->ptr, "group lists");
     h->slot_ptr = sf_alloc(err, n + 1, sizeof *h->slot_ptr, "group lists");
     h->local = sf_alloc(err, (unsigned long)m->domain_nnz, sizeof *h->local, "group lists");
@@ -86,8 +86,6 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
         number_entries(m, h, place);
         list_slots(m, h);
     }
-    free(seen);
-    free(place);
     if (err->status != SF_OK)
         sf_halo_free(h);
     return err->status;

@@ -12,7 +12,7 @@
 /* ---- constants ---- */
 
 static sf_status number_nodes(const sf_model *m, sf_membrane *b, sf_error *err) {
-    int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "membrane");
+    SF_OWNED int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "membrane");
     b->triangle_count = m->membrane_count;
     b->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *b->node, "membrane");
     b->triangle = sf_alloc(err, 3 * (unsigned long)m->membrane_count, sizeof *b->triangle, "membrane");
@@ -25,7 +25,6 @@ static sf_status number_nodes(const sf_model *m, sf_membrane *b, sf_error *err) 
         }
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->membrane_count; k++)
         b->triangle[k] = place[m->membrane_triangle[k]];
-    free(place);
     return err->status;
 }
 

@@ -33,7 +33,7 @@ static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type typ
                              const void *mine, const sf_model *m, const char *path, sf_error *err) {
     int64_t dims[2] = {m->node_count, columns};
     size_t bytes = (size_t)(m->node_count * columns) * (type == SF_H5_U8 ? 1 : 8);
-    void *data = NULL;
+    SF_OWNED void *data = NULL;
     sf_error inner = SF_ERROR_INIT;
     sf_status status = sf_h5_read(file, name, type, columns > 1 ? 2 : 1, dims, &data, &inner);
     if (status != SF_OK || memcmp(data, mine, bytes) != 0)
@@ -42,7 +42,6 @@ static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type typ
             "the pad of %s is another one (%s differs): the geometry of the pad, its mesh and its layers must "
             "be the same, also whole or quarter",
             path, name);
-    free(data);
     return err->status;
 }
 
@@ -76,7 +75,7 @@ static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const 
 static sf_status take(const sf_earlier *e, const sf_model *m, const sf_operators *op, sf_state *s,
                       sf_error *err) {
     char path[SF_PATH_SIZE];
-    sf_checkpoint c = {0};
+    SF_OWNED_BY(sf_checkpoint_close) sf_checkpoint c = {0};
     sf_h5 *results = NULL;
     snprintf(path, sizeof path, "%.4000s.restart", e->results);
     if (access(path, F_OK) != 0)
@@ -93,7 +92,6 @@ static sf_status take(const sf_earlier *e, const sf_model *m, const sf_operators
         s->pause = e->pause;
     }
     sf_h5_close(&results, err);
-    sf_checkpoint_close(&c);
     return err->status;
 }
 

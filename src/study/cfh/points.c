@@ -36,16 +36,15 @@ static sf_status fit_rig(const char *name, int pairs, const double *height, cons
     double x[SF_CFH_MAX_PAIRS], y[SF_CFH_MAX_PAIRS], variance = 0, residual = 0;
     *rig = sf_cfh_free_fall();
     if (pairs < 2 || pairs > SF_CFH_MAX_PAIRS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has %d pairs of height and speed, 2 to %d are needed", name,
-                       pairs, SF_CFH_MAX_PAIRS);
+        return SF_REFUSE(err, "%s has %d pairs of height and speed, 2 to %d are needed", name, pairs,
+                         SF_CFH_MAX_PAIRS);
     for (int k = 0; k < pairs; k++) {
         if (!(height[k] > 0) || !(speed[k] > 0))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: pair %d, %g m and %g m/s, is not positive", name, k + 1,
-                           height[k], speed[k]);
+            return SF_REFUSE(err, "%s: pair %d, %g m and %g m/s, is not positive", name, k + 1, height[k],
+                             speed[k]);
         if (speed[k] > MAX_SPEED_RATIO * sf_cfh_speed(height[k]))
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s: pair %d, %g m/s from %g m, is faster than free fall (%.4g m/s)", name, k + 1,
-                           speed[k], height[k], sf_cfh_speed(height[k]));
+            return SF_REFUSE(err, "%s: pair %d, %g m/s from %g m, is faster than free fall (%.4g m/s)", name,
+                             k + 1, speed[k], height[k], sf_cfh_speed(height[k]));
         x[k] = 2 * height[k];
         y[k] = speed[k] * speed[k];
     }
@@ -58,7 +57,7 @@ static sf_status fit_rig(const char *name, int pairs, const double *height, cons
 
 static sf_status check_pair(const sf_table_point *p, sf_error *err) {
     if (p->index == SF_CFH_MAX_PAIRS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s:%d: more than %d pairs", p->path, p->line, SF_CFH_MAX_PAIRS);
+        return SF_REFUSE(err, "%s:%d: more than %d pairs", p->path, p->line, SF_CFH_MAX_PAIRS);
     return SF_OK;
 }
 
@@ -82,12 +81,11 @@ static const sf_table_layout layout = {
 };
 
 sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err) {
-    sf_table table;
+    SF_OWNED_BY(sf_table_free) sf_table table = {0};
     *rig = sf_cfh_free_fall();
     SF_TRY(sf_table_read(path, &layout, &table, err));
     fit_rig(path, (int)table.count, table.value[0], table.value[1], rig, err);
     memcpy(rig->interpretation, table.interpretation, sizeof rig->interpretation);
-    sf_table_free(&table);
     return err->status;
 }
 
@@ -104,8 +102,8 @@ static sf_status check_points(const char *name, int count, const double *height,
     double largest = 0, at = 0;
     for (int k = 0; k < count; k++) {
         if (!(value[k] > 0) || !isfinite(value[k]) || !(height[k] > (k ? height[k - 1] : 0)))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: point %d, %g at %g m, is not positive or out of order",
-                           name, k + 1, value[k], height[k]);
+            return SF_REFUSE(err, "%s: point %d, %g at %g m, is not positive or out of order", name, k + 1,
+                             value[k], height[k]);
         if (value[k] < (1 - MAX_FALL) * largest)
             return SF_FAIL(err, SF_ERR_NUMERIC,
                            "%s falls from %.4g at %.4g m to %.4g at %.4g m: it does not grow with the "
@@ -213,7 +211,7 @@ sf_status sf_cfh_cross(const char *name, int count, const double *height, const 
                        sf_cfh_crossing *out, sf_error *err) {
     *out = (sf_cfh_crossing){.height = NAN, .margin = NAN, .low = NAN, .high = NAN};
     if (count < 1)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has no points", name);
+        return SF_REFUSE(err, "%s has no points", name);
     SF_TRY(check_points(name, count, height, value, err));
     int above = 0; /* the first point that reaches the limit */
     while (above < count && value[above] < limit)
@@ -221,8 +219,8 @@ sf_status sf_cfh_cross(const char *name, int count, const double *height, const 
     out->side = above == count ? SF_CFH_NOT_REACHED : above > 0 ? SF_CFH_CROSSED : SF_CFH_EXCEEDED;
     bool crossed = out->side == SF_CFH_CROSSED;
     if (count < SF_CFH_MIN_POINTS && crossed)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has %d points, at least %d are needed for a crossing", name,
-                       count, SF_CFH_MIN_POINTS);
+        return SF_REFUSE(err, "%s has %d points, at least %d are needed for a crossing", name, count,
+                         SF_CFH_MIN_POINTS);
     if (count < SF_CFH_MIN_POINTS)
         return SF_OK;
     double centre = log(height[above > 0 ? above - 1 : 0]); /* of the crossing, or the end nearest to it */

@@ -68,13 +68,12 @@ void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf
 
 /* The pad below the missile, once. */
 static sf_status learn_pad(const sf_runner_result *result, sf_cfh_pad *pad, sf_error *err) {
-    sf_results r;
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
     if (!pad || pad->columns.count > 0)
         return SF_OK;
     SF_TRY(sf_results_open(result->path, &r, err));
     pad->mesh_error = r.expected_mesh_error;
     sf_columns_build(&r, &pad->columns, err);
-    sf_results_close(&r);
     return err->status;
 }
 
@@ -180,31 +179,30 @@ static sf_status count_draws(const char *folder, int *count, sf_error *err) {
     char path[PATH_MAX];
     *count = sf_draws_count(folder, SF_CFH_MOST_DRAWS + 1);
     if (*count > SF_CFH_MOST_DRAWS)
-        return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: more than %d draws", folder, SF_CFH_MOST_DRAWS);
+        return SF_REFUSE(err, "--posterior %s: more than %d draws", folder, SF_CFH_MOST_DRAWS);
     for (int number = *count + 2; number <= SF_CFH_MOST_DRAWS; number++) {
         sf_draw_path(folder, number, path, sizeof path);
         if (access(path, F_OK) == 0)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "--posterior %s: draw-%03d.cfg is there, but draw-%03d.cfg is not", folder, number,
-                           *count + 1);
+            return SF_REFUSE(err, "--posterior %s: draw-%03d.cfg is there, but draw-%03d.cfg is not", folder,
+                             number, *count + 1);
     }
     if (*count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: there is no draw-001.cfg", folder);
+        return SF_REFUSE(err, "--posterior %s: there is no draw-001.cfg", folder);
     if (*count < SF_CFH_LEAST_DRAWS)
-        return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: %d draws, at least %d are needed for an interval",
-                       folder, *count, SF_CFH_LEAST_DRAWS);
+        return SF_REFUSE(err, "--posterior %s: %d draws, at least %d are needed for an interval", folder,
+                         *count, SF_CFH_LEAST_DRAWS);
     return SF_OK;
 }
 
 static sf_status check_draw(const sf_cfh_draw *draw, const sf_material *own, sf_error *err) {
     double density = sf_material_density(&draw->material), expected = sf_material_density(own);
     if (draw->material.law != own->law)
-        return SF_FAIL(err, SF_ERR_INPUT, "--posterior: the law of %s is %s, that of the case's material %s",
-                       draw->path, draw->material.law->name, own->law->name);
+        return SF_REFUSE(err, "--posterior: the law of %s is %s, that of the case's material %s", draw->path,
+                         draw->material.law->name, own->law->name);
     if (fabs(density / expected - 1) > SAME_DENSITY)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "--posterior: the density of %s is %g kg/m3, that of the case's material %g kg/m3",
-                       draw->path, density, expected);
+        return SF_REFUSE(err,
+                         "--posterior: the density of %s is %g kg/m3, that of the case's material %g kg/m3",
+                         draw->path, density, expected);
     return SF_OK;
 }
 
@@ -214,8 +212,8 @@ static sf_status check_overrides(int count, const char *const *overrides, sf_err
     for (int k = 0; k < count; k++) {
         const char *name = overrides[k] + strspn(overrides[k], " \t"), *end = name + strlen(group);
         if (strncmp(name, group, strlen(group)) == 0 && strchr(". \t=", *end) && *end)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "--set %s: with --posterior the draws are the material, and this would be the same in "
                 "every one of them",
                 overrides[k]);
@@ -228,8 +226,7 @@ static sf_status check_difference(const sf_cfh_draws *draws, sf_error *err) {
     for (int k = 1; k < draws->count; k++)
         if (sf_material_hash(SF_HASH_START, &draws->draw[k].material) != first)
             return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT, "--posterior %s: all %d draws are the same material", draws->folder,
-                   draws->count);
+    return SF_REFUSE(err, "--posterior %s: all %d draws are the same material", draws->folder, draws->count);
 }
 
 /* Both numbers of every draw, or none of any. */
@@ -238,13 +235,11 @@ static sf_status check_responses(sf_cfh_draws *draws, sf_error *err) {
         const bool *given = draws->draw[k].response.given;
         bool stated = given[SF_FIT_A_MAX] || given[SF_FIT_HIC];
         if (stated && !(given[SF_FIT_A_MAX] && given[SF_FIT_HIC]))
-            return SF_FAIL(err, SF_ERR_INPUT, "--posterior: response_error of %s has no %s",
-                           draws->draw[k].path,
-                           sf_drop_kind_get(given[SF_FIT_HIC] ? SF_FIT_A_MAX : SF_FIT_HIC)->error_key);
+            return SF_REFUSE(err, "--posterior: response_error of %s has no %s", draws->draw[k].path,
+                             sf_drop_kind_get(given[SF_FIT_HIC] ? SF_FIT_A_MAX : SF_FIT_HIC)->error_key);
         if (k > 0 && stated != draws->with_response)
-            return SF_FAIL(err, SF_ERR_INPUT, "--posterior: %s has %s response_error, but %s has %s",
-                           draws->draw[k].path, stated ? "a" : "no", draws->draw[0].path,
-                           stated ? "none" : "one");
+            return SF_REFUSE(err, "--posterior: %s has %s response_error, but %s has %s", draws->draw[k].path,
+                             stated ? "a" : "no", draws->draw[0].path, stated ? "none" : "one");
         draws->with_response = stated;
     }
     return SF_OK;

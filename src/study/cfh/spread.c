@@ -54,7 +54,7 @@ static sf_status drop_grid(const sf_cfh_spread *s, const sf_columns *pad, const 
 
 static sf_status drop_draws(sf_cfh_spread *s, const sf_columns *pad, const sf_cfh_draws *draws,
                             sf_error *err) {
-    sf_error *errors = sf_alloc(err, (unsigned long)s->draws, sizeof *errors, "draws");
+    SF_OWNED sf_error *errors = sf_alloc(err, (unsigned long)s->draws, sizeof *errors, "draws");
     if (!errors)
         return err->status;
 #pragma omp parallel for schedule(dynamic)
@@ -65,7 +65,6 @@ static sf_status drop_draws(sf_cfh_spread *s, const sf_columns *pad, const sf_cf
     for (int d = 0; d < s->draws && err->status == SF_OK; d++)
         if (errors[d].status != SF_OK)
             *err = errors[d];
-    free(errors);
     return err->status;
 }
 
@@ -200,7 +199,7 @@ static sf_cfh_interval interval_of(double *values, int count) {
 }
 
 static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
-    double *values = sf_alloc(err, (unsigned long)s->draws, sizeof *values, "draws");
+    SF_OWNED double *values = sf_alloc(err, (unsigned long)s->draws, sizeof *values, "draws");
     if (!values)
         return err->status;
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
@@ -210,7 +209,6 @@ static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
             sf_cfh_interval i = interval_of(values, s->draws);
             s->band[c][k] = (sf_cfh_band){i.low, i.median, i.high};
         }
-    free(values);
     return SF_OK;
 }
 
@@ -458,7 +456,7 @@ static void evaluate_part(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_cfh_part p
 
 sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_error *err) {
     int count = s->draws * SF_CFH_REPEATS;
-    double *values =
+    SF_OWNED double *values =
         sf_alloc(err, (unsigned long)count * (SF_CFH_FIRST + 2), sizeof *values, "repeats of the draws");
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937), *of_draw = gsl_rng_alloc(gsl_rng_mt19937);
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
@@ -475,7 +473,6 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
     }
     gsl_rng_free(random);
     gsl_rng_free(of_draw);
-    free(values);
     return err->status;
 }
 

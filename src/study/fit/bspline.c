@@ -178,12 +178,11 @@ static sf_status smooth(const sf_scatter_branch *b, sf_spline_grading grading, i
                         sf_error *err) {
     double breaks[SF_SPLINE_BREAKS], low, high;
     const sf_spline_data data = {b->x, b->count};
-    sf_spline spline;
+    SF_OWNED_BY(sf_spline_free) sf_spline spline = {0};
     gsl_stats_minmax(&low, &high, b->x, 1, (size_t)b->count);
     int count = sf_spline_place(grading, intervals, low, high, 1, &data, breaks);
     SF_TRY(sf_spline_init(&spline, count, breaks, err));
     solve(b, &spline, out, err);
-    sf_spline_free(&spline);
     return err->status;
 }
 

@@ -57,14 +57,13 @@ static void estimate(const sample *s, const int64_t *pick, double *out) {
 /* value [resamples][2 d] */
 static sf_status resample(const sample *s, uint64_t seed, int resamples, double *value, sf_error *err) {
     gsl_rng *rng = sf_sample_random(seed, err);
-    int64_t *pick = sf_alloc(err, (unsigned long)s->used, sizeof *pick, "bootstrap samples");
+    SF_OWNED int64_t *pick = sf_alloc(err, (unsigned long)s->used, sizeof *pick, "bootstrap samples");
     for (int r = 0; r < resamples && err->status == SF_OK; r++) {
         for (int64_t k = 0; k < s->used; k++)
             pick[k] = (int64_t)gsl_rng_uniform_int(rng, (unsigned long)s->used);
         estimate(s, pick, value + r * 2 * s->d);
     }
     gsl_rng_free(rng);
-    free(pick);
     return err->status;
 }
 
@@ -80,10 +79,10 @@ static void interval(const double *value, int resamples, int columns, int i, dou
 
 static sf_status evaluate(const sample *s, uint64_t seed, sf_index *index, sf_error *err) {
     int columns = 2 * s->d, resamples = s->used * s->d > LARGE ? FEWER_RESAMPLES : RESAMPLES;
-    double *value = sf_alloc(err, (unsigned long)resamples, (unsigned long)columns * sizeof *value,
-                             "the bootstrap"),
-           *all = sf_alloc(err, (unsigned long)columns, sizeof *all, "indices"),
-           *scratch = sf_alloc(err, (unsigned long)resamples, sizeof *scratch, "the bootstrap");
+    SF_OWNED double *value = sf_alloc(err, (unsigned long)resamples, (unsigned long)columns * sizeof *value,
+                                      "the bootstrap"),
+                    *all = sf_alloc(err, (unsigned long)columns, sizeof *all, "indices"),
+                    *scratch = sf_alloc(err, (unsigned long)resamples, sizeof *scratch, "the bootstrap");
     if (err->status == SF_OK && resample(s, seed, resamples, value, err) == SF_OK) {
         estimate(s, NULL, all);
         for (int i = 0; i < s->d && isfinite(all[i]); i++) {
@@ -93,9 +92,6 @@ static sf_status evaluate(const sample *s, uint64_t seed, sf_index *index, sf_er
             interval(value, resamples, columns, s->d + i, scratch, &index[i].total_low, &index[i].total_high);
         }
     }
-    free(value);
-    free(all);
-    free(scratch);
     return err->status;
 }
 
@@ -206,7 +202,8 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     s->of = count_values(a, figure);
     int64_t most = s->of < SF_SURFACE_ROWS ? s->of : SF_SURFACE_ROWS, left = s->of;
     gsl_rng *random = sf_sample_random(SURFACE_SEED, err);
-    double *x = sf_alloc(err, (unsigned long)most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
+    SF_OWNED double *x =
+        sf_alloc(err, (unsigned long)most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
     s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     s->left_out = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
     for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
@@ -221,7 +218,6 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     for (int i = 0; i < d && err->status == SF_OK; i++)
         if (sf_effect_is_by_surface(a->plan, numbers[i]))
             sf_effect_of_surface(&s->fit, i, s->rows, x, &a->effect[figure][numbers[i]]);
-    free(x);
     gsl_rng_free(random);
     return err->status;
 }
@@ -261,12 +257,11 @@ void sf_analysis_term(const sf_analysis *a, const sf_quadratic *s, int term, cha
 
 static sf_status make_indices(sf_analysis *a, int figure, sf_error *err) {
     const sf_block *b = sf_plan_saltelli(a->plan);
-    double *y = sf_alloc(err, (unsigned long)b->rows, sizeof *y, "indices");
+    SF_OWNED double *y = sf_alloc(err, (unsigned long)b->rows, sizeof *y, "indices");
     for (int64_t row = 0; row < b->rows && y; row++)
         y[row] = sf_runs_value(a->runs, row, figure);
     if (y)
         sf_indices(b->count, b->samples, y, b->seed, a->index[figure], &a->index_samples[figure], err);
-    free(y);
     return err->status;
 }
 

@@ -36,7 +36,7 @@ typedef struct keys {
 static sf_status read_keys(const sf_sweep_campaign *c, keys *k, sf_error *err) {
     path p = file_of(c, "sweep.key");
     unsigned long long table = 0, inputs = 0, runs = 0;
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     *k = (keys){0};
     if (access(p.text, F_OK) != 0)
         return SF_OK;
@@ -46,7 +46,6 @@ static sf_status read_keys(const sf_sweep_campaign *c, keys *k, sf_error *err) {
         *k = (keys){true, table, inputs, runs};
     else if (err->status == SF_OK)
         SF_FAIL(err, SF_ERR_INPUT, "%s is not a file of softfall-sweep: give another directory", p.text);
-    free(text);
     return err->status;
 }
 
@@ -253,7 +252,7 @@ static int64_t last_of_geometry(const geometry *list, int64_t count, int64_t fir
 static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                        sf_error *err) {
     int64_t n, last;
-    geometry *list = list_geometries(runs, &n, err);
+    SF_OWNED geometry *list = list_geometries(runs, &n, err);
     bool changed = false;
     for (int64_t k = 0; k < n; k = last + 1) {
         last = last_of_geometry(list, n, k);
@@ -262,7 +261,6 @@ static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine
         changed = changed || (!list[k].failed && engine->is_current &&
                               !engine->is_current(engine->context, runs, list[k].row));
     }
-    free(list);
     if (!changed)
         return err->status;
     open_ended(runs);
@@ -279,7 +277,7 @@ enum { LOOKED_AT = 200 }; /* geometries at the end */
  * may be of either. */
 static sf_status probe_again(const sf_sweep_engine *engine, sf_runs *runs, sf_error *err) {
     int64_t n, geometries = 0, at = 0, last;
-    geometry *list = engine->is_current ? list_geometries(runs, &n, err) : NULL;
+    SF_OWNED geometry *list = engine->is_current ? list_geometries(runs, &n, err) : NULL;
     if (!list)
         return err->status;
     for (int64_t k = 0; k < n; k = last_of_geometry(list, n, k) + 1)
@@ -297,7 +295,6 @@ static sf_status probe_again(const sf_sweep_engine *engine, sf_runs *runs, sf_er
                         "while the campaign ran; finished drops are kept: repeat the command",
                         (long long)list[pair[j]].row + 1);
     }
-    free(list);
     if (err->status != SF_OK)
         open_ended(runs);
     return err->status;
@@ -348,7 +345,7 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
 
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err) {
-    int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
+    SF_OWNED int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
     bool turned = false;
     if (row && take_over(c, runs, &turned, err) == SF_OK) {
         if (write_table(c, runs, turned, err) == SF_OK && probe(c, engine, runs, err) == SF_OK &&
@@ -358,6 +355,5 @@ sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engin
             c->chooser->finish(c->chooser->context, runs, err);
         save(c, runs, turned, err);
     }
-    free(row);
     return err->status;
 }

@@ -156,7 +156,7 @@ static double size_of(const char *folder, const char *name) {
 
 /* Measures the cost by the median of wall_s x threads; 0: no run is done. */
 static sf_status measure(const sf_runs *r, double *seconds, int64_t *done, sf_error *err) {
-    double *value = sf_alloc(err, (unsigned long)r->count, sizeof *value, "run times");
+    SF_OWNED double *value = sf_alloc(err, (unsigned long)r->count, sizeof *value, "run times");
     size_t wall = sf_runs_figure("wall_s"), threads = sf_runs_figure("threads"), n = 0;
     for (int64_t row = 0; row < r->count && value; row++) {
         const double *place = sf_runs_place(r, row);
@@ -167,7 +167,6 @@ static sf_status measure(const sf_runs *r, double *seconds, int64_t *done, sf_er
     if (n > 0)
         gsl_sort(value, 1, n);
     *seconds = n > 0 ? SETUP_SECONDS + value[n / 2] : 0;
-    free(value);
     return err->status;
 }
 
@@ -183,7 +182,7 @@ static void from_runs(const sf_runs *r, const char *folder, int64_t done, sf_swe
 }
 
 static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
-    sf_case first;
+    SF_OWNED_BY(sf_case_free) sf_case first = {0};
     sf_model model;
     sf_build_report report;
     char libraries[SF_LIBRARIES_SIZE];
@@ -203,7 +202,6 @@ static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
     } else {
         *err = refused;
     }
-    sf_case_free(&first);
     return err->status;
 }
 

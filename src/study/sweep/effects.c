@@ -166,7 +166,7 @@ sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const
     fit f = {gsl_matrix_alloc(rows, columns), gsl_matrix_alloc(columns, columns), gsl_vector_alloc(rows),
              gsl_vector_alloc(rows), gsl_vector_alloc(columns)};
     gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(rows, columns);
-    size_t *order = sf_alloc(err, rows, sizeof *order, "the response surface");
+    SF_OWNED size_t *order = sf_alloc(err, rows, sizeof *order, "the response surface");
     s->terms = terms;
     if (f.terms && f.covariance && f.y && f.weight && f.c && work && scratch && order)
         solve(s, &f, n, x, y, order, left_out, scratch, work);
@@ -178,7 +178,6 @@ sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const
     gsl_vector_free(f.weight);
     gsl_vector_free(f.c);
     gsl_multifit_linear_free(work);
-    free(order);
     gsl_vector_free(scratch);
     return err->status;
 }
@@ -195,7 +194,7 @@ double sf_quadratic_at(const sf_quadratic *s, const double *x) {
 
 /* Ranks of the numbers, equal numbers the same group as long as there are few. */
 static sf_status group_numbers(const sf_factor *f, int64_t rows, sf_groups *g, sf_error *err) {
-    size_t *order = sf_alloc(err, (unsigned long)rows, sizeof *order, "groups");
+    SF_OWNED size_t *order = sf_alloc(err, (unsigned long)rows, sizeof *order, "groups");
     if (!order)
         return err->status;
     gsl_sort_index(order, f->value, 1, (size_t)rows);
@@ -207,12 +206,11 @@ static sf_status group_numbers(const sf_factor *f, int64_t rows, sf_groups *g, s
         level += k > 0 && f->value[order[k]] > f->value[order[k - 1]];
         g->of_row[order[k]] = distinct <= SF_EFFECT_LEVELS ? level : k * SF_EFFECT_BINS / rows;
     }
-    free(order);
     return SF_OK;
 }
 
 static sf_status find_middles(const sf_factor *f, int64_t rows, sf_groups *g, sf_error *err) {
-    int64_t *number = sf_alloc(err, (unsigned long)g->count, sizeof *number, "groups");
+    SF_OWNED int64_t *number = sf_alloc(err, (unsigned long)g->count, sizeof *number, "groups");
     g->middle = sf_alloc(err, (unsigned long)g->count, sizeof *g->middle, "groups");
     for (int64_t k = 0; k < rows && err->status == SF_OK; k++) {
         g->middle[g->of_row[k]] += f->value[k];
@@ -220,7 +218,6 @@ static sf_status find_middles(const sf_factor *f, int64_t rows, sf_groups *g, sf
     }
     for (int64_t k = 0; k < g->count && err->status == SF_OK; k++)
         g->middle[k] /= (double)number[k];
-    free(number);
     return err->status;
 }
 
@@ -331,27 +328,25 @@ void sf_effect_of_surface(const sf_quadratic *s, int i, int64_t n, double *x, sf
 }
 
 sf_status sf_effect_measure(const sf_runs *r, int factor, int figure, sf_effect *e, sf_error *err) {
-    sf_groups g = {0};
+    SF_OWNED_BY(sf_groups_free) sf_groups g = {0};
     const sf_factor *f = &r->plan->factor[factor];
     const sf_block *b = &r->plan->block[r->plan->block_of[factor]];
     *e = (sf_effect){.low = NAN, .high = NAN, .first = NAN, .last = NAN};
     if (sf_effect_is_scatter(r->plan, factor) || sf_effect_is_by_surface(r->plan, factor))
         return SF_OK;
-    if (sf_groups_make(r->plan, factor, &g, err) == SF_OK) {
-        double *mean = sf_alloc(err, (unsigned long)g.count, sizeof *mean, "means");
-        int64_t *number = sf_alloc(err, (unsigned long)g.count, sizeof *number, "means");
-        bool *gap = find_gaps(r, b, figure, e, err);
-        if (mean && number && gap) {
-            find_means(r, b, gap, &g, figure, mean, number);
-            e->first = f->words ? NAN : mean[0];
-            e->last = f->words ? NAN : mean[g.count - 1];
-            find_range(mean, g.count, f->words && f->uncertain, e);
-        }
-        free(mean);
-        free(number);
-        free(gap);
+    SF_TRY(sf_groups_make(r->plan, factor, &g, err));
+    double *mean = sf_alloc(err, (unsigned long)g.count, sizeof *mean, "means");
+    int64_t *number = sf_alloc(err, (unsigned long)g.count, sizeof *number, "means");
+    bool *gap = find_gaps(r, b, figure, e, err);
+    if (mean && number && gap) {
+        find_means(r, b, gap, &g, figure, mean, number);
+        e->first = f->words ? NAN : mean[0];
+        e->last = f->words ? NAN : mean[g.count - 1];
+        find_range(mean, g.count, f->words && f->uncertain, e);
     }
-    sf_groups_free(&g);
+    free(mean);
+    free(number);
+    free(gap);
     return err->status;
 }
 

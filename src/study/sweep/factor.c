@@ -159,12 +159,11 @@ static char *print_word(const config_setting_t *s, bool plain) {
 }
 
 static sf_status take_word(reading *r, const config_setting_t *s, int64_t k, sf_error *err) {
-    char *label = print_word(s, true);
+    SF_OWNED char *label = print_word(s, true);
     const char *own = config_setting_get_string(s);
     if (!label)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", r->factor->key);
     set_word(r->factor, k, print_word(s, false), own ? own : label, err);
-    free(label);
     return err->status;
 }
 

@@ -64,7 +64,7 @@ done:
 
 /* One stratum of each coordinate for each point, shuffled; the place within it at random. */
 static sf_status latin(gsl_rng *rng, int d, int64_t count, double *u, sf_error *err) {
-    int64_t *stratum = sf_alloc(err, (unsigned long)count, sizeof *stratum, "strata");
+    SF_OWNED int64_t *stratum = sf_alloc(err, (unsigned long)count, sizeof *stratum, "strata");
     for (int i = 0; i < d && stratum; i++) {
         for (int64_t k = 0; k < count; k++)
             stratum[k] = k;
@@ -72,7 +72,6 @@ static sf_status latin(gsl_rng *rng, int d, int64_t count, double *u, sf_error *
         for (int64_t k = 0; k < count; k++)
             u[k * d + i] = ((double)stratum[k] + gsl_rng_uniform_pos(rng)) / (double)count;
     }
-    free(stratum);
     return err->status;
 }
 
@@ -82,7 +81,8 @@ static void independent(gsl_rng *rng, int d, int64_t count, double *u) {
 }
 
 static sf_status saltelli(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
-    double *both = sf_alloc(err, (unsigned long)count, 2 * (unsigned long)d * sizeof *both, "samples");
+    SF_OWNED double *both =
+        sf_alloc(err, (unsigned long)count, 2 * (unsigned long)d * sizeof *both, "samples");
     if (both && sobol(2 * d, count, seed, both, err) == SF_OK)
         for (int64_t k = 0; k < count; k++)
             for (int block = 0; block < d + 2; block++) {
@@ -91,7 +91,6 @@ static sf_status saltelli(int d, int64_t count, uint64_t seed, double *u, sf_err
                 if (block >= 2)
                     row[block - 2] = both[2 * k * d + d + block - 2];
             }
-    free(both);
     return err->status;
 }
 
@@ -233,12 +232,11 @@ static sf_status draw(const sf_config *config, const config_setting_t *group, sf
     int d = p->factor_count - b->first;
     sf_error inner = SF_ERROR_INIT;
     b->rows = sf_sample_rows(b->method, d, b->samples);
-    double *u = sf_alloc(err, (unsigned long)b->rows, (unsigned long)d * sizeof *u, "samples");
+    SF_OWNED double *u = sf_alloc(err, (unsigned long)b->rows, (unsigned long)d * sizeof *u, "samples");
     if (u && sf_sample(b->method, d, b->samples, b->seed, u, &inner) != SF_OK)
         sf_config_refuse(config, group, err, "%s", inner.text);
     else if (u)
         spread(u, p, b, err);
-    free(u);
     return err->status;
 }
 
@@ -405,11 +403,10 @@ static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_er
 }
 
 sf_status sf_plan_read(const char *path, bool huge, sf_plan *p, sf_error *err) {
-    sf_config config;
+    SF_OWNED_BY(sf_config_close) sf_config config = {0};
     *p = (sf_plan){.path = path};
     if (sf_config_open(path, &config, err) == SF_OK)
         read_plan(&config, huge, p, err);
-    sf_config_close(&config);
     return err->status;
 }
 
@@ -568,7 +565,7 @@ static sf_status refuse_double(const sf_factor *f, const uint64_t *key, int64_t 
 static sf_status check_words(const sf_plan *p, int factor, uint64_t *hash, sf_error *err) {
     const sf_factor *f = &p->factor[factor];
     const sf_block *b = &p->block[p->block_of[factor]];
-    uint64_t *key = sf_alloc(err, (unsigned long)f->count, sizeof *key, "keys");
+    SF_OWNED uint64_t *key = sf_alloc(err, (unsigned long)f->count, sizeof *key, "keys");
     for (int64_t k = 0; k < f->count && err->status == SF_OK; k++) {
         int64_t row = 0;
         while (row < b->rows && f->value[row] != (double)k)
@@ -576,7 +573,6 @@ static sf_status check_words(const sf_plan *p, int factor, uint64_t *hash, sf_er
         if (row < b->rows && check(p, row * b->stride, f, hash, &key[k], err) == SF_OK) /* or never drawn */
             refuse_double(f, key, k, err);
     }
-    free(key);
     return err->status;
 }
 

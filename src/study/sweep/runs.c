@@ -324,7 +324,7 @@ static char *own_heading(const sf_runs *r) {
 }
 
 sf_status sf_runs_read(sf_runs *r, const char *path, uint64_t hash, sf_error *err) {
-    char *text = NULL, *heading = own_heading(r);
+    SF_OWNED char *text = NULL, *heading = own_heading(r);
     size_t size = 0;
     if (!heading)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the runs");
@@ -336,7 +336,5 @@ sf_status sf_runs_read(sf_runs *r, const char *path, uint64_t hash, sf_error *er
             if (take_row(r, row, line, err) != SF_OK)
                 break;
     }
-    free(text);
-    free(heading);
     return err->status;
 }

@@ -162,11 +162,11 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
     const sf_plan *p = a->plan;
     const sf_sweep_limit *limit = &p->figure[figure];
     const sf_block *b = &p->block[p->block_of[factor]];
-    sf_groups groups = {0};
+    SF_OWNED_BY(sf_groups_free) sf_groups groups = {0};
     sf_panel *panel = sf_chart_panel(chart);
     SF_TRY(sf_groups_make(p, factor, &groups, err));
-    double *sum = sf_alloc(err, (unsigned long)groups.count, sizeof *sum, "a picture");
-    double *number = sf_alloc(err, (unsigned long)groups.count, sizeof *number, "a picture");
+    SF_OWNED double *sum = sf_alloc(err, (unsigned long)groups.count, sizeof *sum, "a picture");
+    SF_OWNED double *number = sf_alloc(err, (unsigned long)groups.count, sizeof *number, "a picture");
     label_factor(&panel->x, &p->factor[factor]);
     sf_axis_label(&panel->y, "%s", limit->figure);
     panel->key = key && s->factor >= 0 ? SF_KEY_ABOVE : SF_KEY_NONE;
@@ -191,9 +191,6 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
         for (int64_t group = 0; group < groups.count; group++)
             sf_series_point(means, groups.middle[group], sum[group] / number[group]);
     }
-    free(sum);
-    free(number);
-    sf_groups_free(&groups);
     return err->status;
 }
 
@@ -207,7 +204,7 @@ static sf_chart *draw_factors(const sf_analysis *a, const char *folder, sf_error
             list[columns++] = f;
     if (columns == 0 || figures == 0)
         return NULL;
-    bool *shown = sf_analysis_pick(a->usable, POINTS, err);
+    SF_OWNED bool *shown = sf_analysis_pick(a->usable, POINTS, err);
     sf_chart *chart = sf_chart_new("factors", columns > 1 ? 900 * columns : 1300, 620 * figures, err);
     sf_chart_columns(chart, columns);
     for (int c = 0; c < columns && err->status == SF_OK; c++)
@@ -217,7 +214,6 @@ static sf_chart *draw_factors(const sf_analysis *a, const char *folder, sf_error
                          err);
     for (int c = 0; c < columns; c++)
         sf_groups_free(&s[c].groups);
-    free(shown);
     return chart;
 }
 
@@ -226,8 +222,8 @@ static sf_chart *draw_factors(const sf_analysis *a, const char *folder, sf_error
 /* Adds the filtered curve of a run; false if its results cannot be read any more. */
 static bool add_curve(sf_series_data *line, const char *folder, const char *name) {
     char path[PATH_MAX];
-    sf_results r;
-    sf_figures f = {0};
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
+    SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     sf_error none = SF_ERROR_INIT;
     snprintf(path, sizeof path, "%s/%s/results.h5", folder, name);
     if (sf_results_open(path, &r, &none) != SF_OK)
@@ -235,8 +231,6 @@ static bool add_curve(sf_series_data *line, const char *folder, const char *name
     bool good = sf_figures_compute(&r, 1000, &f, &none) == SF_OK;
     if (good)
         sf_series_points(line, f.filtered.count, f.filtered.time, f.filtered.value, 1e3, 1, CURVE_POINTS);
-    sf_figures_free(&f);
-    sf_results_close(&r);
     return good;
 }
 
@@ -338,7 +332,7 @@ static void put_index_panel(sf_chart *chart, const sf_analysis *a, int figure, s
 /* The runs by the surface against the simulations, and the line on which both are equal. */
 static void put_surface_panel(sf_chart *chart, const sf_analysis *a, int figure, sf_error *err) {
     const sf_sweep_surface *s = &a->surface[figure];
-    bool *shown = sf_analysis_pick(s->rows, POINTS, err);
+    SF_OWNED bool *shown = sf_analysis_pick(s->rows, POINTS, err);
     sf_panel *panel = sf_chart_panel(chart);
     double low = INFINITY, high = -INFINITY;
     sf_axis_label(&panel->x, "%s, simulated", a->plan->figure[figure].figure);
@@ -351,7 +345,6 @@ static void put_surface_panel(sf_chart *chart, const sf_analysis *a, int figure,
         low = fmin(low, s->simulated[k]);
         high = fmax(high, s->simulated[k]);
     }
-    free(shown);
     sf_series_data *equal = sf_chart_series(chart, equal_line, NULL);
     sf_series_point(equal, low, low);
     sf_series_point(equal, high, high);

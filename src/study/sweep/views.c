@@ -21,7 +21,7 @@ static sf_status add(sf_sweep_views *v, int64_t row, const char *reason, sf_erro
     if (row < 0)
         return SF_OK;
     if (k == SF_SWEEP_VIEWS)
-        return SF_FAIL(err, SF_ERR_INPUT, "--views: more than %d runs", SF_SWEEP_VIEWS);
+        return SF_REFUSE(err, "--views: more than %d runs", SF_SWEEP_VIEWS);
     if (k == v->count)
         v->view[v->count++] = (sf_sweep_view){.row = row};
     size_t used = strlen(v->view[k].reason);
@@ -69,11 +69,10 @@ static sf_status take_word(const char *word, const sf_plan *p, const sf_runs *ru
             add(v, row, "all", err);
     } else if (strcmp(word, "worst") == 0 || strcmp(word, "limit") == 0) {
         if (add_found(p, runs, *word == 'l', v, err) == 0)
-            SF_FAIL(err, SF_ERR_INPUT, "--views limit: no figure of the plan has a limit");
+            SF_REFUSE(err, "--views limit: no figure of the plan has a limit");
     } else if (end == word || *end || id < 1 || id > p->rows) {
-        SF_FAIL(err, SF_ERR_INPUT,
-                "--views: \"%s\" is neither worst, limit, all nor the id of one of the %lld runs", word,
-                (long long)p->rows);
+        SF_REFUSE(err, "--views: \"%s\" is neither worst, limit, all nor the id of one of the %lld runs",
+                  word, (long long)p->rows);
     } else {
         add(v, id - 1, "asked for", err);
     }
@@ -122,7 +121,7 @@ sf_status sf_sweep_views_make(const sf_plan *plan, const char *directory, int th
                               sf_error *err) {
     char parent[PATH_MAX];
     if (snprintf(parent, sizeof parent, "%s/views", directory) >= (int)sizeof parent)
-        return SF_FAIL(err, SF_ERR_INPUT, "the name of the directory is too long: %.100s...", directory);
+        return SF_REFUSE(err, "the name of the directory is too long: %.100s...", directory);
     SF_TRY(sf_folder_own(parent, err));
     for (int k = 0; k < views->count && err->status == SF_OK; k++)
         make_view(plan, parent, threads, &views->view[k], err);

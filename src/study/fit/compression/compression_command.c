@@ -47,22 +47,18 @@ static void print_tests(FILE *out, const sf_compression_config *config) {
 
 static sf_status write_material(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
                                 const char *title, sf_error *err) {
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     size_t size;
     FILE *out = open_memstream(&text, &size);
     if (out) {
         fputs("Identified by softfall-fit compression", out);
         kind->describe(out, fit, true);
     }
-    if (!out || fclose(out) != 0) {
-        free(text);
+    if (!out || fclose(out) != 0)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the comments of the material file");
-    }
     const sf_material_text comments = {.title = title, .provenance = text};
     const sf_material material = kind->material(fit);
-    sf_material_write_checked(output->aside, "material", &material, &comments, err);
-    free(text);
-    return err->status;
+    return sf_material_write_checked(output->aside, "material", &material, &comments, err);
 }
 
 static sf_status write_all(const sf_compression_job *job, const sf_compression_kind *kind, sf_study *study,
@@ -85,15 +81,12 @@ static sf_status write_all(const sf_compression_job *job, const sf_compression_k
     return sf_staging_commit(output, err);
 }
 
-/* ---- the pipeline ---- */
-
 static sf_status fit_and_write(sf_study *study, const sf_compression_job *job,
                                const sf_compression_kind *kind, const sf_compression_config *config,
                                void *fit, sf_error *err) {
     char warning[512] = "";
     SF_TRY(kind->run(config, fit, err));
     SF_TRY(write_all(job, kind, study, fit, config->name, warning, sizeof warning, err));
-    kind->title(job->log, fit);
     kind->describe(job->log, fit, false);
     sf_study_close(study, kind->files, warning);
     kind->warn(fit, &study->sink);
@@ -102,7 +95,7 @@ static sf_status fit_and_write(sf_study *study, const sf_compression_job *job,
 
 static sf_status run(sf_study *study, void *own, sf_error *err) {
     sf_compression_job *job = own;
-    sf_compression_config config = {0};
+    SF_OWNED_BY(sf_compression_config_free) sf_compression_config config = {0};
     job->path = study->input;
     job->directory = study->directory;
     job->command = study->command;
@@ -121,7 +114,6 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
             kind->free(fit);
     }
     free(fit);
-    sf_compression_config_free(&config);
     return err->status;
 }
 

@@ -204,8 +204,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
         return SF_OK;
     SF_TRY(read_tests(file, root, "predict", true, c, err));
     SF_TRY(sf_cycle_record_read(file, root, &c->cycles, err));
-    return sf_form_request_read(file, root, c->density, c->damp, c->modulus_range, c->test_count, c->test,
-                                c->predicted_count, c->predicted, &c->form, err);
+    return sf_form_request_read(file, root, c, err);
 }
 
 /* ---- requirements on all tests together ---- */
@@ -226,8 +225,8 @@ static sf_status check_order_of_rates(const sf_compression_config *c, sf_error *
         }
         double softer = -expm1(sum / PLACES);
         if (fast->rate > slow->rate && softer > SOFTER)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "%s at %g 1/s is softer than %s at %g 1/s, by %.3g %% on the mean over its loading: are "
                 "the rates exchanged? The stress of a foam does not fall with the rate",
                 fast->path, fast->rate, slow->path, slow->rate, 100 * softer);
@@ -244,25 +243,23 @@ static sf_status check_together(const char *path, const sf_compression_config *c
     for (int k = 0; k < c->test_count; k++)
         shortest = fmin(shortest, c->test[k].largest_strain);
     if (c->densification_start > 0.97 * shortest)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: densification_start = %g leaves no data to fit the densification to: the tests "
-                       "reach a strain of %g",
-                       path, c->densification_start, shortest);
+        return SF_REFUSE(err,
+                         "%s: densification_start = %g leaves no data to fit the densification to: the tests "
+                         "reach a strain of %g",
+                         path, c->densification_start, shortest);
     for (int i = 0; i < c->test[0].loading; i++)
         below += c->test[0].strain[i] <= c->modulus_range;
     if (below < 4)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %d points below the strain %g (E_range) while loading; E needs at least 4",
-                       c->test[0].path, below, c->modulus_range);
+        return SF_REFUSE(err, "%s: %d points below the strain %g (E_range) while loading; E needs at least 4",
+                         c->test[0].path, below, c->modulus_range);
     if (c->test_count == 1 && c->rate_model != SF_RATE_AUTO && c->rate_model != SF_RATE_NONE)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: the rate model \"%s\" needs tests at two rates; there is one test", path,
-                       sf_rate_model_names[c->rate_model]);
+        return SF_REFUSE(err, "%s: the rate model \"%s\" needs tests at two rates; there is one test", path,
+                         sf_rate_model_names[c->rate_model]);
     return SF_OK;
 }
 
 sf_status sf_compression_config_read(const char *path, sf_compression_config *config, sf_error *err) {
-    sf_config file;
+    SF_OWNED_BY(sf_config_close) sf_config file = {0};
     *config = (sf_compression_config){.name = "foam",
                                       .modulus_range = 0.02,
                                       .confidence = 0.95,
@@ -270,7 +267,6 @@ sf_status sf_compression_config_read(const char *path, sf_compression_config *co
                                       .rule = SF_RULE_AUTO};
     if (sf_config_open(path, &file, err) == SF_OK && read_root(&file, config, err) == SF_OK)
         check_together(path, config, err);
-    sf_config_close(&file);
     if (err->status != SF_OK)
         sf_compression_config_free(config);
     return err->status;

@@ -37,15 +37,6 @@ extern const char *const sf_form_rate_names[];
  * "table". */
 sf_status sf_form_request_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err);
 
-/* Reads the keys of a form. E begins as the slope of the slowest test's first points, up to the strain
- * `range`. `predicted` are compared only. SF_ERR_INPUT also where the data cannot decide: a start value of a
- * rate that the model does not have, a reference rate at or above the fastest test, two solid fractions, a
- * test at the curve's pole or beyond, nothing unknown. */
-sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, double density, double damp,
-                               double range, int test_count, const sf_compression_test *test,
-                               int predicted_count, const sf_compression_test *predicted,
-                               sf_form_request *request, sf_error *err);
-
 /* Keys of a file with law = "hyperfoam". */
 #define SF_HYPERFOAM_REQUEST_KEYS "law|name|density|tests|DAMP|terms|nu"
 
@@ -124,6 +115,13 @@ typedef struct sf_compression_config {
     int predicted_count;            /* tests that a form is to predict, not fitted */
     sf_compression_test predicted[SF_COMPRESSION_TESTS]; /* owned */
 } sf_compression_config;
+
+/* Reads the keys of a form into c->form; the tests and the numbers of all laws are there. E begins as the
+ * slope of the slowest test's first points, up to modulus_range. SF_ERR_INPUT also where the data cannot
+ * decide: a start value of a rate that the model does not have, a reference rate at or above the fastest
+ * test, two solid fractions, a test at the curve's pole or beyond, nothing unknown. */
+sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, sf_compression_config *c,
+                               sf_error *err);
 
 /* Names of sf_rate_model. */
 extern const char *const sf_rate_model_names[];

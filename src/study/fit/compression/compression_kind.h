@@ -27,8 +27,7 @@ typedef struct sf_compression_kind {
     void (*free)(void *fit); /* NULL: the fit owns nothing */
     /* The fitted material; its arrays stay those of the fit. */
     sf_material (*material)(const void *fit);
-    /* The first line of the summary, and the lines that follow it and stand in material.cfg (`comments`). */
-    void (*title)(FILE *out, const void *fit);
+    /* The summary or, with `comments`, what stands of it in material.cfg. */
     void (*describe)(FILE *out, const void *fit, bool comments);
     /* The contents of fit.csv, and the members of fit.json. */
     void (*points)(FILE *file, const void *fit);

@@ -93,8 +93,8 @@ static sf_status take_cycle(const char *chosen, sf_compression_test *t, sf_error
         cycles++;
     long number = chosen ? strtol(chosen, NULL, 10) : 1;
     if (number < 1 || number > cycles)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: cycle %s was asked for; the strain has %d", t->path,
-                       chosen ? chosen : "1", cycles);
+        return SF_REFUSE(err, "%s: cycle %s was asked for; the strain has %d", t->path, chosen ? chosen : "1",
+                         cycles);
     if (cycles == 1)
         return SF_OK;
     int first = begin_of_cycle(t, (int)number), end = t->count;
@@ -221,14 +221,14 @@ static sf_status correct_toe(sf_compression_test *t, sf_error *err) {
     double zero = 0;
     bool at_end = false;
     if (!steepest(t, &first, &last, &zero, &at_end) || at_end)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s: the toe cannot be corrected: loading has no steepest straight part below a strain of "
             "%g %% (leave toe_correction out)",
             t->path, 100 * TOE_RANGE);
     if (zero > TOE_LARGEST)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s: the toe correction would be a strain of %.3g %%, more than %g %%: cut the approach off "
             "the file",
             t->path, 100 * zero, 100 * TOE_LARGEST);
@@ -271,9 +271,8 @@ static sf_table_layout machine_layout(void) {
 static sf_status take_parts(const sf_compression_source *source, const sf_table *table,
                             sf_compression_test *t, sf_error *err) {
     if (source->specimen && !table->part_taken[SF_TABLE_SPECIMEN])
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s holds one specimen, not several to choose from: leave specimen_number out",
-                       t->path);
+        return SF_REFUSE(err, "%s holds one specimen, not several to choose from: leave specimen_number out",
+                         t->path);
     t->cycle = source->cycle && table->part_taken[SF_TABLE_CYCLE];
     return SF_OK;
 }
@@ -285,8 +284,8 @@ static sf_status take_terms(const sf_compression_source *source, bool machine, c
     if (!machine)
         return SF_OK;
     if (!(source->area > 0) || !(source->thickness > 0))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s holds displacement and force: give the specimen, for example specimen = { side = \"50 "
             "mm\"; thickness = \"50 mm\"; } (or diameter, or area)",
             source->path);
@@ -300,17 +299,17 @@ static sf_status check_row(const sf_compression_test *t, int i, const table_term
     double strain = t->strain[i], written = strain / terms->scale[0];
     const char *name = terms->name[0];
     if (strain >= 1 && terms->scale[0] == 1)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s:%d: strain %g is not below 1; if it is in percent, name the column strain_percent",
-                       t->path, t->line[i], written);
+        return SF_REFUSE(
+            err, "%s:%d: strain %g is not below 1; if it is in percent, name the column strain_percent",
+            t->path, t->line[i], written);
     if (strain >= 1)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s:%d: %s %g means a strain of %g %%, which is not below 100 %% (contact_force = "
-                       "\"2 N\" sets the zero of a crosshead's position)",
-                       t->path, t->line[i], name, written, 100 * strain);
+        return SF_REFUSE(err,
+                         "%s:%d: %s %g means a strain of %g %%, which is not below 100 %% (contact_force = "
+                         "\"2 N\" sets the zero of a crosshead's position)",
+                         t->path, t->line[i], name, written, 100 * strain);
     if (strain < -STRAIN_ZERO)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s:%d: %s %g is negative; compression must be positive (invert = \"...\" in the file that "
             "names the test changes the sign)",
             t->path, t->line[i], name, written);
@@ -328,10 +327,10 @@ static sf_status begin_at_contact(const sf_compression_source *source, sf_compre
     for (first = top; first > 0 && t->stress[first - 1] >= contact;)
         first--;
     if (!(source->area > 0) || first == 0 || t->stress[top] < contact)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: the force does not rise to %g N (contact_force) from below in this file: the "
-                       "displacement has no zero there",
-                       t->path, source->contact_force);
+        return SF_REFUSE(err,
+                         "%s: the force does not rise to %g N (contact_force) from below in this file: the "
+                         "displacement has no zero there",
+                         t->path, source->contact_force);
     double part = (contact - t->stress[first - 1]) / (t->stress[first] - t->stress[first - 1]);
     double zero = t->strain[first - 1] + part * (t->strain[first] - t->strain[first - 1]);
     int kept = 0;
@@ -371,11 +370,11 @@ static sf_status take_table(const sf_compression_source *source, const table_ter
 /* The strain turns twice: at point `again`, after it began to fall at `first`. */
 static sf_status refuse_turn(const sf_compression_test *t, const table_terms *terms, int again, int first,
                              sf_error *err) {
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
-                   "then one unloading",
-                   t->path, t->line[again], terms->name[0], t->strain[again] / terms->scale[0],
-                   t->line[first]);
+    return SF_REFUSE(
+        err,
+        "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
+        "then one unloading",
+        t->path, t->line[again], terms->name[0], t->strain[again] / terms->scale[0], t->line[first]);
 }
 
 /* Refuses a fall of more than JITTER below what was reached before the largest strain, and
@@ -432,18 +431,18 @@ static sf_status split_branches(sf_compression_test *t, const table_terms *terms
 static sf_status check_size(const sf_compression_test *t, sf_error *err) {
     int unloading = t->count - t->loading;
     if (t->loading < SF_COMPRESSION_LOADING_POINTS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %d points of loading; a test needs at least %d", t->path,
-                       t->loading, SF_COMPRESSION_LOADING_POINTS);
+        return SF_REFUSE(err, "%s: %d points of loading; a test needs at least %d", t->path, t->loading,
+                         SF_COMPRESSION_LOADING_POINTS);
     if (unloading > 0 && unloading < SF_COMPRESSION_UNLOADING_POINTS)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s:%d: strain falls from this line on, but unloading has %d points; it needs at "
-                       "least %d, or none",
-                       t->path, t->line[t->loading], unloading, SF_COMPRESSION_UNLOADING_POINTS);
+        return SF_REFUSE(err,
+                         "%s:%d: strain falls from this line on, but unloading has %d points; it needs at "
+                         "least %d, or none",
+                         t->path, t->line[t->loading], unloading, SF_COMPRESSION_UNLOADING_POINTS);
     if (t->largest_strain < SMALL_STRAIN)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: the largest strain is %g %%; a test must reach %g %% (is the column in percent "
-                       "and named strain, or the other way round?)",
-                       t->path, 100 * t->largest_strain, 100 * SMALL_STRAIN);
+        return SF_REFUSE(err,
+                         "%s: the largest strain is %g %%; a test must reach %g %% (is the column in percent "
+                         "and named strain, or the other way round?)",
+                         t->path, 100 * t->largest_strain, 100 * SMALL_STRAIN);
     return SF_OK;
 }
 
@@ -452,15 +451,15 @@ static sf_status check_sign(sf_compression_test *t, const table_terms *terms, sf
     for (int i = 0; i < t->count; i++)
         size = fmax(size, fabs(t->stress[i]));
     if (!(size > 0))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: the stress is zero everywhere", t->path);
+        return SF_REFUSE(err, "%s: the stress is zero everywhere", t->path);
     for (int i = t->count - 1; i >= t->loading && t->stress[i] < 0 && t->stress[i] > -TENSION * size; i--) {
         t->tension += t->stress[i] < -STRESS_ZERO * size;
         t->stress[i] = fmax(t->stress[i], -STRESS_ZERO * size);
     }
     for (int i = 0; i < t->count; i++)
         if (t->stress[i] < -STRESS_ZERO * size)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "%s:%d: %s %g is negative, beyond the scatter about zero; compression must be positive (invert = \"...\" in the file that names the test changes the sign)",
                 t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1]);
     return SF_OK;
@@ -471,11 +470,11 @@ static sf_status check_loading(const sf_compression_test *t, const table_terms *
     int where = 0;
     for (int i = 0; i < t->loading; i++) {
         if (t->stress[i] < (1 - FALL) * highest - SLACK * t->largest_stress)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "%s:%d: %s %g has fallen by more than a tenth from %g at line %d while "
-                           "loading; the foam law rises",
-                           t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1],
-                           highest / terms->scale[1], t->line[where]);
+            return SF_REFUSE(err,
+                             "%s:%d: %s %g has fallen by more than a tenth from %g at line %d while "
+                             "loading; the foam law rises",
+                             t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1],
+                             highest / terms->scale[1], t->line[where]);
         if (t->stress[i] > highest) {
             highest = t->stress[i];
             where = i;
@@ -501,8 +500,8 @@ static sf_status check_unloading(const sf_compression_test *t, const table_terms
     for (int i = t->loading; i < t->count; i++) {
         double loading = sf_compression_loading_stress(t, t->strain[i]);
         if (t->stress[i] > (1 + ABOVE) * loading + SLACK * t->largest_stress)
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "%s:%d: %s %g of unloading lies above the loading stress (%g in its unit) at the same strain %g",
                 t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1],
                 loading / terms->scale[1], t->strain[i]);
@@ -558,8 +557,6 @@ static void condense(sf_compression_test *t) {
     t->loading = loading;
 }
 
-/* ---- the whole ---- */
-
 static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
                      sf_compression_test *t) {
     static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};
@@ -599,7 +596,7 @@ sf_status sf_compression_test_read(const sf_compression_source *source, sf_compr
                                    sf_error *err) {
     *test = (sf_compression_test){.path = strdup(source->path), .rate = source->rate};
     sf_table_layout layouts[2] = {sf_case_curve_layout("test", NULL), machine_layout()};
-    sf_table table = {0};
+    SF_OWNED_BY(sf_table_free) sf_table table = {0};
     table_terms terms;
     int which;
     if (!test->path)
@@ -620,7 +617,6 @@ sf_status sf_compression_test_read(const sf_compression_source *source, sf_compr
         describe(source, which == 1, &table, test);
         condense(test);
     }
-    sf_table_free(&table);
     if (err->status != SF_OK)
         sf_compression_test_free(test);
     return err->status;

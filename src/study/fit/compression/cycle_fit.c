@@ -40,11 +40,11 @@ double sf_cycle_record_pause(const sf_cycle_record *r, int i) {
 
 static sf_status take_tables(const char *path, sf_cycle_record *r, sf_error *err) {
     const sf_table_layout layouts[2] = {sf_case_curve_layout("record of cycles", NULL), time_layout()};
-    sf_table stress = {0}, time = {0};
+    SF_OWNED_BY(sf_table_free) sf_table stress = {0}, time = {0};
     if (sf_table_read(path, &layouts[0], &stress, err) == SF_OK &&
         sf_table_read(path, &layouts[1], &time, err) == SF_OK && stress.count != time.count)
-        SF_FAIL(err, SF_ERR_INPUT, "%s: %lld rows with stress, %lld with time", path, (long long)stress.count,
-                (long long)time.count);
+        SF_REFUSE(err, "%s: %lld rows with stress, %lld with time", path, (long long)stress.count,
+                  (long long)time.count);
     if (err->status == SF_OK) {
         r->count = (int)stress.count;
         r->strain = stress.value[0];
@@ -54,14 +54,11 @@ static sf_status take_tables(const char *path, sf_cycle_record *r, sf_error *err
     }
     for (int i = 0; i < r->count && err->status == SF_OK; i++) {
         if (!(r->strain[i] < LIMIT) || (i > 0 && !(r->time[i] > r->time[i - 1])))
-            SF_FAIL(err, SF_ERR_INPUT,
-                    "%s:%d: time %g s after %g s, strain %g: time must rise, strain stay below %g", path,
-                    stress.line[i], r->time[i], i > 0 ? r->time[i - 1] : 0, r->strain[i], LIMIT);
+            SF_REFUSE(err, "%s:%d: time %g s after %g s, strain %g: time must rise, strain stay below %g",
+                      path, stress.line[i], r->time[i], i > 0 ? r->time[i - 1] : 0, r->strain[i], LIMIT);
         r->strain[i] = fmax(0, r->strain[i]);
         r->largest_stress = fmax(r->largest_stress, r->stress[i]);
     }
-    sf_table_free(&stress);
-    sf_table_free(&time);
     return err->status;
 }
 
@@ -75,7 +72,7 @@ static sf_status find_turns(sf_cycle_record *r, sf_error *err) {
             at = i;
         } else if (-gain > TURN) {
             if (turns == 2 * SF_CYCLES)
-                return SF_FAIL(err, SF_ERR_INPUT, "%s: more than %d cycles", r->path, SF_CYCLES);
+                return SF_REFUSE(err, "%s: more than %d cycles", r->path, SF_CYCLES);
             r->turn[turns++] = at;
             up = !up;
             at = i;
@@ -85,13 +82,12 @@ static sf_status find_turns(sf_cycle_record *r, sf_error *err) {
     if (!up)
         r->turn[turns] = at;
     if (r->cycles < 2)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s: %d cycle of compression: memory is in the cycles after the first", r->path,
-                       r->cycles);
+        return SF_REFUSE(err, "%s: %d cycle of compression: memory is in the cycles after the first", r->path,
+                         r->cycles);
     for (int c = 0; c < r->cycles; c++)
         if (r->strain[r->turn[2 * c + 2]] > RETURN * r->strain[r->turn[2 * c + 1]])
-            return SF_FAIL(
-                err, SF_ERR_INPUT,
+            return SF_REFUSE(
+                err,
                 "%s: cycle %d returns from a strain of %g to %g only; it must unload below a quarter of it",
                 r->path, c + 1, r->strain[r->turn[2 * c + 1]], r->strain[r->turn[2 * c + 2]]);
     return SF_OK;
@@ -181,7 +177,7 @@ static sf_status follow(const sf_cycle_record *r, const sf_foam_card *card, int 
                         sf_error *err) {
     const sf_material material = sf_foam_material(card);
     double rows[SF_LAW_HISTORY][SF_LANES] = {{0}};
-    sf_material_law law;
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     sf_uniaxial point = {0};
     SF_TRY(sf_material_law_build(&material, &law, err));
     for (int i = 0; i < end; i++) {
@@ -197,14 +193,13 @@ static sf_status follow(const sf_cycle_record *r, const sf_foam_card *card, int 
         double step = i > 0 ? r->time[i] - r->time[i - 1] : 1;
         stress[i] = law.law->uniaxial(law.numbers, step, r->strain[i], &point);
     }
-    sf_material_law_free(&law);
     return SF_OK;
 }
 
 static int deviate(const gsl_vector *x, void *data, gsl_vector *out) {
     const problem *p = data;
     double value[SF_PARAMETER_COUNT], own[HYSTERESIS + MEMORY];
-    sf_foam_card card = {0};
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     sf_error err = SF_ERROR_INIT;
     int end = (int)out->size;
     take(p, x, value, own);
@@ -215,7 +210,6 @@ static int deviate(const gsl_vector *x, void *data, gsl_vector *out) {
         double d = made ? (p->stress[i] - p->record->stress[i]) / p->record->largest_stress : FAR;
         gsl_vector_set(out, (size_t)i, isfinite(d) ? fmin(FAR, fmax(-FAR, d)) : FAR);
     }
-    sf_foam_card_free(&card);
     return GSL_SUCCESS;
 }
 
@@ -286,7 +280,7 @@ sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err) {
     if (r->count == 0)
         return SF_OK;
     if (!fit->has_unloading)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: a test without unloading has no memory", r->path);
+        return SF_REFUSE(err, "%s: a test without unloading has no memory", r->path);
     p.stress = sf_alloc(err, (unsigned long)r->count, sizeof *p.stress, "cycles");
     SF_TRY(err->status);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();

@@ -188,8 +188,6 @@ static sf_status fit_loading(problem *p, sf_form_fit *fit, sf_error *err) {
     return SF_OK;
 }
 
-/* ---- unloading ---- */
-
 static double factor_rms(const sf_unloading_points *u, const double value[3]) {
     double sum = 0;
     int count = 0;
@@ -331,8 +329,6 @@ sf_status sf_form_fit_follow(sf_form_fit *fit, sf_error *err) {
     SF_TRY(sf_curve_build(&fit->card, 0, &curve, err));
     return follow_all(fit, &curve, err);
 }
-
-/* ---- all ---- */
 
 /* The material, without its unloading. */
 static sf_status make_card(sf_form_fit *fit, sf_error *err) {

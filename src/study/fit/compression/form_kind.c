@@ -84,16 +84,13 @@ static void put_cycles(FILE *out, const sf_form_fit *fit) {
     fputs("\n  Not in the law: permanent set, and the fall of the stress at the largest strain.\n", out);
 }
 
-static void title(FILE *out, const void *place) {
-    const sf_form_fit *fit = place;
-    fprintf(out, "%s: curve_form = \"%s\"\n", fit->config->name, fit->config->form.form.curve->name);
-}
-
 static void describe(FILE *out, const void *place, bool comments) {
     const sf_form_fit *fit = place;
     const sf_compression_config *c = fit->config;
     if (comments)
         fputc('\n', out);
+    else
+        fprintf(out, "%s: curve_form = \"%s\"\n", c->name, c->form.form.curve->name);
     if (comments && sf_form_fit_is_poor(fit))
         fprintf(out, "WARNING: %s\n", POOR_WARNING);
     fprintf(out, "Curve: %s.\nRate: %s.\n", c->form.form.curve->formula, sf_form_rate_names[c->form.rate]);
@@ -273,7 +270,6 @@ const sf_compression_kind sf_compression_form_kind = {.label = "",
                                                       .run = run,
                                                       .free = release,
                                                       .material = material_of,
-                                                      .title = title,
                                                       .describe = describe,
                                                       .points = put_points,
                                                       .json = put_json,

@@ -5,7 +5,7 @@
  * strain. */
 #include "study/fit/compression/compression_kind.h"
 
-#include "material/hyperfoam.h"
+#include "base/text.h"
 #include "material/unloading.h"
 #include "report/row.h"
 #include "study/fit/least_squares.h"
@@ -284,18 +284,11 @@ static void describe_misfit(const fitted *fit, char text[MISFIT_SIZE]) {
     } parts[] = {{"stress while loading", fit->stress_rms},
                  {"lateral strain", fit->lateral_rms},
                  {"stress of unloading", fit->unloading.rms}};
-    int used =
-        snprintf(text, MISFIT_SIZE, "the fit does not describe this test, rms over the largest value:");
+    snprintf(text, MISFIT_SIZE, "the fit does not describe this test, rms over the largest value:");
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         if (isfinite(parts[k].rms))
-            used += snprintf(text + used, MISFIT_SIZE - (size_t)used, "%s %s %.2g %%", k > 0 ? "," : "",
-                             parts[k].name, 100 * parts[k].rms);
-}
-
-static void title(FILE *out, const void *place) {
-    const fitted *f = place;
-    int terms = f->config->hyperfoam.terms;
-    fprintf(out, "%s: hyperfoam of %d term%s\n", f->config->name, terms, terms > 1 ? "s" : "");
+            sf_text_add(text, MISFIT_SIZE, "%s %s %.2g %%", k > 0 ? "," : "", parts[k].name,
+                        100 * parts[k].rms);
 }
 
 static void describe(FILE *out, const void *place, bool comments) {
@@ -303,13 +296,16 @@ static void describe(FILE *out, const void *place, bool comments) {
     const sf_compression_test *t = fit->test;
     const bool *at_bound = fit->unloading.at_bound;
     char misfit[MISFIT_SIZE];
+    int terms = fit->request->terms;
+    if (!comments)
+        fprintf(out, "%s: hyperfoam of %d term%s\n", fit->config->name, terms, terms > 1 ? "s" : "");
     if (comments)
         fprintf(out, " from\n  %s at %.6g 1/s, to a strain of %.4g\n", t->path, t->rate, t->largest_strain);
     if (comments && !fit->is_good) {
         describe_misfit(fit, misfit);
         fprintf(out, "WARNING: %s\n", misfit);
     }
-    for (int k = 0; k < fit->request->terms; k++)
+    for (int k = 0; k < terms; k++)
         put_term(out, fit, k);
     fprintf(out, "  -ln(lateral stretch)/ln(axial stretch): %.3g at 1 %% strain, %.3g at %.3g %%\n",
             fit->poisson[0], fit->poisson[1], 100 * t->largest_strain);
@@ -401,7 +397,6 @@ const sf_compression_kind sf_compression_hyperfoam = {.label = "hyperfoam",
                                                       .run = run,
 
                                                       .material = material_of,
-                                                      .title = title,
                                                       .describe = describe,
                                                       .points = put_points,
                                                       .json = put_json,

@@ -116,32 +116,6 @@ static sf_status read_unknowns(const sf_config *file, sf_config_item *root, sf_f
     return SF_OK;
 }
 
-/* The solid fraction is known in one way, where the form has one. */
-static sf_status check_solid_fraction(const sf_config *file, sf_config_item *root, const sf_form_request *r,
-                                      sf_error *err) {
-    sf_config_item *start = config_setting_get_member(root, "start"),
-                   *density = config_setting_get_member(root, "solid_density"),
-                   *given = start ? config_setting_get_member(start, "solid_fraction") : NULL;
-    bool known = density || given;
-    for (int k = 0; k < r->unknown_count; k++)
-        known = known || r->unknown[k] == SF_PARAMETER_SOLID_FRACTION;
-    if (density && !sf_curve_form_entry(r->form.curve, SF_PARAMETER_SOLID_FRACTION))
-        return sf_config_refuse(file, density, err,
-                                "solid_density is given, but curve_form = \"%s\" has no solid fraction; "
-                                "leave it out, or take gas_solid",
-                                r->form.curve->name);
-    if (density && given)
-        return sf_config_refuse(file, given, err,
-                                "the solid fraction is given twice: by solid_density, which makes it %.3g, "
-                                "and as solid_fraction in start",
-                                r->form.base.density / r->form.solid_density);
-    if (r->form.curve == &sf_form_gas_solid && !known)
-        return sf_config_refuse(file, config_setting_get_member(root, "curve_form"), err,
-                                "curve_form = \"gas_solid\" needs solid_density, the density of the solid in "
-                                "the cell walls, or solid_fraction among the unknown parameters");
-    return SF_OK;
-}
-
 /* At its pole the curve is infinite: no test can get there. */
 static sf_status check_pole(const sf_config *file, sf_config_item *root, int test_count,
                             const sf_compression_test *test, const sf_form_request *r, sf_error *err) {
@@ -158,12 +132,13 @@ static sf_status check_pole(const sf_config *file, sf_config_item *root, int tes
 }
 
 /* The rate up to which the curve holds as it is: below the fastest test, or the factor would be 1 in all. */
-static sf_status read_reference(const sf_config *file, sf_config_item *root, int test_count,
-                                const sf_compression_test *test, sf_form_request *r, sf_error *err) {
+static sf_status read_reference(const sf_config *file, sf_config_item *root, sf_compression_config *c,
+                                sf_error *err) {
+    sf_form_request *r = &c->form;
     const sf_parameter_info *about = sf_parameter_get(SF_PARAMETER_RATE_REFERENCE);
     sf_config_item *given = config_setting_get_member(root, about->name);
-    double *reference = &r->start[SF_PARAMETER_RATE_REFERENCE], fastest = test[test_count - 1].rate;
-    *reference = test[0].rate;
+    double *reference = &r->start[SF_PARAMETER_RATE_REFERENCE], fastest = c->test[c->test_count - 1].rate;
+    *reference = c->test[0].rate;
     if (!given)
         return SF_OK;
     SF_TRY(check_rate_value(file, given, SF_PARAMETER_RATE_REFERENCE, r, err));
@@ -176,21 +151,22 @@ static sf_status read_reference(const sf_config *file, sf_config_item *root, int
     return SF_OK;
 }
 
-static sf_status read_rate(const sf_config *file, sf_config_item *root, int test_count,
-                           const sf_compression_test *test, sf_form_request *r, sf_error *err) {
+static sf_status read_rate(const sf_config *file, sf_config_item *root, sf_compression_config *c,
+                           sf_error *err) {
+    sf_form_request *r = &c->form;
     int rate = SF_FORM_RATE_NONE;
-    double largest = test[test_count - 1].largest_stress;
+    const sf_compression_test *slowest = &c->test[0], *fastest = &c->test[c->test_count - 1];
     SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &rate, err));
     r->rate = (sf_form_rate)rate;
     bool factor = r->rate & SF_FORM_RATE_FACTOR, maxwell = r->rate & SF_FORM_RATE_MAXWELL;
-    if (r->rate != SF_FORM_RATE_NONE && test_count < 2)
+    if (r->rate != SF_FORM_RATE_NONE && c->test_count < 2)
         return sf_config_refuse(file, config_setting_get_member(root, "rate_model"), err,
                                 "the rate model \"%s\" needs tests at two rates; there is one test",
                                 sf_form_rate_names[rate]);
-    SF_TRY(read_reference(file, root, test_count, test, r, err));
+    SF_TRY(read_reference(file, root, c, err));
     r->start[SF_PARAMETER_RATE_FACTOR] = 0;
-    r->start[SF_PARAMETER_ED] = maxwell ? 0.1 * largest : 0;
-    r->start[SF_PARAMETER_BETA1] = maxwell ? sqrt(test[0].rate * test[test_count - 1].rate) : 5000;
+    r->start[SF_PARAMETER_ED] = maxwell ? 0.1 * fastest->largest_stress : 0;
+    r->start[SF_PARAMETER_BETA1] = maxwell ? sqrt(slowest->rate * fastest->rate) : 5000;
     if (factor) {
         sf_foam_form_start_rate(r->start);
         r->form.base.rate_filter_time = FACTOR_FILTER_TIME;
@@ -208,19 +184,18 @@ static sf_status read_rate(const sf_config *file, sf_config_item *root, int test
     return SF_OK;
 }
 
-sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, double density, double damp,
-                               double range, int test_count, const sf_compression_test *test,
-                               int predicted_count, const sf_compression_test *predicted, sf_form_request *r,
+sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, sf_compression_config *c,
                                sf_error *err) {
+    sf_form_request *r = &c->form;
     const char *name = NULL;
     SF_TRY(sf_config_text(file, root, "curve_form", true, &name, err));
     *r = (sf_form_request){.form = {.curve = sf_curve_form_find(name),
-                                    .base = {.density = density,
-                                             .modulus = first_slope(&test[0], range),
+                                    .base = {.density = c->density,
+                                             .modulus = first_slope(&c->test[0], c->modulus_range),
                                              .hysteresis_hu = 1,
                                              .hysteresis_shape = 1,
                                              .hysteresis_alpha = 1,
-                                             .damp = damp,
+                                             .damp = c->damp,
                                              .maxwell_rate = 5000,
                                              .tension_cutoff = 1e30,
                                              .densification_limit = 1,
@@ -228,11 +203,12 @@ sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, doub
     SF_TRY(sf_foam_form_read_solid(file, root, &r->form, err));
     sf_foam_form_start(&r->form, r->start);
     SF_TRY(read_unknowns(file, root, r, err));
-    SF_TRY(read_rate(file, root, test_count, test, r, err));
+    SF_TRY(read_rate(file, root, c, err));
     SF_TRY(read_start(file, root, r, err));
-    SF_TRY(check_solid_fraction(file, root, r, err));
-    SF_TRY(check_pole(file, root, test_count, test, r, err));
-    return check_pole(file, root, predicted_count, predicted, r, err);
+    SF_TRY(sf_foam_form_check_fraction(file, root, root, "curve_form", &r->form, r->unknown_count, r->unknown,
+                                       err));
+    SF_TRY(check_pole(file, root, c->test_count, c->test, r, err));
+    return check_pole(file, root, c->predicted_count, c->predicted, r, err);
 }
 
 /* ---- the hyperfoam: terms, nu and lateral strain ---- */
@@ -278,7 +254,7 @@ static sf_table_layout lateral_layout(void) {
 /* Rows up to the largest strain: loading. Ascending afterwards. */
 static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_error *err) {
     const sf_table_layout layout = lateral_layout();
-    sf_table table = {0};
+    SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(sf_table_read(path, &layout, &table, err));
     int64_t end = 0;
     for (int64_t i = 1; i < table.count; i++)
@@ -287,7 +263,6 @@ static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_e
     data->lateral_at = table.value[0];
     data->lateral = table.value[1];
     table.value[0] = table.value[1] = NULL;
-    sf_table_free(&table);
     for (int i = 1; i < data->lateral_count; i++)
         for (int k = i; k > 0 && data->lateral_at[k] < data->lateral_at[k - 1]; k--) {
             double at = data->lateral_at[k], side = data->lateral[k];
@@ -319,15 +294,14 @@ static sf_status read_test(const sf_config *file, sf_config_item *root, sf_hyper
             "their own, and compare nu and mu");
     SF_TRY(sf_config_names(file, entry, "file|rate|lateral", err));
     SF_TRY(sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, &source.rate, err));
-    if (sf_config_file(file, entry, "lateral", false, &lateral, err) == SF_OK &&
-        sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
-        source.path = path;
-        if (sf_compression_test_read(&source, test, &inner) == SF_OK && lateral)
-            read_lateral(lateral, r, &inner);
-        if (inner.status != SF_OK)
-            SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
-                    config_setting_source_line(entry));
-    }
+    SF_TRY(sf_config_file(file, entry, "lateral", false, &lateral, err));
+    SF_TRY(sf_config_file(file, entry, "file", true, &path, err));
+    source.path = path;
+    if (sf_compression_test_read(&source, test, &inner) == SF_OK && lateral)
+        read_lateral(lateral, r, &inner);
+    if (inner.status != SF_OK)
+        SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
+                config_setting_source_line(entry));
     return err->status;
 }
 

@@ -82,9 +82,9 @@ static int derivatives(const gsl_vector *x, void *context, gsl_matrix *out) {
 static double search(const sf_compression_model *model, bool unloading, gsl_vector *x, gsl_matrix *covariance,
                      sf_error *err) {
     size_t n = (size_t)points_of(model->data, unloading), p = count_of(model, unloading);
-    problem context = {model, unloading, x,
-                       sf_alloc(err, (unsigned long)model->data->count, sizeof(double), "stresses"),
-                       sf_matrix((size_t)model->data->count, x->size, err)};
+    SF_OWNED double *stress = sf_alloc(err, (unsigned long)model->data->count, sizeof *stress, "stresses");
+    SF_MATRIX *change = sf_matrix((size_t)model->data->count, x->size, err);
+    problem context = {model, unloading, x, stress, change};
     gsl_multifit_nlinear_fdf fdf = {.f = deviations, .df = derivatives, .n = n, .p = p, .params = &context};
     gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
     how.solver = gsl_multifit_nlinear_solver_cholesky;
@@ -110,8 +110,6 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
         }
     }
     gsl_multifit_nlinear_free(w);
-    gsl_matrix_free(context.change);
-    free(context.stress);
     return isfinite(chi2) ? chi2 : INFINITY;
 }
 
@@ -137,14 +135,13 @@ static sf_status search_loading(const sf_compression_model *model, gsl_vector *b
 
 static sf_status try_form(const sf_compression_data *data, sf_compression_form form, sf_candidate *candidate,
                           sf_error *err) {
-    sf_compression_model model;
+    SF_OWNED_BY(sf_compression_model_free) sf_compression_model model = {0};
     SF_TRY(sf_compression_model_init(data, form, &model, err));
     SF_VECTOR *x = sf_vector((size_t)model.parameter_count, err);
     double n = points_of(data, false);
     if (err->status == SF_OK && search_loading(&model, x, &candidate->chi2, err) == SF_OK)
         *candidate = (sf_candidate){true, model.loading_count, candidate->chi2,
                                     n * log(candidate->chi2 / n) + model.loading_count * log(n)};
-    sf_compression_model_free(&model);
     return err->status;
 }
 
@@ -344,8 +341,6 @@ static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
         }
     return SF_OK;
 }
-
-/* ---- everything ---- */
 
 /* Root mean square of the deviations of a side, over the stress and over the largest stress of all tests. */
 static void measure_side(const sf_compression_fit *fit, bool unloading, sf_side *side) {

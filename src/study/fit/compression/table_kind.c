@@ -4,6 +4,7 @@
 
 #include "build_info.h"
 #include "io/folder.h"
+#include "io/plain_file.h"
 #include "material/low_density_foam.h"
 #include "io/replace.h"
 #include "material/point.h"
@@ -28,9 +29,7 @@ static double counted(const sf_compression_fit *fit, int i) {
 static void compare_test(const sf_compression_fit *fit, int k, sf_table_test *out) {
     const sf_compression_data *d = &fit->data;
     const sf_compression_test *t = &d->config->test[k];
-    const char *slash = strrchr(t->path, '/');
-    *out =
-        (sf_table_test){.test = *t, .name = slash ? slash + 1 : t->path, .unloading = t->count - t->loading};
+    *out = (sf_table_test){.test = *t, .name = sf_path_name(t->path), .unloading = t->count - t->loading};
     for (int side = 0; side < 2; side++) {
         int first, count;
         double sum = 0, relative = 0;
@@ -48,10 +47,11 @@ static void compare_test(const sf_compression_fit *fit, int k, sf_table_test *ou
 static sf_status compare_card(sf_table_result *r, sf_error *err) {
     const sf_compression_data *d = &r->fit.data;
     const sf_material material = sf_foam_material(&r->card);
-    sf_material_law law;
-    SF_TRY(sf_material_law_build(&material, &law, err));
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     SF_OWNED double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
-    for (int k = 0, first = 0; stress && k < d->config->test_count; k++) {
+    SF_TRY(err->status);
+    SF_TRY(sf_material_law_build(&material, &law, err));
+    for (int k = 0, first = 0; k < d->config->test_count; k++) {
         const sf_compression_test *t = &d->config->test[k];
         sf_material_point_drive(&law, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
         for (int i = first; i < first + t->count; i++)
@@ -59,11 +59,8 @@ static sf_status compare_card(sf_table_result *r, sf_error *err) {
                 fmax(r->card_percent, 100 * fabs(stress[i] - r->fit.stress[i]) / counted(&r->fit, i));
         first += t->count;
     }
-    sf_material_law_free(&law);
-    return err->status;
+    return SF_OK;
 }
-
-/* ---- the entry ---- */
 
 static const char *const outputs[] = {"simulation.csv", "fit.csv",        "loading_curve.csv",
                                       "fit.gp",         "fit.png",        "fit.json",
@@ -95,13 +92,6 @@ static void release(void *place) {
 
 /* ---- words ---- */
 
-static void title(FILE *out, const void *place) {
-    const sf_compression_fit *fit = &((const sf_table_result *)place)->fit;
-    const sf_compression_config *c = fit->data.config;
-    fprintf(out, "%s: %d test%s, %d points, strain to %.4g\n", c->name, c->test_count,
-            c->test_count > 1 ? "s" : "", fit->data.count, fit->data.end);
-}
-
 static void put_estimates(FILE *out, const sf_compression_fit *fit) {
     for (const sf_estimate *e = fit->estimate; e < fit->estimate + SF_ESTIMATES; e++) {
         sf_table_estimate shown = sf_table_estimate_of(e);
@@ -120,6 +110,8 @@ static void describe(FILE *out, const void *place, bool comments) {
     const char *rate = sf_table_rates[fit->model.form.rate], *rule = sf_table_rules[fit->model.form.rule];
     char misfit[160];
     if (!comments) {
+        fprintf(out, "%s: %d test%s, %d points, strain to %.4g\n", fit->data.config->name, r->test_count,
+                r->test_count > 1 ? "s" : "", fit->data.count, fit->data.end);
         fprintf(out, "  rate dependence  %s\n  densification    %s, from strain %.4g\n", rate, rule,
                 fit->data.start);
         put_estimates(out, fit);
@@ -238,14 +230,10 @@ static sf_status check_specimen(const sf_compression_config *c, sf_error *err) {
 
 /* One simulated test, as means over blocks of equal time. */
 typedef struct cube_test {
-    double speed_up; /* k */
     int count;
     double strain[2 * BLOCKS]; /* - */
     double cube[2 * BLOCKS];   /* Pa, contact force over mean cross-section */
     double point[2 * BLOCKS];  /* Pa, material point at the same strains and the laboratory's rate */
-    double percent[2];         /* largest difference, loading and unloading: % of the stress, counted as a
-                                  hundredth of the largest at least */
-    double energy_error;       /* of the simulation */
 } cube_test;
 
 /* Means of strain and stress over blocks of equal time; blocks do not cross the turn. */
@@ -269,53 +257,43 @@ static void average_blocks(const sf_results *r, double area, double turn_time, c
 }
 
 /* The material point goes through the same strains, and through the turn between them. */
-static sf_status compare_cube(const sf_foam_card *card, double rate, double turn, cube_test *test,
-                              sf_error *err) {
+static sf_status compare_cube(const sf_foam_card *card, sf_table_test *out, cube_test *test, sf_error *err) {
     double strain[2 * BLOCKS + 1], stress[2 * BLOCKS + 1], largest = 0;
     int loading = test->count < BLOCKS ? test->count : BLOCKS;
     sf_foam_card point = *card;
     const sf_material material = sf_foam_material(&point);
-    sf_material_law law;
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     point.damp = 0;
     SF_TRY(sf_material_law_build(&material, &law, err));
     memcpy(strain, test->strain, (size_t)loading * sizeof *strain);
-    strain[loading] = turn;
+    strain[loading] = out->test.largest_strain;
     memcpy(&strain[loading + 1], &test->strain[loading], (size_t)(test->count - loading) * sizeof *strain);
-    sf_material_point_drive(&law, rate, POINT_STEP, test->count + 1, strain, stress);
-    sf_material_law_free(&law);
+    sf_material_point_drive(&law, out->test.rate, POINT_STEP, test->count + 1, strain, stress);
     for (int i = 0; i < test->count; i++) {
         test->point[i] = stress[i < loading ? i : i + 1];
         largest = fmax(largest, test->point[i]);
     }
     for (int i = 0; i < test->count; i++) {
-        double *percent = &test->percent[i >= loading];
+        double *percent = &out->difference[i >= loading];
         *percent =
             fmax(*percent, 100 * fabs(test->cube[i] - test->point[i]) / fmax(test->point[i], 0.01 * largest));
     }
     return SF_OK;
 }
 
-static sf_status read_cube(const char *path, const sf_foam_card *card, const sf_compression_test *lab,
-                           double turn_time, cube_test *test, sf_error *err) {
-    sf_results r;
-    SF_TRY(sf_results_open(path, &r, err));
-    average_blocks(&r, sf_results_cross_section(&r), turn_time, test);
-    sf_results_close(&r);
-    return compare_cube(card, lab->rate, lab->largest_strain, test, err);
-}
-
 /* ---- runs ---- */
 
-static sf_status simulate(const sf_table_result *r, const sf_compression_job *job, const char *folder,
-                          int index, cube_test *test, sf_error *err) {
+static sf_status simulate(sf_table_result *r, const sf_compression_job *job, const char *folder, int index,
+                          cube_test *cube, sf_error *err) {
     static const sf_material_text text = {
         .title = "The fitted foam in a time that runs faster: for the simulated test only", .provenance = ""};
     const sf_compression_config *c = r->fit.data.config;
-    const sf_compression_test *lab = &c->test[index];
+    sf_table_test *test = &r->test[index];
+    const sf_compression_test *lab = &test->test;
     double rates[SF_COMPRESSION_TESTS], turn_time = lab->largest_strain / SIMULATED_RATE;
     char real[PATH_MAX], name[32], motion[TEXT], material[TEXT], side[64], spacing[64], end[64], friction[64],
         moved[TEXT + 32];
-    *test = (cube_test){.speed_up = SIMULATED_RATE / lab->rate};
+    test->speed_up = SIMULATED_RATE / lab->rate;
     const sf_foam_card fast = quicken(&r->card, test->speed_up, rates);
     const sf_material quick = sf_foam_material(&fast);
     if (!realpath(folder, real))
@@ -337,14 +315,15 @@ static sf_status simulate(const sf_table_result *r, const sf_compression_job *jo
         snprintf(friction, sizeof friction, "missile.friction=%s", job->friction);
         drop.overrides[drop.override_count++] = friction;
     }
-    sf_runner_result result;
+    SF_OWNED_BY(sf_runner_result_free) sf_runner_result result = {0};
     SF_TRY(write_motion(motion, lab->largest_strain * c->specimen.side, turn_time, err));
     SF_TRY(sf_material_write(real, name, &quick, &text, err));
     SF_TRY(sf_runner_run(&runner, &drop, &result, err));
     test->energy_error = result.energy_error;
-    read_cube(result.path, &r->card, lab, turn_time, test, err);
-    sf_runner_result_free(&result);
-    return err->status;
+    SF_OWNED_BY(sf_results_close) sf_results results = {0};
+    SF_TRY(sf_results_open(result.path, &results, err));
+    average_blocks(&results, sf_results_cross_section(&results), turn_time, cube);
+    return compare_cube(&r->card, test, cube, err);
 }
 
 /* Simulates the tests in DIR/simulation, which stays, and writes the curves. */
@@ -361,10 +340,7 @@ static sf_status write_simulation(const sf_compression_job *job, const sf_stagin
     SF_TRY(err->status);
     fputs("test,strain,cube_kPa,point_kPa\n", file);
     for (int k = 0; k < r->test_count && simulate(r, job, folder, k, &cube, err) == SF_OK; k++) {
-        sf_table_test *test = &r->test[k];
-        test->speed_up = cube.speed_up;
-        memcpy(test->difference, cube.percent, sizeof cube.percent);
-        test->energy_error = cube.energy_error;
+        const sf_table_test *test = &r->test[k];
         for (int i = 0; i < cube.count; i++)
             fprintf(file, "%d,%.9g,%.9g,%.9g\n", k + 1, cube.strain[i], 1e-3 * cube.cube[i],
                     1e-3 * cube.point[i]);
@@ -372,7 +348,7 @@ static sf_status write_simulation(const sf_compression_job *job, const sf_stagin
             job->log,
             "simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g %% "
             "unloading\n",
-            test->test.rate, cube.percent[0], cube.percent[1]);
+            test->test.rate, test->difference[0], test->difference[1]);
         fflush(job->log);
     }
     r->simulated = true;
@@ -458,7 +434,6 @@ const sf_compression_kind sf_compression_tables = {
     .run = run,
     .free = release,
     .material = material_of,
-    .title = title,
     .describe = describe,
     .points = put_points,
     .json = put_json,

@@ -112,7 +112,11 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
     return SF_OK;
 }
 
-/* With room for so many; release `value`. */
+static void free_weighted(weighted *w) {
+    free(w->value); /* and the weights behind it */
+}
+
+/* With room for so many. */
 static weighted make_weighted(int most, sf_error *err) {
     double *value = sf_alloc(err, 2 * (unsigned long)most, sizeof *value, "samples");
     return (weighted){.value = value, .weight = value + most};
@@ -125,18 +129,16 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
     bool above_all = sf_drop_kind_get(q->kind)->above_all;
     for (int m = 0; m < a->models; m++)
         most += states_of(a->model[m]);
-    weighted w = make_weighted(most, err);
-    if (w.value) {
-        for (int m = 0; m < a->models; m++)
-            if (model < 0 ? a->weight[m] > 0 : m == model)
-                add_states(a->model[m], &a->model[m]->chains.quantity[quantity], a->model[m]->quantities,
-                           model < 0 ? a->weight[m] : 1, above_all && has_columns(a->model[m], q->drop), &w);
-        take_quantiles(&w, count, probability, value, err);
-        for (int k = 0; k < count; k++)
-            value[k] = exp(value[k]);
-    }
-    free(w.value);
-    return err->status;
+    SF_OWNED_BY(free_weighted) weighted w = make_weighted(most, err);
+    SF_TRY(err->status);
+    for (int m = 0; m < a->models; m++)
+        if (model < 0 ? a->weight[m] > 0 : m == model)
+            add_states(a->model[m], &a->model[m]->chains.quantity[quantity], a->model[m]->quantities,
+                       model < 0 ? a->weight[m] : 1, above_all && has_columns(a->model[m], q->drop), &w);
+    SF_TRY(take_quantiles(&w, count, probability, value, err));
+    for (int k = 0; k < count; k++)
+        value[k] = exp(value[k]);
+    return SF_OK;
 }
 
 double sf_drop_average_missing(const sf_drop_average *a, int quantity) {
@@ -153,13 +155,10 @@ double sf_drop_average_missing(const sf_drop_average *a, int quantity) {
 
 sf_status sf_drop_parameter_quantiles(const sf_drop_inference *in, int parameter, int count,
                                       const double *probability, double *value, sf_error *err) {
-    weighted w = make_weighted(states_of(in), err);
-    if (w.value) {
-        add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, &w);
-        take_quantiles(&w, count, probability, value, err);
-    }
-    free(w.value);
-    return err->status;
+    SF_OWNED_BY(free_weighted) weighted w = make_weighted(states_of(in), err);
+    SF_TRY(err->status);
+    add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, &w);
+    return take_quantiles(&w, count, probability, value, err);
 }
 
 /* ---- draws ---- */
@@ -196,7 +195,7 @@ static sf_status write_draw(const sf_drop_average *a, int k, const sf_posterior_
     const double *u = &in->chains.sample[draw->state * in->parameters];
     double delta[SF_DISCREPANCY_PLACES];
     char name[32], title[160];
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     sf_response_error error;
     SF_TRY(sf_drop_average_discrepancy(a, k, draw, delta, &error, err));
     SF_TRY(sf_drop_inference_card(in, u, delta, &card, err));
@@ -208,9 +207,7 @@ static sf_status write_draw(const sf_drop_average *a, int k, const sf_posterior_
     const sf_material_text text = {.title = title,
                                    .provenance = "With the discrepancy from the form of the curve.\n",
                                    .response_error = &error};
-    sf_material_write(folder, name, &material, &text, err);
-    sf_foam_card_free(&card);
-    return err->status;
+    return sf_material_write(folder, name, &material, &text, err);
 }
 
 /* The first draw comes last: without it the folder is no posterior for those who read it, and the draws that

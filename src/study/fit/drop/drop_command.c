@@ -122,8 +122,6 @@ static sf_status commit(const char *directory, const sf_drop_average *average, s
     return err->status;
 }
 
-/* ---- the whole ---- */
-
 static sf_status report(sf_study *study, const models *all, char *warning, size_t size, sf_error *err) {
     const sf_drop_average *average = all->average.models > 0 ? &all->average : NULL;
     const sf_drop_fit *best = average ? average->model[sf_drop_average_best(average)]->fit : &all->fit[0];
@@ -178,7 +176,7 @@ static sf_status fit_and_write(sf_study *study, models *all, sf_fit_memory *memo
 
 static sf_status run(sf_study *study, void *own, sf_error *err) {
     models *all = own;
-    sf_fit_memory memory = {.file = -1};
+    SF_OWNED_BY(sf_fit_memory_close) sf_fit_memory memory = {.file = -1};
     char card[SF_FIT_NAME_SIZE + 8], curve[SF_FIT_NAME_SIZE + 8];
     const char *const none[] = {NULL}; /* the names are in the input */
     const char *const names[] = {curve,     card,       "fit-curve.csv", "fit-drops.csv", "fit.gp",
@@ -196,7 +194,6 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
         fit_and_write(study, all, &memory, err);
     }
     sf_staging_end(&study->output); /* before its names go */
-    sf_fit_memory_close(&memory);
     return err->status;
 }
 

@@ -108,22 +108,20 @@ typedef struct strain_bin {
 } strain_bin;
 
 static sf_status list_strain_bins(const sf_drop_fit *fit, strain_bin bin[SF_FIT_STRAIN_BINS], sf_error *err) {
-    sf_foam_card card;
-    sf_curve curve;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
+    SF_OWNED_BY(sf_curve_free) sf_curve curve = {0};
     SF_TRY(sf_drop_fit_card(fit->input, fit->result.u, &card, err));
-    if (sf_curve_build(&card, 0, &curve, err) == SF_OK)
-        for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
-            double slope, energy, band = exp(sf_drop_half_width(fit) * fit->curve_sd[b]);
-            bin[b].strain = 0.05 * (b + 0.5);
-            sf_curve_evaluate(&curve, bin[b].strain, &bin[b].stress, &slope, &energy);
-            bin[b].stress *= 1e-3;
-            bin[b].low = bin[b].stress / band;
-            bin[b].high = bin[b].stress * band;
-            bin[b].information = fit->information[b] / fmax(sf_drop_information(fit), 1e-300);
-        }
-    sf_curve_free(&curve);
-    sf_foam_card_free(&card);
-    return err->status;
+    SF_TRY(sf_curve_build(&card, 0, &curve, err));
+    for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+        double slope, energy, band = exp(sf_drop_half_width(fit) * fit->curve_sd[b]);
+        bin[b].strain = 0.05 * (b + 0.5);
+        sf_curve_evaluate(&curve, bin[b].strain, &bin[b].stress, &slope, &energy);
+        bin[b].stress *= 1e-3;
+        bin[b].low = bin[b].stress / band;
+        bin[b].high = bin[b].stress * band;
+        bin[b].information = fit->information[b] / fmax(sf_drop_information(fit), 1e-300);
+    }
+    return SF_OK;
 }
 
 static sf_status write_curve(const strain_bin *bin, const sf_staging *output, sf_error *err) {
@@ -284,21 +282,18 @@ static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *a
                                 const char *input_path, const sf_staging *output, sf_error *err) {
     SF_OWNED char *provenance = NULL;
     size_t size = 0;
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     double low;
     FILE *f = open_memstream(&provenance, &size);
     if (f)
         put_provenance(f, fit, average, input_path);
     if (!f || fclose(f) != 0)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
     const sf_material_text text = {.title = fit->input->title, .provenance = provenance};
-    if (err->status == SF_OK && sf_drop_fit_card(fit->input, fit->result.u, &card, err) == SF_OK) {
-        sf_drop_informed_strains(fit, &low, &card.informed_strain);
-        const sf_material material = sf_foam_material(&card);
-        sf_material_write_checked(output->aside, fit->input->material_name, &material, &text, err);
-        sf_foam_card_free(&card);
-    }
-    return err->status;
+    SF_TRY(sf_drop_fit_card(fit->input, fit->result.u, &card, err));
+    sf_drop_informed_strains(fit, &low, &card.informed_strain);
+    const sf_material material = sf_foam_material(&card);
+    return sf_material_write_checked(output->aside, fit->input->material_name, &material, &text, err);
 }
 
 sf_status sf_drop_files_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,

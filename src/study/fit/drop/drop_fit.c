@@ -24,11 +24,9 @@ static sf_status surrogate(void *context, const double *u, double *y, sf_error *
 /* ---- simulation ---- */
 
 static sf_status find_columns(const char *path, sf_columns *columns, sf_error *err) {
-    sf_results r;
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
     SF_TRY(sf_results_open(path, &r, err));
-    sf_columns_build(&r, columns, err);
-    sf_results_close(&r);
-    return err->status;
+    return sf_columns_build(&r, columns, err);
 }
 
 /* Checks that a coarse drop is the same as the drop but for the mesh, since its result is used for the
@@ -192,7 +190,7 @@ static sf_status check_card(const sf_fit_input *in, const double *u, const sf_fo
 /* Drops `first` to `last` - 1 with the material of u, which is written beside the drops' folders. */
 static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const char *name, const double *u,
                                 double *y, sf_error *err) {
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     char path[PATH_MAX];
     const sf_material_text text = {.title = "An iterate of softfall-fit drop.", .provenance = ""};
     snprintf(path, sizeof path, "%s/%s.cfg", fit->folder, name);
@@ -200,16 +198,14 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     fit->chain_now = sf_drop_fit_chain(fit, u);
     card.informed_strain = 0; /* that of the start says nothing about an iterate */
     const sf_material material = sf_foam_material(&card);
-    if (check_card(fit->input, u, &card, err) == SF_OK)
-        sf_material_write(fit->folder, name, &material, &text, err);
-    sf_foam_card_free(&card);
-    if (err->status == SF_OK && last > first && fit->input->drop[first].predicted)
-        predict_with(fit, first, last, path, y, err);
-    else if (err->status == SF_OK && last > first)
-        simulate_with(fit, first, last, path, y, err);
-    if (err->status == SF_OK && first == 0) /* the joint data need no simulation */
-        sf_drop_fit_columns(fit, 0, 0, SF_FIT_AS_GIVEN, u, y, err);
-    return err->status;
+    SF_TRY(check_card(fit->input, u, &card, err));
+    SF_TRY(sf_material_write(fit->folder, name, &material, &text, err));
+    if (last > first)
+        SF_TRY((fit->input->drop[first].predicted ? predict_with : simulate_with)(fit, first, last, path, y,
+                                                                                  err));
+    if (first > 0)
+        return SF_OK;
+    return sf_drop_fit_columns(fit, 0, 0, SF_FIT_AS_GIVEN, u, y, err); /* the joint data need no simulation */
 }
 
 /* Adds the effect of the speeds in u, by columns. */
@@ -286,11 +282,10 @@ static double deviation(const sf_drop_fit *fit, const double *gradient) {
 
 static double stress_at(const sf_foam_card *card, double strain) {
     sf_error none = SF_ERROR_INIT;
-    sf_curve curve;
+    SF_OWNED_BY(sf_curve_free) sf_curve curve = {0};
     double stress = NAN, slope, energy;
     if (sf_curve_build(card, 0, &curve, &none) == SF_OK)
         sf_curve_evaluate(&curve, strain, &stress, &slope, &energy);
-    sf_curve_free(&curve);
     return stress;
 }
 
@@ -300,19 +295,16 @@ static sf_status bound_curve(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
     double gradient[SF_FIT_STRAIN_BINS][SF_MAPPING_MAX_PARAMETERS] = {{0}}, u[SF_MAPPING_MAX_PARAMETERS];
     for (int j = 0; j < in->unknown_count; j++) {
-        sf_foam_card low, high;
+        SF_OWNED_BY(sf_foam_card_free) sf_foam_card low = {0}, high = {0};
         memcpy(u, fit->result.u, sizeof u);
         u[j] += step;
         SF_TRY(sf_drop_fit_card(in, u, &high, err));
         u[j] -= 2 * step;
-        if (sf_drop_fit_card(in, u, &low, err) == SF_OK)
-            for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
-                double strain = (b + 0.5) * SF_FIT_BIN_WIDTH;
-                gradient[b][j] = log(stress_at(&high, strain) / stress_at(&low, strain)) / (2 * step);
-            }
-        sf_foam_card_free(&low);
-        sf_foam_card_free(&high);
-        SF_TRY(err->status);
+        SF_TRY(sf_drop_fit_card(in, u, &low, err));
+        for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
+            double strain = (b + 0.5) * SF_FIT_BIN_WIDTH;
+            gradient[b][j] = log(stress_at(&high, strain) / stress_at(&low, strain)) / (2 * step);
+        }
     }
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
         double prior = 0;
@@ -351,13 +343,9 @@ static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
     for (int j = 0; j < in->unknown_count && err->status == SF_OK; j++) {
         memcpy(u, fit->result.u, sizeof u);
         u[j] += step;
-        if (sf_drop_fit_columns(fit, fit->measured_drops, in->drop_count, SF_FIT_AS_GIVEN, u, high, err) !=
-            SF_OK)
-            break;
+        SF_TRY(sf_drop_fit_columns(fit, fit->measured_drops, in->drop_count, SF_FIT_AS_GIVEN, u, high, err));
         u[j] -= 2 * step;
-        if (sf_drop_fit_columns(fit, fit->measured_drops, in->drop_count, SF_FIT_AS_GIVEN, u, low, err) !=
-            SF_OK)
-            break;
+        SF_TRY(sf_drop_fit_columns(fit, fit->measured_drops, in->drop_count, SF_FIT_AS_GIVEN, u, low, err));
         for (int k = first; k < last; k++)
             fit->gradient[k * fit->parameters + j] = (high[k] - low[k]) / (2 * step);
     }
@@ -372,11 +360,9 @@ static sf_status finish(sf_drop_fit *fit, sf_error *err) {
     fit->runner->log = NULL;
     simulate_drops(fit, 0, fit->measured_drops, "result", fit->result.u, fit->y, err);
     fit->runner->log = log;
-    if (err->status != SF_OK ||
-        simulate_drops(fit, fit->measured_drops, in->drop_count, "result", fit->result.u, fit->y, err) !=
-            SF_OK ||
-        differentiate_predictions(fit, err) != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
+    SF_TRY(simulate_drops(fit, fit->measured_drops, in->drop_count, "result", fit->result.u, fit->y, err));
+    SF_TRY(differentiate_predictions(fit, err));
     memcpy(fit->gradient, fit->result.corrected,
            (size_t)(fit->row[fit->measured_drops] * n) * sizeof *fit->gradient);
     for (int k = 0; k < fit->row[in->drop_count]; k++)

@@ -25,26 +25,23 @@ static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are 
 
 /* Samples from contact on, where the curve is above the level. */
 static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *drop, sf_error *err) {
-    sf_reference reference;
+    SF_OWNED_BY(sf_reference_free) sf_reference reference = {0};
     sf_record_verdict record;
     char line[SF_VERDICT_LINE_SIZE];
     double contact = 0, peak = 0, zero = NAN;
     SF_TRY(sf_reference_read(options, &reference, err));
     const sf_series *curve = &reference.curve;
-    if (sf_record_judge(&reference.raw, curve, reference.other, &record, err) != SF_OK)
-        goto done;
+    SF_TRY(sf_record_judge(&reference.raw, curve, reference.other, &record, err));
     sf_record_line(&record, line, sizeof line);
     snprintf(drop->interpretation, sizeof drop->interpretation, "%.600s; record: %.400s",
              reference.interpretation, line);
     if (record.grade == SF_GRADE_DO_NOT_USE)
-        SF_FAIL(err, SF_ERR_INPUT, "%s: a foam cannot be fitted to this record: %s", options->path, line);
-    if (err->status != SF_OK || sf_record_offset(&reference.raw, &reference.raw, &zero, err) != SF_OK ||
-        sf_contact_instant(curve, options->path, isnan(zero) ? 0 : zero, &contact, err) != SF_OK)
-        goto done;
+        return SF_REFUSE(err, "%s: a foam cannot be fitted to this record: %s", options->path, line);
+    SF_TRY(sf_record_offset(&reference.raw, &reference.raw, &zero, err));
+    SF_TRY(sf_contact_instant(curve, options->path, isnan(zero) ? 0 : zero, &contact, err));
     drop->sample_time = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
     drop->sample_value = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
-    if (err->status != SF_OK)
-        goto done;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < curve->count; k++)
         peak = fmax(peak, curve->value[k]);
     for (int k = 1; contact + k * SAMPLE_INTERVAL <= curve->time[curve->count - 1]; k++) {
@@ -55,9 +52,7 @@ static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *
         drop->sample_value[drop->samples++] = value;
     }
     drop->sample_scale = peak;
-done:
-    sf_reference_free(&reference);
-    return err->status;
+    return SF_OK;
 }
 
 /* The measured curve of a drop, filtered like the simulated one unless the file says otherwise. */

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/text.h"
 #include "build_info.h"
 #include "report/chart.h"
 #include "report/row.h"
@@ -222,10 +223,9 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
 /* A heading for each unknown parameter after the first one, all of numbers. */
 static sf_html_table begin_matrix(FILE *f, const sf_fit_input *in, const char *first) {
     char columns[1024];
-    size_t used = (size_t)snprintf(columns, sizeof columns, "%s", first);
-    for (int k = 0; k < in->unknown_count && used < sizeof columns; k++)
-        used += (size_t)snprintf(columns + used, sizeof columns - used, "|>%s",
-                                 sf_parameter_get(in->unknown[k])->name);
+    snprintf(columns, sizeof columns, "%s", first);
+    for (int k = 0; k < in->unknown_count; k++)
+        sf_text_add(columns, sizeof columns, "|>%s", sf_parameter_get(in->unknown[k])->name);
     return sf_html_table_begin(f, "dense", columns);
 }
 

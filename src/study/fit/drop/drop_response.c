@@ -49,11 +49,9 @@ static sf_status check_values(const sf_fit_drop *drop, const double *y, const ch
 /* The curve, which has CFC 1000, with the lower class of the measured one. */
 static sf_status filter_like_measured(const sf_series *curve, double cfc, sf_series *filtered,
                                       sf_error *err) {
-    sf_series uniform = {0};
-    if (sf_signal_resample(curve, sf_signal_rate(curve), &uniform, err) == SF_OK)
-        sf_signal_filter_cfc(&uniform, cfc, filtered, err);
-    sf_series_free(&uniform);
-    return err->status;
+    SF_OWNED_BY(sf_series_free) sf_series uniform = {0};
+    SF_TRY(sf_signal_resample(curve, sf_signal_rate(curve), &uniform, err));
+    return sf_signal_filter_cfc(&uniform, cfc, filtered, err);
 }
 
 static sf_status take_samples(const sf_fit_drop *drop, const sf_series *curve, double *y, sf_error *err) {
@@ -104,21 +102,20 @@ static double deepest(const sf_series *curve, double speed) {
 sf_status sf_drop_fit_read(const sf_fit_drop *drop, const sf_signal_chain *chain,
                            const sf_columns_figures *figures, const sf_series *curve, double indentation,
                            const char *by, const char *remedy, double *y, sf_error *err) {
-    sf_series filtered = {0}, passed = {0};
+    SF_OWNED_BY(sf_series_free) sf_series filtered = {0}, passed = {0};
     sf_columns_figures read = *figures;
     bool lower = drop->sample_class > 0 && drop->sample_class < 1000;
-    if ((chain->mount_frequency > 0 || chain->coupling > 0) &&
-        pass_chain(chain, curve, &read, &passed, err) == SF_OK)
+    if (chain->mount_frequency > 0 || chain->coupling > 0) {
+        SF_TRY(pass_chain(chain, curve, &read, &passed, err));
         curve = &passed;
-    if (err->status == SF_OK)
-        sf_drop_values_scale(&read, y);
+    }
+    sf_drop_values_scale(&read, y);
     y[SF_FIT_SAMPLES + drop->samples] = log(indentation);
-    if (drop->samples > 0 && err->status == SF_OK &&
-        (!lower || filter_like_measured(curve, drop->sample_class, &filtered, err) == SF_OK))
-        take_samples(drop, lower ? &filtered : curve, &y[SF_FIT_SAMPLES], err);
-    sf_series_free(&filtered);
-    sf_series_free(&passed);
-    return err->status == SF_OK ? check_values(drop, y, by, remedy, err) : err->status;
+    if (drop->samples > 0 && lower)
+        SF_TRY(filter_like_measured(curve, drop->sample_class, &filtered, err));
+    if (drop->samples > 0)
+        SF_TRY(take_samples(drop, lower ? &filtered : curve, &y[SF_FIT_SAMPLES], err));
+    return check_values(drop, y, by, remedy, err);
 }
 
 /* ---- surrogate ---- */
@@ -132,14 +129,14 @@ static void forget(const sf_drop_fit *fit, int d, double *y) {
 sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const sf_foam_card *card,
                               const double *u, double *y, sf_error *err) {
     const sf_material material = sf_foam_material(card);
-    sf_material_law law;
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     SF_TRY(sf_material_law_build(&material, &law, err));
     const sf_signal_chain chain = sf_drop_fit_chain(fit, u);
     if (first == 0)
-        sf_joint_respond(&fit->input->joint, &law, y, err);
+        SF_TRY(sf_joint_respond(&fit->input->joint, &law, y, err));
     for (int d = first; d < last && err->status == SF_OK; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
-        sf_series curve = {0};
+        SF_OWNED_BY(sf_series_free) sf_series curve = {0};
         sf_columns_figures figures;
         sf_columns columns = fit->columns[d];
         if (drop->predicted && columns.count == 0) { /* its simulation failed before the pad was touched */
@@ -152,13 +149,11 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
             sf_drop_fit_read(drop, &chain, &figures, &curve,
                              deepest(&curve, columns.speed) / columns.thickness, "its columns end",
                              "this foam does not let go", &y[fit->row[d]], err);
-        sf_series_free(&curve);
         if (drop->predicted && err->status == SF_ERR_NUMERIC) { /* the foam may be too soft for this one */
             *err = (sf_error)SF_ERROR_INIT;
             forget(fit, d, y);
         }
     }
-    sf_material_law_free(&law);
     return err->status;
 }
 
@@ -266,7 +261,7 @@ static void raise_curve(int bin, sf_foam_card *card) {
 
 sf_status sf_drop_fit_columns(const sf_drop_fit *fit, int first, int last, int bin, const double *u,
                               double *y, sf_error *err) {
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     bool given = bin == SF_FIT_AS_GIVEN;
     int begin = first == 0 ? 0 : fit->row[first]; /* the joint data stand before the first drop */
     size_t count = (size_t)(fit->row[last] - begin);
@@ -274,13 +269,13 @@ sf_status sf_drop_fit_columns(const sf_drop_fit *fit, int first, int last, int b
     if (sf_fit_memory_find(fit->memory, key, count, &y[begin]))
         return SF_OK;
     SF_TRY(sf_drop_fit_card(fit->input, u, &card, err));
-    if (!given && sf_foam_card_resample(&card, err) == SF_OK)
+    if (!given) {
+        SF_TRY(sf_foam_card_resample(&card, err));
         raise_curve(bin, &card);
-    if (err->status == SF_OK &&
-        sf_drop_fit_respond(fit, first, last, &card, given ? u : NULL, y, err) == SF_OK)
-        sf_fit_memory_add(fit->memory, key, count, &y[begin]);
-    sf_foam_card_free(&card);
-    return err->status;
+    }
+    SF_TRY(sf_drop_fit_respond(fit, first, last, &card, given ? u : NULL, y, err));
+    sf_fit_memory_add(fit->memory, key, count, &y[begin]);
+    return SF_OK;
 }
 
 /* ---- the cache ---- */

@@ -77,41 +77,11 @@ static const char *curve_key(sf_config_item *root, sf_config_item *model) {
     return model == root ? "curve_form" : "curve";
 }
 
-static bool starts_solid_fraction(sf_config_item *holder) {
-    sf_config_item *start = config_setting_get_member(holder, "start");
-    return start && config_setting_get_member(start, "solid_fraction");
-}
-
-/* gas_solid needs the solid fraction: by density, given, or sought. */
-static sf_status check_solid_fraction(const sf_config *config, sf_config_item *root, const sf_fit_input *in,
-                                      sf_error *err) {
-    sf_config_item *model = model_of(root, in);
-    bool dense = in->form.solid_density > 0,
-         given = starts_solid_fraction(root) || starts_solid_fraction(model), known = dense || given;
-    for (int k = 0; k < in->unknown_count; k++)
-        known = known || in->unknown[k] == SF_PARAMETER_SOLID_FRACTION;
-    if (dense && given)
-        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err,
-                                "the solid fraction is given twice: by solid_density, and as solid_fraction "
-                                "in start");
-    if (dense && model == root && !sf_curve_form_entry(in->form.curve, SF_PARAMETER_SOLID_FRACTION))
-        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err,
-                                "solid_density is given, but curve_form = \"%s\" has no solid fraction",
-                                in->form.curve->name);
-    if (in->form.curve == &sf_form_gas_solid && !known)
-        return sf_config_refuse(config, config_setting_get_member(model, curve_key(root, model)), err,
-                                "%s = \"gas_solid\" needs solid_density, the density of the solid in the "
-                                "cell walls, or solid_fraction as an unknown",
-                                curve_key(root, model));
-    return SF_OK;
-}
-
 /* Only this law's parameters are identified; the first case gives the input its card with its curves. */
 static sf_status take_material(sf_material *material, bool first, sf_fit_input *in, sf_error *err) {
     if (material->law != &sf_low_density_foam)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s is of the law %s; the parameters that drops identify are those of %s",
-                       in->material_path, material->law->name, sf_low_density_foam.name);
+        return SF_REFUSE(err, "%s is of the law %s; the parameters that drops identify are those of %s",
+                         in->material_path, material->law->name, sf_low_density_foam.name);
     if (first) {
         in->form.base = *sf_foam_card_of(material);
         sf_foam_card_of(material)->curves = (sf_law_curves){0};
@@ -122,23 +92,20 @@ static sf_status take_material(sf_material *material, bool first, sf_fit_input *
 static sf_status read_case(const sf_fit_drop *drop, const char *material, bool first, sf_fit_input *in,
                            sf_error *err) {
     const sf_sink sink = sf_program_sink("softfall-fit");
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     SF_TRY(sf_case_read(drop->case_path, 1, &material, &sink, &c, err));
-    take_material(&c.material, first, in, err);
-    sf_case_free(&c);
-    return err->status;
+    return take_material(&c.material, first, in, err);
 }
 
 /* Checks the coarse drop as the runner will make it: the material, then the keys. */
 static sf_status check_coarse(const sf_fit_drop *drop, const char *material, const sf_fit_input *in,
                               sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     const char *overrides[1 + SF_RUNNER_OVERRIDES] = {material};
     memcpy(&overrides[1], in->coarse, sizeof in->coarse);
     if (sf_case_read(drop->case_path, 1 + in->coarse_count, overrides, NULL, &c, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "coarse_set: %.800s", inner.text);
-    sf_case_free(&c);
     return SF_OK;
 }
 
@@ -169,11 +136,9 @@ static sf_status read_material(const sf_config *config, sf_config_item *root, sf
     snprintf(in->title, sizeof in->title, "%s", title);
     snprintf(override, sizeof override, "material=@%s", in->material_path);
     if (in->drop_count == 0) {
-        sf_material material;
-        if (sf_case_read_material(in->material_path, &material, err) == SF_OK)
-            take_material(&material, true, in, err);
-        sf_material_free(&material);
-        SF_TRY(err->status);
+        SF_OWNED_BY(sf_material_free) sf_material material = {0};
+        SF_TRY(sf_case_read_material(in->material_path, &material, err));
+        SF_TRY(take_material(&material, true, in, err));
     }
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
         SF_TRY(read_case(&in->drop[k], override, k == 0, in, err));
@@ -238,12 +203,11 @@ static sf_status read_start(const sf_config *config, sf_config_item *holder, sf_
 /* The start must make a curve. */
 static sf_status check_start(const sf_config *config, sf_config_item *root, const sf_fit_input *in,
                              sf_error *err) {
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     sf_error inner = SF_ERROR_INIT;
     sf_config_item *group = config_setting_get_member(root, "start");
     if (sf_foam_form_card(&in->form, in->start, &card, &inner) != SF_OK)
         return sf_config_refuse(config, group ? group : root, err, "start: %s", inner.text);
-    sf_foam_card_free(&card);
     return SF_OK;
 }
 
@@ -412,7 +376,8 @@ static sf_status read_unknowns(const sf_config *config, sf_config_item *root, sf
         SF_TRY(add_unknown(config, model, in, SF_PARAMETER_RATE_FACTOR, err));
     }
     SF_TRY(check_rate_factor(config, model, in, err));
-    return check_solid_fraction(config, root, in, err);
+    return sf_foam_form_check_fraction(config, root, model, curve_key(root, model), &in->form,
+                                       in->unknown_count, in->unknown, err);
 }
 
 static sf_status read_options(const sf_config *config, sf_config_item *root, sf_fit_input *in,
@@ -462,27 +427,25 @@ static void put_label(sf_fit_input *in) {
 }
 
 sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_error *err) {
-    sf_config config;
+    SF_OWNED_BY(sf_config_close) sf_config config = {0};
     *in = (sf_fit_input){.model = model};
-    if (sf_config_open(path, &config, err) == SF_OK &&
-        sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err) == SF_OK) {
-        sf_config_item *root = config_root_setting(&config.config);
-        if (sf_config_names(&config, root,
-                            "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
-                            "seed|posterior|compressions|cushions|coarse_set|mount|mount_frequency_sd|"
-                            "mount_damping_sd|coupling|coupling_sd",
-                            err) == SF_OK &&
-            read_options(&config, root, in, err) == SF_OK &&
-            sf_joint_read(&config, root, &in->joint, err) == SF_OK &&
-            read_drops(&config, root, "drops", false, in, err) == SF_OK &&
-            read_coarse(&config, root, in, err) == SF_OK && read_chain(&config, root, in, err) == SF_OK &&
-            read_drops(&config, root, "predict", true, in, err) == SF_OK &&
-            read_material(&config, root, in, err) == SF_OK && read_starts(&config, root, in, err) == SF_OK)
-            read_unknowns(&config, root, in, err);
-        if (err->status == SF_OK)
-            put_label(in);
-    }
-    sf_config_close(&config);
+    SF_TRY(sf_config_open(path, &config, err));
+    SF_TRY(sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err));
+    sf_config_item *root = config_root_setting(&config.config);
+    if (sf_config_names(&config, root,
+                        "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
+                        "seed|posterior|compressions|cushions|coarse_set|mount|mount_frequency_sd|"
+                        "mount_damping_sd|coupling|coupling_sd",
+                        err) == SF_OK &&
+        read_options(&config, root, in, err) == SF_OK &&
+        sf_joint_read(&config, root, &in->joint, err) == SF_OK &&
+        read_drops(&config, root, "drops", false, in, err) == SF_OK &&
+        read_coarse(&config, root, in, err) == SF_OK && read_chain(&config, root, in, err) == SF_OK &&
+        read_drops(&config, root, "predict", true, in, err) == SF_OK &&
+        read_material(&config, root, in, err) == SF_OK && read_starts(&config, root, in, err) == SF_OK)
+        read_unknowns(&config, root, in, err);
+    if (err->status == SF_OK)
+        put_label(in);
     return err->status;
 }
 

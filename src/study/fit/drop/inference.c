@@ -96,16 +96,15 @@ static sf_status respond(const sf_drop_inference *in, const double *u, const dou
                          int last, double *y, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     double full[SF_MAPPING_MAX_PARAMETERS];
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     fit_parameters(in, u, full);
     SF_TRY(delta ? sf_drop_inference_card(in, full, delta, &card, err)
                  : sf_drop_fit_card(fit->input, full, &card, err));
-    if (sf_foam_check_shared(&card, err) == SF_OK)
-        sf_drop_fit_respond(fit, first, last, &card, NULL, y, err);
-    sf_foam_card_free(&card);
-    for (int k = fit->row[first]; k < fit->row[last] && err->status == SF_OK; k++)
+    SF_TRY(sf_foam_check_shared(&card, err));
+    SF_TRY(sf_drop_fit_respond(fit, first, last, &card, NULL, y, err));
+    for (int k = fit->row[first]; k < fit->row[last]; k++)
         y[k] += in->offset[k];
-    return err->status;
+    return SF_OK;
 }
 
 /* Measured less corrected surrogate [data]. False: the columns fail. */
@@ -152,11 +151,11 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     int n = responses_of(fit), measured = fit->row[fit->measured_drops];
     double full[SF_MAPPING_MAX_PARAMETERS];
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     in->offset = sf_alloc(err, (unsigned long)n, sizeof(double), "responses");
     fit_parameters(in, fit->result.u, full);
-    if (err->status != SF_OK || sf_drop_fit_card(fit->input, full, &card, err) != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
+    SF_TRY(sf_drop_fit_card(fit->input, full, &card, err));
     sf_drop_fit_respond(fit, fit->measured_drops, fit->input->drop_count, &card, NULL, in->offset, err);
     for (int k = 0; k < n; k++)
         in->offset[k] = k < measured ? fit->result.offset[k] : fit->y[k] - in->offset[k];
@@ -164,7 +163,6 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
             if (*fit->simulated[d].failure || !isfinite(in->offset[fit->row[d] + kind]))
                 in->offset[fit->row[d] + kind] = mean_offset(fit, kind);
-    sf_foam_card_free(&card);
     return err->status;
 }
 
@@ -172,13 +170,10 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
 static sf_status respond_raised(const sf_drop_inference *in, int place, double sign, double *y,
                                 sf_error *err) {
     double delta[PLACES] = {0};
-    sf_foam_card card;
+    SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     delta[place] = sign * RAISE;
-    if (sf_drop_inference_card(in, in->fit->result.u, delta, &card, err) == SF_OK) {
-        sf_drop_fit_respond(in->fit, 0, in->fit->input->drop_count, &card, NULL, y, err);
-        sf_foam_card_free(&card);
-    }
-    return err->status;
+    SF_TRY(sf_drop_inference_card(in, in->fit->result.u, delta, &card, err));
+    return sf_drop_fit_respond(in->fit, 0, in->fit->input->drop_count, &card, NULL, y, err);
 }
 
 /* The response that a quantity is. */
@@ -285,8 +280,7 @@ static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf
         for (int j = 0; j < count; j++)
             base[i * count + j] = in->base[which[i] * in->data + which[j]];
     }
-    sf_discrepancy_build(count, PLACES, jacobian, kernel, effects, effect, base, out, err);
-    return err->status;
+    return sf_discrepancy_build(count, PLACES, jacobian, kernel, effects, effect, base, out, err);
 }
 
 /* ln of what makes the cut priors integrate to one. */
@@ -392,17 +386,16 @@ bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
     SF_OWNED double *residual = sf_alloc(&err, (unsigned long)in->data, sizeof *residual, "data");
     SF_RANDOM *random = gsl_rng_alloc(gsl_rng_taus2);
-    bool found = residual && random && find_residual(in, u, residual);
-    if (found) {
-        gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
-        sf_discrepancy_draw(&in->all, residual, size, random, delta, x);
-        fill_error(size, x, error);
-        for (int d = in->fit->measured_drops; own && d < in->fit->input->drop_count; d++)
-            for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
-                own[d * SF_FIT_SAMPLES + kind] =
-                    sf_drop_kind_get(kind)->model_sd * (x[kind] + size.kappa * gsl_ran_ugaussian(random));
-    }
-    return found;
+    if (!residual || !random || !find_residual(in, u, residual))
+        return false;
+    gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
+    sf_discrepancy_draw(&in->all, residual, size, random, delta, x);
+    fill_error(size, x, error);
+    for (int d = in->fit->measured_drops; own && d < in->fit->input->drop_count; d++)
+        for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
+            own[d * SF_FIT_SAMPLES + kind] =
+                sf_drop_kind_get(kind)->model_sd * (x[kind] + size.kappa * gsl_ran_ugaussian(random));
+    return true;
 }
 
 /* Logarithms of what is predicted, of the foam of this state with a delta drawn. */
@@ -424,8 +417,6 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
             quantity[q] += in->jacobian[row * PLACES + b] * delta[b];
     }
 }
-
-/* ---- the whole ---- */
 
 /* Covariance of the fit's foam parameters, and that of the z before the data. */
 static void fill_start(const sf_drop_inference *in, double *start, double *covariance) {

@@ -429,8 +429,6 @@ sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, s
     return err->status;
 }
 
-/* ---- lines ---- */
-
 void sf_inference_comment(FILE *f, const sf_drop_average *a) {
     fprintf(f,
             "Weights of the models (%s): ", a->by_evidence ? "evidence" : "leave-one-out predictive density");

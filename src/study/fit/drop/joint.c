@@ -172,7 +172,7 @@ static void take_points(const sf_compression_test *t, sf_joint_test *out) {
 static sf_status take_test(const sf_config *config, sf_config_item *entry,
                            const sf_compression_source *source, sf_joint *joint, sf_error *err) {
     sf_joint_test *test = &joint->test[joint->test_count];
-    sf_compression_test read;
+    SF_OWNED_BY(sf_compression_test_free) sf_compression_test read = {0};
     sf_error inner = SF_ERROR_INIT;
     /* the text of the file, at whatever rate it is said to be, is that of no other test */
     SF_TRY(sf_plain_hash(source->path, NULL, SF_PLAIN_TEXT, &test->file, err));
@@ -187,13 +187,11 @@ static sf_status take_test(const sf_config *config, sf_config_item *entry,
     snprintf(test->interpretation, sizeof test->interpretation, "%s: %.500s", source->path,
              read.interpretation);
     if (test->loading < LEAST_POINTS)
-        sf_config_refuse(config, config_setting_get_member(entry, "file"), err,
-                         "%s: loading from a strain of %.3g to %.3g holds %d of the points %g apart that are "
-                         "compared; at least %d are needed",
-                         source->path, read.strain[0], read.largest_strain, test->loading, GRID,
-                         LEAST_POINTS);
-    sf_compression_test_free(&read);
-    SF_TRY(err->status);
+        return sf_config_refuse(
+            config, config_setting_get_member(entry, "file"), err,
+            "%s: loading from a strain of %.3g to %.3g holds %d of the points %g apart that are "
+            "compared; at least %d are needed",
+            source->path, read.strain[0], read.largest_strain, test->loading, GRID, LEAST_POINTS);
     joint->rows += test->count;
     joint->test_count++;
     return SF_OK;
@@ -211,8 +209,7 @@ static sf_status read_test(const sf_config *config, sf_config_item *entry, sf_jo
     SF_TRY(sf_config_file(config, entry, "file", true, &path, err));
     source.path = path;
     test->rate = source.rate;
-    take_test(config, entry, &source, joint, err);
-    return err->status;
+    return take_test(config, entry, &source, joint, err);
 }
 
 /* ---- cushion curves ---- */
@@ -231,7 +228,7 @@ static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *e
                                               "peak|deceleration|acceleration|*beschleunigung|*verzögerung"},
                                     .kind = {SF_PRESSURE, SF_ACCELERATION},
                                     .unit = {0, SF_STANDARD_GRAVITY}};
-    sf_table table;
+    SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count > SF_JOINT_POINTS)
         SF_FAIL(err, SF_ERR_INPUT, "%s: %lld points; at most %d are taken", path, (long long)table.count,
@@ -248,7 +245,6 @@ static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *e
     }
     snprintf(out->interpretation, sizeof out->interpretation, "%s: %.383s, %d points", path,
              table.interpretation, out->count);
-    sf_table_free(&table);
     return err->status;
 }
 

@@ -191,14 +191,12 @@ static const double RATE_REFERENCE = 1;     /* s-1, the same; drops are far abov
 sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err) {
     double solid = form->solid_density, foam = form->base.density;
     if (!(solid >= LEAST_SOLID && solid <= MOST_SOLID))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3", solid,
-                       LEAST_SOLID, MOST_SOLID);
+        return SF_REFUSE(err, "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3",
+                         solid, LEAST_SOLID, MOST_SOLID);
     if (!(foam < MOST_FRACTION * solid))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than half solid", solid,
-            foam);
+        return SF_REFUSE(
+            err, "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than half solid",
+            solid, foam);
     return SF_OK;
 }
 
@@ -256,6 +254,37 @@ int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARA
             usual[count++] = form->curve->entry[k].parameter;
     usual[count++] = SF_PARAMETER_ED;
     return count;
+}
+
+static sf_config_item *given_fraction(sf_config_item *holder) {
+    sf_config_item *start = config_setting_get_member(holder, "start");
+    return start ? config_setting_get_member(start, "solid_fraction") : NULL;
+}
+
+sf_status sf_foam_form_check_fraction(const sf_config *config, sf_config_item *root, sf_config_item *model,
+                                      const char *key, const sf_foam_form *form, int unknown_count,
+                                      const sf_foam_parameter *unknown, sf_error *err) {
+    sf_config_item *density = config_setting_get_member(root, "solid_density"),
+                   *given = given_fraction(model) ? given_fraction(model) : given_fraction(root);
+    bool known = density || given;
+    for (int k = 0; k < unknown_count; k++)
+        known = known || unknown[k] == SF_PARAMETER_SOLID_FRACTION;
+    if (density && model == root && !sf_curve_form_entry(form->curve, SF_PARAMETER_SOLID_FRACTION))
+        return sf_config_refuse(config, density, err,
+                                "solid_density is given, but curve_form = \"%s\" has no solid fraction; "
+                                "leave it out, or take gas_solid",
+                                form->curve->name);
+    if (density && given)
+        return sf_config_refuse(config, given, err,
+                                "the solid fraction is given twice: by solid_density, which makes it %.3g, "
+                                "and as solid_fraction in start",
+                                form->base.density / form->solid_density);
+    if (form->curve == &sf_form_gas_solid && !known)
+        return sf_config_refuse(config, config_setting_get_member(model, key), err,
+                                "%s = \"gas_solid\" needs solid_density, the density of the solid in the "
+                                "cell walls, or solid_fraction among the unknown parameters",
+                                key);
+    return SF_OK;
 }
 
 sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_foam_parameter p, double *out,

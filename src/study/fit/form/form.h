@@ -113,7 +113,7 @@ enum {
 #define SF_CURVE_FORM(form) SF_CURVE_FORM_##form,
     SF_CURVE_FORM_LIST(SF_CURVE_FORM)
 #undef SF_CURVE_FORM
-    SF_CURVE_FORMS
+        SF_CURVE_FORMS
 };
 
 /* Returns an entry of the table, 0 <= index < SF_CURVE_FORMS. */
@@ -183,6 +183,12 @@ sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err);
 /* The key solid_density of a fit file, if it is there, with that check. */
 sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
                                   sf_error *err);
+/* Checks that the solid fraction is known in one way, where the form has one: by solid_density in `root`, as
+ * solid_fraction in the `start` of `root` or of the `model` in it, or as one of the unknowns. `key`: of the
+ * form in `model`. */
+sf_status sf_foam_form_check_fraction(const sf_config *config, sf_config_item *root, sf_config_item *model,
+                                      const char *key, const sf_foam_form *form, int unknown_count,
+                                      const sf_foam_parameter *unknown, sf_error *err);
 /* The start value (SI) of a parameter in the group that has it. */
 sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_foam_parameter parameter,
                             double *out, sf_error *err);

@@ -128,8 +128,6 @@ static void walk_on(const walk *w, int steps, walker *c) {
     }
 }
 
-/* ---- start ---- */
-
 /* Puts the walker at a draw of the proposal, stretched, or at its centre; at.density is not finite if neither
  * has a density. */
 static void place(const walk *w, walker *c) {
@@ -274,8 +272,6 @@ double sf_effective_size(int chains, int count, const double *x) {
     }
     return fmin(all / fmax(sum - 1, 1e-3), all * log10(all));
 }
-
-/* ---- all chains ---- */
 
 sf_chains_options sf_chains_defaults(uint64_t seed) {
     return (sf_chains_options){.chains = 4,
@@ -464,8 +460,6 @@ static sf_status sample(work *w, sf_error *err) {
     }
     return err->status;
 }
-
-/* ---- the whole ---- */
 
 static sf_status allocate(work *w, sf_error *err) {
     sf_chains *r = w->out;
