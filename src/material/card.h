@@ -125,9 +125,8 @@ typedef struct sf_law {
     /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. Stress, energies, and
      * the stiffness bounds for the time step. */
     void (*update)(const void *numbers, double dt, struct sf_law_batch *batch);
-    /* Puts the rates of a card, and of its curves, at which a pad of this temperature (K) is as stiff as in
-     * the card's data, in place of theirs: divides them by the shift, which it returns. 0: the card has none;
-     * NaN: it does not reach so far; then the card stays. */
+    /* Divides the rates of a card and of its curves by the shift of a pad at this temperature (K), which it
+     * returns; 0: the card has none; NaN: it does not reach so far. */
     double (*shift)(void *card, sf_law_curves *curves, double temperature);
     /* Advances the history [SF_LAW_HISTORY] of points over a pause (s) at rest. */
     void (*rest)(const void *numbers, double pause, double (*history)[SF_LANES]);
