@@ -101,9 +101,6 @@ typedef struct sf_case {
     double *motion_time;          /* [motion_count] s; owned until moved into a model, like the next */
     double *motion_displacement;  /* [motion_count] m, along the direction */
     sf_run_options run;
-    double drops;                      /* -, of a series on one pad, a whole number; 1: a single drop */
-    double interval;                   /* s, from one of them to the next; 0: not given */
-    sf_case_drop drop[SF_SERIES_MOST]; /* of a series; interval of each from the second on */
     int frame_time_count;                 /* further frames, beside run.frame_interval */
     double frame_time[SF_CASE_MAX_TIMES]; /* s, ascending */
     char about[3][SF_CASE_NAME_SIZE]; /* sample, laboratory, conditions: words for the report; "": not given */
@@ -114,6 +111,9 @@ typedef struct sf_case {
     int membrane_count;                    /* surface groups with a cover without cells */
     char membrane_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     sf_membrane_card membrane_card;
+    double drops;                      /* -, of a series on one pad, a whole number; 1: a single drop */
+    double interval;                   /* s, from one of them to the next; 0: not given */
+    sf_case_drop drop[SF_SERIES_MOST]; /* of a series; interval of each from the second on */
 } sf_case;
 
 /* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in

@@ -110,8 +110,7 @@ static sf_status shift_rates(const sf_case_reader *reader, sf_error *err) {
         return SF_OK;
     reader->out->temperature_acts = true;
     if (reader->thermal)
-        return REFUSE("material.shift", "the material has curves at several temperatures, too; the pad's "
-                                        "temperature would act twice");
+        return REFUSE("material.shift", "the curves have temperatures, too: the pad's would act twice");
     if (isnan(shift))
         return REFUSE("material.shift",
                       "at pad.temperature, %g degC, the rates are shifted by more than 6 decades or, below "

@@ -254,8 +254,8 @@ static void put_series(FILE *page, const overlay *o) {
         page,
         "series.csv has them too. What a material remembers is as good as its data: see material.memory.%s",
         differ ? " The drops differ in speed, mass or place: what grows over the first is not the foam's "
-                          "softening alone."
-                        : "");
+                 "softening alone."
+               : "");
     put_pads(page, o);
 }
 
