@@ -177,8 +177,7 @@ static sf_status find_lengths(likelihood *l, sf_error *err) {
 static sf_status fit_lengths(sf_predictor *p, const double *y, sf_error *err) {
     int n = p->count < MOST_FOR_LENGTHS ? p->count : MOST_FOR_LENGTHS;
     double *x = sf_alloc(err, (unsigned long)n, (unsigned long)(p->inputs + 1) * sizeof *x, "a predictor");
-    if (!x)
-        return err->status;
+    SF_TRY(err->status);
     double *part = x + (long)n * p->inputs;
     for (int k = 0; k < n; k++) {
         int from = (int)((long)k * p->count / n);
@@ -213,8 +212,7 @@ static sf_status calibrate(sf_predictor *p, sf_error *err) {
     if (p->count < LEAST_FOR_CALIBRATION)
         return SF_OK;
     double *z = sf_alloc(err, n, (n + 1) * sizeof *z, "a predictor"), squares = 0;
-    if (!z)
-        return err->status;
+    SF_TRY(err->status);
     gsl_matrix_view inverse = gsl_matrix_view_array(z + n, n, n);
     gsl_matrix_memcpy(&inverse.matrix, p->factor);
     gsl_linalg_cholesky_invert(&inverse.matrix);
