@@ -19,13 +19,13 @@ static bool is_number(const sf_parameter *p) {
     return p->kind == SF_PARAMETER_NUMBER || p->kind == SF_PARAMETER_QUANTITY;
 }
 
-/* The number of a default in libconfig syntax; the word's for a word. */
+/* The number of a default in libconfig syntax; the word's for a word, 0 of what may be absent. */
 static double default_of(const sf_parameter *p) {
     double value = 0;
     sf_error err = SF_ERROR_INIT;
     sf_units *units = NULL;
     char text[128];
-    if (p->kind == SF_PARAMETER_NUMBER)
+    if (p->kind == SF_PARAMETER_NUMBER || !*p->fallback)
         return strtod(p->fallback, NULL);
     assert_true(p->fallback[0] == '"');
     snprintf(text, sizeof text, "%.*s", (int)strlen(p->fallback) - 2, p->fallback + 1);

@@ -269,6 +269,10 @@ static void fields_are_those_of_the_frames(void **state) {
         snprintf(path, sizeof path, "/frames/%s/%s", last, field[k].name);
         assert_non_null(values);
         assert_int_equal(softfall_drop_field(p->drop, field[k].name, values, size, &error), SOFTFALL_OK);
+        if (strcmp(field[k].name, "softening") == 0) { /* of later drops only */
+            free(values);
+            continue;
+        }
         assert_int_equal(softfall_drop_field(p->drop, field[k].name, values, size - 1, &error),
                          SOFTFALL_INPUT);
         if (sf_h5_read(file, path, SF_H5_F64, dims[1] > 1 ? 2 : 1, dims, &expected, &err) != SF_OK)

@@ -5,6 +5,9 @@
 #include "program_fixture.h"
 #include "run_fixture.h"
 
+#include "base/units.h"
+#include "material/laws.h"
+#include "model/model_io.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,6 +30,9 @@ static program_result make_model(const program_place *p, const char *name, const
         "--set material.memory.recovery=0.1 --set material.memory.permanent=0.2 %s",
         fixture_source(EXAMPLE), name, coarse, fixture_source("tests/materials/eva35_first.cfg"), more);
 }
+
+static const char *const WHOLE =
+    "--set geometry.parameters.quarter=0 --set geometry.missile_parameters.quarter=0";
 
 static int set_up(void **state) {
     const program_place *p = program_group_set_up(state);
@@ -105,7 +111,7 @@ static void expect(program_result r, const char *words) {
 static void wrong_series_are_refused(void **state) {
     const program_place *p = *state;
     expect(make_model(p, "x.h5", "--set series.drops=2.5 --set series.interval='\"90 s\"'"), "whole number");
-    expect(make_model(p, "x.h5", "--set series.drops=2"), "needs series.interval");
+    expect(make_model(p, "x.h5", "--set series.drops=2"), "or series.interval");
     expect(make_model(p, "x.h5", "--set series.interval='\"90 s\"'"), "belongs to a series");
     expect(make_model(p, "x.h5", "--set series.drops=2 --set series.interval='\"0 s\"'"), "series.interval");
     expect(make_model(
@@ -143,11 +149,178 @@ static void another_pad_is_refused(void **state) {
     expect(program_run(p, "post", "series s.h5 s-3.h5 -o x"), "not drop 2");
 }
 
+/* A number of a CSV row by the name of its column. */
+static double column_of(const char *csv, int row, const char *name) {
+    int column = 0;
+    const char *at = csv;
+    for (; strncmp(at, name, strlen(name)) != 0 || !strchr(",\n", at[strlen(name)]); at = strchr(at, ',') + 1)
+        column++;
+    return number(csv, row, column);
+}
+
+/* Each drop of the list is that of a model made for it alone, and begins where the one before has left the
+ * pad. */
+static void drops_of_a_list_are_their_own(void **state) {
+    const program_place *p = *state;
+    char more[512];
+    snprintf(more, sizeof more,
+             "%s --set series.drops='( {}, { velocity = \"3.5 m/s\"; position = [\"40 mm\", \"0 mm\"]; "
+             "interval = \"5 s\"; }, { mass = \"3 kg\"; } )' --set series.interval='\"90 s\"'",
+             WHOLE);
+    assert_int_equal(make_model(p, "list.h5", more).code, 0);
+    snprintf(more, sizeof more,
+             "%s --set missile.velocity='\"3.5 m/s\"' --set missile.position='[\"40 mm\", \"0 mm\"]'", WHOLE);
+    assert_int_equal(make_model(p, "aside.h5", more).code, 0);
+    program_succeed(p, "solve", "list.h5 -o l.h5 --threads 2");
+    program_succeed(p, "solve", "aside.h5 -o a-2.h5 --start-from l.h5 --pause '5 s' --threads 1");
+    assert_same_drop(p, "l-2.h5", "a-2.h5");
+    program_shell(p, "mv l-3.h5 kept.h5; rm l-3.h5.restart");
+    program_succeed(p, "solve", "--restart l.h5 --threads 1");
+    run_assert_same(p, "kept.h5", "l-3.h5");
+    program_succeed(p, "post", "series l.h5 -o listed");
+    program_bytes csv = program_read_file(program_path(p, "listed/series.csv"));
+    assert_true(column_of(csv.data, 2, "v0_m_s") == 3.5 && column_of(csv.data, 3, "v0_m_s") == 4.5);
+    assert_true(fabs(column_of(csv.data, 2, "x_mm") - column_of(csv.data, 1, "x_mm") - 40) < 0.5);
+    assert_true(column_of(csv.data, 2, "pause_s") == 5 && column_of(csv.data, 3, "pause_s") == 90);
+    free(csv.data);
+    program_assert_page(p, "listed/report.html", "The pad before the drop");
+    program_assert_page(p, "listed/report.html", "differ in speed, mass or place");
+    program_shell(p, "cp aside.h5 list-3.h5; rm l-3.h5 l-3.h5.restart");
+    expect(program_run(p, "solve", "--restart l.h5"), "is not the model of drop 3");
+    program_shell(p, "rm list-3.h5");
+    expect(program_run(p, "solve", "--restart l.h5"), "list-3.h5");
+}
+
+/* The softening at the start is (1 - q) of what unloading has kept back at the largest energy; recovery takes
+ * of it, and where the missile was it is largest. */
+static void first_frame_shows_what_is_left(void **state) {
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    double *now = NULL, *rested = NULL, largest = 0;
+    int64_t count = -1;
+    sf_h5 *second = program_open_h5(p, "s-2.h5"), *first = program_open_h5(p, "s.h5");
+    program_succeed(p, "solve",
+                    "single.h5 -o late.h5 --start-from s.h5 --pause '8 hour' --end-time '0.2 ms'");
+    sf_h5 *late = program_open_h5(p, "late.h5");
+    assert_false(sf_h5_exists(first, "/frames/000000/softening"));
+    assert_int_equal(
+        sf_h5_read(second, "/frames/000000/softening", SF_H5_F64, 1, &count, (void **)&now, &err), SF_OK);
+    assert_int_equal(
+        sf_h5_read(late, "/frames/000000/softening", SF_H5_F64, 1, &count, (void **)&rested, &err), SF_OK);
+    /* q is reload plus what recovery gives back of the rest: log10(1 + t / 1 s) decades, 0.1 each */
+    double fresh = 1 - 0.1 * log10(1 + 90), later = 1 - 0.1 * log10(1 + 8 * 3600.0);
+    for (int64_t k = 0; k < count; k++) {
+        largest = fmax(largest, now[k]);
+        assert_true(now[k] >= 0 && fabs(rested[k] * fresh - now[k] * later) <= 1e-9 * now[k]);
+    }
+    assert_true(largest > 1e4);
+    free(now);
+    free(rested);
+    sf_h5_close(&first, &err);
+    sf_h5_close(&second, &err);
+    sf_h5_close(&late, &err);
+}
+
+static void expect_list(const program_place *p, const char *list, const char *words) {
+    char more[512];
+    snprintf(more, sizeof more, "--set series.drops='%s'", list);
+    expect(make_model(p, "x.h5", more), words);
+    assert_int_not_equal(access(program_path(p, "x.h5"), F_OK), 0);
+    assert_int_not_equal(access(program_path(p, "x-2.h5"), F_OK), 0);
+}
+
+static void wrong_lists_are_refused(void **state) {
+    const program_place *p = *state;
+    expect_list(p, "( {}, {} )", "or series.interval");
+    expect_list(p, "( { interval = \"9 s\"; }, { interval = \"9 s\"; } )", "nothing was before the first");
+    expect_list(p, "( {}, 3 )", "drop 2 is a plain number");
+    expect_list(p, "( )", "at least 1");
+    expect_list(p, "( {}, { interval = \"0 s\"; } )", "series.interval");
+    expect_list(p, "( {}, { interval = 9; } )", "series.interval");
+    expect_list(p, "( {}, { interval = \"9 s\"; speed = \"3 m/s\"; } )", "unknown key \"speed\"");
+    expect_list(p, "( {}, { interval = \"9 s\"; velocity = \"3 kg\"; } )", "missile.velocity");
+    expect_list(p, "( {}, { interval = \"9 s\"; velocity = \"-3 m/s\"; } )", "missile.velocity");
+    expect_list(p, "( {}, { interval = \"9 s\"; position = [\"30 mm\", \"0 mm\"]; } )", "symmetry plane");
+    expect_list(p, "( {}, { interval = \"9 s\"; position = [\"9 m\", \"0 mm\"]; } )", "missile.position");
+    assert_int_equal(make_model(p, "one.h5", "--set series.drops='( { velocity = \"4.5 m/s\"; } )'").code, 0);
+    program_succeed(p, "solve", "one.h5 -o one-of-list.h5 --threads 1");
+    assert_same_drop(p, "s.h5", "one-of-list.h5");
+}
+
+/* A drop of a mass on a column of the material, whose point goes on; returns the largest specific force (g).
+ */
+static double drop_on_column(const sf_material_law *law, sf_uniaxial *point) {
+    const double thickness = 0.05, area = 0.05 * 0.05, mass = 0.8, dt = 2e-6;
+    double x = 0, v = 4, most = 0;
+    while (x >= 0) {
+        x += dt * v;
+        double force = area * law->law->uniaxial(law->numbers, dt, fmax(0, x / thickness), point);
+        v += dt * (SF_STANDARD_GRAVITY - force / mass);
+        most = fmax(most, force / mass);
+    }
+    return most / SF_STANDARD_GRAVITY;
+}
+
+static void rest_column(const sf_material_law *law, double pause, sf_uniaxial *point) {
+    double rows[SF_LAW_HISTORY][SF_LANES] = {{0}};
+    law->law->uniaxial(law->numbers, 1, 0, point);
+    for (int k = 0; k < SF_LAW_HISTORY; k++)
+        rows[k][0] = point->history[k];
+    law->law->rest(law->numbers, pause, rows);
+    for (int k = 0; k < SF_LAW_HISTORY; k++)
+        point->history[k] = rows[k][0];
+}
+
+/* A platen on a cube of this foam, which does not bulge, has one strain everywhere but for its inertia (4 g
+ * of 0.8 kg) and for DAMP: three drops of it are those of a mass on a point of the law. */
+static void drops_on_a_cube_are_those_of_a_column(void **state) {
+    const program_place *p = *state;
+    char text[4096], root[1024];
+    sf_model m = {0};
+    sf_error err = SF_ERROR_INIT;
+    sf_material_law law;
+    sf_uniaxial point = {0};
+    snprintf(root, sizeof root, "%s", fixture_source(""));
+    snprintf(
+        text, sizeof text,
+        "geometry: { file = \"%s/geo/cube.geo\"; missile_file = \"%s/geo/platen.geo\"; length_unit = \"mm\";\n"
+        "parameters = { side = 50.0; spacing = 10.0; quarter = 1; }; missile_parameters = { side = 100.0; }; };\n"
+        "material: { density = \"35 kg/m3\"; E = \"0.4136 MPa\"; curve = \"%s/tests/materials/eva35_first.csv\"; "
+        "HU = 0.05; ALPHA = 0.5; DAMP = 0.05; memory = { reload = 0.4; drift = 0.2; recovery = 0.1; permanent = 0.2; }; };\n"
+        "missile: { mass = \"0.8 kg\"; velocity = \"4 m/s\"; friction = 0.5; shape = \"surface\"; };\n"
+        "series: { drops = 3; interval = \"90 s\"; };\nsolver: { end_time = \"40 ms\"; };\n"
+        "pad: { mesh_error_limit = 1.0; };\n",
+        root, root, root);
+    program_write_text(p, "cube.cfg", text);
+    program_succeed(p, "pre", "cube.cfg -o cube.h5");
+    program_succeed(p, "solve", "cube.h5 -o cube-r.h5 --threads 1");
+    program_succeed(p, "post", "series cube-r.h5 -o cube");
+    program_bytes csv = program_read_file(program_path(p, "cube/series.csv"));
+    assert_int_equal(sf_model_read(program_path(p, "cube.h5"), &m, NULL, &err), SF_OK);
+    assert_int_equal(sf_material_law_build(&m.material[0], &law, &err), SF_OK);
+    for (int k = 1; k <= 3; k++) {
+        if (k > 1)
+            rest_column(&law, 90, &point);
+        double column = drop_on_column(&law, &point), drop = column_of(csv.data, k, "a_max_g");
+        print_message("drop %d: %.2f g, column %.2f g\n", k, drop, column);
+        assert_true(fabs(drop / column - 1) < 0.03);
+    }
+    free(csv.data);
+    sf_material_law_free(&law);
+    sf_model_free(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(later_drops_are_harder),        cmocka_unit_test(bits_are_those_of_single_runs),
-        cmocka_unit_test(a_series_goes_on_where_it_was), cmocka_unit_test(wrong_series_are_refused),
+        cmocka_unit_test(later_drops_are_harder),
+        cmocka_unit_test(bits_are_those_of_single_runs),
+        cmocka_unit_test(a_series_goes_on_where_it_was),
+        cmocka_unit_test(wrong_series_are_refused),
         cmocka_unit_test(another_pad_is_refused),
+        cmocka_unit_test(drops_of_a_list_are_their_own),
+        cmocka_unit_test(first_frame_shows_what_is_left),
+        cmocka_unit_test(wrong_lists_are_refused),
+        cmocka_unit_test(drops_on_a_cube_are_those_of_a_column),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -4,6 +4,7 @@
 #include "program_fixture.h"
 
 #include "material/foam_card.h"
+#include "material/laws.h"
 #include "model/model_io.h"
 #include <math.h>
 #include <setjmp.h>
@@ -12,18 +13,24 @@
 #include <string.h>
 #include <cmocka.h>
 
-static program_result make(const program_place *p, const char *curves, const char *temperature) {
+static program_result make_of(const program_place *p, const char *material, const char *temperature) {
     char text[2048];
     snprintf(
         text, sizeof text,
         "geometry: { file = \"geo/pad.geo\"; missile_file = \"geo/hemisphere.geo\"; length_unit = \"mm\";\n"
         "parameters = { fine_spacing = 20.0; outer_spacing = 25.0; }; };\n"
-        "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = ( %s ); };\n"
+        "material: { density = \"35 kg/m3\"; %s };\n"
         "pad: { mesh_error_limit = 10.0; %s };\nmissile: { mass = \"4.6 kg\"; velocity = \"2 m/s\"; };\n"
         "solver: { end_time = \"1 ms\"; };\n",
-        curves, temperature);
+        material, temperature);
     program_write_text(p, "t.cfg", text);
     return program_run(p, "pre", "t.cfg -o t.h5 --force");
+}
+
+static program_result make(const program_place *p, const char *curves, const char *temperature) {
+    char material[1024];
+    snprintf(material, sizeof material, "E = \"0.4 MPa\"; curves = ( %s );", curves);
+    return make_of(p, material, temperature);
 }
 
 /* The cold curve is 4 times the warm one, and longer, with other strains. */
@@ -31,6 +38,7 @@ static int set_up(void **state) {
     program_group_example(state);
     const program_place *p = *state;
     program_write_text(p, "cold.csv", "strain,stress_kPa\n0,0\n0.1,80\n0.5,160\n0.7,400\n0.8,800\n");
+    program_write_text(p, "quick.csv", "strain,stress_kPa\n0,0\n0.05,20\n0.1,45\n0.5,70\n0.7,210\n");
     program_write_text(p, "warm.csv", "strain,stress_kPa\n0,0\n0.05,10\n0.1,20\n0.5,40\n0.7,100\n");
     return 0;
 }
@@ -94,10 +102,119 @@ static void what_the_data_do_not_say_is_refused(void **state) {
            "no curves at several temperatures");
 }
 
+/* ---- the shift of rates ---- */
+
+#define RATES                                                                                                           \
+    "E = \"0.4 MPa\"; ED = \"0.3 MPa\"; BETA1 = \"40 1/s\"; eta = \"20 Pa s\"; HU = 0.2; rate_filter_time = \"1 ns\"; " \
+    "curves = ( { rate = \"0.5 1/s\"; file = \"warm.csv\"; }, { rate = \"50 1/s\"; file = \"quick.csv\"; } ); "
+#define TERMS                                                                                                \
+    "law = \"hyperfoam\"; term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; HU = 0.3; rate_factor = 0.2; "         \
+    "rate_reference = \"0.5 1/s\"; rate_filter_time = \"1 ns\"; "
+static const char WLF[] = "shift = { C1 = 8.0; C2 = \"120 K\"; T_ref = \"23 degC\"; };",
+                  ARRHENIUS[] = "shift = { E_a = \"60 kJ/mol\"; T_ref = \"23 degC\"; };";
+
+/* The uniaxial stress of a material along a path, whose times are all multiplied by `slower`. */
+static void follow(const sf_model *m, double slower, double stress[40]) {
+    sf_material_law law;
+    sf_error err = SF_ERROR_INIT;
+    sf_uniaxial point = {0};
+    double strain = 0;
+    assert_int_equal(sf_material_law_build(&m->material[0], &law, &err), SF_OK);
+    for (int k = 0; k < 40; k++) {
+        strain += 0.05 * sin(0.3 * k) * (1 + 0.2 * (k % 3));
+        stress[k] =
+            law.law->uniaxial(law.numbers, slower * 1e-3 * (1 + k % 5), fmin(0.65, fmax(strain, 0)), &point);
+    }
+    sf_material_law_free(&law);
+}
+
+/* At T a path has the stresses of the same path at T_ref, run through `shift` times as fast. */
+static void assert_shifts(const program_place *p, const char *material, const char *law, double shift) {
+    sf_model there = {0}, here = {0};
+    sf_error err = SF_ERROR_INIT;
+    double a[40], b[40], c[40];
+    char text[1024];
+    snprintf(text, sizeof text, "%s %s", material, law);
+    assert_int_equal(make_of(p, text, "").code, 0);
+    assert_int_equal(sf_model_read(program_path(p, "t.h5"), &here, NULL, &err), SF_OK);
+    program_result r = make_of(p, text, "temperature = \"5 degC\";");
+    assert_int_equal(r.code, 0);
+    assert_non_null(strstr(r.err, "a rate at 5 degC acts as"));
+    assert_int_equal(sf_model_read(program_path(p, "t.h5"), &there, NULL, &err), SF_OK);
+    assert_true(there.run.temperature == 278.15 && here.run.temperature == 0);
+    follow(&there, 1, a);
+    follow(&here, 1 / shift, b);
+    follow(&here, 1, c);
+    double differ = 0;
+    for (int k = 0; k < 40; k++) {
+        assert_true(fabs(a[k] - b[k]) <= 1e-9 * (1e3 + fabs(b[k])));
+        differ = fmax(differ, fabs(a[k] / c[k] - 1));
+    }
+    assert_true(differ > 0.05);
+    sf_model_free(&there);
+    sf_model_free(&here);
+}
+
+static void a_shift_of_the_rate_is_one_of_time(void **state) {
+    const program_place *p = *state;
+    double arrhenius = exp(60e3 / 8.31446261815324 * (1 / 278.15 - 1 / 296.15));
+    assert_shifts(p, RATES, WLF, pow(10, 8.0 * 18 / (120 - 18)));
+    assert_shifts(p, RATES, ARRHENIUS, arrhenius);
+    assert_shifts(p, TERMS, ARRHENIUS, arrhenius);
+}
+
+static void a_shift_needs_rates_and_a_place(void **state) {
+    const program_place *p = *state;
+    static const char at[] = "temperature = \"5 degC\";";
+    expect(make_of(p, RATES "shift = { C1 = 8.0; T_ref = \"23 degC\"; };", at), "both C1 and C2");
+    expect(make_of(p, RATES "shift = { C1 = 8.0; C2 = \"120 K\"; };", ""), "needs T_ref");
+    expect(make_of(p, RATES "shift = { T_ref = \"23 degC\"; };", at), "needs T_ref, and with it");
+    expect(make_of(p, RATES "shift = { C1 = 8.0; C2 = \"51 K\"; E_a = \"60 kJ/mol\"; T_ref = \"23 degC\"; };",
+                   at),
+           "one of the two");
+    expect(make_of(p, RATES "shift = { C1 = 8.0; C2 = \"51.6 degC\"; T_ref = \"23 degC\"; };", at),
+           "out of bounds");
+    expect(make_of(p, RATES "shift = { E_a = \"60 kJ\"; T_ref = \"23 degC\"; };", at),
+           "an activation energy");
+    expect(make_of(p, RATES "shift = { C1 = 8.0; C2 = \"20 K\"; T_ref = \"23 degC\"; };",
+                   "temperature = \"0 degC\";"),
+           "6 decades");
+    expect(make_of(p, RATES "shift = { E_a = \"900 kJ/mol\"; T_ref = \"23 degC\"; };", at), "6 decades");
+    expect(
+        make_of(
+            p,
+            "E = \"0.4 MPa\"; curve = \"warm.csv\"; shift = { E_a = \"60 kJ/mol\"; T_ref = \"23 degC\"; };",
+            at),
+        "moves nothing");
+    char both[1024];
+    snprintf(both, sizeof both, "E = \"0.4 MPa\"; ED = \"1 kPa\"; BETA1 = \"9 1/s\"; curves = ( %s ); %s",
+             TWO, ARRHENIUS);
+    expect(make_of(p, both, at), "act twice");
+}
+
+static void a_rate_outside_the_data_is_told(void **state) {
+    const program_place *p = *state;
+    static const char fast[] = "shift = { E_a = \"200 kJ/mol\"; T_ref = \"23 degC\"; };";
+    char text[1024];
+    snprintf(text, sizeof text, "%s %s", RATES, fast);
+    assert_int_equal(make_of(p, text, "temperature = \"49 degC\";").code, 0); /* 0.5 1/s becomes 345 1/s */
+    program_result r = program_run(p, "solve", "t.h5 -o t-warm.h5 --force");
+    assert_int_equal(r.code, 0);
+    assert_non_null(strstr(r.err, "at 49 degC the rate of the impact"));
+    assert_non_null(strstr(r.err, "below the lowest"));
+    assert_int_equal(make_of(p, text, "temperature = \"5 degC\";").code, 0);
+    assert_non_null(strstr(program_run(p, "solve", "t.h5 -o t-cold.h5 --force").err, "above the highest"));
+    assert_int_equal(make_of(p, text, "").code, 0);
+    assert_null(strstr(program_run(p, "solve", "t.h5 -o t-plain.h5 --force").err, "rate of the impact"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stresses_lie_between_by_their_logarithm),
         cmocka_unit_test(what_the_data_do_not_say_is_refused),
+        cmocka_unit_test(a_shift_of_the_rate_is_one_of_time),
+        cmocka_unit_test(a_shift_needs_rates_and_a_place),
+        cmocka_unit_test(a_rate_outside_the_data_is_told),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -169,6 +169,8 @@ static void every_name_of_the_table_is_a_unit(void **state) {
                  {"pressure", SF_PRESSURE},
                  {"voltage", SF_VOLTAGE},
                  {"temperature", SF_TEMPERATURE},
+                 {"energy", SF_MOLAR_ENERGY},
+                 {"amount", SF_MOLAR_ENERGY},
                  {"angle", SF_ANGULAR_VELOCITY}};
     char *table = NULL, *rest, kind[16] = "";
     size_t size = 0;
@@ -186,8 +188,12 @@ static void every_name_of_the_table_is_a_unit(void **state) {
             sf_error err = SF_ERROR_INIT;
             while (k + 1 < sizeof kinds / sizeof *kinds && strcmp(kinds[k].kind, kind) != 0)
                 k++;
-            snprintf(text, sizeof text, "1 %.*s%s", (int)strcspn(name + 1, "`"), name + 1,
-                     kinds[k].quantity == SF_ANGULAR_VELOCITY ? "/s" : "");
+            bool amount = strcmp(kinds[k].kind, "amount") == 0;
+            snprintf(text, sizeof text, "1 %s%.*s%s", amount ? "J/" : "", (int)strcspn(name + 1, "`"),
+                     name + 1,
+                     kinds[k].quantity == SF_ANGULAR_VELOCITY          ? "/s"
+                     : kinds[k].quantity == SF_MOLAR_ENERGY && !amount ? "/mol"
+                                                                       : "");
             if (sf_units_parse(*state, text, kinds[k].quantity, &value, &err) != SF_OK || !(value > 0))
                 fail_msg("%s: %s", text, err.text);
             names++;

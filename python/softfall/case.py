@@ -175,7 +175,7 @@ class Case(MutableMapping[str, Any]):
                 except BlockingIOError:
                     warnings.warn(f"another process runs the drop in {folder}: this one waits for it", SoftfallWarning, stacklevel=2)
                     fcntl.flock(lock, fcntl.LOCK_EX)
-                return _solve(model, folder, int(self["series.drops"]), threads, on_step, force, lock.fileno())
+                return _solve(model, folder, threads, on_step, force, lock.fileno())
 
     def _name(self) -> str:
         generic = self.path.stem == "case"
@@ -228,19 +228,24 @@ def _checkpoint(results: Path) -> Path:
     return results.with_name(results.name + ".restart")
 
 
-def _solve(model: Path, folder: Path, drops: int, threads: int | None, on_step: Callable[[Step], object] | None, force: bool,
-           lock: int) -> Drop:
-    """Moves the model into the folder and solves it there, unless that is done; resumes a run of it, also within a series of drops."""
+def _solve(model: Path, folder: Path, threads: int | None, on_step: Callable[[Step], object] | None, force: bool, lock: int) -> Drop:
+    """Moves the model, and those of later drops of a series, into the folder and solves it there, unless that is done; resumes a run
+    of it, also within a series."""
+    with h5py.File(model, "r") as file:
+        drops = max(1, int(file["series/count"][()]))
     files = [later_results(folder / "results.h5", number) for number in range(1, drops + 1)]
-    ours, revision = _state(model)["model"], library.version().split("(")[1].rstrip(")")
+    models = [own if (own := later_results(model, number)).exists() else model for number in range(1, drops + 1)]
+    ours, revision = [_state(path)["model"] for path in models], library.version().split("(")[1].rstrip(")")
     states, built = [_state(path) for path in files], _state(folder / "model.h5")
-    strange = _checkpoint(files[0]).exists() and not built or any(state and state["model"] != ours for state in (*states, built))
+    strange = _checkpoint(files[0]).exists() and not built or any(state and state["model"] != own for state, own in
+                                                                  zip((*states, built), (*ours, ours[0])))
     if strange and not force:
         raise InputError(f"{folder} holds a run of other values; force=True replaces it, another output keeps it")
     done = [state.get("status") in ("finished", "rebound") and state.get("revision") == revision for state in states]
     if all(done) and not force:
         return Drop(files[0], folder / "out")
-    shutil.move(model, folder / "model.h5")
+    for path in dict.fromkeys(models):
+        shutil.move(path, folder / path.name)
     first = done.index(False) if not force else 0
     resumes = not force and _checkpoint(files[first]).exists() and states[first].get("status", "interrupted" if first == 0 else "") == "interrupted"
     if not resumes:

@@ -80,11 +80,11 @@ softfall_status softfall_drop_create(const softfall_model *model, const softfall
     sf_recorder_begin(&d->recorder);
     list_quantities(d);
     int before = enter(d);
-    if (d->model.run.drops > 1)
+    if (d->model.series_count > 1)
         SF_FAIL(
             &err, SF_ERR_INPUT,
-            "the model is a series of %g drops; the library solves single ones: softfall-solve has series",
-            d->model.run.drops);
+            "the model is a series of %lld drops; the library solves single ones: softfall-solve has series",
+            (long long)d->model.series_count);
     if (err.status == SF_OK && sf_model_check(&d->model, &err) == SF_OK &&
         sf_operators_build(&d->model, &d->operators, &err) == SF_OK)
         sf_state_create(&d->model, &d->state, &err);

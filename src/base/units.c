@@ -33,6 +33,7 @@ static const quantity_info quantities[SF_QUANTITY_COUNT] = {
     [SF_VOLTAGE] = {"a voltage", "V", "10 mV"},
     [SF_SENSITIVITY] = {"a sensitivity of an accelerometer", "V s2 m-1", "0.102 mV/(m/s2)"},
     [SF_TEMPERATURE] = {"a temperature", "K", "23 degC"},
+    [SF_MOLAR_ENERGY] = {"an activation energy", "J mol-1", "80 kJ/mol"},
     [SF_FORCE] = {"a force", "N", "2.5 kN"},
 };
 
@@ -95,6 +96,8 @@ static const struct {
     {"pressure", "pascal|pascals|kilopascal|kilopascals|megapascal|megapascals|psi|ksi", ""},
     {"pressure", "bar", "mk"},
     {"voltage", "V", "umk"},
+    {"energy", "J", "k"},
+    {"amount", "mol", ""},
     {"angle", "rad|radian|radians", ""},
 };
 enum { UNITS = sizeof unit_names / sizeof *unit_names, DEEPEST = 4 };

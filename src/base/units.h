@@ -31,6 +31,7 @@ typedef enum sf_quantity {
     SF_VOLTAGE,
     SF_SENSITIVITY,      /* of an accelerometer */
     SF_TEMPERATURE,      /* K, or degC of the scale that begins at 273.15 K */
+    SF_MOLAR_ENERGY,     /* of an activation */
     SF_ANGULAR_VELOCITY, /* last: UDUNITS takes a radian for 1, so that it has the dimension of a rate */
     SF_QUANTITY_COUNT,
 } sf_quantity;

@@ -44,6 +44,12 @@ typedef struct sf_case_support {
 enum { SF_BASE_GLUED, SF_BASE_SMOOTH, SF_BASE_RESTING }; /* pad.base, in the order of its words */
 enum { SF_SELF_CONTACT_AUTO, SF_SELF_CONTACT_ON, SF_SELF_CONTACT_OFF }; /* pad.self_contact, likewise */
 
+/* A drop of a series. */
+typedef struct sf_case_drop {
+    double interval; /* s, from the drop before */
+    bool own;        /* its missile is not that of the first drop, or falls another way */
+} sf_case_drop;
+
 typedef struct sf_case {
     char *path;       /* as given */
     char *text;       /* the case file with its includes in place, --set lines appended as comments; owned */
@@ -71,8 +77,7 @@ typedef struct sf_case {
     bool symmetry_given;
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
-    double temperature;                    /* K, of the pad; 0: not given */
-    bool temperature_acts;                 /* a material has curves at several temperatures */
+    bool temperature_acts;                 /* a material depends on the pad's temperature */
     int self_contact;                      /* SF_SELF_CONTACT_* */
     int64_t separate;                      /* 1: the pad may be of several bodies */
     bool stabilised;                       /* kernel.stabilisation is given */
@@ -117,6 +122,9 @@ typedef struct sf_case {
     int membrane_count; /* surface groups with a cover without cells */
     char membrane_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     sf_membrane_card membrane_card;
+    double drops;                      /* -, of a series on one pad, a whole number; 1: a single drop */
+    double interval;                   /* s, from one of them to the next; 0: not given */
+    sf_case_drop drop[SF_SERIES_MOST]; /* of a series; interval of each from the second on */
 } sf_case;
 
 /* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in

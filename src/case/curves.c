@@ -102,35 +102,33 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
 
 enum { MOST_CURVES = 64 };
 
-/* A new array with the bytes of both, one after the other. */
-static void *join(const void *a, size_t a_size, const void *b, size_t b_size, sf_error *err) {
-    char *both = sf_alloc(err, a_size + b_size, 1, "curves");
-    if (both && a_size > 0)
-        memcpy(both, a, a_size);
-    if (both)
-        memcpy(both + a_size, b, b_size);
-    return both;
+/* `array`: the address of a pointer from malloc, to `had` bytes. */
+static bool append(void *array, size_t had, const void *more, size_t bytes) {
+    void *before;
+    memcpy(&before, array, sizeof before);
+    char *grown = realloc(before, had + bytes);
+    if (!grown)
+        return false;
+    memcpy(grown + had, more, bytes);
+    memcpy(array, &grown, sizeof grown);
+    return true;
 }
 
 /* Appends a curve to the card's lists. */
 static sf_status add_curve(sf_law_curves *card, double rate, const sf_case_curve *curve, sf_error *err) {
-    size_t curves = (size_t)card->curve_count, points = (size_t)card->curve_points * sizeof(double),
-           more = (size_t)curve->count * sizeof(double), rows = curves > 0 ? curves + 1 : 0;
+    size_t curves = (size_t)card->curve_count * sizeof rate,
+           ends_before = curves > 0 ? curves + sizeof rate : 0,
+           points = (size_t)card->curve_points * sizeof rate, more = (size_t)curve->count * sizeof rate;
     const int64_t ends[2] = {0, card->curve_points + curve->count};
-    sf_law_curves all = {.curve_count = card->curve_count + 1,
-                         .curve_points = ends[1],
-                         .curve_rate = join(card->curve_rate, curves * sizeof rate, &rate, sizeof rate, err),
-                         .curve_ptr = join(card->curve_ptr, rows * sizeof *ends, &ends[rows > 0],
-                                           (rows > 0 ? 1 : 2) * sizeof *ends, err),
-                         .curve_strain = join(card->curve_strain, points, curve->strain, more, err),
-                         .curve_stress = join(card->curve_stress, points, curve->stress, more, err)};
-    if (err->status == SF_OK) {
-        sf_law_curves_free(card);
-        *card = all;
-    } else {
-        sf_law_curves_free(&all);
-    }
-    return err->status;
+    if (!append(&card->curve_rate, curves, &rate, sizeof rate) ||
+        !append(&card->curve_ptr, ends_before, &ends[curves > 0],
+                sizeof ends - (curves > 0 ? sizeof *ends : 0)) ||
+        !append(&card->curve_strain, points, curve->strain, more) ||
+        !append(&card->curve_stress, points, curve->stress, more))
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the curves of a material");
+    card->curve_count++;
+    card->curve_points = ends[1];
+    return SF_OK;
 }
 
 static const double STEEPEST = 1e12; /* Pa, as the bound on a modulus */
@@ -272,7 +270,7 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
  */
 static sf_status take_temperature(sf_case_reader *reader, const config_setting_t *setting, sf_error *err) {
     sf_law_curves *card = sf_material_curves(reader->material);
-    const double *t = card->curve_rate, at = reader->out->temperature;
+    const double *t = card->curve_rate, at = reader->out->run.temperature;
     int64_t last = card->curve_count - 1, k = 0;
     sf_case_curve curve = {0};
     if (last < 1 || at == 0)
@@ -295,7 +293,7 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
             reader->material_group, at - 273.15, t[k] - 273.15, t[k + 1] - 273.15);
         sf_law_curves_free(card);
         add_curve(card, 0, &curve, err);
-        reader->out->temperature_acts = true;
+        reader->out->temperature_acts = reader->thermal = true;
     }
     sf_case_curve_free(&curve);
     return err->status;

@@ -70,8 +70,8 @@ static const sf_key keys[] = {
     {"pad", "thickness_tolerance", SF_KEY_QUANTITY, "\"1 mm\"", AT(run.thickness_tolerance),
      "standard deviation of the thickness from pad to pad: it makes `a_max_scatter` and `hic_scatter` of the report, and changes no drop",
      .quantity = SF_LENGTH, .high = 1.0},
-    {"pad", "temperature", SF_KEY_QUANTITY, "", AT(temperature),
-     "of the pad, at which the law takes its curves among those of several temperatures (`material.curves`)",
+    {"pad", "temperature", SF_KEY_QUANTITY, "", AT(run.temperature),
+     "of the pad, at which the law takes its curves among those of several temperatures (`material.curves`), or its rates (`material.shift`)",
      .quantity = SF_TEMPERATURE, .low = 100.0, .high = 600.0},
     /* material: the law; its parameters follow (solver/material) */
     {"material", "law", SF_KEY_LAW, "", AT(material.law), "material law; its parameters follow"},
@@ -159,10 +159,11 @@ static const sf_key keys[] = {
     {"solver", "stop_after_rebound", SF_KEY_BOOL, "true", AT(run.stop_after_rebound),
      "end when the missile has left the pad upwards"},
     /* series */
-    {"series", "drops", SF_KEY_NUMBER, "1.0", AT(run.drops),
-     "number of drops on the same pad, one after the other; each has a results file of its own", .low = 1.0, .high = 20.0},
-    {"series", "interval", SF_KEY_QUANTITY, "", AT(run.interval),
-     "from one drop to the next, in which the pad recovers (`material.memory`); required with `drops` above 1",
+    {"series", "drops", SF_KEY_DROPS, "1.0", AT(drops),
+     "number of drops on the same pad, one after the other, each with a results file of its own; or a list of them, each a group of the `interval` before it and keys of the group `missile`, which hold for it instead of those there: ( { }, { interval = \"90 s\"; velocity = \"5 m/s\"; } )",
+     .low = 1.0, .high = SF_SERIES_MOST},
+    {"series", "interval", SF_KEY_QUANTITY, "", AT(interval),
+     "from one drop to the next, in which the pad recovers (`material.memory`); required for drops without an `interval` of their own",
      .quantity = SF_TIME, .low = 0.1, .high = 1e7},
     /* output */
     {"output", "acceleration", SF_KEY_CHOICE, "\"accelerometer\"", AT(kinematic),

@@ -31,6 +31,7 @@ typedef enum sf_key_kind {
     SF_KEY_LAW,        /* the name of a law: sf_case.material */
     SF_KEY_CURVE,      /* "curve.csv": the card's curves */
     SF_KEY_MOTION,     /* "motion.csv": the motion arrays */
+    SF_KEY_DROPS,      /* 3, or ( { velocity = "5 m/s"; }, ... ): double, their number; sf_case.drop */
     SF_KEY_CURVES,     /* ( { rate = "1 1/s"; file = "curve.csv"; }, ... ): likewise */
 } sf_key_kind;
 

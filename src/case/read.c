@@ -124,8 +124,9 @@ static sf_case_value_kind value_kind(const sf_key *key) {
                  {SF_KEY_FIELDS, SF_CASE_VALUE_LIST},     {SF_KEY_TIMES, SF_CASE_VALUE_LIST},
                  {SF_KEY_QUANTITIES, SF_CASE_VALUE_LIST}, {SF_KEY_VECTOR, SF_CASE_VALUE_LIST},
                  {SF_KEY_PLACE, SF_CASE_VALUE_LIST},      {SF_KEY_NUMBER, SF_CASE_VALUE_NUMBER},
-                 {SF_KEY_BOOL, SF_CASE_VALUE_FLAG},       {SF_KEY_CHOICE, SF_CASE_VALUE_WORD},
-                 {SF_KEY_PATH, SF_CASE_VALUE_FILE},       {SF_KEY_MOTION, SF_CASE_VALUE_FILE}};
+                 {SF_KEY_DROPS, SF_CASE_VALUE_NUMBER},    {SF_KEY_BOOL, SF_CASE_VALUE_FLAG},
+                 {SF_KEY_CHOICE, SF_CASE_VALUE_WORD},     {SF_KEY_PATH, SF_CASE_VALUE_FILE},
+                 {SF_KEY_MOTION, SF_CASE_VALUE_FILE}};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
         if (kinds[k].key == key->kind)
             return kinds[k].value;
@@ -136,16 +137,18 @@ static sf_case_value_kind value_kind(const sf_key *key) {
 static void tell_value(const sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                        const char *text, bool given) {
     const char *plain = setting ? config_setting_get_string(setting) : NULL;
-    const sf_case_value value = {.group = key->group,
-                                 .name = key->name,
-                                 .text = !setting ? ""
-                                         : plain  ? plain
-                                                  : text,
-                                 .given = given,
-                                 .kind = value_kind(key),
-                                 .of_material = key->in_card || key->kind == SF_KEY_LAW,
-                                 .words = key->words,
-                                 .help = key->description};
+    const sf_case_value value = {
+        .group = key->group,
+        .name = key->name,
+        .text = !setting ? ""
+                : plain  ? plain
+                         : text,
+        .given = given,
+        .kind = key->kind == SF_KEY_DROPS && setting && config_setting_is_list(setting) ? SF_CASE_VALUE_OTHER
+                                                                                        : value_kind(key),
+        .of_material = key->in_card || key->kind == SF_KEY_LAW,
+        .words = key->words,
+        .help = key->description};
     if (reader->listener && !reader->material_only && !(key->in_support && reader->supports))
         reader->listener->hear(reader->listener->user, &value);
 }
@@ -405,14 +408,10 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
     bool parted = config_lookup(config, "materials") && !config_lookup(config, "material");
     for (int i = 0; i < count; i++)
         SF_TRY(sf_case_override(config, overrides[i], err));
-    if (find_layers(reader, parted, err) != SF_OK || choose_law(reader, err) != SF_OK)
+    if (sf_case_take_drop(reader, reader->drop, err) != SF_OK || find_layers(reader, parted, err) != SF_OK ||
+        choose_law(reader, err) != SF_OK)
         return err->status;
     return check_names(reader, config_root_setting(config), "", err);
-}
-
-sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
-                       sf_case *out, sf_error *err) {
-    return sf_case_read_values(path, count, overrides, sink, NULL, out, err);
 }
 
 /* Opens what a reader needs, and reads the text of the case or, of a material alone, puts its file in place
@@ -446,11 +445,13 @@ static void end_reading(sf_case_reader *reader) {
     sf_case_source_free(&reader->source);
 }
 
-sf_status sf_case_read_values(const char *path, int count, const char *const *overrides, const sf_sink *sink,
-                              const sf_case_listener *listener, sf_case *out, sf_error *err) {
+sf_status sf_case_read_values(const char *path, int drop, int count, const char *const *overrides,
+                              const sf_sink *sink, const sf_case_listener *listener, sf_case *out,
+                              sf_error *err) {
     *out = (sf_case){.values = SF_HASH_START};
     sf_case_reader reader = {.path = path,
                              .out = out,
+                             .drop = drop,
                              .sink = sink,
                              .material = &out->material,
                              .material_group = "material",
@@ -464,6 +465,11 @@ sf_status sf_case_read_values(const char *path, int count, const char *const *ov
     if (err->status != SF_OK)
         sf_case_free(out);
     return err->status;
+}
+
+sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
+                       sf_case *out, sf_error *err) {
+    return sf_case_read_values(path, 1, count, overrides, sink, NULL, out, err);
 }
 
 /* The keys of a material file alone, into an empty case. */

@@ -99,9 +99,10 @@ typedef struct copy_source {
 } copy_source;
 
 static bool mark_copy(const config_setting_t *from, config_setting_t *to, const copy_source *source) {
+    const sf_case_origin *origin = config_setting_get_hook(from);
     int line = (int)config_setting_source_line(from);
-    if (source->text)
-        return mark(to, source->text, 0);
+    if (source->text || origin)
+        return mark(to, source->text ? source->text : origin->text, source->text ? 0 : origin->line);
     const char *path = sf_case_source_find(source->source, line, &line);
     return mark(to, path, (unsigned)line);
 }
@@ -243,4 +244,25 @@ sf_status sf_case_override(config_t *config, const char *text, sf_error *err) {
     }
     config_setting_remove(parent, name);
     return put_value(parent, name, value, text, err);
+}
+
+sf_status sf_case_take_drop(sf_case_reader *reader, int drop, sf_error *err) {
+    const copy_source source = {.source = &reader->source};
+    const config_setting_t *list = config_lookup(&reader->config, "series.drops"),
+                           *item = list && config_setting_is_list(list)
+                                       ? config_setting_get_elem(list, (unsigned)drop - 1)
+                                       : NULL;
+    if (!item || !config_setting_is_group(item))
+        return SF_OK;
+    config_setting_t *missile = enter_group(config_root_setting(&reader->config), "missile", "series.drops");
+    for (int k = 0; missile && k < config_setting_length(item); k++) {
+        const config_setting_t *own = config_setting_get_elem(item, (unsigned)k);
+        const char *name = config_setting_name(own);
+        if (strcmp(name, "interval") == 0)
+            continue;
+        config_setting_remove(missile, name);
+        if (!copy_setting(own, missile, name, &source))
+            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the drops of a series");
+    }
+    return SF_OK;
 }

@@ -22,9 +22,11 @@ typedef struct sf_case_reader {
     sf_material *material;                  /* under construction */
     char material_group[SF_KEY_GROUP_SIZE]; /* "material", or "materials.NAME" */
     bool given[SF_KEY_MAX];                 /* per row of `keys` */
+    bool thermal;                           /* the material has curves at several temperatures */
     bool material_only;                     /* read the keys of the material, and no others */
     const config_setting_t *supports;       /* the list `supports`; NULL: there is at most `support` */
     int support;                            /* under construction */
+    int drop;                               /* of the series, from 1; 0: a material alone */
     const sf_sink *sink;                    /* borrowed */
     FILE *listing;                          /* the parameters text under construction */
     size_t listing_size;
@@ -98,3 +100,5 @@ sf_status sf_case_read_response_error(sf_case_reader *reader, sf_error *err);
 
 /* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
+/* Puts what the list `series.drops` says of a drop, from 1, into the group `missile`. */
+sf_status sf_case_take_drop(sf_case_reader *reader, int drop, sf_error *err);

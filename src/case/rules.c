@@ -101,6 +101,28 @@ static sf_status check_law(const sf_case_reader *reader, sf_error *err) {
                    file ? file : "", file ? ": " : "", inner.text);
 }
 
+/* Shifts the rates of the material to the pad's temperature. */
+static sf_status shift_rates(const sf_case_reader *reader, sf_error *err) {
+    const sf_material *m = reader->material;
+    double at = reader->out->run.temperature,
+           shift = at > 0 && m->law->shift ? m->law->shift(m->card, sf_material_curves(m), at) : 0;
+    if (shift == 0)
+        return SF_OK;
+    reader->out->temperature_acts = true;
+    if (reader->thermal)
+        return REFUSE("material.shift", "the curves have temperatures, too: the pad's would act twice");
+    if (isnan(shift))
+        return REFUSE("material.shift",
+                      "at pad.temperature, %g degC, the rates are shifted by more than 6 decades or, below "
+                      "T_ref - C2, not at all: such a shift says nothing",
+                      at - 273.15);
+    sf_sink_tell(reader->sink, SF_NOTE,
+                 "%s: a rate at %g degC acts as %.4g times that rate does in the material's data; the curves "
+                 "themselves, E, unloading and memory are the same at any temperature",
+                 reader->material_group, at - 273.15, shift);
+    return SF_OK;
+}
+
 /* The law's rules. */
 sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
@@ -110,7 +132,7 @@ sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err) {
     const char *place = "material";
     sf_error inner = SF_ERROR_INIT;
     if (!m->law->check_keys || m->law->check_keys(m->card, &given, &place, &inner) == SF_OK)
-        return check_law(reader, err);
+        return shift_rates(reader, err) == SF_OK ? check_law(reader, err) : err->status;
     sf_case_material_path(reader->material_group, inner.text, text, sizeof text);
     return SF_FAIL(err, inner.status, "%s: %s", sf_case_where(reader, AT(place), where), text);
 }
@@ -364,34 +386,36 @@ static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
                   100 * c->run.energy_limit);
 }
 
-/* A series of drops; a single one leaves no trace. */
+/* The drops of a series, with the interval before each. */
 static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
-    sf_run_options *run = &reader->out->run;
-    bool series = run->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
+    sf_case *c = reader->out;
+    bool series = c->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
     const char *wrong =
-        run->drops != floor(run->drops) ? "the number of drops is a whole number"
-        : series && !has_interval       ? "a series needs series.interval, such as \"90 s\""
-        : !series && has_interval       ? "an interval belongs to a series: give series.drops, from 2 on"
-        : series && reader->out->motion_count > 0
+        c->drops != floor(c->drops) ? "the number of drops is a whole number"
+        : !series && has_interval   ? "an interval belongs to a series: give series.drops, from 2 on"
+        : c->drop[0].interval > 0   ? "nothing was before the first drop: it has no interval"
+        : series && c->motion_count > 0
             ? "a prescribed motion is no series of drops: put its cycles into missile.motion"
-        : series && !run->stop_after_rebound
+        : series && !c->run.stop_after_rebound
             ? "a series needs solver.stop_after_rebound: each drop ends when the missile has left"
             : NULL;
-    if (wrong)
-        return REFUSE_AT("series.drops", "series.drops = %g: %s", run->drops, wrong);
-    if (!series)
-        run->drops = 0;
-    return SF_OK;
+    for (int k = 1; k < c->drops && !wrong; k++) {
+        c->drop[k].interval = c->drop[k].interval > 0 ? c->drop[k].interval : c->interval;
+        if (!(c->drop[k].interval > 0))
+            wrong = "each drop from the second on needs an interval: its own, or series.interval";
+    }
+    return wrong ? REFUSE_AT("series.drops", "series.drops = %g: %s", c->drops, wrong) : SF_OK;
 }
 
 /* A temperature that changes nothing would look as if it did. */
 static sf_status check_temperature(const sf_case_reader *reader, sf_error *err) {
     const sf_case *c = reader->out;
-    if (c->temperature == 0 || c->temperature_acts)
+    if (c->run.temperature == 0 || c->temperature_acts)
         return SF_OK;
-    return REFUSE_AT("pad.temperature",
-                     "pad.temperature is given, but the material has no curves at several temperatures: "
-                     "material.curves = ( { temperature = \"5 degC\"; file = \"cold.csv\"; }, ... )");
+    return REFUSE_AT(
+        "pad.temperature",
+        "pad.temperature is given, but the material has no curves at several temperatures and no "
+        "material.shift: material.curves = ( { temperature = \"5 degC\"; file = \"cold.csv\"; }, ... )");
 }
 
 /* Rules on the complete case. */

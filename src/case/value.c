@@ -276,6 +276,41 @@ static sf_status read_place(const slot *s) {
     return SF_OK;
 }
 
+static sf_status read_drop_interval(const slot *s, const config_setting_t *setting, double *interval) {
+    char detail[64];
+    slot own = *s;
+    own.key = sf_case_find_key(&s->reader->keys, "series", "interval");
+    own.setting = setting;
+    own.at = interval;
+    own.detail = detail;
+    own.size = sizeof detail;
+    return read_quantity(&own);
+}
+
+/* The number of drops, or the list of them, whose keys of the missile sf_case_take_drop takes. */
+static sf_status read_drops(const slot *s) {
+    sf_case_drop *drop = s->reader->out->drop;
+    int count = config_setting_length(s->setting);
+    if (!config_setting_is_list(s->setting))
+        return read_number(s);
+    *(double *)s->at = count;
+    snprintf(s->detail, s->size, "%d", count);
+    SF_TRY(check_bounds(s, count, ""));
+    for (int k = 0; k < count; k++) {
+        const config_setting_t *item = config_setting_get_elem(s->setting, (unsigned)k);
+        if (!config_setting_is_group(item))
+            return REFUSE(s,
+                          "drop %d is %s; expected a group, such as { interval = \"90 s\"; velocity = \"5 "
+                          "m/s\"; } or { }",
+                          k + 1, type_phrase(item));
+        const config_setting_t *interval = config_setting_get_member(item, "interval");
+        if (interval)
+            SF_TRY(read_drop_interval(s, interval, &drop[k].interval));
+        drop[k].own = drop[0].own || config_setting_length(item) > (interval ? 1 : 0);
+    }
+    return SF_OK;
+}
+
 static sf_status read_path(const slot *s) {
     char **path = s->at;
     const char *text = config_setting_get_string(s->setting);
@@ -345,6 +380,7 @@ static sf_status (*const readers[])(const slot *s) = {
     [SF_KEY_LAW] = NULL,
     [SF_KEY_CURVE] = read_curves,
     [SF_KEY_MOTION] = read_motion,
+    [SF_KEY_DROPS] = read_drops,
     [SF_KEY_CURVES] = read_curves,
 };
 

@@ -73,6 +73,7 @@ static void print_kind(FILE *file, const sf_key *key) {
         [SF_KEY_PARAMETERS] = "group of numbers",
         [SF_KEY_CURVE] = "file",
         [SF_KEY_MOTION] = "file",
+        [SF_KEY_DROPS] = "number or list",
         [SF_KEY_CURVES] = "list of { rate or temperature; file; }",
     };
     if (key->kind == SF_KEY_LAW) {
@@ -99,7 +100,7 @@ static void print_kind(FILE *file, const sf_key *key) {
             fprintf(file, " or %d", key->lengths[1]);
         fprintf(file, ", each %s", sf_quantity_phrase(key->quantity));
     }
-    bool bounded = key->kind == SF_KEY_QUANTITY || key->kind == SF_KEY_NUMBER;
+    bool bounded = key->kind == SF_KEY_QUANTITY || key->kind == SF_KEY_NUMBER || key->kind == SF_KEY_DROPS;
     if (!bounded)
         return;
     fprintf(file, ", %s %g", key->low_open ? "above" : "from", key->low);

@@ -34,10 +34,12 @@ typedef struct sf_case_listener {
     void *user; /* borrowed */
 } sf_case_listener;
 
-/* sf_case_read that tells the listener each value of the table that it has read, in its order, also those
- * before a failure. */
-sf_status sf_case_read_values(const char *path, int count, const char *const *overrides, const sf_sink *sink,
-                              const sf_case_listener *listener, sf_case *out, sf_error *err);
+/* sf_case_read of a drop of the case's series, from 1, with what the list `series.drops` changes of the
+ * missile in it; sf_case_read reads the first. Tells the listener (NULL: none) each value of the table that
+ * it has read, in its order, also those before a failure. */
+sf_status sf_case_read_values(const char *path, int drop, int count, const char *const *overrides,
+                              const sf_sink *sink, const sf_case_listener *listener, sf_case *out,
+                              sf_error *err);
 
 /* True if the value of "group.key" is the name of a file, of some law; also of a file in a list of curves. */
 bool sf_case_key_is_file(const char *path);

@@ -171,7 +171,8 @@ sf_status sf_fields_read(const char *case_path, const sf_sink *sink, sf_fields *
     SF_TRY(err->status);
     *before = *fields;
     fields->count = 0;
-    if (sf_case_read_values(case_path, 0, NULL, sink, &listener, out, err) == SF_OK && out->layer_count == 0)
+    if (sf_case_read_values(case_path, 1, 0, NULL, sink, &listener, out, err) == SF_OK &&
+        out->layer_count == 0)
         add_material(fields);
     if (err->status == SF_OK)
         keep_changes(before, fields);

@@ -125,8 +125,14 @@ typedef struct sf_law {
     /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. Stress, energies, and
      * the stiffness bounds for the time step. */
     void (*update)(const void *numbers, double dt, struct sf_law_batch *batch);
+    /* Divides the rates of a card and of its curves by the shift of a pad at this temperature (K), which it
+     * returns; 0: the card has none; NaN: it does not reach so far. */
+    double (*shift)(void *card, sf_law_curves *curves, double temperature);
     /* Advances the history [SF_LAW_HISTORY] of points over a pause (s) at rest. */
     void (*rest)(const void *numbers, double pause, double (*history)[SF_LANES]);
+    /* J m-3, energy by which the next loading of a lane, to the largest W so far, takes up less than the
+     * first. */
+    double (*softening)(const void *numbers, double (*history)[SF_LANES], int lane);
     /* J m-3, energy of loading in uniaxial compression to `strain`; beyond the data that at their end. */
     double (*energy)(const void *numbers, double strain);
     /* Advances a point under uniaxial compression with the lateral stretches held at 1 to `strain` over dt

@@ -24,6 +24,9 @@ enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
     double rate_factor;      /* -, by which stress of loading grows with each decade of rate; 0: none */     \
     double rate_reference;   /* s-1, rate up to which it does not */                                         \
     double rate_filter_time; /* s, time constant of the strain rate */                                       \
+    double shift_c1, shift_c2; /* -, K: constants of WLF, both 0: none */                                    \
+    double shift_energy;       /* J mol-1, of Arrhenius, instead; 0: none */                                 \
+    double shift_reference;    /* K, temperature of the data; 0: the rates have no shift */                  \
     sf_memory memory;                                                                                        \
     double informed_strain; /* -, up to here the data of the material inform the law; 0 = data_end */
 typedef struct sf_foam_shared {
@@ -60,20 +63,31 @@ static inline sf_foam_card *sf_foam_card_of(const sf_material *material) {
 /* Parameters that the foam laws share, as rows of their lists: members of sf_foam_shared, with which each
  * card begins. And the rules that join them. */
 
-bool sf_foam_has_length(const void *card);
-bool sf_foam_has_maxwell(const void *card);
-bool sf_foam_has_kelvin(const void *card);
-bool sf_foam_has_rate_factor(const void *card);
-bool sf_foam_has_informed(const void *card);
-bool sf_foam_has_memory(const void *card);
-bool sf_foam_has_recovery(const void *card);
+/* X(name, condition): sf_foam_has_NAME(card) says whether a parameter acts. */
+#define SF_FOAM_ACTS(X)                                                                                      \
+    X(length, damp_length > 0)                                                                               \
+    X(maxwell, maxwell_modulus > 0)                                                                          \
+    X(kelvin, kelvin_viscosity > 0)                                                                          \
+    X(rate_factor, rate_factor > 0)                                                                          \
+    X(informed, informed_strain > 0)                                                                         \
+    X(wlf, shift_c1 + foam->shift_c2 > 0)                                                                    \
+    X(arrhenius, shift_energy > 0)                                                                           \
+    X(shift, shift_reference > 0)                                                                            \
+    X(memory, memory.reload + foam->memory.recovery > 0)                                                     \
+    X(recovery, memory.recovery > 0)
+#define SF_FOAM_HAS(name, condition) bool sf_foam_has_##name(const void *card);
+SF_FOAM_ACTS(SF_FOAM_HAS)
+#undef SF_FOAM_HAS
 
 /* Checks the bounds that SHAPE and ALPHA have together; SF_ERR_MODEL. */
 sf_status sf_foam_check_shared(const void *card, sf_error *err);
 
-/* Rules on the keys of a case: sf_law.check_keys. */
-sf_status sf_foam_check_shared_keys(const sf_foam_shared *card, const sf_given *given, const char **place,
-                                    sf_error *err);
+/* Rules on the keys of a case: sf_law.check_keys; `rates`: the law's own terms depend on the rate. */
+sf_status sf_foam_check_shared_keys(const sf_foam_shared *card, bool rates, const sf_given *given,
+                                    const char **place, sf_error *err);
+
+/* sf_law.shift. */
+double sf_foam_shift(void *card, sf_law_curves *curves, double temperature);
 
 #define SF_FOAM_AT(member) .offset = offsetof(sf_foam_shared, member)
 #define SF_FOAM_POSITIVE .low = 0.0, .low_open = true
@@ -130,6 +144,19 @@ sf_status sf_foam_check_shared_keys(const sf_foam_shared *card, const sf_given *
     {"material", "rate_filter_time", SF_PARAMETER_QUANTITY, "\"0.1 ms\"", SF_FOAM_AT(rate_filter_time), \
      "time constant of the strain rate " use, .quantity = SF_TIME, .low = 1e-9, .high = 1e3, \
      SF_FOAM_IN("ms", 1e-3), .acts = has}
+#define SF_FOAM_SHIFTS \
+    {"material.shift", "C1", SF_PARAMETER_NUMBER, "", SF_FOAM_AT(shift_c1), \
+     "of WLF: the logarithm to base 10 of the shift of the rates is -C1 (T - T_ref)/(C2 + T - T_ref)", SF_FOAM_POSITIVE, \
+     .high = 100.0, .acts = sf_foam_has_wlf}, \
+    {"material.shift", "C2", SF_PARAMETER_QUANTITY, "", SF_FOAM_AT(shift_c2), \
+     "of WLF, a difference of temperatures in K", .quantity = SF_TEMPERATURE, SF_FOAM_POSITIVE, .high = 270.0, \
+     SF_FOAM_IN("K", 1), .acts = sf_foam_has_wlf}, \
+    {"material.shift", "E_a", SF_PARAMETER_QUANTITY, "", SF_FOAM_AT(shift_energy), \
+     "activation energy of Arrhenius, instead of C1 and C2: the natural logarithm of the shift is E_a/R (1/T - 1/T_ref)", \
+     .quantity = SF_MOLAR_ENERGY, SF_FOAM_POSITIVE, .high = 1e6, SF_FOAM_IN("kJ/mol", 1e3), .acts = sf_foam_has_arrhenius}, \
+    {"material.shift", "T_ref", SF_PARAMETER_QUANTITY, "", SF_FOAM_AT(shift_reference), \
+     "temperature of the material's data, and of the pad unless `pad.temperature` is given", .quantity = SF_TEMPERATURE, \
+     .low = 100.0, .high = 600.0, SF_FOAM_IN("K", 1), .acts = sf_foam_has_shift}
 #define SF_FOAM_INFORMED \
     {"material", "informed_strain", SF_PARAMETER_NUMBER, "0.0", SF_FOAM_AT(informed_strain), \
      "largest compressive strain about which the material's data say something; 0 = where the table or its use ends; " \

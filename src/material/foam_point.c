@@ -328,12 +328,18 @@ SF_KERNEL void sf_foam_point_update(const sf_foam_options *foam, const sf_foam_k
         damping_stress(dt, eta, a, b);
 }
 
-void sf_foam_point_rest(const sf_foam_options *foam, double pause, double history[SF_LAW_HISTORY][SF_LANES]) {
+static sf_memory_point memory_of(double (*history)[SF_LANES], int lane) {
+    sf_memory_point point;
+    for (int k = 0; k < 4; k++)
+        ((double *)&point)[k] = history[SF_FOAM_MEMORY + k][lane];
+    return point;
+}
+
+void sf_foam_point_rest(const void *numbers, double pause, double (*history)[SF_LANES]) {
+    const sf_foam_options *foam = numbers;
     double left = exp(-foam->maxwell_rate * pause);
     for (int l = 0; l < SF_LANES; l++) {
-        sf_memory_point point;
-        for (int k = 0; k < 4; k++)
-            ((double *)&point)[k] = history[SF_FOAM_MEMORY + k][l];
+        sf_memory_point point = memory_of(history, l);
         sf_memory_rest(&foam->memory, pause, &point);
         history[SF_FOAM_MEMORY + 3][l] = point.recovered;
         for (int k = 0; k < 6; k++) {
@@ -342,6 +348,13 @@ void sf_foam_point_rest(const sf_foam_options *foam, double pause, double histor
         }
         history[SF_FOAM_RATE][l] *= exp(-pause / foam->filter_time);
     }
+}
+
+double sf_foam_point_softening(const void *numbers, double (*history)[SF_LANES], int lane) {
+    const sf_foam_options *foam = numbers;
+    sf_memory_point point = memory_of(history, lane);
+    double q = sf_memory_acts(&foam->memory) ? sf_memory_factor(&foam->memory, &point) : 0;
+    return (1 - q) * (1 - foam->hu) * foam->unloading.whole * history[SF_FOAM_PEAK][lane];
 }
 
 double sf_foam_axial_factor(const sf_foam_options *foam, double energy, sf_uniaxial *point) {

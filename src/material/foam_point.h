@@ -40,6 +40,15 @@ enum {
     SF_FOAM_MEMORY = 14,    /* [4] sf_memory_point */
 };
 
+/* sf_law.history of a foam law; `rates`: does the card depend on the rate? */
+#define SF_FOAM_HISTORY(rates)                                                                               \
+    {                                                                                                        \
+        {"peak", "J m-3", SF_FOAM_PEAK, 1, NULL}, {"rate", "s-1", SF_FOAM_RATE, 1, rates},                   \
+            {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},                                      \
+            {"overstress", "Pa", SF_FOAM_OVERSTRESS, 6, rates},                                              \
+            {"memory", "SI", SF_FOAM_MEMORY, 4, sf_foam_has_memory},                                         \
+    }
+
 /* The loading law at a batch. */
 typedef struct sf_foam_loading {
     double t[3][SF_LANES];        /* Pa, nominal principal stress, dW by the stretch */
@@ -77,9 +86,12 @@ typedef struct sf_foam_kind {
 void sf_foam_point_update(const sf_foam_options *options, const sf_foam_kind *kind, double dt,
                           sf_law_batch *batch);
 
-/* sf_law.rest: memory, and what viscous stresses a rest of `pause` (s) leaves. */
-void sf_foam_point_rest(const sf_foam_options *options, double pause,
-                        double history[SF_LAW_HISTORY][SF_LANES]);
+/* sf_law.rest of numbers that begin with SF_FOAM_OPTIONS: memory, and what viscous stresses a rest of `pause`
+ * (s) leaves. */
+void sf_foam_point_rest(const void *numbers, double pause, double (*history)[SF_LANES]);
+
+/* sf_law.softening of such numbers. */
+double sf_foam_point_softening(const void *numbers, double (*history)[SF_LANES], int lane);
 
 /* For an overstress: advances the filtered rate, of the most compressed direction (theory eq. 22). */
 void sf_foam_point_filter(const sf_foam_options *options, double dt, sf_law_batch *batch,

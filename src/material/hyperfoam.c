@@ -53,6 +53,7 @@ static const sf_parameter parameters[] = {
     SF_FOAM_MEMORIES,
     SF_FOAM_RATE_FACTOR("strain rate of the terms"),
     SF_FOAM_RATE_FILTER("in `rate_factor`", sf_foam_has_rate_factor),
+    SF_FOAM_SHIFTS,
     SF_FOAM_INFORMED,
     TERM(0, "material.term_1", NULL, NULL),
     TERM(1, "material.term_2", "\"0 kPa\"", "2.0"),
@@ -122,7 +123,7 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
             return SF_FAIL(err, SF_ERR_INPUT, "%s.mu is missing", groups[k]);
     }
     sf_error inner = SF_ERROR_INIT;
-    SF_TRY(sf_foam_check_shared_keys(&foam->shared, given, place, err));
+    SF_TRY(sf_foam_check_shared_keys(&foam->shared, false, given, place, err));
     if (check_terms(foam, place, &inner) != SF_OK)
         return SF_FAIL(err, SF_ERR_INPUT, "%s", inner.text);
     return SF_OK;
@@ -169,13 +170,7 @@ static void rest_bounds(const void *card, double length, double *tangent, double
 
 /* ---- points ---- */
 
-static const sf_history_variable history[] = {
-    {"peak", "J m-3", SF_FOAM_PEAK, 1, NULL},
-    {"rate", "s-1", SF_FOAM_RATE, 1, sf_foam_has_rate_factor},
-    {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
-    {"overstress", "Pa", SF_FOAM_OVERSTRESS, 6, sf_foam_has_rate_factor},
-    {"memory", "SI", SF_FOAM_MEMORY, 4, sf_foam_has_memory},
-};
+static const sf_history_variable history[] = SF_FOAM_HISTORY(sf_foam_has_rate_factor);
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {
     sf_hyperfoam *foam = sf_alloc(err, 1, sizeof *foam, "hyperfoam");
@@ -185,17 +180,9 @@ static sf_status build(const void *card, void **numbers, sf_error *err) {
     return err->status;
 }
 
-static void update(const void *numbers, double dt, sf_law_batch *batch) {
-    sf_hyperfoam_update(numbers, dt, batch);
-}
-
 static sf_hyperfoam_point confined(const sf_hyperfoam *foam, double strain) {
     const double stretch[3] = {1 - fmin(strain, 1 - 1e-6), 1, 1};
     return sf_hyperfoam_evaluate(foam, stretch);
-}
-
-static void rest(const void *numbers, double pause, double (*kept)[SF_LANES]) {
-    sf_foam_point_rest(&((const sf_hyperfoam *)numbers)->options, pause, kept);
 }
 
 static double energy(const void *numbers, double strain) {
@@ -235,8 +222,10 @@ const sf_law sf_hyperfoam_law = {
     .history_count = sizeof history / sizeof history[0],
     .build = build,
     .release = free,
-    .update = update,
-    .rest = rest,
+    .update = sf_hyperfoam_update,
+    .shift = sf_foam_shift,
+    .rest = sf_foam_point_rest,
+    .softening = sf_foam_point_softening,
     .energy = energy,
     .uniaxial = uniaxial,
 };
@@ -307,7 +296,8 @@ static SF_KERNEL void loading(const void *numbers, double stretch[3][SF_LANES], 
     }
 }
 
-void sf_hyperfoam_update(const sf_hyperfoam *foam, double dt, sf_law_batch *b) {
+void sf_hyperfoam_update(const void *numbers, double dt, sf_law_batch *b) {
+    const sf_hyperfoam *foam = numbers;
     const sf_foam_kind kind = {.numbers = foam, .rest = foam->rest, .loading = loading};
     sf_foam_point_update(&foam->options, &kind, dt, b);
 }

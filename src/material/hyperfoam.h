@@ -76,4 +76,4 @@ typedef struct sf_hyperfoam_failure {
 bool sf_hyperfoam_fails(const sf_hyperfoam *foam, double limit, sf_hyperfoam_failure *out);
 
 /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
-void sf_hyperfoam_update(const sf_hyperfoam *foam, double dt, sf_law_batch *batch);
+void sf_hyperfoam_update(const void *foam, double dt, sf_law_batch *batch);

@@ -140,7 +140,8 @@ static void overstress(const void *numbers, double dt, sf_law_batch *b, const sf
         rate->extra[l] = add_overstress(foam, b, l, rate);
 }
 
-void sf_foam_update(const sf_foam *foam, double dt, sf_law_batch *b) {
+void sf_foam_update(const void *numbers, double dt, sf_law_batch *b) {
+    const sf_foam *foam = numbers;
     const sf_foam_kind kind = {.numbers = foam,
                                .rest = rest_stiffness(foam),
                                .compression = true,
@@ -151,7 +152,8 @@ void sf_foam_update(const sf_foam *foam, double dt, sf_law_batch *b) {
     sf_foam_point_update(&foam->options, &kind, dt, b);
 }
 
-double sf_foam_uniaxial(const sf_foam *foam, double dt, double strain, sf_uniaxial *point) {
+double sf_foam_uniaxial(const void *numbers, double dt, double strain, sf_uniaxial *point) {
+    const sf_foam *foam = numbers;
     double stress, slope, energy, rate_slope, stretch = 1 - strain;
     double green_rate = sf_foam_green_rate(dt, strain, point);
     if (strain > 0) {
@@ -265,6 +267,7 @@ static const sf_parameter parameters[] = {
      .words = "none", .word_value = NO_CUTOFF, SF_FOAM_IN("kPa", 1e3), .acts = has_cutoff},
     SF_FOAM_RATE_FACTOR("strain rate of `curve`"),
     SF_FOAM_RATE_FILTER("that chooses among `curves` or acts in `rate_factor`", has_rates),
+    SF_FOAM_SHIFTS,
     SF_FOAM_INFORMED,
     {"material.densification", "rule", SF_PARAMETER_CHOICE, "\"H1\"", AT(densification_rule),
      "law beyond the table: H1: A + B/(1 - strain)^n; H2: A + B/(limit - strain)^m; value and slope continuous",
@@ -338,7 +341,7 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
         return refuse(
             err, place, "material",
             "material.curve is missing: the compression curve's CSV file (or curves: several of them)");
-    SF_TRY(sf_foam_check_shared_keys(&foam->shared, given, place, err));
+    SF_TRY(sf_foam_check_shared_keys(&foam->shared, foam->curve_count > 1, given, place, err));
     sf_error inner = SF_ERROR_INIT;
     *place = "material.rate_factor";
     if (check(foam, &inner) != SF_OK)
@@ -387,13 +390,7 @@ static void rest_bounds(const void *card, double length, double *tangent, double
 
 /* ---- points ---- */
 
-static const sf_history_variable history[] = {
-    {"peak", "J m-3", SF_FOAM_PEAK, 1, NULL},
-    {"rate", "s-1", SF_FOAM_RATE, 1, has_rates},
-    {"maxwell", "Pa", SF_FOAM_MAXWELL, 6, sf_foam_has_maxwell},
-    {"overstress", "Pa", SF_FOAM_OVERSTRESS, 6, has_rates},
-    {"memory", "SI", SF_FOAM_MEMORY, 4, sf_foam_has_memory},
-};
+static const sf_history_variable history[] = SF_FOAM_HISTORY(has_rates);
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {
     sf_foam *foam = sf_alloc(err, 1, sizeof *foam, "foam");
@@ -410,23 +407,11 @@ static void release(void *numbers) {
     free(numbers);
 }
 
-static void update(const void *numbers, double dt, sf_law_batch *batch) {
-    sf_foam_update(numbers, dt, batch);
-}
-
-static void rest(const void *numbers, double pause, double (*kept)[SF_LANES]) {
-    sf_foam_point_rest(&((const sf_foam *)numbers)->options, pause, kept);
-}
-
 static double energy(const void *numbers, double strain) {
     const sf_foam *foam = numbers;
     double stress, slope, w;
     sf_curve_evaluate(&foam->curve[0], fmin(strain, foam->curve[0].start), &stress, &slope, &w);
     return w;
-}
-
-static double uniaxial(const void *numbers, double dt, double strain, sf_uniaxial *point) {
-    return sf_foam_uniaxial(numbers, dt, strain, point);
 }
 
 const sf_law sf_low_density_foam = {
@@ -451,8 +436,10 @@ const sf_law sf_low_density_foam = {
     .history_count = sizeof history / sizeof history[0],
     .build = build,
     .release = release,
-    .update = update,
-    .rest = rest,
+    .update = sf_foam_update,
+    .shift = sf_foam_shift,
+    .rest = sf_foam_point_rest,
+    .softening = sf_foam_point_softening,
     .energy = energy,
-    .uniaxial = uniaxial,
+    .uniaxial = sf_foam_uniaxial,
 };

@@ -33,10 +33,10 @@ sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err);
 void sf_foam_free(sf_foam *foam);
 
 /* Advances the batch over a step of dt (s); dt = 0 evaluates without viscous terms. */
-void sf_foam_update(const sf_foam *foam, double dt, sf_law_batch *batch);
+void sf_foam_update(const void *foam, double dt, sf_law_batch *batch);
 
 /* sf_law.uniaxial: the law of a point under uniaxial compression, without DAMP. */
-double sf_foam_uniaxial(const sf_foam *foam, double dt, double strain, sf_uniaxial *point);
+double sf_foam_uniaxial(const void *foam, double dt, double strain, sf_uniaxial *point);
 
 /* Rate overstress sigma(eps, rate) - sigma(eps, slowest curve) in Pa, interpolated over the logarithm of the
  * rate (s-1), with its derivatives by strain and rate. Needs two curves or more. */

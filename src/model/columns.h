@@ -25,7 +25,10 @@
       "W of the loading curve per reference volume", "") BETWEEN                                                       \
     X(HYSTERESIS_FACTOR, hysteresis_factor, 1, "1", "hysteresis_factor_1", "factor on the curve's stress", "") BETWEEN \
     X(CONTACT_PRESSURE, contact_pressure, 1, "Pa", "contact_pressure_Pa",                                              \
-      "normal force of the missile on the node over the undeformed surface that belongs to it", "0 without contact")
+      "normal force of the missile on the node over the undeformed surface that belongs to it", "0 without contact")   \
+    BETWEEN X(SOFTENING, softening, 1, "J m-3", "softening_J_m3",                                                      \
+              "energy by which loading up to the largest W so far takes up less than that of new foam",                \
+              "from the second drop on a pad; after the rest, in the first frame, before the drop")
 /* clang-format on */
 
 #define SF_FRAME_CONSTANT(constant, ...) SF_FRAME_##constant,

@@ -181,8 +181,13 @@ static const sf_model_field fields[] = {
                  "standard deviation of the missile's speed over it"),
     LATER_SCALAR(run.thickness_tolerance, F64, "/run/thickness_tolerance", "m",
                  "standard deviation of the pad's thickness"),
-    LATER_SCALAR(run.drops, F64, "/run/drops", "1", "drops of a series on one pad; 0: a single drop"),
-    LATER_SCALAR(run.interval, F64, "/run/interval", "s", "from one drop of a series to the next"),
+    LATER_SCALAR(run.temperature, F64, "/run/temperature", "K",
+                 "of the pad, to which the materials are taken; 0: not given"),
+    LATER_SCALAR(series_count, I64, "/series/count", "1", "drops of a series on one pad; 0: a single drop"),
+    OPTIONAL_ARRAY(series_interval, F64, series_count, "/series/interval", "s",
+                   "from the drop before to each; 0 of the first"),
+    OPTIONAL_ARRAY(series_model, I64, series_count, "/series/model", "1",
+                   "hash of a model of its own, NAME-2.h5 of the second; 0: it is this one"),
     SCALAR(run.stabilisation, F64, "/run/stabilisation", "1", "stabilisation coefficient"),
     SCALAR(run.energy_limit, F64, "/run/energy_limit", "1", "energy error that stops the run"),
     SCALAR(run.frame_interval, F64, "/run/frame_interval", "s", "time between frames"),
@@ -201,13 +206,13 @@ double sf_model_whole(const sf_model *model) {
     return (double)model->symmetry_factor;
 }
 
-void sf_model_series_file(const char *results, int64_t drop, char *path, size_t size) {
-    size_t length = strlen(results);
-    const char *end = length > 3 && strcmp(results + length - 3, ".h5") == 0 ? ".h5" : "";
+void sf_model_series_file(const char *first, int64_t drop, char *path, size_t size) {
+    size_t length = strlen(first);
+    const char *end = length > 3 && strcmp(first + length - 3, ".h5") == 0 ? ".h5" : "";
     if (drop > 1)
-        snprintf(path, size, "%.*s-%lld%s", (int)(length - strlen(end)), results, (long long)drop, end);
+        snprintf(path, size, "%.*s-%lld%s", (int)(length - strlen(end)), first, (long long)drop, end);
     else
-        snprintf(path, size, "%s", results);
+        snprintf(path, size, "%s", first);
 }
 
 bool sf_missile_is_driven(const sf_model *model) {

@@ -70,6 +70,7 @@ typedef struct sf_anvil_card {
 
 /* Most rigid supports of a pad; each has a column of the history. */
 enum { SF_SUPPORTS = 4 };
+enum { SF_SERIES_MOST = 20 /* drops of a series */ };
 
 /* Deepest place, of the spacing, from which a node begins to touch a face from outside. */
 #define SF_CONTACT_ENTRY 0.01
@@ -98,8 +99,7 @@ typedef struct sf_run_options {
     int64_t kinematic;          /* 0: figures as an accelerometer reads, 1: of the kinematic acceleration */
     double speed_scatter;       /* -, standard deviation of the missile's speed over it, for figures only */
     double thickness_tolerance; /* m, standard deviation of the pad's thickness, for figures only */
-    double drops;               /* -, of a series on one pad, a whole number; 0: a single drop */
-    double interval;            /* s, from one drop of a series to the next */
+    double temperature;         /* K, of the pad, to which its materials are taken; 0: not given */
 } sf_run_options;
 
 typedef struct sf_model {
@@ -202,6 +202,11 @@ typedef struct sf_model {
     int64_t frame_time_count;
     double *frame_time; /* [frame_time_count] s, ascending */
 
+    /* A series of drops on this pad, of which this model is that of the first. */
+    int64_t series_count;    /* drops; 0: a single one */
+    double *series_interval; /* [series_count] s, from the drop before to each; 0 of the first */
+    int64_t *series_model;   /* [series_count] hash of a model of its own, 0: it is this one */
+
     int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness; /* m, of the foam under the contact, along the missile's path, its vertical part */
     double air;       /* m, on the same way: gaps of a pad with a skin, which close first */
@@ -214,9 +219,9 @@ typedef struct sf_model {
     sf_run_options run;
 } sf_model;
 
-/* The results file of a drop of a series, from 1: that of the first is `results`, the second of "a.h5" is
- * "a-2.h5". */
-void sf_model_series_file(const char *results, int64_t drop, char *path, size_t size);
+/* The results file, or the model of its own, of a drop of a series, from 1: that of the first is `first`, the
+ * second of "a.h5" is "a-2.h5". */
+void sf_model_series_file(const char *first, int64_t drop, char *path, size_t size);
 
 /* Modelled parts that make the whole pad and missile: what a force, an energy, a mass or an area of the
  * modelled part is multiplied by for that of the whole, and divided by for the way back. A power of two:

@@ -162,13 +162,15 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"step limit (s)", m->run.step_limit, 1e-12, 1e3},
         {"stabilisation coefficient", m->run.stabilisation, 0, 10},
         {"energy limit", m->run.energy_limit, 1e-9, 1e9},
-        {"drops of a series", m->run.drops, 0, 20},
-        {"interval of a series (s)", m->run.interval, 0, 1e7},
+        {"temperature (K)", m->run.temperature, 0, 600},
+        {"drops of a series", (double)m->series_count, 0, SF_SERIES_MOST},
         {"frame interval (s)", m->run.frame_interval, 1e-9, 1e3},
         {"number of frames", m->run.end_time / m->run.frame_interval, 0, SF_MOST_FRAMES},
     };
     for (size_t k = 0; k < sizeof bound / sizeof bound[0]; k++)
         SF_TRY(check_bound(bound[k].name, bound[k].value, bound[k].low, bound[k].high, err));
+    for (int64_t k = 1; k < m->series_count; k++)
+        SF_TRY(check_bound("interval of a series (s)", m->series_interval[k], 1e-3, 1e7, err));
     if (m->symmetry_factor == 3)
         return SF_FAIL(err, SF_ERR_MODEL, "the symmetry factor is 3; 1, 2 and 4 are possible");
     double length = 0;

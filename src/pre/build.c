@@ -495,6 +495,18 @@ static sf_status check_depth(const sf_model *m, sf_error *err) {
                      1e3 * depth, 1e3 * m->thickness);
 }
 
+static sf_status take_series(const sf_case *c, sf_model *m, sf_error *err) {
+    unsigned long count = c->drops > 1 ? (unsigned long)c->drops : 0;
+    if (count == 0)
+        return SF_OK;
+    m->series_interval = sf_alloc(err, count, sizeof *m->series_interval, "series");
+    m->series_model = sf_alloc(err, count, sizeof *m->series_model, "series");
+    for (unsigned long k = 0; k < count && err->status == SF_OK; k++)
+        m->series_interval[k] = c->drop[k].interval;
+    m->series_count = (int64_t)count;
+    return err->status;
+}
+
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->frame_time = sf_alloc(err, (unsigned long)c->frame_time_count, sizeof *m->frame_time, "frame times");
     if (!m->frame_time)
@@ -509,6 +521,8 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->motion_displacement = c->motion_displacement;
     c->motion_time = c->motion_displacement = NULL;
     c->motion_count = 0;
+    if (take_series(c, m, err) != SF_OK)
+        return err->status;
     m->run = c->run;
     m->run.kinematic = c->kinematic;
     if (m->skin_count > 0 && !m->skin_alone && !c->stabilised)

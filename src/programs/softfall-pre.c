@@ -3,7 +3,7 @@
 #include "base/program.h"
 #include "model/model_io.h"
 #include "io/replace.h"
-#include "case/case.h"
+#include "case/values.h"
 #include "pre/make.h"
 #include "pre/model_report.h"
 
@@ -37,25 +37,56 @@ static const char *find_fault(const sf_command *command) {
     return o->keys || (o->case_path && o->output) ? NULL : "usage: softfall-pre CASE -o model.h5";
 }
 
-static sf_status build(const options *o, const char *command, sf_error *err) {
+static sf_status check_output(const options *o, const char *path, sf_error *err) {
+    SF_TRY(sf_replace_check(path, err));
+    if (!o->force && sf_replace_exists(path))
+        return SF_REFUSE(err, "%s exists; --force replaces it", path);
+    return SF_OK;
+}
+
+static sf_status read_drop(const options *o, int drop, const sf_sink *sink, sf_case *c, sf_error *err) {
+    return sf_case_read_values(o->case_path, drop, o->overrides.count, o->overrides.text, sink, NULL, c, err);
+}
+
+/* Checks the drops of a series that have models of their own, before the first model is made. */
+static sf_status check_drops(const options *o, const sf_case *first, sf_error *err) {
+    for (int k = 1; k < first->drops && err->status == SF_OK; k++) {
+        char path[SF_PATH_SIZE];
+        sf_case c = {0};
+        sf_model_series_file(o->output, k + 1, path, sizeof path);
+        if (first->drop[k].own && check_output(o, path, err) == SF_OK)
+            read_drop(o, k + 1, NULL, &c, err);
+        sf_case_free(&c);
+    }
+    return err->status;
+}
+
+/* Makes the model of a drop, from 1, and returns its hash, 0 on failure. That of the first of a series makes
+ * those of later drops before, and holds their hashes. */
+static int64_t build(const options *o, const char *command, int drop, sf_error *err) {
     sf_case c = {0};
     sf_model model = {0};
     sf_build_report report;
     sf_model_report table;
-    char *text = NULL;
-    char libraries[SF_LIBRARIES_SIZE];
+    char *text = NULL, libraries[SF_LIBRARIES_SIZE], output[SF_PATH_SIZE], hash[SF_MODEL_HASH_SIZE] = "0";
     const sf_sink sink = sf_program_sink("softfall-pre");
-    SF_TRY(sf_replace_check(o->output, err));
-    if (!o->force && sf_replace_exists(o->output))
-        return SF_REFUSE(err, "%s exists; --force replaces it", o->output);
-    if (sf_case_read(o->case_path, o->overrides.count, o->overrides.text, &sink, &c, err) != SF_OK)
+    int64_t own[SF_SERIES_MOST] = {0};
+    sf_model_series_file(o->output, drop, output, sizeof output);
+    if (check_output(o, output, err) != SF_OK ||
+        read_drop(o, drop, drop == 1 ? &sink : NULL, &c, err) != SF_OK ||
+        (drop == 1 && check_drops(o, &c, err) != SF_OK))
         goto done;
+    for (int k = 1; drop == 1 && k < c.drops && err->status == SF_OK; k++)
+        own[k] = c.drop[k].own ? build(o, command, k + 1, err) : 0;
     c.store = o->store;
-    if (sf_replace_check(o->output, err) != SF_OK || /* not one of what the case names */
+    c.drops = drop == 1 ? c.drops : 1;
+    if (err->status != SF_OK || sf_replace_check(output, err) != SF_OK || /* not one of what the case names */
         sf_model_make(&c, &model, &report, libraries, &sink, err) != SF_OK ||
-        sf_replace_check(o->output, err) != SF_OK) /* nor of what a geometry names */
+        sf_replace_check(output, err) != SF_OK) /* nor of what a geometry names */
         goto done;
-    sf_replace_clean(o->output);
+    for (int64_t k = 0; k < model.series_count; k++)
+        model.series_model[k] = own[k];
+    sf_replace_clean(output);
     sf_model_report_make(&model, &report, &table);
     sf_model_report_print(stdout, &table);
     text = sf_model_report_text(&table, err);
@@ -67,13 +98,15 @@ static sf_status build(const options *o, const char *command, sf_error *err) {
                                 .mesh_hash = report.mesh_hash,
                                 .report = text,
                                 .geometry_files = c.geometry_files};
-    if (text && sf_model_write(o->output, &model, &provenance, err) == SF_OK)
-        printf("%-26s%s\n", "written", o->output);
+    if (text && sf_model_write(output, &model, &provenance, err) == SF_OK) {
+        printf("%-26s%s\n", "written", output);
+        sf_model_hash(&model, hash);
+    }
 done:
     free(text);
     sf_model_free(&model);
     sf_case_free(&c);
-    return err->status;
+    return (int64_t)strtoull(hash, NULL, 16);
 }
 
 int main(int argc, char **argv) {
@@ -95,7 +128,7 @@ int main(int argc, char **argv) {
     }
     char *command = sf_command_line(argc, argv);
     if (sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK)
-        build(&o, command ? command : "softfall-pre", &err);
+        build(&o, command ? command : "softfall-pre", 1, &err);
     free(command);
     return sf_error_report(&err, "softfall-pre");
 }

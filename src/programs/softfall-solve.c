@@ -241,10 +241,30 @@ static bool has_begun(const char *results, int64_t k) {
 
 /* A series of drops on one pad. */
 typedef struct series {
-    int64_t drops;        /* 1: a single drop */
-    double interval;      /* s */
-    char model[PATH_MAX]; /* path */
+    int64_t drops;                        /* 1: a single drop */
+    double interval[SF_SERIES_MOST];      /* s, before each */
+    int64_t own[SF_SERIES_MOST];          /* hash of the model of its own, 0: that of the first */
+    char model[PATH_MAX], next[PATH_MAX]; /* paths: of the first, of the present one */
 } series;
+
+static void take_series(const sf_model *m, const char *path, series *all) {
+    all->drops = m->series_count > 1 ? m->series_count : 1;
+    snprintf(all->model, sizeof all->model, "%s", path);
+    for (int64_t k = 0; k < m->series_count; k++) {
+        all->interval[k] = m->series_interval[k];
+        all->own[k] = m->series_model[k];
+    }
+}
+
+/* Refuses another model than that which the first of the series was made with. */
+static sf_status check_own(const series *all, int64_t k, const char hash[SF_MODEL_HASH_SIZE], sf_error *err) {
+    char own[SF_MODEL_HASH_SIZE];
+    snprintf(own, sizeof own, "%016llx", (unsigned long long)all->own[k - 1]);
+    if (all->own[k - 1] == 0 || strcmp(own, hash) == 0)
+        return SF_OK;
+    return SF_REFUSE(err, "%s is not the model of drop %lld that softfall-pre made with %s: hash %s, not %s",
+                     all->next, (long long)k, all->model, hash, own);
+}
 
 /* Checks a series beyond the model of its first drop. */
 static sf_status check_series(const options *o, const series *all, sf_error *err) {
@@ -261,6 +281,10 @@ static sf_status check_series(const options *o, const series *all, sf_error *err
         sf_model_series_file(o->output, k, path, sizeof path);
         SF_TRY(sf_output_name(&output, path, err));
         SF_TRY(check_output(o, &output, err));
+        sf_model_series_file(all->model, k, path, sizeof path);
+        if (all->own[k - 1] && access(path, R_OK) != 0)
+            return SF_REFUSE(err, "%s is not there: drop %lld of the series in %s needs it", path,
+                             (long long)k, all->model);
     }
     return SF_OK;
 }
@@ -294,8 +318,8 @@ static sf_status start(const options *o, const sf_provenance *provenance, sf_out
     return SF_OK;
 }
 
-/* Solves one drop, or resumes it; of the first, `all` receives what the model says of a series. */
-static sf_status solve_drop(const options *o, series *all, const char *command,
+/* Solves one drop, or resumes it; of the first, k = 1, `all` receives what the model says of a series. */
+static sf_status solve_drop(const options *o, int64_t k, series *all, const char *command,
                             const volatile sig_atomic_t *stop, sf_error *err) {
     sf_model model = {0};
     sf_operators operators = {0};
@@ -320,10 +344,10 @@ static sf_status solve_drop(const options *o, series *all, const char *command,
     const char *named = o->model ? o->model : from.model_path;
     if (!realpath(named, path))
         snprintf(path, sizeof path, "%s", named);
-    if (all->drops == 0) {
-        all->drops = model.run.drops > 1 ? (int64_t)model.run.drops : 1;
-        all->interval = model.run.interval;
-        snprintf(all->model, sizeof all->model, "%s", path);
+    if (k > 1 && check_own(all, k, hash, err) != SF_OK)
+        goto done;
+    if (k == 1) {
+        take_series(&model, path, all);
         if (check_series(o, all, err) != SF_OK || (o->restart && all->drops > 1 && has_begun(o->output, 2)))
             goto done;
     }
@@ -367,7 +391,7 @@ static sf_status solve(const options *o, const char *command, const volatile sig
                        sf_error *err) {
     series all = {0};
     char before[SF_PATH_SIZE], now[SF_PATH_SIZE];
-    SF_TRY(solve_drop(o, &all, command, stop, err));
+    SF_TRY(solve_drop(o, 1, &all, command, stop, err));
     for (int64_t k = 2; k <= all.drops; k++) {
         options drop = *o;
         sf_model_series_file(o->output, k - 1, before, sizeof before);
@@ -375,12 +399,13 @@ static sf_status solve(const options *o, const char *command, const volatile sig
         if (o->restart && k < all.drops && has_begun(o->output, k + 1))
             continue;
         drop.output = now;
-        drop.model = all.model;
+        sf_model_series_file(all.model, all.own[k - 1] ? k : 1, all.next, sizeof all.next);
+        drop.model = all.next;
         drop.restart = o->restart && has_begun(o->output, k) ? now : NULL;
         drop.force = o->force || o->restart;
-        drop.earlier = drop.restart ? (sf_earlier){0} : (sf_earlier){before, all.interval};
-        printf("drop %lld of %lld, after %g s\n", (long long)k, (long long)all.drops, all.interval);
-        SF_TRY(solve_drop(&drop, &all, command, stop, err));
+        drop.earlier = drop.restart ? (sf_earlier){0} : (sf_earlier){before, all.interval[k - 1]};
+        printf("drop %lld of %lld, after %g s\n", (long long)k, (long long)all.drops, all.interval[k - 1]);
+        SF_TRY(solve_drop(&drop, k, &all, command, stop, err));
     }
     return SF_OK;
 }

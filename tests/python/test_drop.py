@@ -283,6 +283,19 @@ def test_a_series_has_all_its_drops(tmp_path):
     assert [drop.figures["a_max_g"] for drop in again] == a
 
 
+def test_a_listed_series_has_the_models_of_its_drops(tmp_path):
+    """Drops of their own speed have models of their own beside the first, and a series that is there is not run again."""
+    source = pathlib.Path(os.environ["SF_SOURCE_DIR"])
+    coarse = {"geometry.parameters.fine_spacing": 20, "geometry.parameters.outer_spacing": 20, "geometry.missile_parameters.element_size": 20,
+              "pad.mesh_error_limit": 1, "series.drops": '( { }, { velocity = "3 m/s"; } )'}
+    case = softfall.Case(source / "examples/series/case.cfg", coarse)
+    drops = case.run(output=tmp_path / "run").series
+    assert [drop.figures["v0_m_s"] for drop in drops] == [4.5, 3] and (tmp_path / "run/model-2.h5").exists()
+    before = drops[1].results.stat().st_mtime_ns
+    case.run(output=tmp_path / "run")
+    assert drops[1].results.stat().st_mtime_ns == before
+
+
 def test_a_series_that_was_stopped_in_a_later_drop_is_resumed_there(tmp_path):
     """The drops before it stay as they are, and all are those of a series without a stop."""
     source = pathlib.Path(os.environ["SF_SOURCE_DIR"])

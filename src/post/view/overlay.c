@@ -9,7 +9,9 @@
 #include "io/provenance.h"
 #include "post/figures/figures.h"
 #include "post/figures/verdict.h"
+#include "post/view/cut.h"
 #include "post/view/report.h"
+#include "post/view/report_picture.h"
 #include <argp.h>
 #include <limits.h>
 #include <math.h>
@@ -25,6 +27,7 @@ typedef struct overlay_run {
     char path[PATH_MAX]; /* of its results.h5 */
     int64_t drop;        /* of a series, from 1 */
     double pause;        /* s, of the pad before it */
+    double place[2];     /* m, x and y of the missile's axis */
     bool open;           /* the members below are to be released */
     sf_results results;
     sf_figures figures;
@@ -142,6 +145,7 @@ static sf_status read_drop(overlay_run *r, int64_t number, sf_error *err) {
     if (r->drop != number)
         return SF_REFUSE(err, "%s is drop %lld on its pad, not drop %lld of this series", r->path,
                          (long long)r->drop, (long long)number);
+    sf_axis_find(&r->results, r->place);
     return number > 1 ? sf_h5_read_scalar(r->results.file, "/summary/pause", &r->pause, err) : SF_OK;
 }
 
@@ -183,7 +187,7 @@ static sf_status write_series(const overlay *o, sf_error *err) {
     fputs("drop,pause_s", csv);
     for (int f = 0; f < OF_SERIES; f++)
         fprintf(csv, ",%s,%s_growth", of_series[f], of_series[f]);
-    fputs(",grade\n", csv);
+    fputs(",grade,v0_m_s,x_mm,y_mm\n", csv);
     for (int k = 0; k <= o->count; k++) {
         bool mean = k == o->count;
         if (mean)
@@ -194,9 +198,24 @@ static sf_status write_series(const overlay *o, sf_error *err) {
             double value = mean ? series_mean(o, f) : series_number(o, k, f);
             fprintf(csv, ",%.9g,%.6g", value, value / series_number(o, 0, f) - 1);
         }
-        fprintf(csv, ",%s\n", mean ? "" : sf_verdict_phrase(o->run[k].verdict.grade));
+        if (mean)
+            fputs(",,,,\n", csv);
+        else
+            fprintf(csv, ",%s,%.9g,%.9g,%.9g\n", sf_verdict_phrase(o->run[k].verdict.grade),
+                    o->run[k].figures.v0, 1e3 * o->run[k].place[0], 1e3 * o->run[k].place[1]);
     }
     return sf_staging_close(csv, "series.csv", err);
+}
+
+/* The pad before each later drop. */
+static void put_pads(FILE *page, const overlay *o) {
+    for (int k = 1; k < o->count; k++) {
+        char text[400];
+        sf_error why = SF_ERROR_INIT;
+        char *svg = sf_report_picture_before(&o->run[k].results, text, sizeof text, &why);
+        sf_html_figure(page, svg, "Drop %d. %s", k + 1, text);
+        free(svg);
+    }
 }
 
 static void put_series(FILE *page, const overlay *o) {
@@ -204,16 +223,25 @@ static void put_series(FILE *page, const overlay *o) {
     sf_html_table t = sf_html_table_begin(page, "dense", NULL);
     sf_html_row(&t);
     sf_html_cell(&t, "drop");
+    sf_html_cell(&t, "speed (m/s), place (mm)");
     sf_html_cell(&t, "a_max (g)");
     sf_html_cell(&t, "over the first");
     sf_html_cell(&t, "HIC");
     sf_html_cell(&t, "over the first");
+    bool differ = false; /* in speed, mass or place */
     for (int k = 0; k <= o->count; k++) {
         sf_html_row(&t);
-        if (k == o->count)
+        const overlay_run *r = &o->run[k < o->count ? k : 0];
+        differ = differ || r->figures.v0 != o->run->figures.v0 ||
+                 r->results.missile_mass != o->run->results.missile_mass ||
+                 memcmp(r->place, o->run->place, sizeof r->place) != 0;
+        if (k == o->count) {
             sf_html_cell(&t, "mean of %d to %d", o->mean[0], o->mean[1]);
-        else
+            sf_html_cell(&t, "–");
+        } else {
             sf_html_cell(&t, "%d", k + 1);
+            sf_html_cell(&t, "%.4g at (%.4g, %.4g)", r->figures.v0, 1e3 * r->place[0], 1e3 * r->place[1]);
+        }
         for (int f = 0; f < 2; f++) {
             double value = k == o->count ? series_mean(o, f) : series_number(o, k, f);
             sf_html_cell(&t, "%.5g", value);
@@ -223,7 +251,11 @@ static void put_series(FILE *page, const overlay *o) {
     sf_html_table_end(&t);
     sf_html_note(
         page,
-        "series.csv has them too. What a material remembers is as good as its data: see material.memory.");
+        "series.csv has them too. What a material remembers is as good as its data: see material.memory.%s",
+        differ ? " The drops differ in speed, mass or place: what grows over the first is not the foam's "
+                 "softening alone."
+               : "");
+    put_pads(page, o);
 }
 
 static void print_series(const overlay *o) {

@@ -285,6 +285,11 @@ static void put_link(const page *p, const sf_staging *output) {
 
 static void put_pictures(const page *p, const sf_staging *output) {
     const sf_report_pictures *q = p->pictures;
+    if (q->before) {
+        begin_block(p->file, "The pad before the drop");
+        sf_html_figure(p->file, q->before, "%s", q->before_text);
+        sf_html_block_end(p->file);
+    }
     begin_block(p->file, "The pad at the peak");
     sf_html_figure(p->file, q->pad, "%s", q->pad_text);
     put_scene(p, output);

@@ -123,6 +123,31 @@ static char *draw_pad(const sf_cut *cut, const instant *peak, char *text, size_t
     return sf_picture_draw(cut, &picture, 1, &style, err);
 }
 
+char *sf_report_picture_before(const sf_results *r, char *text, size_t size, sf_error *err) {
+    sf_frame frame = {0};
+    sf_cut cut = {0};
+    char *svg = NULL;
+    if (r->frame_count == 0 || r->frames[0].time > 0 || !sf_h5_exists(r->file, "/frames/000000/softening") ||
+        sf_frame_read(r, &r->frames[0], &frame, err) != SF_OK || !frame.field[SF_FRAME_DISPLACEMENT] ||
+        sf_cut_make(r, &cut, err) != SF_OK || cut.polygon_count == 0) {
+        snprintf(text, size, "No picture: results.h5 holds no displacement and softening at the start.");
+    } else {
+        const sf_picture_style style = {.field = SF_FRAME_SOFTENING,
+                                        .factor = 1e-3,
+                                        .label = "softening (kJ/m³)",
+                                        .half_width = INFINITY};
+        const sf_picture picture = {"before the drop", &r->frames[0], &frame};
+        snprintf(
+            text, size,
+            "The pad before the drop: the energy by which loading, up to the largest so far, takes up less "
+            "than that of new foam.");
+        svg = sf_picture_draw(&cut, &picture, 1, &style, err);
+    }
+    sf_cut_free(&cut);
+    sf_frame_free(&frame);
+    return svg;
+}
+
 static char *draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], char *text, size_t size,
                            sf_error *err) {
     sf_picture picture[SF_INSTANTS];
@@ -274,7 +299,8 @@ sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *re
     sf_cut cut = {0};
     *p = (sf_report_pictures){0};
     read_instants(results, &figures->raw, list);
-    if (sf_cut_make(results, &cut, err) == SF_OK) {
+    p->before = sf_report_picture_before(results, p->before_text, sizeof p->before_text, err);
+    if (err->status == SF_OK && sf_cut_make(results, &cut, err) == SF_OK) {
         p->pad = draw_pad(&cut, &list[1], p->pad_text, sizeof p->pad_text, err);
         p->instants = draw_instants(&cut, list, p->instants_text, sizeof p->instants_text, err);
     }
@@ -291,6 +317,7 @@ sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *re
 }
 
 void sf_report_pictures_free(sf_report_pictures *p) {
+    free(p->before);
     free(p->pad);
     free(p->instants);
     free(p->profile);

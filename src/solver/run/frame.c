@@ -73,12 +73,15 @@ static void take_law_field(const sf_model *m, const sf_operators *op, const sf_s
     sf_law_batch b;
     double stretch[3];
     for (int64_t i = first; i < end; i++) {
+        const sf_material_law *law = &op->law[m->node_material[i]];
         int lane = (int)(i % SF_LANES);
         if (lane == 0)
             sf_domain_law(m, op, s, i / SF_LANES, &b);
         sort_stretches(&b, lane, stretch);
         if (kind == SF_FRAME_PRINCIPAL_STRETCHES)
             memcpy(&out[3 * (i - first)], stretch, sizeof stretch);
+        else if (kind == SF_FRAME_SOFTENING)
+            out[i - first] = law->law->softening(law->numbers, b.history, lane);
         else
             out[i - first] = kind == SF_FRAME_LARGEST_COMPRESSION ? 1 - stretch[0]
                              : kind == SF_FRAME_ENERGY_DENSITY    ? b.energy[lane]
@@ -130,6 +133,7 @@ static void take_field(const sf_model *m, const sf_operators *op, const sf_state
         case SF_FRAME_LARGEST_COMPRESSION:
         case SF_FRAME_ENERGY_DENSITY:
         case SF_FRAME_HYSTERESIS_FACTOR:
+        case SF_FRAME_SOFTENING:
             take_law_field(m, op, s, kind, first, end, rows);
             break;
         case SF_FRAME_CONTACT_PRESSURE:
@@ -235,7 +239,7 @@ sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_sta
     if (buffer && write_head(m, s, path, file, err) == SF_OK)
         write_layers(m, op, s, path, file, err);
     for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
-        if (wanted >> k & 1)
+        if ((wanted >> k & 1) && (k != SF_FRAME_SOFTENING || s->drop > 1))
             write_field(m, op, s, (sf_frame_field)k, path, buffer, file, err);
     free(buffer);
     return err->status;

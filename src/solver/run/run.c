@@ -76,9 +76,31 @@ static void tell_pole(const sf_model *m, const sf_extremes *x, const sf_sink *si
             x->largest_compression, straight);
 }
 
+/* The rates of the data are those at the pad's temperature: tells where the impact leaves them. */
+static void tell_rates(const sf_model *m, const sf_sink *sink) {
+    double rate = fmax(m->missile.speed, sf_motion_measure(m).speed) / m->thickness;
+    for (int64_t k = 0; k < m->material_count && m->run.temperature > 0; k++) {
+        const sf_foam_shared *foam = m->material[k].card;
+        const sf_law_curves *c = sf_material_curves(&m->material[k]);
+        bool curves = c && c->curve_count > 1;
+        double low = curves                  ? c->curve_rate[0]
+                     : foam->rate_factor > 0 ? foam->rate_reference
+                                             : 0,
+               high = curves ? c->curve_rate[c->curve_count - 1] : INFINITY;
+        if (rate < low || rate > high)
+            sf_sink_tell(
+                sink, SF_WARNING,
+                "at %g degC the rate of the impact, speed over thickness, is %.3g s-1, %s rate of the "
+                "foam's data there, %.3g s-1: the stress of that rate is taken",
+                m->run.temperature - 273.15, rate, rate < low ? "below the lowest" : "above the highest",
+                rate < low ? low : high);
+    }
+}
+
 void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, const sf_sink *sink) {
     tell_depth(m, x, sink);
     tell_pole(m, x, sink);
+    tell_rates(m, sink);
     if (s->contact_unsettled > 0)
         sf_sink_tell(sink, SF_WARNING, "the contact forces of %lld steps did not settle to the last digits",
                      (long long)s->contact_unsettled);
@@ -292,8 +314,8 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         write_count(file, "/summary/interactions", "(domain, node) pairs", m->domain_nnz, err) != SF_OK ||
         write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) !=
             SF_OK ||
-        (m->run.drops > 1 &&
-         write_count(file, "/summary/drops", "drops of the series", (int64_t)m->run.drops, err) != SF_OK) ||
+        (m->series_count > 1 &&
+         write_count(file, "/summary/drops", "drops of the series", m->series_count, err) != SF_OK) ||
         (s->drop > 1 &&
          (write_count(file, "/summary/drop", "number of the drop on this pad, from 1", s->drop, err) !=
               SF_OK ||
