@@ -130,7 +130,8 @@ static void drop_is_that_of_fine_steps(void **state) {
     print_message("%.3g ms per drop with its figures; ", 1e3 * time / drops);
     print_message("largest differences: a_max %.2g, HIC %.2g, window %.2g, rebound speed %.2g, contact time "
                   "%.2g, strain %.2g\n",
-                  worst.a_max_g, worst.hic, worst.hic_window, worst.v_rebound, worst.contact_time, worst.strain);
+                  worst.a_max_g, worst.hic, worst.hic_window, worst.v_rebound, worst.contact_time,
+                  worst.strain);
     assert_true(worst.a_max_g < 1e-3 && worst.hic < 2e-3 && worst.hic_window < 2e-3);
     assert_true(worst.v_rebound < 2e-3 && worst.contact_time < 3e-3 && worst.strain < 1e-4);
 }

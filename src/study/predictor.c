@@ -100,10 +100,9 @@ static void add_slopes(const likelihood *l, double variance, double ones_sum, gs
     double slope[SF_PREDICTOR_INPUTS] = {0}, diagonal = 0, part[SF_PREDICTOR_INPUTS];
     for (int i = 0; i < l->count; i++)
         for (int j = 0; j <= i; j++) {
-            double m =
-                gsl_matrix_get(&l->k.matrix, (size_t)i, (size_t)j) -
-                gsl_vector_get(weight, (size_t)i) * gsl_vector_get(weight, (size_t)j) / variance -
-                gsl_vector_get(ones, (size_t)i) * gsl_vector_get(ones, (size_t)j) / ones_sum;
+            double m = gsl_matrix_get(&l->k.matrix, (size_t)i, (size_t)j) -
+                       gsl_vector_get(weight, (size_t)i) * gsl_vector_get(weight, (size_t)j) / variance -
+                       gsl_vector_get(ones, (size_t)i) * gsl_vector_get(ones, (size_t)j) / ones_sum;
             if (i == j) {
                 diagonal += m;
                 continue;
@@ -178,7 +177,8 @@ static sf_status find_lengths(likelihood *l, sf_error *err) {
 
 /* Points of which the lengths are found: of many, those at equal distances in their order. */
 static sf_status fit_lengths(sf_predictor *p, const double *y, sf_error *err) {
-    size_t n = (size_t)(p->count < MOST_FOR_LENGTHS ? p->count : MOST_FOR_LENGTHS), inputs = (size_t)p->inputs;
+    size_t n = (size_t)(p->count < MOST_FOR_LENGTHS ? p->count : MOST_FOR_LENGTHS),
+           inputs = (size_t)p->inputs;
     SF_OWNED double *x = sf_alloc(err, n, (inputs + n + 3) * sizeof *x, "a predictor");
     if (!x)
         return err->status;

@@ -25,7 +25,7 @@ typedef struct sf_predictor {
     double calibration; /* -, factor of all standard deviations, from the residuals of points left out: the
                            larger of their root mean square and of their 95 % quantile, over what the process
                            expects */
-    double *x;              /* [count][inputs], and behind them the next three; owned */
+    double *x;          /* [count][inputs], and behind them the next three; owned */
     gsl_matrix_view factor; /* [count][count] lower Cholesky factor of the correlation K */
     gsl_vector_view weight; /* [count] K^-1 (y - mean) */
     gsl_vector_view ones;   /* [count] K^-1 1 */
