@@ -111,9 +111,9 @@ def _columns(path: Path) -> dict[str, np.ndarray]:
 def read_place(name: str, folder: Path, missile: str = "", cost: float = 1.0) -> Place:
     """Reads the output of softfall-cfh --posterior. InputError: it has no draws."""
     summary = json.loads((folder / "cfh.json").read_text(encoding="utf-8"))
-    posterior = summary["posterior"] or {"no_interval": "it was made without --posterior"}
+    posterior = summary["posterior"] or {}
     if "draws" not in posterior:
-        raise InputError(f"{folder}: no draws of the foam, which advice needs: {posterior['no_interval']}")
+        raise InputError(f"{folder}: no draws of the foam, which advice needs: {posterior.get('no_interval') or 'it was made without --posterior'}")
     curves, draws, band = (_columns(folder / f"cfh_{part}.csv") for part in ("curves", "draws", "band"))
     height = band["height_m"]
     count = len(draws["draw_1"])

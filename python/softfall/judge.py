@@ -159,25 +159,25 @@ def _take_search(p: Protocol, search: Search, made: Outcome) -> tuple[float, boo
     """Adds the line of a search; returns its height, negative where it is an upper bound, and whether it is exact."""
     found: dict[str, Any] = search.summary["critical_fall_height"]
     of = f"{search.condition}, {search.position}"
-    heights = [point["height_m"] for point in search.summary["points"]]
     verdict, value = found["verdict"], found.get("height_m")
     note = "" if verdict == "found" else verdict
     low, high = (math.nan if found.get(key) is None else float(found[key]) for key in ("height_low_m", "height_high_m"))
-    first = Line(of, str(found.get("deciding") or ""), math.nan if value is None else float(value), None, None, low, high, note)
+    labels = {name: next((figure.label for figure in p.figures if figure.key == key), name) for name, key in (("a_max", "a_max_g"), ("HIC", "hic"))}
+    first = Line(of, labels.get(found["deciding"], found["deciding"] or ""), math.nan if value is None else float(value), None, None, low, high, note)
     made.lines.append(first)
     for one in search.summary["criteria"]:
         limit, height = one.get("limit_g", one.get("limit")), one["height_m"]
-        if one["criterion"] == first.figure:
+        if one["criterion"] == found["deciding"]:
             first.limit = limit
         elif limit < NO_LIMIT and verdict == "found":
-            made.lines.append(Line(of, one["criterion"], math.nan if height is None else height, limit,
+            made.lines.append(Line(of, labels[one["criterion"]], math.nan if height is None else height, limit,
                                    note="" if height else f"{one['state']} up to {found['highest_simulated_m']:g} m"))
     if verdict == "found":
         return first.value, True
     if verdict.startswith("above"):
-        return max(heights), False
+        return float(found["highest_simulated_m"]), False  # of a drop that can be used
     if verdict.startswith("below"):
-        return -min(heights), False
+        return -float(found["lowest_simulated_m"] or found["reaches_anvil_m"]), False
     made.notes.append(f"{of}: {found.get('problem') or verdict}")
     return math.nan, False
 

@@ -312,8 +312,8 @@ def _advice(path: Path, group: _Group) -> dict[str, Any]:
         one = _Group(f"{group.where}: missile {k}", table)
         name, cost = one.take("name", str).strip(), _cost(one, "cost", MISSILE_COST)
         others.append(Missile(name, _missile(path, one), cost))
-        if not name or any(other.name == name for other in others[:-1]):
-            raise InputError(f"{one.where}: name {name!r} is empty or that of another missile")
+        if name in ("", "drop", "test") or any(other.name == name for other in others[:-1]):
+            raise InputError(f"{one.where}: name {name!r} is empty, that of another missile, or drop or test, which are no missiles")
         if not others[-1].keys:
             raise InputError(f"{one.where}: {name} has neither geometry, mass nor keys, by which it would be another missile")
         one.end("name, cost, geometry, parameters, mass and keys")

@@ -97,14 +97,14 @@ def _places(p: Protocol, pad: Case, output: Path, posterior: str, options: Mappi
 
 def _search_other(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str, options: Mapping[str, Any]) -> Search | None:
     """Returns a search of another missile with draws; where no limit is reached, its draws are checked by those of its highest drop that can be used."""
-    first = search(p, case, condition, position, folder, None, options)
+    first = search(p, case, condition, position, folder, None, options, shown=False)
     usable = [point for point in first.summary["points"] if not point["failed"]]
     if len(usable) < 2:
         return None
     reached = first.summary["critical_fall_height"]["verdict"] == "found"
     highest = max(usable, key=lambda point: point["height_m"])
     limits = None if reached else (BELOW * highest["a_max_g"], BELOW * highest["hic"])
-    return search(p, case, condition, position, folder, posterior, {**options, "check_drops": CHECKS}, limits)
+    return search(p, case, condition, position, folder, posterior, {**options, "check_drops": CHECKS}, limits, shown=False)
 
 
 def _other_place(p: Protocol, pad: Case, condition: Condition, position: Position, other: Missile, output: Path, posterior: str,
@@ -119,7 +119,7 @@ def _other_place(p: Protocol, pad: Case, condition: Condition, position: Positio
     except NumericError as error:
         notes.append(f"drops at {name} are not weighed: {error}")
         return None
-    if found and "draws" in found.summary["posterior"]:
+    if found and "draws" in (found.summary["posterior"] or {}):
         place = advice.read_place(name, found.folder, other.name, other.cost)
         if place.freedom > 0:
             return place

@@ -282,8 +282,8 @@ SEARCH_FILTER, NO_LIMIT = 1000, 1e6  # of softfall-cfh; a limit that no drop rea
 
 
 def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
-           options: Mapping[str, Any], limits: tuple[float | None, float | None] | None = None) -> Search:
-    """Runs softfall-cfh below a folder, and reads its drops. `limits` of a_max (g) and HIC are those of the protocol unless given."""
+           options: Mapping[str, Any], limits: tuple[float | None, float | None] | None = None, shown: bool = True) -> Search:
+    """Runs softfall-cfh below a folder, and reads its drops if they are shown. `limits` of a_max (g) and HIC are those of the protocol unless given."""
     folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
     a_max, hic_value = limits or (p.limit_of("a_max_g"), p.limit_of("hic"))
@@ -293,7 +293,8 @@ def search(p: Protocol, case: Case, condition: Condition, position: Position, fo
                          *programs.options(given)])
     found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
     height = found.summary["critical_fall_height"].get("height_m")
-    found.drops = [_point(p, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs") for point in found.summary["points"]]
+    if shown:
+        found.drops = [_point(p, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs") for point in found.summary["points"]]
     if options.get("views") and height:
         drop = case.copy()
         drop["missile.velocity"] = f"{speed(height):.12g} m/s"
@@ -308,7 +309,7 @@ def _point(p: Protocol, spot: Spot, point: Mapping[str, Any], runs: Path) -> Dro
     if point["failed"]:
         return drop
     drop.figures = take_figures(p.figures, {key: value for key, value in point.items() if isinstance(value, (int, float))}, None)
-    for path in runs.glob(f"h{spot.height:.3f}m-*/results.h5"):
+    for path in runs.glob(f"h{spot.height:.4g}m-*/results.h5"):
         kept = re.search(r"^a_max_g (\S+)$", path.with_name("figures.txt").read_text(encoding="utf-8"), re.M) if path.with_name("figures.txt").exists() else None
         if kept and abs(float.fromhex(kept.group(1)) / point["a_max_g"] - 1) < 1e-7:
             drop.source = str(path)

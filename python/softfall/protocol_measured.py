@@ -54,13 +54,13 @@ SCATTER = 0.05  # of a_max from drop to drop, relative, beyond which a lower hei
 
 def _mark_exchanged(made: Drops) -> None:
     """Marks drops of one place and number whose a_max falls with the height: the two of the largest fall look exchanged."""
+    peak = {id(drop): float(np.max(drop.curve[1])) for drop in made.drops if drop.curve is not None}
     groups: dict[tuple[Any, ...], list[Drop]] = {}
     for drop in made.drops:
-        if drop.figures.get("a_max_g", 0.0) > 0 or drop.curve is not None:
+        if peak.get(id(drop), 0.0) > 0:
             spot = drop.spot
             groups.setdefault((spot.condition, spot.position, spot.mass, spot.missile, drop.number), []).append(drop)
     for group in groups.values():
-        peak = {id(drop): float(np.max(drop.curve[1])) for drop in group if drop.curve is not None}
         pairs = [(peak[id(low)] / peak[id(high)], low, high) for low in group for high in group if low.spot.height < high.spot.height]
         fall, low, high = max(pairs, key=lambda pair: pair[0], default=(0.0, None, None))
         if low is None or high is None or fall <= 1 + SCATTER:
@@ -98,7 +98,7 @@ def _listed(folder: Path) -> list[tuple[str, dict[str, str]]]:
         row = dict(zip(heading, cells))
         if separator != ",":
             row.update({key: re.sub(r"(?<=\d),(?=\d)", ".", row[key]) for key in WITH_NUMBERS if key in row})
-        if not row["file"]:
+        if not row.get("file"):
             raise InputError(f"{path}:{number}: file is empty")
         rows.append((f"{path}:{number}", row))
     if not heading:

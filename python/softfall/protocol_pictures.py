@@ -85,8 +85,9 @@ def height_picture(p: Protocol, parts: Mapping[str, Drops]) -> str:
             _draw_place(ax, p, figure, place, parts, f"C{k}", (place[1] if one else ", ".join(place)) + ", " if len(places) > 1 else "")
         ax.axhline(figure.limit, color="0.4", lw=1, ls=":")
         ax.annotate(f"limit {figure.limit:g}", (0.02, figure.limit), xycoords=("axes fraction", "data"), fontsize=7, va="bottom")
-        ax.set(xlabel="height of free fall (m)", ylabel=figure.label)
-    axes[0, -1].legend(fontsize=7, loc="lower right")
+        values = [drop.figures[figure.label] for drops in parts.values() for drop in drops.all if figure.label in drop.figures]
+        ax.set(xlabel="height of free fall (m)", ylabel=figure.label, ylim=(0, 1.15 * max([figure.limit or 0.0, *values])))  # a band may be far higher
+    axes[0, -1].legend(fontsize=7)
     told = ["Filled: measured drops, hollow: simulated ones. Full lines join the measured means of the drops that count; dashed lines are the fit of the simulated drops, or join them."]
     told += [f"The first {MOST_PLACES} of {len(places)} places."] if len(places) > MOST_PLACES else []
     return "<h2>Figures over the height</h2>" + _svg(chart) + f'<p class="note">{" ".join(told)}</p>'
@@ -121,7 +122,7 @@ def _draw_search(ax: Any, figure: Figure, search: Search, colour: str, prefix: s
         d = np.log(h) - fit["centre"]
         ax.plot(h, [figure.of(float(value)) for value in np.exp(fit["c0"] + fit["c1"] * d + fit["c2"] * d**2)], "--", color=colour, lw=1.2)
     band = search.folder / "cfh_band.csv"
-    if not band.exists() or search.summary.get("posterior") is None:
+    if not band.exists() or "draws" not in (search.summary["posterior"] or {}):  # it may be of an earlier run
         return
     heights = [point["height_m"] for point in search.summary["points"]]
     with open(band, newline="", encoding="utf-8") as stream:

@@ -24,7 +24,7 @@ FIELDS = ("laboratory", "address", "sample", "order", "date", "conditioning", "o
 
 _STYLE = """body{font:15px/1.45 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}h1{font-size:1.5em}h2{font-size:1.15em;
 margin-top:1.6em}table{border-collapse:collapse;width:100%;font-size:.92em}th,td{text-align:left;padding:.25em .6em;border-bottom:1px solid #ddd;
-vertical-align:top}td.n,th.n{text-align:right;white-space:nowrap}.result{border-left:.4em solid #888;background:#f4f4f4;padding:.6em 1em;
+vertical-align:top}td.n,th.n{text-align:right}td.n{white-space:nowrap}.result{border-left:.4em solid #888;background:#f4f4f4;padding:.6em 1em;
 font-size:1.25em}.good{border-color:#2a7}.bad{border-color:#c33}.note{color:#555;font-size:.9em}svg,img{max-width:100%;height:auto}
 @media print{body{margin:0;font-size:11px}h2{break-after:avoid}tr,figure{break-inside:avoid}}"""
 
@@ -89,14 +89,14 @@ def _drop_table(p: Protocol, parts: Mapping[str, Drops], output: Path) -> str:
     keys = [figure.label for figure in p.figures]
     place = {(c.name, q.name): k for k, (c, q) in enumerate((c, q) for c in p.conditions for q in p.positions)}
     rows = [[what, drop.spot.condition, drop.spot.position, drop.spot.missile, f"{drop.spot.height:g}", f"{speed(drop.spot.height):.3f}", drop.spot.mass,
-             str(drop.number), *(_number(drop.figures.get(key, math.nan)) for key in keys), drop.grade, drop.note, _links(drop.view, output)]
+             str(drop.number), *(_number(drop.figures.get(key, math.nan)) for key in keys), drop.grade, drop.note.removeprefix(f"{drop.grade}: "), _links(drop.view, output)]
             for what, drops in parts.items() for drop in sorted(drops.all, key=lambda drop: (place[drop.spot.condition, drop.spot.position], drop.spot.height))]
     found = [[search.condition, search.position, _links(search.view, output)] for drops in parts.values() for search in drops.searches
              if search.view]
     searches = "<h2>Drops at the critical height</h2>" + _table(["condition", "position", "look"], found) if found else ""
     if not rows:
         return searches
-    return searches + "<h2>Drops</h2>" + _table(["", "condition", "position", "missile", ">height (m)", ">speed of free fall (m/s)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note", "look"], rows)
+    return searches + "<h2>Drops</h2>" + _table(["", "condition", "position", "missile", ">height (m)", ">speed (m/s)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note", "look"], rows)
 
 
 def _choices(advice: Advice | None) -> str:

@@ -164,8 +164,6 @@ static sf_status check_environment(const sf_sink *sink, sf_error *err) {
                      variables[k].name, first_fault.value, variables[k].most);
 }
 
-/* ---- the start ---- */
-
 enum { LEAST_STACK = 1 << 20, USUAL_STACK = 1 << 23 /* bytes */ };
 
 /* The stack of the main thread, and OpenMP's of its threads. */
@@ -203,8 +201,7 @@ sf_status sf_program_try_threads(int threads, sf_error *err) {
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
     SF_OWNED pthread_t *thread = sf_alloc(err, (unsigned long)threads, sizeof *thread, "the threads");
     int count = 0, failed = 0;
-    if (!thread)
-        return err->status;
+    SF_TRY(err->status);
     pthread_mutex_lock(&gate);
     while (count < threads - 1 && failed == 0) {
         failed = pthread_create(&thread[count], NULL, wait_for_all, &gate);

@@ -13,54 +13,21 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* ---- activities ---- */
+static const struct {
+    const char *name;
+    sf_activity done, stopped;
+} activities[] = {
+#define ACTIVITY(constant, name, done, stopped) {name, SF_##done, SF_##stopped},
+    SF_ACTIVITIES(ACTIVITY)
+#undef ACTIVITY
+};
 
 const char *sf_activity_name(sf_activity activity) {
-#define NAME(constant, name) name,
-    static const char *const names[] = {SF_ACTIVITIES(NAME)};
-#undef NAME
-    return names[activity];
+    return activities[activity].name;
 }
 
 bool sf_activity_is_busy(sf_activity a) {
-    return a == SF_MESHING || a == SF_PREPARING || a == SF_RUNNING || a == SF_STOPPING ||
-           a == SF_CANCELLING || a == SF_REPORTING || a == SF_SAVING;
-}
-
-/* After a program has ended well. */
-static sf_activity succeed(sf_activity a) {
-    switch (a) {
-    case SF_MESHING:
-        return SF_MESHED;
-    case SF_PREPARING:
-        return SF_RUNNING;
-    case SF_RUNNING:
-        return SF_REPORTING;
-    case SF_SAVING:
-        return SF_SAVED;
-    case SF_REPORTING:
-    case SF_STOPPING: /* the run had ended before it was asked to */
-        return SF_DONE;
-    case SF_CANCELLING:
-        return SF_STOPPED;
-    default:
-        return a;
-    }
-}
-
-/* Only a run leaves results. */
-static sf_activity stop(sf_activity a) {
-    switch (a) {
-    case SF_MESHING:
-    case SF_PREPARING:
-    case SF_SAVING:
-        return SF_CANCELLING;
-    case SF_RUNNING:
-    case SF_REPORTING:
-        return SF_STOPPING;
-    default:
-        return a;
-    }
+    return activities[a].done != a;
 }
 
 sf_activity sf_activity_next(sf_activity a, sf_event event) {
@@ -73,9 +40,9 @@ sf_activity sf_activity_next(sf_activity a, sf_event event) {
     case SF_PRESS_SAVE:
         return busy ? a : SF_SAVING;
     case SF_PRESS_STOP:
-        return stop(a);
+        return activities[a].stopped;
     case SF_CHILD_DONE:
-        return succeed(a);
+        return activities[a].done;
     case SF_CHILD_INTERRUPTED:
         return busy ? SF_STOPPED : a;
     case SF_CHILD_FAILED:

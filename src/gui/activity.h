@@ -9,23 +9,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Name as it is shown. */
+/* Name as it is shown, and the activities after its program has ended well and after Stop; one that the end of
+ * a program does not change is not busy. Only a run leaves results. */
 #define SF_ACTIVITIES(X)                                                                                     \
-    X(IDLE, "ready")                                                                                         \
-    X(MESHING, "meshing") /* softfall-pre for the checks */                                                  \
-    X(MESHED, "meshed")                                                                                      \
-    X(PREPARING, "meshing before the run") /* softfall-pre for a run */                                      \
-    X(RUNNING, "running")                  /* softfall-solve */                                              \
-    X(STOPPING, "stopping")                /* a run was asked to end */                                      \
-    X(CANCELLING, "cancelling")            /* softfall-pre or Save case was asked to end */                  \
-    X(STOPPED, "stopped")                  /* a run can be resumed */                                        \
-    X(REPORTING, "writing the report")     /* softfall-post */                                               \
-    X(SAVING, "saving the case")                                                                             \
-    X(SAVED, "saved")                                                                                        \
-    X(DONE, "done")                                                                                          \
-    X(FAILED, "failed")
+    X(IDLE, "ready", IDLE, IDLE)                                                                             \
+    X(MESHING, "meshing", MESHED, CANCELLING) /* softfall-pre for the checks */                              \
+    X(MESHED, "meshed", MESHED, MESHED)                                                                      \
+    X(PREPARING, "meshing before the run", RUNNING, CANCELLING) /* softfall-pre for a run */                 \
+    X(RUNNING, "running", REPORTING, STOPPING)                  /* softfall-solve */                         \
+    X(STOPPING, "stopping", DONE, STOPPING)                     /* a run was asked to end */                 \
+    X(CANCELLING, "cancelling", STOPPED, CANCELLING)      /* softfall-pre or Save case was asked to end */   \
+    X(STOPPED, "stopped", STOPPED, STOPPED)               /* a run can be resumed */                         \
+    X(REPORTING, "writing the report", DONE, STOPPING)    /* softfall-post */                                \
+    X(SAVING, "saving the case", SAVED, CANCELLING)                                                          \
+    X(SAVED, "saved", SAVED, SAVED)                                                                          \
+    X(DONE, "done", DONE, DONE)                                                                              \
+    X(FAILED, "failed", FAILED, FAILED)
 
-#define SF_ACTIVITY_CONSTANT(constant, name) SF_##constant,
+#define SF_ACTIVITY_CONSTANT(constant, ...) SF_##constant,
 typedef enum sf_activity { SF_ACTIVITIES(SF_ACTIVITY_CONSTANT) SF_ACTIVITY_COUNT } sf_activity;
 #undef SF_ACTIVITY_CONSTANT
 

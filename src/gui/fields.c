@@ -168,8 +168,7 @@ sf_status sf_fields_read(const char *case_path, const sf_sink *sink, sf_fields *
                          sf_error *err) {
     SF_OWNED sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
     const sf_case_listener listener = {hear, fields};
-    if (!before)
-        return err->status;
+    SF_TRY(err->status);
     *before = *fields;
     fields->count = 0;
     if (sf_case_read_values(case_path, 0, NULL, sink, &listener, out, err) == SF_OK && out->layer_count == 0)
@@ -340,8 +339,6 @@ void sf_overrides_free(sf_overrides *o) {
         free(o->text[k]);
     *o = (sf_overrides){0};
 }
-
-/* ---- marks ---- */
 
 static bool is_of_word(int c) {
     return isalnum(c) || c == '_';

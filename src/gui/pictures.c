@@ -91,8 +91,7 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
     s->missile_position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
     s->missile.face =
         sf_alloc(err, 4 * (unsigned long)most, sizeof *s->missile.face, "the missile's picture");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     double *to = s->missile_position;
     for (int64_t t = 0; t < m->triangles; t++)
         for (int i = 0; i < parts; i++)
@@ -405,8 +404,6 @@ static void forget(sf_pictures *p) {
     clear_outcome();
 }
 
-/* Shows the geometries with the parameters of the tree. gmsh shows one model only: the missile is a picture.
- */
 sf_status sf_pictures_show_geometry(sf_pictures *p, const sf_case *c, const sf_pictures_place *place,
                                     sf_fields *fields, sf_error *err) {
     sf_triangles missile = {0};
@@ -444,7 +441,6 @@ static sf_status begin_pictures(sf_pictures *p, sf_error *err) {
     return err->status;
 }
 
-/* Pad and missile as softfall-pre has made them. */
 void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit) {
     sf_error err = SF_ERROR_INIT;
     SF_OWNED_BY(sf_model_free) sf_model m = {0};

@@ -30,10 +30,6 @@ static void tell(sf_session *s, bool failed, const char *sentence) {
     sf_window_refresh();
 }
 
-static void tell_error(sf_session *s, const sf_error *err) {
-    tell(s, true, err->text);
-}
-
 static void show_buttons(void) {
     static const char *const button[][3] = {
         {"1Drop/1Mesh", "mesh", "mesh the geometry and check the model (softfall-pre)"},
@@ -96,8 +92,7 @@ static sf_status add_geometry(const char *path, const char *group, const sf_geo_
 static sf_status read_case(sf_session *s, sf_error *err) {
     sf_case fresh;
     SF_OWNED sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
-    if (!before)
-        return err->status;
+    SF_TRY(err->status);
     *before = s->fields;
     if (sf_fields_read(s->case_path, NULL, &s->fields, &fresh, err) == SF_OK) {
         sf_case_free(&s->case_file);
@@ -166,7 +161,7 @@ static void begin_anew(sf_session *s, bool reread) {
         err = geometry;
     show_folder(s);
     if (err.status != SF_OK)
-        tell_error(s, &err);
+        tell(s, true, err.text);
     else
         tell(s, false, "ready: Mesh checks the model, Run simulates the drop");
     if (err.status == SF_OK)
@@ -181,7 +176,7 @@ void sf_session_begin(sf_session *s) {
     show_target(s);
     begin_anew(s, true);
     if (err.status != SF_OK)
-        tell_error(s, &err);
+        tell(s, true, err.text);
 }
 
 /* ---- programs ---- */
@@ -323,7 +318,7 @@ static void start(sf_session *s) {
         s->activity = SF_FAILED;
     if (err.status != SF_OK) {
         unlock(s);
-        tell_error(s, &err);
+        tell(s, true, err.text);
     }
 }
 
@@ -382,7 +377,7 @@ static void show_checks(sf_session *s) {
     if (sf_checks_read(s->at.model, &s->checks, &err) == SF_OK)
         sf_checks_show(&s->checks);
     else
-        tell_error(s, &err);
+        tell(s, true, err.text);
 }
 
 /* Shows the results of the program that has ended. */
@@ -412,7 +407,7 @@ static void end_program(sf_session *s, int code) {
         if (start_solve(s, false, &err) != SF_OK) {
             s->activity = SF_FAILED;
             unlock(s);
-            tell_error(s, &err);
+            tell(s, true, err.text);
         }
         return;
     }
@@ -491,7 +486,7 @@ static bool find_product(sf_session *s, const char *name, char path[PRODUCT]) {
 static void leave(sf_session *s, const char *program, const char *argument) {
     sf_error err = SF_ERROR_INIT;
     if (sf_child_leave((const char *const[]){program, argument, NULL}, &err) != SF_OK)
-        tell_error(s, &err);
+        tell(s, true, err.text);
 }
 
 static void open_report(sf_session *s) {

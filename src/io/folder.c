@@ -32,18 +32,33 @@ static DIR *list_folder(int handle) {
     return list;
 }
 
-/* Number of entries but the mark; -1: unknown. */
-static int count_others(int handle) {
-    DIR *list = list_folder(handle);
+/* Names in the open folder that begin with `prefix`, and the bytes of the plain files among them; -1: it
+ * cannot be read. */
+static int64_t count_names(int handle, const char *prefix, uint64_t *bytes) {
+    DIR *list = handle >= 0 ? list_folder(handle) : NULL;
     struct dirent *entry;
-    int count = 0;
+    struct stat info;
+    int64_t count = 0;
+    *bytes = 0;
     if (!list)
         return -1;
-    while ((entry = readdir(list)) != NULL)
-        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
-                 strcmp(entry->d_name, MARK) != 0;
+    while ((entry = readdir(list)) != NULL) {
+        if (strncmp(entry->d_name, prefix, strlen(prefix)) != 0 || strcmp(entry->d_name, ".") == 0 ||
+            strcmp(entry->d_name, "..") == 0)
+            continue;
+        count++;
+        if (fstatat(handle, entry->d_name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(info.st_mode))
+            *bytes += (uint64_t)info.st_size;
+    }
     closedir(list);
     return count;
+}
+
+/* Number of entries but the mark; -1: unknown. */
+static int64_t count_others(int handle) {
+    uint64_t bytes;
+    int64_t all = count_names(handle, "", &bytes);
+    return all > 0 ? all - (faccessat(handle, MARK, F_OK, AT_SYMLINK_NOFOLLOW) == 0) : all;
 }
 
 static bool was_read(int handle, const char *name) {
@@ -171,32 +186,13 @@ void sf_folder_leave(const char *path) {
     rmdir(path);
 }
 
-/* Names in the folder that begin with `prefix`, and the bytes of the plain files among them. */
-static int64_t count_names(const char *path, const char *prefix, uint64_t *bytes) {
-    int handle = sf_folder_open(path);
-    DIR *list = handle >= 0 ? fdopendir(handle) : NULL;
-    struct dirent *entry;
-    struct stat info;
-    int64_t count = 0;
-    *bytes = 0;
-    while (list && (entry = readdir(list)) != NULL) {
-        if (strncmp(entry->d_name, prefix, strlen(prefix)) != 0 || strcmp(entry->d_name, ".") == 0 ||
-            strcmp(entry->d_name, "..") == 0)
-            continue;
-        count++;
-        if (fstatat(handle, entry->d_name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(info.st_mode))
-            *bytes += (uint64_t)info.st_size;
-    }
-    if (list)
-        closedir(list);
-    else if (handle >= 0)
-        close(handle);
-    return count;
-}
-
 int64_t sf_folder_count(const char *path, const char *prefix) {
     uint64_t bytes;
-    return count_names(path, prefix, &bytes);
+    int handle = sf_folder_open(path);
+    int64_t count = count_names(handle, prefix, &bytes);
+    if (handle >= 0)
+        close(handle);
+    return count < 0 ? 0 : count;
 }
 
 void sf_folder_remove_file(const char *path) {
@@ -259,7 +255,9 @@ void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count
         return;
     uint64_t bytes;
     SF_OWNED char *all = join(count, part, &size);
-    count_names(folder, "", &bytes);
+    int handle = sf_folder_open(folder);
+    count_names(handle, "", &bytes);
+    close(handle);
     if (all && bytes + size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
         head h = {.key = key, .size = size, .hash = sf_hash(SF_HASH_START, all, size)};
         memcpy(h.magic, MAGIC, sizeof MAGIC);

@@ -342,6 +342,12 @@ size_t sf_path_folder_length(const char *path) {
     return !slash ? 0 : slash == path ? 1 : (size_t)(slash - path);
 }
 
+const char *sf_path_split(const char *path, char folder[PATH_MAX]) {
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+    return slash ? slash + 1 : path;
+}
+
 const char *sf_path_name(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;

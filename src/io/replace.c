@@ -51,13 +51,6 @@ bool sf_replace_is_partial(const char *name, const char *of, int *process) {
     return true;
 }
 
-/* The folder that holds the file: "", "/", "a/". Returns the name in it. */
-static const char *split(const char *path, char folder[SF_PATH_SIZE]) {
-    const char *slash = strrchr(path, '/');
-    snprintf(folder, SF_PATH_SIZE, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
-    return slash ? slash + 1 : path;
-}
-
 /* ---- what may be replaced ---- */
 
 bool sf_replace_exists(const char *path) {
@@ -82,7 +75,7 @@ sf_status sf_replace_check_folder(const char *path, sf_error *err) {
     size_t length = (size_t)snprintf(name, sizeof name, "%s", path);
     while (length > 1 && length < sizeof name && name[length - 1] == '/')
         name[--length] = '\0';
-    split(name, folder);
+    sf_path_split(name, folder);
     if (access(folder, W_OK | X_OK) != 0)
         return SF_FAIL(err, SF_ERR_IO, "the output %s cannot be written: %s", path, strerror(errno));
     return SF_OK;
@@ -94,7 +87,7 @@ sf_status sf_replace_check(const char *path, sf_error *err) {
     if (!*path)
         return SF_REFUSE(err, "the name of the output is empty");
     SF_TRY(sf_replace_begin(path, partial, err));
-    if (!*split(path, folder))
+    if (!*sf_path_split(path, folder))
         return SF_REFUSE(err, "the output %s cannot be written: it is a folder", path);
     if (stat(path, &info) == 0)
         SF_TRY(check_present(path, &info, err));
@@ -144,7 +137,7 @@ static int sync_handle(int file) {
  * folders; the name is then as safe as they make it. */
 void sf_replace_sync_name(const char *path) {
     char folder[SF_PATH_SIZE];
-    split(path, folder);
+    sf_path_split(path, folder);
     sync_handle(open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
 
@@ -217,7 +210,7 @@ bool sf_replace_is_ours(int folder, const char *name) {
 
 void sf_replace_clean(const char *path) {
     char folder[SF_PATH_SIZE];
-    const char *name = split(path, folder);
+    const char *name = sf_path_split(path, folder);
     DIR *list = opendir(folder);
     struct dirent *entry;
     while (list && (entry = readdir(list)) != NULL) {

@@ -272,8 +272,7 @@ sf_status sf_tree_put(sf_tree *tree, const char *name, const char *text, size_t 
     SF_TRY(path_in(tree->aside, name, path, err));
     SF_TRY(make_folders(tree, name, err));
     FILE *file = sf_replace_create(path, err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     note(tree, name, strlen(name), err);
     bool done = fwrite(text, 1, size, file) == size && fflush(file) == 0 && fsync(fileno(file)) == 0;
     if (fclose(file) != 0 || !done)

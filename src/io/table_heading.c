@@ -229,26 +229,16 @@ typedef struct reading {
     sf_error *err;
 } reading;
 
-static bool is_one_of(const char *text, const char *const *list) {
-    for (; *list; list++)
-        if (strcmp(text, *list) == 0)
-            return true;
-    return false;
-}
-
 /* SI value of one unit; 0 if the text is no unit of the kind. */
 static double unit_value(const reading *r, const char *text, int kind) {
-    static const char *const percent[] = {"%", "percent", "pct", NULL};
-    static const char *const one[] = {"1", "-", "mm/mm", "m/m", NULL};
-    static const char *const gravity[] = {"g", "G", "gn", "g0", "g_n", NULL};
     char quantity[SF_TABLE_UNIT + 8];
     sf_error inner = SF_ERROR_INIT;
     double value = 0;
     if (!*text || strlen(text) >= SF_TABLE_UNIT)
         return 0;
     if (kind == SF_TABLE_RATIO)
-        return is_one_of(text, percent) ? 0.01 : is_one_of(text, one) ? 1 : 0;
-    if (kind == SF_ACCELERATION && is_one_of(text, gravity))
+        return sf_word_find("%|percent|pct", text) >= 0 ? 0.01 : sf_word_find("1|-|mm/mm|m/m", text) >= 0;
+    if (kind == SF_ACCELERATION && sf_word_find("g|G|gn|g0|g_n", text) >= 0)
         return SF_STANDARD_GRAVITY;
     if (!*r->units && sf_units_open(r->units, r->err) != SF_OK)
         return 0;

@@ -103,8 +103,7 @@ sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err)
     int64_t count = list_faces(c, NULL);
     SF_OWNED face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
     *s = (sf_skin_faces){0};
-    if (!list)
-        return err->status;
+    SF_TRY(err->status);
     list_faces(c, list);
     qsort(list, (size_t)count, sizeof *list, by_nodes);
     s->face_count = keep_single(list, count);

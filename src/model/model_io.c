@@ -131,28 +131,27 @@ static sf_status read_curves(const sf_h5 *h5, sf_law_curves *curves, int64_t ind
 /* The name of a layer; "" if there is none. */
 static sf_status read_material_name(const sf_h5 *h5, int64_t index, char name[SF_MATERIAL_NAME_SIZE],
                                     sf_error *err) {
-    char path[PATH_SIZE], *text = NULL;
+    char path[PATH_SIZE];
+    SF_OWNED char *text = NULL;
     snprintf(path, sizeof path, "/material/%lld/name", (long long)index);
     if (!sf_h5_exists(h5, path))
         return SF_OK;
     if (sf_h5_read_text(h5, path, &text, err) == SF_OK &&
         snprintf(name, SF_MATERIAL_NAME_SIZE, "%s", text) >= SF_MATERIAL_NAME_SIZE)
         SF_FAIL(err, SF_ERR_MODEL, "%s is longer than %d characters", path, SF_MATERIAL_NAME_SIZE - 1);
-    free(text);
     return err->status;
 }
 
 static sf_status read_material(const sf_h5 *h5, sf_material *m, int64_t index, sf_error *err) {
-    char path[PATH_SIZE], *name = NULL;
+    char path[PATH_SIZE];
+    SF_OWNED char *name = NULL;
     snprintf(path, sizeof path, "/material/%lld/law", (long long)index);
     SF_TRY(sf_h5_read_text(h5, path, &name, err));
     const sf_law *law = sf_law_find(name);
     if (!law)
-        SF_FAIL(err, SF_ERR_MODEL, "%s: \"%.80s\" is not a law that this program has", path, name);
-    free(name);
-    if (!law || sf_material_create(law, m, err) != SF_OK ||
-        read_material_name(h5, index, m->name, err) != SF_OK)
-        return err->status;
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: \"%.80s\" is not a law that this program has", path, name);
+    SF_TRY(sf_material_create(law, m, err));
+    SF_TRY(read_material_name(h5, index, m->name, err));
     for (int k = 0; k < law->parameter_count && err->status == SF_OK; k++) {
         const sf_parameter *p = &law->parameter[k];
         if (p->kind > SF_PARAMETER_CHOICE)

@@ -115,8 +115,7 @@ sf_status sf_base_mark(const sf_case *c, const sf_mesh *mesh, const sf_model *m,
                        sf_error *err) {
     for (int g = 0; g < c->fixed_count; g++) {
         const sf_node_set *set = sf_group_need(mesh, "pad.fixed", c->fixed_group[g], err);
-        if (!set)
-            return err->status;
+        SF_TRY(err->status);
         if (c->base_rule == SF_BASE_GLUED)
             mark_glued(set, marks);
         else if (c->base_rule == SF_BASE_SMOOTH)

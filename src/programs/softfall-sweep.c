@@ -53,8 +53,7 @@ static sf_status write_report(sf_study *study, job *j, sf_error *err) {
     SF_TRY(sf_analysis_make(&j->runs, &j->analysis, err));
     if (j->view_words && sf_sweep_views_choose(j->view_words, &j->plan, &j->runs, &j->views, err) == SF_OK)
         sf_sweep_views_make(&j->plan, study->directory, study->threads, &j->views, err);
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     SF_TRY(sf_sweep_plot(&study->output, &j->analysis, study->runs, warning, sizeof warning, err));
     SF_TRY(sf_sweep_write_page(&study->output, &report, err));
     SF_TRY(sf_sweep_write_json(&study->output, &report, err));
@@ -127,8 +126,7 @@ static sf_status run_rows(sf_study *study, job *j, const sf_sweep_engine *engine
     if (!sf_plan_is_adaptive(&j->plan))
         return sf_sweep_campaign_run(&j->campaign, engine, &j->runs, err);
     sf_sweep_adaptive *adaptive = sf_sweep_adaptive_new(&j->plan, study->runs, study->jobs, stdout, err);
-    if (!adaptive)
-        return err->status;
+    SF_TRY(err->status);
     const sf_sweep_chooser chooser = sf_sweep_adaptive_chooser(adaptive);
     j->campaign.chooser = &chooser;
     sf_sweep_campaign_run(&j->campaign, engine, &j->runs, err);

@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- texts and numbers ---- */
-
 /* A text as gnuplot's string: between single quotes, where gnuplot substitutes nothing; lines joined by "\n".
  */
 static void put_text(FILE *g, const char *text) {
@@ -286,8 +284,6 @@ static void put_plot(FILE *g, size_t panel, const sf_chart_panel_data *p) {
     fputs(any ? "\n" : "plot 0 notitle\n", g);
 }
 
-/* ---- panels ---- */
-
 static void put_margins(FILE *g, const sf_panel *p) {
     if (p->area[1] > 0)
         fprintf(
@@ -327,12 +323,10 @@ static void put_panel(FILE *g, const sf_chart *c, size_t k) {
 
 sf_status sf_chart_script(const sf_chart *c, const sf_staging *output, sf_error *err) {
     char file[64];
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     snprintf(file, sizeof file, "%s.gp", c->name);
     FILE *g = sf_staging_open(output, file, err);
-    if (!g)
-        return err->status;
+    SF_TRY(err->status);
     put_head(g, c);
     put_data(g, c);
     bool many = c->panel_count > 1;

@@ -43,11 +43,14 @@ static void put_arguments(FILE *page, const char *format, va_list arguments) {
     free(text);
 }
 
-#define PUT_ARGUMENTS(page, last)                                                                            \
+/* Between what opens and what closes an element. */
+#define PUT_ARGUMENTS(page, open, last, close)                                                               \
     do {                                                                                                     \
         va_list arguments;                                                                                   \
         va_start(arguments, last);                                                                           \
+        fputs(open, page);                                                                                   \
         put_arguments(page, last, arguments);                                                                \
+        fputs(close, page);                                                                                  \
         va_end(arguments);                                                                                   \
     } while (0)
 
@@ -84,15 +87,11 @@ void sf_html_heading(FILE *page, const char *text) {
 }
 
 void sf_html_paragraph(FILE *page, const char *format, ...) {
-    fputs("<p>", page);
-    PUT_ARGUMENTS(page, format);
-    fputs("</p>\n", page);
+    PUT_ARGUMENTS(page, "<p>", format, "</p>\n");
 }
 
 void sf_html_note(FILE *page, const char *format, ...) {
-    fputs("<p class=\"note\">", page);
-    PUT_ARGUMENTS(page, format);
-    fputs("</p>\n", page);
+    PUT_ARGUMENTS(page, "<p class=\"note\">", format, "</p>\n");
 }
 
 void sf_html_pre(FILE *page, const char *text) {
@@ -106,8 +105,7 @@ void sf_html_prose(FILE *page, const char *text) {
 void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char *format, ...) {
     fprintf(page, "<div class=\"banner %s\">", kind);
     put_between(page, "<b>", phrase, "</b><span>");
-    PUT_ARGUMENTS(page, format);
-    fputs("</span></div>\n", page);
+    PUT_ARGUMENTS(page, "", format, "</span></div>\n");
 }
 
 void sf_html_tile(FILE *page, const char *kind, const char *title, const char *value, const char *remark) {
@@ -127,8 +125,7 @@ void sf_html_division_end(FILE *page) {
 
 void sf_html_figure(FILE *page, const char *svg, const char *format, ...) {
     fprintf(page, "<figure%s>\n%s<figcaption>", svg ? "" : " class=\"missing\"", svg ? svg : "");
-    PUT_ARGUMENTS(page, format);
-    fputs("</figcaption></figure>\n", page);
+    PUT_ARGUMENTS(page, "", format, "</figcaption></figure>\n");
 }
 
 void sf_html_base64(FILE *out, const unsigned char *data, size_t size) {
@@ -171,14 +168,11 @@ static char *png_element(const unsigned char *data, size_t size) {
 
 char *sf_html_png(const sf_staging *output, const char *name) {
     sf_error ignored = SF_ERROR_INIT;
-    char *data = NULL, *element = NULL, *path = sf_staging_path(output, name, &ignored);
+    SF_OWNED char *data = NULL, *path = sf_staging_path(output, name, &ignored);
     size_t size = 0;
-    if (path && sf_staging_has(output, name) &&
-        sf_plain_read(path, NULL, SF_PLAIN_TEXT, &data, &size, &ignored) == SF_OK)
-        element = png_element((const unsigned char *)data, size);
-    free(data);
-    free(path);
-    return element;
+    bool is_read = path && sf_staging_has(output, name) &&
+                   sf_plain_read(path, NULL, SF_PLAIN_TEXT, &data, &size, &ignored) == SF_OK;
+    return is_read ? png_element((const unsigned char *)data, size) : NULL;
 }
 
 sf_html_table sf_html_table_begin(FILE *page, const char *kind, const char *columns) {
@@ -223,8 +217,7 @@ static void begin_cell(sf_html_table *table) {
 
 void sf_html_cell(sf_html_table *table, const char *format, ...) {
     begin_cell(table);
-    PUT_ARGUMENTS(table->page, format);
-    fputs("</td>", table->page);
+    PUT_ARGUMENTS(table->page, "", format, "</td>");
 }
 
 void sf_html_number(sf_html_table *table, int digits, double value) {
@@ -261,8 +254,7 @@ void sf_html_fact(sf_html_table *table, const char *title, const char *format, .
     sf_html_row(table);
     put_between(table->page, "<th>", title, "</th>");
     begin_cell(table);
-    PUT_ARGUMENTS(table->page, format);
-    fputs("</td>", table->page);
+    PUT_ARGUMENTS(table->page, "", format, "</td>");
 }
 
 void sf_html_table_end(sf_html_table *table) {

@@ -41,8 +41,7 @@ static sf_status write_curve(const char *folder, const char *name, const sf_law_
     sf_replacement out;
     curve_name(name, curves, index, file_name);
     FILE *file = open_file(folder, file_name, &out, err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     put_comment(file, text->title);
     fputs("# Engineering strain and nominal stress, positive in compression", file);
     if (curves->curve_count > 1)
@@ -136,8 +135,7 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
         SF_TRY(write_curve(folder, name, curves, k, text, err));
     snprintf(file_name, sizeof file_name, "%s.cfg", name);
     FILE *file = open_file(folder, file_name, &out, err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     put_comment(file, text->title);
     put_comment(file, text->provenance);
     fprintf(

@@ -180,8 +180,7 @@ static sf_status fit_lengths(sf_predictor *p, const double *y, sf_error *err) {
     size_t n = (size_t)(p->count < MOST_FOR_LENGTHS ? p->count : MOST_FOR_LENGTHS),
            inputs = (size_t)p->inputs;
     SF_OWNED double *x = sf_alloc(err, n, (inputs + n + 3) * sizeof *x, "a predictor");
-    if (!x)
-        return err->status;
+    SF_TRY(err->status);
     double *part = x + n * inputs;
     for (size_t k = 0; k < n; k++) {
         size_t from = k * (size_t)p->count / n;
@@ -209,8 +208,7 @@ static sf_status calibrate(sf_predictor *p, sf_error *err) {
         return SF_OK;
     SF_OWNED double *z = sf_alloc(err, n, (n + 1) * sizeof *z, "a predictor");
     double squares = 0;
-    if (!z)
-        return err->status;
+    SF_TRY(err->status);
     gsl_matrix_view inverse = gsl_matrix_view_array(z + n, n, n);
     gsl_matrix_memcpy(&inverse.matrix, &p->factor.matrix);
     gsl_linalg_cholesky_invert(&inverse.matrix);

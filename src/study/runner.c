@@ -503,8 +503,7 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
     sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
     if (!(runner->figures_only && read_recorded(&at, result, err)))
         read_result(&at, result, err);
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     result->reused = r->reused;
     *(r->reused ? &runner->reused : &runner->simulated) += 1;
     if (runner->log) {

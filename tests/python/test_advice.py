@@ -268,24 +268,36 @@ def test_collapsed_columns_are_beyond_every_limit():
 
 @pytest.fixture(scope="module")
 def asked(tmp_path_factory):
-    """A protocol of a critical height at one place, of one drop at each height."""
+    """A protocol of a critical height at one place, of one drop at each height; another missile is lighter."""
     text = re.sub(r"positions = \[.*?\]\n", "", MAT.read_text(), flags=re.S).replace("count = 3", "count = 1").replace("counted = [2, 3]", "counted = [1]")
     text = re.sub(r'limit = 100\.0', "limit = 200.0", re.sub(r"least_window_ms = .*\n", "", text)).replace("limit = 400.0", "limit = 1000.0")
     path = tmp_path_factory.mktemp("asked") / "mine.toml"
-    path.write_text(re.sub(r"heights = \[.*?\]\n", "", text))
+    text = re.sub(r"heights = \[.*?\]\n", "", text)
+    path.write_text(text.replace("[result]", '[advice]\nmissiles = [{ name = "light", mass = "3 kg", cost = 1.5 }]\ntests = [{ rate = "10 1/s", cost = 2 }]\n\n[result]'))
     return path
+
+
+def write_record(path, height, a_max):
+    """A half-sine of a_max (g), whose area is 1.7 times the velocity of the fall."""
+    t, length = np.arange(0, 0.03, 1e-4), 1.7 * protocol.speed(height) * math.pi / (2 * a_max * 9.80665)
+    pulse = np.where((t > 0.005) & (t < 0.005 + length), a_max * np.sin(np.pi * (t - 0.005) / length), 0)
+    np.savetxt(path, np.column_stack([t, pulse]), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
 
 
 def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
     """After a drop as the pad is expected to make it, the interval is shorter; the draws' foam is that of the case."""
-    common = ["--pad", case.path, "--posterior", POSTERIOR, "--advise", "--required", "1.2 m", "-j", "2"]
+    common = ["--pad", case.path, "--posterior", POSTERIOR, "--advise", "-j", "2"]
     first = softfall_protocol(asked, *common, "-o", tmp_path / "out")
     assert first.returncode == 0, first.stderr
     told = json.loads((tmp_path / "out/protocol.json").read_text())["advice"]
-    assert told["choices"] and not told["stop"] or told["stop"]
+    assert {choice["kind"]: choice["cost"] for choice in told["choices"]} == {"drop": 1, "light": 1.5, "test": 2}
+    assert all(choice["gain"] == pytest.approx((told["loss"] - choice["loss"]) / choice["cost"]) for choice in told["choices"])
+    page = (tmp_path / "out/report.html").read_text()
+    assert "missile light" in page and "a compression test at 10 1/s" in page and "Figures over the height" in page
     low, median, high = told["height_m"]
     assert low < median < high
-    heights = next((tmp_path / "out/drops").glob("*/heights"))
+    light, = (tmp_path / "out/drops").glob("*-light/heights")
+    heights, = set((tmp_path / "out/drops").glob("*/heights")) - {light}
     curves = advice.read_place("x", heights)
     pads, points = advice.Pads([curves]), json.loads((heights / "cfh.json").read_text())["points"]
     for point in points:  # the case's own drops, whose foam is in the middle of the draws, lie in the middle of the pads
@@ -295,17 +307,30 @@ def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
                 assert 0.1 < share < 0.9, (point["height_m"], key, share)
     k = int(np.argmin(abs(curves.log_height - math.log(median))))
     height, a_max = math.exp(curves.log_height[k]), math.exp(np.median(curves.value[0][:, k]))
-    t, length = np.arange(0, 0.03, 1e-4), 1.7 * protocol.speed(height) * math.pi / (2 * a_max * 9.80665)
-    pulse = np.where((t > 0.005) & (t < 0.005 + length), a_max * np.sin(np.pi * (t - 0.005) / length), 0)
     (tmp_path / "lab").mkdir()
-    np.savetxt(tmp_path / "lab/1.csv", np.column_stack([t, pulse]), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
-    (tmp_path / "lab/list.csv").write_text(f"file,height,drop\n1.csv,{height:.6g} m,1\n")
-    second = softfall_protocol(asked, *common, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    write_record(tmp_path / "lab/1.csv", height, a_max)
+    (tmp_path / "lab/list.csv").write_text(f"file,height,drop,missile\n1.csv,{height:.6g} m,1,\n")
+    second = softfall_protocol(asked, *common, "--required", "1.2 m", "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
     assert second.returncode == 0, second.stderr
     after = json.loads((tmp_path / "out/protocol.json").read_text())
     assert after["advice"]["height_m"][2] - after["advice"]["height_m"][0] < high - low or "none of them" in after["advice"]["problem"]
     page = (tmp_path / "out/report.html").read_text()
     assert "advice:" in page and (after["advice"]["stop"] or after["advice"]["problem"] or "The next measurement" in page)
+    # a drop of the other missile is learnt from at its own place, and one of a third is refused
+    other = advice.read_place("y", light, "light")
+    k = int(np.argmin(abs(other.log_height - math.log(0.8 * other.highest))))
+    height, a_max = math.exp(other.log_height[k]), math.exp(np.median(other.value[0][:, k]))
+    write_record(tmp_path / "lab/1.csv", height, a_max)
+    (tmp_path / "lab/list.csv").write_text(f"file,height,drop,missile\n1.csv,{height:.6g} m,1,light\n")
+    third = softfall_protocol(asked, *common, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    assert third.returncode == 0 and "left out" not in third.stdout, third.stdout + third.stderr
+    lines = json.loads((tmp_path / "out/protocol.json").read_text())["results"]["advice"]["lines"]
+    assert {line["of"] for line in lines} == {f"as it is, centre, missile light, {height:g} m"} and lines[0]["low"] < a_max < lines[0]["high"]
+    (tmp_path / "lab/list.csv").write_text("file,height,drop,missile\n1.csv,1 m,1,heavy\n")
+    wrong = softfall_protocol(asked, *common, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    assert wrong.returncode == 2 and "no missile 'heavy' in its group advice; there are light" in wrong.stderr
+    wrong = softfall_protocol(asked, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    assert wrong.returncode == 2 and "has the missile of its protocol alone" in wrong.stderr
 
 
 @pytest.mark.parametrize("arguments, said", [

@@ -116,7 +116,7 @@ def test_every_protocol_reads_and_names_what_is_unconfirmed():
     ('[result]', '[advice]\ntests = [{ rate = "10 Hz" }]\n[result]', "advice: test 1: rate: '10 Hz' is no strain rate"),
     ('[result]', '[advice]\ntests = [{ rate = "10 1/s", cost = 0 }]\n[result]', "test 1: cost = 0 is not above 0"),
     ('[result]', '[advice]\nmissiles = [{ name = "flat" }]\n[result]', "missile 1: flat has neither geometry, mass nor keys"),
-    ('[result]', '[advice]\nmissiles = [{ name = "a", mass = "1 kg" }, { name = "a", mass = "2 kg" }]\n[result]', "missile 2: name 'a' is empty or that of another"),
+    ('[result]', '[advice]\nmissiles = [{ name = "a", mass = "1 kg" }, { name = "a", mass = "2 kg" }]\n[result]', "missile 2: name 'a' is empty, that of another missile"),
     ('[result]', '[advice]\nmissile = "flat"\n[result]', "advice: there is no key 'missile'"),
     ('[missile]', '[missile', "TOML|Expected"),
     ('[missile]', '[misile]', r"the group \[missile\] is missing"),
@@ -330,6 +330,21 @@ def test_a_search_shows_its_drops_beside_measured_ones(case, tmp_path):
     assert len(rows) == 1 + len(shown) + 1
 
 
+@pytest.mark.parametrize("verdict, deciding, said", [
+    ("above the highest point", None, "above 1.2 m"), ("below the lowest point", "HIC", "below 0.5 m"), ("below the lowest point", "anvil", "below 1.4 m"),
+])
+def test_a_bound_of_a_search_is_that_of_drops_that_can_be_used(verdict, deciding, said):
+    """A drop that failed at 2 m bounds nothing."""
+    p = protocol.read("en1177")
+    lowest = None if deciding == "anvil" else 0.5
+    found = {"verdict": verdict, "deciding": deciding, "height_m": None, "height_low_m": None, "height_high_m": None, "lowest_simulated_m": lowest,
+             "highest_simulated_m": 1.2, "reaches_anvil_m": 1.4}
+    criteria = [{"criterion": "a_max", "limit_g": 200, "height_m": None, "state": "not reached"}, {"criterion": "HIC", "limit": 1000, "height_m": None, "state": "not reached"}]
+    points = [{"height_m": h} for h in (0.4, 0.5, 1.2, 2.0)]
+    search = protocol_drops.Search("as it is", "centre", pathlib.Path(), {"critical_fall_height": found, "criteria": criteria, "points": points})
+    assert judge.judge(p, Drops(searches=[search])).stated == said
+
+
 def test_a_least_window_that_matters_in_a_search_is_told():
     p = protocol.read("en1177")
     def told(hic):
@@ -342,7 +357,7 @@ def test_a_least_window_that_matters_in_a_search_is_told():
 def test_messages_name_the_protocol_and_not_the_plan_that_is_written(case, tmp_path):
     text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
     for old, new, said in (('key = "max_indentation_mm"', 'key = "gaddd"', r'mine.toml, on \S+case.cfg: "gaddd" is no figure'),
-                           ('# keys = { "missile.friction" = 0.3 }', 'keys = { "missile.frictio" = 0.3 }', r'mine.toml: missile, on \S+case.cfg: missile.frictio=0.3: unknown key')):
+                           ('# keys = { "missile.friction" = 0.3 }  ', 'keys = { "missile.frictio" = 0.3 } #', r'mine.toml: missile, on \S+case.cfg: missile.frictio=0.3: unknown key')):
         assert old in text
         (tmp_path / "mine.toml").write_text(text.replace(old, new))
         result = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "out", *COARSE)
@@ -388,7 +403,7 @@ def test_later_drops_of_a_foam_with_memory_are_simulated_and_count(remembering, 
 
 def test_a_critical_height_is_that_of_the_drops_that_count(remembering, tmp_path):
     text = re.sub(r"conditions = \[.*?\n\]\n", "", (protocol.folder() / "f1292.toml").read_text(), flags=re.S)
-    (tmp_path / "mine.toml").write_text(re.sub(r'geometry = .*\n|parameters = .*\n', "", text))
+    (tmp_path / "mine.toml").write_text(re.sub(r'(?m)^(geometry|parameters) = .*\n', "", text))
     result = softfall_protocol(tmp_path / "mine.toml", "--pad", remembering, *SERIES, "-o", tmp_path / "out")
     assert result.returncode == 0, result.stderr
     told = json.loads((tmp_path / "out/protocol.json").read_text())

@@ -10,8 +10,7 @@
 sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err) {
     FILE *file = sf_staging_open(output, "history.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     const sf_history *h = &results->history;
     for (int c = 0; c < SF_HISTORY_COUNT; c++) {
         const sf_history_column *column = sf_history_column_get(c);
@@ -40,8 +39,7 @@ sf_status sf_csv_write_history(const sf_staging *output, const sf_results *resul
 sf_status sf_csv_write_acceleration(const sf_staging *output, const sf_figures *figures, sf_error *err) {
     const sf_series *curve = &figures->filtered;
     FILE *file = sf_staging_open(output, "acceleration.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fprintf(file, "time_ms,acceleration_cfc%.0f_g\n", figures->cfc);
     for (int64_t i = 0; i < curve->count; i++)
         fprintf(file, "%.9g,%.9g\n", curve->time[i] * 1e3, curve->value[i]);
@@ -51,8 +49,7 @@ sf_status sf_csv_write_acceleration(const sf_staging *output, const sf_figures *
 sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *results,
                                    const sf_figures *figures, sf_error *err) {
     FILE *file = sf_staging_open(output, "compression.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fputs("time_ms,strain_1,stress_kPa,force_N\n", file);
     for (int64_t i = 0; i < results->history.rows; i++) {
         double force = results->history.contact_force[i];
@@ -66,8 +63,7 @@ sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *
                                  const sf_figures *figures, sf_error *err) {
     const sf_series *raw = &comparison->raw, *model = &figures->filtered;
     FILE *file = sf_staging_open(output, "reference.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fprintf(file, "time_ms,acceleration_measured_g,acceleration_cfc%.0f_g,acceleration_measured_raw_g\n",
             figures->cfc);
     for (int64_t i = 0; i < raw->count; i++) {

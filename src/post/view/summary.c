@@ -122,8 +122,7 @@ static void put_comparison(sf_json *json, const char *path, const sf_comparison 
 
 sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_error *err) {
     FILE *file = sf_staging_open(output, "summary.json", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     sf_json json = {.file = file};
     sf_json_open(&json, NULL, '{');
     sf_json_text(&json, "program", "softfall-post " SF_VERSION);

@@ -229,8 +229,7 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
     const double *first = NULL;
     int64_t n = b->mesh->node_count;
     double *start = sf_alloc(err, (unsigned long)n, sizeof *start, "supports");
-    if (!start)
-        return err->status;
+    SF_TRY(err->status);
     memcpy(start, support, (size_t)n * sizeof *start);
     first = start;
     for (int round = 0;; round++) {
@@ -561,8 +560,7 @@ sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const 
     int64_t n = mesh->node_count;
     *out = (sf_invariants){0};
     double *balance = sf_alloc(err, 3 * (unsigned long)n, sizeof *balance, "invariants"), total = 0;
-    if (!balance)
-        return err->status;
+    SF_TRY(err->status);
     sf_domains_boundary_integral(mesh, dual, d, balance);
     for (int64_t i = 0; i < n; i++) {
         measure_domain(mesh, d, i, spacing[i], out);

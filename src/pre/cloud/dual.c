@@ -45,8 +45,7 @@ static int64_t count_parts(const sf_mesh *mesh, bool edges) {
 static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t count = count_parts(mesh, true), k = 0;
     SF_OWNED raw_edge *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell edges");
-    if (!raw)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t c = 0; c < mesh->cell_count; c++) {
         const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
         const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];

@@ -93,8 +93,7 @@ sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *
     snprintf(session->file, sizeof session->file, "%s", source->path);
     if ((unconfined && *unconfined) || !sf_mesh_store_find(session->store, source, &session->open, &files))
         files = mesh(session, source, err);
-    if (!files)
-        return err->status;
+    SF_TRY(err->status);
     snprintf(session->version, sizeof session->version, "%s%s", open->data.version,
              open->confined ? "" : " (unconfined)");
     add_files(session, files, err);

@@ -227,8 +227,7 @@ static sf_status check_coinciding(const sf_mesh *mesh, sf_error *err) {
     sf_box3(mesh->node_count, mesh->position, low, high);
     double tolerance = SAME_POINT * hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
     SF_OWNED sorted_node *order = sf_alloc(err, n, sizeof *order, "sorted nodes");
-    if (!order)
-        return err->status;
+    SF_TRY(err->status);
     for (size_t k = 0; k < n; k++) {
         const double *x = mesh->position + 3 * k;
         order[k] = (sorted_node){0.0, (int64_t)k};

@@ -41,8 +41,7 @@ static sf_status find_neighbours(orienter *o, sf_error *err) {
     int64_t count = 3 * o->surface->triangle_count;
     const int32_t *node = o->surface->triangle;
     SF_OWNED use *list = sf_alloc(err, (size_t)count, sizeof *list, "edges of the missile");
-    if (!list)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < count; k++) {
         int32_t a = node[k], b = node[k % 3 == 2 ? k - 2 : k + 1];
         list[k] = (use){a < b ? a : b, a < b ? b : a, k, a < b};

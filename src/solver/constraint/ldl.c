@@ -25,8 +25,7 @@ static sf_status build_tree(const cholmod_factor *l, int64_t shared, tree *t, sf
     t->parent = sf_alloc(err, rows, sizeof *t->parent, "elimination tree");
     t->below = sf_alloc(err, rows, sizeof *t->below, "elimination tree");
     t->branch = sf_alloc(err, rows, sizeof *t->branch, "elimination tree");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t j = 0; j < t->rows; j++) {
         t->parent[j] = nz[j] > 1 && i[p[j] + 1] < shared ? i[p[j] + 1] : -1;
         t->below[j] += nz[j];

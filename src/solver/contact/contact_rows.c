@@ -165,8 +165,7 @@ static sf_status transpose(const sf_model *m, const sf_contact_rows *rows, trans
     t->ptr = sf_alloc(err, (unsigned long)m->node_count + 2, sizeof *t->ptr, "contact lists");
     t->point = sf_alloc(err, (unsigned long)count, sizeof *t->point, "contact lists");
     t->phi = sf_alloc(err, (unsigned long)count, sizeof *t->phi, "contact lists");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t c = 0; c < sf_model_points(m); c++)
             for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++) {

@@ -64,8 +64,7 @@ static int by_ends(const void *a, const void *b) {
 
 static sf_status build_edge_normals(sf_missile_surface *s, int64_t triangles, sf_error *err) {
     SF_OWNED half_edge *edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *edge, "missile edges");
-    if (!edge)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < 3 * triangles; k++) {
         int32_t a = s->triangle[k], b = s->triangle[k % 3 == 2 ? k - 2 : k + 1];
         edge[k] = (half_edge){a < b ? a : b, a < b ? b : a, k};

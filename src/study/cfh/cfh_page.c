@@ -436,8 +436,7 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
     char verdict[SF_CFH_VERDICT_SIZE], rig[400], *title = sf_origin_title(r->case_text);
     FILE *page = sf_html_begin(output, "Critical fall height", title && *title ? title : NULL, err);
     free(title);
-    if (!page)
-        return err->status;
+    SF_TRY(err->status);
     sf_cfh_verdict_text(r, verdict, sizeof verdict);
     sf_cfh_rig_text(r, rig, sizeof rig);
     sf_html_banner(page, banner_kind(r),

@@ -143,8 +143,7 @@ static sf_status fit_quadratic(const double *height, const double *value, sf_cfh
     size_t n = (size_t)fit->count;
     double square_sum = 0;
     SF_OWNED double *design = sf_alloc(err, n, 4 * sizeof *design, "a fit");
-    if (!design)
-        return err->status;
+    SF_TRY(err->status);
     double *y = design + 3 * n;
     for (size_t k = 0; k < n; k++) {
         double d = log(height[fit->first + (int)k]) - fit->centre;

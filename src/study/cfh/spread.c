@@ -53,8 +53,7 @@ static sf_status drop_grid(const sf_cfh_spread *s, const sf_columns *pad, const 
 static sf_status drop_draws(sf_cfh_spread *s, const sf_columns *pad, const sf_cfh_draws *draws,
                             sf_error *err) {
     SF_OWNED sf_error *errors = sf_alloc(err, (unsigned long)s->draws, sizeof *errors, "draws");
-    if (!errors)
-        return err->status;
+    SF_TRY(err->status);
 #pragma omp parallel for schedule(dynamic)
     for (int d = 0; d < s->draws; d++) {
         errors[d] = (sf_error)SF_ERROR_INIT;
@@ -113,8 +112,7 @@ static sf_status list_drops(sf_cfh_spread *s, const sf_columns *pad, const sf_ma
         }
         s->own++;
     }
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     if (s->own == 0)
         return SF_FAIL(err, SF_ERR_NUMERIC,
                        "there is no simulated height at which the columns of the case's material, "
@@ -253,8 +251,7 @@ static sf_cfh_interval interval_of(double *values, int count) {
 
 static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
     SF_OWNED double *values = sf_alloc(err, (unsigned long)s->draws, sizeof *values, "draws");
-    if (!values)
-        return err->status;
+    SF_TRY(err->status);
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         for (int k = 0; k < s->grid; k++) {
             for (int d = 0; d < s->draws; d++)

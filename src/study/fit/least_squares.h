@@ -12,7 +12,7 @@
 gsl_vector *sf_vector(size_t size, sf_error *err);
 gsl_matrix *sf_matrix(size_t rows, size_t columns, sf_error *err);
 
-/* Those of GSL as variables that are released at the end of their block: SF_VECTOR *x = sf_vector(3, err). */
+/* SF_VECTOR *x = sf_vector(3, err) is released at the end of its block; so are a matrix and a generator. */
 #define SF_VECTOR SF_OWNED_BY(sf_release_vector) gsl_vector
 #define SF_MATRIX SF_OWNED_BY(sf_release_matrix) gsl_matrix
 #define SF_RANDOM SF_OWNED_BY(sf_release_random) gsl_rng
@@ -44,7 +44,7 @@ typedef bool sf_start(void *data, int number, gsl_vector *x);
 double sf_least_squares_from(sf_start *start, sf_deviations *deviations, void *data, size_t count,
                              gsl_vector *best);
 
-/* From the real line to 0..1. */
+/* Maps the real line to 0..1. */
 static inline double sf_logistic(double x) {
     return 1 / (1 + exp(-x));
 }

@@ -53,8 +53,7 @@ static sf_status write_keys(const sf_sweep_campaign *c, uint64_t runs, sf_error 
     sf_replacement out;
     path p = file_of(c, "sweep.key");
     FILE *file = sf_replace_open(p.text, &out, err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fprintf(file, "softfall-sweep table %016llx inputs %016llx runs.csv %016llx\n",
             (unsigned long long)sf_plan_hash(c->plan), (unsigned long long)c->inputs,
             (unsigned long long)runs);

@@ -195,8 +195,7 @@ double sf_quadratic_at(const sf_quadratic *s, const double *x) {
 /* Ranks of the numbers, equal numbers the same group as long as there are few. */
 static sf_status group_numbers(const sf_factor *f, int64_t rows, sf_groups *g, sf_error *err) {
     SF_OWNED size_t *order = sf_alloc(err, (unsigned long)rows, sizeof *order, "groups");
-    if (!order)
-        return err->status;
+    SF_TRY(err->status);
     gsl_sort_index(order, f->value, 1, (size_t)rows);
     int64_t distinct = 1;
     for (int64_t k = 1; k < rows; k++)

@@ -246,8 +246,7 @@ static sf_status hash_written(const sf_replacement *out, uint64_t *hash, sf_erro
 sf_status sf_runs_write(const sf_runs *r, const char *path, uint64_t *hash, sf_error *err) {
     sf_replacement out;
     FILE *file = sf_replace_open(path, &out, err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     put_heading(file, r);
     for (int64_t row = 0; row < r->count; row++)
         put_row(file, r, row);

@@ -174,8 +174,7 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
 sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
     FILE *file = sf_staging_open(output, "sweep.json", err);
     const sf_analysis *a = r->analysis;
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     sf_json j = {.file = file};
     sf_json_open(&j, NULL, '{');
     sf_json_text(&j, "plan", r->plan->path);
@@ -469,8 +468,7 @@ static void put_failures(FILE *page, const sf_sweep_report *r) {
 sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
     const sf_analysis *a = r->analysis;
     FILE *page = sf_html_begin(output, "Sweep", r->plan->title, err);
-    if (!page)
-        return err->status;
+    SF_TRY(err->status);
     bool whole = a->failed + a->open + a->unusable == 0;
     sf_html_banner(
         page,

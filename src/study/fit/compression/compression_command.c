@@ -43,8 +43,6 @@ static void print_tests(FILE *out, const sf_compression_config *config) {
     fflush(out);
 }
 
-/* ---- files ---- */
-
 static sf_status write_material(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
                                 const char *title, sf_error *err) {
     SF_OWNED char *text = NULL;

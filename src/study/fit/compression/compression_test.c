@@ -68,12 +68,8 @@ static int begin_of_cycle(const sf_compression_test *t, int k) {
         if (cycle == k)
             return at;
         highest = falls ? highest : fmax(highest, t->strain[i]);
-        if (!falls && t->strain[i] < highest - turn) {
+        if (t->strain[i] < (falls ? lowest : highest - turn)) {
             falls = true;
-            lowest = t->strain[i];
-            at = i;
-        }
-        if (falls && t->strain[i] < lowest) {
             lowest = t->strain[i];
             at = i;
         }
@@ -97,10 +93,8 @@ static sf_status take_cycle(const char *chosen, sf_compression_test *t, sf_error
                          cycles);
     if (cycles == 1)
         return SF_OK;
-    int first = begin_of_cycle(t, (int)number), end = t->count;
-    if (number < cycles)
-        end = begin_of_cycle(t, (int)number + 1);
-    t->count = end - first;
+    int first = begin_of_cycle(t, (int)number);
+    t->count = (number < cycles ? begin_of_cycle(t, (int)number + 1) : t->count) - first;
     for (int i = 0; i < t->count; i++)
         move_point(t, first + i, i, 0);
     find_largest(t);
@@ -127,10 +121,8 @@ static int end_of_rest(const sf_compression_test *t, int i) {
 /* Leaves out the rests: at least three points within the jitter of the strain while the stress falls by 2 %.
  * During loading the points until the stress is back belong to the rest. */
 static void leave_rests_out(sf_compression_test *t) {
-    int kept = 0, top = 0;
-    for (int i = 0; i < t->count; i++)
-        top = t->strain[i] > t->strain[top] ? i : top;
-    double highest = t->strain[top];
+    int kept = 0;
+    double highest = t->largest_strain;
     for (int i = 0; i < t->count; i++) {
         move_point(t, i, kept++, 0);
         int last = end_of_rest(t, i);
@@ -404,11 +396,8 @@ static int sort_branch(sf_compression_test *t, int first, int end, double sign) 
     for (int i = first + 1; i < end; i++) {
         double strain = t->strain[i], stress = t->stress[i];
         int line = t->line[i], to = i;
-        for (; to > first && sign * t->strain[to - 1] > sign * strain; to--) {
-            t->strain[to] = t->strain[to - 1];
-            t->stress[to] = t->stress[to - 1];
-            t->line[to] = t->line[to - 1];
-        }
+        for (; to > first && sign * t->strain[to - 1] > sign * strain; to--)
+            move_point(t, to - 1, to, 0);
         t->strain[to] = strain;
         t->stress[to] = stress;
         t->line[to] = line;
@@ -483,17 +472,19 @@ static sf_status check_loading(const sf_compression_test *t, const table_terms *
     return SF_OK;
 }
 
-double sf_compression_loading_stress(const sf_compression_test *t, double strain) {
-    int high = t->loading - 1, low = 0;
-    if (strain <= t->strain[0])
-        return t->stress[0];
+double sf_compression_at(int count, const double *x, const double *y, double place) {
+    double sign = x[count - 1] < x[0] ? -1 : 1;
+    int high = count - 1, low = 0;
     while (high - low > 1) {
         int middle = (low + high) / 2;
-        *(t->strain[middle] < strain ? &low : &high) = middle;
+        *(sign * x[middle] < sign * place ? &low : &high) = middle;
     }
-    double width = t->strain[high] - t->strain[low];
-    double part = width > 0 ? fmin(1, (strain - t->strain[low]) / width) : 1;
-    return t->stress[low] + part * (t->stress[high] - t->stress[low]);
+    double width = x[high] - x[low], part = width != 0 ? (place - x[low]) / width : 0;
+    return y[low] + fmin(1, fmax(0, part)) * (y[high] - y[low]);
+}
+
+double sf_compression_loading_stress(const sf_compression_test *t, double strain) {
+    return sf_compression_at(t->loading, t->strain, t->stress, strain);
 }
 
 static sf_status check_unloading(const sf_compression_test *t, const table_terms *terms, sf_error *err) {

@@ -34,7 +34,7 @@ typedef struct sf_compression_source {
     bool toe;         /* correct the toe */
     sf_inversion invert;
     double contact_force;         /* N, displacement is zero where the force rises to it; 0: as in the file */
-    const char *specimen, *cycle; /* of a file that holds several (io/table_heading.h); NULL: the only one,
+    const char *specimen, *cycle; /* of a file that holds several (io/table_csv.h); NULL: the only one,
                                      and the first cycle */
     const char *heading;          /* of a file without one; NULL */
 } sf_compression_source;
@@ -65,6 +65,10 @@ typedef struct sf_compression_test {
 sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,
                                    sf_error *err);
 void sf_compression_test_free(sf_compression_test *test);
+
+/* Value of y at a place by interpolation over `count` places x, ascending or descending; beyond the ends that
+ * of the end. */
+double sf_compression_at(int count, const double *x, const double *y, double place);
 
 /* Stress of loading at a strain, by interpolation; below the first strain that of the first point. */
 double sf_compression_loading_stress(const sf_compression_test *test, double strain);

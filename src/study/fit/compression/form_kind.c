@@ -114,21 +114,20 @@ static void describe(FILE *out, const void *place, bool comments) {
                 fit->card.informed_strain);
 }
 
-static bool is_of_rate(sf_foam_parameter p) {
-    return p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
-}
-
 static void warn(const void *place, const sf_sink *sink) {
     const sf_form_fit *fit = place;
     const sf_compression_config *c = fit->config;
     if (sf_form_fit_is_poor(fit))
         sf_sink_tell(sink, SF_WARNING, "%s", POOR_WARNING);
-    for (int k = 0; k < c->form.unknown_count; k++)
-        if (is_of_rate(c->form.unknown[k]) && !sf_form_fit_determines(fit, k))
+    for (int k = 0; k < c->form.unknown_count; k++) {
+        sf_foam_parameter p = c->form.unknown[k];
+        bool is_of_rate = p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
+        if (is_of_rate && !sf_form_fit_determines(fit, k))
             sf_sink_tell(
                 sink, SF_WARNING,
                 "these tests do not determine %s: its standard error exceeds 100 %%, or it is at its bound",
-                sf_parameter_get(c->form.unknown[k])->name);
+                sf_parameter_get(p)->name);
+    }
     for (int k = 0; k < c->predicted_count; k++)
         if (sf_form_fit_is_below_reference(fit, &c->predicted[k]))
             sf_sink_tell(

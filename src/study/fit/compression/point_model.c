@@ -230,8 +230,6 @@ static void evaluate(const sf_compression_model *model, const double *c, const n
     }
 }
 
-/* ---- rate ---- */
-
 /* Takes `held` (Pa, second Piola-Kirchhoff stress of a branch of 1 Pa) from one strain to another at a
  * constant rate, by steps of the law. */
 static double maxwell_leg(double decay_rate, double rate, double from, double to, double held) {
@@ -508,12 +506,7 @@ void sf_compression_model_free(sf_compression_model *model) {
 static double smoothed(const sf_compression_data *d, int test, double strain) {
     int first, count;
     sf_compression_branch(d, test, false, &first, &count);
-    const double *x = &d->strain[first], *y = &d->smooth[first];
-    int i = 0;
-    while (i + 2 < count && x[i + 1] < strain)
-        i++;
-    double width = x[i + 1] - x[i], part = width > 0 ? (strain - x[i]) / width : 0;
-    return y[i] + fmax(0, fmin(1, part)) * (y[i + 1] - y[i]);
+    return sf_compression_at(count, &d->strain[first], &d->smooth[first], strain);
 }
 
 static void guess_curve(const sf_compression_model *model, int curve, gsl_vector *parameters) {

@@ -441,12 +441,12 @@ static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *loa
 /* Both sides again with their covariances, at the minimum. */
 static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
     const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true), p = p1 + p2;
-    gsl_matrix *own[2] = {sf_matrix(p1, p1, err), p2 > 0 ? sf_matrix(p2, p2, err) : NULL};
+    SF_MATRIX *loading = sf_matrix(p1, p1, err), *unloading = p2 > 0 ? sf_matrix(p2, p2, err) : NULL;
     fit->covariance = sf_matrix(p, p, err);
     for (int k = 0; k < (p2 > 0 ? 2 : 1) && err->status == SF_OK; k++) {
         sf_side *side = &fit->side[k];
         side->points = points_of(&fit->data, k == 1);
-        side->chi2 = search(&fit->model, k == 1, fit->parameters, own[k], err);
+        side->chi2 = search(&fit->model, k == 1, fit->parameters, k ? unloading : loading, err);
         side->factor = side->chi2 / ((double)side->points - (double)count_of(&fit->model, k == 1));
         side->misfit = fmax(side->misfit, side->factor);
     }
@@ -459,13 +459,11 @@ static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
         side->serial = r > 2 / sqrt(side->points) ? (1 + r) / (1 - r) : 1;
     }
     if (err->status == SF_OK && p2 > 0) {
-        join_covariances(fit, own[0], own[1], err);
+        join_covariances(fit, loading, unloading, err);
     } else if (err->status == SF_OK) {
-        gsl_matrix_memcpy(fit->covariance, own[0]);
+        gsl_matrix_memcpy(fit->covariance, loading);
         gsl_matrix_scale(fit->covariance, fit->side[0].factor * fit->side[0].serial);
     }
-    gsl_matrix_free(own[0]);
-    gsl_matrix_free(own[1]);
     return err->status;
 }
 

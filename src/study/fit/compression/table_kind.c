@@ -226,8 +226,6 @@ static sf_status check_specimen(const sf_compression_config *c, sf_error *err) {
     return SF_OK;
 }
 
-/* ---- results ---- */
-
 /* One simulated test, as means over blocks of equal time. */
 typedef struct cube_test {
     int count;
@@ -280,8 +278,6 @@ static sf_status compare_cube(const sf_foam_card *card, sf_table_test *out, cube
     }
     return SF_OK;
 }
-
-/* ---- runs ---- */
 
 static sf_status simulate(sf_table_result *r, const sf_compression_job *job, const char *folder, int index,
                           cube_test *cube, sf_error *err) {

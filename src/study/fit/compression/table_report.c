@@ -7,8 +7,6 @@
 #include "report/chart.h"
 #include <math.h>
 
-/* ---- words and rows ---- */
-
 const char *const sf_table_rates[SF_RATE_MODELS] = {
     "none: one curve for all rates",
     "log: curve times 1 + c ln(rate/slowest rate), written as a curve for each rate",

@@ -15,8 +15,6 @@ static int states_of(const sf_drop_inference *in) {
     return in->chains.chains * in->chains.kept;
 }
 
-/* ---- weights ---- */
-
 sf_status sf_drop_average_build(int models, const sf_drop_inference *const *model, uint64_t seed,
                                 sf_drop_average *a, sf_error *err) {
     double evidence[SF_FIT_MAX_MODELS], density[SF_FIT_MAX_MODELS * SF_FIT_MAX_DROPS];
@@ -112,11 +110,7 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
     return SF_OK;
 }
 
-static void free_weighted(weighted *w) {
-    free(w->value); /* and the weights behind it */
-}
-
-/* With room for so many. */
+/* With room for so many; `value` is to be released, and the weights behind it with it. */
 static weighted make_weighted(int most, sf_error *err) {
     double *value = sf_alloc(err, 2 * (unsigned long)most, sizeof *value, "samples");
     return (weighted){.value = value, .weight = value + most};
@@ -129,7 +123,8 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
     bool above_all = sf_drop_kind_get(q->kind)->above_all;
     for (int m = 0; m < a->models; m++)
         most += states_of(a->model[m]);
-    SF_OWNED_BY(free_weighted) weighted w = make_weighted(most, err);
+    weighted w = make_weighted(most, err);
+    SF_OWNED double *block = w.value;
     SF_TRY(err->status);
     for (int m = 0; m < a->models; m++)
         if (model < 0 ? a->weight[m] > 0 : m == model)
@@ -155,13 +150,12 @@ double sf_drop_average_missing(const sf_drop_average *a, int quantity) {
 
 sf_status sf_drop_parameter_quantiles(const sf_drop_inference *in, int parameter, int count,
                                       const double *probability, double *value, sf_error *err) {
-    SF_OWNED_BY(free_weighted) weighted w = make_weighted(states_of(in), err);
+    weighted w = make_weighted(states_of(in), err);
+    SF_OWNED double *block = w.value;
     SF_TRY(err->status);
     add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, &w);
     return take_quantiles(&w, count, probability, value, err);
 }
-
-/* ---- draws ---- */
 
 /* Equal steps through the cumulated weights; within a model, equal steps through its states. */
 void sf_drop_average_draw(const sf_drop_average *a, sf_posterior_draw draw[SF_POSTERIOR_DRAWS]) {

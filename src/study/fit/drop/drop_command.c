@@ -95,8 +95,6 @@ static sf_status fit_models(models *all, sf_runner *runner, sf_fit_memory *memor
     return err->status;
 }
 
-/* ---- DIR/posterior ---- */
-
 static void clear_posterior(const char *folder) {
     static const char *const ends[] = {"cfg", "csv", "-1.csv", "-2.csv", "-3.csv"};
     char path[PATH_MAX + 32];

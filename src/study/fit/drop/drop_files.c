@@ -11,8 +11,6 @@
 #include "report/chart.h"
 #include "study/material_file.h"
 
-/* ---- numbers ---- */
-
 double sf_drop_half_width(const sf_drop_fit *fit) {
     return fit->result.scale > 1 ? gsl_cdf_tdist_Pinv(0.975, fit->result.freedom)
                                  : gsl_cdf_ugaussian_Pinv(0.975);

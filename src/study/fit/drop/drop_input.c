@@ -161,8 +161,7 @@ static sf_status read_measurement(const sf_config *config, sf_config_item *group
 /* The folder that holds the file. */
 static bool stat_folder(const char *path, struct stat *info) {
     char folder[PATH_MAX];
-    const char *slash = strrchr(path, '/');
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+    sf_path_split(path, folder);
     return stat(folder, info) == 0;
 }
 

@@ -20,8 +20,6 @@
  * has this standard deviation. */
 static const double BOUND = 0.99, BOUND_SD = 0.003;
 
-/* ---- parameters and responses ---- */
-
 void sf_drop_fit_values(const sf_fit_input *in, const double *u, double value[SF_PARAMETER_COUNT]) {
     memcpy(value, in->start, SF_PARAMETER_COUNT * sizeof *value);
     for (int k = 0; k < in->unknown_count; k++)

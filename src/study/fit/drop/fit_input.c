@@ -432,21 +432,22 @@ sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_er
     SF_TRY(sf_config_open(path, &config, err));
     SF_TRY(sf_plain_read(path, NULL, SF_PLAIN_TEXT, &in->text, NULL, err));
     sf_config_item *root = config_root_setting(&config.config);
-    if (sf_config_names(&config, root,
-                        "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
-                        "seed|posterior|compressions|cushions|coarse_set|mount|mount_frequency_sd|"
-                        "mount_damping_sd|coupling|coupling_sd",
-                        err) == SF_OK &&
-        read_options(&config, root, in, err) == SF_OK &&
-        sf_joint_read(&config, root, &in->joint, err) == SF_OK &&
-        read_drops(&config, root, "drops", false, in, err) == SF_OK &&
-        read_coarse(&config, root, in, err) == SF_OK && read_chain(&config, root, in, err) == SF_OK &&
-        read_drops(&config, root, "predict", true, in, err) == SF_OK &&
-        read_material(&config, root, in, err) == SF_OK && read_starts(&config, root, in, err) == SF_OK)
-        read_unknowns(&config, root, in, err);
-    if (err->status == SF_OK)
-        put_label(in);
-    return err->status;
+    SF_TRY(sf_config_names(&config, root,
+                           "name|title|material|curve_form|solid_density|start|unknown|drops|predict|forms|"
+                           "seed|posterior|compressions|cushions|coarse_set|mount|mount_frequency_sd|"
+                           "mount_damping_sd|coupling|coupling_sd",
+                           err));
+    SF_TRY(read_options(&config, root, in, err));
+    SF_TRY(sf_joint_read(&config, root, &in->joint, err));
+    SF_TRY(read_drops(&config, root, "drops", false, in, err));
+    SF_TRY(read_coarse(&config, root, in, err));
+    SF_TRY(read_chain(&config, root, in, err));
+    SF_TRY(read_drops(&config, root, "predict", true, in, err));
+    SF_TRY(read_material(&config, root, in, err));
+    SF_TRY(read_starts(&config, root, in, err));
+    SF_TRY(read_unknowns(&config, root, in, err));
+    put_label(in);
+    return SF_OK;
 }
 
 void sf_fit_input_free(sf_fit_input *in) {

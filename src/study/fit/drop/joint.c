@@ -100,8 +100,6 @@ double sf_joint_rms(const sf_joint_test *test, bool unloading, const double *y) 
     return last > first ? sqrt(sum / (last - first)) : NAN;
 }
 
-/* ---- reading ---- */
-
 static const double GRID = 0.05, SPREAD = 0.01; /* strain: between points, and over which each is a mean */
 enum { LEAST_POINTS = 2 };                      /* of loading */
 
@@ -128,24 +126,14 @@ static sf_status refuse_again(const sf_config *config, sf_config_item *entry, co
 
 /* ---- compression tests ---- */
 
-/* Stress at a strain of the branch from point `first` to `last` - 1, strains ascending or descending. */
-static double branch_at(const sf_compression_test *t, int first, int last, double strain) {
-    double sign = t->strain[last - 1] > t->strain[first] ? 1 : -1;
-    int i = first;
-    while (i < last - 2 && sign * t->strain[i + 1] < sign * strain)
-        i++;
-    double width = t->strain[i + 1] - t->strain[i];
-    double x = width != 0 ? (strain - t->strain[i]) / width : 0;
-    return t->stress[i] + fmin(1, fmax(0, x)) * (t->stress[i + 1] - t->stress[i]);
-}
-
 static void put_point(const sf_compression_test *t, int first, int last, double strain, sf_joint_test *out) {
     enum { HALF = 2 };
     double sum = 0;
     if (out->count == SF_JOINT_POINTS)
         return;
     for (int k = -HALF; k <= HALF; k++)
-        sum += branch_at(t, first, last, strain + SPREAD * k / HALF);
+        sum +=
+            sf_compression_at(last - first, &t->strain[first], &t->stress[first], strain + SPREAD * k / HALF);
     out->strain[out->count] = strain;
     out->stress[out->count++] = sum / (2 * HALF + 1);
 }
