@@ -148,11 +148,9 @@ static sf_status measure(laboratory *lab, const sf_foam_card *card, sf_error *er
     if (sf_material_law_build(&material, &law, err) != SF_OK)
         return err->status;
     for (int d = 0; d < LAB_DROPS && err->status == SF_OK; d++) {
-        sf_columns_figures figures;
-        double y[SF_FIT_SAMPLES];
-        if (sf_columns_respond(&lab->real[d], &law, &figures, NULL, err) != SF_OK)
+        double y[SF_COLUMNS_LOGARITHMS];
+        if (sf_columns_expect(&lab->real[d], &law, y, err) != SF_OK)
             break;
-        sf_drop_values_scale(&figures, y);
         memcpy(lab->truth[d], y, sizeof lab->truth[d]);
     }
     sf_material_law_free(&law);

@@ -140,7 +140,7 @@ static void draws_of_the_foam_give_the_interval(void **state) {
     assert_true(program_json_number(json, "\"posterior\"", "draws") == 100);
     assert_non_null(strstr(json, "\"height_open\": \"no\""));
     assert_int_equal(count_of(json, "\"share_below\""), 2);
-    assert_true(fabs(program_json_number(json, "\"checks\"", "height_shift")) < 0.05);
+    assert_true(fabs(program_json_number(json, "\"checks\"", "a_max_error")) < 0.05);
     assert_relative(program_json_number(json, "\"checks\"", "a_max_columns_g"), 200, 0.01);
     char *band = read_text(p, "out/cfh_band.csv"), *draws = read_text(p, "out/cfh_draws.csv");
     assert_int_equal(strncmp(band, "height_m,a_max_low_g,", 21), 0);

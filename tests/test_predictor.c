@@ -5,6 +5,7 @@
 #include "program_fixture.h"
 #include "sweep_fixture.h"
 
+#include "base/units.h"
 #include "study/predictor.h"
 #include "study/sweep/adaptive.h"
 #include "study/sweep/analysis.h"
@@ -153,14 +154,24 @@ static const char *const PLAN =
 static void pad(const sf_plan *plan, int64_t row, double *a_max, double *hic, double *strain) {
     static const double stress[] = {0.8, 1.0, 1.3};
     double v = sf_plan_value(plan, 0, row), m = sf_plan_value(plan, 1, row), h = sf_plan_value(plan, 2, row),
-           s = stress[(int)sf_plan_value(plan, 3, row)], energy = 0.8 * m * v * v / (s * h);
+           s = plan->factor_count > 3 ? stress[(int)sf_plan_value(plan, 3, row)] : 2,
+           energy = 0.8 * m * v * v / (s * h);
     *strain = 1 - exp(-energy);
     *a_max = 180 * s / m * (0.3 + energy) / sqrt(1.02 - *strain);
     *hic = 1.2 * pow(*a_max, 1.4) * v;
 }
 
+/* Time of contact (ms); the run of the case ends after 40 ms. */
+static double contact_of(const sf_plan *plan, int64_t row) {
+    return 1.35 * sf_plan_value(plan, 1, row) * sqrt(sf_plan_value(plan, 2, row)) /
+           pow(sf_plan_value(plan, 0, row), 0.3);
+}
+
+enum { RUN_END = 40 };
+
 typedef struct formula {
     int64_t calls, stop_at;
+    int ends; /* 1: runs end, some of them in contact: then they have no rebound; 2: of no known time */
 } formula;
 
 static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t *row, int *fresh,
@@ -183,6 +194,13 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
         place[sf_runs_figure("a_max_g")] = a_max;
         place[sf_runs_figure("hic")] = hic;
         place[sf_runs_figure("max_mean_strain")] = strain;
+        place[sf_runs_figure("v_rebound_m_s")] = 0.01 * a_max;
+        double time = contact_of(runs->plan, row[k]);
+        if (f->ends) {
+            place[sf_runs_figure("contact_time_ms")] = 0;
+            place[sf_runs_figure("rebound_time_ms")] = f->ends == 1 && time < RUN_END ? time : NAN;
+            place[sf_runs_figure("v_rebound_m_s")] = time < RUN_END ? 0.01 * a_max : NAN;
+        }
         place[sf_runs_figure("energy_beyond_data")] = strain > 0.7 ? 2 * (strain - 0.7) : 0;
         sf_runs_done(runs, row[k], strain > 0.95 ? SF_GRADE_DO_NOT_USE : SF_GRADE_VALID, "drop", NULL, err);
     }
@@ -248,6 +266,50 @@ static void rows_are_predicted_as_accurately_as_asked(void **state) {
         assert_true((double)held[k] >= 0.93 * (double)predicted);
     sf_runs_free(&runs);
     sf_plan_free(&plan);
+}
+
+/* A figure that the drop would not define is not predicted: the rows are simulated or left open, with a
+ * sentence, whether their time of contact is known (then at a small cost) or only that they have none. */
+static void what_a_drop_would_not_define_is_not_predicted(void **state) {
+    static const char *const plans[] = {
+        "{ sample = \"latin_hypercube\"; count = 600; of = ("
+        "{ key = \"missile.velocity\"; low = \"3 m/s\"; high = \"6 m/s\"; }, { key = \"missile.mass\"; low = \"3 kg\"; "
+        "high = \"6 kg\"; }, { key = \"geometry.parameters.thickness\"; low = 40.0; high = 80.0; } ); }",
+        "{ sample = \"latin_hypercube\"; count = 150; of = ("
+        "{ key = \"a.speed\"; low = 3.0; high = 6.0; }, { key = \"a.mass\"; low = 3.0; high = 6.0; }, "
+        "{ key = \"a.thickness\"; low = 40.0; high = 80.0; } ); }"};
+    const program_place *p = *state;
+    sf_error held = SF_ERROR_INIT;
+    assert_int_equal(sf_units_hold(&held), SF_OK);
+    for (int known = 1; known >= 0; known--) {
+        sf_plan plan;
+        sf_runs runs;
+        sf_error err;
+        formula f = {.ends = 2 - known};
+        int64_t undefined = 0, told = 0;
+        sweep_read_plan(p, plans[!known], &plan);
+        plan.figure[0].accuracy = plan.figure[1].accuracy = 0.02;
+        plan.figure[plan.figure_count++] = (sf_sweep_limit){"v_rebound_m_s", NAN, 0.02};
+        program_shell(p, "rm -f runs.csv sweep.key");
+        if (run(p, &plan, &f, &runs, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        for (int64_t row = 0; row < runs.count; row++) {
+            bool defined = contact_of(&plan, row) < RUN_END;
+            undefined += !defined;
+            assert_true(runs.state[row] != SF_SWEEP_PREDICTED || defined);
+            told += runs.state[row] == SF_SWEEP_OPEN && runs.message[row] &&
+                    (strstr(runs.message[row], "solver.end_time") || !known);
+        }
+        printf("%lld rows, %lld without a rebound: %lld simulated, %lld predicted, %lld open\n",
+               (long long)runs.count, (long long)undefined, (long long)f.calls,
+               (long long)sf_runs_count(&runs, SF_SWEEP_PREDICTED), (long long)told);
+        assert_in_range(undefined, runs.count / 20, runs.count / 3);
+        assert_true(!known || (told > undefined / 2 && f.calls < runs.count / 5));
+        assert_true(f.calls + told + sf_runs_count(&runs, SF_SWEEP_PREDICTED) == runs.count);
+        sf_runs_free(&runs);
+        sf_plan_free(&plan);
+    }
+    sf_units_let_go();
 }
 
 static void an_interrupted_prediction_goes_on(void **state) {
@@ -319,6 +381,7 @@ int main(void) {
         cmocka_unit_test(intervals_hold_what_they_say),
         cmocka_unit_test(points_are_chosen_as_if_one_after_another),
         cmocka_unit_test(rows_are_predicted_as_accurately_as_asked),
+        cmocka_unit_test(what_a_drop_would_not_define_is_not_predicted),
         cmocka_unit_test(an_interrupted_prediction_goes_on),
         cmocka_unit_test(a_prediction_that_may_exceed_the_limit_is_unknown),
         cmocka_unit_test(wishes_are_for_all_figures_or_none),

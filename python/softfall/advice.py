@@ -19,7 +19,7 @@ from .errors import InputError
 
 CRITERIA = ("a_max_g", "hic")
 REPEATS, TRUTHS, LEAST_DRAWS = 32, 128, 8
-MOST_SHIFT, MISFIT = 1.0, -12.0
+MISFIT = -12.0
 SAME = 0.01  # of a logarithm: drops of one pad are never told apart by less
 TEST_STRAINS = (0.3, 0.5, 0.7)  # at which a compression test tells the stress
 
@@ -76,15 +76,6 @@ class Advice:
 
 
 @dataclass(frozen=True)
-class Trend:
-    """The error of ln(height) of the columns, by the draws that softfall-cfh simulated: a line over the ln of a draw's critical height."""
-
-    shift: np.ndarray  # [draws]
-    remainder: np.ndarray  # [draws] standard deviation about it, but for Student's t
-    freedom: int  # degrees of freedom; 0: the error is not known
-
-
-@dataclass(frozen=True)
 class Place:
     """What softfall-cfh knows of a condition, a position and a missile: for each draw ln(figure) over ln(height), the errors of the model, the scatter."""
 
@@ -96,7 +87,8 @@ class Place:
     scatter: np.ndarray  # [2][grid], standard deviation of ln(figure) from drop to drop
     mesh: np.ndarray  # [2]
     fit: np.ndarray  # [2]
-    trend: tuple[Trend, ...]  # of the columns' errors, for each figure
+    columns_sd: np.ndarray  # [2][draws] standard deviation of the corrected columns, but for Student's t
+    freedom: int  # degrees of freedom of that; 0: it is not known
     notes: tuple[str, ...] = ()  # what is not known of it
     missile: str = ""  # another one than that of the protocol: nothing is judged by its drops
     cost: float = 1.0  # of a drop
@@ -132,28 +124,17 @@ def read_place(name: str, folder: Path, missile: str = "", cost: float = 1.0) ->
     error = np.nan_to_num(np.array([draws[key] for key in ("a_max_shared_1", "hic_shared_1", "a_max_sd_1", "hic_sd_1")]))
     scatter = np.maximum(np.nan_to_num(np.array([band["a_max_scatter_1"], band["hic_scatter_1"]])), SAME)
     fit = np.array([posterior.get(f"fit_scatter_{key}") or 0.0 for key in ("a_max", "hic")])
+    columns_sd = np.nan_to_num(np.array([draws["a_max_columns_sd_1"], draws["hic_columns_sd_1"]]))
     mesh = (posterior["expected_mesh_error"] or 0.0) * posterior["mesh_error_factor"] * np.array([1.0, posterior["mesh_error_hic_factor"]])
-    crossing = np.log(np.clip(np.nan_to_num(draws["height_m"], nan=height[-1]), height[0], height[-1]))
-    trends = tuple(_trend(told, posterior["checks"], key, crossing) for told, key in zip(posterior["columns_error"], ("a_max", "hic")))
-    return Place(name, np.log(height), value, error[:2], error[2:], scatter, mesh, fit, trends,
-                 tuple(_doubts(name, posterior, trends, band)), missile, cost, summary["critical_fall_height"]["highest_simulated_m"] or math.inf)
+    freedom = int(posterior["columns_error"]["degrees_of_freedom"])
+    return Place(name, np.log(height), value, error[:2], error[2:], scatter, mesh, fit, columns_sd, freedom,
+                 tuple(_doubts(name, posterior, freedom, band)), missile, cost, summary["critical_fall_height"]["highest_simulated_m"] or math.inf)
 
 
-def _trend(told: Mapping[str, Any], checks: Sequence[Mapping[str, Any]], key: str, crossing: np.ndarray) -> Trend:
-    """Returns the trend of softfall-cfh (docs/cfh.md) at the ln of each draw's critical height; beyond the checks it is constant."""
-    x = np.log([check["height_m"] for check in checks if not check["failed"] and check[f"{key}_height_shift"] is not None])
-    freedom, scatter = int(told["degrees_of_freedom"] or 0), told["scatter"] or 0.0
-    if told["slope"] is None or x.size == 0:
-        return Trend(0 * crossing, scatter + 0 * crossing, freedom)
-    centre = math.log(told["centre_m"])
-    away = np.clip(crossing, x.min(), x.max()) - centre
-    return Trend(told["shift"] + told["slope"] * away, scatter * np.sqrt(1 + 1 / x.size + away**2 / ((x - centre) ** 2).sum()), freedom)
-
-
-def _doubts(name: str, posterior: Mapping[str, Any], trends: Sequence[Trend], band: Mapping[str, np.ndarray]) -> Iterator[str]:
+def _doubts(name: str, posterior: Mapping[str, Any], freedom: int, band: Mapping[str, np.ndarray]) -> Iterator[str]:
     """Yields what softfall-cfh does not know of a place, in sentences."""
     failed = sum(check["failed"] for check in posterior["checks"])
-    if any(trend.freedom == 0 for trend in trends):
+    if freedom == 0:
         yield f"{name}: too few draws were simulated with success: the error of the columns is not known, and nothing is decided"
     elif failed:
         yield f"{name}: {failed} of {len(posterior['checks'])} simulated draws failed: there the columns are not confirmed"
@@ -179,9 +160,9 @@ class Pads:
         self.draw = np.repeat(np.arange(self.draws), REPEATS)
         self.log_weight = np.zeros(self.draw.size)
         self.misfit = 0.0  # ln of the likelihood of the worst drop at the pad that fits it best
-        self.offset, self.shift = {}, {}
+        self.offset = {}
         n, mesh = self.draw.size, random.standard_normal(self.draw.size)  # all places are of one pad, and of one way to compute it
-        student = {"": random.standard_t(max(1, min(trend.freedom for place in self.judged for trend in place.trend)), n)}
+        student = {"": random.standard_t(max(1, min(place.freedom for place in self.judged)), n)}
         for place in sorted(places, key=lambda place: place.missile != ""):
             own = random.standard_normal((2, n)) * place.own_sd[:, self.draw]
             fit = place.fit[:, None] * random.standard_normal((2, n))
@@ -189,9 +170,8 @@ class Pads:
             if place.missile:  # draws state errors of the missile of their fit, and each missile has columns of its own
                 self.offset[place.name] += np.sqrt((place.shared**2).mean(axis=1, keepdims=True)) * random.standard_normal((2, n))
                 if place.missile not in student:
-                    student[place.missile] = random.standard_t(max(1, min(trend.freedom for trend in place.trend)), n)
-            self.shift[place.name] = [np.clip(t.shift[self.draw] + t.remainder[self.draw] * student[place.missile], -MOST_SHIFT, MOST_SHIFT)
-                                      for t in place.trend]
+                    student[place.missile] = random.standard_t(max(1, place.freedom), n)
+            self.offset[place.name] += place.columns_sd[:, self.draw] * student[place.missile]
 
     @property
     def judged(self) -> list[Place]:
@@ -202,10 +182,10 @@ class Pads:
         """Returns ln(figure) [2][pads] at a height (m); inf: the foam collapses."""
         p = self.places[place]
         made = np.empty((2, self.draw.size))
+        at = np.clip(math.log(height), p.log_height[0], p.log_height[-1])
+        k = np.clip(np.searchsorted(p.log_height, at) - 1, 0, p.log_height.size - 2)
+        part = (at - p.log_height[k]) / (p.log_height[k + 1] - p.log_height[k])
         for c in range(2):
-            moved = np.clip(math.log(height) - self.shift[place][c], p.log_height[0], p.log_height[-1])
-            k = np.clip(np.searchsorted(p.log_height, moved) - 1, 0, p.log_height.size - 2)
-            part = np.clip((moved - p.log_height[k]) / (p.log_height[k + 1] - p.log_height[k]), 0, 1)
             low, high = p.value[c][self.draw, k], p.value[c][self.draw, k + 1]
             with np.errstate(invalid="ignore"):
                 made[c] = np.where(np.isinf(high) & (part > 0), np.inf, low + np.where(part > 0, part * (high - low), 0)) + self.offset[place][c]
@@ -385,7 +365,7 @@ def advise(pads: Pads, q: Question, tests: Sequence[Test] = ()) -> Advice:
     if pads.misfit < MISFIT or pads.effective_draws < LEAST_DRAWS:
         return replace(known, problem=f"what was measured leaves {pads.effective_draws:.1f} of {pads.draws} draws, or fits none: the foam is none of them. Give these "
                        "drops to softfall-fit drop, and begin anew with its posterior and without them")
-    if any(trend.freedom == 0 for place in pads.judged for trend in place.trend):
+    if any(place.freedom == 0 for place in pads.judged):
         return replace(known, problem="the error of the columns is not known, as no draw was simulated with success")
     if now <= q.bound:
         return replace(known, decision=share > 0.5 if q.decides else None, stop=True)

@@ -121,7 +121,7 @@ def _other_place(p: Protocol, pad: Case, condition: Condition, position: Positio
         return None
     if found and "draws" in (found.summary["posterior"] or {}):
         place = advice.read_place(name, found.folder, other.name, other.cost)
-        if all(trend.freedom > 0 for trend in place.trend):
+        if place.freedom > 0:
             return place
     notes.append(f"drops at {name} are not weighed: too few draws were simulated with success")
     return None

@@ -82,7 +82,7 @@ const sf_good_run_rule *sf_good_run_rule_get(int k);
 /* The numbers that may be measured of a drop, as the accelerometer in the missile reads it (F/m), filtered
  * with CFC 1000. This list is the only one of them.
  *
- * To add one: a line in the list and its value in sf_drop_values_scale (study/fit/drop/drop_input.c). Keys of
+ * To add one: a line in the list and its value in sf_columns_scale (study/column.c). Keys of
  * the fit file, responses, report.html, fit.json, fit-drops.csv, posterior.csv, the material file's comments
  * and its response_error, and leave-one-out follow. */
 

@@ -151,14 +151,14 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
 void sf_engine_complaint(const char *log, size_t begin, char *out, size_t size) {
     static const char who[] = "sbatch: ";
     sf_error ignored = SF_ERROR_INIT;
-    char *text = NULL, *line;
+    SF_OWNED char *text = NULL;
+    char *line;
     size_t length = 0;
     *out = '\0';
     sf_plain_read(log, NULL, SF_PLAIN_TEXT, &text, &length, &ignored);
     for (char *rest = begin < length ? text + begin : NULL; (line = strsep(&rest, "\n"));)
         if (strncmp(line, who, strlen(who)) == 0)
             snprintf(out, size, " (%.300s)", line);
-    free(text);
 }
 
 /* ---- the manifest ---- */

@@ -87,6 +87,7 @@ typedef struct flight {
     const sf_columns *columns;
     const sf_material_law *law;
     double time, depth, speed, force; /* s, m, m s-1 downwards, N */
+    double deepest;                   /* m, the largest depth so far */
     double step;                      /* s, the last one */
     double stiffness;                 /* N m-1, along it */
     sf_uniaxial point[SF_COLUMNS];
@@ -129,7 +130,10 @@ static bool step(flight *f, double dt) {
         f->stiffness = fabs((after - f->force) / moved);
     f->time += dt;
     f->depth = depth;
+    double falling = f->speed, upwards = after / mass - SF_STANDARD_GRAVITY;
     f->speed += 0.5 * dt * (a + SF_STANDARD_GRAVITY - after / mass);
+    bool turns = falling > 0 && f->speed < 0 && upwards > 0; /* within the step, by a parabola */
+    f->deepest = fmax(f->deepest, depth + (turns ? 0.5 * f->speed * f->speed / upwards : 0));
     f->force = after;
     f->step = dt;
     return true;
@@ -186,11 +190,20 @@ static sf_status put_point(const flight *f, int64_t *room, sf_series *curve, sf_
     return SF_OK;
 }
 
+void sf_columns_scale(const sf_columns_figures *f, double y[SF_COLUMNS_LOGARITHMS]) {
+    y[SF_FIT_A_MAX] = log(f->a_max_g);
+    y[SF_FIT_HIC] = log(f->hic);
+    y[SF_FIT_WINDOW] = log(1e3 * f->hic_window);
+    y[SF_FIT_REBOUND] = log(f->v_rebound);
+    y[SF_FIT_CONTACT] = log(1e3 * f->contact_time);
+    y[SF_COLUMNS_STRAIN] = log(f->strain);
+}
+
 sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
-                          double *rebound, double *contact, sf_error *err) {
+                          sf_columns_figures *out, sf_error *err) {
     flight f = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP}, before;
     int64_t room = 512;
-    *rebound = *contact = NAN;
+    out->v_rebound = out->contact_time = NAN;
     SF_TRY(sf_series_create(room, curve, err));
     curve->count = 0;
     while (put_point(&f, &room, curve, err) == SF_OK && !has_left(&f) && f.time < LONGEST) {
@@ -199,10 +212,11 @@ sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law,
         if (advance(&f, err) != SF_OK)
             break;
         if (has_left(&f)) {
-            *contact = end_of_contact(&before, f.step);
-            *rebound = -before.speed;
+            out->contact_time = end_of_contact(&before, f.step);
+            out->v_rebound = -before.speed;
         }
     }
+    out->strain = f.deepest / columns->thickness;
     if (err->status != SF_OK)
         sf_series_free(curve);
     return err->status;
@@ -247,11 +261,9 @@ static sf_status sample(const sf_series *curve, sf_series *uniform, sf_error *er
 }
 
 static sf_status filter(const sf_series *curve, sf_series *filtered, sf_error *err) {
-    sf_series uniform = {0};
-    if (sample(curve, &uniform, err) == SF_OK)
-        sf_signal_filter_cfc(&uniform, 1000, filtered, err);
-    sf_series_free(&uniform);
-    return err->status;
+    SF_OWNED_BY(sf_series_free) sf_series uniform = {0};
+    SF_TRY(sample(curve, &uniform, err));
+    return sf_signal_filter_cfc(&uniform, 1000, filtered, err);
 }
 
 /* Top of the parabola through the largest sample and its neighbours. */
@@ -275,18 +287,22 @@ sf_status sf_columns_read(const sf_series *filtered, sf_columns_figures *out, sf
 
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law, sf_columns_figures *out,
                              sf_series *filtered, sf_error *err) {
-    sf_series curve = {0}, read = {0};
-    double rebound, contact;
-    if (sf_columns_drop(columns, law, &curve, &rebound, &contact, err) == SF_OK &&
-        filter(&curve, &read, err) == SF_OK) {
-        *out = (sf_columns_figures){.v_rebound = rebound, .contact_time = contact};
-        sf_columns_read(&read, out, err);
-    }
-    sf_series_free(&curve);
-    if (err->status == SF_OK && filtered)
+    SF_OWNED_BY(sf_series_free) sf_series curve = {0}, read = {0};
+    SF_TRY(sf_columns_drop(columns, law, &curve, out, err));
+    SF_TRY(filter(&curve, &read, err));
+    SF_TRY(sf_columns_read(&read, out, err));
+    if (filtered) {
         *filtered = read;
-    else
-        sf_series_free(&read);
+        read = (sf_series){0};
+    }
+    return SF_OK;
+}
+
+sf_status sf_columns_expect(const sf_columns *columns, const sf_material_law *law,
+                            double y[SF_COLUMNS_LOGARITHMS], sf_error *err) {
+    sf_columns_figures figures;
+    if (sf_columns_respond(columns, law, &figures, NULL, err) == SF_OK)
+        sf_columns_scale(&figures, y);
     return err->status;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include "material/laws.h"
+#include "model/good_run.h"
 #include "post/figures/signal.h"
 #include "post/results/results.h"
 
@@ -27,19 +28,26 @@ typedef struct sf_columns {
  * surface has no area facing the pad. */
 sf_status sf_columns_build(const sf_results *results, sf_columns *columns, sf_error *err);
 
-/* Deceleration (s, g) from first contact until the missile has left the foam, at most 0.2 s, at
- * the times of the steps (velocity Verlet, 0.1 ms at most). `rebound` (m s-1, upwards) and `contact` (s, the
- * time of contact) are NaN if it has not left. `curve` is owned by the caller. Errors: the foam collapses. */
-sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
-                          double *rebound, double *contact, sf_error *err);
-
-/* The readings of an accelerometer in the missile: figures of the curve, filtered with CFC 1000. */
+/* Figures of a drop; the first three are readings of an accelerometer in the missile, filtered with
+ * CFC 1000. */
 typedef struct sf_columns_figures {
     double a_max_g, hic;
     double hic_window;   /* s, its length */
     double v_rebound;    /* m s-1; NaN: contact had not ended */
     double contact_time; /* s, from first contact to the end of contact; NaN: it had not */
+    double strain;       /* -, largest indentation over the thickness */
 } sf_columns_figures;
+
+/* Their natural logarithms: of the numbers that may be measured (model/good_run.h), window and contact in ms,
+ * and of the strain. */
+enum { SF_COLUMNS_STRAIN = SF_FIT_SAMPLES, SF_COLUMNS_LOGARITHMS };
+void sf_columns_scale(const sf_columns_figures *figures, double y[SF_COLUMNS_LOGARITHMS]);
+
+/* Deceleration (s, g) from first contact until the missile has left the foam, at most 0.2 s, at
+ * the times of the steps (velocity Verlet, 0.1 ms at most). Sets rebound, contact time and strain of
+ * `figures`. `curve` is owned by the caller. Errors: the foam collapses. */
+sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
+                          sf_columns_figures *figures, sf_error *err);
 
 /* Sets the figures of a filtered curve (s, g): a_max_g, hic and hic_window. */
 sf_status sf_columns_read(const sf_series *filtered, sf_columns_figures *figures, sf_error *err);
@@ -48,6 +56,10 @@ sf_status sf_columns_read(const sf_series *filtered, sf_columns_figures *figures
  * at 0; NULL: not wanted. Errors as of sf_columns_drop. */
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law,
                              sf_columns_figures *figures, sf_series *filtered, sf_error *err);
+
+/* The logarithms of the figures alone (sf_columns_scale). Errors as of sf_columns_drop. */
+sf_status sf_columns_expect(const sf_columns *columns, const sf_material_law *law,
+                            double y[SF_COLUMNS_LOGARITHMS], sf_error *err);
 
 /* HIC of a single pulse, a hundred times as fast as the search of post/figures/signal.h, for surrogates. */
 

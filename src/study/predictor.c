@@ -11,8 +11,9 @@
 #include <string.h>
 
 enum { MOST_FOR_LENGTHS = 250, STEPS = 60, LEAST_FOR_CALIBRATION = 20 };
-/* Normal prior of ln(length) and ln(nugget): it holds lengths that the points do not determine. */
-static const double LENGTH_SD = 1.5, NUGGET_MEDIAN = 1e-6, NUGGET_SD = 3;
+/* Normal prior of ln(length) and ln(nugget): it holds lengths that the points do not determine. The lengths
+ * of drops over their columns are long; from short ones the search often ends in a worse maximum. */
+static const double LENGTH_MEDIAN = 3, LENGTH_SD = 1.5, NUGGET_MEDIAN = 1e-6, NUGGET_SD = 3;
 static const double LEAST_VARIANCE = 1e-20, LEAST_CALIBRATION = 0.25, SHARE = 0.95;
 
 /* ---- correlation ---- */
@@ -70,9 +71,8 @@ typedef struct likelihood {
     sf_predictor *p; /* lengths and nugget of the last evaluation */
     int count;
     const double *x;
-    gsl_vector_view y;
-    gsl_matrix *k;
-    gsl_vector *weight, *ones;
+    gsl_vector_view y, weight, ones;
+    gsl_matrix_view k;
 } likelihood;
 
 static void take_logarithms(const gsl_vector *at, sf_predictor *p) {
@@ -86,7 +86,7 @@ static double prior(const gsl_vector *at, gsl_vector *gradient) {
     for (size_t i = 0; i < at->size; i++) {
         bool nugget = i + 1 == at->size;
         double sd = nugget ? NUGGET_SD : LENGTH_SD,
-               z = (gsl_vector_get(at, i) - (nugget ? log(NUGGET_MEDIAN) : 0)) / sd;
+               z = (gsl_vector_get(at, i) - log(nugget ? NUGGET_MEDIAN : LENGTH_MEDIAN)) / sd;
         sum += 0.5 * z * z;
         gsl_vector_set(gradient, i, z / sd);
     }
@@ -96,13 +96,13 @@ static double prior(const gsl_vector *at, gsl_vector *gradient) {
 /* Adds half of the sum of M dK over all pairs, M = K^-1 - a a' / s2 - w w' / (1' w), where k holds K^-1. */
 static void add_slopes(const likelihood *l, double variance, double ones_sum, gsl_vector *gradient) {
     const sf_predictor *p = l->p;
+    const gsl_vector *weight = &l->weight.vector, *ones = &l->ones.vector;
     double slope[SF_PREDICTOR_INPUTS] = {0}, diagonal = 0, part[SF_PREDICTOR_INPUTS];
     for (int i = 0; i < l->count; i++)
         for (int j = 0; j <= i; j++) {
-            double m =
-                gsl_matrix_get(l->k, (size_t)i, (size_t)j) -
-                gsl_vector_get(l->weight, (size_t)i) * gsl_vector_get(l->weight, (size_t)j) / variance -
-                gsl_vector_get(l->ones, (size_t)i) * gsl_vector_get(l->ones, (size_t)j) / ones_sum;
+            double m = gsl_matrix_get(&l->k.matrix, (size_t)i, (size_t)j) -
+                       gsl_vector_get(weight, (size_t)i) * gsl_vector_get(weight, (size_t)j) / variance -
+                       gsl_vector_get(ones, (size_t)i) * gsl_vector_get(ones, (size_t)j) / ones_sum;
             if (i == j) {
                 diagonal += m;
                 continue;
@@ -123,16 +123,17 @@ static void evaluate(const gsl_vector *at, void *context, double *value, gsl_vec
     double mean, ones_sum, logarithms = 0;
     take_logarithms(at, l->p);
     *value = prior(at, gradient);
-    fill_correlation(l->p, l->count, l->x, l->k);
-    if (gsl_linalg_cholesky_decomp1(l->k) != GSL_SUCCESS) {
+    gsl_matrix *k = &l->k.matrix;
+    fill_correlation(l->p, l->count, l->x, k);
+    if (gsl_linalg_cholesky_decomp1(k) != GSL_SUCCESS) {
         *value = GSL_NAN;
         return;
     }
-    double variance = weigh(l->k, &l->y.vector, &mean, l->weight, l->ones, &ones_sum);
-    for (size_t i = 0; i < l->k->size1; i++)
-        logarithms += log(gsl_matrix_get(l->k, i, i));
+    double variance = weigh(k, &l->y.vector, &mean, &l->weight.vector, &l->ones.vector, &ones_sum);
+    for (size_t i = 0; i < k->size1; i++)
+        logarithms += log(gsl_matrix_get(k, i, i));
     *value += 0.5 * (l->count - 1) * log(variance) + logarithms + 0.5 * log(ones_sum);
-    gsl_linalg_cholesky_invert(l->k);
+    gsl_linalg_cholesky_invert(k);
     add_slopes(l, variance, ones_sum, gradient);
 }
 
@@ -151,13 +152,14 @@ static void evaluate_gradient(const gsl_vector *at, void *context, gsl_vector *g
     evaluate(at, context, &value, gradient);
 }
 
-/* Descends from lengths of one and the median nugget; the last point is kept wherever it stops. */
+/* Descends from the medians; the last point is kept wherever it stops. */
 static sf_status find_lengths(likelihood *l, sf_error *err) {
     size_t n = (size_t)l->p->inputs + 1;
     gsl_multimin_function_fdf objective = {evaluate_value, evaluate_gradient, evaluate, n, l};
     gsl_multimin_fdfminimizer *m = gsl_multimin_fdfminimizer_alloc(gsl_multimin_fdfminimizer_vector_bfgs2, n);
-    gsl_vector *start = gsl_vector_calloc(n);
+    gsl_vector *start = gsl_vector_alloc(n);
     if (m && start) {
+        gsl_vector_set_all(start, log(LENGTH_MEDIAN));
         gsl_vector_set(start, n - 1, log(NUGGET_MEDIAN));
         gsl_multimin_fdfminimizer_set(m, &objective, start, 0.5, 0.1);
         for (int k = 0; k < STEPS && gsl_multimin_fdfminimizer_iterate(m) == GSL_SUCCESS; k++)
@@ -175,31 +177,24 @@ static sf_status find_lengths(likelihood *l, sf_error *err) {
 
 /* Points of which the lengths are found: of many, those at equal distances in their order. */
 static sf_status fit_lengths(sf_predictor *p, const double *y, sf_error *err) {
-    int n = p->count < MOST_FOR_LENGTHS ? p->count : MOST_FOR_LENGTHS;
-    double *x = sf_alloc(err, (unsigned long)n, (unsigned long)(p->inputs + 1) * sizeof *x, "a predictor");
+    size_t n = (size_t)(p->count < MOST_FOR_LENGTHS ? p->count : MOST_FOR_LENGTHS),
+           inputs = (size_t)p->inputs;
+    SF_OWNED double *x = sf_alloc(err, n, (inputs + n + 3) * sizeof *x, "a predictor");
     SF_TRY(err->status);
-    double *part = x + (long)n * p->inputs;
-    for (int k = 0; k < n; k++) {
-        int from = (int)((long)k * p->count / n);
-        memcpy(x + (long)k * p->inputs, p->x + (long)from * p->inputs, (size_t)p->inputs * sizeof *x);
+    double *part = x + n * inputs;
+    for (size_t k = 0; k < n; k++) {
+        size_t from = k * (size_t)p->count / n;
+        memcpy(x + k * inputs, p->x + from * inputs, inputs * sizeof *x);
         part[k] = y[from];
     }
-    likelihood l = {.p = p,
-                    .count = n,
-                    .x = x,
-                    .y = gsl_vector_view_array(part, (size_t)n),
-                    .k = gsl_matrix_alloc((size_t)n, (size_t)n),
-                    .weight = gsl_vector_alloc((size_t)n),
-                    .ones = gsl_vector_alloc((size_t)n)};
-    if (l.k && l.weight && l.ones)
-        find_lengths(&l, err);
-    else
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a predictor");
-    gsl_matrix_free(l.k);
-    gsl_vector_free(l.weight);
-    gsl_vector_free(l.ones);
-    free(x);
-    return err->status;
+    likelihood l = {p,
+                    (int)n,
+                    x,
+                    gsl_vector_view_array(part, n),
+                    gsl_vector_view_array(part + n, n),
+                    gsl_vector_view_array(part + 2 * n, n),
+                    gsl_matrix_view_array(part + 3 * n, n, n)};
+    return find_lengths(&l, err);
 }
 
 /* ---- fit ---- */
@@ -211,62 +206,59 @@ static sf_status calibrate(sf_predictor *p, sf_error *err) {
     p->calibration = 1;
     if (p->count < LEAST_FOR_CALIBRATION)
         return SF_OK;
-    double *z = sf_alloc(err, n, (n + 1) * sizeof *z, "a predictor"), squares = 0;
+    SF_OWNED double *z = sf_alloc(err, n, (n + 1) * sizeof *z, "a predictor");
+    double squares = 0;
     SF_TRY(err->status);
     gsl_matrix_view inverse = gsl_matrix_view_array(z + n, n, n);
-    gsl_matrix_memcpy(&inverse.matrix, p->factor);
+    gsl_matrix_memcpy(&inverse.matrix, &p->factor.matrix);
     gsl_linalg_cholesky_invert(&inverse.matrix);
     for (size_t i = 0; i < n; i++) {
-        double w = gsl_vector_get(p->ones, i),
+        double w = gsl_vector_get(&p->ones.vector, i),
                own = gsl_matrix_get(&inverse.matrix, i, i) - w * w / p->ones_sum;
-        z[i] = fabs(gsl_vector_get(p->weight, i)) / sqrt(own) / p->deviation;
+        z[i] = fabs(gsl_vector_get(&p->weight.vector, i)) / sqrt(own) / p->deviation;
         squares += z[i] * z[i];
     }
     gsl_sort(z, 1, n);
     p->calibration = fmax(LEAST_CALIBRATION, fmax(sqrt(squares / (double)n),
                                                   z[(size_t)(SHARE * (double)n)] / SF_PREDICTOR_SIDES));
-    free(z);
     return SF_OK;
 }
 
 static sf_status solve(sf_predictor *p, const double *y, sf_error *err) {
     gsl_vector_const_view outputs = gsl_vector_const_view_array(y, (size_t)p->count);
-    fill_correlation(p, p->count, p->x, p->factor);
-    while (gsl_linalg_cholesky_decomp1(p->factor) != GSL_SUCCESS) {
+    gsl_matrix *factor = &p->factor.matrix;
+    fill_correlation(p, p->count, p->x, factor);
+    while (gsl_linalg_cholesky_decomp1(factor) != GSL_SUCCESS) {
         if ((p->nugget *= 10) > 1)
             return SF_FAIL(err, SF_ERR_NUMERIC, "the correlation of %d points cannot be factored", p->count);
-        fill_correlation(p, p->count, p->x, p->factor);
+        fill_correlation(p, p->count, p->x, factor);
     }
-    p->deviation = sqrt(weigh(p->factor, &outputs.vector, &p->mean, p->weight, p->ones, &p->ones_sum));
+    p->deviation =
+        sqrt(weigh(factor, &outputs.vector, &p->mean, &p->weight.vector, &p->ones.vector, &p->ones_sum));
     return calibrate(p, err);
 }
 
 sf_status sf_predictor_fit(int inputs, const bool *word, int count, const double *x, const double *y,
                            sf_predictor *p, sf_error *err) {
-    size_t n = (size_t)count;
+    size_t n = (size_t)count, width = (size_t)inputs;
+    *p = (sf_predictor){
+        .inputs = inputs, .count = count, .x = sf_alloc(err, n, (width + n + 2) * sizeof *x, "a predictor")};
+    if (!p->x)
+        return err->status;
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    *p = (sf_predictor){.inputs = inputs, .count = count};
-    memcpy(p->word, word, (size_t)inputs * sizeof *word);
-    p->x = sf_alloc(err, n, (unsigned long)inputs * sizeof *x, "a predictor");
-    p->factor = gsl_matrix_alloc(n, n);
-    p->weight = gsl_vector_alloc(n);
-    p->ones = gsl_vector_alloc(n);
-    if (p->x && p->factor && p->weight && p->ones) {
-        memcpy(p->x, x, n * (size_t)inputs * sizeof *x);
-        if (fit_lengths(p, y, err) == SF_OK)
-            solve(p, y, err);
-    } else if (err->status == SF_OK) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a predictor");
-    }
+    memcpy(p->word, word, width * sizeof *word);
+    memcpy(p->x, x, n * width * sizeof *x);
+    p->weight = gsl_vector_view_array(p->x + n * width, n);
+    p->ones = gsl_vector_view_array(p->x + n * (width + 1), n);
+    p->factor = gsl_matrix_view_array(p->x + n * (width + 2), n, n);
+    if (fit_lengths(p, y, err) == SF_OK)
+        solve(p, y, err);
     gsl_set_error_handler(handler);
     return err->status;
 }
 
 void sf_predictor_free(sf_predictor *p) {
     free(p->x);
-    gsl_matrix_free(p->factor);
-    gsl_vector_free(p->weight);
-    gsl_vector_free(p->ones);
     *p = (sf_predictor){0};
 }
 
@@ -279,10 +271,10 @@ static double project(const sf_predictor *p, const double *x, double *room, doub
     double sum = 0, ones = 0, squares = 0;
     for (int j = 0; j < p->count; j++) {
         room[j] = correlation(p, x, p->x + (long)j * p->inputs);
-        sum += room[j] * gsl_vector_get(p->weight, (size_t)j);
-        ones += room[j] * gsl_vector_get(p->ones, (size_t)j);
+        sum += room[j] * gsl_vector_get(&p->weight.vector, (size_t)j);
+        ones += room[j] * gsl_vector_get(&p->ones.vector, (size_t)j);
     }
-    gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, p->factor, &k.vector);
+    gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &p->factor.matrix, &k.vector);
     for (int j = 0; j < p->count; j++)
         squares += room[j] * room[j];
     *mean = p->mean + sum;
@@ -312,13 +304,14 @@ static void condition(const sf_predictor *p, int candidates, const double *x, in
 int sf_predictor_choose(const sf_predictor *p, int candidates, const double *x, const double *wish, int most,
                         int *chosen) {
     int width = p->count + most, count = 0;
-    double mean, *variance = malloc((size_t)candidates * sizeof *variance),
-                 *projection = malloc((size_t)candidates * (size_t)width * sizeof *projection);
-    if (!variance || !projection)
-        count = -1;
-    for (int c = 0; c < candidates && count == 0; c++)
+    double mean;
+    SF_OWNED double *variance = malloc((size_t)candidates * (size_t)(width + 1) * sizeof *variance);
+    if (!variance)
+        return -1;
+    double *projection = variance + candidates;
+    for (int c = 0; c < candidates; c++)
         variance[c] = project(p, x + (long)c * p->inputs, projection + (long)c * width, &mean);
-    while (count >= 0 && count < most) {
+    while (count < most) {
         int next = -1;
         double largest = 1;
         for (int c = 0; c < candidates; c++) {
@@ -335,7 +328,5 @@ int sf_predictor_choose(const sf_predictor *p, int candidates, const double *x, 
         variance[next] = 0; /* not again, whatever the nugget leaves */
         count++;
     }
-    free(variance);
-    free(projection);
     return count;
 }

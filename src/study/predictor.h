@@ -25,11 +25,11 @@ typedef struct sf_predictor {
     double calibration; /* -, factor of all standard deviations, from the residuals of points left out: the
                            larger of their root mean square and of their 95 % quantile, over what the process
                            expects */
-    double *x;          /* [count][inputs] owned */
-    gsl_matrix *factor; /* [count][count] lower Cholesky factor of the correlation K; owned */
-    gsl_vector *weight; /* [count] K^-1 (y - mean); owned */
-    gsl_vector *ones;   /* [count] K^-1 1; owned */
-    double ones_sum;    /* 1' K^-1 1 */
+    double *x;          /* [count][inputs], and behind them the next three; owned */
+    gsl_matrix_view factor; /* [count][count] lower Cholesky factor of the correlation K */
+    gsl_vector_view weight; /* [count] K^-1 (y - mean) */
+    gsl_vector_view ones;   /* [count] K^-1 1 */
+    double ones_sum;        /* 1' K^-1 1 */
 } sf_predictor;
 
 /* Fits to y [count] at x [count][inputs]; numbers are scaled to about 0 to 1 by the caller. At least two

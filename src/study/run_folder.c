@@ -224,14 +224,13 @@ void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key,
 
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *at, sf_error *err) {
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     uint64_t key = 0;
     SF_TRY(sf_case_read(case_path, count, overrides, NULL, &c, err));
     sf_campaign_key(&c, &key, err);
     sf_run_folder_name_key(parent, label, key, at);
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         name_folder(sf_campaign_geometry(&c, k)->path, at->geometry[k], err);
-    sf_case_free(&c);
     return err->status;
 }
 
@@ -246,19 +245,14 @@ static bool are_files_same(const sf_run_folder *at, const char *files) {
 
 /* The same by the list at `text` of the HDF5 file `path`; `unlisted` if there is no such list. */
 static bool is_geometry_same(const sf_run_folder *at, const char *path, const char *text, bool unlisted) {
-    char *files = sf_campaign_geometry_list(path, text);
-    bool same = files ? are_files_same(at, files) : unlisted;
-    free(files);
-    return same;
+    SF_OWNED char *files = sf_campaign_geometry_list(path, text);
+    return files ? are_files_same(at, files) : unlisted;
 }
 
 /* By the record of its figures: only of a drop that ran to its end. */
 static bool is_recorded(const sf_run_folder *at) {
-    sf_run_record record;
-    bool recorded =
-        sf_run_record_read(at->figures, at->results, &record) && are_files_same(at, record.geometry);
-    sf_run_record_free(&record);
-    return recorded;
+    SF_OWNED_BY(sf_run_record_free) sf_run_record record = {0};
+    return sf_run_record_read(at->figures, at->results, &record) && are_files_same(at, record.geometry);
 }
 
 bool sf_run_folder_is_finished(const sf_run_folder *at) {
@@ -287,7 +281,7 @@ static void keep_failure(const sf_run_folder *at, const char *files, const sf_er
 
 bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
     sf_error none = SF_ERROR_INIT;
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     if (access(at->failed, R_OK) != 0 ||
         sf_plain_read(at->failed, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
         return false;
@@ -295,7 +289,6 @@ bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
     bool failed = rest && atoi(status) == SF_ERR_NUMERIC && are_files_same(at, rest);
     if (failed)
         SF_FAIL(failure, SF_ERR_NUMERIC, "%s", sentence);
-    free(text);
     return failed;
 }
 
@@ -306,13 +299,13 @@ void sf_run_folder_clear_failure(const sf_run_folder *at) {
 /* The last line of a log that says something, for an error's sentence. */
 static void last_line(const char *path, char *out, size_t size) {
     sf_error ignored = SF_ERROR_INIT;
-    char *text = NULL, *line;
+    SF_OWNED char *text = NULL;
+    char *line;
     snprintf(out, size, "it said nothing");
     sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &ignored);
     for (char *rest = text; rest && (line = strsep(&rest, "\n"));)
         if (*line)
             snprintf(out, size, "%s", line);
-    free(text);
 }
 
 sf_status sf_run_folder_interrupted(sf_error *err) {
@@ -408,10 +401,9 @@ static sf_status simulate(const sf_run_folder *at, const char *case_path, int co
             run_program(run, at->log, err);
     }
     if (err->status == SF_ERR_NUMERIC && access(at->model, R_OK) == 0) {
-        char *files = sf_campaign_geometry_list(at->model, "/provenance/geometry_files");
+        SF_OWNED char *files = sf_campaign_geometry_list(at->model, "/provenance/geometry_files");
         if (files)
             keep_failure(at, files, err);
-        free(files);
     }
     bool resumes = err->status == SF_INTERRUPTED || strstr(err->text, SF_PROCESS_KILLED);
     if (!resumes)

@@ -25,8 +25,7 @@ def place(count=500, name="centre", scatter=SCATTER, mesh=0.0, **more):
     log_height = np.linspace(math.log(0.2), math.log(5), 80)
     value = math.log(1000) + SLOPE * log_height[None, None, :] + SPREAD * z[None, :, None] + np.zeros((2, 1, 1))
     zero = np.zeros((2, count))
-    trend = advice.Trend(zero[0], zero[0], 3)
-    return advice.Place(name, log_height, value, zero, zero, np.full((2, 80), scatter), np.full(2, mesh), np.zeros(2), (trend, trend), **more)
+    return advice.Place(name, log_height, value, zero, zero, np.full((2, 80), scatter), np.full(2, mesh), np.zeros(2), zero, 3, **more)
 
 
 def inverse_erf(y):
@@ -241,22 +240,17 @@ def test_pads_that_fail_at_every_height_have_no_interval():
     p = place(count=100)
     told = advice.advise(advice.Pads([p]), advice.Question((None, 1.0), bound=0.1))
     assert told.height == (0, 0, 0) and told.loss == 1 and not told.stop
-    unknown = advice.advise(advice.Pads([dataclasses.replace(p, trend=(advice.Trend(p.shared[0], p.shared[0], 0),) * 2)]), QUESTION)
+    unknown = advice.advise(advice.Pads([dataclasses.replace(p, freedom=0)]), QUESTION)
     assert "no draw was simulated" in unknown.problem and unknown.decision is None
 
 
-def test_the_trend_of_the_checks_shifts_the_height_of_each_draw():
-    """By the line at the draw's own critical height, and by the end of the checks beyond them."""
-    checks = [{"height_m": h, "failed": False, "hic_height_shift": 0.0} for h in (0.9, 1.0, 1.1)]
-    told = {"degrees_of_freedom": 1, "scatter": 0.0, "shift": 0.02, "slope": -0.5, "centre_m": 1.0}
-    crossing = np.log([0.5, 0.95, 1.0, 1.05, 2.0])
-    trend = advice._trend(told, checks, "hic", crossing)
-    assert trend.shift == pytest.approx(0.02 - 0.5 * np.log([0.9, 0.95, 1.0, 1.05, 1.1]))
-    p = place(count=100)
-    pads = advice.Pads([dataclasses.replace(p, trend=(advice.Trend(0 * p.shared[0] + 0.1, 0 * p.shared[0], 3),) * 2)])
-    plain = advice.Pads([p])
-    assert pads.crossing("centre", (None, 1000.0)) == pytest.approx(plain.crossing("centre", (None, 1000.0)) * math.exp(0.1), rel=1e-3)
-    assert pads.predict("centre", 1.0) == pytest.approx(plain.predict("centre", math.exp(-0.1)))
+def test_the_columns_own_error_widens_the_figures_of_a_draw():
+    """By Student's t of the degrees of freedom, the same for both figures of a pad."""
+    p = place(count=500)
+    pads = advice.Pads([dataclasses.replace(p, columns_sd=p.shared + np.array([[0.1], [0.2]]), freedom=50)])
+    error = pads.predict("centre", 1.0) - advice.Pads([p]).predict("centre", 1.0)
+    assert error[1] == pytest.approx(2 * error[0])
+    assert error[0].std() == pytest.approx(0.1 * math.sqrt(50 / 48), rel=0.03)
 
 
 def test_collapsed_columns_are_beyond_every_limit():

@@ -195,27 +195,7 @@ static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig)
     if (rig->pairs > 0)
         put_part(&table, &s->rig, NULL, NAN, "without that, and g_eff: on the rig", "");
     sf_html_table_end(&table);
-    sf_html_note(page,
-                 "Share: what the line adds to the squared length of the interval of ln(height). Below 0, "
-                 "the trend of the simulated draws makes it narrower.");
-}
-
-/* Describes the correction of a criterion's height by the checks. */
-static const char *trend_text(const sf_cfh_trend *t, char *text, size_t size) {
-    if (t->checks == 0)
-        snprintf(text, size, "not known");
-    else if (t->sum > 0)
-        snprintf(
-            text, size,
-            "%+.2g %% at the lowest and %+.2g %% at the highest of %d simulated draws by their trend, which the "
-            "heights follow, ±%.2g %% about it (Student's t, %d degrees of freedom)",
-            100 * (t->shift + t->slope * (t->range[0] - t->centre)),
-            100 * (t->shift + t->slope * (t->range[1] - t->centre)), t->checks, 100 * t->scatter, t->freedom);
-    else
-        snprintf(text, size,
-                 "±%.2g %%, the root mean square of %d simulated draws (Student's t, %d degrees of freedom)",
-                 100 * t->scatter, t->checks, t->freedom);
-    return text;
+    sf_html_note(page, "Share: what the line adds to the squared length of the interval of ln(height).");
 }
 
 /* "0.12 %" */
@@ -225,23 +205,23 @@ static const char *percent_text(double value, char text[24]) {
 }
 
 static void put_errors(FILE *page, const sf_cfh_spread *s) {
-    char columns[SF_CFH_CRITERIA][240], fit[SF_CFH_CRITERIA][24], mesh[24];
+    char columns[SF_CFH_CRITERIA][24], fit[SF_CFH_CRITERIA][24], mesh[24];
     for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-        trend_text(&s->trend[c], columns[c], sizeof columns[c]);
+        percent_text(sf_cfh_columns_error(s, c), columns[c]);
         percent_text(s->fit_scatter[c], fit[c]);
     }
     sf_html_note(
         page,
         "%d draws of the foam, each as columns below the missile, corrected by the drops simulated with the "
-        "case's own material between %.3f and %.3f m. Error of the mesh (expected of a_max: %s): assumed is that the "
-        "draws were identified by drops of the same spacing, whose error of the mesh is in them. How much it differs at this "
-        "height is not known: a scatter of %.2g times that of a_max, and %.1f times as much of HIC, to both sides. Points about "
-        "their fit: %s of a_max, %s of HIC. Errors of the responses: one of each draw, and one drawn for each of its %d repeats "
-        "(response_error). The columns' own error of the height at a_max: %s; at HIC: %s. What is not known "
-        "is not in the interval.",
+        "case's own material between %.3f and %.3f m, and by the simulated draws. Error of the mesh (expected of a_max: %s): "
+        "assumed is that the draws were identified by drops of the same spacing, whose error of the mesh is in them. How much it "
+        "differs at this height is not known: a scatter of %.2g times that of a_max, and %.1f times as much of HIC, to both sides. "
+        "Points about their fit: %s of a_max, %s of HIC. Errors of the responses: one of each draw, and one drawn for each of its %d "
+        "repeats (response_error). The columns' own error, by how far a draw is from the simulated drops: %s of a_max, %s of HIC "
+        "(root mean square of the draws; Student's t, %d degrees of freedom). What is not known is not in the interval.",
         s->draws, s->simulated[0], s->simulated[1], percent_text(s->mesh_error, mesh), SF_CFH_MESH_SIZE,
         SF_CFH_MESH_HIC, fit[SF_CFH_A_MAX], fit[SF_CFH_HIC], SF_CFH_REPEATS, columns[SF_CFH_A_MAX],
-        columns[SF_CFH_HIC]);
+        columns[SF_CFH_HIC], s->freedom);
 }
 
 static void put_checks(FILE *page, const sf_cfh_spread *s) {

@@ -223,11 +223,6 @@ static sf_value criterion_name(const void *record) {
     return sf_value_text(sf_cfh_name(((const sf_cfh_check *)record)->first));
 }
 
-static sf_value deciding_shift(const void *record) {
-    const sf_cfh_check *check = record;
-    return sf_value_real(check->shift[check->first]);
-}
-
 #undef AT
 #define AT(member) SF_ROW_OF(NUMBER, sf_cfh_check, member)
 
@@ -239,11 +234,10 @@ sf_rows sf_cfh_check_rows(void) {
         {"criterion", "limit", .value = criterion_name, .type = SF_ROW_STRING},
         {"a_max_columns_g", "a_max, columns", "g", "%.1f", AT(columns[SF_CFH_A_MAX])},
         {"a_max_g", "simulated", "g", "%.1f", AT(simulated[SF_CFH_A_MAX])},
-        {"a_max_height_shift", "its height moves by", "%", "%.2f", .shown = 100, AT(shift[SF_CFH_A_MAX])},
+        {"a_max_error", "more than that", "%", "%.2f", .shown = 100, AT(error[SF_CFH_A_MAX])},
         {"hic_columns", "HIC, columns", NULL, "%.0f", AT(columns[SF_CFH_HIC])},
         {"hic", "simulated", NULL, "%.0f", AT(simulated[SF_CFH_HIC])},
-        {"hic_height_shift", "its height moves by", "%", "%.2f", .shown = 100, AT(shift[SF_CFH_HIC])},
-        {"height_shift", .value = deciding_shift},
+        {"hic_error", "more than that", "%", "%.2f", .shown = 100, AT(error[SF_CFH_HIC])},
         {"failed", SF_ROW_OF(FLAG, sf_cfh_check, failed)},
         {"note", SF_ROW_OF(TEXT, sf_cfh_check, note)},
     };
@@ -276,21 +270,6 @@ void sf_cfh_put_interval_json(sf_json *json, const char *name, const sf_cfh_inte
     sf_json_text(json, key, open);
 }
 
-static void put_trends_json(sf_json *json, const sf_cfh_spread *s) {
-    sf_json_open(json, "columns_error", '[');
-    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-        const sf_cfh_trend *t = &s->trend[c];
-        bool trend = t->sum > 0;
-        sf_json_open(json, NULL, '{');
-        sf_json_text(json, "criterion", sf_cfh_name((sf_cfh_criterion)c));
-        SF_JSON_NUMBERS(json, {"checks", t->checks}, {"centre_m", trend ? exp(t->centre) : NAN},
-                        {"shift", trend ? t->shift : NAN}, {"slope", trend ? t->slope : NAN},
-                        {"scatter", t->scatter}, {"degrees_of_freedom", t->freedom});
-        sf_json_close(json, '}');
-    }
-    sf_json_close(json, ']');
-}
-
 /* The members of the object `posterior` of cfh.json. */
 static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     static const char *const names[SF_CFH_PARTS] = {"foam", "foam_response", "foam_response_mesh",
@@ -311,7 +290,11 @@ static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     for (int part = 0; part < SF_CFH_PARTS; part++)
         sf_json_number(json, shares[part], sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
     sf_json_close(json, '}');
-    put_trends_json(json, s);
+    sf_json_open(json, "columns_error", '{');
+    SF_JSON_NUMBERS(json, {"degrees_of_freedom", s->freedom},
+                    {"a_max", sf_cfh_columns_error(s, SF_CFH_A_MAX)},
+                    {"hic", sf_cfh_columns_error(s, SF_CFH_HIC)});
+    sf_json_close(json, '}');
     sf_rows_json_array(json, "checks", sf_cfh_check_rows(),
                        (sf_records){s->check, sizeof s->check[0], s->checks});
 }
@@ -461,8 +444,8 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
     if (!file)
         return err->status;
     fputs(
-        "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,a_max_correction_1,"
-        "hic_correction_1,a_max_scatter_1,hic_scatter_1\n",
+        "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,a_max_scatter_1,"
+        "hic_scatter_1\n",
         file);
     for (int k = 0; k < s->grid; k++) {
         fprintf(file, "%.9g", s->height[k]);
@@ -471,8 +454,6 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
             put_cell(file, s->band[c][k].median);
             put_cell(file, s->band[c][k].high);
         }
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, exp(s->correction[c][k]));
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
             put_cell(file, s->scatter[c][k]);
         fputc('\n', file);
@@ -484,7 +465,8 @@ static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *
     FILE *file = sf_staging_open(output, "cfh_draws.csv", err);
     if (!file)
         return err->status;
-    fputs("draw_1,height_m,a_max_height_m,hic_height_m,a_max_shared_1,hic_shared_1,a_max_sd_1,hic_sd_1\n",
+    fputs("draw_1,height_m,a_max_height_m,hic_height_m,a_max_shared_1,hic_shared_1,a_max_sd_1,hic_sd_1,"
+          "a_max_columns_sd_1,hic_columns_sd_1\n",
           file);
     for (int d = 0; d < s->draws; d++) {
         const sf_cfh_curve *draw = &s->draw[d];
@@ -497,6 +479,8 @@ static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *
             put_cell(file, s->with_response ? draw->shared[c] : NAN);
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
             put_cell(file, s->with_response ? draw->own_sd[c] : NAN);
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cell(file, s->freedom > 0 ? draw->columns_sd[c] : NAN);
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh_draws.csv", err);
@@ -507,11 +491,14 @@ static sf_status write_curves(const sf_staging *output, const sf_cfh_spread *s, 
     FILE *file = sf_staging_open(output, "cfh_curves.csv", err);
     if (!file)
         return err->status;
-    fputs("draw_1,height_m,a_max_g,hic_1\n", file);
+    fputs("draw_1,height_m,a_max_g,hic_1,a_max_columns_g,hic_columns_1\n", file);
     for (int d = 0; d < s->draws; d++)
-        for (int k = 0; k < s->draw[d].reach; k++)
-            fprintf(file, "%d,%.9g,%.9g,%.9g\n", d + 1, s->height[k], exp(s->draw[d].value[SF_CFH_A_MAX][k]),
-                    exp(s->draw[d].value[SF_CFH_HIC][k]));
+        for (int k = 0; k < s->draw[d].reach; k++) {
+            const sf_cfh_curve *draw = &s->draw[d];
+            fprintf(file, "%d,%.9g,%.9g,%.9g,%.9g,%.9g\n", d + 1, s->height[k],
+                    exp(draw->value[SF_CFH_A_MAX][k]), exp(draw->value[SF_CFH_HIC][k]),
+                    exp(draw->column[SF_CFH_A_MAX][k]), exp(draw->column[SF_CFH_HIC][k]));
+        }
     return sf_staging_close(file, "cfh_curves.csv", err);
 }
 
@@ -530,13 +517,9 @@ static void put_checks(FILE *out, const sf_cfh_report *r) {
     for (int k = 0; k < r->spread->checks; k++) {
         const sf_cfh_check *check = &r->spread->check[k];
         if (!check->failed)
-            fprintf(
-                out,
-                "  draw %d at %.3f m: a_max %.1f g by columns, %.1f g simulated; HIC %.0f, %.0f; the height by %s "
-                "moves by %.2f %%\n",
-                check->draw + 1, check->height, check->columns[SF_CFH_A_MAX], check->simulated[SF_CFH_A_MAX],
-                check->columns[SF_CFH_HIC], check->simulated[SF_CFH_HIC], sf_cfh_name(check->first),
-                100 * check->shift[check->first]);
+            fprintf(out, "  draw %d at %.3f m: a_max %.1f g by columns, %.1f g simulated; HIC %.0f, %.0f\n",
+                    check->draw + 1, check->height, check->columns[SF_CFH_A_MAX],
+                    check->simulated[SF_CFH_A_MAX], check->columns[SF_CFH_HIC], check->simulated[SF_CFH_HIC]);
     }
 }
 

@@ -142,8 +142,9 @@ static void choose_points(double centre, int count, const double *height, sf_cfh
 static sf_status fit_quadratic(const double *height, const double *value, sf_cfh_fit *fit, sf_error *err) {
     size_t n = (size_t)fit->count;
     double square_sum = 0;
-    double *design = sf_alloc(err, n, 4 * sizeof *design, "a fit"), *y = design + 3 * n;
+    SF_OWNED double *design = sf_alloc(err, n, 4 * sizeof *design, "a fit");
     SF_TRY(err->status);
+    double *y = design + 3 * n;
     for (size_t k = 0; k < n; k++) {
         double d = log(height[fit->first + (int)k]) - fit->centre;
         memcpy(&design[3 * k], (const double[]){1, d, d * d}, 3 * sizeof *design);
@@ -158,7 +159,6 @@ static sf_status fit_quadratic(const double *height, const double *value, sf_cfh
         SF_FAIL(err, SF_ERR_LIBRARY, "GSL cannot fit a quadratic to %zu points", n);
     fit->rms = sqrt(square_sum / (double)n);
     gsl_multifit_linear_free(work);
-    free(design);
     return err->status;
 }
 

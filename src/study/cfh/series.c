@@ -146,12 +146,11 @@ sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_poin
     return SF_OK;
 }
 
-static void take_check(sf_cfh_spread *spread, const sf_cfh_point *point, sf_cfh_check *check) {
+static void take_check(const sf_cfh_point *point, sf_cfh_check *check) {
     check->failed = point->failed;
     memcpy(check->note, point->note, sizeof check->note);
-    memcpy(check->simulated, point->value, sizeof check->simulated);
     if (!check->failed)
-        sf_cfh_check_compare(spread, check);
+        sf_cfh_check_take(point->value, check);
 }
 
 sf_status sf_cfh_simulate_checks(const sf_cfh_series *s, const sf_cfh_draws *draws, sf_runner *runner,
@@ -166,7 +165,7 @@ sf_status sf_cfh_simulate_checks(const sf_cfh_series *s, const sf_cfh_draws *dra
     if (d.count > 0 && run_drops(s, runner, &d, err) != SF_OK)
         return err->status;
     for (int k = 0; k < d.count; k++)
-        take_check(spread, &d.point[k], &spread->check[k]);
+        take_check(&d.point[k], &spread->check[k]);
     return SF_OK;
 }
 

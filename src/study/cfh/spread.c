@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/cfh/spread.h"
 
-#include "study/run_folder.h"
 #include "io/process.h"
+#include "study/predictor.h"
+#include "study/run_folder.h"
 #include <gsl/gsl_cdf.h>
-#include <gsl/gsl_fit.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort.h>
@@ -16,8 +16,6 @@ static const double STEP = 0.035;        /* of ln(height) on the grid */
 static const double OUTSIDE = 1.5;       /* factor by which it reaches beyond the simulated heights */
 static const double TAIL = 0.025;        /* on each side of the interval */
 static const double OUTERMOST = 0.05;    /* share of the outermost draws that are simulated */
-static const double MOST_SHIFT = 50;     /* of ln(height), for Student's t of one degree of freedom */
-static const double TREND_SPAN = 0.02;   /* of ln(height): checks closer together show no trend */
 enum { SEED = 1, RESPONSE_SEED = 1000 }; /* draw d (from 0) has RESPONSE_SEED + d for the responses */
 
 /* ---- columns ---- */
@@ -26,11 +24,11 @@ enum { SEED = 1, RESPONSE_SEED = 1000 }; /* draw d (from 0) has RESPONSE_SEED + 
 static sf_status drop_columns(const sf_columns *pad, const sf_material_law *law, double height, double *value,
                               sf_error *err) {
     sf_columns columns = *pad;
-    sf_columns_figures figures;
+    double y[SF_COLUMNS_LOGARITHMS];
     columns.speed = sf_cfh_speed(height);
-    SF_TRY(sf_columns_respond(&columns, law, &figures, NULL, err));
-    value[SF_CFH_A_MAX] = log(figures.a_max_g);
-    value[SF_CFH_HIC] = log(figures.hic);
+    SF_TRY(sf_columns_expect(&columns, law, y, err));
+    value[SF_CFH_A_MAX] = y[SF_FIT_A_MAX];
+    value[SF_CFH_HIC] = y[SF_FIT_HIC];
     if (!isfinite(value[SF_CFH_A_MAX]) || !isfinite(value[SF_CFH_HIC]))
         return SF_FAIL(err, SF_ERR_NUMERIC, "the columns do not stop the missile");
     return SF_OK;
@@ -45,7 +43,7 @@ static sf_status drop_grid(const sf_cfh_spread *s, const sf_columns *pad, const 
         if (drop_columns(pad, law, s->height[draw->reach], y, err) != SF_OK)
             break;
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            draw->value[c][draw->reach] = y[c];
+            draw->column[c][draw->reach] = y[c];
     }
     if (err->status == SF_ERR_NUMERIC)
         *err = (sf_error)SF_ERROR_INIT;
@@ -81,54 +79,96 @@ static double interpolate(int count, const double *height, const double *value, 
     return value[k] + (value[k + 1] - value[k]) * log(at / height[k]) / log(height[k + 1] / height[k]);
 }
 
-static sf_status find_correction(sf_cfh_spread *s, const sf_columns *pad, const sf_material_law *own,
-                                 const sf_cfh_points *points, sf_error *err) {
-    double height[SF_CFH_MAX_POINTS], bracket[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS],
-        scatter[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS];
-    int count = 0;
+/* The heights of the grid: to a factor beyond the simulated ones. */
+static void make_grid(sf_cfh_spread *s) {
+    double low = s->drop[0].height / OUTSIDE, high = s->drop[s->own - 1].height, span;
+    s->simulated[0] = s->drop[0].height;
+    s->simulated[1] = high;
+    span = log(OUTSIDE * high / low);
+    s->grid = (int)fmin(SF_CFH_GRID, ceil(span / STEP) + 1);
+    for (int k = 0; k < s->grid; k++)
+        s->height[k] = low * exp(span * k / (s->grid - 1));
+}
+
+/* The drops of the case's own material that have figures, with their columns. */
+static sf_status list_drops(sf_cfh_spread *s, const sf_columns *pad, const sf_material_law *own,
+                            const sf_cfh_points *points, sf_error *err) {
+    double height[SF_CFH_MAX_POINTS], scatter[SF_CFH_CRITERIA][SF_CFH_MAX_POINTS];
     for (int k = 0; k < points->count && !points->point[k].on_anvil; k++) {
         const sf_cfh_point *p = &points->point[k];
+        sf_cfh_drop *drop = &s->drop[s->own];
         sf_error collapse = SF_ERROR_INIT;
-        double y[SF_CFH_CRITERIA];
         if (p->failed)
             continue;
-        if (drop_columns(pad, own, p->height, y, &collapse) != SF_OK) {
+        if (drop_columns(pad, own, p->height, drop->column, &collapse) != SF_OK) {
             if (collapse.status != SF_ERR_NUMERIC)
                 *err = collapse;
             continue;
         }
-        height[count] = p->height;
+        drop->height = height[s->own] = p->height;
         for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            bracket[c][count] = log(p->value[c]) - y[c];
-            scatter[c][count] = p->scatter[c];
+            drop->value[c] = log(p->value[c]);
+            scatter[c][s->own] = p->scatter[c];
         }
-        count++;
+        s->own++;
     }
     SF_TRY(err->status);
-    if (count == 0)
+    if (s->own == 0)
         return SF_FAIL(err, SF_ERR_NUMERIC,
                        "there is no simulated height at which the columns of the case's material, "
                        "which stand for the draws, have figures");
-    s->simulated[0] = height[0];
-    s->simulated[1] = height[count - 1];
-    double low = height[0] / OUTSIDE, span = log(OUTSIDE * height[count - 1] / low);
-    s->grid = (int)fmin(SF_CFH_GRID, ceil(span / STEP) + 1);
-    for (int k = 0; k < s->grid; k++) {
-        s->height[k] = low * exp(span * k / (s->grid - 1));
-        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            s->correction[c][k] = interpolate(count, height, bracket[c], s->height[k]);
-            s->scatter[c][k] = interpolate(count, height, scatter[c], s->height[k]);
-        }
-    }
+    make_grid(s);
+    for (int c = 0; c < SF_CFH_CRITERIA; c++)
+        for (int k = 0; k < s->grid; k++)
+            s->scatter[c][k] = interpolate(s->own, height, scatter[c], s->height[k]);
     return SF_OK;
 }
 
-static void correct_draws(sf_cfh_spread *s) {
-    for (int d = 0; d < s->draws; d++)
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            for (int k = 0; k < s->grid; k++)
-                s->draw[d].value[c][k] =
-                    k < s->draw[d].reach ? s->draw[d].value[c][k] + s->correction[c][k] : INFINITY;
+/* The inputs of a process: ln(height) and, of several foams, the columns' figures, which tell them apart. */
+static void put_inputs(double height, const double *column, double *x) {
+    x[0] = log(height);
+    memcpy(x + 1, column, SF_CFH_CRITERIA * sizeof *x);
+}
+
+static void correct_draw(const sf_cfh_spread *s, const sf_predictor *p, int criterion, sf_cfh_curve *draw) {
+    double x[1 + SF_CFH_CRITERIA], room[SF_CFH_DROPS], mean;
+    for (int k = 0; k < s->grid; k++) {
+        const double column[] = {draw->column[SF_CFH_A_MAX][k], draw->column[SF_CFH_HIC][k]};
+        put_inputs(s->height[k], column, x);
+        draw->value[criterion][k] = draw->sd[criterion][k] = INFINITY;
+        if (k >= draw->reach)
+            continue;
+        sf_predictor_at(p, x, room, &mean, &draw->sd[criterion][k]);
+        draw->value[criterion][k] = column[criterion] + mean;
+    }
+}
+
+/* Corrects the draws by a process of the simulated drops. A single drop, which has no process, counts twice.
+ */
+static sf_status correct_draws(sf_cfh_spread *s, sf_error *err) {
+    static const bool words[1 + SF_CFH_CRITERIA] = {false};
+    double x[SF_CFH_DROPS + 1][1 + SF_CFH_CRITERIA], at[SF_CFH_DROPS + 1], y[SF_CFH_DROPS + 1];
+    int drops = s->own, inputs = 1, count;
+    for (int k = 0; k < s->checks; k++)
+        if (!s->check[k].failed && isfinite(s->check[k].simulated[0])) {
+            s->drop[drops++] = s->check[k].drop;
+            inputs = 1 + SF_CFH_CRITERIA;
+        }
+    s->freedom = inputs > 1 ? drops - 1 : 0;
+    count = drops > 1 ? drops : 2;
+    for (int c = 0; c < SF_CFH_CRITERIA && err->status == SF_OK; c++) {
+        SF_OWNED_BY(sf_predictor_free) sf_predictor p = {0};
+        for (int k = 0; k < count; k++) {
+            const sf_cfh_drop *drop = &s->drop[k % drops];
+            put_inputs(drop->height, drop->column, x[k]);
+            at[k] = x[k][0];
+            y[k] = drop->value[c] - drop->column[c];
+        }
+        if (sf_predictor_fit(inputs, words, count, inputs > 1 ? x[0] : at, y, &p, err) == SF_OK)
+            for (int d = 0; d < s->draws; d++)
+                correct_draw(s, &p, c, &s->draw[d]);
+    }
+    return err->status;
 }
 
 /* ---- crossings ---- */
@@ -149,9 +189,10 @@ static double cross(const sf_cfh_spread *s, const sf_cfh_curve *draw, int criter
     return s->height[k - 1] * pow(s->height[k] / s->height[k - 1], share);
 }
 
-/* Value of the corrected draw at a height within its reach. */
-static double value_at(const sf_cfh_spread *s, const sf_cfh_curve *draw, int criterion, double height) {
-    return interpolate(draw->reach, s->height, draw->value[criterion], height);
+/* Value of a draw [grid] at a height within its reach. */
+static double at_height(const sf_cfh_spread *s, const sf_cfh_curve *draw, const double *value,
+                        double height) {
+    return interpolate(draw->reach, s->height, value, height);
 }
 
 /* True if the draw has a limit reached before its columns collapse. */
@@ -164,6 +205,7 @@ static bool reaches_limit(const sf_cfh_spread *s, const sf_cfh_curve *draw) {
 }
 
 static void find_crossings(sf_cfh_spread *s) {
+    s->above = s->below = s->collapsed = s->beyond = 0;
     for (int d = 0; d < s->draws; d++) {
         sf_cfh_curve *draw = &s->draw[d];
         double first = INFINITY;
@@ -175,6 +217,17 @@ static void find_crossings(sf_cfh_spread *s) {
         s->collapsed += draw->reach < s->grid && !reaches_limit(s, draw);
         s->beyond += first > 0 && isfinite(first) && (first < s->simulated[0] || first > s->simulated[1]);
     }
+}
+
+/* The columns' own error of each draw, where it reaches a limit first; without a check it is not known. */
+static void find_errors(sf_cfh_spread *s) {
+    for (int d = 0; d < s->draws; d++)
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            sf_cfh_curve *draw = &s->draw[d];
+            draw->columns_sd[c] = s->freedom > 0 && draw->reach > 0
+                                      ? at_height(s, draw, draw->sd[c], draw->crossing[SF_CFH_FIRST])
+                                      : 0;
+        }
 }
 
 /* ---- quantiles ---- */
@@ -234,12 +287,10 @@ sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, 
         s->fit_scatter[c] = fit->count > 3 ? fit->rms * sqrt(fit->count / (fit->count - 3.0)) : NAN;
     }
     s->draw = sf_alloc(err, (unsigned long)s->draws, sizeof *s->draw, "draws");
-    if (s->draw && find_correction(s, &pad->columns, own, points, err) == SF_OK &&
-        drop_draws(s, &pad->columns, draws, err) == SF_OK) {
+    if (s->draw && list_drops(s, &pad->columns, own, points, err) == SF_OK &&
+        drop_draws(s, &pad->columns, draws, err) == SF_OK && correct_draws(s, err) == SF_OK) {
         take_responses(s, draws);
-        correct_draws(s);
         find_crossings(s);
-        find_bands(s, err);
     }
     return err->status;
 }
@@ -282,77 +333,22 @@ void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {
             .share = (double)(s->below + rank) / s->draws,
             .height = fmax(grain, grain * round(places[rank].height / grain)),
             .first = draw->crossing[SF_CFH_HIC] < draw->crossing[SF_CFH_A_MAX] ? SF_CFH_HIC : SF_CFH_A_MAX,
-            .shift = {NAN, NAN}};
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            check->columns[c] = exp(value_at(s, draw, c, check->height));
-    }
-}
-
-/* Slope of ln(value) over ln(height) around a height, on what the grid has of that. */
-static double slope_at(const sf_cfh_spread *s, const sf_cfh_curve *draw, int criterion, double height) {
-    double low = fmax(height * exp(-STEP), s->height[0]),
-           high = fmin(height * exp(STEP), s->height[draw->reach - 1]);
-    return (value_at(s, draw, criterion, high) - value_at(s, draw, criterion, low)) / log(high / low);
-}
-
-void sf_cfh_check_compare(const sf_cfh_spread *s, sf_cfh_check *check) {
-    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-        double slope = slope_at(s, &s->draw[check->draw], c, check->height);
-        check->shift[c] = slope > 0 ? -log(check->simulated[c] / check->columns[c]) / slope : NAN;
-    }
-}
-
-/* The checks that have a shift of the criterion, as ln(height) and shift. */
-static int list_shifts(const sf_cfh_spread *s, int criterion, double *x, double *y) {
-    int count = 0;
-    for (int k = 0; k < s->checks; k++)
-        if (!s->check[k].failed && isfinite(s->check[k].shift[criterion])) {
-            x[count] = log(s->check[k].height);
-            y[count++] = s->check[k].shift[criterion];
+            .simulated = {NAN, NAN},
+            .error = {NAN, NAN}};
+        check->drop.height = check->height;
+        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+            check->columns[c] = exp(at_height(s, draw, draw->value[c], check->height));
+            check->drop.column[c] = at_height(s, draw, draw->column[c], check->height);
         }
-    return count;
+    }
 }
 
-/* x is ascending, as the checks are. */
-static void fit_trend(int count, const double *x, const double *y, sf_cfh_trend *t) {
-    double constant, variance[3], rest;
-    gsl_fit_linear(x, 1, y, 1, (size_t)count, &constant, &t->slope, &variance[0], &variance[1], &variance[2],
-                   &rest);
-    for (int k = 0; k < count; k++)
-        t->centre += x[k] / count;
-    for (int k = 0; k < count; k++)
-        t->sum += (x[k] - t->centre) * (x[k] - t->centre);
-    t->shift = constant + t->slope * t->centre;
-    t->range[0] = x[0];
-    t->range[1] = x[count - 1];
-    t->freedom = count - 2;
-}
-
-static double from_centre(const sf_cfh_trend *t, double x) {
-    return fmin(fmax(x, t->range[0]), t->range[1]) - t->centre;
-}
-
-static double shift_of(const sf_cfh_trend *t, double x) {
-    return t->shift + t->slope * from_centre(t, x);
-}
-
-/* Standard deviation of a further check's remainder, but for Student's t. */
-static double remainder_of(const sf_cfh_trend *t, double x) {
-    double d = from_centre(t, x), line = t->sum > 0 ? 1.0 / t->checks + d * d / t->sum : 0;
-    return t->freedom > 0 ? t->scatter * sqrt(1 + line) : 0;
-}
-
-static sf_cfh_trend find_trend(const sf_cfh_spread *s, int criterion) {
-    double x[SF_CFH_CHECKS], y[SF_CFH_CHECKS], sum = 0;
-    int count = list_shifts(s, criterion, x, y);
-    sf_cfh_trend t = {.checks = count, .scatter = NAN, .freedom = count};
-    if (count >= SF_CFH_TREND && x[count - 1] - x[0] > TREND_SPAN)
-        fit_trend(count, x, y, &t);
-    for (int k = 0; k < count; k++)
-        sum += pow(y[k] - shift_of(&t, x[k]), 2);
-    if (count > 0)
-        t.scatter = sqrt(sum / t.freedom);
-    return t;
+void sf_cfh_check_take(const double *simulated, sf_cfh_check *check) {
+    for (int c = 0; c < SF_CFH_CRITERIA; c++) {
+        check->simulated[c] = simulated[c];
+        check->drop.value[c] = log(simulated[c]);
+        check->error[c] = log(simulated[c] / check->columns[c]);
+    }
 }
 
 /* ---- the random errors ---- */
@@ -361,7 +357,7 @@ static sf_cfh_trend find_trend(const sf_cfh_spread *s, int criterion) {
 typedef struct errors {
     double response[SF_CFH_CRITERIA];
     double mesh, fit[SF_CFH_CRITERIA];
-    double columns[SF_CFH_CRITERIA]; /* Student's t, the same quantile of both */
+    double columns; /* Student's t, over the standard deviation of a criterion */
     double rig;
     double drop; /* of a single pad and drop, over the scatter of a criterion */
 } errors;
@@ -375,9 +371,7 @@ static errors random_errors(const sf_cfh_spread *s, const sf_cfh_rig *rig, gsl_r
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         e.fit[c] = or_none(s->fit_scatter[c]) * gsl_ran_ugaussian(random);
     double share = gsl_rng_uniform_pos(random);
-    for (int c = 0; c < SF_CFH_CRITERIA; c++)
-        if (s->trend[c].freedom > 0)
-            e.columns[c] = gsl_cdf_tdist_Pinv(share, s->trend[c].freedom);
+    e.columns = s->freedom > 0 ? gsl_cdf_tdist_Pinv(share, s->freedom) : 0;
     if (rig->pairs > 1)
         e.rig = gsl_ran_tdist(random, rig->pairs - 1) * rig->standard_error / rig->gravity;
     return e;
@@ -392,7 +386,7 @@ static void respond(const sf_cfh_spread *s, int at, gsl_rng *random, errors *e) 
         e->response[c] = r->shared[c] + r->own_sd[c] * gsl_ran_ugaussian(random);
 }
 
-static double raise_of(const errors *e, sf_cfh_part part, int criterion) {
+static double raise_of(const sf_cfh_curve *draw, const errors *e, sf_cfh_part part, int criterion) {
     double raise = 0;
     if (part >= SF_CFH_PART_RESPONSE)
         raise += e->response[criterion];
@@ -400,18 +394,9 @@ static double raise_of(const errors *e, sf_cfh_part part, int criterion) {
         raise += criterion == SF_CFH_HIC ? SF_CFH_MESH_HIC * e->mesh : e->mesh;
     if (part >= SF_CFH_PART_FIT)
         raise += e->fit[criterion];
+    if (part >= SF_CFH_PART_COLUMNS)
+        raise += e->columns * draw->columns_sd[criterion];
     return raise;
-}
-
-/* Returns the factor by which the checks change the height of a criterion. */
-static double factor_of(const sf_cfh_spread *s, double height, const errors *e, sf_cfh_part part,
-                        int criterion) {
-    const sf_cfh_trend *t = &s->trend[criterion];
-    double x = log(fmin(fmax(height, s->height[0]), s->height[s->grid - 1]));
-    if (part < SF_CFH_PART_COLUMNS)
-        return 1;
-    double shift = shift_of(t, x) + remainder_of(t, x) * e->columns[criterion];
-    return exp(fmax(-MOST_SHIFT, fmin(shift, MOST_SHIFT)));
 }
 
 /* One repeat of a draw, at `at` of values [SF_CFH_FIRST + 2][count], the last of them on the rig. */
@@ -422,7 +407,7 @@ static void repeat(const sf_cfh_spread *s, const errors *e, const sf_cfh_rig *ri
     for (int c = 0; c < SF_CFH_CRITERIA; c++, values += count) {
         double scatter = or_none(interpolate(s->grid, s->height, s->scatter[c], own)),
                drop = part == SF_CFH_PARTS ? e->drop * scatter : 0;
-        values[at] = cross(s, draw, c, raise_of(e, part, c) + drop) * factor_of(s, own, e, part, c);
+        values[at] = cross(s, draw, c, raise_of(draw, e, part, c) + drop);
         first = fmin(first, values[at]);
     }
     values[at] = first;
@@ -456,21 +441,29 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
     SF_OWNED double *values =
         sf_alloc(err, (unsigned long)count * (SF_CFH_FIRST + 2), sizeof *values, "repeats of the draws");
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937), *of_draw = gsl_rng_alloc(gsl_rng_mt19937);
-    for (int c = 0; c < SF_CFH_CRITERIA; c++)
-        s->trend[c] = find_trend(s, c);
-    if (values && random && of_draw) {
+    if (values && random && of_draw && correct_draws(s, err) == SF_OK) {
+        find_crossings(s);
+        find_errors(s);
+        find_bands(s, err);
         evaluate_part(s, rig, SF_CFH_PARTS, count, values, random, of_draw);
         for (int part = 0; part < SF_CFH_PARTS; part++)
             evaluate_part(s, rig, (sf_cfh_part)part, count, values, random, of_draw);
         s->rig = rig->pairs ? height_interval(s, &values[(size_t)count * (SF_CFH_FIRST + 1)], count,
                                               sf_cfh_rig_height(rig, 1))
                             : (sf_cfh_interval){NAN, NAN, NAN, {NAN, NAN}};
-    } else if (values) {
+    } else if (err->status == SF_OK) {
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
     }
     gsl_rng_free(random);
     gsl_rng_free(of_draw);
     return err->status;
+}
+
+double sf_cfh_columns_error(const sf_cfh_spread *s, int criterion) {
+    double squares = 0;
+    for (int d = 0; d < s->draws; d++)
+        squares += pow(s->draw[d].columns_sd[criterion], 2) / s->draws;
+    return s->freedom > 0 ? sqrt(squares) : NAN;
 }
 
 /* Squared length of ln(height). */

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The interval of the critical fall height from draws of the foam's posterior (docs/cfh.md). Of every draw
  * the columns below the missile (study/column.h) give a_max and HIC over the height; they are corrected
- * by the drops that were simulated with the case's own material,
+ * by the simulated drops,
  *
- *     ln y_draw(h) = ln columns_draw(h) + [ln y_simulated(h) - ln columns_case(h)],
+ *     ln y_draw(h) = ln columns_draw(h) + b(ln h, ln columns_draw(h)),
  *
- * the bracket linear in ln h between the simulated heights and constant beyond them. Each draw is repeated
+ * where b is a Gaussian process (study/predictor.h) of ln y_simulated - ln columns at the drops of the case's
+ * own material and of some draws, whose deviation is the columns' own error. Each draw is repeated
  * with random errors of the responses (study/fit/drop/inference.h), of the mesh, of the points about their
  * fit, of the corrected columns and of the rig. Heights are those of free fall (m) unless a name says "rig".
  * The same bits for any number of threads. */
@@ -48,10 +49,10 @@ sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int overr
 void sf_cfh_draws_free(sf_cfh_draws *draws);
 
 enum {
-    SF_CFH_GRID = 80,               /* heights at which the columns drop, at most */
-    SF_CFH_REPEATS = 64,            /* of a draw with random errors */
-    SF_CFH_CHECKS = 9,              /* simulated draws at most */
-    SF_CFH_TREND = 4,               /* of them give a trend; fewer only a scatter */
+    SF_CFH_GRID = 80,    /* heights at which the columns drop, at most */
+    SF_CFH_REPEATS = 64, /* of a draw with random errors */
+    SF_CFH_CHECKS = 9,   /* simulated draws at most */
+    SF_CFH_DROPS = SF_CFH_MAX_POINTS + SF_CFH_CHECKS,
     SF_CFH_FIRST = SF_CFH_CRITERIA, /* in place of a criterion: the one that is met first */
 };
 
@@ -81,29 +82,25 @@ typedef struct sf_cfh_pad {
     double mesh_error;  /* -, expected of a_max; NaN: not estimated */
 } sf_cfh_pad;
 
+/* A simulated drop and its columns, as natural logarithms. */
+typedef struct sf_cfh_drop {
+    double height; /* m */
+    double column[SF_CFH_CRITERIA], value[SF_CFH_CRITERIA];
+} sf_cfh_drop;
+
 /* A draw that was simulated at its critical height. */
 typedef struct sf_cfh_check {
     int draw;     /* from 0 */
     double share; /* of all draws, those whose height is lower */
     double height;
     sf_cfh_criterion first;            /* which limit it meets first by the corrected columns */
-    double columns[SF_CFH_CRITERIA];   /* g, -, corrected */
+    double columns[SF_CFH_CRITERIA];   /* g, -, corrected by the drops of the case's own material */
     bool failed;                       /* no figures: `note` says why */
     double simulated[SF_CFH_CRITERIA]; /* g, -; NaN if it failed, as the next */
-    double shift[SF_CFH_CRITERIA];     /* of ln height, by the difference of each; NaN: not known */
+    double error[SF_CFH_CRITERIA];     /* ln of that over the columns */
+    sf_cfh_drop drop;                  /* unless it failed */
     char note[SF_CFH_NOTE_SIZE];
 } sf_cfh_check;
-
-/* The correction of a criterion's height by the checks: ln height += shift + slope (ln h - centre), where
- * h is the draw's critical height by the columns, constant beyond the checks, and a remainder. */
-typedef struct sf_cfh_trend {
-    int checks;                  /* that were used */
-    double shift, slope, centre; /* 0 if they are no trend: fewer than SF_CFH_TREND, or all at one height */
-    double range[2];             /* of ln h */
-    double sum;                  /* of (ln h - centre)^2; 0: no trend */
-    double scatter;              /* of the remainder: its root mean square; NaN: not known */
-    int freedom;                 /* degrees of freedom of that */
-} sf_cfh_trend;
 
 typedef struct sf_cfh_band {
     double low, median, high; /* g, -; INFINITY: of draws whose columns collapse */
@@ -111,26 +108,30 @@ typedef struct sf_cfh_band {
 
 /* A draw as columns. Its errors of ln(value) are zeros if it states none. */
 typedef struct sf_cfh_curve {
-    double value[SF_CFH_CRITERIA][SF_CFH_GRID]; /* ln, corrected; INFINITY where the columns collapse */
-    int reach;                                  /* heights before they do */
-    double crossing[SF_CFH_FIRST + 1];          /* m, foam alone; 0 or INFINITY: beyond the grid */
-    double shared[SF_CFH_CRITERIA];             /* error of the responses that all drops share */
-    double own_sd[SF_CFH_CRITERIA];             /* standard deviation of a drop's own */
+    double column[SF_CFH_CRITERIA][SF_CFH_GRID]; /* ln */
+    double value[SF_CFH_CRITERIA][SF_CFH_GRID];  /* corrected; INFINITY where the columns collapse */
+    double sd[SF_CFH_CRITERIA][SF_CFH_GRID];     /* standard deviation of the correction */
+    double columns_sd[SF_CFH_CRITERIA];          /* the same at its critical height; 0: not known */
+    int reach;                                   /* heights before they do */
+    double crossing[SF_CFH_FIRST + 1];           /* m, foam alone; 0 or INFINITY: beyond the grid */
+    double shared[SF_CFH_CRITERIA];              /* error of the responses that all drops share */
+    double own_sd[SF_CFH_CRITERIA];              /* standard deviation of a drop's own */
 } sf_cfh_curve;
 
 typedef struct sf_cfh_spread {
     int draws, grid;
     double height[SF_CFH_GRID];
-    double simulated[2]; /* m, the heights between which the correction is known */
-    double correction[SF_CFH_CRITERIA][SF_CFH_GRID]; /* the bracket */
-    sf_cfh_band band[SF_CFH_CRITERIA][SF_CFH_GRID];  /* of the draws, foam alone */
-    sf_cfh_curve *draw;                              /* [draws] owned */
-    bool with_response;                              /* the draws state errors of the responses */
+    double simulated[2];            /* m, the heights between which the correction is known */
+    int own;                        /* drops of the case's own material, ascending */
+    sf_cfh_drop drop[SF_CFH_DROPS]; /* these, then the checks that have figures */
+    int freedom;                    /* degrees of freedom of the columns' own error; 0: it is not known */
+    sf_cfh_band band[SF_CFH_CRITERIA][SF_CFH_GRID]; /* of the draws, foam alone */
+    sf_cfh_curve *draw;                             /* [draws] owned */
+    bool with_response;                             /* the draws state errors of the responses */
     double limit[SF_CFH_CRITERIA];
     double own_height;                   /* m, of the case's own material; NaN: none was found */
     double mesh_error;                   /* -, expected of a_max; NaN: not known */
     double fit_scatter[SF_CFH_CRITERIA]; /* of ln(value); NaN: not known */
-    sf_cfh_trend trend[SF_CFH_CRITERIA]; /* of the checks */
     int checks;
     sf_cfh_check check[SF_CFH_CHECKS];
     int above, below, collapsed,
@@ -154,11 +155,16 @@ void sf_cfh_spread_free(sf_cfh_spread *spread);
 /* Chooses `count` draws, of 5 to 95 % of the heights (one: 50 %), that are to be simulated; their heights are
  * multiples of `grain` m. Fewer if fewer draws have a height. */
 void sf_cfh_spread_choose(sf_cfh_spread *spread, int count, double grain);
-/* Takes the simulated values of a check into its shifts. */
-void sf_cfh_check_compare(const sf_cfh_spread *spread, sf_cfh_check *check);
+/* Takes the simulated values of a check. */
+void sf_cfh_check_take(const double *simulated, sf_cfh_check *check);
 
-/* The intervals, with the trend and the scatter that the checks show. */
+/* Corrects the draws by all drops, and finds bands and intervals. */
 sf_status sf_cfh_spread_evaluate(sf_cfh_spread *spread, const sf_cfh_rig *rig, sf_error *err);
+
+/* Root mean square over the draws of the columns' own error of ln(value), but for Student's t; NaN: not
+ * known.
+ */
+double sf_cfh_columns_error(const sf_cfh_spread *spread, int criterion);
 
 /* The share of a part in the squared length of the whole interval of ln(height); the shares sum to 1. NaN: an
  * end is open, or the interval has no length. */

@@ -21,14 +21,20 @@ enum {
     MOST_POINTS = 3000 /* of a process: 72 MB and 10 s a fit */
 };
 
-/* Quantities that tell whether the figures of a row can be used, and the values from which they cannot; the
- * last one is 1 of a row that failed or is not to be used, and 0 of others. */
+/* Quantities that tell whether the figures of a row can be used, and what is said of a row in which they
+ * surely cannot. */
+enum { WATCH_STRAIN, WATCH_DATA, WATCH_CONTACT, WATCH_USE, WATCHED };
 static const struct {
-    const char *figure;
-    int check;
-} watched[] = {{"max_mean_strain", SF_CHECK_anvil}, {"energy_beyond_data", SF_CHECK_informed}, {NULL, 0}};
-enum { WATCHED = sizeof watched / sizeof watched[0], TARGETS = SF_SWEEP_FIGURES + WATCHED };
-enum { INPUTS = SF_SWEEP_FACTORS + SF_TRENDS };
+    const char *what, *left_open;
+} watched[WATCHED] = {
+    [WATCH_STRAIN] = {"the strain", "not simulated: its missile is expected to reach the anvil"},
+    [WATCH_DATA] = {"the energy beyond the foam's data",
+                    "not simulated: it is expected to be beyond the data of the foam"},
+    [WATCH_CONTACT] = {"the time of contact",
+                       "not simulated: its run is expected to end in contact: give a longer solver.end_time"},
+    [WATCH_USE] = {"the verdict",
+                   "not simulated: it is expected to have no figures, or none that can be used"}};
+enum { TARGETS = SF_SWEEP_FIGURES + WATCHED, INPUTS = SF_SWEEP_FACTORS + SF_TREND_INDENTATION };
 static const double COLLAPSED = 1.5; /* scaled figure of columns that collapse: beyond those of all others */
 static const double UNUSABLE = 0.5, HELD = 0.95, LEAST_DEVIATION = 1e-9;
 
@@ -48,16 +54,16 @@ struct sf_sweep_adaptive {
     sf_sweep_trend trend;
     double *expected; /* [rows][SF_TRENDS] of the columns; NULL: not yet computed; owned */
     int targets;
-    sf_predictor model[TARGETS]; /* the plan's figures, then `watched` */
+    sf_predictor model[TARGETS]; /* the plan's figures, then those that are watched */
     bool all;                    /* too few rows can be used: every row is simulated */
 };
 
 /* Judgement of an open row by the processes. */
 typedef struct outlook {
-    double ratio;     /* of the widest half interval to its wish; at most one: the row is predicted */
-    int target;       /* of that */
-    double wish;      /* standard deviation of the target that meets it */
-    bool is_unusable; /* surely */
+    double ratio; /* of the widest half interval to its wish; at most one: the row is predicted */
+    int target;   /* of that */
+    double wish;  /* standard deviation of the target that meets it */
+    int unusable; /* what says that it surely cannot be used; WATCHED: nothing */
     double value[SF_SWEEP_FIGURES], half[SF_SWEEP_FIGURES]; /* of the logarithm */
 } outlook;
 
@@ -84,7 +90,7 @@ static void list_inputs(sf_sweep_adaptive *a) {
 /* Makes the figures of the columns inputs, too: foams that differ as words are near to each other by these.
  */
 static void add_columns(sf_sweep_adaptive *a) {
-    for (int k = 0; k < SF_TRENDS && !a->trend.problem; k++) {
+    for (int k = 0; k < SF_TREND_INDENTATION && !a->trend.problem; k++) {
         double low = INFINITY, high = -INFINITY;
         for (int64_t row = 0; row < a->plan->rows; row++) {
             low = fmin(low, a->expected[row * SF_TRENDS + k]);
@@ -136,7 +142,7 @@ static int choose_apart(const sf_sweep_adaptive *a, const sf_runs *runs, int mos
                         sf_error *err) {
     int64_t step = (runs->count + DESIGN_SAMPLE - 1) / DESIGN_SAMPLE, n = (runs->count + step - 1) / step;
     int count = 0;
-    double *x = sf_alloc(err, (unsigned long)n, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
+    SF_OWNED double *x = sf_alloc(err, (unsigned long)n, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
     if (!x)
         return 0;
     double *apart = x + n * a->inputs, own[INPUTS];
@@ -161,7 +167,6 @@ static int choose_apart(const sf_sweep_adaptive *a, const sf_runs *runs, int mos
         for (int64_t k = 0; k < n; k++)
             apart[k] = k == best ? -1 : fmin(apart[k], distance(a, x + best * a->inputs, x + k * a->inputs));
     }
-    free(x);
     return count;
 }
 
@@ -186,22 +191,44 @@ static sf_status expect(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err
     return err->status;
 }
 
-/* ln of what columns expect of a figure of the plan; 0: they have no such figure. */
+/* ln of what columns expect of a target; 0: they have no such figure. */
 static double expected_of(const sf_sweep_adaptive *a, int target, int64_t row) {
-    int k = sf_sweep_trend_find(a->plan->figure[target].figure);
-    return k < 0 ? 0 : a->expected[row * SF_TRENDS + k];
+    int k = target - a->plan->figure_count, at = k < 0 ? sf_sweep_trend_find(a->plan->figure[target].figure)
+                                                 : k == WATCH_STRAIN  ? SF_TREND_STRAIN
+                                                 : k == WATCH_CONTACT ? SF_TREND_CONTACT
+                                                                      : -1;
+    return at < 0 ? 0 : a->expected[row * SF_TRENDS + at];
 }
 
-/* The output of a process at a row that was simulated; NaN: the row has none. */
+/* True of a row that can be used and defines every figure of the plan. */
+static bool has_figures(const sf_runs *runs, int64_t row) {
+    bool all = true;
+    for (int k = 0; k < runs->plan->figure_count; k++)
+        all &= isfinite(sf_runs_value(runs, row, k));
+    return all;
+}
+
+/* The output of a process at a row that was simulated: of a figure and the time of contact the logarithm over
+ * that of columns, of the strain the difference from theirs, of the use 0 or 1. NaN: the row has none. */
 static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
     const double *place = sf_runs_place(runs, row);
-    int k = target - a->plan->figure_count;
-    bool done = runs->state[row] == SF_SWEEP_DONE;
-    if (k < 0)
-        return log(sf_runs_value(runs, row, target)) - expected_of(a, target, row);
-    if (watched[k].figure)
-        return done ? place[sf_runs_figure(watched[k].figure)] : NAN;
-    return is_simulated(runs, row) ? !sf_runs_usable(runs, row) : NAN;
+    double expected = expected_of(a, target, row);
+    switch (target - a->plan->figure_count) {
+    case WATCH_STRAIN:
+        return place[sf_runs_figure("max_mean_strain")] - exp(expected);
+    case WATCH_DATA:
+        return place[sf_runs_figure("energy_beyond_data")];
+    case WATCH_CONTACT:
+        return log(place[sf_runs_figure("rebound_time_ms")] - place[sf_runs_figure("contact_time_ms")]) -
+               expected;
+    case WATCH_USE: /* what ended in contact is known by its time, if there is a process of that */
+        return isnan(place[sf_runs_figure("rebound_time_ms")]) && sf_runs_usable(runs, row) &&
+                       a->model[target - 1].count > 0
+                   ? NAN
+                   : !has_figures(runs, row);
+    default:
+        return log(sf_runs_value(runs, row, target)) - expected;
+    }
 }
 
 static void free_models(sf_sweep_adaptive *a) {
@@ -212,8 +239,8 @@ static void free_models(sf_sweep_adaptive *a) {
 /* Widens the intervals of a figure until they hold 95 % of the check rows. */
 static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int target, sf_error *err) {
     sf_predictor *p = &a->model[target];
-    double *room = sf_alloc(err, (unsigned long)(p->count + a->checks), sizeof *room, "predictions"),
-           x[INPUTS], mean, deviation;
+    SF_OWNED double *room = sf_alloc(err, (unsigned long)(p->count + a->checks), sizeof *room, "predictions");
+    double x[INPUTS], mean, deviation;
     int64_t n = 0, held = 0;
     if (!room)
         return err->status;
@@ -235,13 +262,13 @@ static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int tar
     }
     a->checked[target] = (int)n;
     a->held[target] = (int)held;
-    free(room);
-    return err->status;
+    return SF_OK;
 }
 
 /* Fits one process; of too many points the last ones of the list are left out. */
 static sf_status fit_target(sf_sweep_adaptive *a, const sf_runs *runs, int target, sf_error *err) {
-    double *x = sf_alloc(err, MOST_POINTS, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
+    SF_OWNED double *x = sf_alloc(err, MOST_POINTS, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
+    bool is_figure = target < a->plan->figure_count;
     int n = 0;
     if (!x)
         return err->status;
@@ -253,13 +280,12 @@ static sf_status fit_target(sf_sweep_adaptive *a, const sf_runs *runs, int targe
         put_inputs(a, row, x + (int64_t)n * a->inputs);
         y[n++] = value;
     }
-    bool fits = n >= LEAST_DESIGN / 2;
-    a->all |= !fits && target < a->plan->figure_count;
-    if (fits)
-        sf_predictor_fit(a->inputs, a->word, n, x, y, &a->model[target], err);
-    free(x);
-    return fits && err->status == SF_OK && target < a->plan->figure_count ? check_target(a, runs, target, err)
-                                                                          : err->status;
+    if (n < LEAST_DESIGN / 2) {
+        a->all |= is_figure;
+        return SF_OK;
+    }
+    SF_TRY(sf_predictor_fit(a->inputs, a->word, n, x, y, &a->model[target], err));
+    return is_figure ? check_target(a, runs, target, err) : SF_OK;
 }
 
 static sf_status fit_models(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err) {
@@ -291,26 +317,36 @@ static void judge_figure(const sf_sweep_adaptive *a, int target, int64_t row, co
     hold_against(o, target, isfinite(o->value[target]) ? o->half[target] / wish : INFINITY, wish);
 }
 
-static void judge_use(const sf_sweep_adaptive *a, int k, const double *x, double *room, outlook *o) {
-    double mean, deviation,
-        bound = watched[k].figure ? sf_good_run_rule_get(watched[k].check)->refuse : UNUSABLE;
+/* The output of what is watched from which a row cannot be used. */
+static double bound_of(const sf_sweep_adaptive *a, int k, int64_t row) {
+    double expected = expected_of(a, a->plan->figure_count + k, row);
+    return k == WATCH_STRAIN    ? sf_good_run_rule_get(SF_CHECK_anvil)->refuse - exp(expected)
+           : k == WATCH_DATA    ? sf_good_run_rule_get(SF_CHECK_informed)->refuse
+           : k == WATCH_CONTACT ? a->expected[row * SF_TRENDS + SF_TREND_TIME] - expected
+                                : UNUSABLE;
+}
+
+static void judge_use(const sf_sweep_adaptive *a, int k, int64_t row, const double *x, double *room,
+                      outlook *o) {
     int target = a->plan->figure_count + k;
+    double mean, deviation, bound = bound_of(a, k, row);
     sf_predictor_at(&a->model[target], x, room, &mean, &deviation);
     double margin = fmax(1e-12, fabs(bound - mean)), ratio = SF_PREDICTOR_SIDES * deviation / margin;
-    o->is_unusable |= mean > bound && ratio <= 1;
-    hold_against(o, target, ratio, margin);
+    if (mean > bound && ratio <= 1)
+        o->unusable = k;
+    hold_against(o, target, isnan(bound) ? INFINITY : ratio, margin);
 }
 
 static outlook judge(const sf_sweep_adaptive *a, int64_t row, double *room) {
     double x[INPUTS];
-    outlook o = {0};
+    outlook o = {.unusable = WATCHED};
     put_inputs(a, row, x);
     for (int k = 0; k < WATCHED; k++)
         if (a->model[a->plan->figure_count + k].count > 0)
-            judge_use(a, k, x, room, &o);
+            judge_use(a, k, row, x, room, &o);
     for (int t = 0; t < a->plan->figure_count; t++)
         judge_figure(a, t, row, x, room, &o);
-    if (o.is_unusable)
+    if (o.unusable < WATCHED)
         o.ratio = 0;
     return o;
 }
@@ -351,7 +387,7 @@ static int64_t list_open(const sf_runs *runs, int64_t step, int64_t *row) {
 /* Chooses the next rows to simulate among those that miss their wishes, by the process that is farthest from
  * its own. */
 static int choose_needed(const sf_sweep_adaptive *a, int64_t count, const int64_t *row, const outlook *o,
-                         int most, int64_t *next, sf_error *err) {
+                         int most, int64_t *next, int *which, sf_error *err) {
     double worst = 1;
     int target = -1, candidates = 0;
     for (int64_t k = 0; k < count; k++)
@@ -361,51 +397,48 @@ static int choose_needed(const sf_sweep_adaptive *a, int64_t count, const int64_
         }
     if (target < 0)
         return 0;
-    double *x = sf_alloc(err, SAMPLE, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
-    int64_t *of = sf_alloc(err, SAMPLE, sizeof *of, "rows");
-    int *chosen = sf_alloc(err, (unsigned long)most, sizeof *chosen, "rows");
-    int n = 0;
-    if (x && of && chosen) {
-        double *wish = x + (int64_t)SAMPLE * a->inputs;
-        for (int64_t k = 0; k < count && candidates < SAMPLE; k++)
-            if (o[k].ratio > 1 && o[k].target == target) {
-                put_inputs(a, row[k], x + (int64_t)candidates * a->inputs);
-                wish[candidates] = isfinite(o[k].ratio) ? o[k].wish : 0;
-                of[candidates++] = row[k];
-            }
-        n = sf_predictor_choose(&a->model[target], candidates, x, wish, most, chosen);
-        if (n < 0)
-            SF_FAIL(err, SF_ERR_MEMORY, "out of memory for predictions");
-        for (int k = 0; k < n; k++)
-            next[k] = of[chosen[k]];
-    }
-    free(x);
-    free(of);
-    free(chosen);
+    *which = target;
+    SF_OWNED double *x = sf_alloc(err, SAMPLE, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
+    SF_OWNED int64_t *of = sf_alloc(err, SAMPLE, sizeof *of, "rows");
+    SF_OWNED int *chosen = sf_alloc(err, (unsigned long)most, sizeof *chosen, "rows");
+    if (err->status != SF_OK)
+        return 0;
+    double *wish = x + (int64_t)SAMPLE * a->inputs;
+    for (int64_t k = 0; k < count && candidates < SAMPLE; k++)
+        if (o[k].ratio > 1 && o[k].target == target) {
+            put_inputs(a, row[k], x + (int64_t)candidates * a->inputs);
+            wish[candidates] = isfinite(o[k].ratio) ? o[k].wish : 0;
+            of[candidates++] = row[k];
+        }
+    int n = sf_predictor_choose(&a->model[target], candidates, x, wish, most, chosen);
+    if (n < 0)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for predictions");
+    for (int k = 0; k < n; k++)
+        next[k] = of[chosen[k]];
     return n > 0 ? n : 0;
 }
 
 /* Looks at a sample of the open rows, and at all of them once the sample needs no more drops. */
 static int choose_round(sf_sweep_adaptive *a, const sf_runs *runs, int most, int64_t *next, sf_error *err) {
     int64_t open = sf_runs_count(runs, SF_SWEEP_OPEN), ended = runs->count - open, count;
-    int64_t *row = sf_alloc(err, (unsigned long)open, sizeof *row, "rows"), step = open / SAMPLE + 1;
-    outlook *o = sf_alloc(err, (unsigned long)open, sizeof *o, "predictions");
-    int n = 0, wanted = (int)(ended / ROUND_PART);
+    int64_t step = open / SAMPLE + 1;
+    SF_OWNED int64_t *row = sf_alloc(err, (unsigned long)open, sizeof *row, "rows");
+    SF_OWNED outlook *o = sf_alloc(err, (unsigned long)open, sizeof *o, "predictions");
+    int n = 0, target = 0, wanted = (int)(ended / ROUND_PART);
     wanted = wanted < a->jobs ? a->jobs : wanted;
     wanted = wanted < most ? wanted : most;
     for (; row && o && n == 0 && step > 0; step = step > 1 ? 1 : 0) {
         count = list_open(runs, step, row);
         if (judge_rows(a, count, row, o, err) != SF_OK)
             break;
-        n = choose_needed(a, count, row, o, wanted, next, err);
+        n = choose_needed(a, count, row, o, wanted, next, &target, err);
     }
     if (a->log && n > 0 && err->status == SF_OK) {
-        fprintf(a->log, "%lld of %lld rows simulated; %d more for the accuracy of the others\n",
-                (long long)ended, (long long)runs->count, n);
+        int k = target - a->plan->figure_count;
+        fprintf(a->log, "%lld of %lld rows simulated; %d more to know %s of the others\n", (long long)ended,
+                (long long)runs->count, n, k < 0 ? a->plan->figure[target].figure : watched[k].what);
         fflush(a->log);
     }
-    free(row);
-    free(o);
     return n;
 }
 
@@ -437,15 +470,14 @@ static int next(void *context, const sf_runs *runs, int most, int64_t *row, sf_e
 static sf_status finish(void *context, sf_runs *runs, sf_error *err) {
     sf_sweep_adaptive *a = context;
     int64_t open = sf_runs_count(runs, SF_SWEEP_OPEN);
-    int64_t *row = sf_alloc(err, (unsigned long)open, sizeof *row, "rows");
-    outlook *o = sf_alloc(err, (unsigned long)open, sizeof *o, "predictions");
+    SF_OWNED int64_t *row = sf_alloc(err, (unsigned long)open, sizeof *row, "rows");
+    SF_OWNED outlook *o = sf_alloc(err, (unsigned long)open, sizeof *o, "predictions");
     if (row && o && open > 0 && !a->all) {
         list_open(runs, 1, row);
         judge_rows(a, open, row, o, err);
         for (int64_t k = 0; k < open && err->status == SF_OK; k++)
-            if (o[k].is_unusable)
-                sf_runs_leave(runs, row[k], "not simulated: its figures are expected to be not to be used",
-                              err);
+            if (o[k].unusable < WATCHED)
+                sf_runs_leave(runs, row[k], watched[o[k].unusable].left_open, err);
             else if (o[k].ratio <= 1)
                 sf_runs_predicted(runs, row[k], o[k].value, o[k].half);
     }
@@ -453,8 +485,6 @@ static sf_status finish(void *context, sf_runs *runs, sf_error *err) {
         runs->checked[k] = a->checked[k];
         runs->held[k] = a->held[k];
     }
-    free(row);
-    free(o);
     return err->status;
 }
 

@@ -2,8 +2,9 @@
 /* A campaign that simulates only the rows which it needs: every figure of the plan has a wish for its error,
  * and a row is predicted as soon as its 95 % intervals are within these wishes. It is predicted by Gaussian
  * processes (study/predictor.h) of the difference between the drops and their columns (below).
- * Further processes watch whether the row's figures can be used: a row that may be near the anvil, beyond its
- * foam's data or failing is simulated; one that is sure to be so stays open. Random rows are simulated for
+ * Further processes watch whether the row's figures can be used and are defined: a row that may be near the
+ * anvil, beyond its foam's data, in contact at the end of its run, failing or without one of the figures is
+ * simulated; one that is sure to be so stays open. Random rows are simulated for
  * checks alone: the intervals are widened until they hold 95 % of these. */
 #pragma once
 #include "study/column.h"
@@ -26,7 +27,17 @@ int64_t sf_sweep_adaptive_design(const sf_plan *plan);
 /* Figures of the rows of a plan by columns (study/column.h), whose pad is learnt from the finished drops. A
  * Gaussian process then predicts the difference of the drops from them. */
 
-enum { SF_TRENDS = 3 }; /* figures that columns have */
+/* Figures that columns have, the time of contact, and the time from first contact to the end of the run. */
+enum {
+    SF_TREND_A_MAX,
+    SF_TREND_HIC,
+    SF_TREND_REBOUND,
+    SF_TREND_STRAIN,
+    SF_TREND_INDENTATION,
+    SF_TREND_CONTACT, /* ms */
+    SF_TREND_TIME,    /* ms; of every row whose case can be read */
+    SF_TRENDS
+};
 
 typedef struct sf_sweep_trend {
     const sf_plan *plan;                    /* borrowed */
@@ -44,6 +55,6 @@ sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *drops, sf_sweep_
 /* The place of a figure among those of columns; -1: columns do not have it. */
 int sf_sweep_trend_find(const char *figure);
 
-/* Natural logarithms of the figures that columns expect of a row, [SF_TRENDS]; NaN where the foam of the
- * columns collapses. */
+/* Natural logarithms of what columns expect of a row, [SF_TRENDS]; NaN where the foam of the columns
+ * collapses, or stays in contact. Without a trend 0, but for the time. */
 sf_status sf_sweep_trend_at(const sf_sweep_trend *trend, int64_t row, double *expected, sf_error *err);

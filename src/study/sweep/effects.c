@@ -334,19 +334,15 @@ sf_status sf_effect_measure(const sf_runs *r, int factor, int figure, sf_effect 
     if (sf_effect_is_scatter(r->plan, factor) || sf_effect_is_by_surface(r->plan, factor))
         return SF_OK;
     SF_TRY(sf_groups_make(r->plan, factor, &g, err));
-    double *mean = sf_alloc(err, (unsigned long)g.count, sizeof *mean, "means");
-    int64_t *number = sf_alloc(err, (unsigned long)g.count, sizeof *number, "means");
-    bool *gap = find_gaps(r, b, figure, e, err);
-    if (mean && number && gap) {
-        find_means(r, b, gap, &g, figure, mean, number);
-        e->first = f->words ? NAN : mean[0];
-        e->last = f->words ? NAN : mean[g.count - 1];
-        find_range(mean, g.count, f->words && f->uncertain, e);
-    }
-    free(mean);
-    free(number);
-    free(gap);
-    return err->status;
+    SF_OWNED double *mean = sf_alloc(err, (unsigned long)g.count, sizeof *mean, "means");
+    SF_OWNED int64_t *number = sf_alloc(err, (unsigned long)g.count, sizeof *number, "means");
+    SF_OWNED bool *gap = find_gaps(r, b, figure, e, err);
+    SF_TRY(err->status);
+    find_means(r, b, gap, &g, figure, mean, number);
+    e->first = f->words ? NAN : mean[0];
+    e->last = f->words ? NAN : mean[g.count - 1];
+    find_range(mean, g.count, f->words && f->uncertain, e);
+    return SF_OK;
 }
 
 static const double TAIL = 0.025;

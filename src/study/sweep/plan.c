@@ -502,11 +502,10 @@ static bool is_of_set(const sf_plan *p, const char *sentence) {
     for (int k = 0; k < p->set_count && !found; k++) {
         char text[SF_SWEEP_OVERRIDE_SIZE];
         const char *const list[] = {text};
-        sf_case c;
+        SF_OWNED_BY(sf_case_free) sf_case c = {0};
         sf_error err = SF_ERROR_INIT;
         set_override(p, k, text);
-        if (sf_case_read(p->case_path, 1, list, NULL, &c, &err) == SF_OK)
-            sf_case_free(&c);
+        sf_case_read(p->case_path, 1, list, NULL, &c, &err);
         found = strcmp(err.text, sentence) == 0;
     }
     return found;
@@ -516,16 +515,14 @@ static bool is_of_set(const sf_plan *p, const char *sentence) {
  * the factor, or of `set`. */
 static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64_t *hash, uint64_t *own,
                        sf_error *err) {
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     sf_error inner = SF_ERROR_INIT;
     *own = 0;
-    if (sf_sweep_read_case(p, row, &c, &inner) == SF_OK) {
-        for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
-            sf_geo_parameters_check_alone(sf_campaign_geometry(&c, k), &inner);
-        if (inner.status == SF_OK)
-            sf_campaign_key(&c, own, &inner);
-        sf_case_free(&c);
-    }
+    sf_sweep_read_case(p, row, &c, &inner);
+    for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
+        sf_geo_parameters_check_alone(sf_campaign_geometry(&c, k), &inner);
+    if (inner.status == SF_OK)
+        sf_campaign_key(&c, own, &inner);
     *hash = sf_hash_bytes(*hash, own, sizeof *own);
     if (inner.status == SF_OK)
         return SF_OK;

@@ -269,8 +269,7 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
         "%lld of %lld rows were not simulated but predicted from the others; runs.csv has the state and the "
         "interval of each. The checks are random rows that were simulated and from which nothing was learnt. In "
         "probabilities a prediction whose interval holds the limit is unknown. %lld rows "
-        "are open: they are expected to fail or to be not to be used. A figure that a drop would not define, such as "
-        "the rebound of a run that ends in contact, is predicted all the same.",
+        "are open: they are expected to fail, to be not to be used or to lack a figure; runs.csv says why.",
         a->predicted, r->plan->rows, a->open);
 }
 

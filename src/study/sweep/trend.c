@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/adaptive.h"
 
+#include "model/flight.h"
 #include <gsl/gsl_multifit.h>
 #include <limits.h>
 #include <math.h>
@@ -9,16 +10,14 @@
 enum { MOST_DROPS = 64, LEVELS = 8 };
 static const double SAME_PROFILE = 0.02, SAME_THICKNESS = 0.01; /* relative */
 
-static const struct {
-    const char *figure;
-    size_t place; /* in sf_columns_figures */
-} figures[SF_TRENDS] = {{"a_max_g", offsetof(sf_columns_figures, a_max_g)},
-                        {"hic", offsetof(sf_columns_figures, hic)},
-                        {"v_rebound_m_s", offsetof(sf_columns_figures, v_rebound)}};
-
 int sf_sweep_trend_find(const char *figure) {
-    for (int k = 0; k < SF_TRENDS; k++)
-        if (strcmp(figures[k].figure, figure) == 0)
+    static const char *const names[] = {[SF_TREND_A_MAX] = "a_max_g",
+                                        [SF_TREND_HIC] = "hic",
+                                        [SF_TREND_REBOUND] = "v_rebound_m_s",
+                                        [SF_TREND_STRAIN] = "max_mean_strain",
+                                        [SF_TREND_INDENTATION] = "max_indentation_mm"};
+    for (int k = 0; k < SF_TREND_CONTACT; k++)
+        if (strcmp(names[k], figure) == 0)
             return k;
     return -1;
 }
@@ -117,13 +116,9 @@ static const char *find_problem(const sf_sweep_trend *t, const drop *list, int c
 
 /* True if the first row is no drop of a missile on a pad of one material. */
 static bool is_beyond_columns(const sf_plan *plan) {
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     sf_error refused = SF_ERROR_INIT;
-    if (sf_sweep_read_case(plan, 0, &c, &refused) != SF_OK)
-        return true;
-    bool beyond = c.layer_count > 0 || c.motion_count > 0;
-    sf_case_free(&c);
-    return beyond;
+    return sf_sweep_read_case(plan, 0, &c, &refused) != SF_OK || c.layer_count > 0 || c.motion_count > 0;
 }
 
 sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep_trend *t, sf_error *err) {
@@ -133,45 +128,48 @@ sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep
         t->problem = "columns have one material and a missile that falls";
         return SF_OK;
     }
-    drop *list = sf_alloc(err, MOST_DROPS, sizeof *list, "columns");
+    SF_OWNED drop *list = sf_alloc(err, MOST_DROPS, sizeof *list, "columns");
     list_numbers(t);
     if (list && folder && read_drops(runs, folder, list, &count, err) == SF_OK && count > t->numbers) {
         t->columns = list[0].columns;
         if (fit_thickness(t, list, count, err) == SF_OK)
             t->problem = find_problem(t, list, count);
     }
-    free(list);
     return err->status;
 }
 
 /* ---- a row ---- */
 
 static void respond(const sf_sweep_trend *t, const sf_case *c, int64_t row, double *expected) {
+    static const int place[] = {[SF_TREND_A_MAX] = SF_FIT_A_MAX,
+                                [SF_TREND_HIC] = SF_FIT_HIC,
+                                [SF_TREND_REBOUND] = SF_FIT_REBOUND,
+                                [SF_TREND_STRAIN] = SF_COLUMNS_STRAIN,
+                                [SF_TREND_INDENTATION] = SF_COLUMNS_STRAIN,
+                                [SF_TREND_CONTACT] = SF_FIT_CONTACT};
     sf_columns columns = t->columns;
-    sf_columns_figures f;
-    sf_material_law law;
+    double y[SF_COLUMNS_LOGARITHMS];
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     sf_error refused = SF_ERROR_INIT;
     columns.mass = c->missile_card.mass;
     columns.speed = -c->missile_card.speed * c->missile_card.direction[2];
     columns.thickness = thickness_at(t, row);
     if (!(columns.thickness > 0) || sf_material_law_build(&c->material, &law, &refused) != SF_OK)
         return;
-    if (sf_columns_respond(&columns, &law, &f, NULL, &refused) == SF_OK)
-        for (int k = 0; k < SF_TRENDS; k++)
-            expected[k] = log(*(double *)((char *)&f + figures[k].place));
-    sf_material_law_free(&law);
+    if (sf_columns_expect(&columns, &law, y, &refused) == SF_OK)
+        for (int k = 0; k < SF_TREND_TIME; k++)
+            expected[k] = y[place[k]] + (k == SF_TREND_INDENTATION ? log(columns.thickness) : 0);
 }
 
 sf_status sf_sweep_trend_at(const sf_sweep_trend *t, int64_t row, double *expected, sf_error *err) {
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     sf_error refused = SF_ERROR_INIT;
     for (int k = 0; k < SF_TRENDS; k++)
-        expected[k] = t->problem ? 0 : NAN;
-    if (t->problem)
-        return SF_OK;
+        expected[k] = t->problem && k < SF_TREND_TIME ? 0 : NAN;
     if (sf_sweep_read_case(t->plan, row, &c, &refused) != SF_OK)
-        return refused.status == SF_ERR_INPUT ? SF_OK : (*err = refused, err->status);
-    respond(t, &c, row, expected);
-    sf_case_free(&c);
-    return err->status;
+        return t->problem || refused.status == SF_ERR_INPUT ? SF_OK : (*err = refused, err->status);
+    expected[SF_TREND_TIME] = log(1e3 * (c.run.end_time - sf_flight_time(&c.missile_card)));
+    if (!t->problem)
+        respond(t, &c, row, expected);
+    return SF_OK;
 }

@@ -81,11 +81,11 @@ static sf_status take_word(const char *word, const sf_plan *p, const sf_runs *ru
 
 sf_status sf_sweep_views_choose(const char *words, const sf_plan *p, const sf_runs *runs, sf_sweep_views *v,
                                 sf_error *err) {
-    char *copy = strdup(words), *rest = copy;
+    SF_OWNED char *copy = strdup(words);
+    char *rest = copy;
     *v = (sf_sweep_views){0};
     for (char *word = strsep(&rest, ","); word && err->status == SF_OK; word = strsep(&rest, ","))
         take_word(word, p, runs, v, err);
-    free(copy);
     return err->status;
 }
 

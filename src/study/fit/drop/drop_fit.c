@@ -68,9 +68,9 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
                                         .hic = result->hic,
                                         .hic_window = result->hic_window,
                                         .v_rebound = result->v_rebound,
-                                        .contact_time = result->contact_time};
-    sf_drop_fit_read(drop, &fit->chain_now, &figures, &result->curve,
-                     result->max_indentation / fit->columns[d].thickness, "its simulation ends",
+                                        .contact_time = result->contact_time,
+                                        .strain = result->max_indentation / fit->columns[d].thickness};
+    sf_drop_fit_read(drop, &fit->chain_now, &figures, &result->curve, "its simulation ends",
                      "raise solver.end_time of its case", &y[fit->row[d]], err);
     sf_series_free(&last->curve);
     *last = (sf_fit_simulated){.max_local_strain = result->max_local_strain,

@@ -117,8 +117,8 @@ sf_status sf_drop_fit_list(sf_drop_fit *fit, sf_error *err);
  * its indentation over the thickness. SF_ERR_NUMERIC: a measured number is not defined; `by`: the source that
  * does not give it, `remedy`: the action of the user. */
 sf_status sf_drop_fit_read(const sf_fit_drop *drop, const sf_signal_chain *chain,
-                           const sf_columns_figures *figures, const sf_series *curve, double indentation,
-                           const char *by, const char *remedy, double *y, sf_error *err);
+                           const sf_columns_figures *figures, const sf_series *curve, const char *by,
+                           const char *remedy, double *y, sf_error *err);
 /* Responses of drops `first` to `last` - 1 by columns, from the cache if they are there. The curve is that of
  * u, or as a fine table raised by SF_FIT_RAISE in a bin, or nowhere. */
 enum { SF_FIT_AS_GIVEN = -2, SF_FIT_NOWHERE = -1 }; /* in place of a bin */

@@ -83,23 +83,9 @@ static sf_status pass_chain(const sf_signal_chain *chain, const sf_series *curve
     return sf_columns_read(passed, figures, err);
 }
 
-/* Largest indentation (m) of a missile with this curve, which begins in free flight and touches at 0. */
-static double deepest(const sf_series *curve, double speed) {
-    double depth = 0, largest = 0;
-    for (int64_t i = 1; i < curve->count && speed > 0; i++) {
-        double dt = curve->time[i] - curve->time[i - 1];
-        if (curve->time[i] <= 0)
-            continue;
-        depth += dt * speed;
-        speed += dt * SF_STANDARD_GRAVITY * (1 - 0.5 * (curve->value[i] + curve->value[i - 1]));
-        largest = fmax(largest, depth);
-    }
-    return largest;
-}
-
 sf_status sf_drop_fit_read(const sf_fit_drop *drop, const sf_signal_chain *chain,
-                           const sf_columns_figures *figures, const sf_series *curve, double indentation,
-                           const char *by, const char *remedy, double *y, sf_error *err) {
+                           const sf_columns_figures *figures, const sf_series *curve, const char *by,
+                           const char *remedy, double *y, sf_error *err) {
     SF_OWNED_BY(sf_series_free) sf_series filtered = {0}, passed = {0};
     sf_columns_figures read = *figures;
     bool lower = drop->sample_class > 0 && drop->sample_class < 1000;
@@ -107,8 +93,10 @@ sf_status sf_drop_fit_read(const sf_fit_drop *drop, const sf_signal_chain *chain
         SF_TRY(pass_chain(chain, curve, &read, &passed, err));
         curve = &passed;
     }
-    sf_drop_values_scale(&read, y);
-    y[SF_FIT_SAMPLES + drop->samples] = log(indentation);
+    double scaled[SF_COLUMNS_LOGARITHMS];
+    sf_columns_scale(&read, scaled);
+    memcpy(y, scaled, SF_FIT_SAMPLES * sizeof *y);
+    y[SF_FIT_SAMPLES + drop->samples] = scaled[SF_COLUMNS_STRAIN];
     if (drop->samples > 0 && lower)
         SF_TRY(filter_like_measured(curve, drop->sample_class, &filtered, err));
     if (drop->samples > 0)
@@ -144,9 +132,8 @@ sf_status sf_drop_fit_respond(const sf_drop_fit *fit, int first, int last, const
         if (u && fit->speed[d] >= 0)
             columns.speed *= exp(u[fit->speed[d]]);
         if (sf_columns_respond(&columns, &law, &figures, &curve, err) == SF_OK)
-            sf_drop_fit_read(drop, &chain, &figures, &curve,
-                             deepest(&curve, columns.speed) / columns.thickness, "its columns end",
-                             "this foam does not let go", &y[fit->row[d]], err);
+            sf_drop_fit_read(drop, &chain, &figures, &curve, "its columns end", "this foam does not let go",
+                             &y[fit->row[d]], err);
         if (drop->predicted && err->status == SF_ERR_NUMERIC) { /* the foam may be too soft for this one */
             *err = (sf_error)SF_ERROR_INIT;
             forget(fit, d, y);

@@ -123,9 +123,6 @@ void sf_fit_input_free(sf_fit_input *input);
 
 /* ---- drop_input.c ---- */
 
-/* Logarithms of the values in the units of the keys; NaN where a value is not defined. */
-void sf_drop_values_scale(const sf_columns_figures *values, double y[SF_FIT_SAMPLES]);
-
 /* Reads it into drop[count], after `count` others: refused is one that is there already. Release with
  * sf_drop_input_free, also on failure. */
 sf_status sf_drop_input_read(const sf_config *config, sf_config_item *group, bool predicted, int count,
