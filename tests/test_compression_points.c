@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What softfall-fit takes from the points of a compression test (study/fit/compression/compression_test.c): one
- * cycle, without rests, from the zero of strain on. The points follow a law that is known. */
+/* What softfall-fit takes from the points of a compression test (study/fit/compression/compression_test.c):
+ * one cycle, without rests, from the zero of strain on. The points follow a law that is known. */
 #include "extreme.h"
 #include "program_fixture.h"
 #include "post_check.h"

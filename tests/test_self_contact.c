@@ -127,8 +127,8 @@ static const char STACK[] =
     "Physical Surface(\"front\") = Surface In BoundingBox{-1,-0.01,-1,41,0.01,41};\n"
     "Physical Surface(\"back\") = Surface In BoundingBox{-1,39.99,-1,41,40.01,41};\n";
 
-/* A patch test across faces that do not match: the mean stress of each body is the same, and uniform away from
- * the interface, where nodes against faces leave an error at its corners. */
+/* A patch test across faces that do not match: the mean stress of each body is the same, and uniform away
+ * from the interface, where nodes against faces leave an error at its corners. */
 static void bodies_with_other_meshes_pass_on_the_stress(void **state) {
     const program_place *p = *state;
     program_write_text(p, "stack.geo", STACK);
@@ -161,8 +161,8 @@ static void bodies_with_other_meshes_pass_on_the_stress(void **state) {
         near = fmax(near, error);
         far = z < 1e-6 || z > 0.040005 ? fmax(far, error) : far;
     }
-    print_message("stress %.1f and %.1f Pa, off by %.4f at most, by %.4f at the ends; penetration %.2g mm\n", mean,
-                  sum[1] / volume[1], near, far, f.penetration);
+    print_message("stress %.1f and %.1f Pa, off by %.4f at most, by %.4f at the ends; penetration %.2g mm\n",
+                  mean, sum[1] / volume[1], near, far, f.penetration);
     assert_true(mean < -1e4 && near < 0.05 && far < 0.01);
     assert_relative(sum[1] / volume[1], mean, 0.002);
     sf_frame_free(&frame);
@@ -194,7 +194,8 @@ static void a_missile_that_passes_foam_ends_the_run(void **state) {
     program_write_text(p, "step.geo", STEP);
     program_write_text(p, "case.cfg", CUT_CASE);
     program_write_text(p, "motion.csv", "time_ms,displacement_mm\n0,0\n24,26\n");
-    program_shell(p, "sed -i 's#cut.geo#step.geo#; s#slit = 0.1; cells = 8;##; s#sliding = [^;]*;##' case.cfg");
+    program_shell(p,
+                  "sed -i 's#cut.geo#step.geo#; s#slit = 0.1; cells = 8;##; s#sliding = [^;]*;##' case.cfg");
     passes_through(p, "the missile", place);
     assert_true(place[0] > 20 && fabs(place[2] - 20) < 0.1); /* the lower tread */
 }

@@ -59,7 +59,7 @@ void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const cha
 bool sf_grow(void *array, size_t count, size_t size) {
     void *block, *more;
     memcpy(&block, array, sizeof block);
-    if (count & (count - 1)) /* it has a power of two */
+    if (block && (count & (count - 1))) /* the array has room up to the next power of two */
         return true;
     if (!(more = realloc(block, (count ? 2 * count : 1) * size)))
         return false;

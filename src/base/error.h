@@ -54,8 +54,8 @@ sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int l
  * must not reach the terminal. */
 void sf_error_clean(char *sentence);
 
-/* A variable that is released, by free() or by the function that is named, at the end of its block; it has a
- * value from its declaration on. Who takes what it points to sets it to NULL. */
+/* Releases a variable at the end of its block, by free() or by the named function. The variable needs an
+ * initial value; code that takes the pointer away sets the variable to NULL. */
 #define SF_OWNED SF_OWNED_BY(sf_release)
 #define SF_OWNED_BY(function) __attribute__((cleanup(function)))
 
@@ -66,8 +66,9 @@ void sf_release(void *pointer);
  * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
 void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);
 
-/* Makes room behind `count` elements of so many bytes: `array` is the address of the pointer to them, which
- * only this function has made, from NULL on. False: out of memory, and nothing has changed. */
+/* Makes room for one more element behind `count` elements of `size` bytes. `array` is the address of a
+ * pointer that is NULL at first and that only this function changes. False: out of memory, and nothing has
+ * changed. */
 bool sf_grow(void *array, size_t count, size_t size);
 
 /* A sink receives warnings and notes: a function that may produce some takes a sink from its caller. Only

@@ -9,8 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Name as it is shown, and the activities after its program has ended well and after Stop; one that the end of
- * a program does not change is not busy. Only a run leaves results. */
+/* Lists each activity with its shown name and the activities that follow the success of its program and Stop.
+ * An activity that success does not change is not busy. Only a run leaves results. */
 #define SF_ACTIVITIES(X)                                                                                     \
     X(IDLE, "ready", IDLE, IDLE)                                                                             \
     X(MESHING, "meshing", MESHED, CANCELLING) /* softfall-pre for the checks */                              \
@@ -18,9 +18,9 @@
     X(PREPARING, "meshing before the run", RUNNING, CANCELLING) /* softfall-pre for a run */                 \
     X(RUNNING, "running", REPORTING, STOPPING)                  /* softfall-solve */                         \
     X(STOPPING, "stopping", DONE, STOPPING)                     /* a run was asked to end */                 \
-    X(CANCELLING, "cancelling", STOPPED, CANCELLING)      /* softfall-pre or Save case was asked to end */   \
-    X(STOPPED, "stopped", STOPPED, STOPPED)               /* a run can be resumed */                         \
-    X(REPORTING, "writing the report", DONE, STOPPING)    /* softfall-post */                                \
+    X(CANCELLING, "cancelling", STOPPED, CANCELLING)   /* softfall-pre or Save case was asked to end */      \
+    X(STOPPED, "stopped", STOPPED, STOPPED)            /* a run can be resumed */                            \
+    X(REPORTING, "writing the report", DONE, STOPPING) /* softfall-post */                                   \
     X(SAVING, "saving the case", SAVED, CANCELLING)                                                          \
     X(SAVED, "saved", SAVED, SAVED)                                                                          \
     X(DONE, "done", DONE, DONE)                                                                              \

@@ -232,7 +232,7 @@ void sf_checks_clear(const sf_check_entries *checks) {
         sf_window_remove(checks->entry[k].name);
 }
 
-/* The last line that begins with `prefix`; NULL: there is none. */
+/* Returns the last line that begins with `prefix`, or NULL. */
 static const char *last_line(const char *text, const char *prefix) {
     const char *last = NULL;
     for (const char *line = text; *line; line = strchrnul(line, '\n'), line += *line == '\n')

@@ -467,13 +467,13 @@ static void check_edits(sf_session *s) {
         begin_anew(s, false);
 }
 
-/* The path of a file of the report; false: there is none. */
+/* Writes the path of a file of the report; returns false if it does not exist. */
 static bool has_product(const sf_session *s, const char *name, char path[PRODUCT]) {
     snprintf(path, PRODUCT, "%s/report/%s", s->at.path, name);
     return *s->at.path && is_there(path);
 }
 
-/* The same; that there is none is told. */
+/* Writes that path, and tells the user if the file does not exist. */
 static bool find_product(sf_session *s, const char *name, char path[PRODUCT]) {
     char text[160];
     bool found = has_product(s, name, path);

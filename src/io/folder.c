@@ -32,8 +32,8 @@ static DIR *list_folder(int handle) {
     return list;
 }
 
-/* Names in the open folder that begin with `prefix`, and the bytes of the plain files among them; -1: it
- * cannot be read. */
+/* Counts the names in the open folder that begin with `prefix`, and the bytes of the plain files among them;
+ * returns -1 if the folder cannot be read. */
 static int64_t count_names(int handle, const char *prefix, uint64_t *bytes) {
     DIR *list = handle >= 0 ? list_folder(handle) : NULL;
     struct dirent *entry;
@@ -192,7 +192,7 @@ int64_t sf_folder_count(const char *path, const char *prefix) {
     int64_t count = count_names(handle, prefix, &bytes);
     if (handle >= 0)
         close(handle);
-    return count < 0 ? 0 : count;
+    return count;
 }
 
 void sf_folder_remove_file(const char *path) {

@@ -35,7 +35,7 @@ bool sf_folder_wait_lock(const char *path, int *handle);
 /* Removes the mark and the folder if nothing else is in it. */
 void sf_folder_leave(const char *path);
 
-/* The number of names in the folder that begin with `prefix`; 0 if it cannot be read. */
+/* The number of names in the folder that begin with `prefix`; -1: it cannot be read. */
 int64_t sf_folder_count(const char *path, const char *prefix);
 
 /* One file of this name, in a folder with the mark or that of a campaign (sweep.key): removed if it is a

@@ -46,10 +46,13 @@ static sf_status wrap(hid_t id, const char *path, bool alone, sf_h5 **file, sf_e
     return SF_OK;
 }
 
-/* Lets a name of the library go at the end of its block: hid_t KEPT space = ...; below 0: none. */
+/* Closes an id of HDF5, if it is not below 0, at the end of its block: KEPT hid_t space = ...; H5Idec_ref
+ * would leave the id of a dataset whose last write failed. */
 #define KEPT SF_OWNED_BY(let_go)
 static void let_go(hid_t *id) {
-    if (*id >= 0)
+    if (*id >= 0 && H5Iget_type(*id) == H5I_DATASET)
+        H5Dclose(*id);
+    else if (*id >= 0)
         H5Idec_ref(*id);
 }
 
@@ -403,7 +406,10 @@ sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, 
 sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text, sf_error *err) {
     KEPT hid_t type = text_type(text), space = make_space(0, NULL), set = -1;
     SF_TRY(create_dataset(file, info, type, space, H5P_DEFAULT, &set, err));
-    if (H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0)
+    bool written = H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0;
+    written = H5Dclose(set) >= 0 && written; /* HDF5 may write a short text only here */
+    set = -1;
+    if (!written)
         return SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
     return SF_OK;
 }

@@ -73,12 +73,12 @@ char *sf_path_whole(const char *folder, const char *path, sf_error *err);
 /* The part of whole paths below `folder`; NULL: `path` is not below it. Points into `path`. */
 const char *sf_path_below(const char *folder, const char *path);
 
-/* Returns the kind of what is not plain, "a folder"; NULL if the mode is that of a plain file. */
+/* Returns the kind of file, such as "a folder"; NULL for a plain file. */
 const char *sf_plain_kind(mode_t mode);
 
 /* The length of the folder part of a path, without the slash but of "/"; 0: none. */
 size_t sf_path_folder_length(const char *path);
-/* The folder that holds the file, with the slash, or "."; returns the last part. */
+/* Writes the folder of a path, with the slash, or "."; returns the last part of the path. */
 const char *sf_path_split(const char *path, char folder[PATH_MAX]);
 /* The last part. */
 const char *sf_path_name(const char *path);

@@ -20,7 +20,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The requirements of a program on a table of two columns (io/table_csv.h). */
+/* The requirements of a program on a table of two columns. */
 
 enum { SF_TABLE_RATIO = SF_QUANTITY_COUNT }; /* kind of a column without dimension: "%" or "1" */
 
@@ -97,8 +97,8 @@ sf_status sf_table_read_any(const char *path, const sf_table_layout *layouts, in
                             sf_table *table, sf_error *err);
 void sf_table_free(sf_table *table);
 
-/* Headings of CSV tables: which cells are the two columns of a layout, and in which units. Internal to
- * io/table_csv. */
+/* Headings of CSV tables: which cells are the two columns of a layout, and in which units. Only
+ * table_csv.c and table_heading.c use this part. */
 
 enum { SF_TABLE_COLUMNS = 256, SF_TABLE_TITLE = 96, SF_TABLE_UNIT = 32 };
 enum { SF_TABLE_ROW = -2 }; /* place of a first column that is the number of the row */

@@ -12,18 +12,18 @@ enum { SF_DENSIFICATION_H1 = 0, SF_DENSIFICATION_H2 = 1 };
 /* Density, hysteresis, viscosity and rate of a foam law. A card holds them as the members of SF_FOAM_SHARED,
  * at its beginning. */
 #define SF_FOAM_SHARED                                                                                       \
-    double density;          /* kg m-3, of the undeformed foam */                                            \
-    double hysteresis_hu;    /* -, HU, 0 < HU <= 1; 1 = no hysteresis */                                     \
-    double hysteresis_shape; /* -, SHAPE > 0 */                                                              \
-    double hysteresis_alpha; /* -, ALPHA > 0 */                                                              \
-    double damp;             /* -, DAMP >= 0 */                                                              \
-    double damp_length;      /* m, L of DAMP; 0 = the spacing of each node */                                \
-    double maxwell_modulus;  /* Pa, ED >= 0; 0 = no Maxwell branch */                                        \
-    double maxwell_rate;     /* s-1, BETA1 > 0 */                                                            \
-    double kelvin_viscosity; /* Pa s, eta >= 0 */                                                            \
-    double rate_factor;      /* -, by which stress of loading grows with each decade of rate; 0: none */     \
-    double rate_reference;   /* s-1, rate up to which it does not */                                         \
-    double rate_filter_time; /* s, time constant of the strain rate */                                       \
+    double density;            /* kg m-3, of the undeformed foam */                                          \
+    double hysteresis_hu;      /* -, HU, 0 < HU <= 1; 1 = no hysteresis */                                   \
+    double hysteresis_shape;   /* -, SHAPE > 0 */                                                            \
+    double hysteresis_alpha;   /* -, ALPHA > 0 */                                                            \
+    double damp;               /* -, DAMP >= 0 */                                                            \
+    double damp_length;        /* m, L of DAMP; 0 = the spacing of each node */                              \
+    double maxwell_modulus;    /* Pa, ED >= 0; 0 = no Maxwell branch */                                      \
+    double maxwell_rate;       /* s-1, BETA1 > 0 */                                                          \
+    double kelvin_viscosity;   /* Pa s, eta >= 0 */                                                          \
+    double rate_factor;        /* -, by which stress of loading grows with each decade of rate; 0: none */   \
+    double rate_reference;     /* s-1, rate up to which it does not */                                       \
+    double rate_filter_time;   /* s, time constant of the strain rate */                                     \
     double shift_c1, shift_c2; /* -, K: constants of WLF, both 0: none */                                    \
     double shift_energy;       /* J mol-1, of Arrhenius, instead; 0: none */                                 \
     double shift_reference;    /* K, temperature of the data; 0: the rates have no shift */                  \

@@ -200,7 +200,8 @@ static sf_status check_surface(const char *name, int64_t count, const int32_t *t
 }
 
 static sf_status check_supports(const sf_model *m, sf_error *err) {
-    SF_TRY(check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count, err));
+    SF_TRY(
+        check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count, err));
     for (int64_t k = 0; k < m->support_triangle_count; k++)
         if (m->support_part[k] >= m->support_count)
             return SF_FAIL(err, SF_ERR_MODEL, "support triangle %lld is of support %d, of 0 to %lld",

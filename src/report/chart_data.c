@@ -21,8 +21,8 @@
         va_end(arguments);                                                                                   \
     } while (0)
 
-/* Makes room for one element more behind `array`, the address of the pointer; false after a failure, which
- * err has. */
+/* Makes room for one more element behind `array`, the address of a pointer; returns false after a failure,
+ * which stands in chart->err. */
 static bool grow(sf_chart *chart, void *array, size_t count, size_t size) {
     if (chart->err->status == SF_OK && !sf_grow(array, count, size))
         SF_FAIL(chart->err, SF_ERR_MEMORY, "out of memory for the picture %s", chart->name);

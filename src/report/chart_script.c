@@ -25,7 +25,7 @@ static void put_between(FILE *g, const char *before, const char *text, const cha
     fputs(after, g);
 }
 
-/* `other`: in place of a number that is not finite; "*" is an end of a range that gnuplot chooses. */
+/* Writes a number, or `other` if it is not finite; "*" is an end of a range that gnuplot chooses. */
 static void put_number(FILE *g, double value, const char *other) {
     if (isfinite(value))
         fprintf(g, "%.9g", value);

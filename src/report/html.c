@@ -43,7 +43,7 @@ static void put_arguments(FILE *page, const char *format, va_list arguments) {
     free(text);
 }
 
-/* Between what opens and what closes an element. */
+/* Writes the arguments between the opening and the closing tag of an element. */
 #define PUT_ARGUMENTS(page, open, last, close)                                                               \
     do {                                                                                                     \
         va_list arguments;                                                                                   \

@@ -91,13 +91,12 @@ static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed)
     return fastest;
 }
 
-/* Returns what the foam at node i has passed through by more than its spacing, NULL: nothing. Of the missile
- * half of it counts, since larger gaps are not known, and of the anvil, which holds the base alone, a fifth
- * of the thickness, as in the verdict. `plane`: the places (m) of symmetry planes and anvil, NAN: none. */
-static const char *find_passed(const sf_model *m, const sf_operators *op, const sf_state *s,
-                               const double plane[3], int64_t i) {
+/* Returns what the foam at node i has passed through by more than its spacing, NULL: nothing. Of the anvil,
+ * which holds the base alone, a fifth of the thickness counts, as in the verdict. `plane`: the places (m) of
+ * symmetry planes and anvil, NAN: none. */
+static const char *find_passed(const sf_model *m, const sf_state *s, const double plane[3], int64_t i) {
     static const double SHARE = 0.2;
-    double x[3], normal[3], gap, least = m->spacing[i];
+    double x[3], least = m->spacing[i];
     const double *rest = &m->position[3 * i];
     for (int r = 0; r < 3; r++)
         x[r] = rest[r] + s->d[3 * i + r];
@@ -106,28 +105,25 @@ static const char *find_passed(const sf_model *m, const sf_operators *op, const 
     for (int axis = 0; axis < 2; axis++)
         if (fabs(x[axis] - plane[axis]) > least && (x[axis] - plane[axis]) * (rest[axis] - plane[axis]) < 0)
             return "a symmetry plane";
-    bool inside = sf_missile_near(m, &s->missile, &op->surface, x, 0) &&
-                  sf_missile_gap(m, &s->missile, &op->surface, x, &gap, normal) && gap < -0.5 * least;
-    return inside ? "the missile" : NULL;
+    return NULL;
 }
 
-/* Fails where foam has passed through anvil, missile or a symmetry plane; faces of the foam and supports:
+/* Fails where foam has passed through the anvil or a symmetry plane; faces of the foam and supports:
  * contact/self_contact.h. */
-static sf_status check_passed(const sf_model *m, const sf_operators *op, const sf_state *s, sf_error *err) {
+static sf_status check_passed(const sf_model *m, const sf_state *s, sf_error *err) {
     double low[3], high[3], plane[3];
     sf_box3(m->node_count, m->position, low, high);
     for (int axis = 0; axis < 2; axis++)
         plane[axis] = sf_symmetry_plane(m, axis, &plane[axis]) ? plane[axis] : NAN;
     plane[2] = m->anvil.depth > 0 ? high[2] - m->anvil.depth : NAN;
     for (int64_t i = 0; i < m->node_count; i++) {
-        const char *through = find_passed(m, op, s, plane, i);
+        const char *through = find_passed(m, s, plane, i);
         const double *x = &m->position[3 * i], *d = &s->d[3 * i];
         if (through)
             return SF_FAIL(
                 err, SF_ERR_NUMERIC,
                 "at t = %.6g s the foam has passed through %s, at (%.4g, %.4g, %.4g) mm (undeformed "
-                "(%.4g, %.4g, %.4g) mm): pad.self_contact = \"on\" keeps it from anvil and symmetry "
-                "planes, pad.contact names the faces that the missile stops at",
+                "(%.4g, %.4g, %.4g) mm): pad.self_contact = \"on\" keeps it from them",
                 s->time, through, 1e3 * (x[0] + d[0]), 1e3 * (x[1] + d[1]), 1e3 * (x[2] + d[2]), 1e3 * x[0],
                 1e3 * x[1], 1e3 * x[2]);
     }
@@ -288,7 +284,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)
         return err->status;
     if (s->step % PASSAGE_INTERVAL == 0)
-        SF_TRY(check_passed(m, op, s, err));
+        SF_TRY(check_passed(m, s, err));
     return check_energy(m, s, err);
 }
 

@@ -173,10 +173,11 @@ uint64_t sf_campaign_case_hash(const sf_case *c) {
 
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
     if (c->drops > 1)
-        return SF_REFUSE(err,
-                         "series.drops = %g: a study runs single drops and would read the first; leave the group "
-                         "series out (softfall-protocol runs series)",
-                         c->drops);
+        return SF_REFUSE(
+            err,
+            "series.drops = %g: a study runs single drops and would read the first; leave the group "
+            "series out (softfall-protocol runs series)",
+            c->drops);
     *hash = sf_campaign_case_hash(c);
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         if (sf_campaign_geometry(c, k)->path)

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int unasked; /* gmsh's code of a failure that nobody asks for */
+static int unasked; /* gmsh's error code where a failure is ignored */
 
 /* ---- window ---- */
 
@@ -464,7 +464,7 @@ static bool has_view(int tag) {
     return found;
 }
 
-/* The name of an option of a view; false: there is no such view. */
+/* Writes the name of an option of a view; returns false if there is no such view. */
 static bool name_option(int tag, const char *option, char name[64]) {
     int ierr = 0, index = has_view(tag) ? gmshViewGetIndex(tag, &ierr) : -1;
     snprintf(name, 64, "View[%d].%s", index, option);
@@ -506,7 +506,7 @@ static sf_status add_faces(const sf_body *b, int corners, size_t *first, sf_erro
     return err->status;
 }
 
-/* The tags of the nodes, from 1 on; from sf_alloc. */
+/* Returns the tags of the nodes, from 1 on; the caller frees them. */
 static size_t *number_nodes(const sf_body *b, sf_error *err) {
     size_t *tag = sf_alloc(err, (unsigned long)b->node_count, sizeof *tag, "a picture");
     for (int64_t k = 0; k < b->node_count && tag; k++)

@@ -63,7 +63,6 @@ static sf_status filter(const sf_results *r, const sf_series *raw, double free_f
         sf_signal_pass(&f->chain, &uniform);
         sf_signal_filter_cfc(&uniform, f->cfc, filtered, err);
     }
-    sf_series_free(&uniform);
     return err->status;
 }
 

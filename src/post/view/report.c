@@ -55,8 +55,7 @@ static void begin_block(FILE *page, const char *heading) {
 /* `layer` NULL: of a pad of one material. */
 static void put_material(FILE *page, const char *case_text, const char *parameters, const char *layer) {
     SF_OWNED char *origin = sf_origin_material(case_text, layer);
-    char heading[SF_ORIGIN_NAME_SIZE + 32],
-         group[SF_ORIGIN_NAME_SIZE + 16];
+    char heading[SF_ORIGIN_NAME_SIZE + 32], group[SF_ORIGIN_NAME_SIZE + 16];
     snprintf(heading, sizeof heading, "Material%s%s", layer ? " of the layer " : "", layer ? layer : "");
     snprintf(group, sizeof group, "material%s%s.", layer ? "s." : "", layer ? layer : "");
     begin_block(page, heading);

@@ -130,7 +130,8 @@ static sf_status write_topology(const store *s, sf_error *err) {
  * its nodes do. */
 static sf_status write_materials(const store *s, sf_error *err) {
     const sf_results *r = s->results;
-    SF_OWNED uint8_t *material = sf_alloc(err, (unsigned long)r->cell_count, sizeof *material, "materials of cells");
+    SF_OWNED uint8_t *material =
+        sf_alloc(err, (unsigned long)r->cell_count, sizeof *material, "materials of cells");
     for (int64_t c = 0; c < r->cell_count && err->status == SF_OK; c++)
         material[c] = r->layer_count > 0 ? r->node_layer[r->cell_node[r->cell_ptr[c]]] : 0;
     if (err->status == SF_OK &&

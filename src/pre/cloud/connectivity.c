@@ -153,7 +153,8 @@ static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_erro
 static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *err) {
     int64_t parts = 0, least = 0;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    SF_OWNED int64_t *cells = sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
+    SF_OWNED int64_t *cells =
+        sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
     if (!cells)
         return err->status;
     for (int64_t c = 0; c < mesh->cell_count; c++)

@@ -8,11 +8,11 @@
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_rng.h>
 
-/* Zeros; NULL without memory. */
+/* Return zeros, or NULL without memory. */
 gsl_vector *sf_vector(size_t size, sf_error *err);
 gsl_matrix *sf_matrix(size_t rows, size_t columns, sf_error *err);
 
-/* SF_VECTOR *x = sf_vector(3, err) is released at the end of its block; so are a matrix and a generator. */
+/* `SF_VECTOR *x = sf_vector(3, err)` is released at the end of its block; so are a matrix and a generator. */
 #define SF_VECTOR SF_OWNED_BY(sf_release_vector) gsl_vector
 #define SF_MATRIX SF_OWNED_BY(sf_release_matrix) gsl_matrix
 #define SF_RANDOM SF_OWNED_BY(sf_release_random) gsl_rng
@@ -32,15 +32,16 @@ static inline void sf_release_random(gsl_rng **random) {
 /* Deviations [count] at parameters; GSL_SUCCESS, or another code where there are none. */
 typedef int sf_deviations(const gsl_vector *x, void *data, gsl_vector *out);
 
-/* The sum of squares at the end, or infinity if there is none; `x` in and out. The covariance for a variance
- * of 1 into `covariance` unless it is NULL. GSL's error handler must be off. */
+/* Minimises from `x`, into which it puts the end; returns the sum of squares there, or infinity if there is
+ * none. Puts the covariance for a variance of 1 into `covariance` unless it is NULL. GSL's error handler must
+ * be off. */
 double sf_least_squares(sf_deviations *deviations, void *data, size_t count, gsl_vector *x,
                         gsl_matrix *covariance);
 
-/* Fills `x` with start `number`, from 0 on, of a search; false: there is none. */
+/* Fills `x` with start `number`, from 0 on, of a search; returns false if there is none. */
 typedef bool sf_start(void *data, int number, gsl_vector *x);
 
-/* The least sum of the searches from all starts, and where it is. */
+/* Returns the least sum of the searches from all starts, and puts its place into `best`. */
 double sf_least_squares_from(sf_start *start, sf_deviations *deviations, void *data, size_t count,
                              gsl_vector *best);
 
@@ -54,14 +55,14 @@ static inline bool sf_is_at_end(double part) {
     return part < 1e-3 || part > 1 - 1e-3;
 }
 
-/* HU, SHAPE and ALPHA of unloading, between their bounds. */
+/* Fitted HU, SHAPE and ALPHA of unloading, between their bounds. */
 typedef struct sf_unloading_fit {
     double value[3];
     bool at_bound[3];
     double rms; /* -, of the stress, over the largest of its test; NaN: no search converges */
 } sf_unloading_fit;
 
-/* Points of unloading. */
+/* Data of the fit of unloading. */
 typedef struct sf_unloading_points {
     int count;
     double *measured, *loading; /* [count] stress, and that of loading at the strain, in one unit */
@@ -72,7 +73,7 @@ typedef struct sf_unloading_points {
     int starts;                 /* of the search, at most 4 */
 } sf_unloading_points;
 
-/* Least squares over the points. GSL's error handler must be off. */
+/* Fits HU, SHAPE and ALPHA to the points by least squares. GSL's error handler must be off. */
 sf_unloading_fit sf_unloading_search(sf_unloading_points *points);
 
 /* Correlation of neighbouring deviations, r: the variance of a mean of them grows by (1 + r)/(1 - r). */

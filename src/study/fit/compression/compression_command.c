@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include "io/plain_file.h"
 #include "study/fit/compression/compression_kind.h"
 #include "study/material_file.h"

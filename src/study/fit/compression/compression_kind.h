@@ -27,7 +27,7 @@ typedef struct sf_compression_kind {
     void (*free)(void *fit); /* NULL: the fit owns nothing */
     /* The fitted material; its arrays stay those of the fit. */
     sf_material (*material)(const void *fit);
-    /* The summary or, with `comments`, what stands of it in material.cfg. */
+    /* Writes the summary or, with `comments`, the comments of material.cfg. */
     void (*describe)(FILE *out, const void *fit, bool comments);
     /* The contents of fit.csv, and the members of fit.json. */
     void (*points)(FILE *file, const void *fit);
@@ -46,5 +46,6 @@ extern const sf_compression_kind sf_compression_tables, sf_compression_form_kind
  * at an axial strain; `lateral` is also the start of the search. */
 double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double *lateral, double *energy);
 
-/* softfall-fit compression FIT.cfg -o DIR; argv[0] is the name of the program. Returns the exit code. */
+/* Runs `softfall-fit compression FIT.cfg -o DIR` and returns the exit code; argv[0] is the name of the
+ * program. */
 int sf_fit_compression_main(int argc, char **argv);

@@ -25,8 +25,7 @@ void sf_compression_test_free(sf_compression_test *test) {
     memset(test, 0, sizeof *test);
 }
 
-/* ---- loading and unloading of the law in the points: one cycle, without rests, from a strain of zero on
- * ---- */
+/* ---- cycle, rests and toe ---- */
 
 static const double JITTER = 5e-4; /* strain by which scatter may turn it back */
 

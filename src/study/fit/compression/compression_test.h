@@ -66,8 +66,7 @@ sf_status sf_compression_test_read(const sf_compression_source *source, sf_compr
                                    sf_error *err);
 void sf_compression_test_free(sf_compression_test *test);
 
-/* Value of y at a place by interpolation over `count` places x, ascending or descending; beyond the ends that
- * of the end. */
+/* Interpolates y over `count` places x, ascending or descending; beyond the ends it returns the end value. */
 double sf_compression_at(int count, const double *x, const double *y, double place);
 
 /* Stress of loading at a strain, by interpolation; below the first strain that of the first point. */

@@ -7,7 +7,7 @@
 #include "study/fit/compression/compression_config.h"
 #include "study/fit/least_squares.h"
 
-/* Unloading. */
+/* The fit of unloading by a form. */
 typedef struct sf_form_unloading {
     sf_unloading_fit fit;
     double factor_rms; /* -, of f = stress of unloading over that of loading by the form */

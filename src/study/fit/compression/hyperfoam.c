@@ -164,13 +164,13 @@ double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double 
     return -p.t[0];
 }
 
-/* The problem of least squares. */
+/* Data of the least-squares problem. */
 typedef struct problem {
     const sf_compression_test *test;
     const sf_hyperfoam_request *request;
     sf_hyperfoam_card card;
     int terms;
-    int choice[SF_HYPERFOAM_TERMS]; /* of the starts, descending */
+    int choice[SF_HYPERFOAM_TERMS]; /* indices of the present starts, descending */
     double largest_lateral;
 } problem;
 

@@ -83,9 +83,8 @@ double sf_compression_error(const sf_compression_fit *fit, const double *gradien
 /* The foam card of the fit; released by the caller with sf_foam_card_free. */
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err);
 
-/* The fit of tables as the pipeline has it: the fit, its card in the solver's own law, and how both stand
- * against the data. table_report.c has the page and
- * the words and rows that stand there, too. */
+/* The result of the fit of tables: the fit, its card in the solver's own law, and how both stand against the
+ * data. table_report.c makes the page of it. */
 
 /* A test against the fit. */
 typedef struct sf_table_test {

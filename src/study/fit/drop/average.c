@@ -110,7 +110,7 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
     return SF_OK;
 }
 
-/* With room for so many; `value` is to be released, and the weights behind it with it. */
+/* Returns room for `most` samples; the caller frees `value`, which holds the weights, too. */
 static weighted make_weighted(int most, sf_error *err) {
     double *value = sf_alloc(err, 2 * (unsigned long)most, sizeof *value, "samples");
     return (weighted){.value = value, .weight = value + most};

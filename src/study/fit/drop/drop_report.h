@@ -57,5 +57,5 @@ int sf_drop_chain_list(const sf_drop_fit *fit, sf_chain_shown shown[SF_SIGNAL_CH
 sf_status sf_drop_files_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
                               const sf_staging *output, char *warning, size_t size, sf_error *err);
 
-/* softfall-fit drop FIT.cfg -o DIR; argv[0] is the name of the program. Returns the exit code. */
+/* Runs `softfall-fit drop FIT.cfg -o DIR` and returns the exit code; argv[0] is the name of the program. */
 int sf_fit_drop_main(int argc, char **argv);

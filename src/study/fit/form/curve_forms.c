@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The forms of the loading curve: an entry sf_form_NAME for each of SF_CURVE_FORM_LIST. */
+/* Defines the entry sf_form_NAME of each form of SF_CURVE_FORM_LIST. */
 #include "material/curve.h"
 #include "study/fit/form/form.h"
 

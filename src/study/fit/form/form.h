@@ -184,8 +184,8 @@ sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err);
 sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
                                   sf_error *err);
 /* Checks that the solid fraction is known in one way, where the form has one: by solid_density in `root`, as
- * solid_fraction in the `start` of `root` or of the `model` in it, or as one of the unknowns. `key`: of the
- * form in `model`. */
+ * solid_fraction in the `start` of `root` or of the `model` in it, or as one of the unknowns. `key` is the
+ * name under which `model` has the form. */
 sf_status sf_foam_form_check_fraction(const sf_config *config, sf_config_item *root, sf_config_item *model,
                                       const char *key, const sf_foam_form *form, int unknown_count,
                                       const sf_foam_parameter *unknown, sf_error *err);

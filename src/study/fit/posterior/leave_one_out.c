@@ -268,7 +268,7 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
     return SF_OK;
 }
 
-/* log p(group | others) by the weights, if enough draws count; `out->drawn` tells. */
+/* Estimates log p(group | others) by the weights, and sets `out->drawn` if enough draws count. */
 static sf_status take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out,
                            sf_error *err) {
     SF_OWNED double *others = sf_alloc(err, (unsigned long)w->count, sizeof *others, "draws");
