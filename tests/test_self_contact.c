@@ -176,30 +176,6 @@ static void use_tile(const program_place *p) {
         "\"$SF_SOURCE_DIR/examples/tile-feet/case.cfg\" > case.cfg");
 }
 
-/* A step of foam: only its upper tread is named as what the missile, a wide plate, touches. */
-static const char STEP[] =
-    "Point(1) = {0,0,0}; Point(2) = {20,0,0}; Point(3) = {40,0,0}; Point(4) = {40,40,0}; Point(5) = {20,40,0};\n"
-    "Point(6) = {0,40,0}; Line(1) = {1,2}; Line(2) = {2,3}; Line(3) = {3,4}; Line(4) = {4,5}; Line(5) = {5,6};\n"
-    "Line(6) = {6,1}; Line(7) = {2,5};\n"
-    "Curve Loop(1) = {1,7,5,6}; Plane Surface(1) = {1}; Curve Loop(2) = {2,3,4,-7}; Plane Surface(2) = {2};\n"
-    "Transfinite Curve {1,2,4,5} = 5; Transfinite Curve {3,6,7} = 9; Transfinite Surface {:}; Recombine Surface {:};\n"
-    "a[] = Extrude {0,0,20} { Surface{1}; Layers{4}; Recombine; };\n"
-    "b[] = Extrude {0,0,20} { Surface{2}; Layers{4}; Recombine; };\n"
-    "c[] = Extrude {0,0,20} { Surface{a[0]}; Layers{4}; Recombine; };\n"
-    "Physical Volume(\"pad\") = {a[1],b[1],c[1]}; Physical Surface(\"base\") = {1,2}; Physical Surface(\"top\") = {c[0]};\n";
-
-static void a_missile_that_passes_foam_ends_the_run(void **state) {
-    const program_place *p = *state;
-    double place[3];
-    program_write_text(p, "step.geo", STEP);
-    program_write_text(p, "case.cfg", CUT_CASE);
-    program_write_text(p, "motion.csv", "time_ms,displacement_mm\n0,0\n24,26\n");
-    program_shell(p,
-                  "sed -i 's#cut.geo#step.geo#; s#slit = 0.1; cells = 8;##; s#sliding = [^;]*;##' case.cfg");
-    passes_through(p, "the missile", place);
-    assert_true(place[0] > 20 && fabs(place[2] - 20) < 0.1); /* the lower tread */
-}
-
 static void a_tile_on_feet_comes_down_to_the_floor(void **state) {
     const program_place *p = *state;
     use_tile(p);
@@ -310,7 +286,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cut_block_is_as_stiff_as_the_whole_one),
         cmocka_unit_test(bodies_with_other_meshes_pass_on_the_stress),
-        cmocka_unit_test(a_missile_that_passes_foam_ends_the_run),
         cmocka_unit_test(a_tile_on_feet_comes_down_to_the_floor),
         cmocka_unit_test(the_bits_do_not_depend_on_threads_or_restarts),
         cmocka_unit_test(a_loose_cover_acts_as_a_glued_one_while_it_is_pressed),
