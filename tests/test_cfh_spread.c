@@ -2,6 +2,7 @@
 /* Interval of the critical fall height from draws of the foam: against drops of the columns themselves,
  * against closed forms of the random errors, and at its open ends. The "simulated" drops are the columns
  * times a known function of the height. */
+#include "extreme.h"
 #include "model_fixture.h"
 
 #include "case/case.h"
@@ -333,7 +334,7 @@ static void simulated_draws_correct_the_others(void **state) {
         for (int d = 0; d < FEW; d++) {
             direct[d] = direct_height(&pad, &draws.draw[d].law);
             double error = log(s.draw[d].crossing[SF_CFH_FIRST] / direct[d]);
-            worst[round] = fmax(worst[round], fabs(error));
+            worst[round] = larger(worst[round], fabs(error));
             if (round > 0) /* HIC decides, by a slope of about two */
                 assert_true(fabs(error) < 2 * s.draw[d].columns_sd[SF_CFH_HIC] + 5e-4);
         }

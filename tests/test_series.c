@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Drops one after the other on the same pad: a series, the same drops run one by one, resumed, with other
  * threads, and what is refused. */
+#include "extreme.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 #include "run_fixture.h"
@@ -210,7 +211,7 @@ static void first_frame_shows_what_is_left(void **state) {
     /* q is reload plus what recovery gives back of the rest: log10(1 + t / 1 s) decades, 0.1 each */
     double fresh = 1 - 0.1 * log10(1 + 90), later = 1 - 0.1 * log10(1 + 8 * 3600.0);
     for (int64_t k = 0; k < count; k++) {
-        largest = fmax(largest, now[k]);
+        largest = larger(largest, now[k]);
         assert_true(now[k] >= 0 && fabs(rested[k] * fresh - now[k] * later) <= 1e-9 * now[k]);
     }
     assert_true(largest > 1e4);
@@ -256,7 +257,7 @@ static double drop_on_column(const sf_material_law *law, sf_uniaxial *point) {
         x += dt * v;
         double force = area * law->law->uniaxial(law->numbers, dt, fmax(0, x / thickness), point);
         v += dt * (SF_STANDARD_GRAVITY - force / mass);
-        most = fmax(most, force / mass);
+        most = larger(most, force / mass);
     }
     return most / SF_STANDARD_GRAVITY;
 }
