@@ -110,7 +110,11 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
     return SF_OK;
 }
 
-/* Returns room for `most` samples; the caller frees `value`, which holds the weights, too. */
+static void free_weighted(weighted *w) {
+    free(w->value);
+}
+
+/* Returns room for `most` samples; release it with free_weighted. */
 static weighted make_weighted(int most, sf_error *err) {
     double *value = sf_alloc(err, 2 * (unsigned long)most, sizeof *value, "samples");
     return (weighted){.value = value, .weight = value + most};
@@ -123,8 +127,7 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
     bool above_all = sf_drop_kind_get(q->kind)->above_all;
     for (int m = 0; m < a->models; m++)
         most += states_of(a->model[m]);
-    weighted w = make_weighted(most, err);
-    SF_OWNED double *block = w.value;
+    SF_OWNED_BY(free_weighted) weighted w = make_weighted(most, err);
     SF_TRY(err->status);
     for (int m = 0; m < a->models; m++)
         if (model < 0 ? a->weight[m] > 0 : m == model)
@@ -150,8 +153,7 @@ double sf_drop_average_missing(const sf_drop_average *a, int quantity) {
 
 sf_status sf_drop_parameter_quantiles(const sf_drop_inference *in, int parameter, int count,
                                       const double *probability, double *value, sf_error *err) {
-    weighted w = make_weighted(states_of(in), err);
-    SF_OWNED double *block = w.value;
+    SF_OWNED_BY(free_weighted) weighted w = make_weighted(states_of(in), err);
     SF_TRY(err->status);
     add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, &w);
     return take_quantiles(&w, count, probability, value, err);
