@@ -264,7 +264,7 @@ class Question:
 
 
 def _heights_of(pads: Pads, q: Question) -> np.ndarray:
-    return np.min([pads.crossing(place, q.limits) for place in (place.name for place in pads.judged)], axis=0)
+    return np.min([pads.crossing(place.name, q.limits) for place in pads.judged], axis=0)
 
 
 def quantiles(order: np.ndarray, value: np.ndarray, weight: np.ndarray) -> np.ndarray:
