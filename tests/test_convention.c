@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The meaning of the acceleration: the reading of an accelerometer by default, the kinematic acceleration on
- * request; and that the figures of a flat missile, whose contact begins with an impulse, do not depend on the
- * time step. */
+ * request; that a force plate has its filter; and that the figures of a flat missile, whose contact begins
+ * with an impulse, do not depend on the time step. */
 #include "post/figures/verdict.h"
 
 #include "base/units.h"
@@ -86,6 +86,28 @@ static void the_reading_is_the_force_over_the_mass(void **state) {
 }
 
 /* Free flight of 5 ms precedes the contact in the filtered curve, wherever the history begins. */
+/* A plate that carries the force on the missile shows its filtered peak, whatever mount the missile has. */
+static void a_force_plate_has_the_class_of_the_accelerometer(void **state) {
+    sf_error err = SF_ERROR_INIT;
+    sf_signal_chain mount = {.mount_frequency = 300, .mount_damping = 0.05};
+    drop d = falling(*state, "plate.h5", "missile.friction=0.0");
+    sf_history *h = &d.results.history;
+    for (int64_t i = 0; i < h->rows; i++)
+        h->base_reaction[i] = 5 * h->acceleration[i];
+    for (int through = 0; through < 2; through++) {
+        sf_figures f;
+        if (sf_figures_compute_through(&d.results, 180, through ? &mount : NULL, &f, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        if (!through)
+            assert_relative(f.base_force, 5 * SF_STANDARD_GRAVITY * f.injury.a_max_g, 1e-9);
+        else
+            assert_true(fabs(f.base_force / (5 * SF_STANDARD_GRAVITY * f.injury.a_max_g) - 1) > 0.01);
+        assert_true(f.base_force < 0.999 * 5 * SF_STANDARD_GRAVITY * f.injury_raw.a_max_g);
+        sf_figures_free(&f);
+    }
+    release(&d);
+}
+
 static void curves_begin_before_the_contact(void **state) {
     drop late = falling(*state, "late.h5", "missile.friction=0.0");
     drop early = falling(*state, "early.h5", "missile.gap='\"0 mm\"'");
@@ -145,6 +167,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_accelerometer_reads_nothing_in_free_fall),
         cmocka_unit_test(the_reading_is_the_force_over_the_mass),
+        cmocka_unit_test(a_force_plate_has_the_class_of_the_accelerometer),
         cmocka_unit_test(curves_begin_before_the_contact),
         cmocka_unit_test(figures_of_a_flat_missile_do_not_depend_on_the_step),
     };

@@ -177,6 +177,17 @@ static sf_status compute_bric(const sf_results *r, sf_figures *f, sf_error *err)
     return err->status;
 }
 
+/* A force plate has the class of the accelerometer, but not its mount. A prescribed motion has no class. */
+static sf_status compute_base_force(const sf_results *r, sf_figures *f, sf_error *err) {
+    const double *one = r->history.base_reaction, *const same[3] = {one, one, one}; /* sqrt(3) of one */
+    const sf_figures plate = {.cfc = f->cfc, .rate = f->rate};
+    double time;
+    f->base_force = sf_history_largest(&r->history, one);
+    if (!r->driven && find_peak(r, same, true, &plate, &f->base_force, &time, err) == SF_OK)
+        f->base_force /= sqrt(3);
+    return err->status;
+}
+
 static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
     const double *const acceleration[3] = {h->angular_acceleration_x, h->angular_acceleration_y,
@@ -525,8 +536,7 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
     f->momentum_error_space = sf_history_largest(h, h->momentum_error_space);
     f->angular_momentum_error = sf_history_largest(h, h->angular_momentum_error);
     f->constraint_residual = sf_history_largest(h, h->constraint_residual);
-    f->base_force = sf_history_largest(h, h->base_reaction);
-    if (!f->touched)
+    if (compute_base_force(results, f, err) != SF_OK || !f->touched)
         goto done;
     compute_energies(results, f);
     compute_extremes(results, f);
