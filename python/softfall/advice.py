@@ -22,6 +22,8 @@ REPEATS, TRUTHS, LEAST_DRAWS = 32, 128, 8
 MISFIT = -12.0
 SAME = 0.01  # of a logarithm: drops of one pad are never told apart by less
 TEST_STRAINS = (0.3, 0.5, 0.7)  # at which a compression test tells the stress
+FORM = (0.04, 0.08)  # standard deviations of ln(figure) of a foam about the draw that is nearest to it (docs/protocols.md)
+LENGTH = 0.3  # of ln(height), over which errors that change with the height do so
 
 
 @dataclass(frozen=True)
@@ -148,10 +150,35 @@ def _doubts(name: str, posterior: Mapping[str, Any], freedom: int, band: Mapping
         yield f"{name}: the scatter from drop to drop is not known; {100 * SAME:g} % is taken"
 
 
-class Pads:
-    """The pads that may be the real one: the draws, each REPEATS times with errors of the model that it keeps in all drops of a place."""
+def _bell(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.asarray(np.exp(-0.5 * ((a[:, None] - b) / LENGTH) ** 2))
 
-    def __init__(self, places: Sequence[Place], seed: int = 1) -> None:
+
+class _Smooth:
+    """Random functions of ln(height) of variance 1, whose correlation falls over LENGTH as a bell curve."""
+
+    def __init__(self, places: Sequence[Place]) -> None:
+        ends = [place.log_height[k] for place in places for k in (0, -1)]
+        self.knots = np.arange(min(ends), max(ends) + LENGTH / 3, LENGTH / 3)
+        self.root = np.linalg.inv(np.linalg.cholesky(_bell(self.knots, self.knots) + 1e-9 * np.eye(self.knots.size)))
+
+    def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
+        """Returns the coefficients of functions, two for each of `count` pads."""
+        return random.standard_normal((2, count, self.knots.size))
+
+    def at(self, log_height: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+        """Returns values [2][count][heights]."""
+        return np.asarray(coefficients @ (_bell(log_height, self.knots) @ self.root.T).T)
+
+
+class Pads:
+    """The pads that may be the real one: the draws, each REPEATS times with errors of the model.
+
+    A pad keeps its errors in all drops of a place. Two of them change with the height: the own errors of the responses, which a fit has for each of its
+    drops, and those of a foam that has another form than the draws, of standard deviations `form`, the same at all places of a missile.
+    """
+
+    def __init__(self, places: Sequence[Place], seed: int = 1, form: Sequence[float] = FORM) -> None:
         self.places = {place.name: place for place in places}
         self.draws = places[0].shared.shape[1]
         if any(place.shared.shape[1] != self.draws for place in places):
@@ -160,13 +187,16 @@ class Pads:
         self.draw = np.repeat(np.arange(self.draws), REPEATS)
         self.log_weight = np.zeros(self.draw.size)
         self.misfit = 0.0  # ln of the likelihood of the worst drop at the pad that fits it best
-        self.offset = {}
+        self.offset, self.value = {}, {}  # ln [2][pads], and [2][pads][grid] without it
         n, mesh = self.draw.size, random.standard_normal(self.draw.size)  # all places are of one pad, and of one way to compute it
+        smooth, forms = _Smooth(places), dict[str, np.ndarray]()
         student = {"": random.standard_t(max(1, min(place.freedom for place in self.judged)), n)}
         for place in sorted(places, key=lambda place: place.missile != ""):
-            own = random.standard_normal((2, n)) * place.own_sd[:, self.draw]
+            forms.setdefault(place.missile, smooth.draw(n, random))
+            own = place.own_sd[:, self.draw, None] * smooth.at(place.log_height, smooth.draw(n, random))
+            self.value[place.name] = place.value[:, self.draw] + own + np.reshape(form, (2, 1, 1)) * smooth.at(place.log_height, forms[place.missile])
             fit = place.fit[:, None] * random.standard_normal((2, n))
-            self.offset[place.name] = place.shared[:, self.draw] + own + place.mesh[:, None] * mesh + fit
+            self.offset[place.name] = place.shared[:, self.draw] + place.mesh[:, None] * mesh + fit
             if place.missile:  # draws state errors of the missile of their fit, and each missile has columns of its own
                 self.offset[place.name] += np.sqrt((place.shared**2).mean(axis=1, keepdims=True)) * random.standard_normal((2, n))
                 if place.missile not in student:
@@ -186,7 +216,7 @@ class Pads:
         k = np.clip(np.searchsorted(p.log_height, at) - 1, 0, p.log_height.size - 2)
         part = (at - p.log_height[k]) / (p.log_height[k + 1] - p.log_height[k])
         for c in range(2):
-            low, high = p.value[c][self.draw, k], p.value[c][self.draw, k + 1]
+            low, high = self.value[place][c][:, k], self.value[place][c][:, k + 1]
             with np.errstate(invalid="ignore"):
                 made[c] = np.where(np.isinf(high) & (part > 0), np.inf, low + np.where(part > 0, part * (high - low), 0)) + self.offset[place][c]
         return made

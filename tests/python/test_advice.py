@@ -40,11 +40,16 @@ def normal(x):
     return 0.5 * (1 + math.erf(x / math.sqrt(2)))
 
 
+def pads_of(places, form=(0, 0)):
+    """Pads whose foam is one of the draws, as the closed forms have it."""
+    return advice.Pads(places, form=form)
+
+
 QUESTION = advice.Question((None, 1000.0), required=1.1)
 
 
 def test_the_prior_has_its_quantiles_and_probability():
-    told = advice.advise(advice.Pads([place()]), QUESTION)
+    told = advice.advise(pads_of([place()]), QUESTION)
     for found, z in zip(told.height, (-1.96, 0, 1.96)):
         assert found == pytest.approx(math.exp(SPREAD * z / SLOPE), rel=3e-3)
     assert told.probability == pytest.approx(normal(-SLOPE * math.log(1.1) / SPREAD), abs=2e-3)
@@ -53,7 +58,7 @@ def test_the_prior_has_its_quantiles_and_probability():
 
 def test_a_measured_drop_has_the_weights_of_bayes():
     """The posterior of a normal prior and a normal measurement."""
-    pads = advice.Pads([place()])
+    pads = pads_of([place()])
     pads.learn(advice.Drop("centre", 0.8, (math.nan, 700.0)))
     error = math.log(700 / 1000) - SLOPE * math.log(0.8)
     part = SPREAD**2 / (SPREAD**2 + SCATTER**2)
@@ -62,13 +67,30 @@ def test_a_measured_drop_has_the_weights_of_bayes():
     assert told.height[1] == pytest.approx(math.exp(-mean / SLOPE), rel=2e-3)
     assert told.height[2] / told.height[0] == pytest.approx(math.exp(2 * 1.96 * sd / SLOPE), rel=3e-3)
     assert told.probability == pytest.approx(normal((-SLOPE * math.log(1.1) - mean) / sd), abs=5e-3)
-    again = advice.Pads([place()])
+    again = pads_of([place()])
     again.learn(advice.Drop("centre", 0.8, (700.0, 700.0)))  # two figures of one drop tell no more than one
     assert advice.advise(again, QUESTION).height == told.height
 
 
+@pytest.mark.parametrize("height", [0.7, 1.0])
+def test_a_foam_of_another_form_is_known_less_well_away_from_its_drops(height):
+    """ln y is a Gaussian process: SPREAD everywhere alike, and the form's part that a bell curve of the distance correlates."""
+    form, correlation = 0.15, math.exp(-0.5 * (math.log(height) / advice.LENGTH) ** 2)
+    pads = pads_of([place(), place(name="edge"), place(name="flat", missile="flat")], form=(form, form))
+    for name, common in (("centre", correlation), ("edge", correlation), ("flat", 0.0)):
+        y, x = pads.predict(name, 1.0)[1], pads.predict("centre", height)[1]
+        assert y.std() == pytest.approx(math.hypot(SPREAD, form), rel=0.02)
+        assert np.cov(x, y)[0, 1] == pytest.approx(SPREAD**2 + common * form**2, abs=0.04 * form**2)
+    pads.learn(advice.Drop("centre", height, (math.nan, 1000 * height**SLOPE * 1.1)))
+    part = (SPREAD**2 + correlation * form**2) / (SPREAD**2 + form**2 + SCATTER**2)
+    mean, sd = part * math.log(1.1), math.sqrt(SPREAD**2 + form**2 - part * (SPREAD**2 + correlation * form**2))
+    y = pads.predict("centre", 1.0)[1] - math.log(1000)
+    assert float(pads.weight @ y) == pytest.approx(mean, abs=0.006)
+    assert math.sqrt(float(pads.weight @ (y - mean) ** 2)) == pytest.approx(sd, rel=0.04)
+
+
 def test_more_drops_tell_more():
-    one, four = advice.Pads([place()]), advice.Pads([place()])
+    one, four = pads_of([place()]), pads_of([place()])
     one.learn(advice.Drop("centre", 1.0, (math.nan, 1000.0)))
     for _ in range(4):
         four.learn(advice.Drop("centre", 1.0, (math.nan, 1000.0)))
@@ -79,7 +101,7 @@ def test_more_drops_tell_more():
 
 def test_the_expected_loss_of_a_drop_has_its_value():
     """E min(P, 1 - P) after a measurement, by quadrature over the measurement."""
-    pads = advice.Pads([place()])
+    pads = pads_of([place()])
     told = advice.advise(pads, QUESTION)
     total, part = math.sqrt(SPREAD**2 + SCATTER**2), SPREAD**2 / (SPREAD**2 + SCATTER**2)
     z = np.linspace(-6, 6, 4001)
@@ -93,7 +115,7 @@ def test_the_expected_loss_of_a_drop_has_its_value():
 
 def test_what_tells_more_comes_first():
     """A place with more scatter tells less; a dear test comes behind."""
-    pads = advice.Pads([place(), place(name="corner", scatter=0.4)])
+    pads = pads_of([place(), place(name="corner", scatter=0.4)])
     test = advice.Test("a compression test", np.exp(0.3 * np.linspace(-2, 2, 500))[:, None] * np.ones((1, 3)), 0.04, 50)
     told = advice.advise(pads, advice.Question((None, 1000.0), heights=(1.0,)), [test])
     names = [choice.name for choice in told.choices]
@@ -115,7 +137,7 @@ def best(told, kind):
 
 
 def test_a_drop_narrows_the_interval_by_its_closed_form():
-    told = advice.advise(advice.Pads([place(200)]), WIDTH)
+    told = advice.advise(pads_of([place(200)]), WIDTH)
     assert told.loss == pytest.approx(2 * math.sinh(1.96 * SPREAD / SLOPE), rel=0.01)
     drop = best(told, "drop")
     assert drop.loss == pytest.approx(width_after(SCATTER), rel=0.04) and drop.gain == pytest.approx(told.loss - drop.loss)
@@ -125,14 +147,14 @@ def test_a_drop_of_another_missile_tells_less_by_its_own_errors_and_costs_more()
     """An error of its model that both figures have adds to the scatter of the drop, in squares."""
     own = 0.08
     other = place(200, "centre, missile flat", mesh=own, missile="flat", cost=2.0)
-    pads = advice.Pads([place(200), other])
+    pads = pads_of([place(200), other])
     told = advice.advise(pads, WIDTH)
     drop, flat = best(told, "drop"), best(told, "flat")
     assert flat.loss == pytest.approx(width_after(math.hypot(SCATTER, own)), rel=0.04)
     assert flat.cost == 2 and flat.gain == pytest.approx((told.loss - flat.loss) / 2) and drop.gain > 2 * flat.gain
     soft = dataclasses.replace(other, value=other.value + 2.0)
     for some in ([place(200)], [place(200), soft]):  # nothing is judged by its drops, whatever they are
-        assert advice._heights_of(advice.Pads(some), WIDTH) == pytest.approx(advice._heights_of(pads, WIDTH))
+        assert advice._heights_of(pads_of(some), WIDTH) == pytest.approx(advice._heights_of(pads, WIDTH))
     pads.learn(advice.Drop("centre, missile flat", 1.0, (math.nan, 1000.0)))
     after = advice.advise(pads, WIDTH)
     assert after.loss == pytest.approx(width_after(math.hypot(SCATTER, own)), rel=0.05)
@@ -143,7 +165,7 @@ def test_the_errors_of_the_responses_hold_less_for_another_missile():
     shared = 0.1 * np.ones((2, 500))
     own = dataclasses.replace(place(), shared=shared)
     other = dataclasses.replace(place(name="other", missile="flat"), shared=shared)
-    pads = advice.Pads([own, other])
+    pads = pads_of([own, other])
     assert np.ptp(pads.offset["centre"]) == 0
     assert pads.offset["other"].std() == pytest.approx(0.1, rel=0.02) and pads.offset["other"].mean() == pytest.approx(0.1, abs=0.002)
 
@@ -153,7 +175,7 @@ def test_a_compression_test_narrows_the_interval_by_its_closed_form(slope, error
     """The ln of its stress is `slope` times that of the draws' figure: an error of the stress is 1 / slope times one of the figure."""
     z = (place(200).value[1][:, 0] - place(200).value[1][:, 0].mean()) / SPREAD
     stress = 1e5 * np.exp(slope * SPREAD * z)[:, None] * np.array([1.0, 2.0, 6.0])
-    told = advice.advise(advice.Pads([place(200)]), WIDTH, [advice.Test("a test", stress, error, 4.0)])
+    told = advice.advise(pads_of([place(200)]), WIDTH, [advice.Test("a test", stress, error, 4.0)])
     test = best(told, "test")
     assert test.loss == pytest.approx(width_after(error / slope), rel=0.04)
     assert test.gain == pytest.approx((told.loss - test.loss) / 4)
@@ -161,7 +183,7 @@ def test_a_compression_test_narrows_the_interval_by_its_closed_form(slope, error
 
 def test_a_compression_test_of_what_the_drop_does_not_depend_on_tells_nothing():
     stress = np.random.default_rng(5).lognormal(0, 0.3, (200, 1)) * np.ones((1, 3))
-    told = advice.advise(advice.Pads([place(200)]), WIDTH, [advice.Test("a test", stress, 0.04, 1.0)])
+    told = advice.advise(pads_of([place(200)]), WIDTH, [advice.Test("a test", stress, 0.04, 1.0)])
     assert abs(best(told, "test").gain) < 0.2 * best(told, "drop").gain
 
 
@@ -205,23 +227,23 @@ def test_a_draw_without_a_known_stress_is_told(tmp_path, text, rows, said):
 
 
 def test_measuring_stops_and_decides():
-    pads = advice.Pads([place()])
+    pads = pads_of([place()])
     pads.learn(advice.Drop("centre", 1.1, (math.nan, 850.0)))
     told = advice.advise(pads, QUESTION)
     assert told.stop and told.decision is True and told.loss < 0.05 and not told.choices
-    pads = advice.Pads([place()])
+    pads = pads_of([place()])
     pads.learn(advice.Drop("centre", 1.1, (math.nan, 1600.0)))
     assert advice.advise(pads, QUESTION).decision is False
     width = advice.Question((None, 1000.0), bound=0.12)
-    assert not advice.advise(advice.Pads([place()]), width).stop
-    pads = advice.Pads([place()])
+    assert not advice.advise(pads_of([place()]), width).stop
+    pads = pads_of([place()])
     pads.learn(advice.Drop("centre", 1.0, (math.nan, 1000.0)))
     told = advice.advise(pads, width)
     assert told.stop and told.decision is None and told.loss == pytest.approx(2 * 1.96 * SCATTER / SLOPE, rel=0.1)
 
 
 def test_a_foam_that_is_none_of_the_draws_is_told():
-    pads = advice.Pads([place(count=200)])
+    pads = pads_of([place(count=200)])
     pads.learn(advice.Drop("centre", 1.0, (math.nan, 3000.0)))
     told = advice.advise(pads, QUESTION)
     assert "softfall-fit drop" in told.problem and told.decision is None and not told.stop
@@ -231,24 +253,24 @@ def test_a_drop_that_no_draw_can_have_is_told():
     """Also where all draws fit equally badly, so that the weights stay."""
     p = place(count=100)
     p.value[:, :, 40:] = np.inf
-    pads = advice.Pads([p])
+    pads = pads_of([p])
     pads.learn(advice.Drop("centre", math.exp(p.log_height[60]), (math.nan, 1000.0)))
     assert "fits none" in advice.advise(pads, QUESTION).problem
 
 
 def test_pads_that_fail_at_every_height_have_no_interval():
     p = place(count=100)
-    told = advice.advise(advice.Pads([p]), advice.Question((None, 1.0), bound=0.1))
+    told = advice.advise(pads_of([p]), advice.Question((None, 1.0), bound=0.1))
     assert told.height == (0, 0, 0) and told.loss == 1 and not told.stop
-    unknown = advice.advise(advice.Pads([dataclasses.replace(p, freedom=0)]), QUESTION)
+    unknown = advice.advise(pads_of([dataclasses.replace(p, freedom=0)]), QUESTION)
     assert "no draw was simulated" in unknown.problem and unknown.decision is None
 
 
 def test_the_columns_own_error_widens_the_figures_of_a_draw():
     """By Student's t of the degrees of freedom, the same for both figures of a pad."""
     p = place(count=500)
-    pads = advice.Pads([dataclasses.replace(p, columns_sd=p.shared + np.array([[0.1], [0.2]]), freedom=50)])
-    error = pads.predict("centre", 1.0) - advice.Pads([p]).predict("centre", 1.0)
+    pads = pads_of([dataclasses.replace(p, columns_sd=p.shared + np.array([[0.1], [0.2]]), freedom=50)])
+    error = pads.predict("centre", 1.0) - pads_of([p]).predict("centre", 1.0)
     assert error[1] == pytest.approx(2 * error[0])
     assert error[0].std() == pytest.approx(0.1 * math.sqrt(50 / 48), rel=0.03)
 
@@ -256,7 +278,7 @@ def test_the_columns_own_error_widens_the_figures_of_a_draw():
 def test_collapsed_columns_are_beyond_every_limit():
     p = place(count=100)
     p.value[:, 50:, 40:] = np.inf
-    pads = advice.Pads([p])
+    pads = pads_of([p])
     edge = math.exp(p.log_height[39])
     assert (pads.crossing("centre", (None, 1e9))[50 * advice.REPEATS:] <= math.exp(p.log_height[40]) + 1e-9).all()
     assert np.isinf(pads.crossing("centre", (None, 1e9))[: 50 * advice.REPEATS]).all()
@@ -299,7 +321,7 @@ def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
     light, = (tmp_path / "out/drops").glob("*-light/heights")
     heights, = set((tmp_path / "out/drops").glob("*/heights")) - {light}
     curves = advice.read_place("x", heights)
-    pads, points = advice.Pads([curves]), json.loads((heights / "cfh.json").read_text())["points"]
+    pads, points = pads_of([curves]), json.loads((heights / "cfh.json").read_text())["points"]
     for point in points:  # the case's own drops, whose foam is in the middle of the draws, lie in the middle of the pads
         if not point["failed"] and point["height_m"] < median:
             for c, key in enumerate(("a_max_g", "hic")):
