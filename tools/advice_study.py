@@ -102,6 +102,16 @@ def try_plan(place, foam, pads, required, bound, most, forced, seed):
     return count
 
 
+def distances(place, synthetic, low, high):
+    """Returns the root mean squares of ln(figure) between foams and the draws nearest to them, at heights between two."""
+    heights = np.linspace(np.log(low), np.log(high), 9)
+    foams, draws = (np.array([[np.interp(heights, p.log_height, row) for row in p.value[c]] for c in range(2)]) for p in (synthetic, place))
+    away = np.nan_to_num(foams[:, :, None] - draws[:, None], nan=np.inf)  # [2][foams][draws][heights]
+    square = (away**2).mean(axis=3)
+    nearest = (square / np.reshape(advice.FORM, (2, 1, 1)) ** 2).sum(axis=0).argmin(axis=1)
+    return np.sqrt(square[:, np.arange(nearest.size), nearest].mean(axis=1))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("foams", nargs="?", type=int, default=200)
@@ -115,6 +125,7 @@ def main():
     pads = np.arange(n) * advice.REPEATS + random.integers(advice.REPEATS, size=n)
     required = random.uniform(low, high, n)
     print(f"{n} foams; limits {LIMITS[0]:g} g and HIC {LIMITS[1]:g}; heights required {low:.2f} to {high:.2f} m")
+    print("from the nearest draw: {:.1%} of a_max, {:.1%} of HIC".format(*distances(place, synthetic, low, high)))
     print("| plan | drops for each pad | with three more where nothing is decided | wrong decisions (%) | open after 12 drops (%) | foam is none of the draws (%) | interval holds the height (%) |\n"
           "|---|---:|---:|---:|---:|---:|---:|")
     for bound, most, forced in PLANS:
