@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The columns' drop against an integration of its own with steps of 1 us, filtered and evaluated as
+/* The columns: a point against the foam law, their areas against the closed form of a sphere, and their drop
+ * against its energy and an integration of its own with steps of 1 us, filtered and evaluated as
  * softfall-post does it. */
 #include "extreme.h"
 #include "foam_fixture.h"
 #include "post/figures/signal.h"
 #include "study/column.h"
+#include "study/fit/form/form.h"
+#include "post_check.h"
 
 #include "base/units.h"
 #include <math.h>
@@ -189,8 +192,157 @@ static void collapse_is_told(void **state) {
     sf_foam_free(&foam);
 }
 
+static const sf_gas_curve eva = {0.4136e6, 7.4e3, 134e3, 23e3, 2.8, 0};
+
+/* Compression, release, compression again at changing speed: the point is lane 0 of the batch. */
+static void assert_uniaxial_is_the_law(const point_card *card) {
+    sf_foam foam;
+    sf_law_batch batch;
+    sf_uniaxial point = {0};
+    double dt = 2e-5, largest = 0, f[9];
+    foam_build(card, &foam);
+    foam_reset(&batch);
+    for (int k = 1; k <= 3000; k++) {
+        double strain = 0.75 * (1 - cos(0.004 * k)) / 2 * (1 + 0.2 * sin(0.011 * k));
+        foam_uniaxial(1 - strain, f);
+        foam_step(&foam, dt, f, &batch);
+        double stress = sf_foam_uniaxial(&foam, dt, strain, &point);
+        largest = larger(largest, fabs(stress));
+        assert_true(fabs(stress + batch.p[0][0]) < 1e-9 * fmax(largest, 1));
+    }
+    assert_true(largest > 1e4);
+    sf_foam_free(&foam);
+}
+
+static void column_point_is_the_foam_law(void **state) {
+    (void)state;
+    point_card card;
+    point_card_init(&card);
+    point_card_add_eva(&card, 0, 120, 0.9, 1);
+    assert_uniaxial_is_the_law(&card);
+    card.card.hysteresis_hu = 0.05;
+    card.card.hysteresis_shape = 2.5;
+    card.card.maxwell_modulus = 3e6;
+    card.card.maxwell_rate = 4000;
+    card.card.kelvin_viscosity = 300;
+    assert_uniaxial_is_the_law(&card);
+    point_card_add_eva(&card, 1, 120, 0.9, 1.2);
+    point_card_add_eva(&card, 100, 120, 0.9, 1.5);
+    card.card.curve_rate[0] = 0.01;
+    card.card.rate_filter_time = 1e-4;
+    assert_uniaxial_is_the_law(&card);
+}
+
+/* A missile whose surface is a fine spherical cap over a wide pad. */
+static void columns_are_the_closed_form(void **state) {
+    (void)state;
+    enum { RINGS = 60, SECTORS = 60 };
+    static double position[3 * (RINGS + 1) * SECTORS];
+    static int32_t triangle[6 * RINGS * SECTORS];
+    const double radius = 0.08, thickness = 0.07;
+    double pad[] = {-1, -1, 0, 1, 1, 0};
+    sf_results r = {.node_count = 2,
+                    .position = pad,
+                    .surface_node_count = (RINGS + 1) * SECTORS,
+                    .surface_position = position,
+                    .surface_triangle = triangle,
+                    .symmetry_factor = 1,
+                    .thickness = thickness,
+                    .missile_mass = 4.6,
+                    .missile_speed = 5,
+                    .missile_direction = {0, 0, -1}};
+    for (int i = 0; i <= RINGS; i++)
+        for (int j = 0; j < SECTORS; j++) {
+            double polar = 0.5 * M_PI * i / RINGS, angle = 2 * M_PI * j / SECTORS,
+                   *x = &position[3 * (i * SECTORS + j)];
+            x[0] = radius * sin(polar) * cos(angle);
+            x[1] = radius * sin(polar) * sin(angle);
+            x[2] = radius * (1 - cos(polar));
+        }
+    for (int i = 0; i < RINGS; i++)
+        for (int j = 0; j < SECTORS; j++) {
+            int a = i * SECTORS + j, b = i * SECTORS + (j + 1) % SECTORS;
+            const int32_t two[6] = {a, b,           a + SECTORS,
+                                    b, b + SECTORS, a + SECTORS}; /* normals outwards: down */
+            memcpy(&triangle[6 * r.surface_triangle_count / 2], two, sizeof two);
+            r.surface_triangle_count += 2;
+        }
+    sf_columns c;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_columns_build(&r, &c, &err), SF_OK);
+    assert_true(c.mass == 4.6 && c.speed == 5);
+    double depth = 0.05, sum = 0, closed = 0, energy = 0;
+    for (int k = 0; k < c.count && c.gap[k] < depth; k++)
+        sum += c.area[k] * sf_gas_curve_stress(&eva, (depth - c.gap[k]) / thickness);
+    int n = 20000; /* F = 2 pi H [(R - delta) W + H int e sigma] */
+    for (int k = 0; k < n; k++) {
+        double strain = depth / thickness * (k + 0.5) / n, part = depth / thickness / n;
+        energy += part * sf_gas_curve_stress(&eva, strain);
+        closed += part * strain * sf_gas_curve_stress(&eva, strain);
+    }
+    closed = 2 * M_PI * thickness * ((radius - depth) * energy + thickness * closed);
+    assert_true(fabs(sum / closed - 1) < 0.01);
+}
+
+static void column_drop_keeps_energy(void **state) {
+    (void)state;
+    point_card card;
+    sf_foam foam;
+    sf_series curve;
+    sf_error err = SF_ERROR_INIT;
+    sf_columns c = {.mass = 2, .speed = 3, .thickness = 0.05, .count = 1, .area = {0.01}, .gap = {0}};
+    point_card_init(&card); /* no hysteresis, no viscosity: the rebound is the impact */
+    point_card_add_eva(&card, 0, 120, 0.9, 1);
+    foam_build(&card, &foam);
+    const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
+    double impulse = 0;
+    sf_columns_figures figures;
+    assert_int_equal(sf_columns_drop(&c, &law, &curve, &figures, &err), SF_OK);
+    for (int64_t k = 1; k < curve.count; k++)
+        impulse +=
+            0.5 * (curve.value[k] + curve.value[k - 1] - 2) * 9.80665 * (curve.time[k] - curve.time[k - 1]);
+    assert_true(fabs(impulse / (2 * c.speed) - 1) < 2e-3);
+    sf_series_free(&curve);
+    sf_foam_free(&foam);
+}
+
+/* The figures of the columns are those of the filtered reading F/m, from free flight to the rebound. */
+static void column_figures_are_those_of_the_reading(void **state) {
+    (void)state;
+    point_card card;
+    sf_foam foam;
+    sf_series raw, read;
+    sf_columns_figures figures;
+    sf_hic hic;
+    sf_error err = SF_ERROR_INIT;
+    sf_columns c = {.mass = 2, .speed = 3, .thickness = 0.05, .count = 1, .area = {0.01}, .gap = {0}};
+    point_card_init(&card);
+    point_card_add_eva(&card, 0, 120, 0.9, 1);
+    foam_build(&card, &foam);
+    const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
+    assert_int_equal(sf_columns_drop(&c, &law, &raw, &figures, &err), SF_OK);
+    assert_int_equal(sf_columns_respond(&c, &law, &figures, &read, &err), SF_OK);
+    assert_int_equal(sf_hic_evaluate(&read, INFINITY, &hic, &err), SF_OK);
+    double peak = 0;
+    for (int64_t k = 0; k < raw.count; k++)
+        peak = larger(peak, raw.value[k]);
+    assert_true(raw.value[0] == 0 && fabs(read.value[0]) < 1e-6); /* free flight: 0, not -1 g */
+    assert_true(fabs(figures.a_max_g / peak - 1) < 2e-3);
+    assert_true(fabs(figures.hic / hic.value - 1) < 2e-3);
+    assert_true(fabs(figures.hic_window / (hic.t2 - hic.t1) - 1) < 5e-3);
+    assert_true(fabs(figures.v_rebound / c.speed - 1) < 5e-3); /* no loss */
+    assert_true(fabs(figures.contact_time - raw.time[raw.count - 1]) < 1e-4);
+    sf_series_free(&raw);
+    sf_series_free(&read);
+    sf_foam_free(&foam);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(column_point_is_the_foam_law),
+        cmocka_unit_test(columns_are_the_closed_form),
+        cmocka_unit_test(column_drop_keeps_energy),
+        cmocka_unit_test(column_figures_are_those_of_the_reading),
         cmocka_unit_test(drop_is_that_of_fine_steps),
         cmocka_unit_test(figures_change_smoothly),
         cmocka_unit_test(collapse_is_told),
