@@ -499,6 +499,36 @@ static void hidden_foam_is_found(void **state) {
     program_tear_down(&place);
 }
 
+/* A prediction is of a single pad and drop: speed and thickness of its case scatter. */
+static void a_predicted_drop_scatters(void **state) {
+    (void)state;
+    program_place place;
+    program_set_up(&place);
+    put_case(&place);
+    program_shell(&place,
+                  "sed 's/4.5 m/5 m/' case.cfg > fast.cfg; sed 's/^missile: {/& speed_scatter = 0.0;/' "
+                  "fast.cfg > exact.cfg; echo 'pad: { thickness_tolerance = \"0 mm\"; };' >> exact.cfg");
+    program_write_text(
+        &place, "fit.cfg",
+        "material = \"start.cfg\"; curve_form = \"table\"; posterior = false;\n"
+        "unknown = ( { name = \"stress_scale\"; } );\n"
+        "drops = ( { name = \"a\"; case = \"case.cfg\"; a_max_g = 66.0; } );\n"
+        "predict = ( { name = \"fast\"; case = \"fast.cfg\"; }, { name = \"exact\"; case = \"exact.cfg\"; } );\n");
+    program_result r = program_succeed(&place, "fit", "drop fit.cfg -o out -t 1");
+    program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
+    const char *told = strstr(r.out, "\nConverged"), *fast = strstr(json.data, "\"fast\""),
+               *exact = strstr(json.data, "\"exact\"");
+    double by_parameters = program_json_number(fast, NULL, "a_max_sd_by_parameters"),
+           scatter = program_json_number(fast, NULL, "a_max_scatter"),
+           both = number_after(strstr(told, "  fast "), "± "),
+           alone = number_after(strstr(told, "  exact "), "± ");
+    assert_true(scatter > 0.005 && program_json_number(exact, NULL, "a_max_scatter") == 0);
+    assert_close(alone, 196 * by_parameters, 0.06); /* printed with one digit */
+    assert_close(both, 196 * hypot(by_parameters, scatter), 0.06);
+    free(json.data);
+    program_tear_down(&place);
+}
+
 /* The record of a drop on a mount of 100 Hz tells the mount's frequency beside the foam, and a fit that takes
  * the mount for rigid does not describe it. */
 static void the_mount_of_the_accelerometer_is_found(void **state) {
@@ -567,6 +597,7 @@ int main(void) {
         cmocka_unit_test(no_foam_is_one_that_a_case_refuses),
         cmocka_unit_test(what_no_foam_has_does_not_converge),
         cmocka_unit_test(hidden_foam_is_found),
+        cmocka_unit_test(a_predicted_drop_scatters),
         cmocka_unit_test(the_mount_of_the_accelerometer_is_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),
     };

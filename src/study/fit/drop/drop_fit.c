@@ -73,10 +73,12 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
     sf_drop_fit_read(drop, &fit->chain_now, &figures, &result->curve, "its simulation ends",
                      "raise solver.end_time of its case", &y[fit->row[d]], err);
     sf_series_free(&last->curve);
-    *last = (sf_fit_simulated){.max_local_strain = result->max_local_strain,
-                               .energy_error = result->energy_error,
-                               .grade = result->grade,
-                               .curve = result->curve};
+    *last = (sf_fit_simulated){
+        .max_local_strain = result->max_local_strain,
+        .energy_error = result->energy_error,
+        .scatter = {sf_runner_figure(result, "a_max_scatter"), sf_runner_figure(result, "hic_scatter")},
+        .grade = result->grade,
+        .curve = result->curve};
     snprintf(last->verdict, sizeof last->verdict, "%s", result->verdict);
     result->curve = (sf_series){0};
     return err->status;
@@ -104,7 +106,10 @@ static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const ch
     if (!sf_process_stopped() && fit->columns[d].count == 0)
         find_columns_early(fit, d, material);
     if (s->curve.count == 0) /* it did not end */
-        *s = (sf_fit_simulated){.max_local_strain = NAN, .energy_error = NAN, .grade = SF_GRADE_DO_NOT_USE};
+        *s = (sf_fit_simulated){.max_local_strain = NAN,
+                                .energy_error = NAN,
+                                .scatter = {NAN, NAN},
+                                .grade = SF_GRADE_DO_NOT_USE};
     snprintf(s->failure, sizeof s->failure, "%s", sentence);
     if (!*s->verdict)
         snprintf(s->verdict, sizeof s->verdict, "%.400s", sentence);

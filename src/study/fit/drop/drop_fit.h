@@ -41,6 +41,7 @@ enum { SF_FIT_STRAIN_BINS = 19 }; /* SF_FIT_BIN_WIDTH wide, from 0 to 0.95 */
 /* The last simulation of each drop. */
 typedef struct sf_fit_simulated {
     double max_local_strain, energy_error;
+    double scatter[2]; /* of ln a_max and ln HIC, standard deviation from drop to drop; NaN: not known */
     sf_grade grade;
     char verdict[SF_VERDICT_LINE_SIZE]; /* its sentence */
     /* of a predicted drop whose simulation ended without a result that may be used: why; its responses are

@@ -8,9 +8,21 @@
 #include "report/chart.h"
 #include "report/row.h"
 
+static const double SIDES = 1.959963984540054; /* standard deviations on each side of a 95 % interval */
+
 /* Standard deviation of the logarithm of a response by the parameters. */
 static double response_sd(const sf_drop_fit *fit, int d, int kind) {
     return fit->response_sd[fit->row[d] + kind];
+}
+
+static double scatter(const sf_drop_fit *fit, int d, int kind) {
+    return kind == SF_FIT_A_MAX || kind == SF_FIT_HIC ? fit->simulated[d].scatter[kind == SF_FIT_HIC] : NAN;
+}
+
+/* Half of the linearised 95 % interval of the logarithm of a predicted response: of a single pad and drop. */
+static double half_width(const sf_drop_fit *fit, int d, int kind) {
+    double by_drop = scatter(fit, d, kind);
+    return hypot(sf_drop_half_width(fit) * response_sd(fit, d, kind), isnan(by_drop) ? 0 : SIDES * by_drop);
 }
 
 /* Change in % from what was measured to a response, a logarithm. */
@@ -196,15 +208,14 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
     sf_html_heading(f, "Predictions by simulation with the written material");
     sf_html_note(
         f,
-        "Drops that were not used. The 95 %% intervals are linearised and hold the uncertainty of this model's parameters alone; that of the "
-        "discretisation and of the model's form come on top.");
+        "Drops that were not used. The 95 %% intervals are linearised and hold the uncertainty of this model's parameters and, of a_max and HIC, the scatter "
+        "from drop to drop (missile.speed_scatter and pad.thickness_tolerance); that of the discretisation and of the model's form come on top.");
     sf_html_table table =
         sf_html_table_begin(f, "dense", "drop|quantity|>predicted|>95 %|>largest local strain|verdict");
     for (int d = fit->measured_drops; d < in->drop_count; d++)
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
             const sf_drop_kind_info *about = sf_drop_kind_get(kind);
-            double value = sf_drop_response(fit, d, kind),
-                   width = sf_drop_half_width(fit) * response_sd(fit, d, kind);
+            double value = sf_drop_response(fit, d, kind), width = half_width(fit, d, kind);
             if (!sf_drop_shows(fit, d, kind))
                 continue;
             put_heading(heading, about);
@@ -339,6 +350,8 @@ static void json_kind(sf_json *j, const sf_drop_fit *fit, int d, int kind) {
     json_stem(j, stem, "_measured_sd", "", isnan(measured) ? NAN : sd);
     json_stem(j, stem, "", suffix, sf_drop_response(fit, d, kind));
     json_stem(j, stem, "_sd_by_parameters", "", response_sd(fit, d, kind));
+    if (kind == SF_FIT_A_MAX || kind == SF_FIT_HIC)
+        json_stem(j, stem, "_scatter", "", scatter(fit, d, kind));
     json_stem(j, stem, "_from_others", suffix, exp(fit->without[fit->row[d] + kind]));
 }
 
@@ -456,8 +469,7 @@ sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *av
 static void print_response(FILE *f, const sf_drop_fit *fit, int d, int kind) {
     const sf_drop_kind_info *about = sf_drop_kind_get(kind);
     const sf_fit_drop *drop = &fit->input->drop[d];
-    double value = sf_drop_response(fit, d, kind),
-           width = 100 * sf_drop_half_width(fit) * response_sd(fit, d, kind);
+    double value = sf_drop_response(fit, d, kind), width = 100 * half_width(fit, d, kind);
     if (isnan(value))
         fprintf(f, "  %s –", about->name);
     else
