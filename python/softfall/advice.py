@@ -393,8 +393,9 @@ def advise(pads: Pads, q: Question, tests: Sequence[Test] = ()) -> Advice:
     share, now = float(loss.probability(weight)) if q.decides else math.nan, float(loss(weight))
     known = Advice(share, (height[0], height[1], height[2]), now, q.bound, None, False)
     if pads.misfit < MISFIT or pads.effective_draws < LEAST_DRAWS:
-        return replace(known, problem=f"what was measured leaves {pads.effective_draws:.1f} of {pads.draws} draws, or fits none: the foam is none of them. Give these "
-                       "drops to softfall-fit drop, and begin anew with its posterior and without them")
+        return replace(known, height=(math.nan,) * 3, loss=math.nan, probability=math.nan,
+                       problem=f"what was measured leaves {pads.effective_draws:.1f} of {pads.draws} draws, or fits none: a height or a scale in list.csv is wrong, or the foam is "
+                       "none of them. Then give these drops to softfall-fit drop, and begin anew with its posterior and without them")
     if any(place.freedom == 0 for place in pads.judged):
         return replace(known, problem="the error of the columns is not known, as no draw was simulated with success")
     if now <= q.bound:

@@ -10,6 +10,7 @@ from .curves import STANDARD_GRAVITY
 from .protocol import Protocol
 from .protocol_drops import NO_LIMIT, Drop, Drops, Search, Spot, figures_of
 
+LEAST_DRAWS = 20  # for a 95 % interval
 MESH_HIC = 1.3  # expected error of HIC from the mesh over that of a_max, SF_CFH_MESH_HIC of softfall-cfh (docs/cfh.md)
 
 
@@ -49,12 +50,24 @@ def judge(p: Protocol, drops: Drops) -> Outcome:
     """Returns the result of the drops by the rules of the protocol."""
     made = {"pass": _judge_pass, "critical height": _judge_height, "cushion curve": _judge_cushion}[p.kind](p, drops)
     made.notes += drops.missing
-    if any("is not simulated" in note for note in drops.missing) and made.passed is not False:
-        made.passed, made.stated = None, made.stated + " in what was simulated, and not decided for the rest"
-    if drops.stands_in and 1 not in p.counted:  # later drops on a spot are mostly harder
+    alone = ["in what was simulated"] if any("is not simulated" in note for note in drops.missing) else []
+    alone += ["by the first drop"] if drops.stands_in and 1 not in p.counted else []  # later drops on a spot are mostly harder
+    if alone:
+        made.stated = f"not decided: passed {' and '.join(alone)} alone" if made.passed else f"{made.stated}, {' and '.join(alone)} alone"
         made.passed = None if made.passed else made.passed
-        made.stated += ", by the first drop, and not decided for those that count"
+    if drops.doubt:
+        made.passed, made.value, made.low, made.high = None, math.nan, math.nan, math.nan
+        made.stated = f"not decided, as {drops.doubt} (as they are listed: {made.stated})"
+    if any(0 < len(drop.draws) < LEAST_DRAWS for drop in drops.drops):
+        made.notes.append(f"figures have no 95 % intervals, which need {LEAST_DRAWS} draws of the foam and more")
     return made
+
+
+def _why(lines: list[Line]) -> str:
+    """Returns why a limit is not decided: of the first drop that is not to be used, or else of the first line."""
+    open_lines = [line for line in lines if line.limit is not None and line.passed is None]
+    line = next((line for line in open_lines if "not to be used" in line.note), open_lines[0])
+    return f"{line.of}: {line.note or f'there is no {line.figure}'}"
 
 
 def _spots(drops: Drops) -> dict[Spot, list[Drop]]:
@@ -92,8 +105,7 @@ def _judge_pass(p: Protocol, drops: Drops) -> Outcome:
     if any(passed is False for passed in judged):
         made.passed, made.stated = False, "not passed"
     elif any(passed is None for passed in judged):
-        made.stated = "not decided: " + ("the mesh is too coarse for the limit" if any("error of the mesh" in line.note for line in made.lines)
-                                          else "figures of some drops are not to be used")
+        made.stated = f"not decided: {_why(made.lines)}"
     else:
         made.passed, made.stated = True, "passed"
     made.probability = _probability(p, drops)
@@ -106,9 +118,9 @@ def _mesh_error(group: list[Drop], key: str) -> float:
 
 
 def _draw_interval(drop: Drop, key: str) -> tuple[float, float]:
-    """Returns 2.5 and 97.5 % of the draws of a drop, NaN of fewer than 20."""
+    """Returns 2.5 and 97.5 % of the draws of a drop, NaN of fewer than LEAST_DRAWS."""
     values = sorted(figures[key] for figures in drop.draws.values() if key in figures)
-    if len(values) < 20:
+    if len(values) < LEAST_DRAWS:
         return math.nan, math.nan
     return values[int(0.025 * (len(values) - 1))], values[math.ceil(0.975 * (len(values) - 1))]
 
@@ -140,7 +152,7 @@ def _judge_height(p: Protocol, drops: Drops) -> Outcome:
     values = [value for value, exact in bounds if exact]
     least = min(values, default=math.nan)
     if any(math.isnan(value) for value, _ in bounds):
-        made.stated = "not determined"
+        made.stated = "not determined: " + (made.notes[-1] if made.notes else _why(made.lines))
     elif any(not exact and value <= (least if values else math.inf) and value < 0 for value, exact in bounds):
         made.stated = f"below {min(-value for value, exact in bounds if not exact and value < 0):.3g} m"
     elif not values:
@@ -149,6 +161,8 @@ def _judge_height(p: Protocol, drops: Drops) -> Outcome:
         lower_bounds = [value for value, exact in bounds if not exact and value < least]
         made.value = least
         rounded = math.floor(least / p.rounding + 1e-9) * p.rounding if p.rounding else least
+        if p.rounding and not rounded:
+            made.notes.append(f"the height is below one step of the rounding, {p.rounding:g} m")
         made.stated = f"{rounded:.3g} m" if not lower_bounds else f"between {min(lower_bounds):.3g} and {least:.3g} m"
         decisive = min((line for line in made.lines if not math.isnan(line.value)), key=lambda line: line.value)
         made.low, made.high = decisive.low, decisive.high

@@ -171,11 +171,14 @@ def strain_rate(text: Any, where: str) -> float:
 
 
 class _Group:
-    """A table of the file: every key is taken once, and one that is left is refused."""
+    """A table of the file; a key that is none of `known`, a text such as "a, b and c", is refused."""
 
-    def __init__(self, where: str, table: Any) -> None:
+    def __init__(self, where: str, table: Any, known: str) -> None:
         if not isinstance(table, dict):
             raise InputError(f"{where}: a table is expected")
+        for key in table:
+            if key not in re.split(", | and ", known):
+                raise InputError(f"{where}: there is no key {key!r}; there are {known}")
         self.where, self.left = where, dict(table)
 
     def take(self, key: str, kind: type | tuple[type, ...], default: Any = ...) -> Any:
@@ -190,12 +193,9 @@ class _Group:
             words = {str: "a text", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
             expected = "a number without a unit" if float in kinds else " or ".join(words[k] for k in kinds)
             raise InputError(f"{self.where}: {key} = {value!r} is not {expected}")
+        if isinstance(value, float) and not math.isfinite(value):
+            raise InputError(f"{self.where}: {key} = {value} is not a finite number")
         return value
-
-    def end(self, known: str) -> None:
-        """Refuses what was not taken."""
-        if self.left:
-            raise InputError(f"{self.where}: there is no key {next(iter(self.left))!r}; there are {known}")
 
 
 def folder() -> Path:
@@ -222,36 +222,32 @@ def read(name: str) -> Protocol:
     """Reads and checks a protocol. A mistake is an InputError that names file, group and key."""
     path = find(name)
     try:
-        top = _Group(str(path), tomllib.loads(path.read_text(encoding="utf-8")))
+        top = _Group(str(path), tomllib.loads(path.read_text(encoding="utf-8-sig")), "title, standard, missile, drops, figure, result, clause and advice")
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: {error}") from None
     title, standard = top.take("title", str), top.take("standard", str)
-    missile, drops = _Group(f"{path}: missile", top.take("missile", dict)), _Group(f"{path}: drops", top.take("drops", dict))
-    result = _Group(f"{path}: result", top.take("result", dict))
+    missile = _Group(f"{path}: missile", top.take("missile", dict), "geometry, parameters, mass, keys and filter")
+    drops = _Group(f"{path}: drops", top.take("drops", dict), "conditions, positions, heights, masses, area, count, interval and counted")
+    result = _Group(f"{path}: result", top.take("result", dict), "kind and rounding")
     kind = result.take("kind", str)
     if kind not in KINDS:
         raise InputError(f"{path}: result: kind {kind!r} is none of {', '.join(KINDS)}")
     rounding = result.take("rounding", str, None)
-    advice = _Group(f"{path}: advice", top.take("advice", dict, {}))
+    advice = _Group(f"{path}: advice", top.take("advice", dict, {}), "drop_cost, missiles and tests")
     figures = tuple(_figure(path, k, table) for k, table in enumerate(top.take("figure", list), 1))
     clauses = tuple(_clause(path, k, table) for k, table in enumerate(top.take("clause", list), 1))
     made = Protocol(
         name=path.stem, path=path, title=title, standard=standard, kind=kind, missile=_missile(path, missile),
         filter=_filter(path, missile), **_drops(path, drops, kind), figures=figures, clauses=clauses, **_advice(path, advice),
         rounding=length(rounding, f"{path}: result: rounding") if rounding else 0.0)
-    result.end("kind and rounding")
-    missile.end("geometry, parameters, mass, keys and filter")
-    drops.end("conditions, positions, heights, masses, area, count, interval and counted")
-    advice.end("drop_cost, missiles and tests")
-    top.end("title, standard, missile, drops, figure, result, clause and advice")
     _check(made)
     return made
 
 
 def _figure(path: Path, number: int, table: Any) -> Figure:
-    group = _Group(f"{path}: figure {number}", table)
+    group = _Group(f"{path}: figure {number}", table, "key, limit, least_window_ms, name, factor and offset")
     window = group.take("least_window_ms", (int, float), 0)
     limit = group.take("limit", (int, float), None)
     factor, offset = (float(group.take(key, (int, float), default)) for key, default in (("factor", 1), ("offset", 0)))
@@ -262,19 +258,18 @@ def _figure(path: Path, number: int, table: Any) -> Figure:
     key = group.take("key", str)
     if key != key.lower() and key.lower() in library.RECORD_FIGURES:
         raise InputError(f'{group.where}: there is no figure key = "{key}"; it is "{key.lower()}"')
-    figure = Figure(key, None if limit is None else float(limit), 1e-3 * window, group.take("name", str, ""), factor, offset)
-    group.end("key, limit, least_window_ms, name, factor and offset")
-    return figure
+    if window < 0 or window > 0 and key != "hic":
+        raise InputError(f"{group.where}: least_window_ms = {window:g} of {key}: a least window is above 0, and belongs to hic")
+    return Figure(key, None if limit is None else float(limit), 1e-3 * window, group.take("name", str, ""), factor, offset)
 
 
 def _clause(path: Path, number: int, table: Any) -> Clause:
-    group = _Group(f"{path}: clause {number}", table)
+    group = _Group(f"{path}: clause {number}", table, "of, text, source and status")
     of, text, source, status = (group.take(key, str) for key in ("of", "text", "source", "status"))
     if not source.strip():
         raise InputError(f"{group.where}: source is empty: say where the clause was read, or that it is from memory")
     if status not in ("confirmed", "unconfirmed"):
         raise InputError(f"{group.where}: status {status!r} is neither confirmed nor unconfirmed")
-    group.end("of, text, source and status")
     return Clause(of, text, source, status == "confirmed")
 
 
@@ -295,6 +290,8 @@ def _missile(path: Path, group: _Group) -> dict[str, Any]:
         _quantity(mass, ("kg", "g", "lb"), f"{group.where}: mass")
         keys["missile.mass"] = mass
     keys.update(group.take("keys", dict, {}))
+    if "missile.velocity" in keys:
+        raise InputError(f"{group.where}: missile.velocity is that of the fall from the heights of the protocol")
     return keys
 
 
@@ -309,19 +306,17 @@ def _advice(path: Path, group: _Group) -> dict[str, Any]:
     """Returns what --advise may rank beside drops of the protocol, and the costs."""
     others, tests, given = [], [], "tests" in group.left
     for k, table in enumerate(group.take("missiles", list, []), 1):
-        one = _Group(f"{group.where}: missile {k}", table)
+        one = _Group(f"{group.where}: missile {k}", table, "name, cost, geometry, parameters, mass and keys")
         name, cost = one.take("name", str).strip(), _cost(one, "cost", MISSILE_COST)
         others.append(Missile(name, _missile(path, one), cost))
         if name in ("", "drop", "test") or any(other.name == name for other in others[:-1]):
             raise InputError(f"{one.where}: name {name!r} is empty, that of another missile, or drop or test, which are no missiles")
         if not others[-1].keys:
             raise InputError(f"{one.where}: {name} has neither geometry, mass nor keys, by which it would be another missile")
-        one.end("name, cost, geometry, parameters, mass and keys")
     for k, table in enumerate(group.take("tests", list, []), 1):
-        one = _Group(f"{group.where}: test {k}", table)
+        one = _Group(f"{group.where}: test {k}", table, "rate, cost and error")
         tests.append(CompressionTest(strain_rate(one.take("rate", str), f"{one.where}: rate"), _cost(one, "cost", TESTS[0].cost),
                                      _cost(one, "error", TEST_ERROR)))
-        one.end("rate, cost and error")
     return {"drop_cost": _cost(group, "drop_cost", DROP_COST), "others": tuple(others), **({"tests": tuple(tests)} if given else {})}
 
 
@@ -335,20 +330,20 @@ def _filter(path: Path, group: _Group) -> float:
 def _drops(path: Path, group: _Group, kind: str) -> dict[str, Any]:
     conditions, positions = [], []
     for k, table in enumerate(group.take("conditions", list, [{"name": "as it is"}]), 1):
-        one = _Group(f"{group.where}: condition {k}", table)
+        one = _Group(f"{group.where}: condition {k}", table, "name and keys")
         conditions.append(Condition(one.take("name", str), one.take("keys", dict, {})))
-        one.end("name and keys")
     for k, table in enumerate(group.take("positions", list, [{"name": "centre"}]), 1):
-        one = _Group(f"{group.where}: position {k}", table)
+        one = _Group(f"{group.where}: position {k}", table, "name and at")
         name, at = one.take("name", str), one.take("at", list, None)
         if at is not None and len(at) != 2:
             raise InputError(f'{one.where}: at = {at} is not x and y: ["100 mm", "0 mm"]')
         positions.append(Position(name, None if at is None else tuple(length(part, one.where) for part in at)))  # type: ignore[arg-type]
-        one.end("name and at")
     count = group.take("count", int, 1)
     counted = tuple(group.take("counted", list, list(range(1, count + 1))))
     if not 1 <= count <= 20 or not counted or any(not isinstance(k, int) or not 1 <= k <= count for k in counted):
         raise InputError(f"{group.where}: counted {list(counted)} are not drops of count = {count} (1 to 20)")
+    if len(set(counted)) < len(counted):
+        raise InputError(f"{group.where}: counted {list(counted)} has a drop twice")
     area = group.take("area", str, None)
     return {"conditions": tuple(conditions), "positions": tuple(positions), "count": count, "counted": counted,
             "heights": tuple(length(text, f"{group.where}: heights") for text in group.take("heights", list, [])),

@@ -151,25 +151,25 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
         pads.learn(drop)
     told = advice.advise(pads, question, _tests(p, Path(posterior), notes))
     notes += measured.missing
-    if any(line.note for line in lines):
-        notes.append("some measured figures were not expected: the foam may be none of the draws")
     notes.append(f"{pads.effective_draws:.0f} of {pads.draws} draws are left after what was measured")
     outcome = Outcome(_stated(p, question, told), told.decision, told.height[1], told.height[0], told.height[2], lines, notes,
                       meaning="measured; the interval was expected before the drop")
     if any("is not simulated" in note for note in notes) and told.decision:
         outcome.passed, outcome.stated = None, outcome.stated + " in what was simulated, and not decided for the rest"
-    if outcome.passed and any(line.note for line in lines):
+    unexpected = sum(bool(line.note) for line in lines)
+    if unexpected and not told.problem:
         outcome.passed = None
+        outcome.stated += f"; but {unexpected} of {len(lines)} measured figures were not expected: check height and scale of the record, or the foam is none of the draws"
     if 1 not in p.counted:
-        outcome.passed = None if told.decision else told.decision
-        outcome.stated += ", by first drops, and not decided for those that count"
+        outcome.passed = None if outcome.passed else outcome.passed
+        outcome.stated += "; this is of first drops, and those that count are not decided"
     notes += search_notes(p, searches)
     return told, outcome, Drops(searches=searches)
 
 
 def _stated(p: Protocol, question: advice.Question, told: advice.Advice) -> str:
     """Returns the state of knowledge in words."""
-    known = f"probability of passing {told.probability:.2f}" if question.decides else f"interval of {100 * told.loss:.0f} % of the height"
+    known = f"probability of passing {told.probability:.2f}" if question.decides else f"interval of {100 * told.loss:.3g} % of the height"
     if told.problem:
         return f"not decided: {told.problem}"
     if told.stop:

@@ -51,6 +51,7 @@ class Drop:
     view: Path | None = None  # the folder of its report.html and view.html
     draws: dict[str, dict[str, float]] = field(default_factory=dict)
     mesh_error: float = 0.0  # expected of a_max, simulated; the figures fall short by it
+    reading: str = ""  # how a measured record was read
 
     @property
     def is_usable(self) -> bool:
@@ -72,11 +73,13 @@ class Search:
 
 @dataclass
 class Drops:
-    """All drops of one kind; `missing`: what of the protocol they do not have, and what looks wrong in them, in sentences."""
+    """All drops of one kind; `missing`: what of the protocol they do not have, and what looks wrong in them, in sentences; `doubt`: why nothing
+    is decided by them."""
 
     drops: list[Drop] = field(default_factory=list)
     searches: list[Search] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
+    doubt: str = ""
     stands_in: bool = False  # the first drop on a spot stands for those that count
 
     @property
@@ -86,7 +89,7 @@ class Drops:
 
 
 def hic_from(time: Any, deceleration: Any, least: float) -> float:
-    """Returns HIC with windows of at least `least` seconds.
+    """Returns HIC with windows of at least `least` seconds; NaN: the curve is shorter.
 
     It is the ordinary one where its window is long enough; else the best window has that length.
 
@@ -97,6 +100,8 @@ def hic_from(time: Any, deceleration: Any, least: float) -> float:
     if not free > 0 or free.t2 - free.t1 >= least:
         return float(free)
     t, a = np.asarray(time, float), np.asarray(deceleration, float)
+    if t[-1] - t[0] < least:
+        return math.nan
     integral = np.concatenate([[0], np.cumsum(0.5 * (a[1:] + a[:-1]) * np.diff(t))])
     begins = np.unique(np.concatenate([t[t <= t[-1] - least], t[t >= t[0] + least] - least, np.linspace(t[0], t[-1] - least, 20001)]))
 
@@ -120,7 +125,8 @@ def take_figures(figures: Iterable[Figure], known: Mapping[str, Any], curve: tup
     taken = {}
     for figure in figures:
         if figure.least_window and figure.key == "hic" and curve is not None:
-            taken[figure.label] = figure.of(hic_from(*curve, figure.least_window))
+            value = hic_from(*curve, figure.least_window)
+            taken.update({} if math.isnan(value) else {figure.label: figure.of(value)})
         elif figure.key in known:
             taken[figure.label] = figure.of(float(known[figure.key]))
     return taken
@@ -141,6 +147,8 @@ def case_at(p: Protocol, pad: Case, condition: Condition, position: Position, mi
     does not have the keys of the first two."""
     if pad["series.drops"] != 1:
         raise InputError(f"{pad.path}: series.drops = {pad['series.drops']}: leave the group series out, as the protocol says how many drops there are")
+    if "missile.velocity" in pad.overrides:
+        raise InputError(f"{pad.path}: --set missile.velocity: the speed is that of the fall from the heights of the protocol")
     case = pad.copy()
     try:
         case.update(p.missile if missile is None else missile)
@@ -148,6 +156,9 @@ def case_at(p: Protocol, pad: Case, condition: Condition, position: Position, mi
         raise InputError(f"{p.path}: missile, on {pad.path}: {str(error).removeprefix('--set ')}") from None
     for what, keys in ((f"condition {condition.name}", condition.keys),
                        (f"position {position.name}", {"missile.position": [f"{1e3 * x:g} mm" for x in position.at]} if position.at else {})):
+        unknown = [key for key in keys if key not in case]
+        if unknown:
+            raise InputError(f"{p.path}: {what}: the case has no key {unknown[0]!r}")
         try:
             case.update(keys)
         except InputError as error:
@@ -367,21 +378,22 @@ def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -
         height = min(p.heights, key=lambda h: abs(speed(h) - float(cell["speed (m/s)"])))
         mass = min(p.masses, key=lambda m: abs(float(m.split()[0]) - float(cell["mass (kg)"])), default="") if p.masses else ""
         spot = Spot(condition.name, position.name, height, mass)
-        results = folder / "runs" / cell["folder"] / "results.h5"
+        results = folder / "runs" / cell["folder"] / "results.h5" if cell["folder"] else None
         usable = cell["run_status"] == "done" and cell["grade"] != "do not use"
-        drop = drops.setdefault(spot, Drop(spot, 1, str(results), grade=cell["grade"] or "do not use", note=cell["message"]))
+        drop = drops.setdefault(spot, Drop(spot, 1, str(results or ""), grade=cell["grade"] or "do not use", note=cell["message"]))
         drop.view = drop.view or views.get(int(cell["id"]))
         if not usable:
             drop.note = cell["message"] or "do not use"
             drop.grade = "do not use"
             continue
-        if drop.curve is None:
+        if drop.curve is None and results:
             drop.figures, drop.curve, drop.mesh_error = _read(p, results)
         if "foam" in cell:
             drop.draws[cell["foam"]] = take_figures(p.figures, {key: float(text) for key, text in cell.items()
                                                                  if key in {f.key for f in p.figures} and text}, None)
     for drop in drops.values():
         if len(drop.draws) > 1:
+            drop.note = "; ".join(part for part in (f"medians of {len(drop.draws)} draws; curve and file are of the first", drop.note) if part)
             drop.figures = {key: float(np.median([values[key] for values in drop.draws.values()])) for key in drop.figures}
     return list(drops.values())
 

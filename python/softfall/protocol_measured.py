@@ -10,7 +10,7 @@ from typing import Any, Iterable, Mapping
 import numpy as np
 
 from .curves import STANDARD_GRAVITY
-from .errors import Error, InputError
+from .errors import Error, InputError, missing
 from .protocol import Protocol, length, speed
 from .protocol_drops import Drop, Drops, Spot, take_figures
 from .record import read_record
@@ -45,8 +45,27 @@ def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: boo
     if complete:
         _refuse_missing(p, folder, set(seen))
     made.missing += [f"records have no {figure.label}" for figure in p.figures if made.drops and all(figure.label not in drop.figures for drop in made.drops)]
+    _mark_others(made)
     _mark_exchanged(made)
     return made
+
+
+ALIKE = 1.2  # factor within which drops from one height change their velocity: the rebound differs by less
+
+
+def _mark_others(made: Drops) -> None:
+    """Takes a record whose velocity changes otherwise than in most drops from its height as one that is not to be used."""
+    groups: dict[tuple[Any, ...], list[Drop]] = {}
+    for drop in made.drops:
+        if drop.is_usable:
+            groups.setdefault((drop.spot.condition, drop.spot.height, drop.spot.mass, drop.spot.missile), []).append(drop)
+    for group in groups.values():
+        changes = [_change(drop) for drop in group]
+        middle = float(np.median(changes))
+        for drop, change in zip(group, changes):
+            if not middle / ALIKE <= change <= middle * ALIKE:
+                _refuse(drop, f"its velocity changes by {change:.3g} m/s, and in the middle of the {len(group)} drops from {drop.spot.height:g} m by {middle:.3g} m/s: "
+                              "another scale, or another height")
 
 
 SCATTER = 0.05  # of a_max from drop to drop, relative, beyond which a lower height is not expected to be harder
@@ -68,6 +87,7 @@ def _mark_exchanged(made: Drops) -> None:
         said = (f"drops {low.number} at {low.spot} and at {high.spot} look exchanged: a_max falls from {peak[id(low)]:.4g} to {peak[id(high)]:.4g} g "
                 "where the height grows; check the heights and the files")
         made.missing.append(said)
+        made.doubt = "drops look exchanged"
         for drop, other in ((low, high), (high, low)):
             drop.note = "; ".join(part for part in (drop.note, f"looks exchanged with the drop from {other.spot.height:g} m") if part)
 
@@ -122,8 +142,8 @@ def _matched(folder: Path, pattern: str | None) -> list[tuple[str, dict[str, str
     parts = re.split(r"\{(\w+)\}", pattern)
     unknown = [name for name in parts[1::2] if name not in NAMED]
     if unknown or len(parts) < 3:
-        raise InputError(f"pattern {pattern!r}: {{{unknown[0]}}}" if unknown else f"pattern {pattern!r} names nothing" +
-                         "; " + ", ".join(f"{{{name}}}" for name in NAMED) + " may be named")
+        raise InputError(f"pattern {pattern!r} " + (f"has {{{unknown[0]}}}, which is no name" if unknown else "names nothing") +
+                         "; there are " + ", ".join(f"{{{name}}}" for name in NAMED))
     regex = re.compile("".join(re.escape(part) if k % 2 == 0 else f"(?P<{part}>.+?)" for k, part in enumerate(parts)) + r"\Z")
     found = [(str(path), {"file": path.name, **match.groupdict()}) for path in sorted(folder.iterdir()) if (match := regex.match(path.name))]
     if not found:
@@ -169,10 +189,13 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
     curve = (record.time, record.deceleration)
     taken = take_figures(p.figures, record.figures, curve)
     drop = Drop(spot, int(number), str(path), taken, str(record.verdict), "; ".join(record.verdict.remarks), curve)
-    _check_pulse(drop)
-    absent = [figure.label for figure in p.figures if figure.limit is not None and figure.label not in taken]
+    absent = next((figure for figure in p.figures if figure.limit is not None and figure.label not in taken), None)
+    if absent and absent.key in record.figures:
+        raise InputError(f"{where}: the record is shorter than the least window of {absent.label} in {p.path}, {1e3 * absent.least_window:g} ms")
     if absent:
-        raise InputError(f"{where}: a measured record has no {absent[0]}, which the protocol limits")
+        raise InputError(f"{p.path} limits what a measured record does not have: {missing('figure', absent.key, record.figures).args[0]}")
+    _check_pulse(drop)
+    drop.reading = f"{record.interpretation.rstrip('.')}; its velocity changes by {_change(drop) / speed(height):.2f} times that of the fall"
     return drop
 
 
@@ -189,15 +212,23 @@ def _missile(p: Protocol, where: str, name: str, complete: bool) -> str:
 LEAST_CHANGE, MOST_CHANGE = 0.7, 2.2  # of the velocity, over that of a free fall: a guided fall without rebound, an elastic one
 
 
+def _change(drop: Drop) -> float:
+    """Returns the change of velocity (m/s) of a record."""
+    time, value = (np.asarray(part, float) for part in drop.curve or ((), ()))
+    return STANDARD_GRAVITY * float(np.sum(0.5 * (value[1:] + value[:-1]) * np.diff(time)))
+
+
+def _refuse(drop: Drop, why: str) -> None:
+    drop.grade = "do not use"
+    drop.note = "; ".join(part for part in (drop.note, why) if part)
+
+
 def _check_pulse(drop: Drop) -> None:
     """Takes a record that cannot be of a fall from its height as one that is not to be used: of another unit, or of another drop."""
-    time, value = (np.asarray(part, float) for part in drop.curve or ((), ()))
-    change = STANDARD_GRAVITY * float(np.sum(0.5 * (value[1:] + value[:-1]) * np.diff(time)))
-    ratio = change / speed(drop.spot.height)
+    ratio = _change(drop) / speed(drop.spot.height)
     if not LEAST_CHANGE <= ratio <= MOST_CHANGE:
-        drop.grade = "do not use"
-        drop.note = "; ".join(part for part in (drop.note, f"its velocity changes by {change:.3g} m/s, {ratio:.2g} times that of a fall from {drop.spot.height:g} m; "
-                              f"{LEAST_CHANGE:g} to {MOST_CHANGE:g} can be: another unit, or another drop") if part)
+        _refuse(drop, f"its velocity changes by {_change(drop):.3g} m/s, {ratio:.2g} times that of a fall from {drop.spot.height:g} m; "
+                      f"{LEAST_CHANGE:g} to {MOST_CHANGE:g} can be: another unit, or another drop")
 
 
 def _refuse_missing(p: Protocol, folder: Path, seen: set[tuple[Spot, int]]) -> None:

@@ -18,7 +18,7 @@ from .case import Case
 from .curves import column
 from .drop import read_results
 from .errors import Error, InputError
-from .judge import judge
+from .judge import Outcome, judge
 from .protocol import CAUTION, Protocol, length, names, read
 from .protocol_advice import advise
 from .protocol_drops import Drop, Drops, simulate
@@ -37,8 +37,10 @@ def read_laboratory(path: str | None) -> tuple[dict[str, str], str]:
     if path is None:
         return {}, ""
     try:
-        fields = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        fields = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: {error}") from None
     for key, value in fields.items():
         if key not in FIELDS:
@@ -80,6 +82,10 @@ def _pair(p: Protocol, measured: Drop, simulated: Drop) -> dict[str, Any]:
     return {"spot": f"{measured.spot}, drop {measured.number}", "a_max_difference": told["a_max_g"] / said["a_max_g"] - 1,
             "hic_difference": told["hic"] / said["hic"] - 1, "r2": float(said["fits"][0]["r2"]), "rmse_g": float(said["fits"][0]["rmse_g"]),
             "rating": {**rating._asdict(), "word": rating.word}}
+
+
+def _probable(outcome: Outcome) -> str:
+    return f" (probability of passing {outcome.probability[0]:.2f}, {outcome.probability[1]:.2f} to {outcome.probability[2]:.2f})" if outcome.probability else ""
 
 
 def perform(o: argparse.Namespace) -> str:
@@ -127,7 +133,7 @@ def perform(o: argparse.Namespace) -> str:
         pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
     output.mkdir(parents=True, exist_ok=True)
     write(p, parts, outcomes, pairs, laboratory, photo, output, told, {**set_up, **({"measured records": str(o.measured)} if o.measured else {}), "command": " ".join(sys.argv[1:])})
-    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}" for what, outcome in outcomes.items()),
+    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}{_probable(outcome)}" for what, outcome in outcomes.items()),
             *(f"  note: {note}" for outcome in outcomes.values() for note in outcome.notes),
             f"  {len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed. {CAUTION}", f"Written: {output}/report.html, protocol.json, drops.csv"]
     return "\n".join(said)

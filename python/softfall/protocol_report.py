@@ -80,7 +80,8 @@ def _header(p: Protocol, laboratory: Mapping[str, str], photo: str) -> str:
 
 def _set_up(p: Protocol, told: Mapping[str, str]) -> str:
     """Returns what was tested by what, as a table."""
-    rows = [["drops", f"{p.count} on a spot" + (f", {p.interval} apart" if p.interval else "") + f"; counted: {', '.join(map(str, p.counted))}"],
+    figures = [f"{f.label}{'' if f.limit is None else f' below {f.limit:g}'}" + (f" in windows of {1e3 * f.least_window:g} ms and longer" if f.least_window else "") for f in p.figures]
+    rows = [["figures", ", ".join(figures)], ["drops", f"{p.count} on a spot" + (f", {p.interval} apart" if p.interval else "") + f"; counted: {', '.join(map(str, p.counted))}"],
             ["missile of the protocol", ", ".join(f"{key} = {value}" for key, value in p.missile.items()) or "that of the case"], *([key, text] for key, text in told.items())]
     return "<h2>Set-up</h2>" + _table(["", ""], rows)
 
@@ -97,6 +98,11 @@ def _drop_table(p: Protocol, parts: Mapping[str, Drops], output: Path) -> str:
     if not rows:
         return searches
     return searches + "<h2>Drops</h2>" + _table(["", "condition", "position", "missile", ">height (m)", ">speed (m/s)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note", "look"], rows)
+
+
+def _readings(parts: Mapping[str, Drops]) -> str:
+    rows = [[str(drop.spot), str(drop.number), Path(drop.source).name, drop.reading] for drops in parts.values() for drop in drops.drops if drop.reading]
+    return "<h2>How the records were read</h2>" + _table(["spot", ">drop", "file", "read as"], rows) if rows else ""
 
 
 def _choices(advice: Advice | None) -> str:
@@ -128,7 +134,7 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
         f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(p.title)}</title>'
         f"<style>{_STYLE}</style>", _header(p, laboratory, photo), *(_result(what, outcome) for what, outcome in outcomes.items()),
         "<h2>Notes, and what was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
-        _choices(advice), _set_up(p, told or {}), _drop_table(p, parts, output), height_picture(p, parts), curve_picture(parts), compared, _clauses(p),
+        _choices(advice), _set_up(p, told or {}), _drop_table(p, parts, output), height_picture(p, parts), curve_picture(parts), compared, _readings(parts), _clauses(p),
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
     _replace(output / "report.html", page)
     _replace(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
@@ -162,7 +168,7 @@ def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Out
                                "probability": o.probability, "lines": lines(o), "notes": o.notes} for what, o in outcomes.items()},
             "drops": [{"kind": what, "condition": d.spot.condition, "position": d.spot.position, "missile": d.spot.missile, "height_m": d.spot.height, "mass": d.spot.mass,
                        "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "grade": d.grade, "note": d.note,
-                       "source": d.source, "view": None if d.view is None else str(d.view)} for what, drops in parts.items() for d in drops.all],
+                       "source": d.source, "reading": d.reading, "view": None if d.view is None else str(d.view)} for what, drops in parts.items() for d in drops.all],
             "comparison": [{key: _plain(value) for key, value in pair.items()} for pair in pairs],
             "advice": advice and {"probability": _plain(advice.probability), "height_m": [_plain(h) for h in advice.height], "loss": _plain(advice.loss),
                                   "bound": advice.bound, "stop": advice.stop, "decision": advice.decision, "problem": advice.problem,
