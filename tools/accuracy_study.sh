@@ -6,6 +6,8 @@
 #
 #     tools/accuracy_study.sh ROWS [PLAN...]     2000 rows: a drop of about one second of a core each; plans: their
 #                                                names without .cfg, default all
+#     SF_SPACING=17.5 tools/accuracy_study.sh ROWS [PLAN...]     the same on nodes of 17.5 mm (30 mm outside) in place of
+#                                                10 mm, in a third of the time: to compare ways to predict
 #
 # Folders out/accuracy-PLAN keep the drops. The programs are those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
@@ -18,6 +20,8 @@ mkdir -p out
 for plan in "$@"; do
     folder=out/accuracy-$plan
     sed -e "s/count = 2000/count = $rows/" -e "s,\"\.\./,\"$PWD/examples/,g" "examples/accuracy/$plan.cfg" >"$folder.cfg"
+    [ -z "${SF_SPACING:-}" ] || sed -i -e "s/fine_spacing=10.0/fine_spacing=$SF_SPACING/" \
+        -e "s/outer_spacing=20.0/outer_spacing=30.0\", \"pad.mesh_error_limit=1/" "$folder.cfg"
     sed -e 's/ accuracy = [0-9.]*;//g' "$folder.cfg" >"$folder-all.cfg"
     "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder.cfg" -o "$folder" >"$folder.log"
     cp "$folder/runs.csv" "$folder-predicted.csv"

@@ -33,6 +33,8 @@ enum {
     SF_TREND_HIC,
     SF_TREND_REBOUND,
     SF_TREND_STRAIN,
+    SF_TREND_EDGE, /* d ln(a_max) / d ln(speed), no logarithm of it: near lock-up the drops fall behind their
+                      columns as it grows */
     SF_TREND_INDENTATION,
     SF_TREND_CONTACT, /* ms */
     SF_TREND_TIME,    /* ms; of every row whose case can be read */

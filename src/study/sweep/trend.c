@@ -9,6 +9,7 @@
 
 enum { MOST_DROPS = 64, LEVELS = 8 };
 static const double SAME_PROFILE = 0.02, SAME_THICKNESS = 0.01; /* relative */
+static const double SLOWER = 0.99;                              /* of the speed, for the edge */
 
 int sf_sweep_trend_find(const char *figure) {
     static const char *const names[] = {[SF_TREND_A_MAX] = "a_max_g",
@@ -17,7 +18,7 @@ int sf_sweep_trend_find(const char *figure) {
                                         [SF_TREND_STRAIN] = "max_mean_strain",
                                         [SF_TREND_INDENTATION] = "max_indentation_mm"};
     for (int k = 0; k < SF_TREND_CONTACT; k++)
-        if (strcmp(names[k], figure) == 0)
+        if (names[k] && strcmp(names[k], figure) == 0)
             return k;
     return -1;
 }
@@ -156,9 +157,14 @@ static void respond(const sf_sweep_trend *t, const sf_case *c, int64_t row, doub
     columns.thickness = thickness_at(t, row);
     if (!(columns.thickness > 0) || sf_material_law_build(&c->material, &law, &refused) != SF_OK)
         return;
+    if (sf_columns_expect(&columns, &law, y, &refused) != SF_OK)
+        return;
+    for (int k = 0; k < SF_TREND_TIME; k++)
+        expected[k] = y[place[k]] + (k == SF_TREND_INDENTATION ? log(columns.thickness) : 0);
+    columns.speed *= SLOWER;
+    expected[SF_TREND_EDGE] = NAN;
     if (sf_columns_expect(&columns, &law, y, &refused) == SF_OK)
-        for (int k = 0; k < SF_TREND_TIME; k++)
-            expected[k] = y[place[k]] + (k == SF_TREND_INDENTATION ? log(columns.thickness) : 0);
+        expected[SF_TREND_EDGE] = (y[SF_FIT_A_MAX] - expected[SF_TREND_A_MAX]) / log(SLOWER);
 }
 
 sf_status sf_sweep_trend_at(const sf_sweep_trend *t, int64_t row, double *expected, sf_error *err) {
