@@ -45,6 +45,18 @@ static inline bool sf_skin_is_rigid(const sf_skin *skin, int64_t node) {
     return node >= skin->moving;
 }
 
+/* True if plane k may stop the node: not if it is held there, or rests on the anvil already. */
+static inline bool sf_skin_is_stopped(const sf_skin *skin, int64_t node, int k) {
+    return skin->plane[k].side != 0 && !sf_skin_is_rigid(skin, node) &&
+           !((skin->held[node] >> skin->plane[k].axis) & 1) && !(k == SF_SKIN_ANVIL && skin->rests[node]);
+}
+
+/* Height (m) of the point x over plane k. */
+static inline double sf_skin_height(const sf_skin *skin, const double x[3], int k) {
+    const sf_skin_plane *plane = &skin->plane[k];
+    return plane->side * (x[plane->axis] - plane->place);
+}
+
 /* The support in a pair of node and facet (below 0: a plane); -1: none. */
 static inline int sf_skin_support(const sf_model *model, const sf_skin *skin, int64_t node, int64_t facet) {
     int64_t own = sf_skin_is_rigid(skin, node) ? skin->ring[skin->ring_ptr[node]] : facet;
