@@ -42,6 +42,10 @@ void layers_case(sf_case *c, const char *const *overrides, const char *const *he
     layers_make(c, count);
 }
 
+void layers_join(sf_case *c, int layer, int other, int kind, double friction) {
+    c->interface[c->interface_count++] = (sf_case_interface){"interfaces", {layer, other}, kind, friction};
+}
+
 void layers_under_plate(sf_case *c, const fixture_block *block, layering layer, fixture *out) {
     sf_mesh mesh;
     sf_surface surface;

@@ -15,6 +15,8 @@ void layers_make(sf_case *c, int count);
 /* The example case with `overrides`, held by the sets `held` (both up to NULL), and with `count` such layers.
  */
 void layers_case(sf_case *c, const char *const *overrides, const char *const *held, int count);
+/* Adds an interface of two layers. */
+void layers_join(sf_case *c, int layer, int other, int kind, double friction);
 /* Builds a block of the case's layers under a plate of 1 m; the case is released. */
 void layers_under_plate(sf_case *c, const fixture_block *block, layering layer, fixture *out);
 /* Nominal stress (Pa) of first loading at rest; fails the test if the law cannot be built. */

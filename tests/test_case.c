@@ -376,7 +376,7 @@ static void unknown_names_are_refused_with_what_exists(void **state) {
     assert_refused(
         GOOD "missle: { };\n", NULL,
         "case.cfg:5: unknown group \"missle\" (did you mean \"missile\"?); the groups are geometry, pad, "
-        "material, missile, support, membrane, kernel, solver, series, output, report",
+        "material, missile, support, interfaces, membrane, kernel, solver, series, output, report",
         NULL);
     assert_refused(GOOD "colour = 3;\n", NULL, "case.cfg:5: unknown group \"colour\"; the groups are", NULL);
     assert_refused(GOOD, "missile.weight=3 kg", "--set missile.weight=3 kg: unknown key \"weight\"", NULL);

@@ -39,9 +39,8 @@ static void loose_case(sf_case *c, int count, double friction) {
     for (int k = 0; k < count; k++)
         layers_make_linear(&c->layer[k], MODULUS, DENSITY);
     c->self_friction = friction;
-    c->loose_count = count - 1;
-    c->loose_layer[0][1] = 1;
-    strcpy(c->loose_name[0], "A/B");
+    for (int k = 1; k < count; k++)
+        layers_join(c, 0, k, SF_INTERFACE_LOOSE, friction);
 }
 
 /* Mass and velocity of a layer's centre. */
@@ -214,6 +213,43 @@ static void a_block_slides_on_a_block(void **state) {
     fixture_free(&f);
 }
 
+static int by_thirds(const double cell[3]) {
+    return (int)cell[2] / HALF;
+}
+
+/* Two blocks slide on a third between them: each interface has a friction of its own, which is not that of
+ * all faces. */
+static void each_interface_has_its_own_friction(void **state) {
+    const fixture_block block = {.cells = {4, 4, 3 * HALF}, .spacing = 0.01};
+    const double friction[3] = {0.1, 0, 0.4};
+    sf_case c;
+    fixture f;
+    double low[3], sum = 0;
+    (void)state;
+    loose_case(&c, 3, 0.8);
+    c.interface_count = 0;
+    for (int k = 0; k < 3; k += 2)
+        layers_join(&c, 1, k, SF_INTERFACE_LOOSE, friction[k]);
+    layers_under_plate(&c, &block, by_thirds, &f);
+    fixture_start(&f);
+    throw_layer(&f, 0, SLIP, DROP);
+    throw_layer(&f, 2, SLIP, -DROP);
+    while (f.state.time < 1.5 * 2 * 0.04 / sqrt(MODULUS / DENSITY))
+        fixture_advance(&f);
+    double mass = mean_velocity(&f, 1, low);
+    for (int k = 0; k < 3; k += 2) {
+        double v[3];
+        mean_velocity(&f, k, v);
+        double up = DROP - (k == 0 ? v[2] : -v[2]);
+        print_message("friction %.5f of %.3g\n", (SLIP - v[0]) / up, friction[k]);
+        assert_true(up > 0.5 * DROP && v[0] > low[0]);
+        assert_relative(SLIP - v[0], friction[k] * up, 0.01);
+        sum += SLIP - v[0];
+    }
+    assert_true(fabs(sum - low[0]) < 1e-12 * SLIP && mass > 0);
+    fixture_free(&f);
+}
+
 /* The quarter of a hemisphere of 100 mm, pole down, fine at the pole; with `two`, on another one. */
 static const char DOME[] =
     "SetFactory(\"OpenCASCADE\"); DefineConstant[ two = 0 ];\n"
@@ -312,6 +348,7 @@ int main(void) {
         cmocka_unit_test(a_block_slides_on_a_support),
         cmocka_unit_test(a_block_slides_on_two_supports),
         cmocka_unit_test(a_block_slides_on_a_block),
+        cmocka_unit_test(each_interface_has_its_own_friction),
         cmocka_unit_test(hertz_on_a_support),
         cmocka_unit_test(two_domes_touch_over_the_radius_of_hertz),
     };

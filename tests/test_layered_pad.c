@@ -186,6 +186,10 @@ static void assert_refused(const program_result *r, const char *part) {
         fail_msg("exit code %d where \"%s\" was expected: %s", r->code, part, r->err);
 }
 
+/* An entry `name` of the group of interfaces, between these layers. */
+#define INTERFACE(name, layers, kind)                                                                        \
+    "--set interfaces." name ".between='[\"" layers "\"]' --set interfaces." name ".kind=" kind " "
+
 static void layers_that_cannot_be_meant_are_refused(void **state) {
     const program_place *p = *state;
     static const struct {
@@ -205,6 +209,23 @@ static void layers_that_cannot_be_meant_are_refused(void **state) {
         {"--set materials.lower.densification.limit=0.3", "materials.lower.densification"},
         {"--set materials.law=steel", "materials.law must be a group"},
         {"--set geometry.parameters.cover=0", "has no volume group \"cover\""},
+        {INTERFACE("a", "cover\",\"floor", "loose"), "materials has no layer \"floor\""},
+        {INTERFACE("a", "cover", "loose"), "interfaces.between must name two layers"},
+        {INTERFACE("a", "cover\",\"cover", "loose"), "\"cover\" is named twice"},
+        {INTERFACE("a", "cover\",\"lower", "loose"), "\"lower\" do not touch: they share no face"},
+        {INTERFACE("a", "cover\",\"upper", "loose") INTERFACE("b", "upper\",\"cover", "tied"),
+         "\"upper\" and \"cover\" are there twice"},
+        {INTERFACE("a", "cover\",\"upper", "loose") "--set interfaces.a.friction=-0.1",
+         "interfaces.friction: -0.1 is out of bounds"},
+        {INTERFACE("a", "cover\",\"upper", "tied") "--set interfaces.a.friction=0.1",
+         "is tied; only one that"},
+        {INTERFACE("a", "cover\",\"upper", "sliding") "--set interfaces.a.friction=0", "is sliding; only"},
+        {INTERFACE("a", "cover\",\"upper", "welded"), "\"welded\" is none of: tied, sliding, loose"},
+        {INTERFACE("a", "cover\",\"upper", "loose") "--set interfaces.a.mu=1",
+         "in group interfaces; its keys"},
+        {INTERFACE("a", "cover\",\"upper", "loose") "--set pad.self_contact=off", "need pad.self_contact"},
+        {"--set interfaces.a.kind=loose", "interfaces.between is missing"},
+        {"--set interfaces.a=loose", "an interface must be a group"},
     };
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         program_result r =
@@ -218,6 +239,47 @@ static void layers_that_cannot_be_meant_are_refused(void **state) {
     assert_refused(&r, "has no material");
     r = program_run(p, "pre", "examples/layers/one.cfg -o new.h5 --set pad.sliding_interfaces='[\"a/b\"]'");
     assert_refused(&r, "the pad has one material");
+    r = program_run(p, "pre", "examples/layers/one.cfg -o new.h5 %s", INTERFACE("a", "a\",\"b", "tied"));
+    assert_refused(&r, "the pad has one material");
+    program_shell(p, "(cat examples/layers/case.cfg; echo 'interfaces = [1, 2];') > examples/layers/two.cfg");
+    r = program_run(p, "pre", "examples/layers/two.cfg -o new.h5 %s", COARSE);
+    assert_refused(&r, "interfaces must be a list");
+}
+
+/* Each row: the words of a case, and the lines of the report about its interfaces. */
+static void interfaces_come_before_the_older_keys(void **state) {
+    const program_place *p = *state;
+    static const char *const tied = "lower, upper: tied, ", *const slides = "lower, upper: sliding, ";
+    static const struct {
+        const char *words, *lower, *cover;
+    } rows[] = {
+        {"", tied, "upper, cover: tied, "},
+        {"--set pad.loose_interfaces='[\"cover/upper\"]' --set pad.self_friction=0.2", tied,
+         "upper, cover: loose, friction 0.2, "},
+        {INTERFACE("a", "cover\",\"upper", "loose") "--set pad.self_friction=0.2", tied,
+         "upper, cover: loose, friction 0.2, "},
+        {INTERFACE("a", "cover\",\"upper", "loose") "--set interfaces.a.friction=0.3", tied,
+         "upper, cover: loose, friction 0.3, "},
+        {INTERFACE("a", "cover\",\"upper", "tied") "--set pad.loose_interfaces='[\"upper/cover\"]' "
+                                                   "--set pad.sliding_interfaces='[\"upper/lower\"]'",
+         slides, "upper, cover: tied, "},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        program_result r = program_succeed(p, "pre", "examples/layers/case.cfg -o join%zu.h5 %s %s", k,
+                                           COARSE, rows[k].words);
+        if (!strstr(r.out, rows[k].lower) || !strstr(r.out, rows[k].cover) || !strstr(r.out, " faces\n"))
+            fail_msg("%s: %s", rows[k].words, r.out);
+    }
+    program_shell(
+        p, "(cat examples/layers/case.cfg; echo 'interfaces = ( { between = [\"upper\", \"cover\"]; kind = "
+           "\"loose\"; friction = 0.3; } );') > examples/layers/two.cfg");
+    program_succeed(p, "pre", "examples/layers/two.cfg -o join5.h5 %s", COARSE);
+    /* the same model by either key, and by a list or a group */
+    const char *same = "for k in 1 2 3 5; do h5dump -a content_hash join$k.h5 | grep '(0)' > hash$k; done; "
+                       "cmp hash1 hash2 && cmp hash3 hash5 && ! cmp -s hash1 hash3";
+    program_result r = program_shell(p, "%s", same);
+    if (r.code != 0)
+        fail_msg("%s%s", r.out, r.err);
 }
 
 /* Two blocks whose meshes do not share faces. */
@@ -295,6 +357,7 @@ int main(void) {
         cmocka_unit_test(layers_read_like_the_one_material),
         cmocka_unit_test(layers_that_cannot_be_meant_are_refused),
         cmocka_unit_test(layers_that_do_not_share_faces_are_refused),
+        cmocka_unit_test(interfaces_come_before_the_older_keys),
         cmocka_unit_test(contact_on_seams_gives_no_energy),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);

@@ -223,8 +223,7 @@ static void start_sliding(layering layer, fixture *f) {
     const fixture_block block = {.cells = {6, 5, 5}, .spacing = 0.01};
     sf_case c;
     layers_case(&c, NULL, BASE, 2);
-    c.interface_count = 1;
-    c.interface_layer[0][0] = 1;
+    layers_join(&c, 1, 0, SF_INTERFACE_SLIDING, 0);
     layers_under_plate(&c, &block, layer, f);
     fixture_start(f);
 }
@@ -281,8 +280,7 @@ static sf_error refusal_of(const fixture_block *block, layering layer, const cha
     fixture_block_mesh(block, &mesh);
     layers_assign(block, layer, &mesh);
     layers_case(&c, NULL, (const char *const[]){held, NULL}, 2);
-    c.interface_count = 1;
-    c.interface_layer[0][0] = 1;
+    layers_join(&c, 1, 0, SF_INTERFACE_SLIDING, 0);
     fixture_plate(1, 0, 0, &surface);
     if (sf_model_build(&c, &mesh, &surface, &m, &report, NULL, &err) == SF_OK)
         sf_hold_check(&report.hold, &m, &err);
@@ -425,9 +423,8 @@ static void build_drop_on(int base, layering layer, int count, const double *fac
             for (int64_t p = 0; p < card->curve_points; p++)
                 card->curve_stress[p] *= factor[k];
         }
-        c.interface_count = sliding;
-        c.interface_layer[0][0] = count - 1;
-        c.interface_layer[0][1] = count - 2;
+        if (sliding)
+            layers_join(&c, count - 1, count - 2, SF_INTERFACE_SLIDING, 0);
     }
     fixture_dome(0.08, 12, 0, 0, &surface);
     fixture_build(&c, &mesh, &surface, f);

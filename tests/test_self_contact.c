@@ -226,12 +226,16 @@ static void a_loose_cover_acts_as_a_glued_one_while_it_is_pressed(void **state) 
     char words[512];
     figures glued = run(p, coarse);
     double tied = program_file_number(p, "out/summary.json", "a_max_g");
-    snprintf(words, sizeof words, "%s --set pad.loose_interfaces='[\"upper/cover\"]'", coarse);
+    snprintf(words, sizeof words,
+             "%s --set interfaces.a.between='[\"upper\",\"cover\"]' --set interfaces.a.kind=loose "
+             "--set interfaces.a.friction=0.0",
+             coarse);
     figures loose = run(p, words);
     double open = program_file_number(p, "out/summary.json", "a_max_g");
     print_message("a_max %.2f g glued, %.2f g loose; momentum %.1e, angular %.1e, penetration %.2g mm\n",
                   tied, open, loose.momentum, loose.angular, loose.penetration);
     assert_relative(open, tied, 0.02);
+    assert_int_equal(program_shell(p, "grep -q 'upper, cover: loose, friction 0' out/report.html").code, 0);
     assert_true(glued.energy_error < 1e-3 && loose.energy_error < 1e-3);
     assert_true(loose.momentum < 1e-12 && loose.angular < 1e-9);
     static const struct {

@@ -16,6 +16,9 @@ cd "$folder"
 "$bin/softfall-pre" -o l.h5 --set 'geometry.parameters={side=50.0; zone_side=50.0; lower=25.0; upper=25.0; cover=25.0; fine_spacing=25.0; quarter=1;}' \
     --set pad.mesh_error_limit=10 --set 'pad.sliding_interfaces=["cover/upper"]' --set 'solver.end_time=0.2 ms' examples/layers/case.cfg >/dev/null 2>&1
 "$bin/softfall-solve" l.h5 -o lr.h5 -t 1 --no-checkpoint >/dev/null 2>&1
+"$bin/softfall-pre" -o interface.h5 --set 'geometry.parameters={side=50.0; zone_side=50.0; lower=25.0; upper=25.0; cover=25.0; fine_spacing=25.0; quarter=1;}' \
+    --set pad.mesh_error_limit=10 --set 'interfaces.a.between=["cover", "upper"]' --set interfaces.a.kind=loose --set interfaces.a.friction=0.3 \
+    --set 'solver.end_time=0.2 ms' examples/layers/case.cfg >/dev/null 2>&1
 "$bin/softfall-pre" -o rest.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set pad.base=resting examples/compression/case.cfg >/dev/null
 "$bin/softfall-pre" -o skin.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set pad.self_contact=on examples/compression/case.cfg >/dev/null
 "$bin/softfall-pre" -o support.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=0.2 ms' --set 'pad.fixed=[]' \
@@ -27,6 +30,7 @@ cp support.h5 "$corpus/model/support.h5"
 cp m.h5 "$corpus/model/cube.h5"
 cp skin.h5 "$corpus/model/skin.h5"
 cp l.h5 "$corpus/model/layers.h5"
+cp interface.h5 "$corpus/model/interface.h5"
 cp lr.h5 "$corpus/results/layers.h5"
 cp h.h5 "$corpus/model/hyperfoam.h5"
 cp rest.h5 "$corpus/model/resting.h5"

@@ -14,6 +14,7 @@ enum {
     SF_CASE_MAX_PARAMETERS = 64,
     SF_CASE_MAX_TIMES = 256,
     SF_CASE_MAX_LAYERS = 32,
+    SF_CASE_MAX_INTERFACES = 64,
     SF_GEOMETRIES = 2 + SF_SUPPORTS /* of pad, missile and supports */
 };
 
@@ -40,6 +41,18 @@ typedef struct sf_case_support {
     double place;                  /* m, of a plane along its normal from the origin */
     double friction;               /* -, Coulomb coefficient of the pad against it */
 } sf_case_support;
+
+/* The kinds of interface between layers, in the order of their words: all components of the displacement are
+ * tied, that along the normal, or none. */
+enum { SF_INTERFACE_TIED, SF_INTERFACE_SLIDING, SF_INTERFACE_LOOSE };
+
+/* Says how two layers meet. */
+typedef struct sf_case_interface {
+    const char *key; /* of the case that says so; static */
+    int layer[2];    /* their places in `layer`, different */
+    int kind;        /* SF_INTERFACE_* */
+    double friction; /* -, Coulomb coefficient of loose layers; else 0 */
+} sf_case_interface;
 
 enum { SF_BASE_GLUED, SF_BASE_SMOOTH, SF_BASE_RESTING }; /* pad.base, in the order of its words */
 enum { SF_SELF_CONTACT_AUTO, SF_SELF_CONTACT_ON, SF_SELF_CONTACT_OFF }; /* pad.self_contact, likewise */
@@ -90,13 +103,13 @@ typedef struct sf_case {
     sf_material material;   /* owned by the case until moved into a model; none in a case of layers */
     sf_response_error response_error; /* of the material's file; none in a case of layers */
     int layer_count;                  /* groups of `materials`; 0: one material */
-    sf_material *layer;  /* [layer_count] with the names of their volume groups; owned likewise */
-    int interface_count; /* pairs of layers that slide on each other; all others are tied */
-    char interface_name[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE]; /* "NAME/NAME" */
-    int interface_layer[SF_CASE_MAX_GROUPS][2];                 /* their places in `layer` */
-    int loose_count;                                            /* likewise, of layers that only touch */
-    char loose_name[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
-    int loose_layer[SF_CASE_MAX_GROUPS][2];
+    sf_material *layer;     /* [layer_count] with the names of their volume groups; owned likewise */
+    int sliding_pair_count; /* pad.sliding_interfaces and pad.loose_interfaces, "NAME/NAME" each */
+    char sliding_pair[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    int loose_pair_count;
+    char loose_pair[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    int interface_count; /* of these and of `interfaces`, each pair once; pairs that are absent are tied */
+    sf_case_interface interface[SF_CASE_MAX_INTERFACES];
     bool position_given;
     double missile_position[2];   /* m, x and y of the impact point, if given */
     int freedom;                  /* SF_MISSILE_GUIDED or SF_MISSILE_FREE */
@@ -135,6 +148,8 @@ typedef struct sf_case {
 sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                        sf_case *out, sf_error *err);
 void sf_case_free(sf_case *c);
+/* The interface of two layers, in either order; NULL: the case does not name it, and it is tied. */
+const sf_case_interface *sf_case_interface_find(const sf_case *c, int layer, int other);
 
 /* Would a case with this material file (the keys of the group `material`) be refused for it? The sentence
  * names file, line and key. */

@@ -7,7 +7,8 @@
 #include <string.h>
 
 #define AT(member) .offset = offsetof(sf_case, member)
-#define OF_SUPPORT(member) .in_support = true, .offset = offsetof(sf_case_support, member)
+#define OF_SUPPORT(member) .list = SF_LIST_SUPPORTS, .offset = offsetof(sf_case_support, member)
+#define OF_INTERFACE(member) .list = SF_LIST_INTERFACES, .offset = offsetof(sf_interface_entry, member)
 #define POSITIVE .low = 0.0, .low_open = true
 /* Frame fields as words and as the default, "[\"displacement\", ...]". */
 #define WORD(constant, name, ...) #name
@@ -51,12 +52,12 @@ static const sf_key keys[] = {
     {"pad", "symmetry", SF_KEY_NAMES, "[\"symmetry_x\", \"symmetry_y\"]", AT(symmetry_group),
      "physical surfaces that are symmetry planes; those of the default may be absent from the geometry",
      .count_offset = offsetof(sf_case, symmetry_count)},
-    {"pad", "sliding_interfaces", SF_KEY_NAMES, "[]", AT(interface_name),
-     "pairs of layers that slide on each other, [\"NAME/NAME\"]: only the displacement normal to their interface is the same; all others are tied",
-     .count_offset = offsetof(sf_case, interface_count)},
-    {"pad", "loose_interfaces", SF_KEY_NAMES, "[]", AT(loose_name),
-     "pairs of layers that only touch, [\"NAME/NAME\"]: they slide with `self_friction`, open and close",
-     .count_offset = offsetof(sf_case, loose_count)},
+    {"pad", "sliding_interfaces", SF_KEY_NAMES, "[]", AT(sliding_pair),
+     "pairs of layers that slide on each other, [\"NAME/NAME\"]: only the displacement normal to their interface is the same; `interfaces` comes first, and all others are tied",
+     .count_offset = offsetof(sf_case, sliding_pair_count)},
+    {"pad", "loose_interfaces", SF_KEY_NAMES, "[]", AT(loose_pair),
+     "pairs of layers that only touch, [\"NAME/NAME\"]: they slide with `self_friction`, open and close; `interfaces` comes first",
+     .count_offset = offsetof(sf_case, loose_pair_count)},
     {"pad", "separate", SF_KEY_BOOL, "false", AT(separate),
      "the pad may be of several bodies, which touch each other as its faces do; each is at rest until something touches it"},
     {"pad", "self_contact", SF_KEY_CHOICE, "\"auto\"", AT(self_contact),
@@ -127,6 +128,15 @@ static const sf_key keys[] = {
      "of the plane, along its normal from the origin", .quantity = SF_LENGTH, .low = -1e3, .high = 1e3},
     {"support", "friction", SF_KEY_NUMBER, "0.5", OF_SUPPORT(friction),
      "Coulomb coefficient of the pad against it; the default is an assumption, as that of `pad.friction`", .high = 10.0},
+    /* interfaces: a list of groups with these keys */
+    {"interfaces", "between", SF_KEY_NAMES, NULL, OF_INTERFACE(between),
+     "two layers, the names of their groups in `materials`, in either order: `interfaces = ( { between = [\"upper\", \"cover\"]; kind = \"loose\"; friction = 0.3; } )`",
+     .count_offset = offsetof(sf_interface_entry, between_count)},
+    {"interfaces", "kind", SF_KEY_CHOICE, NULL, OF_INTERFACE(kind),
+     "`tied`: glued to each other; `sliding`: only the displacement normal to their interface is the same, without friction; `loose`: they only touch, slide, open and close",
+     .words = "tied|sliding|loose"},
+    {"interfaces", "friction", SF_KEY_NUMBER, "", OF_INTERFACE(friction),
+     "Coulomb coefficient of a loose interface; absent: `pad.self_friction`", .high = 10.0},
     /* membrane */
     {"membrane", "faces", SF_KEY_NAMES, "[]", AT(membrane_group),
      "physical surfaces of the pad that a thin elastic cover without cells lies on, glued to them; `E`, `thickness` and `density` go with it",

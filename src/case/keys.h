@@ -50,11 +50,23 @@ typedef struct sf_key {
     size_t count_offset; /* SF_KEY_NAMES, SF_KEY_TIMES, SF_KEY_QUANTITIES */
     int lengths[2];      /* SF_KEY_QUANTITIES; the second may be 0 */
     bool in_card;        /* a parameter of the law */
-    bool in_support;     /* of a support: the offset is in sf_case_support */
+    int list;            /* SF_LIST_*: the list of groups that has the key; 0: none */
     bool idle;           /* its value cannot change a drop: it does not count in sf_case.values */
 } sf_key;
 
 enum { SF_KEY_MAX = 128 };
+
+/* Lists of groups in the case, and where the offsets of their keys lead: sf_case_support,
+ * sf_interface_entry. */
+enum { SF_LIST_SUPPORTS = 1, SF_LIST_INTERFACES };
+
+/* An entry of the list `interfaces`, as it is given. */
+typedef struct sf_interface_entry {
+    int between_count;
+    char between[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
+    int kind;        /* SF_INTERFACE_* */
+    double friction; /* -; NaN: not given */
+} sf_interface_entry;
 
 enum { SF_KEY_GROUP_SIZE = 160, SF_KEY_LAYER_GROUPS = 8 };
 

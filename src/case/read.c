@@ -65,7 +65,8 @@ static sf_status find_unknown(const sf_case_reader *reader, const config_setting
         char inner[SF_CASE_GROUP_SIZE];
         int length = snprintf(inner, sizeof inner, "%s%s%s", group, *group ? "." : "", name);
         if (sf_case_find_key(&reader->keys, group, name) || item == reader->layers ||
-            (!*group && strcmp(name, "supports") == 0) || sf_case_is_response_error(reader, group, name))
+            (!*group && (strcmp(name, "supports") == 0 || strcmp(name, "interfaces") == 0)) ||
+            sf_case_is_response_error(reader, group, name))
             continue;
         if (length >= (int)sizeof inner || !sf_case_is_group(&reader->keys, inner))
             add_unknown(u, item, group);
@@ -103,7 +104,7 @@ static void hash_parameters(sf_case *out, const sf_key *key, const sf_geo_source
 }
 
 /* `detail`: the value in SI. Texts end with a zero: no two lists of values look the same. */
-static void hash_value(const sf_case_reader *reader, const sf_key *key, const char *name, const char *text,
+static void hash_value(sf_case_reader *reader, const sf_key *key, const char *name, const char *text,
                        const char *detail) {
     sf_case *out = reader->out;
     const char *const part[] = {name, text, detail};
@@ -149,7 +150,7 @@ static void tell_value(const sf_case_reader *reader, const sf_key *key, const co
         .of_material = key->in_card || key->kind == SF_KEY_LAW,
         .words = key->words,
         .help = key->description};
-    if (reader->listener && !reader->material_only && !(key->in_support && reader->supports))
+    if (reader->listener && !reader->material_only && !reader->list)
         reader->listener->hear(reader->listener->user, &value);
 }
 
@@ -166,8 +167,9 @@ static void list_value(sf_case_reader *reader, const sf_key *key, const config_s
         fputs("(absent)", value);
     fclose(value);
     char name[SF_CASE_GROUP_SIZE];
-    if (key->in_support && reader->supports)
-        snprintf(name, sizeof name, "supports.%d.%s", reader->support + 1, key->name);
+    if (reader->list)
+        snprintf(name, sizeof name, "%s.%d.%s", config_setting_name(reader->list), reader->item + 1,
+                 key->name);
     else
         snprintf(name, sizeof name, "%s.%s", key->group, key->name);
     fprintf(reader->listing, "%-34s %-24s %-24s %s\n", name, text ? text : "", detail, origin);
@@ -195,6 +197,7 @@ static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_erro
 
 static sf_status read_layers(sf_case_reader *reader, sf_error *err);
 static sf_status read_supports(sf_case_reader *reader, size_t first, sf_error *err);
+static sf_status read_interfaces(sf_case_reader *reader, size_t first, sf_error *err);
 
 /* Reads the value of row `k` of the keys from its setting; NULL: it is not given. */
 static sf_status read_key(sf_case_reader *reader, size_t k, const config_setting_t *setting, sf_error *err) {
@@ -229,10 +232,10 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
             SF_TRY(sf_case_read_response_error(reader, err));
         if (reader->layers && of_material)
             continue;
-        if (!key->in_support)
+        if (!key->list)
             SF_TRY(read_key(reader, k, group ? config_setting_get_member(group, key->name) : NULL, err));
-        else if (!reader->keys.key[k - 1].in_support)
-            SF_TRY(read_supports(reader, k, err));
+        else if (reader->keys.key[k - 1].list != key->list)
+            SF_TRY((key->list == SF_LIST_SUPPORTS ? read_supports : read_interfaces)(reader, k, err));
     }
     return SF_OK;
 }
@@ -332,7 +335,7 @@ static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
 
 /* A support is a surface of a file, or a plane. `group`: its settings; NULL: there is none. */
 static sf_status check_support(const sf_case_reader *reader, const config_setting_t *group, sf_error *err) {
-    const sf_case_support *s = &reader->out->support[reader->support];
+    const sf_case_support *s = &reader->out->support[reader->item];
     bool plane = sf_dot3(s->normal, s->normal) > 0;
     if (group && plane == (s->source.path != NULL))
         return SF_REFUSE_AT(
@@ -349,11 +352,21 @@ static sf_status check_support(const sf_case_reader *reader, const config_settin
     return SF_OK;
 }
 
+/* Reads an item of a list, of the settings `group` (NULL: absent), by the rows of the keys from `first` on.
+ */
+static sf_status read_item(sf_case_reader *reader, size_t first, const config_setting_t *group,
+                           sf_error *err) {
+    const sf_key *key = reader->keys.key;
+    for (size_t k = first; k < reader->keys.count && key[k].list == key[first].list; k++)
+        SF_TRY(read_key(reader, k, group ? config_setting_get_member(group, key[k].name) : NULL, err));
+    return SF_OK;
+}
+
 /* Reads the group `support`, or each of the list `supports`, by the rows of the keys from `first` on. */
 static sf_status read_supports(sf_case_reader *reader, size_t first, sf_error *err) {
     sf_case *c = reader->out;
     const config_setting_t *one = config_lookup(&reader->config, "support"),
-                           *several = reader->supports = config_lookup(&reader->config, "supports");
+                           *several = reader->list = config_lookup(&reader->config, "supports");
     int count = several ? config_setting_length(several) : one != NULL;
     if (several && (one || count < 1 || count > SF_SUPPORTS || config_setting_is_array(several)))
         return SF_REFUSE_AT(reader, several, err,
@@ -366,14 +379,39 @@ static sf_status read_supports(sf_case_reader *reader, size_t first, sf_error *e
             return SF_REFUSE_AT(reader, group, err, "a support must be a group: { file = \"post.geo\"; }");
         if (several)
             SF_TRY(check_names(reader, group, "support", err));
-        reader->support = n;
-        for (size_t k = first; k < reader->keys.count && reader->keys.key[k].in_support; k++)
-            SF_TRY(read_key(reader, k,
-                            group ? config_setting_get_member(group, reader->keys.key[k].name) : NULL, err));
+        reader->item = n;
+        SF_TRY(read_item(reader, first, group, err));
         SF_TRY(check_support(reader, group, err));
     }
+    reader->list = NULL;
     c->support_count = count;
     c->support_alone = one != NULL;
+    return SF_OK;
+}
+
+/* Reads each of the list `interfaces` likewise. */
+static sf_status read_interfaces(sf_case_reader *reader, size_t first, sf_error *err) {
+    const config_setting_t *list = reader->list = config_lookup(&reader->config, "interfaces");
+    int count = list ? config_setting_length(list) : 0;
+    if (list && (count < 1 || count > SF_CASE_MAX_INTERFACES / 2 || !config_setting_is_aggregate(list) ||
+                 config_setting_is_array(list)))
+        return SF_REFUSE_AT(reader, list, err,
+                            "interfaces must be a list of 1 to %d interfaces: interfaces = ( { between = "
+                            "[\"upper\", \"cover\"]; kind = \"loose\"; friction = 0.3; } )",
+                            SF_CASE_MAX_INTERFACES / 2);
+    for (int n = 0; n < count; n++) {
+        const config_setting_t *group = config_setting_get_elem(list, (unsigned)n);
+        if (!config_setting_is_group(group))
+            return SF_REFUSE_AT(reader, group, err,
+                                "an interface must be a group: { between = [\"upper\", \"cover\"]; kind = "
+                                "\"loose\"; }");
+        SF_TRY(check_names(reader, group, "interfaces", err));
+        reader->item = n;
+        reader->entry = (sf_interface_entry){.friction = NAN};
+        SF_TRY(read_item(reader, first, group, err));
+        SF_TRY(sf_case_add_interface(reader, group, err));
+    }
+    reader->list = NULL;
     return SF_OK;
 }
 

@@ -24,8 +24,9 @@ typedef struct sf_case_reader {
     bool given[SF_KEY_MAX];                 /* per row of `keys` */
     bool thermal;                           /* the material has curves at several temperatures */
     bool material_only;                     /* read the keys of the material, and no others */
-    const config_setting_t *supports;       /* the list `supports`; NULL: there is at most `support` */
-    int support;                            /* under construction */
+    const config_setting_t *list;           /* of groups, under construction; NULL: none */
+    int item;                               /* of it */
+    sf_interface_entry entry;               /* likewise, if the list is `interfaces` */
     int drop;                               /* of the series, from 1; 0: a material alone */
     const sf_sink *sink;                    /* borrowed */
     FILE *listing;                          /* the parameters text under construction */
@@ -43,10 +44,11 @@ typedef struct sf_case_origin {
 } sf_case_origin;
 
 /* The structure of which a key's value is a member. */
-static inline char *sf_case_home(const sf_case_reader *reader, const sf_key *key) {
-    return key->in_card      ? reader->material->card
-           : key->in_support ? (char *)&reader->out->support[reader->support]
-                             : (char *)reader->out;
+static inline char *sf_case_home(sf_case_reader *reader, const sf_key *key) {
+    return key->in_card                      ? reader->material->card
+           : key->list == SF_LIST_SUPPORTS   ? (char *)&reader->out->support[reader->item]
+           : key->list == SF_LIST_INTERFACES ? (char *)&reader->entry
+                                             : (char *)reader->out;
 }
 
 /* "file:line", or "--set key=value" for a setting that came from the command line. */
@@ -71,6 +73,8 @@ sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, s
 /* The rules that join several keys of a case, or a key with the law of the material. Each refusal is
  * SF_ERR_INPUT with place, key, value and bound. Internal to src/case. */
 
+/* Puts an entry of the list `interfaces`, that of the reader, into the case; `group`: its settings. */
+sf_status sf_case_add_interface(const sf_case_reader *reader, const config_setting_t *group, sf_error *err);
 /* The card of the reader's material, and the law as the solver will build it. */
 sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err);
 /* The values as they are given. */

@@ -240,59 +240,78 @@ static int find_layer(const sf_case *c, const char *name, size_t length) {
     return -1;
 }
 
-/* The interfaces of a key, "NAME/NAME" each. */
-typedef struct interface_list {
-    const char *key;
-    int count;
-    const char (*name)[SF_CASE_NAME_SIZE];
-    int (*layer)[2];
-} interface_list;
-
-/* Two different layers. */
-static sf_status find_interface(const sf_case_reader *reader, const interface_list *list, int k,
-                                sf_error *err) {
-    int *layer = list->layer[k];
-    const char *name = list->name[k], *slash = strchr(name, '/');
-    layer[0] = slash ? find_layer(reader->out, name, (size_t)(slash - name)) : -1;
-    layer[1] = slash ? find_layer(reader->out, slash + 1, strlen(slash + 1)) : -1;
-    if (layer[0] >= 0 && layer[1] >= 0 && layer[0] != layer[1])
-        return SF_OK;
-    return REFUSE_AT(list->key,
-                     "%s: \"%s\" does not name two layers of materials, for example \"cover/core\"",
-                     list->key, name);
+const sf_case_interface *sf_case_interface_find(const sf_case *c, int layer, int other) {
+    for (int k = 0; k < c->interface_count; k++) {
+        const int *own = c->interface[k].layer;
+        if ((own[0] == layer && own[1] == other) || (own[0] == other && own[1] == layer))
+            return &c->interface[k];
+    }
+    return NULL;
 }
 
-/* Interface k of a list is, in either order of its layers, not among the first `count` of another. */
-static sf_status check_interface_once(const sf_case_reader *reader, const interface_list *list, int k,
-                                      const interface_list *others, int count, sf_error *err) {
-    const int *own = list->layer[k];
-    for (int j = 0; j < count; j++) {
-        const int *other = others->layer[j];
-        if ((own[0] == other[0] && own[1] == other[1]) || (own[0] == other[1] && own[1] == other[0]))
-            return REFUSE_AT(list->key, "%s: \"%s\" and \"%s\" are the same interface", list->key,
-                             others->name[j], list->name[k]);
-    }
+sf_status sf_case_add_interface(const sf_case_reader *reader, const config_setting_t *group, sf_error *err) {
+    static const char *const kind[] = {"tied", "sliding", "loose"};
+    const sf_interface_entry *entry = &reader->entry;
+    sf_case *c = reader->out;
+    sf_case_interface own = {.key = "interfaces", .kind = entry->kind};
+    if (c->layer_count == 0)
+        return SF_REFUSE_AT(reader, group, err,
+                            "interfaces: the pad has one material; layers are the groups of materials");
+    for (int k = 0; k < entry->between_count && k < 2; k++)
+        if ((own.layer[k] = find_layer(c, entry->between[k], strlen(entry->between[k]))) < 0)
+            return SF_REFUSE_AT(reader, group, err, "interfaces.between: materials has no layer \"%s\"",
+                                entry->between[k]);
+    if (entry->between_count != 2)
+        return SF_REFUSE_AT(reader, group, err,
+                            "interfaces.between must name two layers, for example [\"upper\", \"cover\"]");
+    if (sf_case_interface_find(c, own.layer[0], own.layer[1]))
+        return SF_REFUSE_AT(reader, group, err, "interfaces: \"%s\" and \"%s\" are there twice",
+                            entry->between[0], entry->between[1]);
+    if (own.kind != SF_INTERFACE_LOOSE && !isnan(entry->friction))
+        return SF_REFUSE_AT(reader, group, err,
+                            "interfaces.friction: the interface of \"%s\" and \"%s\" is %s; only one that is "
+                            "loose has friction",
+                            entry->between[0], entry->between[1], kind[own.kind]);
+    if (own.kind == SF_INTERFACE_LOOSE)
+        own.friction = isnan(entry->friction) ? c->self_friction : entry->friction;
+    c->interface[c->interface_count++] = own;
+    return SF_OK;
+}
+
+/* Adds an interface "NAME/NAME" of one of the older keys, unless the list `interfaces` has the pair. */
+static sf_status add_pair(const sf_case_reader *reader, const char *key, const char *name, int kind,
+                          sf_error *err) {
+    sf_case *c = reader->out;
+    const char *slash = strchr(name, '/');
+    sf_case_interface own = {.key = key,
+                             .layer = {slash ? find_layer(c, name, (size_t)(slash - name)) : -1,
+                                       slash ? find_layer(c, slash + 1, strlen(slash + 1)) : -1},
+                             .kind = kind,
+                             .friction = kind == SF_INTERFACE_LOOSE ? c->self_friction : 0};
+    if (c->layer_count == 0)
+        return REFUSE_AT(key, "%s: the pad has one material; layers are the groups of materials", key);
+    if (own.layer[0] < 0 || own.layer[1] < 0 || own.layer[0] == own.layer[1])
+        return REFUSE_AT(key, "%s: \"%s\" does not name two layers of materials, for example \"cover/core\"",
+                         key, name);
+    const sf_case_interface *other = sf_case_interface_find(c, own.layer[0], own.layer[1]);
+    if (other && strcmp(other->key, "interfaces") != 0)
+        return REFUSE_AT(key, "%s: \"%s/%s\" and \"%s\" are the same interface", key,
+                         c->layer[other->layer[0]].name, c->layer[other->layer[1]].name, name);
+    if (!other)
+        c->interface[c->interface_count++] = own;
     return SF_OK;
 }
 
 static sf_status check_interfaces(const sf_case_reader *reader, sf_error *err) {
     sf_case *c = reader->out;
-    const interface_list list[] = {{"pad.sliding_interfaces", c->interface_count,
-                                    (const char(*)[SF_CASE_NAME_SIZE])c->interface_name, c->interface_layer},
-                                   {"pad.loose_interfaces", c->loose_count,
-                                    (const char(*)[SF_CASE_NAME_SIZE])c->loose_name, c->loose_layer}};
-    for (int i = 0; i < 2; i++) {
-        if (!reader->layers && list[i].count > 0)
-            return REFUSE_AT(list[i].key, "%s: the pad has one material; layers are the groups of materials",
-                             list[i].key);
-        for (int k = 0; k < list[i].count; k++)
-            if (find_interface(reader, &list[i], k, err) != SF_OK ||
-                check_interface_once(reader, &list[i], k, &list[i], k, err) != SF_OK ||
-                check_interface_once(reader, &list[i], k, &list[0], i ? list[0].count : 0, err) != SF_OK)
-                return err->status;
-    }
-    if (c->loose_count > 0 && c->self_contact == SF_SELF_CONTACT_OFF)
-        return REFUSE_AT("pad.loose_interfaces", "pad.loose_interfaces need pad.self_contact");
+    for (int k = 0; k < c->sliding_pair_count; k++)
+        SF_TRY(add_pair(reader, "pad.sliding_interfaces", c->sliding_pair[k], SF_INTERFACE_SLIDING, err));
+    for (int k = 0; k < c->loose_pair_count; k++)
+        SF_TRY(add_pair(reader, "pad.loose_interfaces", c->loose_pair[k], SF_INTERFACE_LOOSE, err));
+    for (int k = 0; k < c->interface_count && c->self_contact == SF_SELF_CONTACT_OFF; k++)
+        if (c->interface[k].kind == SF_INTERFACE_LOOSE)
+            return REFUSE_AT(c->interface[k].key, "%s: loose layers need pad.self_contact, which is \"off\"",
+                             c->interface[k].key);
     if (c->separate && c->self_contact == SF_SELF_CONTACT_OFF)
         return REFUSE_AT("pad.separate",
                          "pad.separate: bodies touch each other by pad.self_contact, which is \"off\"");

@@ -195,6 +195,12 @@ static const sf_model_field fields[] = {
     SCALAR(run.stop_after_rebound, I64, "/run/stop_after_rebound", "1", "1: end when the missile has left"),
     SCALAR(run.kinematic, I64, "/run/kinematic", "1",
            "figures of 0: the specific force, as an accelerometer reads it; 1: the kinematic acceleration"),
+    LATER_SCALAR(pair_count, I64, "/skin/pair_count", "1",
+                 "pairs of materials between whose faces the friction is another, 0: there are none"),
+    {offsetof(sf_model, pair_layer), U8, offsetof(sf_model, pair_count), 0, 2, "/skin/pair_layer", "1",
+     "numbers of their materials, ascending", true, false},
+    OPTIONAL_ARRAY(pair_friction, F64, pair_count, "/skin/pair_friction", "1",
+                   "Coulomb coefficient between them"),
 };
 
 const sf_model_field *sf_model_fields(size_t *count) {

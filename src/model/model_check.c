@@ -211,6 +211,18 @@ static sf_status check_supports(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
+static sf_status check_pairs(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->pair_count; k++) {
+        const uint8_t *layer = &m->pair_layer[2 * k];
+        if (layer[0] >= layer[1] || layer[1] >= m->material_count)
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "a pair is of the materials %d and %d: two of 0 to %lld, ascending", layer[0],
+                           layer[1], (long long)m->material_count - 1);
+        SF_TRY(check_bound("friction of a pair", m->pair_friction[k], 0, 10, err));
+    }
+    return SF_OK;
+}
+
 static sf_status check_mesh(const sf_model *m, sf_error *err) {
     SF_TRY(check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count,
                      false, err));
@@ -342,7 +354,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
     if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
         check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
         check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
-        check_supports(m, err) != SF_OK)
+        check_supports(m, err) != SF_OK || check_pairs(m, err) != SF_OK)
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
         return err->status;

@@ -14,7 +14,6 @@
 #include "pre/missile_body.h"
 #include "pre/rigid_support.h"
 #include "pre/cloud/dual.h"
-#include "pre/cloud/layers.h"
 #include "pre/impact.h"
 #include "pre/mesh/missile_shape.h"
 #include <math.h>
@@ -222,6 +221,7 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
         sf_connectivity_check(mesh, &dual, c->separate, err) != SF_OK ||
         sf_layers_build(c, mesh, &dual, layers, err) != SF_OK)
         goto done;
+    report->interfaces = layers->interfaces;
     sf_cloud_hash(mesh, report->mesh_hash);
     if (alloc_cloud(m, layers->first[layers->count], contact_area, err) != SF_OK ||
         build_contact(c, mesh, &dual, layers, *contact_area, err) != SF_OK ||

@@ -6,6 +6,7 @@
 #include "model/model.h"
 #include "case/case.h"
 #include "pre/cloud/domains.h"
+#include "pre/cloud/layers.h"
 #include "pre/mesh/mesh.h"
 #include "pre/hold.h"
 #include "pre/drop_check.h"
@@ -25,6 +26,7 @@ typedef struct sf_build_report {
     sf_contact_zone zone;
     sf_error between; /* a part of the missile passes between the contact nodes (pre/foam_path.h) */
     sf_invariants invariants;
+    sf_interfaces interfaces; /* of the layers, as the materials of the model */
 } sf_build_report;
 
 /* Builds the model. The mesh is reordered and its cells move into the model; the case's curves, motion and

@@ -196,12 +196,36 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
     return err->status;
 }
 
+static bool is_loose(const sf_case_interface *i) {
+    return i->kind == SF_INTERFACE_LOOSE;
+}
+
+/* The friction of loose layers that is not that of all faces. */
+static sf_status take_pairs(const sf_case *c, sf_model *m, sf_error *err) {
+    m->skin_friction = c->self_friction;
+    m->pair_layer = sf_alloc(err, 2 * SF_CASE_MAX_INTERFACES, 1, "friction of layers");
+    m->pair_friction = sf_alloc(err, SF_CASE_MAX_INTERFACES, sizeof *m->pair_friction, "friction of layers");
+    for (int k = 0; err->status == SF_OK && k < c->interface_count; k++) {
+        const sf_case_interface *i = &c->interface[k];
+        if (!is_loose(i) || i->friction == m->skin_friction)
+            continue;
+        bool falls = i->layer[0] > i->layer[1];
+        m->pair_layer[2 * m->pair_count] = (uint8_t)i->layer[falls];
+        m->pair_layer[2 * m->pair_count + 1] = (uint8_t)i->layer[!falls];
+        m->pair_friction[m->pair_count++] = i->friction;
+    }
+    return err->status;
+}
+
 sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error *err) {
     SF_OWNED_BY(faces_free) faces f = {0};
     int64_t first = -1;
+    bool loose = false;
     unheld[0] = NAN;
+    for (int k = 0; k < c->interface_count; k++)
+        loose = loose || is_loose(&c->interface[k]);
     SF_TRY(faces_find(m, &f, err));
-    if (f.count > 0 && (c->loose_count > 0 || c->separate))
+    if (f.count > 0 && (loose || c->separate))
         first = 0;
     else if (f.count > 0)
         find_touching(m, &f, &first, err);
@@ -213,9 +237,9 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
     if (err->status == SF_OK && f.count > 0 && (itself || m->skin_watched || m->support_triangle_count > 0)) {
         m->skin_count = f.count;
         m->skin_triangle = f.node;
-        m->skin_friction = c->self_friction;
         m->skin_alone = !itself;
         f.node = NULL;
+        take_pairs(c, m, err);
     }
     return err->status;
 }

@@ -138,6 +138,21 @@ static double millimetres(double length) {
     return fabs(length) < 1e-9 ? 0 : 1e3 * length;
 }
 
+/* A line for each interface of the layers. */
+static void add_interfaces(sf_model_report *out, const sf_model *m, const sf_interfaces *all) {
+    static const char *const kind[] = {"tied", "sliding", "loose"};
+    for (int k = 0; k < all->count && k < SF_INTERFACES_LISTED; k++) {
+        const sf_interface *i = &all->at[k];
+        add(out, "interface", "interface", "%s, %s: %s", m->material[i->layer[0]].name,
+            m->material[i->layer[1]].name, kind[i->kind]);
+        if (i->kind == SF_INTERFACE_LOOSE)
+            append(out, ", friction %g", i->friction);
+        append(out, i->faces > 0 ? ", %lld faces" : ", bodies apart", (long long)i->faces);
+    }
+    if (all->count > SF_INTERFACES_LISTED)
+        append(out, "; and %d more interfaces", all->count - SF_INTERFACES_LISTED);
+}
+
 static void add_masses(sf_model_report *out, const sf_model *m, const sf_build_report *r) {
     double mass = 0, parts = 0, whole = sf_model_whole(m), volume = r->mesh_volume;
     for (int64_t i = 0; i < m->node_count; i++)
@@ -233,6 +248,7 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
                m->support_triangle_count == 0 ? ""
                : m->skin_alone                ? "the support"
                                               : ", and the support");
+    add_interfaces(out, m, &r->interfaces);
     add_masses(out, m, r);
     add_mesh_error(out, m, &r->zone);
     add_cost(out, m, r);

@@ -6,7 +6,7 @@
 #include "pre/build.h"
 #include <stdio.h>
 
-enum { SF_MODEL_REPORT_LINES = 32, SF_MODEL_REPORT_VALUE = 200 };
+enum { SF_MODEL_REPORT_LINES = 32 + SF_INTERFACES_LISTED, SF_MODEL_REPORT_VALUE = 200 };
 
 typedef struct sf_report_line {
     const char *key, *name; /* static */

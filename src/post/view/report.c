@@ -199,6 +199,22 @@ static void put_missile(const page *p) {
     sf_html_table_end(&table);
 }
 
+static void put_interfaces(const page *p, sf_html_table *table) {
+    sf_origin_key between, kind, friction;
+    char name[64];
+    for (int k = 1; snprintf(name, sizeof name, "interfaces.%d.between", k) > 0 &&
+                    sf_origin_find(p->parameters, name, &between);
+         k++) {
+        snprintf(name, sizeof name, "interfaces.%d.kind", k);
+        bool told = sf_origin_find(p->parameters, name, &kind);
+        snprintf(name, sizeof name, "interfaces.%d.friction", k);
+        bool rough = sf_origin_find(p->parameters, name, &friction) && friction.given;
+        tidy(between.value);
+        sf_html_fact(table, "interface", "%s: %s%s%s", between.value, told ? kind.value : "",
+                     rough ? ", friction " : "", rough ? friction.value : "");
+    }
+}
+
 static void put_pad(const page *p) {
     const sf_results *r = p->results;
     sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
@@ -218,6 +234,8 @@ static void put_pad(const page *p) {
         put_parameter(p, &table, "pad.gravity", "gravity on the pad");
     }
     put_parameter(p, &table, "pad.sliding_interfaces", "sliding layers");
+    put_parameter(p, &table, "pad.loose_interfaces", "loose layers");
+    put_interfaces(p, &table);
     sf_html_table_end(&table);
 }
 

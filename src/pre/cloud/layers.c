@@ -64,33 +64,36 @@ int32_t sf_layers_copy(const sf_layers *l, int32_t node, int layer) {
 
 /* ---- interfaces ---- */
 
-/* Pairs of layers: whether they slide, and whether they touch. */
+/* The faces of each pair of layers. */
 typedef struct pair_table {
-    int count;
-    uint8_t slides[SF_CASE_MAX_LAYERS][SF_CASE_MAX_LAYERS], touch[SF_CASE_MAX_LAYERS][SF_CASE_MAX_LAYERS];
+    int64_t faces[SF_CASE_MAX_LAYERS][SF_CASE_MAX_LAYERS];
 } pair_table;
 
-static void list_pairs(const sf_case *c, int count, pair_table *pairs) {
-    *pairs = (pair_table){.count = count};
-    for (int k = 0; k < c->interface_count + c->loose_count; k++) { /* what is loose slides, too */
-        const int *layer =
-            k < c->interface_count ? c->interface_layer[k] : c->loose_layer[k - c->interface_count];
-        pairs->slides[layer[0]][layer[1]] = pairs->slides[layer[1]][layer[0]] = 1;
-    }
-}
-
+/* The layers of an interface share faces; bodies apart from each other may be loose. */
 static sf_status check_pairs(const sf_case *c, const pair_table *pairs, sf_error *err) {
-    for (int k = 0; k < c->interface_count + c->loose_count; k++) {
-        const int *layer =
-            k < c->interface_count ? c->interface_layer[k] : c->loose_layer[k - c->interface_count];
-        if (!pairs->touch[layer[0]][layer[1]])
+    for (int k = 0; k < c->interface_count; k++) {
+        const sf_case_interface *i = &c->interface[k];
+        if (pairs->faces[i->layer[0]][i->layer[1]] == 0 && !(i->kind == SF_INTERFACE_LOOSE && c->separate))
             return SF_REFUSE(err,
-                             "pad.%s_interfaces: the layers \"%s\" and \"%s\" do not touch: they share no "
-                             "face of the mesh",
-                             k < c->interface_count ? "sliding" : "loose", c->layer[layer[0]].name,
-                             c->layer[layer[1]].name);
+                             "%s: the layers \"%s\" and \"%s\" do not touch: they share no face of the mesh",
+                             i->key, c->layer[i->layer[0]].name, c->layer[i->layer[1]].name);
     }
     return SF_OK;
+}
+
+/* Lists the interfaces that the case or the mesh has, by their layers. */
+static void list_interfaces(const sf_case *c, const pair_table *pairs, sf_interfaces *out) {
+    for (int a = 0; a < c->layer_count; a++)
+        for (int b = a + 1; b < c->layer_count; b++) {
+            const sf_case_interface *given = sf_case_interface_find(c, a, b);
+            sf_interface own = {{a, b}, SF_INTERFACE_TIED, 0, pairs->faces[a][b]};
+            if (given) {
+                own.kind = given->kind;
+                own.friction = given->friction;
+            }
+            if ((given || own.faces > 0) && out->count++ < SF_INTERFACES_LISTED)
+                out->at[out->count - 1] = own;
+        }
 }
 
 /* The component along the normal of a face; 0 if it is not normal to an axis. */
@@ -118,16 +121,17 @@ static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_
                           sf_layers *l, sf_error *err) {
     int a = layer_of(mesh, face->cell[0]), b = layer_of(mesh, face->cell[1]);
     int low = a < b ? a : b, high = a < b ? b : a;
-    uint8_t mask = pairs->slides[low][high] ? normal_component(mesh, face) : ALL;
+    const sf_case_interface *given = sf_case_interface_find(c, a, b);
+    uint8_t mask = given && given->kind != SF_INTERFACE_TIED ? normal_component(mesh, face) : ALL;
     if (mask == 0) {
         const double *x = &mesh->position[3 * (int64_t)face->node[3]];
         return SF_REFUSE(
             err,
-            "pad.sliding_interfaces, pad.loose_interfaces: the interface of \"%s\" and \"%s\" at (%.4g, %.4g, "
-            "%.4g) mm is not normal to x, y or z: an interface that slides must be",
-            c->layer[low].name, c->layer[high].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+            "%s: the interface of \"%s\" and \"%s\" at (%.4g, %.4g, %.4g) mm is not normal to x, y or z: one "
+            "that is sliding or loose must be",
+            given->key, c->layer[low].name, c->layer[high].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     }
-    pairs->touch[a][b] = pairs->touch[b][a] = 1;
+    pairs->faces[a][b] = ++pairs->faces[b][a];
     for (int k = face->node[0] < 0; k < 4; k++)
         l->tie[l->tie_count++] = (sf_layer_tie){sf_layers_copy(l, face->node[k], low),
                                                 sf_layers_copy(l, face->node[k], high), mask};
@@ -149,9 +153,8 @@ static void merge_ties(sf_layers *l) {
 
 static sf_status find_ties(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual, sf_layers *l,
                            sf_error *err) {
-    pair_table pairs;
+    pair_table pairs = {0};
     int64_t faces = 0;
-    list_pairs(c, l->count, &pairs);
     for (int64_t f = 0; f < dual->inner_count; f++)
         faces += layer_of(mesh, dual->inner[f].cell[0]) != layer_of(mesh, dual->inner[f].cell[1]);
     l->tie = sf_alloc(err, 4 * (unsigned long)faces, sizeof *l->tie, "ties between layers");
@@ -160,6 +163,7 @@ static sf_status find_ties(const sf_case *c, const sf_mesh *mesh, const sf_dual 
             tie_face(c, mesh, &dual->inner[f], &pairs, l, err);
     SF_TRY(err->status);
     merge_ties(l);
+    list_interfaces(c, &pairs, &l->interfaces);
     return check_pairs(c, &pairs, err);
 }
 
@@ -340,11 +344,8 @@ void sf_layers_loosen(const sf_case *c, sf_model *m) {
     int64_t kept = 0;
     for (int64_t k = 0; k < m->tie_count; k++) {
         int a = m->node_material[m->tie_node[k]], b = m->node_material[m->tie_other[k]];
-        bool loose = false;
-        for (int j = 0; j < c->loose_count; j++)
-            loose = loose || (c->loose_layer[j][0] == a && c->loose_layer[j][1] == b) ||
-                    (c->loose_layer[j][0] == b && c->loose_layer[j][1] == a);
-        if (loose)
+        const sf_case_interface *given = sf_case_interface_find(c, a, b);
+        if (given && given->kind == SF_INTERFACE_LOOSE)
             continue;
         m->tie_node[kept] = m->tie_node[k];
         m->tie_other[kept] = m->tie_other[k];

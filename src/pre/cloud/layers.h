@@ -14,6 +14,20 @@ typedef struct sf_layer_tie {
     uint8_t mask;        /* SF_FIX_* bits: components of u_h that are the same on both sides */
 } sf_layer_tie;
 
+/* Two layers that share faces, or that the case names. */
+typedef struct sf_interface {
+    int layer[2];    /* ascending */
+    int kind;        /* SF_INTERFACE_* */
+    double friction; /* -, of a loose one */
+    int64_t faces;   /* of the mesh, that they share; 0: separate bodies */
+} sf_interface;
+
+enum { SF_INTERFACES_LISTED = 64 };
+typedef struct sf_interfaces {
+    int count; /* of all; the first SF_INTERFACES_LISTED are listed */
+    sf_interface at[SF_INTERFACES_LISTED];
+} sf_interfaces;
+
 /* Nodes of the parted mesh stand layer by layer, in each in the order of the whole mesh. */
 typedef struct sf_layers {
     int count;
@@ -24,11 +38,12 @@ typedef struct sf_layers {
     int64_t tie_count; /* ascending by node and other; some may follow from others */
     sf_layer_tie *tie;
     int64_t *together; /* [first[count]] the same for nodes that are tied in all components */
+    sf_interfaces interfaces;
 } sf_layers;
 
 /* `mesh`, whole, with its dual; the case's layers and interfaces. SF_ERR_INPUT with the place: an interface
- * that slides but is not normal to an axis, or layers of pad.sliding_interfaces that do not touch. On failure
- * `*layers` is empty. */
+ * that is not tied and not normal to an axis, or layers of the case's interfaces that do not touch. On
+ * failure `*layers` is empty. */
 sf_status sf_layers_build(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual, sf_layers *layers,
                           sf_error *err);
 void sf_layers_free(sf_layers *layers);

@@ -79,6 +79,7 @@ typedef struct touch {
     double weight[3];    /* of the facet's nodes; zeros for a plane */
     double normal[3];    /* outward from the facet */
     double gap;          /* m, now; of a depth the part that the step takes back */
+    double friction;     /* -, Coulomb coefficient */
 } touch;
 
 /* The weights of a facet's nodes at a point of its plane, `normal` (twice its area long) being its own. */
@@ -256,19 +257,11 @@ typedef struct solve {
     touch passed;      /* a pair whose node has passed through the facet; node -1: there is none */
 } solve;
 
-/* The mirror image moves along a symmetry plane as the pad does. */
-static double friction_of(const sf_model *m, const sf_skin *skin, const touch *pair) {
-    if (pair->facet < FIRST_PLANE - SF_SKIN_ANVIL)
-        return 0;
-    int support = sf_skin_support(m, skin, pair->node, pair->facet);
-    return support >= 0 ? m->support_friction[support] : m->skin_friction;
-}
-
 /* One Gauss-Seidel update of the force on a pair's node; returns the size of its change. */
 static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w, int64_t a) {
     const touch *pair = &w->pair[a];
     double *q = &s->self_force[3 * pair->node], moved[3], next[3], change[3], largest = 0;
-    double mobility = w->shift * w->mobility[a], friction = friction_of(m, skin, pair);
+    double mobility = w->shift * w->mobility[a], friction = pair->friction;
     gather(skin, pair, s->self_push, moved);
     for (int r = 0; r < 3; r++)
         moved[r] = w->step[a][r] + w->shift * moved[r];
@@ -309,23 +302,38 @@ static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const sol
 
 /* Half of the work of the force on a pair in the last step: each step's force works over the steps before and
  * after it. */
-static void book(const sf_model *m, const sf_skin *skin, sf_state *s, const touch *pair,
-                 const double force[3]) {
+static void book(const sf_skin *skin, sf_state *s, const touch *pair, const double force[3]) {
     double motion[3];
     relative(skin, pair, s->self_motion, motion);
     double lost = -0.5 * sf_dot3(force, motion),
-           normal = friction_of(m, skin, pair) > 0
-                        ? -0.5 * sf_dot3(force, pair->normal) * sf_dot3(motion, pair->normal)
-                        : lost;
+           normal = pair->friction > 0 ? -0.5 * sf_dot3(force, pair->normal) * sf_dot3(motion, pair->normal)
+                                       : lost;
     s->ledger.contact += normal;
     s->ledger.friction += lost - normal;
     if (pair->facet == FIRST_PLANE - SF_SKIN_ANVIL)
         s->ledger.anvil += lost;
 }
 
+/* The Coulomb coefficient of a pair; the mirror image moves along a symmetry plane as the pad does. */
+static double friction_of(const sf_model *m, const sf_skin *skin, int64_t p, int64_t f) {
+    if (f < FIRST_PLANE - SF_SKIN_ANVIL)
+        return 0;
+    int support = sf_skin_support(m, skin, p, f);
+    if (support >= 0)
+        return m->support_friction[support];
+    for (int64_t k = 0; k < m->pair_count && f >= 0; k++) {
+        const uint8_t *layer = &m->pair_layer[2 * k];
+        int own = m->node_material[skin->node[p]], other = m->node_material[skin->node[skin->facet[3 * f]]];
+        if ((own < other ? own : other) == layer[0] && (own < other ? other : own) == layer[1])
+            return m->pair_friction[k];
+    }
+    return m->skin_friction;
+}
+
 /* The pair of node p in the last step; its normal is that of the present. */
-static touch last_pair(const sf_skin *skin, const sf_state *s, int64_t p) {
+static touch last_pair(const sf_model *m, const sf_skin *skin, const sf_state *s, int64_t p) {
     touch q = {.node = p, .facet = (int64_t)s->self_partner[p]};
+    q.friction = friction_of(m, skin, p, q.facet);
     memcpy(q.weight, &s->self_weight[3 * p], sizeof q.weight);
     if (q.facet < 0) {
         q.normal[skin->plane[FIRST_PLANE - q.facet].axis] = 1;
@@ -345,8 +353,8 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         int64_t p = s->self_close[k];
         double *q = &s->self_force[3 * p];
         if (s->self_partner[p] != NOTHING) {
-            const touch last = last_pair(skin, s, p);
-            book(m, skin, s, &last, q);
+            const touch last = last_pair(m, skin, s, p);
+            book(skin, s, &last, q);
         }
         touch *found = &w->pair[w->count];
         double old = sqrt(sf_dot3(q, q));
@@ -359,7 +367,8 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
             memset(q, 0, 3 * sizeof *q);
             continue;
         }
-        if (s->self_partner[p] != (double)found->facet && friction_of(m, skin, found) == 0)
+        found->friction = friction_of(m, skin, p, found->facet);
+        if (s->self_partner[p] != (double)found->facet && found->friction == 0)
             for (int r = 0; r < 3; r++)
                 q[r] = old * found->normal[r];
         s->self_partner[p] = (double)found->facet;
@@ -441,7 +450,7 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
     for (int64_t a = 0; a < w.count; a++) {
         const double *q = &s->self_force[3 * w.pair[a].node];
         scatter(m, skin, &w.pair[a], q, false, s->force);
-        book(m, skin, s, &w.pair[a], q);
+        book(skin, s, &w.pair[a], q);
     }
     free(w.pair);
     free(w.mobility);
