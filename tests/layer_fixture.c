@@ -71,6 +71,7 @@ static void drop_losses(sf_foam_card *card) {
     card->damp = 0;
     card->maxwell_modulus = 0;
     card->kelvin_viscosity = 0;
+    card->rate_factor = 0;
 }
 
 void layers_make_linear(sf_material *material, double modulus, double density) {
