@@ -2,6 +2,7 @@
 /* Contact of the pad with itself and with a support against closed forms: two bars exchange their speeds, a
  * block that hits a plane or a block aslant, Hertz' contact of a sphere. The foam is linear elastic, its
  * Poisson's ratio is zero. */
+#include "extreme.h"
 #include "layer_fixture.h"
 #include "program_fixture.h"
 
@@ -156,15 +157,12 @@ static void assert_slid(const double after[3]) {
     assert_relative(along, FRICTION * up, 0.01);
 }
 
-static void a_block_slides_on_a_support(void **state) {
+/* A block of 40 mm above a plate, which is its support. */
+static void block_on_plate(double gap, fixture *out) {
     const fixture_block block = {.cells = {4, 4, 4}, .spacing = 0.01};
     sf_case c;
     sf_mesh mesh;
     sf_surface missile, plate;
-    fixture f;
-    const double gap = 1e-5;
-    double after[3], energy = 0;
-    (void)state;
     loose_case(&c, 1, 0);
     c.support[0].friction = FRICTION;
     c.support[0].source.path = strdup("plate");
@@ -177,9 +175,17 @@ static void a_block_slides_on_a_support(void **state) {
         plate.position[3 * k + 2] = -gap;
     mesh.support = &plate;
     mesh.support_count = c.support_count = 1;
-    fixture_build(&c, &mesh, &missile, &f);
+    fixture_build(&c, &mesh, &missile, out);
     sf_surface_free(&plate);
-    fixture_start(&f);
+    fixture_start(out);
+}
+
+static void a_block_slides_on_a_support(void **state) {
+    const double gap = 1e-5;
+    fixture f;
+    double after[3], energy = 0;
+    (void)state;
+    block_on_plate(gap, &f);
     throw_layer(&f, 0, SLIP, -DROP);
     while (f.state.time < gap / DROP + 1.5 * 2 * 0.04 / sqrt(MODULUS / DENSITY))
         fixture_advance(&f);
@@ -189,6 +195,24 @@ static void a_block_slides_on_a_support(void **state) {
     energy = l->kinetic_pad + sf_ledger_internal(l) + l->contact + l->friction;
     assert_relative(energy, 0.5 * mass * (SLIP * SLIP + DROP * DROP), 0.01);
     assert_true(l->friction > 0);
+    fixture_free(&f);
+}
+
+/* Foam that is in touch with a support and then lies 0.6 spacings behind it has passed through. */
+static void a_block_passes_through_a_support(void **state) {
+    const double gap = 1e-5, depth = 0.006;
+    fixture f;
+    sf_error err = SF_ERROR_INIT;
+    (void)state;
+    block_on_plate(gap, &f);
+    throw_layer(&f, 0, 0, -DROP);
+    while (f.state.time < 2 * gap / DROP)
+        fixture_advance(&f);
+    for (int64_t i = 0; i < f.model.node_count; i++)
+        f.state.d[3 * i + 2] -= depth;
+    assert_int_equal(sf_step_evaluate(&f.model, &f.operators, &f.state, &err), SF_ERR_NUMERIC);
+    print_message("%s\n", err.text);
+    assert_non_null(strstr(err.text, "the foam has passed through support 1 by 6"));
     fixture_free(&f);
 }
 
@@ -248,6 +272,36 @@ static void each_interface_has_its_own_friction(void **state) {
     }
     assert_true(fabs(sum - low[0]) < 1e-12 * SLIP && mass > 0);
     fixture_free(&f);
+}
+
+/* A stack is lifted by its upper layer: a loose one falls apart, and nothing holds the layers together; of
+ * one that is tied or slides the lower layer comes along. */
+static void a_loose_stack_falls_apart_when_it_is_lifted(void **state) {
+    const fixture_block block = {.cells = {4, 4, 2 * HALF}, .spacing = 0.01};
+    static const int kinds[] = {SF_INTERFACE_LOOSE, SF_INTERFACE_SLIDING, SF_INTERFACE_TIED};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        sf_case c;
+        fixture f;
+        double low[3], high[3], pulled = 0;
+        loose_case(&c, 2, FRICTION);
+        c.interface[0].kind = kinds[k];
+        layers_under_plate(&c, &block, by_height, &f);
+        fixture_start(&f);
+        throw_layer(&f, 1, 0, DROP);
+        while (f.state.time < 5e-3) {
+            fixture_advance(&f);
+            mean_velocity(&f, 0, low);
+            pulled = larger(pulled, fabs(low[2]));
+        }
+        mean_velocity(&f, 1, high);
+        print_message("kind %d: lower up to %.3g, upper at the end %.3g m/s\n", kinds[k], pulled, high[2]);
+        if (kinds[k] == SF_INTERFACE_LOOSE)
+            assert_true(pulled == 0 && fabs(high[2] - DROP) < 1e-12 * DROP);
+        else
+            assert_true(pulled > 0.8 * DROP);
+        fixture_free(&f);
+    }
 }
 
 /* The quarter of a hemisphere of 100 mm, pole down, fine at the pole; with `two`, on another one. */
@@ -341,6 +395,8 @@ int main(void) {
         cmocka_unit_test(two_bars_exchange_their_speeds),
         cmocka_unit_test(a_block_slides_on_a_support),
         cmocka_unit_test(a_block_slides_on_two_supports),
+        cmocka_unit_test(a_block_passes_through_a_support),
+        cmocka_unit_test(a_loose_stack_falls_apart_when_it_is_lifted),
         cmocka_unit_test(a_block_slides_on_a_block),
         cmocka_unit_test(each_interface_has_its_own_friction),
         cmocka_unit_test(a_dome_on_a_slab_and_two_domes_obey_hertz),

@@ -119,6 +119,8 @@ static const char STACK[] =
     "  Transfinite Curve {p+1:p+4} = n + 1; Transfinite Surface {s}; Recombine Surface {s};\n"
     "  e[] = Extrude {0,0,20} { Surface{s}; Layers{Ceil(n/2)}; Recombine; }; v[k] = e[1];\n"
     "EndFor\n"
+    "DefineConstant[ far = 0 ];\n"
+    "If (far)\n  t[] = Translate {400,0,10} { Duplicata { Volume{v[0]}; } }; v[2] = t[0];\nEndIf\n"
     "Physical Volume(\"pad\") = {v[]};\n"
     "Physical Surface(\"base\") = Surface In BoundingBox{-1,-1,-0.001,41,41,0.001};\n"
     "Physical Surface(\"top\") = Surface In BoundingBox{-1,-1,40,41,41,40.02};\n"
@@ -141,6 +143,12 @@ static void bodies_with_other_meshes_pass_on_the_stress(void **state) {
     r = program_run(p, "pre",
                     "case.cfg -o m.h5 --force --set pad.separate=true --set pad.self_contact='\"off\"'");
     assert_true(r.code == 2 && strstr(r.err, "pad.separate: bodies touch each other by pad.self_contact"));
+    r = program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.separate=true");
+    assert_null(strstr(r.err, "out of reach"));
+    r = program_succeed(
+        p, "pre",
+        "case.cfg -o m.h5 --force --set pad.separate=true --set geometry.parameters='{ far = 1; }'");
+    assert_non_null(strstr(r.err, "1 of 3 bodies are out of reach, the first about (420, 20, 20) mm"));
     figures f = run(p, "--set pad.separate=true");
     assert_true(f.momentum < 1e-12 && f.angular < 1e-12 && f.energy_error < 1e-3);
     sf_results results;

@@ -383,3 +383,68 @@ void sf_hold_warn(const sf_hold *hold, const sf_model *m, const sf_sink *sink) {
                 "away",
                 'x' + c, m->missile.direction[c]);
 }
+
+/* ---- bodies that nothing reaches ---- */
+
+typedef struct box {
+    double low[3], high[3]; /* m */
+} box;
+
+static void widen(box *b, const double x[3], const double along[3], double way) {
+    for (int r = 0; r < 3; r++) {
+        b->low[r] = fmin(b->low[r], x[r] + way * along[r]);
+        b->high[r] = fmax(b->high[r], x[r] + way * along[r]);
+    }
+}
+
+static bool is_near(const box *a, const box *b, double reach) {
+    bool near = true;
+    for (int r = 0; r < 3; r++)
+        near = near && a->low[r] < b->high[r] + reach && b->low[r] < a->high[r] + reach;
+    return near;
+}
+
+/* Marks the bodies near the missile's way, the last box, or near one that is marked. */
+static void spread_reach(int64_t bodies, const box *body, double reach, uint8_t *reached) {
+    reached[bodies] = 1;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int64_t k = 0; k < bodies; k++)
+            for (int64_t j = 0; j <= bodies && !reached[k]; j++)
+                changed |= reached[k] = reached[j] && is_near(&body[k], &body[j], reach);
+    }
+}
+
+sf_status sf_hold_warn_apart(const sf_model *m, const sf_sink *sink, sf_error *err) {
+    SF_OWNED_BY(free_bodies) body_list b = {0};
+    SF_TRY(find_parts(m, &b, err));
+    SF_OWNED box *body = sf_alloc(err, (unsigned long)b.count + 1, sizeof *body, "bodies of the pad");
+    SF_OWNED uint8_t *reached = sf_alloc(err, (unsigned long)b.count + 1, 1, "bodies of the pad");
+    SF_TRY(err->status);
+    int64_t apart = 0, first = 0;
+    for (int64_t k = 0; k <= b.count; k++)
+        for (int r = 0; r < 3; r++)
+            body[k].high[r] = -(body[k].low[r] = INFINITY);
+    for (int64_t i = 0; i < m->node_count; i++)
+        widen(&body[b.node[i]], &m->position[3 * i], m->missile.direction, 0);
+    for (int64_t i = 0; i < m->surface_node_count; i++)
+        for (int end = 0; end < 2; end++)
+            widen(&body[b.count], &m->surface_position[3 * i], m->missile.direction,
+                  end * (m->missile.gap + m->thickness));
+    spread_reach(b.count, body, m->thickness, reached);
+    for (int64_t k = b.count - 1; k >= 0; k--)
+        if (!reached[k]) {
+            apart++;
+            first = k;
+        }
+    const box *own = &body[first];
+    if (apart > 0)
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "pad.separate: %lld of %lld bodies are out of reach, the first about (%.4g, %.4g, %.4g) mm: "
+            "neither the missile nor a body that it may move comes nearer than the pad's thickness "
+            "(%.4g mm), and they stay at rest",
+            (long long)apart, (long long)b.count, 500 * (own->low[0] + own->high[0]),
+            500 * (own->low[1] + own->high[1]), 500 * (own->low[2] + own->high[2]), 1e3 * m->thickness);
+    return SF_OK;
+}

@@ -29,3 +29,6 @@ sf_status sf_hold_check(const sf_hold *hold, const sf_model *model, sf_error *er
 /* Tells `sink` of an underside that is mostly free, and of a missile that pushes the pad along a free motion.
  */
 void sf_hold_warn(const sf_hold *hold, const sf_model *model, const sf_sink *sink);
+/* Tells `sink` of bodies of a pad that neither the missile on its way nor a body that it may move comes near.
+ */
+sf_status sf_hold_warn_apart(const sf_model *model, const sf_sink *sink, sf_error *err);
