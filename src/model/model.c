@@ -201,6 +201,8 @@ static const sf_model_field fields[] = {
      "numbers of their materials, ascending", true, false},
     OPTIONAL_ARRAY(pair_friction, F64, pair_count, "/skin/pair_friction", "1",
                    "Coulomb coefficient between them"),
+    OPTIONAL_ARRAY(skin_half, U8, skin_count, "/skin/half", "1",
+                   "1, 2: halves of a quadrangle, its nodes 0, 1, 2 and 0, 2, 3; 0: a triangle"),
 };
 
 const sf_model_field *sf_model_fields(size_t *count) {

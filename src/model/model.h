@@ -163,12 +163,14 @@ typedef struct sf_model {
      */
     int64_t skin_count;
     int32_t *skin_triangle; /* [skin_count][3] nodes */
-    double skin_friction;   /* -, Coulomb coefficient between them */
-    int64_t pair_count;     /* pairs of materials between whose faces the friction is another */
-    uint8_t *pair_layer;    /* [pair_count][2] numbers of the materials, ascending */
-    double *pair_friction;  /* [pair_count] - */
-    int64_t skin_alone;     /* 1: they touch the supports only */
-    int64_t skin_watched;   /* 1: they pass through each other, which ends the run */
+    uint8_t *skin_half;   /* [skin_count] 1, 2: halves of a quadrangle, one after the other: its nodes 0, 1, 2
+                             and   0, 2, 3; 0: a triangle */
+    double skin_friction; /* -, Coulomb coefficient between them */
+    int64_t pair_count;   /* pairs of materials between whose faces the friction is another */
+    uint8_t *pair_layer;  /* [pair_count][2] numbers of the materials, ascending */
+    double *pair_friction; /* [pair_count] - */
+    int64_t skin_alone;    /* 1: they touch the supports only */
+    int64_t skin_watched;  /* 1: they pass through each other, which ends the run */
 
     /* Rigid fixed bodies that the skin may touch; triangles turned outwards, of one support after the other.
      * Nodes at sharp edges are there once for each side. */

@@ -12,7 +12,8 @@
 
 /* ---- the pad's surface ---- */
 
-sf_status sf_skin_triangles(const sf_model *m, int64_t *triangles, int32_t **out, sf_error *err) {
+sf_status sf_skin_triangles(const sf_model *m, int64_t *triangles, int32_t **out, uint8_t **out_half,
+                            sf_error *err) {
     const sf_cells cells = {m->node_count, m->cell_count, m->position,
                             m->cell_type,  m->cell_ptr,   m->cell_node};
     sf_skin_faces skin;
@@ -20,14 +21,19 @@ sf_status sf_skin_triangles(const sf_model *m, int64_t *triangles, int32_t **out
     sf_skin_faces_find(&cells, &skin, err);
     int32_t *node = *out =
         sf_alloc(err, 6 * (unsigned long)skin.face_count, sizeof *node, "surface of the pad");
+    uint8_t *kind = sf_alloc(err, 2 * (unsigned long)skin.face_count, 1, "surface of the pad");
     for (int64_t i = 0; err->status == SF_OK && i < skin.face_count; i++)
         for (int half = 0; half < (skin.face[i][3] < 0 ? 1 : 2); half++) {
             const int corner[3] = {0, 1 + half, 2 + half};
             for (int k = 0; k < 3; k++)
                 node[3 * *triangles + k] = (int32_t)skin.node[skin.face[i][corner[k]]];
-            (*triangles)++;
+            kind[(*triangles)++] = (uint8_t)(skin.face[i][3] < 0 ? 0 : 1 + half);
         }
     sf_skin_faces_free(&skin);
+    if (out_half)
+        *out_half = kind;
+    else
+        free(kind);
     return err->status;
 }
 
@@ -82,6 +88,7 @@ static bool is_open(const uint8_t *mark, const int32_t node[3], const shape *s) 
 typedef struct faces {
     int64_t count;
     int32_t *node;    /* [count][3] */
+    uint8_t *half;    /* [count] as of sf_model.skin_half */
     shape *shape;     /* [count] */
     double *position; /* [count][3] m, centroids, for the grid */
     double *radius;   /* [count] m */
@@ -92,6 +99,7 @@ typedef struct faces {
 static void faces_free(faces *f) {
     sf_grid_free(&f->grid);
     free(f->node);
+    free(f->half);
     free(f->shape);
     free(f->position);
     free(f->radius);
@@ -102,7 +110,7 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
     int64_t all = 0;
     SF_OWNED uint8_t *mark = mark_nodes(m, err);
     *f = (faces){0};
-    if (mark && sf_skin_triangles(m, &all, &f->node, err) == SF_OK) {
+    if (mark && sf_skin_triangles(m, &all, &f->node, &f->half, err) == SF_OK) {
         f->shape = sf_alloc(err, (unsigned long)all, sizeof *f->shape, "skin of the pad");
         f->position = sf_alloc(err, 3 * (unsigned long)all, sizeof(double), "skin of the pad");
         f->radius = sf_alloc(err, (unsigned long)all, sizeof(double), "skin of the pad");
@@ -113,6 +121,7 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
             continue;
         int64_t k = f->count++;
         memmove(&f->node[3 * k], &f->node[3 * i], 3 * sizeof *f->node);
+        f->half[k] = f->half[i];
         f->shape[k] = s;
         f->radius[k] = s.radius;
         f->largest = fmax(f->largest, s.radius);
@@ -237,6 +246,8 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
     if (err->status == SF_OK && f.count > 0 && (itself || m->skin_watched || m->support_triangle_count > 0)) {
         m->skin_count = f.count;
         m->skin_triangle = f.node;
+        m->skin_half = f.half;
+        f.half = NULL;
         m->skin_alone = !itself;
         f.node = NULL;
         take_pairs(c, m, err);

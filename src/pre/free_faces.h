@@ -5,9 +5,11 @@
 #include "case/case.h"
 #include "model/model.h"
 
-/* The free faces of the model's cells as triangles, turned outwards: *node [*count][3], owned by the caller.
- * Faces between layers are among them, once for each layer. */
-sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **node, sf_error *err);
+/* The free faces of the model's cells as triangles, turned outwards: *node [*count][3], and, unless `half` is
+ * NULL, *half [*count] as of sf_model.skin_half; owned by the caller. Faces between layers are among them,
+ * once for each layer. */
+sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **node, uint8_t **half,
+                            sf_error *err);
 
 /* Sets the model's skin by pad.self_contact: "off" none; "on" the surface but for faces that are tied to
  * another layer or held along their normal; "auto" the same if the foam can touch itself or the anvil, that

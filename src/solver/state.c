@@ -45,7 +45,7 @@ static const sf_state_array arrays[] = {
     SCRATCH(self_step, 's', 3 * sizeof(double)),
     KEPT(self_force, 's', 3),
     KEPT(self_partner, 's', 1),
-    KEPT(self_weight, 's', 3),
+    KEPT(self_weight, 's', 4),
     SCRATCH(self_push, 's', 3 * sizeof(double)),
     SCRATCH(self_candidate, 's', SF_SELF_CANDIDATES * sizeof(int32_t)),
     SCRATCH(self_normal, 's', 3 * sizeof(double)),

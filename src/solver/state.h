@@ -189,7 +189,7 @@ typedef struct sf_state {
     double *self_step;       /* [skin][3] m, its next step without these forces */
     double *self_force;      /* [skin][3] N, on the node, of the last step */
     double *self_partner;    /* [skin] facet that it touches; -1: none, -2 - k: plane k (contact/skin.h) */
-    double *self_weight;     /* [skin][3] of the facet's nodes */
+    double *self_weight;     /* [skin][4] of the facet's nodes, and of the fourth of its quadrangle */
     double *self_push;       /* [n][3] m s-2, acceleration by these forces; zero between steps */
     int32_t *self_candidate; /* [skin][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
     double *self_normal;     /* [skin][3] outward now, unit; of the nodes in self_close */

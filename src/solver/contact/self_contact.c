@@ -76,16 +76,17 @@ static void find_normals(const sf_skin *skin, sf_state *s) {
 /* A node and what it touches. */
 typedef struct touch {
     int64_t node, facet; /* facet: FIRST_PLANE - k for plane k */
-    double weight[3];    /* of the facet's nodes; zeros for a plane */
+    double weight[4];    /* of the facet's nodes, sf_skin_corner; zeros for a plane */
     double normal[3];    /* outward from the facet */
     double gap;          /* m, now; of a depth the part that the step takes back */
     double friction;     /* -, Coulomb coefficient */
 } touch;
 
-/* The weights of a facet's nodes at a point of its plane, `normal` (twice its area long) being its own. */
-static void weigh_point(const sf_skin *skin, const sf_state *s, int64_t f, const double point[3],
-                        const double normal[3], double weight[3]) {
-    const int32_t *n = &skin->facet[3 * f];
+/* The weights of a triangle's nodes `n` at a point of its plane, `normal` (twice its area long) being its
+ * own.
+ */
+static void weigh_point(const sf_state *s, const int32_t n[3], const double point[3], const double normal[3],
+                        double weight[3]) {
     double square = sf_dot3(normal, normal);
     for (int k = 0; k < 3; k++) {
         double from[3], along[3], moment[3];
@@ -101,13 +102,50 @@ static void weigh_point(const sf_skin *skin, const sf_state *s, int64_t f, const
 }
 
 /* Weights that are rounding cost as much as others: they become zero, and the sum stays one. */
-static void drop_traces(double weight[3]) {
+static void drop_traces(double weight[4]) {
     static const double TRACE = 1e-9;
     int largest = weight[1] > weight[0] ? 1 : 0;
-    largest = weight[2] > weight[largest] ? 2 : largest;
-    for (int k = 0; k < 3; k++)
-        weight[k] = k != largest && fabs(weight[k]) < TRACE ? 0 : weight[k];
-    weight[largest] = 1 - weight[(largest + 1) % 3] - weight[(largest + 2) % 3];
+    double rest = 1;
+    for (int k = 2; k < 4; k++)
+        largest = weight[k] > weight[largest] ? k : largest;
+    for (int k = 1; k < 4; k++) {
+        double *own = &weight[(largest + k) % 4];
+        *own = fabs(*own) < TRACE ? 0 : *own;
+        rest -= *own;
+    }
+    weight[largest] = rest;
+}
+
+/* Takes the mean of both ways to cut a quadrangle into halves, of gap and weights. One way alone passes no
+ * uniform pressure on between faces that do not match: no forces that press are in equilibrium with it. */
+static void take_both_diagonals(const sf_skin *skin, const sf_state *s, touch *q) {
+    int tip = skin->half[q->facet], next = (tip + 1) % 3, last = (tip + 2) % 3;
+    const int32_t *n = &skin->facet[3 * q->facet];
+    const double *x = &s->self_position[3 * q->node], *a = &s->self_position[3 * (int64_t)n[tip]];
+    int32_t fourth = (int32_t)sf_skin_corner(skin, q->facet, 3);
+    for (int side = 0; side < 2; side++) {
+        const int32_t half[3] = {n[tip], side ? fourth : n[next], side ? n[last] : fourth};
+        double own[3], point[3], weight[3], gap = 0;
+        sf_triangle_normal(a, &s->self_position[3 * (int64_t)half[1]],
+                           &s->self_position[3 * (int64_t)half[2]], own);
+        double across = sf_dot3(q->normal, own);
+        if (!(across > 0))
+            return;
+        for (int r = 0; r < 3; r++)
+            gap += (x[r] - a[r]) * own[r] / across;
+        for (int r = 0; r < 3; r++)
+            point[r] = x[r] - gap * q->normal[r];
+        weigh_point(s, half, point, own, weight);
+        if (side == 0 && weight[1] < 0)
+            continue;
+        for (int k = 0; k < 3; k++)
+            q->weight[k] *= 0.5;
+        q->weight[tip] += 0.5 * weight[0];
+        q->weight[side ? 3 : next] += 0.5 * weight[1];
+        q->weight[side ? last : 3] += 0.5 * weight[2];
+        q->gap = 0.5 * (q->gap + gap);
+        return;
+    }
 }
 
 /* The pair of node and facet, if the node lies before or behind the facet and its own surface looks against
@@ -124,7 +162,7 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
     *out = (touch){.node = p, .facet = f};
     if (!(area > 0) || sf_dot3(&s->self_normal[3 * p], own) >= OPPOSED * area)
         return false;
-    weigh_point(skin, s, f, x, own, out->weight);
+    weigh_point(s, n, x, own, out->weight);
     for (int k = 0; k < 3; k++)
         if (out->weight[k] < -EDGE)
             return false;
@@ -143,7 +181,9 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
     out->gap = sf_dot3(arm, own) / across;
     for (int r = 0; r < 3; r++)
         point[r] = x[r] - out->gap * out->normal[r];
-    weigh_point(skin, s, f, point, own, out->weight);
+    weigh_point(s, n, point, own, out->weight);
+    if (skin->half[f])
+        take_both_diagonals(skin, s, out);
     drop_traces(out->weight);
     return true;
 }
@@ -151,9 +191,9 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
 /* Displacement of the node relative to its partner, of a field over the skin's nodes. */
 static void relative(const sf_skin *skin, const touch *q, const double *field, double out[3]) {
     memcpy(out, &field[3 * q->node], 3 * sizeof *out);
-    for (int k = 0; k < 3 && q->facet >= 0; k++)
+    for (int k = 0; k < sf_skin_corners(skin, q->facet); k++)
         for (int r = 0; r < 3; r++)
-            out[r] -= q->weight[k] * field[3 * (int64_t)skin->facet[3 * q->facet + k] + r];
+            out[r] -= q->weight[k] * field[3 * sf_skin_corner(skin, q->facet, k) + r];
 }
 
 /* True if facet f is the last partner or meets it: the same contact goes on. */
@@ -213,8 +253,8 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touc
 /* Adds the row of the pair over the coefficients, times `q`, to `out`; `accelerate`: over the masses. */
 static void scatter(const sf_model *m, const sf_skin *skin, const touch *pair, const double q[3],
                     bool accelerate, double *out) {
-    for (int k = -1; k < (pair->facet >= 0 ? 3 : 0); k++) {
-        int64_t p = k < 0 ? pair->node : skin->facet[3 * pair->facet + k];
+    for (int k = -1; k < sf_skin_corners(skin, pair->facet); k++) {
+        int64_t p = k < 0 ? pair->node : sf_skin_corner(skin, pair->facet, k);
         double weight = k < 0 ? 1 : -pair->weight[k];
         for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1] && weight != 0; e++) {
             int64_t i = skin->rows.node[e];
@@ -228,8 +268,8 @@ static void scatter(const sf_model *m, const sf_skin *skin, const touch *pair, c
 /* The row of the pair times a field over the coefficients. */
 static void gather(const sf_skin *skin, const touch *pair, const double *field, double out[3]) {
     memset(out, 0, 3 * sizeof *out);
-    for (int k = -1; k < (pair->facet >= 0 ? 3 : 0); k++) {
-        int64_t p = k < 0 ? pair->node : skin->facet[3 * pair->facet + k];
+    for (int k = -1; k < sf_skin_corners(skin, pair->facet); k++) {
+        int64_t p = k < 0 ? pair->node : sf_skin_corner(skin, pair->facet, k);
         double weight = k < 0 ? 1 : -pair->weight[k];
         for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1] && weight != 0; e++)
             for (int r = 0; r < 3; r++)
@@ -334,7 +374,7 @@ static double friction_of(const sf_model *m, const sf_skin *skin, int64_t p, int
 static touch last_pair(const sf_model *m, const sf_skin *skin, const sf_state *s, int64_t p) {
     touch q = {.node = p, .facet = (int64_t)s->self_partner[p]};
     q.friction = friction_of(m, skin, p, q.facet);
-    memcpy(q.weight, &s->self_weight[3 * p], sizeof q.weight);
+    memcpy(q.weight, &s->self_weight[4 * p], sizeof q.weight);
     if (q.facet < 0) {
         q.normal[skin->plane[FIRST_PLANE - q.facet].axis] = 1;
     } else {
@@ -372,7 +412,7 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
             for (int r = 0; r < 3; r++)
                 q[r] = old * found->normal[r];
         s->self_partner[p] = (double)found->facet;
-        memcpy(&s->self_weight[3 * p], found->weight, sizeof found->weight);
+        memcpy(&s->self_weight[4 * p], found->weight, sizeof found->weight);
         if (!acts(skin, p, found->facet))
             continue;
         s->self_penetration = fmax(s->self_penetration, -found->gap);
@@ -464,10 +504,10 @@ void sf_self_contact_outside(const sf_skin *skin, const sf_state *s, bool symmet
         const double *q = &s->self_force[3 * p];
         bool symmetric = facet < FIRST_PLANE - SF_SKIN_ANVIL;
         if (facet != NOTHING && sf_skin_is_rigid(skin, p)) /* on the facet's nodes */
-            for (int c = 0; c < 3; c++) {
-                double weight = s->self_weight[3 * p + c];
+            for (int c = 0; c < sf_skin_corners(skin, facet); c++) {
+                double weight = s->self_weight[4 * p + c];
                 const double back[3] = {-weight * q[0], -weight * q[1], -weight * q[2]};
-                sf_wrench_add(outside, &s->self_position[3 * (int64_t)skin->facet[3 * facet + c]], back);
+                sf_wrench_add(outside, &s->self_position[3 * sf_skin_corner(skin, facet, c)], back);
             }
         else if (facet < 0 ? facet != NOTHING && (symmetry || !symmetric)
                            : sf_skin_is_rigid(skin, skin->facet[3 * facet]))

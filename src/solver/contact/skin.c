@@ -25,6 +25,13 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->support_triangle_count; k++)
         skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
     skin->count = skin->moving + m->support_node_count;
+    skin->half = sf_alloc(err, (unsigned long)skin->facet_count, 1, "skin of the pad");
+    for (int64_t k = 1; err->status == SF_OK && k < m->skin_count;
+         k++) /* of one half alone nothing follows */
+        if (m->skin_half[k - 1] == 1 && m->skin_half[k] == 2) {
+            skin->half[k - 1] = 1;
+            skin->half[k] = 2;
+        }
     return err->status;
 }
 
@@ -184,6 +191,7 @@ void sf_skin_free(sf_skin *skin) {
     free(skin->size);
     free(skin->passive);
     free(skin->facet);
+    free(skin->half);
     free(skin->ring_ptr);
     free(skin->ring);
     free(skin->held);

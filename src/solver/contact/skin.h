@@ -23,6 +23,7 @@ typedef struct sf_skin {
     double *size;   /* [count] m, spacing; of a support's node the least of the pad */
     int64_t facet_count;
     int32_t *facet;    /* [facet_count][3] nodes of the skin, turned outwards */
+    uint8_t *half;     /* [facet_count] as of sf_model.skin_half */
     int64_t *ring_ptr; /* [count + 1] */
     int32_t *ring;     /* [..] facets at each node */
     uint8_t *held;     /* [count] SF_FIX_* bits; of a support's node those of the symmetry planes it is on */
@@ -55,6 +56,17 @@ static inline bool sf_skin_is_stopped(const sf_skin *skin, int64_t node, int k) 
 static inline double sf_skin_height(const sf_skin *skin, const double x[3], int k) {
     const sf_skin_plane *plane = &skin->plane[k];
     return plane->side * (x[plane->axis] - plane->place);
+}
+
+/* The nodes among which a force on a facet is shared: 4 of a quadrangle, 3 of a triangle; 0 of a plane, whose
+ * number is below 0. */
+static inline int sf_skin_corners(const sf_skin *skin, int64_t facet) {
+    return facet < 0 ? 0 : skin->half[facet] ? 4 : 3;
+}
+
+/* Node k of them: those of the facet, then that of the other half of its quadrangle. */
+static inline int64_t sf_skin_corner(const sf_skin *skin, int64_t facet, int k) {
+    return skin->facet[3 * facet + (k < 3 ? k : skin->half[facet] == 1 ? 5 : -2)];
 }
 
 /* The support in a pair of node and facet (below 0: a plane); -1: none. */
