@@ -371,6 +371,39 @@ static void the_missile_is_closed_in_the_symmetry_planes(void **state) {
     }
 }
 
+/* A support of one triangle stands behind the missile's picture; a plane, larger than the pad, is left out.
+ */
+static void supports_are_shown_but_planes(void **state) {
+    double corner[] = {0.1, 0, 0, 0, 0.1, 0, 0, 0, -0.1},
+           support[] = {0, 0, -0.2, 0.1, 0, -0.2, 0, 0.1, -0.2, 9, 0, -0.3, -9, 0, -0.3, 0, 9, -0.3};
+    int32_t triangle[] = {0, 1, 2, 3, 4, 5};
+    sf_results r = {.node_count = 3,
+                    .position = corner,
+                    .surface_triangle_count = 1,
+                    .surface_position = corner,
+                    .surface_triangle = triangle,
+                    .symmetry_place = {NAN, NAN},
+                    .support_triangle_count = 2,
+                    .support_position = support,
+                    .support_triangle = triangle};
+    int32_t node[] = {0, 1, 2, 2};
+    uint8_t type = SF_CELL_TETRAHEDRON;
+    int64_t ptr[2] = {0, 4};
+    sf_shape s;
+    sf_error err = SF_ERROR_INIT;
+    (void)state;
+    r.cell_count = 1;
+    r.cell_type = &type;
+    r.cell_ptr = ptr;
+    r.cell_node = node;
+    assert_int_equal(sf_shape_of_results(&r, 1e-3, &s, &err), SF_OK);
+    assert_int_equal(s.missile_nodes, 3);
+    assert_int_equal(s.missile.face_count, 2);
+    for (int k = 0; k < 9; k++)
+        assert_true(fabs(s.missile.position[9 + k] - 1e3 * support[k]) < 1e-9);
+    sf_shape_free(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(run_goes_through_its_programs),
@@ -390,6 +423,7 @@ int main(void) {
         cmocka_unit_test(without_a_place_for_runs_there_is_no_path),
         cmocka_unit_test(the_skin_has_the_faces_of_one_cell_only),
         cmocka_unit_test(the_missile_is_closed_in_the_symmetry_planes),
+        cmocka_unit_test(supports_are_shown_but_planes),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/pictures.h"
 
+#include "base/mat3.h"
 #include "base/units.h"
 #include "io/h5.h"
 #include "io/plain_file.h"
@@ -39,6 +40,9 @@ typedef struct missile_surface {
     double radius; /* m; 0 or NaN: the triangles are the missile */
     const double *centre;
     double plane[2]; /* m, of symmetry, normal to x and y; NaN: none */
+    int64_t fixed;   /* triangles of the supports */
+    const double *fixed_position;
+    const int32_t *fixed_triangle;
 } missile_surface;
 
 /* The point `i` and `j` parts of `parts` from the first corner of a triangle to the others, on the sphere if
@@ -82,11 +86,25 @@ static int64_t close_missile(const missile_surface *m, double *corner, int64_t c
     return made;
 }
 
+/* Puts the supports' triangles behind the `count` at `corner`; returns their number. A plane is left out, as
+ * the anvil is: its triangles are many times as large as the pad. */
+static int64_t add_supports(const missile_surface *m, double largest, double *corner, int64_t count) {
+    int64_t made = 0;
+    for (int64_t t = 0; t < m->fixed; t++) {
+        double *to = &corner[9 * (count + made)];
+        for (int k = 0; k < 9; k++)
+            to[k] = m->fixed_position[3 * (int64_t)m->fixed_triangle[3 * t + k / 3] + k % 3];
+        made += hypot(hypot(to[3] - to[0], to[4] - to[1]), to[5] - to[2]) < largest;
+    }
+    return made;
+}
+
 /* Each triangle of a sphere becomes `parts` x `parts` smaller ones: the foam would be seen through coarse
  * ones. */
 static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *err) {
     int parts = m->radius > 0 ? 4 : 1;
-    int64_t pieces = m->triangles * parts * parts, most = 2 * pieces;
+    int64_t pieces = m->triangles * parts * parts, most = 2 * pieces + m->fixed;
+    double low[3], high[3];
     s->missile.position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
     s->missile_position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
     s->missile.face =
@@ -102,6 +120,11 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
                     place_point(m, t, parts, i, j + turned, to + 6);
                 }
     pieces += close_missile(m, s->missile_position, pieces);
+    s->missile_nodes = 3 * pieces;
+    sf_box3(s->pad.node_count, s->pad.position, low, high);
+    pieces +=
+        add_supports(m, 2 * s->unit * hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]),
+                     s->missile_position, pieces);
     s->missile.node_count = 3 * pieces;
     s->missile.face_count = pieces;
     for (int64_t k = 0; k < 9 * pieces; k++)
@@ -127,7 +150,9 @@ static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_
     missile_surface missile = {
         m->surface_triangle_count, m->surface_position,
         m->surface_triangle,       m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0,
-        m->missile.sphere_centre,  {NAN, NAN}};
+        m->missile.sphere_centre,  {NAN, NAN},
+        m->support_triangle_count, m->support_position,
+        m->support_triangle};
     for (int d = 0; d < 2; d++)
         if (sf_symmetry_plane(m, d, &place))
             missile.plane[d] = place;
@@ -137,9 +162,10 @@ static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_
 sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_error *err) {
     const sf_cells cells = {r->node_count, r->cell_count, r->position,
                             r->cell_type,  r->cell_ptr,   r->cell_node};
-    const missile_surface missile = {r->surface_triangle_count, r->surface_position,
-                                     r->surface_triangle,       r->sphere_radius,
-                                     r->sphere_centre,          {r->symmetry_place[0], r->symmetry_place[1]}};
+    const missile_surface missile = {
+        r->surface_triangle_count, r->surface_position, r->surface_triangle,
+        r->sphere_radius,          r->sphere_centre,    {r->symmetry_place[0], r->symmetry_place[1]},
+        r->support_triangle_count, r->support_position, r->support_triangle};
     return make_shape(&cells, &missile, unit, s, err);
 }
 
@@ -181,7 +207,7 @@ static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const 
         out->stress = sf_alloc(err, (unsigned long)s->pad.node_count, sizeof(double), "a frame");
     if (err->status == SF_OK)
         gather(s, &fields, out);
-    for (int64_t k = 0; k < s->missile.node_count && err->status == SF_OK; k++) {
+    for (int64_t k = 0; k < s->missile_nodes && err->status == SF_OK; k++) {
         double place[3];
         sf_results_place(r, head, &s->missile_position[3 * k], place);
         for (int d = 0; d < 3; d++)

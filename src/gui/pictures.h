@@ -8,12 +8,13 @@
 #include <limits.h>
 #include <stddef.h>
 
-/* Bodies that can be shown: the skin of the pad, and the missile. */
+/* Bodies that can be shown: the skin of the pad, and the missile with the supports behind it. */
 typedef struct sf_shape {
     double unit; /* m per unit of the pictures */
     sf_body pad;
     int64_t *pad_node; /* [pad.node_count] node of the model that each node of the skin is; owned */
     sf_body missile;
+    int64_t missile_nodes;    /* the first of its nodes, which move */
     double *missile_position; /* [missile.node_count][3] m, at t = 0; owned */
 } sf_shape;
 

@@ -205,10 +205,6 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
     return err->status;
 }
 
-static bool is_loose(const sf_case_interface *i) {
-    return i->kind == SF_INTERFACE_LOOSE;
-}
-
 /* The friction of loose layers that is not that of all faces. */
 static sf_status take_pairs(const sf_case *c, sf_model *m, sf_error *err) {
     m->skin_friction = c->self_friction;
@@ -216,7 +212,7 @@ static sf_status take_pairs(const sf_case *c, sf_model *m, sf_error *err) {
     m->pair_friction = sf_alloc(err, SF_CASE_MAX_INTERFACES, sizeof *m->pair_friction, "friction of layers");
     for (int k = 0; err->status == SF_OK && k < c->interface_count; k++) {
         const sf_case_interface *i = &c->interface[k];
-        if (!is_loose(i) || i->friction == m->skin_friction)
+        if (i->kind != SF_INTERFACE_LOOSE || i->friction == m->skin_friction)
             continue;
         bool falls = i->layer[0] > i->layer[1];
         m->pair_layer[2 * m->pair_count] = (uint8_t)i->layer[falls];
@@ -232,7 +228,7 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
     bool loose = false;
     unheld[0] = NAN;
     for (int k = 0; k < c->interface_count; k++)
-        loose = loose || is_loose(&c->interface[k]);
+        loose = loose || c->interface[k].kind == SF_INTERFACE_LOOSE;
     SF_TRY(faces_find(m, &f, err));
     if (f.count > 0 && (loose || c->separate))
         first = 0;
