@@ -104,6 +104,23 @@ static void a_series_goes_on_where_it_was(void **state) {
     run_assert_same(p, "s-3.h5", "r-3.h5");
 }
 
+/* A series is done anew and interrupted in its first drop: it goes on there, not where the one before has
+ * ended. */
+static void a_series_anew_does_not_go_on_in_the_one_before(void **state) {
+    const program_place *p = *state;
+    program_succeed(p, "solve", "series.h5 -o f.h5 --threads 1");
+    program_result r = program_shell(
+        p,
+        "rm f.h5; '%s/softfall-solve' series.h5 -o f.h5 --force --threads 1 > log & for k in $(seq 6000); do "
+        "[ -e f.h5.run ] && [ -e f.h5 ] && break; sleep 0.002; done; kill -INT $!; wait $!",
+        getenv("SF_BIN_DIR"));
+    assert_int_equal(r.code, 130);
+    assert_int_not_equal(access(program_path(p, "f-2.h5.restart"), F_OK), 0);
+    program_succeed(p, "solve", "--restart f.h5 --threads 1");
+    run_assert_same(p, "s.h5", "f.h5");
+    run_assert_same(p, "s-3.h5", "f-3.h5");
+}
+
 static void expect(program_result r, const char *words) {
     if (r.code == 0 || !strstr(r.err, words))
         fail_msg("exit code %d, expected \"%s\", said: %s", r.code, words, r.err);
@@ -316,6 +333,7 @@ int main(void) {
         cmocka_unit_test(later_drops_are_harder),
         cmocka_unit_test(bits_are_those_of_single_runs),
         cmocka_unit_test(a_series_goes_on_where_it_was),
+        cmocka_unit_test(a_series_anew_does_not_go_on_in_the_one_before),
         cmocka_unit_test(wrong_series_are_refused),
         cmocka_unit_test(another_pad_is_refused),
         cmocka_unit_test(drops_of_a_list_are_their_own),

@@ -231,11 +231,16 @@ static void handle_failure(const options *o, const sf_output *output, const sf_s
     fputc('\n', stderr);
 }
 
+static void name_checkpoint(const char *results, int64_t k, char checkpoint[SF_PATH_SIZE]) {
+    char path[SF_PATH_SIZE - 16];
+    sf_model_series_file(results, k, path, sizeof path);
+    snprintf(checkpoint, SF_PATH_SIZE, "%s.restart", path);
+}
+
 /* True if a run to the results file of drop `k` has begun and can be resumed. */
 static bool has_begun(const char *results, int64_t k) {
-    char path[SF_PATH_SIZE - 16], checkpoint[SF_PATH_SIZE];
-    sf_model_series_file(results, k, path, sizeof path);
-    snprintf(checkpoint, sizeof checkpoint, "%s.restart", path);
+    char checkpoint[SF_PATH_SIZE];
+    name_checkpoint(results, k, checkpoint);
     return access(checkpoint, F_OK) == 0;
 }
 
@@ -357,6 +362,11 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
         compare_builds(&from, note);
     if (start(o, &provenance, &output, &model, &model_file, &operators, &state, err) != SF_OK)
         goto done;
+    for (int64_t later = 2; k == 1 && later <= all->drops && !o->restart; later++) {
+        char checkpoint[SF_PATH_SIZE]; /* of an earlier series, which this one would seem to have reached */
+        name_checkpoint(o->output, later, checkpoint);
+        unlink(checkpoint);
+    }
     const sf_sink sink = sf_program_sink("softfall-solve");
     sf_run run = {.stop = stop,
                   .log = stdout,
