@@ -349,6 +349,19 @@ static void without_a_place_for_runs_nothing_runs(void **state) {
         strstr(line_of(p, "place.txt", "error: "), "there is no place for runs: neither XDG_CACHE_HOME"));
 }
 
+static void a_series_is_refused(void **state) {
+    const program_place *p = *state;
+    need_display();
+    program_write_text(p, "series.script", "press run\nwait failed 60\nstatus\nquit\n");
+    do_shell(
+        p,
+        "cp case.cfg kept.cfg; sed -i 's/^@include .*/& memory = { reload = 0.4; };/' case.cfg; "
+        "sed -i 's|^@include \\(\"[^\"]*\"\\) |@include \\1\\n|' case.cfg; "
+        "echo 'series: { drops = 2; interval = \"9 s\"; };' >> case.cfg; gui series; mv kept.cfg case.cfg; "
+        "cat series.err; ! test -s series.err");
+    assert_non_null(line_of(p, "series.txt", "error: series.drops = 2: the window shows single drops"));
+}
+
 /* The sentence of softfall-pre, then the same one of the case that was read anew. */
 static void a_mark_stays_when_the_case_is_read_anew(void **state) {
     const program_place *p = *state;
@@ -400,6 +413,7 @@ int main(void) {
         cmocka_unit_test(one_name_for_two_parameters_is_refused),
         cmocka_unit_test(two_windows_do_not_share_a_run),
         cmocka_unit_test(without_a_place_for_runs_nothing_runs),
+        cmocka_unit_test(a_series_is_refused),
         cmocka_unit_test(a_mark_stays_when_the_case_is_read_anew),
         cmocka_unit_test(a_geometry_is_mended_outside),
         cmocka_unit_test(nothing_is_left_of_a_window_that_is_closed),

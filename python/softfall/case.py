@@ -177,6 +177,12 @@ class Case(MutableMapping[str, Any]):
                     fcntl.flock(lock, fcntl.LOCK_EX)
                 return _solve(model, folder, threads, on_step, force, lock.fileno())
 
+    def require_single(self, what: str) -> None:
+        """Raises InputError if the case is a series of drops, of which `what` would have the first one alone."""
+        if self["series.drops"] != 1:
+            raise InputError(f"{self.path}: series.drops = {self['series.drops']}: {what} has the figures of a single drop; leave the group series "
+                             "out, or take softfall.sweep, which judges a series by the drops that count")
+
     def _name(self) -> str:
         generic = self.path.stem == "case"
         return re.sub(r"[^\w.-]", "_", self.path.parent.name if generic else self.path.stem) or "case"

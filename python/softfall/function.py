@@ -44,6 +44,7 @@ class Function:
         case = self.case.copy()
         case.update({**(values or {}), **{key: f"{number!r} {unit}" if unit else number
                                           for (key, unit), number in zip(self.inputs, point.tolist())}})
+        case.require_single("a function")
         name = tuple(sorted(case.overrides.items()))
         if name not in self._known:
             try:

@@ -51,6 +51,7 @@ def refine(case: Case, figures: Sequence[str] = ("a_max_g", "hic"), spacings: Se
     """
     if not 1.2 <= ratio <= 4:
         raise InputError(f"ratio: {ratio:g} is not between 1.2 and 4")
+    case.require_single("a refinement")
     coarser = {key: ratio * float(case[key]) for key in spacings if key in case and case[key] is not None}
     if not coarser:
         raise InputError(f"the case has none of the spacings {', '.join(spacings)}")

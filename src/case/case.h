@@ -138,6 +138,7 @@ typedef struct sf_case {
     double drops;                      /* -, of a series on one pad, a whole number; 1: a single drop */
     double interval;                   /* s, from one of them to the next; 0: not given */
     sf_case_drop drop[SF_SERIES_MOST]; /* of a series; interval of each from the second on */
+    int64_t counted;                   /* drops by which a series is judged: bit k for drop k + 1; 0: none */
 } sf_case;
 
 /* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in

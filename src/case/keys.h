@@ -32,6 +32,7 @@ typedef enum sf_key_kind {
     SF_KEY_CURVE,      /* "curve.csv": the card's curves */
     SF_KEY_MOTION,     /* "motion.csv": the motion arrays */
     SF_KEY_DROPS,      /* 3, or ( { velocity = "5 m/s"; }, ... ): double, their number; sf_case.drop */
+    SF_KEY_COUNTED,    /* [2, 3], drops of the series: int64_t, bit k for drop k + 1 */
     SF_KEY_CURVES,     /* ( { rate = "1 1/s"; file = "curve.csv"; }, ... ): likewise */
 } sf_key_kind;
 

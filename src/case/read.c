@@ -124,10 +124,10 @@ static sf_case_value_kind value_kind(const sf_key *key) {
                  {SF_KEY_NAME, SF_CASE_VALUE_TEXT},       {SF_KEY_NAMES, SF_CASE_VALUE_LIST},
                  {SF_KEY_FIELDS, SF_CASE_VALUE_LIST},     {SF_KEY_TIMES, SF_CASE_VALUE_LIST},
                  {SF_KEY_QUANTITIES, SF_CASE_VALUE_LIST}, {SF_KEY_VECTOR, SF_CASE_VALUE_LIST},
-                 {SF_KEY_PLACE, SF_CASE_VALUE_LIST},      {SF_KEY_NUMBER, SF_CASE_VALUE_NUMBER},
-                 {SF_KEY_DROPS, SF_CASE_VALUE_NUMBER},    {SF_KEY_BOOL, SF_CASE_VALUE_FLAG},
-                 {SF_KEY_CHOICE, SF_CASE_VALUE_WORD},     {SF_KEY_PATH, SF_CASE_VALUE_FILE},
-                 {SF_KEY_MOTION, SF_CASE_VALUE_FILE}};
+                 {SF_KEY_PLACE, SF_CASE_VALUE_LIST},      {SF_KEY_COUNTED, SF_CASE_VALUE_LIST},
+                 {SF_KEY_NUMBER, SF_CASE_VALUE_NUMBER},   {SF_KEY_DROPS, SF_CASE_VALUE_NUMBER},
+                 {SF_KEY_BOOL, SF_CASE_VALUE_FLAG},       {SF_KEY_CHOICE, SF_CASE_VALUE_WORD},
+                 {SF_KEY_PATH, SF_CASE_VALUE_FILE},       {SF_KEY_MOTION, SF_CASE_VALUE_FILE}};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
         if (kinds[k].key == key->kind)
             return kinds[k].value;

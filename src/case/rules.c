@@ -405,7 +405,7 @@ static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
                   100 * c->run.energy_limit);
 }
 
-/* The drops of a series, with the interval before each. */
+/* The drops of a series, with the interval before each, and those by which it is judged. */
 static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
     sf_case *c = reader->out;
     bool series = c->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
@@ -423,7 +423,15 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
         if (!(c->drop[k].interval > 0))
             wrong = "each drop from the second on needs an interval: its own, or series.interval";
     }
-    return wrong ? REFUSE_AT("series.drops", "series.drops = %g: %s", c->drops, wrong) : SF_OK;
+    if (wrong)
+        return REFUSE_AT("series.drops", "series.drops = %g: %s", c->drops, wrong);
+    if (c->counted && c->counted >> ((int)c->drops - 1) != 1)
+        return REFUSE_AT("series.counted",
+                         "series.counted: the last drop that it names is not the last of the series "
+                         "(series.drops = %g)",
+                         c->drops);
+    c->counted = c->counted ? c->counted : ((int64_t)1 << (int)c->drops) - (series ? 2 : 1);
+    return SF_OK;
 }
 
 /* A temperature that changes nothing would look as if it did. */

@@ -311,6 +311,22 @@ static sf_status read_drops(const slot *s) {
     return SF_OK;
 }
 
+static sf_status read_counted(const slot *s) {
+    int64_t *bits = s->at;
+    if (!is_sequence(s->setting) || config_setting_length(s->setting) == 0)
+        return REFUSE(s, "expected an array of numbers of drops, for example [2, 3]");
+    *bits = 0;
+    for (int k = 0; k < config_setting_length(s->setting); k++) {
+        const config_setting_t *item = config_setting_get_elem(s->setting, (unsigned)k);
+        double drop = is_finite_number(item) ? number_of(item) : 0;
+        if (drop != floor(drop) || drop < 1 || drop > SF_SERIES_MOST || *bits >> ((int)drop - 1) & 1)
+            return REFUSE(s, "item %d is not the number of another drop, from 1 to %d", k + 1,
+                          SF_SERIES_MOST);
+        *bits |= (int64_t)1 << ((int)drop - 1);
+    }
+    return SF_OK;
+}
+
 static sf_status read_path(const slot *s) {
     char **path = s->at;
     const char *text = config_setting_get_string(s->setting);
@@ -381,6 +397,7 @@ static sf_status (*const readers[])(const slot *s) = {
     [SF_KEY_CURVE] = read_curves,
     [SF_KEY_MOTION] = read_motion,
     [SF_KEY_DROPS] = read_drops,
+    [SF_KEY_COUNTED] = read_counted,
     [SF_KEY_CURVES] = read_curves,
 };
 

@@ -74,6 +74,7 @@ static void print_kind(FILE *file, const sf_key *key) {
         [SF_KEY_CURVE] = "file",
         [SF_KEY_MOTION] = "file",
         [SF_KEY_DROPS] = "number or list",
+        [SF_KEY_COUNTED] = "array of numbers",
         [SF_KEY_CURVES] = "list of { rate or temperature; file; }",
     };
     if (key->kind == SF_KEY_LAW) {

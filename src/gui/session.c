@@ -188,7 +188,8 @@ static sf_status name_run(sf_session *s, sf_overrides *o, sf_error *err) {
     if ((!*s->cache && sf_cache_find(s->cache, sizeof s->cache, err) != SF_OK) ||
         sf_fields_overrides(&s->fields, o, err) != SF_OK ||
         sf_run_folder_name(s->cache, label, s->case_path, o->count, (const char *const *)o->text, &s->at,
-                           err) != SF_OK)
+                           err) != SF_OK ||
+        (s->at.drops > 1 && SF_REFUSE(err, "series.drops = %d: the window shows single drops", s->at.drops)))
         s->at.path[0] = '\0';
     return err->status;
 }

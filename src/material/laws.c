@@ -49,6 +49,15 @@ void sf_material_law_free(sf_material_law *law) {
     *law = (sf_material_law){0};
 }
 
+bool sf_material_has_memory(const sf_material *m) {
+    bool found = false;
+    for (int k = 0; k < m->law->history_count; k++) {
+        const sf_history_variable *v = &m->law->history[k];
+        found |= strcmp(v->name, "memory") == 0 && (!v->needed || v->needed(m->card));
+    }
+    return found;
+}
+
 int sf_material_history_rows(const sf_material *m) {
     sf_material_law place = {0};
     place_history(m, &place);

@@ -69,6 +69,10 @@ typedef struct sf_material_law {
 sf_status sf_material_law_build(const sf_material *material, sf_material_law *law, sf_error *err);
 void sf_material_law_free(sf_material_law *law);
 
+/* True if the material has a reloading path of its own (material/memory.h): without one it loads along its
+ * unloading path, up to the largest energy so far. */
+bool sf_material_has_memory(const sf_material *material);
+
 /* Rows of SF_LANES doubles that one batch of the material keeps between steps. */
 int sf_material_history_rows(const sf_material *material);
 

@@ -8,6 +8,7 @@
 #include "study/cfh/cfh_report.h"
 #include "study/cfh/points.h"
 #include "study/cfh/spread.h"
+#include "study/run_folder.h"
 #include "study/setup.h"
 
 #include <gsl/gsl_sort.h>
@@ -159,6 +160,7 @@ typedef struct setting {
     double mass;     /* kg */
     sf_cfh_foams foams;
     char *text, *parameters; /* of the case; owned */
+    char counted[SF_RUNNER_COUNTED];
     sf_material material;    /* with --posterior: the case's own; owned, as its law and the draws */
     sf_material_law law;
     sf_cfh_draws draws;
@@ -190,6 +192,18 @@ static sf_status read_posterior(const char *case_path, sf_case *c, setting *out,
     return err->status;
 }
 
+/* One height belongs to all drops of a series, and the columns that stand for draws are of a first drop. */
+static sf_status check_series(const sf_case *c, bool posterior, sf_error *err) {
+    if (c->drops > 1 && posterior)
+        return SF_REFUSE(err, "series.drops = %g: --posterior needs columns, which are of a first drop",
+                         c->drops);
+    for (int k = 0; k < c->drops; k++)
+        if (c->drop[k].own)
+            return SF_REFUSE(err, "series.drops: drop %d has own keys: drops from one height are alike",
+                             k + 1);
+    return SF_OK;
+}
+
 static sf_status read_setting(const sf_study *study, setting *out, sf_error *err) {
     const options *o = &out->options;
     sf_case c;
@@ -206,13 +220,14 @@ static sf_status read_setting(const sf_study *study, setting *out, sf_error *err
     if (sf_case_read(study->input, count, list, &study->sink, &c, err) == SF_OK) {
         out->speed = c.missile_card.speed;
         out->mass = c.missile_card.mass;
+        sf_run_counted_text((int)c.drops, c.counted, out->counted, sizeof out->counted);
         out->text = c.text;
         out->parameters = c.parameters;
         list_foams(&c, &out->foams);
         c.text = c.parameters = NULL; /* moved */
         if (!sf_missile_card_is_vertical(&c.missile_card))
             SF_REFUSE(err, "missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall");
-        else if (o->posterior)
+        else if (check_series(&c, o->posterior, err) == SF_OK && o->posterior)
             read_posterior(study->input, &c, out, err);
         sf_case_free(&c);
     }
@@ -346,6 +361,7 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
                             .parameters = s->parameters,
                             .mass = s->mass,
                             .foams = &s->foams};
+    memcpy(report.counted, s->counted, sizeof report.counted);
     if (sf_study_begin(study, output_names, err) == SF_OK &&
         simulate(study, s, &report, &points, &result, &spread, err) == SF_OK &&
         write_output(study, &report, err) == SF_OK && result.verdict == SF_CFH_UNKNOWN)

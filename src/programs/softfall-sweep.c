@@ -29,7 +29,7 @@ typedef struct job {
     sf_sweep_campaign campaign;
     double drop_seconds; /* sf_sweep_cost.seconds */
     char names[24][32];  /* of the pictures */
-    const char *list[24 + 3];
+    const char *list[24 + 4];
 } job;
 
 /* Pictures with their scripts; runs.csv and sweep.key go their own way. */
@@ -44,12 +44,14 @@ static void name_output(job *j) {
         j->list[k] = j->names[k];
     j->list[n++] = "report.html";
     j->list[n++] = "sweep.json";
+    j->list[n++] = "drops.csv";
     j->list[n] = NULL;
 }
 
 static sf_status write_report(sf_study *study, job *j, sf_error *err) {
-    char warning[320];
-    const sf_sweep_report report = {&j->plan, &j->runs, &j->analysis, study->command, &j->views};
+    char warning[320], series[SF_RUNNER_COUNTED];
+    const sf_sweep_report report = {&j->plan, &j->runs, &j->analysis, study->command, &j->views, series};
+    const bool of_series = sf_sweep_series_text(&j->plan, series, sizeof series);
     SF_TRY(sf_analysis_make(&j->runs, &j->analysis, err));
     if (j->view_words && sf_sweep_views_choose(j->view_words, &j->plan, &j->runs, &j->views, err) == SF_OK)
         sf_sweep_views_make(&j->plan, study->directory, study->threads, &j->views, err);
@@ -57,9 +59,14 @@ static sf_status write_report(sf_study *study, job *j, sf_error *err) {
     SF_TRY(sf_sweep_plot(&study->output, &j->analysis, study->runs, warning, sizeof warning, err));
     SF_TRY(sf_sweep_write_page(&study->output, &report, err));
     SF_TRY(sf_sweep_write_json(&study->output, &report, err));
+    if (of_series)
+        SF_TRY(sf_sweep_write_drops(&study->output, &j->runs, study->runs, err));
     SF_TRY(sf_staging_commit(&study->output, err));
     sf_sweep_print(stdout, &report);
-    sf_study_close(study, "report.html, runs.csv, sweep.json", warning);
+    sf_study_close(study,
+                   of_series ? "report.html, runs.csv, drops.csv, sweep.json"
+                             : "report.html, runs.csv, sweep.json",
+                   warning);
     return SF_OK;
 }
 

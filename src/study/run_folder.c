@@ -9,6 +9,7 @@
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "io/replace.h"
+#include "material/laws.h"
 #include "post/results/results.h"
 #include "pre/mesh/mesher.h"
 
@@ -171,13 +172,19 @@ uint64_t sf_campaign_case_hash(const sf_case *c) {
     return sf_hash_bytes(hash, c->motion_displacement, motion);
 }
 
+/* Later drops of a foam that remembers nothing are no property of it: a study would take them for one. */
+static sf_status check_memory(const sf_case *c, sf_error *err) {
+    bool found = c->layer_count == 0 && sf_material_has_memory(&c->material);
+    for (int k = 0; k < c->layer_count; k++)
+        found |= sf_material_has_memory(&c->layer[k]);
+    if (c->drops == 1 || found)
+        return SF_OK;
+    return SF_REFUSE(err, "series.drops = %g: the foam has no material.memory: later drops would be too soft",
+                     c->drops);
+}
+
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
-    if (c->drops > 1)
-        return SF_REFUSE(
-            err,
-            "series.drops = %g: a study runs single drops and would read the first; leave the group "
-            "series out (softfall-protocol runs series)",
-            c->drops);
+    SF_TRY(check_memory(c, err));
     *hash = sf_campaign_case_hash(c);
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         if (sf_campaign_geometry(c, k)->path)
@@ -212,6 +219,8 @@ static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err
 
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *at) {
     at->key = key;
+    at->drops = 1;
+    at->counted = 1;
     for (int k = 0; k < SF_GEOMETRIES; k++)
         at->geometry[k][0] = '\0';
     snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
@@ -223,6 +232,26 @@ void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key,
     snprintf(at->figures, sizeof at->figures, "%s/figures.txt", at->path);
 }
 
+sf_run_folder sf_run_folder_of_drop(const sf_run_folder *at, int drop) {
+    sf_run_folder out = *at;
+    sf_model_series_file(at->model, drop, out.model, sizeof out.model);
+    sf_model_series_file(at->results, drop, out.results, sizeof out.results);
+    snprintf(out.checkpoint, sizeof out.checkpoint, "%.*s.restart", SF_RUN_PATH_SIZE - 9, out.results);
+    if (drop > 1)
+        snprintf(out.figures, sizeof out.figures, "%s/figures-%d.txt", at->path, drop);
+    return out;
+}
+
+void sf_run_counted_text(int drops, int64_t counted, char *text, size_t size) {
+    bool many = (counted & (counted - 1)) != 0;
+    *text = '\0';
+    for (int k = 0, before = 0; k < drops && drops > 1; k++)
+        if (counted >> k & 1)
+            sf_text_add(text, size, "%s%d", before++ ? ", " : many ? "the mean of drops " : "drop ", k + 1);
+    if (drops > 1)
+        sf_text_add(text, size, " of %d", drops);
+}
+
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *at, sf_error *err) {
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
@@ -230,6 +259,8 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
     SF_TRY(sf_case_read(case_path, count, overrides, NULL, &c, err));
     sf_campaign_key(&c, &key, err);
     sf_run_folder_name_key(parent, label, key, at);
+    at->drops = (int)c.drops;
+    at->counted = c.counted;
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         name_folder(sf_campaign_geometry(&c, k)->path, at->geometry[k], err);
     return err->status;
@@ -256,7 +287,7 @@ static bool is_recorded(const sf_run_folder *at) {
     return sf_run_record_read(at->figures, at->results, &record) && are_files_same(at, record.geometry);
 }
 
-bool sf_run_folder_is_finished(const sf_run_folder *at) {
+static bool is_drop_finished(const sf_run_folder *at) {
     sf_error none = SF_ERROR_INIT;
     sf_results r;
     if (is_recorded(at))
@@ -266,6 +297,20 @@ bool sf_run_folder_is_finished(const sf_run_folder *at) {
     bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;
     sf_results_close(&r);
     return finished && is_geometry_same(at, at->results, "/provenance/model/geometry_files", false);
+}
+
+/* Returns the first drop, from 1, that did not run to its end; 0: there is none. */
+static int find_unfinished(const sf_run_folder *at) {
+    for (int k = 1; k <= at->drops; k++) {
+        const sf_run_folder drop = sf_run_folder_of_drop(at, k);
+        if (!is_drop_finished(&drop))
+            return k;
+    }
+    return 0;
+}
+
+bool sf_run_folder_is_finished(const sf_run_folder *at) {
+    return find_unfinished(at) == 0;
 }
 
 /* ---- failures ---- */
@@ -314,9 +359,10 @@ sf_status sf_run_folder_interrupted(sf_error *err) {
                    "interrupted; finished drops are kept: run the same command again to resume");
 }
 
-/* Runs a program with its words appended to `log`; its exit code decides. */
-static sf_status run_program(const char *const *arguments, const char *log, sf_error *err) {
-    const sf_process process = {.arguments = arguments, .log = log, .stoppable = true};
+/* Runs a program with its words appended to `log`; its exit code decides. `held`: the lock of the folder,
+ * which it keeps, so that a campaign that was killed leaves it locked between the drops of a series. */
+static sf_status run_program(const char *const *arguments, const char *log, const int *held, sf_error *err) {
+    const sf_process process = {.arguments = arguments, .log = log, .stoppable = true, .held = held};
     int code = 0, reason = sf_process_run(&process, &code);
     if (reason != 0)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be run: %s", arguments[0], strerror(reason));
@@ -335,14 +381,18 @@ static sf_status run_program(const char *const *arguments, const char *log, sf_e
                    "%s (exit code %d; see %s)", said, code, log);
 }
 
-/* True if the folder of its run is locked (solver/run/output.c). */
+/* The folder of a run is locked (solver/run/output.c). */
 bool sf_run_folder_is_running(const sf_run_folder *at) {
-    char folder[SF_RUN_PATH_SIZE + 8];
-    snprintf(folder, sizeof folder, "%s.run", at->results);
-    int handle = open(folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    bool locked = handle >= 0 && flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-    if (handle >= 0)
-        close(handle); /* and the lock with it */
+    bool locked = false;
+    for (int k = 1; k <= at->drops && !locked; k++) {
+        const sf_run_folder drop = sf_run_folder_of_drop(at, k);
+        char folder[SF_RUN_PATH_SIZE + 8];
+        snprintf(folder, sizeof folder, "%s.run", drop.results);
+        int handle = open(folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        locked = handle >= 0 && flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+        if (handle >= 0)
+            close(handle); /* and the lock with it */
+    }
     return locked;
 }
 
@@ -357,11 +407,11 @@ static sf_status wait_for_orphan(const sf_run_folder *at, sf_error *err) {
 /* Resumes a drop of which a model, whole because softfall-pre moves it into its place, and perhaps a
  * checkpoint are there. False if there is none or it cannot be resumed: then the drop starts anew. */
 static bool resume(const char *const *run, const char *const *restart, const sf_run_folder *at,
-                   sf_error *err) {
+                   const int *held, sf_error *err) {
     sf_error trial = SF_ERROR_INIT;
     if (access(at->model, R_OK) != 0 || !is_geometry_same(at, at->model, "/provenance/geometry_files", true))
         return false;
-    run_program(access(at->checkpoint, R_OK) == 0 ? restart : run, at->log, &trial);
+    run_program(access(at->checkpoint, R_OK) == 0 ? restart : run, at->log, held, &trial);
     if (trial.status != SF_OK && trial.status != SF_INTERRUPTED && trial.status != SF_ERR_NUMERIC &&
         !strstr(trial.text, SF_PROCESS_KILLED))
         return false;
@@ -371,12 +421,24 @@ static bool resume(const char *const *run, const char *const *restart, const sf_
 }
 
 void sf_run_folder_clean(const sf_run_folder *at) {
-    sf_folder_remove_file(at->model);
-    sf_folder_remove_file(at->checkpoint);
+    for (int k = 1; k <= at->drops; k++) {
+        const sf_run_folder drop = sf_run_folder_of_drop(at, k);
+        sf_folder_remove_file(drop.model);
+        sf_folder_remove_file(drop.checkpoint);
+    }
+}
+
+/* Says which drop of a series failed: those before it ran to their end. */
+static void name_failed_drop(const sf_run_folder *at, sf_error *err) {
+    const sf_error before = *err;
+    if (at->drops == 1 || err->status != SF_ERR_NUMERIC)
+        return;
+    *err = (sf_error)SF_ERROR_INIT;
+    SF_FAIL(err, before.status, "drop %d of %d: %.900s", find_unfinished(at), at->drops, before.text);
 }
 
 static sf_status simulate(const sf_run_folder *at, const char *case_path, int count,
-                          const char *const *overrides, int threads, sf_error *err) {
+                          const char *const *overrides, int threads, const int *held, sf_error *err) {
     char pre[PATH_MAX], solve[PATH_MAX], thread_text[16], share[SF_RUN_PATH_SIZE];
     const char *build[MAX_ARGUMENTS] = {pre, case_path, "-o", at->model, "--force", "--share", share};
     assert(7 + 2 * count < MAX_ARGUMENTS);
@@ -393,14 +455,15 @@ static sf_status simulate(const sf_run_folder *at, const char *case_path, int co
     SF_TRY(sf_process_find("softfall-pre", pre, sizeof pre, err));
     SF_TRY(sf_process_find("softfall-solve", solve, sizeof solve, err));
     SF_TRY(wait_for_orphan(at, err));
-    if (!sf_run_folder_is_finished(at) && !resume(run, restart, at, err) &&
+    if (!sf_run_folder_is_finished(at) && !resume(run, restart, at, held, err) &&
         wait_for_orphan(at, err) == SF_OK &&
         !sf_run_folder_is_finished(at)) { /* it may have begun meanwhile */
         sf_folder_remove_file(at->log);
         sf_folder_remove_file(at->model); /* the failure of softfall-pre is none of an earlier model */
-        if (run_program(build, at->log, err) == SF_OK)
-            run_program(run, at->log, err);
+        if (run_program(build, at->log, held, err) == SF_OK)
+            run_program(run, at->log, held, err);
     }
+    name_failed_drop(at, err);
     if (err->status == SF_ERR_NUMERIC && access(at->model, R_OK) == 0) {
         SF_OWNED char *files = sf_campaign_geometry_list(at->model, "/provenance/geometry_files");
         if (files)
@@ -419,7 +482,7 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
     int lock = -1;
     SF_TRY(sf_folder_own(at->path, err));
     if (sf_folder_wait_lock(at->path, &lock))
-        simulate(at, case_path, count, overrides, threads, err);
+        simulate(at, case_path, count, overrides, threads, &lock, err);
     else
         sf_run_folder_interrupted(err);
     if (lock >= 0)
@@ -429,8 +492,9 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
 
 sf_status sf_run_folder_report(const sf_run_folder *at, sf_error *err) {
     char post[PATH_MAX], directory[SF_RUN_PATH_SIZE];
-    const char *const arguments[] = {post, at->results, "-o", directory, "--force", NULL};
+    const char *const arguments[] = {post, "series", at->results, "-o", directory, "--force", NULL};
+    const char *const single[] = {post, at->results, "-o", directory, "--force", NULL};
     snprintf(directory, sizeof directory, "%s/report", at->path);
     SF_TRY(sf_process_find("softfall-post", post, sizeof post, err));
-    return run_program(arguments, at->log, err);
+    return run_program(at->drops > 1 ? arguments : single, at->log, NULL, err);
 }

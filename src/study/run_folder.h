@@ -54,7 +54,7 @@ const sf_geo_source *sf_campaign_geometry(const sf_case *c, int k);
 char *sf_campaign_geometry_list(const char *path, const char *text);
 
 /* The folder of one drop: it holds the log, the model and the checkpoint while the drop is not finished, and
- * the results. */
+ * the results. The folder of a series of drops on one pad holds those of each drop. */
 
 /* The folder of meshes and domains that the drops share, beside the drops' folders (io/folder.h). */
 #define SF_RUN_SHARED "shared"
@@ -62,7 +62,9 @@ char *sf_campaign_geometry_list(const char *path, const char *text);
 enum { SF_RUN_PATH_SIZE = PATH_MAX + 128 };
 
 typedef struct sf_run_folder {
-    uint64_t key; /* of the case with its overrides */
+    uint64_t key;    /* of the case with its overrides */
+    int drops;       /* of the series, 1: a single drop */
+    int64_t counted; /* drops by which it is judged: bit k for drop k + 1 */
     char path[PATH_MAX];
     char model[SF_RUN_PATH_SIZE], results[SF_RUN_PATH_SIZE], checkpoint[SF_RUN_PATH_SIZE],
         log[SF_RUN_PATH_SIZE], failed[SF_RUN_PATH_SIZE], figures[SF_RUN_PATH_SIZE];
@@ -74,11 +76,18 @@ typedef struct sf_run_folder {
 sf_status sf_run_folder_name(const char *parent, const char *label, const char *case_path, int count,
                              const char *const *overrides, sf_run_folder *folder, sf_error *err);
 
-/* Only the names, of a key that is known: the folders of the geometries are left "". */
+/* Only the names, of a key that is known, and as of a single drop: the folders of the geometries are left "".
+ */
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *folder);
 
-/* True if the folder holds a drop that ran to its end, and every file that its geometry read is as it was
- * then. */
+/* The same folder with the names of the files of one drop of its series, from 1. */
+sf_run_folder sf_run_folder_of_drop(const sf_run_folder *folder, int drop);
+
+/* Writes by what a series is judged: "the mean of drops 2, 3 of 3", or "drop 2 of 2"; "" of a single drop. */
+void sf_run_counted_text(int drops, int64_t counted, char *text, size_t size);
+
+/* True if the folder holds a drop, or all of a series, that ran to its end, and every file that its geometry
+ * read is as it was then. */
 bool sf_run_folder_is_finished(const sf_run_folder *folder);
 
 /* True if the drop failed in softfall-solve (SF_ERR_NUMERIC), and every file that its geometry read is as it
@@ -103,7 +112,8 @@ void sf_run_folder_clean(const sf_run_folder *folder);
 sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err);
 
-/* Writes report.html, view.html and what else softfall-post makes of the results into its folder `report`. */
+/* Writes report.html, view.html and what else softfall-post makes of the results into its folder `report`; of
+ * a series what softfall-post series makes. */
 sf_status sf_run_folder_report(const sf_run_folder *folder, sf_error *err);
 
 /* Records SF_INTERRUPTED. */

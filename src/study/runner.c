@@ -129,31 +129,100 @@ double sf_runner_figure(const sf_runner_result *result, const char *key) {
     return figure_of(result->figure, key);
 }
 
-/* Without the results: what has no figure is NaN or 0. False if there is no record of them. */
+/* Returns a result of figures alone, which it owns: what has no figure is NaN or 0. */
+static sf_runner_result result_of(double *f, sf_grade grade) {
+    return (sf_runner_result){.a_max_g = figure_of(f, "a_max_g"),
+                              .hic = figure_of(f, "hic"),
+                              .hic_window = NAN,
+                              .contact_time = NAN,
+                              .v0 = figure_of(f, "v0_m_s"),
+                              .v_rebound = figure_of(f, "v_rebound_m_s"),
+                              .max_indentation = 1e-3 * figure_of(f, "max_indentation_mm"),
+                              .max_local_strain = figure_of(f, "max_local_strain"),
+                              .energy_error = figure_of(f, "energy_error"),
+                              .nodes = (int64_t)figure_of(f, "nodes"),
+                              .steps = (int64_t)figure_of(f, "steps"),
+                              .grade = grade,
+                              .figure = f};
+}
+
+/* Without the results. False if there is no record of them. */
 static bool read_recorded(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
     SF_OWNED_BY(sf_run_record_free) sf_run_record record = {0};
     bool there = sf_run_record_read(at->figures, at->results, &record);
     if (there) {
-        const double *f = record.figure;
-        *out = (sf_runner_result){.a_max_g = figure_of(f, "a_max_g"),
-                                  .hic = figure_of(f, "hic"),
-                                  .hic_window = NAN,
-                                  .contact_time = NAN,
-                                  .v0 = figure_of(f, "v0_m_s"),
-                                  .v_rebound = figure_of(f, "v_rebound_m_s"),
-                                  .max_indentation = 1e-3 * figure_of(f, "max_indentation_mm"),
-                                  .max_local_strain = figure_of(f, "max_local_strain"),
-                                  .energy_error = figure_of(f, "energy_error"),
-                                  .nodes = (int64_t)figure_of(f, "nodes"),
-                                  .steps = (int64_t)figure_of(f, "steps"),
-                                  .grade = record.grade,
-                                  .figure = record.figure};
+        *out = result_of(record.figure, record.grade);
         record.figure = NULL;
         snprintf(out->verdict, sizeof out->verdict, "%s", record.verdict);
         snprintf(out->status, sizeof out->status, "%s", record.status);
         finish_result(at->results, out, err);
     }
     return there;
+}
+
+/* Reads one drop, of which `figures_only` are wanted. */
+static sf_status read_drop(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err) {
+    return figures_only && read_recorded(at, out, err) ? err->status : read_result(at, out, err);
+}
+
+/* Adds the figures of a drop of a series, from 1, to those of the drops before it. */
+static void add_figures(const sf_run_folder *at, int drop, const double *figure, double *sum) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    int counted = __builtin_popcountll((unsigned long long)at->counted);
+    for (size_t k = 0; k < count; k++) {
+        bool whole = strcmp(list[k].row.key, "steps") == 0 || strcmp(list[k].row.key, "wall_s") == 0;
+        sum[k] += whole || at->counted >> (drop - 1) & 1 ? figure[k] : 0;
+        sum[k] /= drop == at->drops && !whole ? counted : 1;
+    }
+}
+
+/* Adds a drop of a series to the result, which holds those before it: the worst of both. Moves its curve. */
+static void add_drop(int drop, sf_runner_result *one, sf_runner_result *all) {
+    if (drop == 1 || one->grade > all->grade) {
+        all->grade = one->grade;
+        snprintf(all->verdict, sizeof all->verdict, "drop %d: %.*s", drop, SF_VERDICT_LINE_SIZE - 20,
+                 one->verdict);
+    }
+    all->max_local_strain = fmax(all->max_local_strain, one->max_local_strain);
+    for (int k = 0; k < all->layer_count && k < one->layer_count; k++)
+        one->layer_strain[k] = fmax(one->layer_strain[k], all->layer_strain[k]);
+    free(all->layer_strain);
+    all->layer_strain = one->layer_strain;
+    all->layer_count = one->layer_count;
+    one->layer_strain = NULL;
+    sf_series_free(&all->curve);
+    all->curve = one->curve;
+    one->curve = (sf_series){0};
+    memcpy(all->status, one->status, sizeof all->status);
+}
+
+/* Reads a single drop, or all drops of a series. */
+static sf_status read_run(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err) {
+    size_t count;
+    sf_runner_result all = {0};
+    if (at->drops == 1)
+        return read_drop(at, figures_only, out, err);
+    sf_figure_list(&count);
+    double *sum = sf_alloc(err, count, sizeof *sum, "figures");
+    for (int k = 1; k <= at->drops && err->status == SF_OK; k++) {
+        const sf_run_folder drop = sf_run_folder_of_drop(at, k);
+        SF_OWNED_BY(sf_runner_result_free) sf_runner_result one = {0};
+        if (read_drop(&drop, figures_only, &one, err) != SF_OK)
+            break;
+        add_figures(at, k, one.figure, sum);
+        add_drop(k, &one, &all);
+    }
+    if (sum)
+        *out = result_of(sum, all.grade);
+    out->max_local_strain = all.max_local_strain;
+    out->layer_count = all.layer_count;
+    out->layer_strain = all.layer_strain;
+    out->curve = all.curve;
+    memcpy(out->verdict, all.verdict, sizeof out->verdict);
+    memcpy(out->status, all.status, sizeof out->status);
+    sf_run_counted_text(at->drops, at->counted, out->counted, sizeof out->counted);
+    return finish_result(at->results, out, err);
 }
 
 /* ---- drops ---- */
@@ -202,6 +271,8 @@ typedef struct request {
     uint64_t key;
     bool reused;
     uint64_t geometry; /* hash of the folders that the geometries' other files are in */
+    int64_t counted;   /* with the next one those of the folder */
+    int drops;
     int first;         /* the first drop of the batch with the same folder */
 } request;
 
@@ -218,14 +289,16 @@ typedef struct batch {
 /* Damaged results of unchanged size and time have a record all the same: it goes, and the drop is simulated
  * again. */
 static bool is_readable(const sf_run_folder *at) {
-    sf_error none = SF_ERROR_INIT;
-    sf_results r;
-    if (sf_results_open(at->results, &r, &none) == SF_OK) {
-        sf_results_close(&r);
-        return true;
+    bool readable = true;
+    for (int k = 1; k <= at->drops && readable; k++) {
+        const sf_run_folder drop = sf_run_folder_of_drop(at, k);
+        SF_OWNED_BY(sf_results_close) sf_results r = {0};
+        sf_error none = SF_ERROR_INIT;
+        readable = sf_results_open(drop.results, &r, &none) == SF_OK;
+        if (!readable)
+            sf_folder_remove_file(drop.figures);
     }
-    sf_folder_remove_file(at->figures);
-    return false;
+    return readable;
 }
 
 /* Finds the drop's folder and whether it is finished, or has failed earlier. A drop that its case refuses has
@@ -235,6 +308,8 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
     if (locate(runner, drop, &l, failure) != SF_OK)
         return;
     r->key = l.at.key;
+    r->drops = l.at.drops;
+    r->counted = l.at.counted;
     r->geometry = SF_HASH_START;
     for (int k = 0; k < SF_GEOMETRIES; k++)
         r->geometry = sf_hash_bytes(r->geometry, l.at.geometry[k], strlen(l.at.geometry[k]) + 1);
@@ -250,8 +325,8 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
 /* By the process that simulated the drop, so that nobody reads the results of many drops one by one. */
 static void record(const sf_run_folder *at) {
     sf_error none = SF_ERROR_INIT;
-    sf_runner_result result;
-    if (read_result(at, &result, &none) == SF_OK)
+    sf_runner_result result = {0};
+    if (read_run(at, false, &result, &none) == SF_OK)
         sf_runner_result_free(&result);
 }
 
@@ -501,15 +576,15 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
                              sf_runner_result *result, sf_error *err) {
     sf_run_folder at;
     sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
-    if (!(runner->figures_only && read_recorded(&at, result, err)))
-        read_result(&at, result, err);
-    SF_TRY(err->status);
+    at.drops = r->drops;
+    at.counted = r->counted;
+    SF_TRY(read_run(&at, runner->figures_only, result, err));
     result->reused = r->reused;
     *(r->reused ? &runner->reused : &runner->simulated) += 1;
     if (runner->log) {
-        fprintf(runner->log, "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s\n",
+        fprintf(runner->log, "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s%s%s\n",
                 drop->label, result->v0, result->a_max_g, result->hic, result->max_local_strain,
-                result->reused ? "  (was there)" : "");
+                *result->counted ? "  " : "", result->counted, result->reused ? "  (was there)" : "");
         fflush(runner->log);
     }
     return SF_OK;

@@ -25,7 +25,11 @@ typedef struct sf_runner {
     sf_runner_engine engine;
 } sf_runner;
 
-/* The results of a drop for a campaign; figures of the CFC 1000 curve. */
+enum { SF_RUNNER_COUNTED = 104 };
+
+/* The results of a drop for a campaign; figures of the CFC 1000 curve. Those of a series of drops on one pad
+ * are the means over the drops that count (sf_case.counted), `steps` and `wall_s` the sums over all; the
+ * largest local strains and the grade are those of the worst drop, curve and `status` those of the last. */
 typedef struct sf_runner_result {
     double a_max_g, hic;                /* g, - */
     double hic_window;                  /* s, length of its window */
@@ -43,6 +47,7 @@ typedef struct sf_runner_result {
     char status[80]; /* how the run ended: the figure that is a text */
     sf_series curve; /* s, g: filtered; owned */
     char *path;      /* of its results.h5; owned */
+    char counted[SF_RUNNER_COUNTED]; /* sf_run_counted_text */
     bool reused;
 } sf_runner_result;
 

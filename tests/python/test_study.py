@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sweeps, fits and functions."""
+import csv
 import json
 import os
 import pathlib
@@ -120,11 +121,20 @@ def test_a_drop_that_is_not_to_be_used_raises_or_is_nan(case):
         softfall.function(case, ["missile.velocity [m/s]"], "peak_force_N")(4.5)
 
 
-def test_a_series_is_refused_by_studies_and_packed_by_softfall_new(tmp_path):
-    """A study would read the first drop of a series without a word."""
+def test_a_series_is_judged_by_the_drops_that_count(tmp_path):
+    """A sweep takes all drops of a series; what has the figures of one drop refuses it, and does not take the first."""
     source = pathlib.Path(os.environ["SF_SOURCE_DIR"]) / "examples/series/case.cfg"
-    plan = {"case": str(source), "factors": [{"key": "missile.velocity", "values": ["3 m/s"]}], "figures": [{"key": "a_max_g"}]}
-    with pytest.raises(softfall.InputError, match="a study runs single drops"):
-        softfall.sweep(plan, output=tmp_path / "sweep")
+    plan = {"case": str(source), "factors": [{"key": "missile.velocity", "values": ["3 m/s"]}], "figures": [{"key": "a_max_g"}],
+            "set": ["geometry.parameters.fine_spacing=20.0", "geometry.parameters.outer_spacing=40.0", "pad.mesh_error_limit=9.0"]}
+    row = softfall.sweep(plan, output=tmp_path / "sweep")
+    with open(tmp_path / "sweep/drops.csv", encoding="utf-8", newline="") as file:
+        first, second, third = (float(drop["a_max_g"]) for drop in csv.DictReader(file))
+    assert first < min(second, third)
+    assert float(row["a_max_g"][0]) == pytest.approx((second + third) / 2, rel=1e-8)
+    series = softfall.Case(source)
+    with pytest.raises(softfall.InputError, match="a function has the figures of a single drop"):
+        softfall.function(series, ["missile.velocity [m/s]"], "hic")(3)
+    with pytest.raises(softfall.InputError, match="a refinement has the figures of a single drop"):
+        softfall.refine(series)
     program("new", tmp_path / "pad", "--from", "series", cwd=tmp_path)
     assert softfall.Case(tmp_path / "pad/case.cfg")["series.drops"] == 3

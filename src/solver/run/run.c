@@ -270,17 +270,10 @@ static sf_status write_count(sf_h5 *file, const char *path, const char *text, in
     return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
 }
 
-/* True if every material has a reloading path of its own. */
 static bool has_memory(const sf_model *m) {
     bool all = true;
-    for (int64_t k = 0; k < m->material_count; k++) {
-        bool found = false;
-        for (int v = 0; v < m->material[k].law->history_count; v++) {
-            const sf_history_variable *h = &m->material[k].law->history[v];
-            found |= strcmp(h->name, "memory") == 0 && (!h->needed || h->needed(m->material[k].card));
-        }
-        all &= found;
-    }
+    for (int64_t k = 0; k < m->material_count; k++)
+        all &= sf_material_has_memory(&m->material[k]);
     return all;
 }
 

@@ -139,7 +139,8 @@ static void put_title(sf_chart *chart, const sf_cfh_report *r) {
         snprintf(
             spread, sizeof spread, "; 95 %% interval %s",
             sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, SF_CFH_FIRST), interval, sizeof interval));
-    sf_chart_title(chart, "Critical fall height %s%s%s (indicative)", words, rig, spread);
+    sf_chart_title(chart, "Critical fall height %s%s%s (indicative%s%s)", words, rig, spread,
+                   *r->counted ? ", by " : "", r->counted);
 }
 
 sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *warning, size_t size,
@@ -389,6 +390,8 @@ static void put_bodies(FILE *page, const sf_cfh_report *r) {
     sf_html_fact(&table, "case", "%s", r->case_path);
     sf_html_fact(&table, "material", "%s", r->material ? r->material : "of the case");
     sf_html_fact(&table, "missile", "%g kg", r->mass);
+    if (*r->counted)
+        sf_html_fact(&table, "series on one pad", "each height is judged by %s", r->counted);
     sf_origin_put_key(&table, r->parameters, "geometry.missile_file", "its shape");
     sf_origin_put_key(&table, r->parameters, "geometry.missile_parameters", "its parameters");
     sf_origin_put_key(&table, r->parameters, "geometry.file", "pad");

@@ -117,7 +117,8 @@ static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
     if (up_to_anvil)
         sf_text_add(text, size, " and below %.3f m", v->anvil);
     sf_text_add(text, size,
-                " of free fall%s: ", v->verdict == SF_CFH_FOUND && r->spread ? " as simulated" : "");
+                " of free fall%s%s%s: ", v->verdict == SF_CFH_FOUND && r->spread ? " as simulated" : "",
+                *r->counted ? ", by " : "", r->counted);
     if (v->verdict == SF_CFH_FOUND)
         sf_text_add(text, size, "%s reaches %g%s first.", name, limit, unit);
     else if (v->verdict == SF_CFH_ABOVE)
@@ -389,6 +390,7 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
     sf_json_text(&json, "case", r->case_path);
     sf_json_text(&json, "material", r->material);
     sf_json_number(&json, "missile_mass_kg", r->mass);
+    sf_json_text(&json, "judged_by", *r->counted ? r->counted : NULL);
     sf_json_number(&json, "compression_table_end", least_end(r->foams));
     put_verdict(&json, r);
     sf_json_open(&json, "rig", '{');

@@ -19,6 +19,7 @@ typedef struct sf_cfh_report {
     const sf_cfh_result *result;
     sf_cfh_step ending;
     double mass; /* kg */
+    char counted[SF_RUNNER_COUNTED]; /* sf_run_counted_text: by what a height is judged */
     const sf_cfh_foams *foams;
     const sf_cfh_spread *spread;        /* NULL: no interval of the foam is known */
     char no_interval[SF_CFH_NOTE_SIZE]; /* with `posterior`: why there is none; "": there is one */

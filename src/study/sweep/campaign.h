@@ -2,6 +2,7 @@
 /* Runs the open rows of a plan in pieces, and keeps runs.csv up to date, so that a campaign that was
  * interrupted or killed resumes. */
 #pragma once
+#include "io/staging.h"
 #include "study/sweep/runs.h"
 #include <stdio.h>
 
@@ -68,6 +69,14 @@ enum {
 
 /* The context of the engine is the runner, borrowed. */
 sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs);
+
+/* Writes by what the rows are judged, where they are series of drops (sf_run_counted_text); else "". Returns
+ * true for series. */
+bool sf_sweep_series_text(const sf_plan *plan, char *text, size_t size);
+
+/* Writes drops.csv: each drop of the rows that are done, with its figures. `folder`: as below. */
+sf_status sf_sweep_write_drops(const sf_staging *output, const sf_runs *runs, const char *folder,
+                               sf_error *err);
 
 /* The cost of the open runs of a plan: from the runs that are done, or else from the model of the first
  * row. */

@@ -7,6 +7,7 @@
 #include "pre/make.h"
 #include "pre/model_report.h"
 #include "study/batch.h"
+#include "study/run_folder.h"
 
 #include <gsl/gsl_sort.h>
 #include <limits.h>
@@ -135,6 +136,67 @@ sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
                                                                           : SF_SWEEP_ELSEWHERE};
 }
 
+/* ---- the drops of series ---- */
+
+bool sf_sweep_series_text(const sf_plan *plan, char *text, size_t size) {
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
+    sf_error none = SF_ERROR_INIT;
+    bool varies = false;
+    for (int f = 0; f < plan->factor_count; f++)
+        varies |= strcmp(plan->factor[f].key, "series.drops") == 0 ||
+                  strcmp(plan->factor[f].key, "series.counted") == 0;
+    *text = '\0';
+    if (sf_sweep_read_case(plan, 0, &c, &none) == SF_OK)
+        sf_run_counted_text((int)c.drops, c.counted, text, size);
+    if (varies)
+        snprintf(text, size, "the mean of the drops of series.counted");
+    return *text;
+}
+
+/* A line of drops.csv; without a record of its figures their cells are empty. */
+static void put_drop(FILE *file, int64_t row, int drop, const sf_run_folder *at) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    SF_OWNED_BY(sf_run_record_free) sf_run_record r = {0};
+    bool there = sf_run_record_read(at->figures, at->results, &r);
+    fprintf(file, "%lld,%d,%s,%s", (long long)row + 1, drop, at->counted >> (drop - 1) & 1 ? "yes" : "no",
+            there ? sf_verdict_phrase(r.grade) : "");
+    for (size_t k = 0; k < count; k++)
+        if (list[k].row.type == SF_ROW_TEXT)
+            fprintf(file, ",%s", there ? r.status : "");
+        else if (there && !isnan(r.figure[k]))
+            fprintf(file, ",%.9g", r.figure[k]);
+        else
+            fputc(',', file);
+    fputc('\n', file);
+}
+
+sf_status sf_sweep_write_drops(const sf_staging *output, const sf_runs *r, const char *folder,
+                               sf_error *err) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    FILE *file = sf_staging_open(output, "drops.csv", err);
+    SF_TRY(err->status);
+    fputs("id,drop,counted,grade", file);
+    for (size_t k = 0; k < count; k++)
+        fprintf(file, ",%s", list[k].row.key);
+    fputc('\n', file);
+    for (int64_t row = 0; row < r->count && err->status == SF_OK; row++) {
+        SF_OWNED_BY(sf_case_free) sf_case c = {0};
+        sf_run_folder at;
+        if (r->state[row] != SF_SWEEP_DONE || sf_sweep_read_case(r->plan, row, &c, err) != SF_OK)
+            continue;
+        const char *key = r->folder[row] + strlen(SF_SWEEP_LABEL "-");
+        sf_run_folder_name_key(folder, SF_SWEEP_LABEL, strtoull(key, NULL, 16), &at);
+        at.counted = c.counted;
+        for (int k = 1; k <= (int)c.drops; k++) {
+            const sf_run_folder drop = sf_run_folder_of_drop(&at, k);
+            put_drop(file, row, k, &drop);
+        }
+    }
+    return sf_staging_close(file, "drops.csv", err);
+}
+
 /* ---- cost ---- */
 
 /* Measured of examples/sweep (docs/campaigns.md): results.h5 without fields, and what a run has on disk while
@@ -143,15 +205,21 @@ static const double NODE_BYTES = 300, RUN_BYTES = 1e6, NODE_WORK_BYTES = 4000;
 /* s, of softfall-pre with a mesh that is there, of the starts of the programs and of the files. */
 static const double SETUP_SECONDS = 0.2;
 
+/* Bytes of the results of all drops of a run. */
 static double size_of(const char *folder, const char *name) {
-    char path[PATH_MAX];
-    int handle = -1;
-    uint64_t size = 0;
+    char first[PATH_MAX], path[PATH_MAX];
+    double bytes = 0;
     sf_error none = SF_ERROR_INIT;
-    snprintf(path, sizeof path, "%s/%s/results.h5", folder, name);
-    if (sf_plain_open(path, NULL, &handle, &size, &none) == SF_OK)
-        close(handle);
-    return (double)size;
+    snprintf(first, sizeof first, "%s/%s/results.h5", folder, name);
+    for (int drop = 1; drop <= SF_SERIES_MOST && none.status == SF_OK; drop++) {
+        int handle = -1;
+        uint64_t size = 0;
+        sf_model_series_file(first, drop, path, sizeof path);
+        if (sf_plain_open(path, NULL, &handle, &size, &none) == SF_OK)
+            close(handle);
+        bytes += (double)size;
+    }
+    return bytes;
 }
 
 /* Measures the cost by the median of wall_s x threads; 0: no run is done. */
@@ -189,9 +257,10 @@ static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
     sf_error refused = SF_ERROR_INIT;
     SF_TRY(sf_sweep_read_case(p, 0, &first, err));
     if (sf_model_make(&first, &model, &report, libraries, NULL, &refused) == SF_OK) {
-        c->seconds = SETUP_SECONDS + 2 * sf_report_seconds(&model, &report); /* of two cores */
-        c->bytes = RUN_BYTES + NODE_BYTES * (double)model.node_count;
-        c->work_bytes = c->bytes + NODE_WORK_BYTES * (double)model.node_count;
+        double nodes = first.drops * (double)model.node_count;
+        c->seconds = SETUP_SECONDS + 2 * first.drops * sf_report_seconds(&model, &report); /* of two cores */
+        c->bytes = RUN_BYTES + NODE_BYTES * nodes;
+        c->work_bytes = c->bytes + NODE_WORK_BYTES * nodes;
         snprintf(c->basis, sizeof c->basis,
                  "the estimate of softfall-pre for the first row, to a factor of 2; no run is finished yet");
         sf_model_free(&model);

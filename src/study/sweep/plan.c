@@ -521,9 +521,12 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     sf_sweep_read_case(p, row, &c, &inner);
     for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
         sf_geo_parameters_check_alone(sf_campaign_geometry(&c, k), &inner);
+    if (inner.status == SF_OK && c.drops > 1 && sf_plan_is_adaptive(p))
+        SF_REFUSE(&inner, "series.drops = %g: only first drops are predicted; leave `accuracy` out", c.drops);
     if (inner.status == SF_OK)
         sf_campaign_key(&c, own, &inner);
     *hash = sf_hash_bytes(*hash, own, sizeof *own);
+    *hash = c.counted > 1 ? sf_hash_bytes(*hash, &c.counted, sizeof c.counted) : *hash;
     if (inner.status == SF_OK)
         return SF_OK;
     return SF_FAIL(err, inner.status, "%s: %.900s", is_of_set(p, inner.text) ? p->set_where : f->where,

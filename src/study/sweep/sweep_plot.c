@@ -8,13 +8,15 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { COLUMNS = 4, SERIES = 8, POINTS = 3000, CURVES = 200, CURVE_POINTS = 300, BARS = SF_SWEEP_FACTORS };
 
 static const sf_sweep_picture pictures[] = {
     {"factors",
      "Each figure against the factors that are numbers (the first four of them): a point is a run, lines join the means"},
-    {"curves", "Deceleration over time of the runs (of more than 200 runs 200, drawn at random)"},
+    {"curves",
+     "Deceleration over time of the runs (of more than 200 runs 200, drawn at random; of a series the last drop)"},
     {"effects",
      "Main effects, all else equal: the range of the means between the values of a factor, the greatest on top"},
     {"indices", "Sobol' indices, first order and total, with 95 % intervals"},
@@ -221,11 +223,16 @@ static sf_chart *draw_factors(const sf_analysis *a, const char *folder, sf_error
 
 /* Adds the filtered curve of a run; false if its results cannot be read any more. */
 static bool add_curve(sf_series_data *line, const char *folder, const char *name) {
-    char path[PATH_MAX];
+    char first[PATH_MAX], path[PATH_MAX], next[PATH_MAX];
     SF_OWNED_BY(sf_results_close) sf_results r = {0};
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     sf_error none = SF_ERROR_INIT;
-    snprintf(path, sizeof path, "%s/%s/results.h5", folder, name);
+    snprintf(first, sizeof first, "%s/%s/results.h5", folder, name);
+    snprintf(next, sizeof next, "%s", first);
+    for (int drop = 2; drop == 2 || access(next, F_OK) == 0; drop++) {
+        memcpy(path, next, sizeof path);
+        sf_model_series_file(first, drop, next, sizeof next);
+    }
     if (sf_results_open(path, &r, &none) != SF_OK)
         return false;
     bool good = sf_figures_compute(&r, 1000, &f, &none) == SF_OK;

@@ -178,6 +178,7 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     sf_json j = {.file = file};
     sf_json_open(&j, NULL, '{');
     sf_json_text(&j, "plan", r->plan->path);
+    sf_json_text(&j, "judged_by", *r->series ? r->series : NULL);
     SF_JSON_NUMBERS(&j, {"runs", (double)r->plan->rows}, {"done", (double)a->done},
                     {"failed", (double)a->failed}, {"open", (double)a->open},
                     {"predicted", (double)a->predicted}, {"do_not_use", (double)a->unusable});
@@ -233,7 +234,7 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
     sf_html_tiles_end(page);
 }
 
-static void put_factors(FILE *page, const sf_plan *p) {
+static void put_factors(FILE *page, const sf_plan *p, const char *series) {
     char text[512];
     sf_html_heading(page, "Plan");
     sf_html_table t = sf_html_table_begin(page, "dense", "factor|key of the case|values|role");
@@ -247,6 +248,9 @@ static void put_factors(FILE *page, const sf_plan *p) {
     }
     sf_html_table_end(&t);
     sf_html_paragraph(page, "%lld runs of %s, a row each in runs.csv.", p->rows, p->case_path);
+    if (*series)
+        sf_html_paragraph(
+            page, "A run is a series of drops on one pad, judged by %s; drops.csv has each drop.", series);
 }
 
 static void put_predictions(FILE *page, const sf_sweep_report *r) {
@@ -480,7 +484,7 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
         "be used. %s",
         a->done, r->plan->rows, a->predicted, a->failed, a->open, a->unusable, caution);
     put_tiles(page, r);
-    put_factors(page, r->plan);
+    put_factors(page, r->plan, r->series);
     put_predictions(page, r);
     put_pictures(page, output);
     put_probability(page, r);
@@ -500,6 +504,8 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
     fprintf(out, "%lld runs: %lld done, %lld failed, %lld open; the figures of %lld are not to be used\n",
             r->plan->rows, a->done, a->failed, a->open, a->unusable);
+    if (*r->series)
+        fprintf(out, "  each of a series of drops, judged by %s\n", r->series);
     for (int k = 0; k < r->plan->figure_count && a->predicted > 0; k++)
         fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n", a->predicted,
                 r->plan->figure[k].figure, 100 * a->widest[k], 100 * r->plan->figure[k].accuracy);

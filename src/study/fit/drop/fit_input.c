@@ -89,11 +89,20 @@ static sf_status take_material(sf_material *material, bool first, sf_fit_input *
     return SF_OK;
 }
 
+/* The responses and the columns that correct them are of a first drop. */
+static sf_status check_single(const sf_fit_drop *drop, const sf_case *c, sf_error *err) {
+    return c->drops == 1
+               ? SF_OK
+               : SF_REFUSE(err, "%s: series.drops = %g: softfall-fit drop fits first drops on new foam",
+                           drop->case_path, c->drops);
+}
+
 static sf_status read_case(const sf_fit_drop *drop, const char *material, bool first, sf_fit_input *in,
                            sf_error *err) {
     const sf_sink sink = sf_program_sink("softfall-fit");
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
     SF_TRY(sf_case_read(drop->case_path, 1, &material, &sink, &c, err));
+    SF_TRY(check_single(drop, &c, err));
     return take_material(&c.material, first, in, err);
 }
 
@@ -106,7 +115,7 @@ static sf_status check_coarse(const sf_fit_drop *drop, const char *material, con
     memcpy(&overrides[1], in->coarse, sizeof in->coarse);
     if (sf_case_read(drop->case_path, 1 + in->coarse_count, overrides, NULL, &c, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "coarse_set: %.800s", inner.text);
-    return SF_OK;
+    return check_single(drop, &c, err);
 }
 
 /* The start material, read as the first drop's case would. */
