@@ -162,9 +162,9 @@ static sf_status read_form_rate(const sf_config *file, sf_config_item *root, sf_
     SF_TRY(sf_config_choice(file, root, "rate_model", FORM_RATES, &rate, err));
     r->rate = (sf_form_rate)rate;
     bool factor = r->rate & SF_FORM_RATE_FACTOR, maxwell = r->rate & SF_FORM_RATE_MAXWELL;
-    if (r->rate != SF_FORM_RATE_NONE && c->test_count < 2)
+    if (r->rate != SF_FORM_RATE_NONE && fastest->rate < slowest->rate * (1 + 1e-6))
         return sf_config_refuse(file, config_setting_get_member(root, "rate_model"), err,
-                                "the rate model \"%s\" needs tests at two rates; there is one test",
+                                "the rate model \"%s\" needs tests at two rates; there is one rate",
                                 sf_form_rate_names[rate]);
     SF_TRY(read_reference(file, root, c, err));
     r->start[SF_PARAMETER_RATE_FACTOR] = 0;
@@ -254,7 +254,8 @@ static sf_status check_rate(const sf_config *file, sf_config_item *entry, double
     return SF_OK;
 }
 
-/* The same points under another rate would say that the rate has no effect. */
+/* The same points under another rate would say that the rate has no effect, under one rate that nothing
+ * scatters. */
 static sf_status check_points(const sf_config *file, sf_config_item *entry, const sf_compression_test *test,
                               const sf_compression_config *c, sf_error *err) {
     for (int k = 0; k < c->test_count; k++) {
@@ -263,9 +264,8 @@ static sf_status check_points(const sf_config *file, sf_config_item *entry, cons
         if (earlier->count == test->count && memcmp(earlier->strain, test->strain, size) == 0 &&
             memcmp(earlier->stress, test->stress, size) == 0)
             return sf_config_refuse(file, config_setting_get_member(entry, "file"), err,
-                                    "the points of %s are those of %s, which has another rate: give the same "
-                                    "data once",
-                                    test->path, earlier->path);
+                                    "the points of %s are those of %s: give the same data once", test->path,
+                                    earlier->path);
     }
     return SF_OK;
 }
@@ -330,7 +330,7 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, bool pr
     sf_compression_source source = {.toe = c->toe};
     if (sf_config_names(file, entry, "file|" SF_COMPRESSION_SOURCE_KEYS, err) == SF_OK &&
         sf_compression_source_read(file, entry, c->specimen, &source, err) == SF_OK &&
-        (predicted || check_rate(file, entry, source.rate, c, err) == SF_OK) &&
+        (predicted || c->specimens || check_rate(file, entry, source.rate, c, err) == SF_OK) &&
         sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
         source.path = path;
         if (sf_compression_test_read(&source, &test, &inner) != SF_OK)
@@ -403,11 +403,12 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
     SF_TRY(read_specimen(file, root, &c->specimen, err));
     c->rate_model = (sf_rate_model)model;
     c->rule = (sf_rule_choice)rule;
+    c->specimens = form;
     SF_TRY(read_tests(file, root, "tests", false, c, err));
     if (!form)
         return SF_OK;
     SF_TRY(read_tests(file, root, "predict", true, c, err));
-    SF_TRY(sf_cycle_record_read(file, root, &c->cycles, err));
+    SF_TRY(sf_cycle_records_read(file, root, c, err));
     return sf_form_request_read(file, root, c, err);
 }
 
@@ -478,7 +479,8 @@ sf_status sf_compression_config_read(const char *path, sf_compression_config *co
 
 void sf_compression_config_free(sf_compression_config *config) {
     sf_hyperfoam_request_free(&config->hyperfoam);
-    sf_cycle_record_free(&config->cycles);
+    for (int k = 0; k < SF_CYCLE_RECORDS; k++)
+        sf_cycle_record_free(&config->cycles[k]);
     for (int k = 0; k < config->test_count; k++)
         sf_compression_test_free(&config->test[k]);
     for (int k = 0; k < config->predicted_count; k++)

@@ -55,7 +55,7 @@ sf_status sf_hyperfoam_request_read(const sf_config *file, sf_config_item *root,
                                     sf_hyperfoam_request *request, sf_compression_test *test, sf_error *err);
 void sf_hyperfoam_request_free(sf_hyperfoam_request *request);
 
-enum { SF_CYCLES = 16 }; /* in a record at most */
+enum { SF_CYCLES = 16 /* in a record at most */, SF_CYCLE_RECORDS = 4 };
 
 /* A record of several cycles of compression of one specimen, with its time: what a foam remembers is in the
  * cycles after the first (theory, section "Memory"). A time of rest without load in which nothing was
@@ -107,11 +107,13 @@ typedef struct sf_compression_config {
     bool toe;                         /* correct the toe of the tests that do not say otherwise */
     sf_rate_model rate_model;
     sf_rule_choice rule;
+    bool specimens; /* of a form: tests of several specimens may have one rate */
     int test_count;
     sf_compression_test test[SF_COMPRESSION_TESTS]; /* ascending rate; owned */
     sf_form_request form;           /* which form of the loading curve; its curve is NULL: a free spline */
     sf_hyperfoam_request hyperfoam; /* its terms are 0: another law */
-    sf_cycle_record cycles;         /* several cycles of one specimen; of a form */
+    int record_count;               /* of cycles; of a form */
+    sf_cycle_record cycles[SF_CYCLE_RECORDS]; /* several cycles of one specimen each */
     int predicted_count;            /* tests that a form is to predict, not fitted */
     sf_compression_test predicted[SF_COMPRESSION_TESTS]; /* owned */
 } sf_compression_config;
@@ -142,10 +144,11 @@ sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entr
 
 /* ---- cycle_fit.c ---- */
 
-/* Reads the key `cycles`, { file = "cycles.csv"; fitted = 3; }, if it is there. SF_ERR_INPUT also where the
- * file has no two cycles, one does not return, or time goes back. Release with sf_cycle_record_free. */
-sf_status sf_cycle_record_read(const sf_config *file, sf_config_item *root, sf_cycle_record *record,
-                               sf_error *err);
+/* Reads the key `cycles`, { file = "cycles.csv"; fitted = 3; } or a list of these, if it is there.
+ * SF_ERR_INPUT also where a file has no two cycles, one does not return, or time goes back. Release each with
+ * sf_cycle_record_free. */
+sf_status sf_cycle_records_read(const sf_config *file, sf_config_item *root, sf_compression_config *c,
+                                sf_error *err);
 void sf_cycle_record_free(sf_cycle_record *record);
 
 /* The pause (s) before point i; 0: none. */

@@ -93,16 +93,14 @@ static sf_status find_turns(sf_cycle_record *r, sf_error *err) {
     return SF_OK;
 }
 
-sf_status sf_cycle_record_read(const sf_config *file, sf_config_item *root, sf_cycle_record *r,
-                               sf_error *err) {
-    sf_config_item *group = config_setting_get_member(root, "cycles");
+static sf_status read_record(const sf_config *file, sf_config_item *group, sf_cycle_record *r,
+                             sf_error *err) {
     double fitted = SF_CYCLES;
     sf_error inner = SF_ERROR_INIT;
-    if (!group)
-        return SF_OK;
     if (!config_setting_is_group(group))
-        return sf_config_refuse(file, group, err,
-                                "cycles must be a group: cycles = { file = \"cycles.csv\"; };");
+        return sf_config_refuse(
+            file, group, err,
+            "cycles must be a group or a list of groups: cycles = { file = \"cycles.csv\"; };");
     SF_TRY(sf_config_names(file, group, "file|fitted", err));
     SF_TRY(sf_config_whole(file, group, "fitted", false, 2, SF_CYCLES, &fitted, err));
     SF_TRY(sf_config_file(file, group, "file", true, &r->path, err));
@@ -111,6 +109,27 @@ sf_status sf_cycle_record_read(const sf_config *file, sf_config_item *root, sf_c
     r->fitted = fitted < r->cycles ? (int)fitted : r->cycles;
     for (int i = 1; i < r->turn[2 * r->fitted]; i++)
         r->pauses += sf_cycle_record_pause(r, i) > 0;
+    return SF_OK;
+}
+
+static bool is_same_record(const sf_cycle_record *a, const sf_cycle_record *b) {
+    return a->count == b->count && memcmp(a->stress, b->stress, (size_t)a->count * sizeof *a->stress) == 0;
+}
+
+sf_status sf_cycle_records_read(const sf_config *file, sf_config_item *root, sf_compression_config *c,
+                                sf_error *err) {
+    sf_config_item *item = config_setting_get_member(root, "cycles");
+    bool list = item && config_setting_is_list(item);
+    if (list)
+        SF_TRY(sf_config_list(file, root, "cycles", true, SF_CYCLE_RECORDS, &item, err));
+    for (int k = 0; item && k < (list ? config_setting_length(item) : 1); k++) {
+        sf_config_item *group = list ? config_setting_get_elem(item, (unsigned)k) : item;
+        SF_TRY(read_record(file, group, &c->cycles[c->record_count++], err));
+        for (int j = 0; j < k; j++)
+            if (is_same_record(&c->cycles[j], &c->cycles[k]))
+                return sf_config_refuse(file, group, err, "cycles: the record %s is there already",
+                                        c->cycles[j].path);
+    }
     return SF_OK;
 }
 
@@ -138,10 +157,14 @@ static const double LEAST[HYSTERESIS + MEMORY] = {1e-4, 0.05, 0.1, 1e-3, 1e-4, 1
 
 typedef struct problem {
     const sf_form_fit *fit;
-    const sf_cycle_record *record;
-    int memory;     /* unknowns of MEMORY: those that the record can tell come first */
-    double *stress; /* [count] Pa, of the law at the last evaluation */
+    int memory;     /* unknowns of MEMORY: those that the records can tell come first */
+    double *stress; /* [count of the longest record] Pa, of the law at the last evaluation */
 } problem;
+
+/* Points of a record that are fitted. */
+static int fitted_points(const sf_cycle_record *r) {
+    return r->turn[2 * r->fitted] + 1;
+}
 
 static double bounded(double low, double high, double x) {
     return low * pow(high / low, sf_logistic(x));
@@ -201,14 +224,17 @@ static int deviate(const gsl_vector *x, void *data, gsl_vector *out) {
     double value[SF_PARAMETER_COUNT], own[HYSTERESIS + MEMORY];
     SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     sf_error err = SF_ERROR_INIT;
-    int end = (int)out->size;
+    size_t row = 0;
     take(p, x, value, own);
     bool made = sf_foam_form_card(&p->fit->config->form.form, value, &card, &err) == SF_OK;
     put_hysteresis(own, &card);
-    made = made && follow(p->record, &card, end, p->stress, &err) == SF_OK;
-    for (int i = 0; i < end; i++) {
-        double d = made ? (p->stress[i] - p->record->stress[i]) / p->record->largest_stress : FAR;
-        gsl_vector_set(out, (size_t)i, isfinite(d) ? fmin(FAR, fmax(-FAR, d)) : FAR);
+    for (int k = 0; k < p->fit->config->record_count; k++) {
+        const sf_cycle_record *r = &p->fit->config->cycles[k];
+        made = made && follow(r, &card, fitted_points(r), p->stress, &err) == SF_OK;
+        for (int i = 0; i < fitted_points(r); i++) {
+            double d = made ? (p->stress[i] - r->stress[i]) / r->largest_stress : FAR;
+            gsl_vector_set(out, row++, isfinite(d) ? fmin(FAR, fmax(-FAR, d)) : FAR);
+        }
     }
     return GSL_SUCCESS;
 }
@@ -241,17 +267,28 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
         } else if (of_law < HYSTERESIS) {
             fit->unloading.fit.at_bound[of_law] = sf_is_at_end(part);
         } else {
-            fit->cycles.width[of_law - HYSTERESIS] =
+            fit->memory_width[of_law - HYSTERESIS] =
                 sf_is_at_end(part) ? NAN : 2 * own[of_law] * log(LARGEST[of_law] / LEAST[of_law]) * error;
         }
     }
 }
 
-static sf_status conclude(const problem *p, const double *value, const double own[HYSTERESIS + MEMORY],
-                          sf_form_fit *fit, sf_error *err) {
-    sf_cycle_result *c = &fit->cycles;
-    const sf_cycle_record *r = p->record;
-    double informed = fit->card.informed_strain;
+/* Compares a record with the fitted law. */
+static sf_status follow_record(const sf_cycle_record *r, const sf_foam_card *card, sf_cycle_result *c,
+                               sf_error *err) {
+    c->stress = sf_alloc(err, (unsigned long)r->count, sizeof *c->stress, "cycles");
+    if (err->status != SF_OK || follow(r, card, r->count, c->stress, err) != SF_OK)
+        return err->status;
+    for (int k = 0; k < 2 * r->cycles; k++)
+        c->rms[k % 2][k / 2] =
+            sf_form_rms(r->stress, r->largest_stress, c->stress, r->turn[k], r->turn[k + 1] + 1);
+    return SF_OK;
+}
+
+static sf_status conclude(const double *value, const double own[HYSTERESIS + MEMORY], sf_form_fit *fit,
+                          sf_error *err) {
+    double informed = fit->card.informed_strain, squares[2] = {0, 0};
+    int records = fit->config->record_count;
     sf_foam_card_free(&fit->card);
     SF_TRY(sf_foam_form_card(&fit->config->form.form, value, &fit->card, err));
     put_hysteresis(own, &fit->card);
@@ -261,31 +298,38 @@ static sf_status conclude(const problem *p, const double *value, const double ow
     fit->value[SF_PARAMETER_HU] = own[0];
     fit->value[SF_PARAMETER_SHAPE] = own[1];
     fit->value[SF_PARAMETER_ALPHA] = own[2];
-    memcpy(c->value, own + HYSTERESIS, sizeof c->value);
-    c->stress = sf_alloc(err, (unsigned long)r->count, sizeof *c->stress, "cycles");
-    if (err->status != SF_OK || follow(r, &fit->card, r->count, c->stress, err) != SF_OK)
-        return err->status;
-    for (int k = 0; k < 2 * r->cycles; k++)
-        c->rms[k % 2][k / 2] =
-            sf_form_rms(r->stress, r->largest_stress, c->stress, r->turn[k], r->turn[k + 1] + 1);
-    fit->loading_rms = c->rms[0][0];
-    fit->unloading.fit.rms = c->rms[1][0];
-    fit->unloading.factor_rms = NAN; /* of the first cycle alone */
+    memcpy(fit->memory, own + HYSTERESIS, sizeof fit->memory);
+    for (int k = 0; k < records; k++) {
+        SF_TRY(follow_record(&fit->config->cycles[k], &fit->card, &fit->cycles[k], err));
+        for (int branch = 0; branch < 2; branch++)
+            squares[branch] += fit->cycles[k].rms[branch][0] * fit->cycles[k].rms[branch][0];
+    }
+    fit->loading_rms = sqrt(squares[0] / records);
+    fit->unloading.fit.rms = sqrt(squares[1] / records);
+    fit->unloading.factor_rms = NAN; /* of the first cycles alone */
     return sf_form_fit_follow(fit, err);
 }
 
 sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err) {
-    const sf_cycle_record *r = &fit->config->cycles;
-    problem p = {.fit = fit, .record = r, .memory = r->fitted < 3 ? 1 : r->pauses > 0 ? 3 : 2};
-    if (r->count == 0)
+    const sf_compression_config *c = fit->config;
+    problem p = {.fit = fit};
+    int longest = 0;
+    size_t count = 0;
+    for (int k = 0; k < c->record_count; k++) {
+        const sf_cycle_record *r = &c->cycles[k];
+        int told = r->fitted < 3 ? 1 : r->pauses > 0 ? 3 : 2;
+        p.memory = told > p.memory ? told : p.memory;
+        longest = r->count > longest ? r->count : longest;
+        count += (size_t)fitted_points(r);
+    }
+    if (c->record_count == 0)
         return SF_OK;
     if (!fit->has_unloading)
-        return SF_REFUSE(err, "%s: a test without unloading has no memory", r->path);
-    p.stress = sf_alloc(err, (unsigned long)r->count, sizeof *p.stress, "cycles");
+        return SF_REFUSE(err, "%s: a test without unloading has no memory", c->cycles[0].path);
+    p.stress = sf_alloc(err, (unsigned long)longest, sizeof *p.stress, "cycles");
     SF_TRY(err->status);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    size_t size = (size_t)(fit->config->form.unknown_count + HYSTERESIS + p.memory),
-           count = (size_t)r->turn[2 * r->fitted] + 1;
+    size_t size = (size_t)(c->form.unknown_count + HYSTERESIS + p.memory);
     SF_VECTOR *x = gsl_vector_alloc(size), *out = gsl_vector_alloc(count);
     SF_MATRIX *covariance = gsl_matrix_calloc(size, size);
     double value[SF_PARAMETER_COUNT], own[HYSTERESIS + MEMORY];
@@ -295,21 +339,21 @@ sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err) {
         take(&p, x, value, own);
         deviate(x, &p, out);
         for (int k = 0; k < MEMORY; k++)
-            fit->cycles.width[k] = NAN;
+            fit->memory_width[k] = NAN;
         double r1 = fmin(0.98, fmax(0, sf_neighbour_correlation(count, out->data)));
         take_errors(&p, x, covariance, sum / (double)(count - size) * ((1 + r1) / (1 - r1)), own, fit);
-        conclude(&p, value, own, fit, err);
+        conclude(value, own, fit, err);
     } else {
-        SF_FAIL(err, SF_ERR_NUMERIC, "no search for the memory in %s converges", r->path);
+        SF_FAIL(err, SF_ERR_NUMERIC, "no search for the memory in %s converges", c->cycles[0].path);
     }
     free(p.stress);
     gsl_set_error_handler(handler);
     return err->status;
 }
 
-double sf_cycle_fit_worst(const sf_form_fit *fit, int unloading, int first, int last) {
+double sf_cycle_fit_worst(const sf_cycle_result *cycles, int unloading, int first, int last) {
     double worst = 0;
     for (int k = first; k < last; k++)
-        worst = fmax(worst, fit->cycles.rms[unloading][k]);
+        worst = fmax(worst, cycles->rms[unloading][k]);
     return worst;
 }

@@ -370,7 +370,8 @@ void sf_form_fit_free(sf_form_fit *fit) {
         free(fit->test[k].stress);
         free(fit->predicted[k].stress);
     }
-    free(fit->cycles.stress);
+    for (int k = 0; k < SF_CYCLE_RECORDS; k++)
+        free(fit->cycles[k].stress);
     sf_foam_card_free(&fit->card);
     *fit = (sf_form_fit){0};
 }

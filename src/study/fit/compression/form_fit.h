@@ -22,12 +22,10 @@ typedef struct sf_form_test {
 
 enum { SF_CYCLE_MEMORY = 3 };
 
-/* The memory in a record of cycles (cycle_fit.h). */
+/* The law along a record of cycles. */
 typedef struct sf_cycle_result {
-    double value[SF_CYCLE_MEMORY],
-        width[SF_CYCLE_MEMORY]; /* of the memory, and half widths; see sf_cycle_fit_name */
     double rms[2][SF_CYCLES];   /* -, of loading and of unloading of each cycle, over the largest stress */
-    double *stress;             /* [count] Pa, of the law along the record; NULL: there is none; owned */
+    double *stress;             /* [count] Pa, of the law; NULL: there is no record; owned */
 } sf_cycle_result;
 
 typedef struct sf_form_fit {
@@ -40,7 +38,9 @@ typedef struct sf_form_fit {
     sf_form_unloading unloading_of_one; /* with ALPHA = 1 */
     sf_form_unloading unloading;        /* ALPHA too */
     sf_form_test test[SF_COMPRESSION_TESTS], predicted[SF_COMPRESSION_TESTS];
-    sf_cycle_result cycles;
+    double memory[SF_CYCLE_MEMORY],
+        memory_width[SF_CYCLE_MEMORY]; /* by the records, and half widths; see sf_cycle_fit_name */
+    sf_cycle_result cycles[SF_CYCLE_RECORDS];
     sf_foam_card card; /* the material; curves owned */
 } sf_form_fit;
 
@@ -68,14 +68,14 @@ bool sf_form_fit_is_poor(const sf_form_fit *fit);
 
 /* ---- cycle_fit.c ---- */
 
-/* The law with memory along a record of cycles: the form's unknowns, HU, SHAPE and ALPHA, reload and drift,
- * and recovery where the record has pauses, together by least squares over the fitted cycles. Names:
- * "reload", "drift", "recovery", and the half width of their interval (two standard errors; NaN: the record
- * does not tell it, and its value is that without effect). */
+/* The law with memory along records of cycles: the form's unknowns, HU, SHAPE and ALPHA, reload and drift,
+ * and recovery where a record has pauses, together by least squares over the fitted cycles of all records.
+ * Names: "reload", "drift", "recovery", and the half width of their interval (two standard errors; NaN: no
+ * record tells it, and its value is that without effect). */
 const char *sf_cycle_fit_name(int number);
 
-/* Refines `fit`, whose values are the start, by the record of its configuration, and fills fit->cycles. */
+/* Refines `fit`, whose values are the start, by the records of its configuration; fills memory and cycles. */
 sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err);
 
 /* Largest rms, over the largest stress, of loading (0) or unloading (1) of the cycles first .. last - 1. */
-double sf_cycle_fit_worst(const sf_form_fit *fit, int unloading, int first, int last);
+double sf_cycle_fit_worst(const sf_cycle_result *cycles, int unloading, int first, int last);

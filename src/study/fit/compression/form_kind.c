@@ -66,21 +66,27 @@ static void put_test(FILE *out, const sf_form_fit *fit, const sf_compression_tes
 }
 
 static void put_cycles(FILE *out, const sf_form_fit *fit) {
-    const sf_cycle_record *r = &fit->config->cycles;
-    fprintf(out, "  memory, by cycles 1 to %d of %s:", r->fitted, r->path);
+    fputs("  memory, by the fitted cycles:", out);
     for (int k = 0; k < SF_CYCLE_MEMORY; k++)
-        if (isfinite(fit->cycles.width[k]))
-            fprintf(out, "%s %s %.3g +- %.2g", k ? "," : "", sf_cycle_fit_name(k), fit->cycles.value[k],
-                    fit->cycles.width[k]);
+        if (isfinite(fit->memory_width[k]))
+            fprintf(out, "%s %s %.3g +- %.2g", k ? "," : "", sf_cycle_fit_name(k), fit->memory[k],
+                    fit->memory_width[k]);
         else
-            fprintf(out, "%s %s %.3g (this record does not tell it)", k ? "," : "", sf_cycle_fit_name(k),
-                    fit->cycles.value[k]);
-    fprintf(out, "\n  largest rms of a cycle, of the largest stress: loading %.2g %%, unloading %.2g %%",
-            100 * sf_cycle_fit_worst(fit, 0, 0, r->fitted), 100 * sf_cycle_fit_worst(fit, 1, 0, r->fitted));
-    if (r->fitted < r->cycles)
-        fprintf(out, "; predicted, cycles %d to %d: loading %.2g %%, unloading %.2g %%", r->fitted + 1,
-                r->cycles, 100 * sf_cycle_fit_worst(fit, 0, r->fitted, r->cycles),
-                100 * sf_cycle_fit_worst(fit, 1, r->fitted, r->cycles));
+            fprintf(out, "%s %s %.3g (no record tells it)", k ? "," : "", sf_cycle_fit_name(k),
+                    fit->memory[k]);
+    for (int n = 0; n < fit->config->record_count; n++) {
+        const sf_cycle_record *r = &fit->config->cycles[n];
+        const sf_cycle_result *c = &fit->cycles[n];
+        fprintf(out,
+                "\n  cycles 1 to %d of %s: largest rms of a cycle, of the largest stress: loading %.2g %%, "
+                "unloading %.2g %%",
+                r->fitted, r->path, 100 * sf_cycle_fit_worst(c, 0, 0, r->fitted),
+                100 * sf_cycle_fit_worst(c, 1, 0, r->fitted));
+        if (r->fitted < r->cycles)
+            fprintf(out, "; predicted, cycles %d to %d: loading %.2g %%, unloading %.2g %%", r->fitted + 1,
+                    r->cycles, 100 * sf_cycle_fit_worst(c, 0, r->fitted, r->cycles),
+                    100 * sf_cycle_fit_worst(c, 1, r->fitted, r->cycles));
+    }
     fputs("\n  Not in the law: permanent set, and the fall of the stress at the largest strain.\n", out);
 }
 
@@ -98,11 +104,11 @@ static void describe(FILE *out, const void *place, bool comments) {
             100 * fit->loading_rms, c->form.unknown_count);
     put_unknowns(out, fit);
     if (fit->has_unloading) {
-        if (!fit->cycles.stress)
+        if (c->record_count == 0)
             put_unloading(out, &fit->unloading_of_one);
         put_unloading(out, &fit->unloading);
     }
-    if (fit->cycles.stress)
+    if (c->record_count > 0)
         put_cycles(out, fit);
     for (int k = 0; k < c->test_count; k++)
         put_test(out, fit, &c->test[k], &fit->test[k], "fitted");
@@ -150,13 +156,13 @@ static void put_test_points(FILE *file, int number, const sf_compression_test *t
     }
 }
 
-static void put_cycle_points(FILE *file, const sf_form_fit *fit) {
-    const sf_cycle_record *r = &fit->config->cycles;
+static void put_cycle_points(FILE *file, const sf_form_fit *fit, int record) {
+    const sf_cycle_record *r = &fit->config->cycles[record];
     for (int k = 0; k < 2 * r->cycles; k++)
         for (int i = r->turn[k] + (k > 0); i <= r->turn[k + 1]; i++)
-            fprintf(file, "cycle %d,%s,,%s,%.9g,%.9g,%.9g\n", k / 2 + 1,
+            fprintf(file, "record %d cycle %d,%s,,%s,%.9g,%.9g,%.9g\n", record + 1, k / 2 + 1,
                     k / 2 < r->fitted ? "fitted" : "predicted", k % 2 ? "unloading" : "loading", r->strain[i],
-                    1e-3 * r->stress[i], 1e-3 * fit->cycles.stress[i]);
+                    1e-3 * r->stress[i], 1e-3 * fit->cycles[record].stress[i]);
 }
 
 static void put_points(FILE *file, const void *place) {
@@ -167,28 +173,36 @@ static void put_points(FILE *file, const void *place) {
         put_test_points(file, k + 1, &c->test[k], fit->test[k].stress, "fitted");
     for (int k = 0; k < c->predicted_count; k++)
         put_test_points(file, c->test_count + k + 1, &c->predicted[k], fit->predicted[k].stress, "predicted");
-    if (fit->cycles.stress)
-        put_cycle_points(file, fit);
+    for (int k = 0; k < c->record_count; k++)
+        put_cycle_points(file, fit, k);
 }
 
-static void json_cycles(sf_json *json, const sf_form_fit *fit) {
+static void json_record(sf_json *json, const sf_cycle_record *r, const sf_cycle_result *c) {
     static const char *const branch[] = {"loading_rms", "unloading_rms"};
-    const sf_cycle_record *r = &fit->config->cycles;
-    sf_json_open(json, "memory", '{');
+    sf_json_open(json, NULL, '{');
     sf_json_text(json, "file", r->path);
     SF_JSON_NUMBERS(json, {"cycles", r->cycles}, {"fitted", r->fitted}, {"pauses", r->pauses});
-    for (int k = 0; k < SF_CYCLE_MEMORY; k++) {
-        char key[64];
-        sf_json_number(json, sf_cycle_fit_name(k), fit->cycles.value[k]);
-        snprintf(key, sizeof key, "%s_half_width", sf_cycle_fit_name(k));
-        sf_json_number(json, key, fit->cycles.width[k]);
-    }
     for (int b = 0; b < 2; b++) {
         sf_json_open(json, branch[b], '[');
         for (int k = 0; k < r->cycles; k++)
-            sf_json_number(json, NULL, fit->cycles.rms[b][k]);
+            sf_json_number(json, NULL, c->rms[b][k]);
         sf_json_close(json, ']');
     }
+    sf_json_close(json, '}');
+}
+
+static void json_cycles(sf_json *json, const sf_form_fit *fit) {
+    sf_json_open(json, "memory", '{');
+    for (int k = 0; k < SF_CYCLE_MEMORY; k++) {
+        char key[64];
+        sf_json_number(json, sf_cycle_fit_name(k), fit->memory[k]);
+        snprintf(key, sizeof key, "%s_half_width", sf_cycle_fit_name(k));
+        sf_json_number(json, key, fit->memory_width[k]);
+    }
+    sf_json_open(json, "records", '[');
+    for (int k = 0; k < fit->config->record_count; k++)
+        json_record(json, &fit->config->cycles[k], &fit->cycles[k]);
+    sf_json_close(json, ']');
     sf_json_close(json, '}');
 }
 
@@ -255,7 +269,7 @@ static void put_json(sf_json *json, const void *place, const char *path) {
         json_unloading(json, "unloading_with_ALPHA_1", &fit->unloading_of_one);
         json_unloading(json, "unloading", &fit->unloading);
     }
-    if (fit->cycles.stress)
+    if (c->record_count > 0)
         json_cycles(json, fit);
     json_tests(json, fit, "tests", c->test_count, c->test, fit->test);
     json_tests(json, fit, "predicted", c->predicted_count, c->predicted, fit->predicted);
