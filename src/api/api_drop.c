@@ -257,11 +257,7 @@ void softfall_model_free(softfall_model *m) {
     if (!m)
         return;
     sf_model_free(&m->model);
-    free(m->case_text);
-    free(m->parameters);
-    free(m->mesh_hash);
-    free(m->geometry_files);
-    free(m);
+    SF_FREE(m->case_text, m->parameters, m->mesh_hash, m->geometry_files, m);
 }
 
 softfall_model_info softfall_model_describe(const softfall_model *model) {

@@ -73,6 +73,11 @@ void sf_release(void *pointer) {
     free(block);
 }
 
+void sf_free_all(size_t count, void *pointers[]) {
+    for (size_t k = 0; k < count; k++)
+        free(pointers[k]);
+}
+
 void sf_sink_tell(const sf_sink *sink, sf_severity severity, const char *format, ...) {
     char sentence[1024];
     va_list args;

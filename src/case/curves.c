@@ -33,8 +33,7 @@ sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
 }
 
 void sf_case_curve_free(sf_case_curve *curve) {
-    free(curve->strain);
-    free(curve->stress);
+    SF_FREE(curve->strain, curve->stress);
     memset(curve, 0, sizeof *curve);
 }
 

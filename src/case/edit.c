@@ -152,8 +152,7 @@ sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const s
         else
             no_memory(err);
         begin = s->end;
-        free(name);
-        free(renamed);
+        SF_FREE(name, renamed);
     }
     fprintf(out, "%.*s", (int)(end - begin), text + begin);
     return err->status;
@@ -242,8 +241,7 @@ static sf_status add(char **text, const sf_edit_settings *settings, char *path, 
         no_memory(err);
     else
         replace(text, own ? from : at, own ? from : at, line, err);
-    free(value);
-    free(line);
+    SF_FREE(value, line);
     return err->status;
 }
 
@@ -273,7 +271,6 @@ sf_status sf_case_edit_set(char **text, const char *path, const char *set, sf_er
             value = NULL;
         }
     }
-    free(value);
-    free(settings.setting);
+    SF_FREE(value, settings.setting);
     return err->status;
 }

@@ -349,8 +349,7 @@ static sf_status walk_include(walk *w, slice text, slice name, const char *path,
         begin_piece(w, path, line + 1, err);
     if (w->marked)
         fprintf(w->out, "#%c\n", SF_CASE_END);
-    free(included);
-    free(whole);
+    SF_FREE(included, whole);
     return err->status;
 }
 

@@ -294,8 +294,7 @@ static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
 static sf_status read_layer(const sf_case_reader *reader, const config_setting_t *setting,
                             sf_material *material, sf_error *err) {
     sf_case_reader *own = sf_alloc(err, 1, sizeof *own, "a layer's material");
-    if (!own)
-        return err->status;
+    SF_TRY(err->status);
     *own = *reader;
     own->layers = NULL;
     own->material_only = true;
@@ -504,19 +503,12 @@ sf_status sf_case_read_material(const char *path, sf_material *material, sf_erro
 }
 
 void sf_case_free(sf_case *c) {
-    free(c->path);
-    free(c->text);
-    free(c->parameters);
-    free(c->geometry_files);
-    free(c->pad.path);
-    free(c->missile.path);
+    SF_FREE(c->path, c->text, c->parameters, c->geometry_files, c->pad.path, c->missile.path);
     for (int k = 0; k < SF_SUPPORTS; k++)
         free(c->support[k].source.path);
     sf_material_free(&c->material);
     for (int k = 0; c->layer && k < c->layer_count; k++)
         sf_material_free(&c->layer[k]);
-    free(c->layer);
-    free(c->motion_time);
-    free(c->motion_displacement);
+    SF_FREE(c->layer, c->motion_time, c->motion_displacement);
     memset(c, 0, sizeof *c);
 }

@@ -144,12 +144,8 @@ sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_
 }
 
 void sf_shape_free(sf_shape *s) {
-    free(s->pad.position);
-    free(s->pad.face);
-    free(s->pad_node);
-    free(s->missile.position);
-    free(s->missile.face);
-    free(s->missile_position);
+    SF_FREE(s->pad.position, s->pad.face, s->pad_node, s->missile.position, s->missile.face,
+            s->missile_position);
     *s = (sf_shape){0};
 }
 
@@ -164,9 +160,7 @@ static void gather(const sf_shape *s, const sf_frame *fields, sf_shape_frame *ou
 }
 
 static void free_shape_frame(sf_shape_frame *f) {
-    free(f->pad);
-    free(f->stress);
-    free(f->missile);
+    SF_FREE(f->pad, f->stress, f->missile);
     *f = (sf_shape_frame){0};
 }
 

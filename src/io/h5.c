@@ -120,8 +120,7 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
     if (H5Fclose((*file)->id) < 0)
         status = SF_FAIL(err, SF_ERR_IO, "closing %s failed: its last data may be missing (disk full?)",
                          (*file)->path);
-    free((*file)->path);
-    free(*file);
+    SF_FREE((*file)->path, *file);
     *file = NULL;
     return status;
 }

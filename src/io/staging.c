@@ -172,8 +172,7 @@ void sf_staging_end(sf_staging *output) {
         remove_flat(AT_FDCWD, output->aside);
     if (output->created)
         rmdir(output->directory);
-    free(output->aside);
-    free(output->directory);
+    SF_FREE(output->aside, output->directory);
     *output = (sf_staging){0};
 }
 
@@ -321,8 +320,6 @@ void sf_tree_end(sf_tree *tree) {
     }
     if (tree->aside)
         rmdir(tree->aside);
-    free(tree->made);
-    free(tree->aside);
-    free(tree->path);
+    SF_FREE(tree->made, tree->aside, tree->path);
     *tree = (sf_tree){0};
 }

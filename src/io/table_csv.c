@@ -34,9 +34,7 @@ typedef struct csv {
 } csv;
 
 void sf_table_free(sf_table *table) {
-    free(table->value[0]);
-    free(table->value[1]);
-    free(table->line);
+    SF_FREE(table->value[0], table->value[1], table->line);
     memset(table, 0, sizeof *table);
 }
 

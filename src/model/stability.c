@@ -6,8 +6,7 @@
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err) {
     SF_OWNED double *share =
         sf_alloc(err, (unsigned long)model->node_count, sizeof *share, "stability constants");
-    if (!share)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t l = 0; l < model->node_count; l++)
         for (int64_t k = model->domain_ptr[l]; k < model->domain_ptr[l + 1]; k++) {
             const double *b = &model->domain_b[3 * k];

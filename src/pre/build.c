@@ -5,7 +5,7 @@
 #include "base/mat3.h"
 #include "model/stability.h"
 #include "pre/support.h"
-#include "material/laws.h"
+#include "material/point.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/connectivity.h"
 #include "pre/cloud/domain_store.h"
@@ -343,8 +343,7 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_laye
     m->fixed_node = sf_alloc(err, (unsigned long)m->fixed_count, sizeof *m->fixed_node, "constraints");
     m->fixed_mask = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     m->fixed_base = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     /* A node that is held altogether cannot give way to the missile: it is no contact point. */
     for (int64_t k = 0; k < points; k++)
         if (mask[contact[k]] != (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
@@ -509,8 +508,7 @@ static sf_status take_series(const sf_case *c, sf_model *m, sf_error *err) {
 
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->frame_time = sf_alloc(err, (unsigned long)c->frame_time_count, sizeof *m->frame_time, "frame times");
-    if (!m->frame_time)
-        return err->status;
+    SF_TRY(err->status);
     m->frame_time_count = c->frame_time_count;
     memcpy(m->frame_time, c->frame_time, (size_t)c->frame_time_count * sizeof *m->frame_time);
     if (sf_model_take_materials(m, c->layer ? c->layer : &c->material, c->layer ? c->layer_count : 1, err) !=
@@ -521,8 +519,7 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->motion_displacement = c->motion_displacement;
     c->motion_time = c->motion_displacement = NULL;
     c->motion_count = 0;
-    if (take_series(c, m, err) != SF_OK)
-        return err->status;
+    SF_TRY(take_series(c, m, err));
     m->run = c->run;
     m->run.kinematic = c->kinematic;
     if (m->skin_count > 0 && !m->skin_alone && !c->stabilised)
@@ -533,11 +530,9 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
 /* The bound on the step at rest. */
 static sf_status first_step(const sf_model *m, double *step, int64_t *critical, double *constant,
                             sf_error *err) {
-    double *c = sf_alloc(err, (unsigned long)m->node_count, sizeof *c, "stability constants");
-    if (!c || sf_stability_constants(m, c, err) != SF_OK) {
-        free(c);
-        return err->status;
-    }
+    SF_OWNED double *c = sf_alloc(err, (unsigned long)m->node_count, sizeof *c, "stability constants");
+    SF_TRY(err->status);
+    SF_TRY(sf_stability_constants(m, c, err));
     *step = INFINITY;
     for (int64_t i = 0; i < m->node_count; i++) {
         const sf_material *material = sf_model_material(m, i);
@@ -551,16 +546,7 @@ static sf_status first_step(const sf_model *m, double *step, int64_t *critical, 
             *constant = c[i];
         }
     }
-    free(c);
     return SF_OK;
-}
-
-static void set_stretch(double f[9][SF_LANES], double stretch) {
-    memset(f, 0, 9 * sizeof *f);
-    for (int l = 0; l < SF_LANES; l++) {
-        f[0][l] = f[4][l] = 1;
-        f[8][l] = stretch;
-    }
 }
 
 /* The steps shrink as the foam stiffens, by its curves and its rate terms: takes the law of the node with the
@@ -577,12 +563,12 @@ static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double c
     sf_material_law law;
     SF_TRY(sf_material_law_build(material, &law, err));
     memset(&batch, 0, sizeof batch);
-    set_stretch(batch.f, 1);
+    sf_material_point_stretch(batch.f, 1);
     for (int l = 0; l < SF_LANES; l++)
         batch.length[l] = length;
     for (int k = 1; k <= STEPS; k++) {
         memcpy(batch.f_old, batch.f, sizeof batch.f);
-        set_stretch(batch.f, 1 - deepest * sin(M_PI * k / STEPS));
+        sf_material_point_stretch(batch.f, 1 - deepest * sin(M_PI * k / STEPS));
         law.law->update(law.numbers, M_PI * deepest * m->thickness / speed / STEPS, &batch);
         double own = sf_stability_step(constant, batch.tangent[0], batch.viscosity[0]);
         sum += start / fmin(m->run.step_limit, m->run.step_safety * own);

@@ -91,10 +91,7 @@ typedef struct faces {
 
 static void faces_free(faces *f) {
     sf_grid_free(&f->grid);
-    free(f->node);
-    free(f->shape);
-    free(f->position);
-    free(f->radius);
+    SF_FREE(f->node, f->shape, f->position, f->radius);
     *f = (faces){0};
 }
 

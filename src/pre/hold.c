@@ -113,9 +113,7 @@ static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
 }
 
 static void free_bodies(body_list *b) {
-    free(b->cell);
-    free(b->node);
-    free(b->first);
+    SF_FREE(b->cell, b->node, b->first);
     *b = (body_list){0};
 }
 

@@ -77,8 +77,7 @@ static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, 
     bool at_node = false;
     SF_OWNED double *angle =
         sf_alloc(err, 4 * (unsigned long)m->contact_count, sizeof *angle, "impact point");
-    if (!angle)
-        return err->status;
+    SF_TRY(err->status);
     for (int image = 0; image < 4; image++) {
         if ((image & 1 && !plane[0]) || (image & 2 && !plane[1]))
             continue;

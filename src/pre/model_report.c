@@ -6,6 +6,7 @@
 #include "model/flight.h"
 #include "model/model.h"
 #include "pre/missile_body.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "pre/impact.h"
 #include <math.h>
@@ -28,16 +29,6 @@ add(sf_model_report *out, const char *key, const char *name, const char *format,
     line->name = name;
     va_start(arguments, format);
     vsnprintf(line->value, sizeof line->value, format, arguments);
-    va_end(arguments);
-}
-
-/* Appends to the value of the last line. */
-static void __attribute__((format(printf, 2, 3))) append(sf_model_report *out, const char *format, ...) {
-    va_list arguments;
-    sf_report_line *line = &out->line[out->count - 1];
-    size_t used = strlen(line->value);
-    va_start(arguments, format);
-    vsnprintf(line->value + used, sizeof line->value - used, format, arguments);
     va_end(arguments);
 }
 
@@ -130,7 +121,8 @@ static void add_body(sf_model_report *out, const sf_model *m) {
     add(out, "missile_body", "missile body", "%.4g cm3, its centroid %.4g mm above its lowest point",
         1e6 * solid.volume, 1e3 * (solid.centroid[2] - lowest[2]));
     if (m->missile.mass > 0)
-        append(out, "; if uniform %.4g kg/m3", m->missile.mass / solid.volume);
+        sf_text_add(out->line[out->count - 1].value, SF_MODEL_REPORT_VALUE, "; if uniform %.4g kg/m3",
+                    m->missile.mass / solid.volume);
 }
 
 /* In mm; what is rounding of coordinates is 0. */
@@ -226,13 +218,14 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
     add(out, "boundary_nodes", "boundary nodes", "%lld held, %lld may be touched", (long long)m->fixed_count,
         (long long)m->contact_count);
     if (m->rest_count > 0)
-        append(out, ", %lld rest on the anvil", (long long)m->rest_count);
+        sf_text_add(out->line[out->count - 1].value, SF_MODEL_REPORT_VALUE, ", %lld rest on the anvil",
+                    (long long)m->rest_count);
     if (!m->skin_alone ? m->skin_count > 0 : m->support_triangle_count > 0)
-        append(out, ", %lld faces may touch %s%s", (long long)m->skin_count,
-               m->skin_alone ? "" : "each other or the anvil",
-               m->support_triangle_count == 0 ? ""
-               : m->skin_alone                ? "the support"
-                                              : ", and the support");
+        sf_text_add(out->line[out->count - 1].value, SF_MODEL_REPORT_VALUE, ", %lld faces may touch %s%s",
+                    (long long)m->skin_count, m->skin_alone ? "" : "each other or the anvil",
+                    m->support_triangle_count == 0 ? ""
+                    : m->skin_alone                ? "the support"
+                                                   : ", and the support");
     add_masses(out, m, r);
     add_mesh_error(out, m, &r->zone);
     add_cost(out, m, r);

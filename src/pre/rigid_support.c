@@ -238,8 +238,7 @@ sf_status sf_support_plane(const sf_case_support *plane, const sf_mesh *mesh, sf
     double width = WIDTH * sqrt(sf_dot3(diagonal, diagonal)), height = sf_dot3(middle, n) - plane->place;
     *out = (sf_surface){.position = sf_alloc(err, 12, sizeof *out->position, "support"),
                         .triangle = sf_alloc(err, 6, sizeof *out->triangle, "support")};
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int k = 0; k < 4; k++)
         for (int r = 0; r < 3; r++)
             out->position[3 * k + r] =

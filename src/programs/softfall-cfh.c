@@ -371,8 +371,7 @@ int main(int argc, char **argv) {
                              .max_height = DEFAULT_MAX_HEIGHT,
                              .checks = DEFAULT_CHECKS}};
     int code = sf_study_main(argc, argv, &program, &s);
-    free(s.text);
-    free(s.parameters);
+    SF_FREE(s.text, s.parameters);
     sf_cfh_draws_free(&s.draws);
     sf_material_law_free(&s.law);
     sf_material_free(&s.material);

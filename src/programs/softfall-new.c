@@ -27,8 +27,7 @@ typedef struct example_list {
 static void free_examples(example_list *e) {
     for (int k = 0; k < e->count; k++)
         free(e->entry[k]);
-    free(e->entry);
-    free(e->folder);
+    SF_FREE(e->entry, e->folder);
 }
 
 static void write_path(const example_list *e, int k, char path[PATH_MAX]) {

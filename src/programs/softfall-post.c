@@ -370,8 +370,7 @@ int main(int argc, char **argv) {
         sf_comparison_free(&j.comparison);
     sf_figures_free(&j.figures);
     sf_results_close(&j.results);
-    free(j.command_line);
-    free(o.regions);
+    SF_FREE(j.command_line, o.regions);
     int code = sf_error_report(&err, "softfall-post");
     return code == 0 && o.strict ? strict_codes[j.verdict.grade] : code;
 }

@@ -50,19 +50,15 @@ void sf_chart_free(sf_chart *chart) {
         for (size_t s = 0; s < p->series_count; s++) {
             for (size_t i = 0; p->series[s]->text && i < p->series[s]->count; i++)
                 free(p->series[s]->text[i]);
-            free(p->series[s]->text);
-            free(p->series[s]->value);
-            free(p->series[s]);
+            SF_FREE(p->series[s]->text, p->series[s]->value, p->series[s]);
         }
-        free(p->series);
-        free(p->mark);
+        SF_FREE(p->series, p->mark);
         free_axis(&p->shown.x);
         free_axis(&p->shown.y);
         free_axis(&p->shown.x2);
         free(p);
     }
-    free(chart->panel);
-    free(chart);
+    SF_FREE(chart->panel, chart);
 }
 
 void sf_chart_title(sf_chart *chart, const char *format, ...) {

@@ -273,8 +273,7 @@ sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
 }
 
 void sf_manifest_free(sf_manifest *m) {
-    free(m->run);
-    free(m->text);
+    SF_FREE(m->run, m->text);
     *m = (sf_manifest){0};
 }
 

@@ -497,8 +497,7 @@ static sf_status read_frame_list(sf_results *r, sf_error *err) {
     int64_t count = sf_h5_group_size(r->file, "/frames");
     r->frames =
         sf_alloc(err, (unsigned long)(count > 0 ? count : 0), sizeof *r->frames, "the list of frames");
-    if (!r->frames)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < count; k++) {
         char name[16];
         sf_error problem = SF_ERROR_INIT;
@@ -548,21 +547,10 @@ sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) 
 void sf_results_close(sf_results *results) {
     sf_error ignored = SF_ERROR_INIT; /* nothing was written, so nothing can be lost */
     sf_h5_close(&results->file, &ignored);
-    free(results->position);
-    free(results->volume);
-    free(results->cell_type);
-    free(results->cell_ptr);
-    free(results->cell_node);
-    free(results->surface_position);
-    free(results->surface_triangle);
-    free(results->support_position);
-    free(results->support_triangle);
-    free(results->node_layer);
-    free(results->layer_name);
-    free(results->layer_names);
-    free(results->layer_density);
-    free(results->layer_informed);
-    free(results->layer_sums);
+    SF_FREE(results->position, results->volume, results->cell_type, results->cell_ptr, results->cell_node,
+            results->surface_position, results->surface_triangle, results->support_position,
+            results->support_triangle, results->node_layer, results->layer_name, results->layer_names,
+            results->layer_density, results->layer_informed, results->layer_sums);
     sf_history_free(&results->history);
     free(results->frames);
     *results = (sf_results){0};

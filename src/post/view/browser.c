@@ -305,8 +305,7 @@ static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
     int fields = p->made->fields & SF_FIELD_DISPLACEMENT;
     for (int k = 0; k < COLOURINGS; k++)
         fields |= p->made->fields & 1 << colourings[k].field;
-    if (sf_frame_read_fields(r, head, fields, &frame, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_frame_read_fields(r, head, fields, &frame, err));
     sf_json_open(&p->json, NULL, '{');
     sf_json_number(&p->json, "time", head->time);
     put_motion(p, head);
@@ -355,8 +354,7 @@ static sf_status write_facts(page *p, sf_error *err) {
                       4 * p->skin.face_count + r->cell_nnz; /* more than the longest array has */
     p->value = sf_alloc(err, 3 * (unsigned long)p->node_count, sizeof *p->value, "view.html");
     p->coded = sf_alloc(err, (unsigned long)numbers, 4, "view.html");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     sf_axis_find(r, axis);
     sf_json_open(&p->json, NULL, '{');
     put_texts(p);
@@ -410,7 +408,6 @@ sf_status sf_browser_write(const sf_staging *output, const sf_report *report, co
         write_page(&p, output, text, err);
     sf_skin_faces_free(&p.skin);
     sf_shown_free(&p.shown);
-    free(p.value);
-    free(p.coded);
+    SF_FREE(p.value, p.coded);
     return err->status;
 }

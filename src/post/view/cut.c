@@ -235,9 +235,7 @@ sf_status sf_cut_make(const sf_results *results, sf_cut *cut, sf_error *err) {
 }
 
 void sf_cut_free(sf_cut *cut) {
-    free(cut->polygon);
-    free(cut->line);
-    free(cut->outline);
+    SF_FREE(cut->polygon, cut->line, cut->outline);
     *cut = (sf_cut){0};
 }
 

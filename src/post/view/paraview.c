@@ -164,8 +164,7 @@ static void read_reason(const sf_staging *output, char *line, size_t size) {
                 snprintf(line, size, "%s", k);
     strip_colours(line);
     sf_error_clean(line);
-    free(text);
-    free(path);
+    SF_FREE(text, path);
 }
 
 sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error *err) {

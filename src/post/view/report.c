@@ -568,7 +568,6 @@ sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_
     else if (sf_report_pictures_make(output, s->results, s->figures, &pictures, err) == SF_OK)
         write_page(&p, output, err);
     sf_report_pictures_free(&pictures);
-    free(p.case_text);
-    free(p.parameters);
+    SF_FREE(p.case_text, p.parameters);
     return err->status;
 }

@@ -317,11 +317,6 @@ sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *re
 }
 
 void sf_report_pictures_free(sf_report_pictures *p) {
-    free(p->before);
-    free(p->pad);
-    free(p->instants);
-    free(p->profile);
-    free(p->force);
-    free(p->energies);
+    SF_FREE(p->before, p->pad, p->instants, p->profile, p->force, p->energies);
     *p = (sf_report_pictures){0};
 }

@@ -63,8 +63,7 @@ sf_status sf_shown_find(const sf_results *r, sf_shown *s, sf_error *err) {
 }
 
 void sf_shown_free(sf_shown *s) {
-    free(s->head);
-    free(s->fields);
+    SF_FREE(s->head, s->fields);
     *s = (sf_shown){0};
 }
 
@@ -111,8 +110,7 @@ static sf_status write_topology(const store *s, sf_error *err) {
     const sf_results *r = s->results;
     int64_t length = r->cell_nnz + r->cell_count, k = 0;
     SF_OWNED int32_t *mixed = sf_alloc(err, (unsigned long)length, sizeof *mixed, "the topology");
-    if (!mixed)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t c = 0; c < r->cell_count; c++) {
         mixed[k++] = r->cell_type[c];
         for (int64_t v = r->cell_ptr[c]; v < r->cell_ptr[c + 1]; v++)
@@ -148,8 +146,7 @@ static sf_status write_materials(const store *s, sf_error *err) {
 static sf_status write_points(const store *s, const sf_h5_info *info, int64_t count, const double *position,
                               const double *displacement, const sf_frame_head *head, sf_error *err) {
     SF_OWNED double *moved = sf_alloc(err, 3 * (unsigned long)count, sizeof *moved, info->description);
-    if (!moved)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t i = 0; i < count; i++)
         if (head)
             sf_results_place(s->results, head, &position[3 * i], &moved[3 * i]);

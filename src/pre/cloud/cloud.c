@@ -37,8 +37,7 @@ sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
     SF_OWNED keyed_node *order = sf_alloc(err, (unsigned long)n, sizeof *order, "node order");
     SF_OWNED int32_t *rank = sf_alloc(err, (unsigned long)n, sizeof *rank, "node order");
     SF_OWNED double *moved = sf_alloc(err, 3 * (unsigned long)n, sizeof *moved, "node order");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < 3 * n; k++)
         low[k % 3] = fmin(low[k % 3], mesh->position[k]);
     for (int64_t k = 0; k < 3 * n; k++)

@@ -437,10 +437,7 @@ static sf_status assemble_rows(builder *b, sf_error *err) {
         finish_row(&row, out->volume[i], &out->node[out->ptr[i]], &out->b[3 * out->ptr[i]]);
     }
 done:
-    free(corner);
-    free(row.slot);
-    free(row.node);
-    free(row.sum);
+    SF_FREE(corner, row.slot, row.node, row.sum);
     return err->status;
 }
 
@@ -467,10 +464,7 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
         clear_edges(&b);
     sf_visibility_free(b.hidden, mesh->node_count);
     sf_grid_free(&b.grid);
-    free(b.edge);
-    free(b.poor);
-    free(b.edge_reach);
-    free(b.reach);
+    SF_FREE(b.edge, b.poor, b.edge_reach, b.reach);
     if (err->status != SF_OK)
         sf_domains_free(out);
     return err->status;
@@ -489,19 +483,12 @@ sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const d
     }
     sf_visibility_free(b.hidden, mesh->node_count);
     sf_grid_free(&b.grid);
-    free(b.edge_reach);
-    free(b.reach);
+    SF_FREE(b.edge_reach, b.reach);
     return err->status;
 }
 
 void sf_domains_free(sf_domains *d) {
-    free(d->volume);
-    free(d->ptr);
-    free(d->node);
-    free(d->b);
-    free(d->phi_ptr);
-    free(d->phi_node);
-    free(d->phi_value);
+    SF_FREE(d->volume, d->ptr, d->node, d->b, d->phi_ptr, d->phi_node, d->phi_value);
     memset(d, 0, sizeof *d);
 }
 

@@ -16,11 +16,11 @@ typedef struct sf_raw_mesh {
     size_t node_count;
     size_t *tag; /* [node_count] positive, in any order */
     double *xyz; /* [node_count][3] in the geometry's unit */
-    size_t cell_count, cell_capacity;
+    size_t cell_count;
     uint8_t *cell_type;   /* [cell_count] SF_CELL_* */
     uint8_t *cell_chosen; /* [cell_count] 0: of no group asked for; else 1 + place of its group among them */
     size_t *cell_node;    /* [cell_count][SF_RAW_CELL] tags, VTK order; unused ones 0 */
-    size_t face_count, face_capacity;
+    size_t face_count;
     int32_t *face_group; /* [face_count] index of the surface group */
     int32_t *face_part;  /* [face_count] geometrical entity: faces of one part are turned alike */
     size_t *face_node;   /* [face_count][SF_RAW_FACE] tags; the fourth is 0 for a triangle */

@@ -125,11 +125,7 @@ sf_status sf_checkpoint_open(const char *path, sf_checkpoint *c, sf_error *err) 
 void sf_checkpoint_close(sf_checkpoint *c) {
     sf_error ignored = SF_ERROR_INIT; /* nothing was written */
     sf_h5_close(&c->file, &ignored);
-    free(c->path);
-    free(c->model_path);
-    free(c->model_hash);
-    free(c->git_revision);
-    free(c->compiler_flags);
+    SF_FREE(c->path, c->model_path, c->model_hash, c->git_revision, c->compiler_flags);
     memset(c, 0, sizeof *c);
 }
 

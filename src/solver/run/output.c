@@ -112,8 +112,7 @@ static sf_status write_layers(const sf_model *m, sf_h5 *file, sf_error *err) {
 
 sf_status sf_results_create(const char *path, const sf_model *m, const sf_h5 *model_file,
                             const sf_provenance *provenance, sf_h5 **file, sf_error *err) {
-    if (sf_h5_create(path, file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_create(path, file, err));
     if (sf_provenance_write(*file, "softfall-results", provenance, err) == SF_OK &&
         sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK &&
         write_layers(m, *file, err) == SF_OK)
@@ -172,8 +171,7 @@ static bool is_rest(const char *name) {
 }
 
 sf_status sf_output_open(sf_output *o, sf_error *err) {
-    if (sf_folder_own(o->folder, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_folder_own(o->folder, err));
     o->lock = sf_folder_open(o->folder);
     if (o->lock < 0)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be opened: %s", o->folder, strerror(errno));
@@ -215,16 +213,14 @@ sf_status sf_output_base(const sf_output *o, const sf_model *m, const sf_h5 *mod
                          const sf_provenance *provenance, sf_error *err) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
     sf_h5 *file = NULL;
-    if (place(o, BASE, path, partial, err) != SF_OK)
-        return err->status;
+    SF_TRY(place(o, BASE, path, partial, err));
     sf_results_create(partial, m, model_file, provenance, &file, err);
     return sf_h5_close(&file, err) == SF_OK && err->status == SF_OK ? sf_seal_add(partial, err) : err->status;
 }
 
 sf_status sf_output_start(const sf_output *o, bool keep, sf_error *err) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
-    if (place(o, BASE, path, partial, err) != SF_OK)
-        return err->status;
+    SF_TRY(place(o, BASE, path, partial, err));
     if (sf_replace_commit(partial, path, err) == SF_OK && !keep)
         sf_folder_remove_known(o->lock, is_name, BASE);
     return err->status;
@@ -271,16 +267,14 @@ sf_status sf_output_peak(const sf_output *o, const sf_model *m, const sf_operato
 static sf_status recover(const sf_h5 *from, const char *group, const char *path, const char *partial,
                          sf_error *err) {
     sf_h5 *file = NULL;
-    if (sf_h5_create(partial, &file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_create(partial, &file, err));
     sf_h5_copy(from, group, file, err);
     return commit(&file, partial, path, err);
 }
 
 sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf_error *err) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
-    if (place(o, PEAK, path, partial, err) != SF_OK)
-        return err->status;
+    SF_TRY(place(o, PEAK, path, partial, err));
     return recover(checkpoint, PEAK_GROUP, path, partial, err);
 }
 

@@ -222,8 +222,7 @@ static sf_status take_step(drop *d, sf_error *err) {
         return err->status;
     if (!sf_recorder_frame_due(&d->r, d->m, d->s) || d->replay)
         return SF_OK;
-    if (sf_output_frame(d->out, d->m, d->op, d->s, d->r.frames - 1, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_output_frame(d->out, d->m, d->op, d->s, d->r.frames - 1, err));
     return publish_if_due(d, err);
 }
 
@@ -253,8 +252,7 @@ static sf_status run_steps(drop *d, bool taken, sf_error *err) {
         }
         if (checkpoint_is_due(d) && save(d, err) == SF_OK)
             publish_if_due(d, err);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(err->status);
         sf_step_advance(d->m, d->s);
     }
 }
@@ -404,8 +402,7 @@ static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
 static sf_status begin(drop *d, const sf_checkpoint *from, bool *taken, sf_error *err) {
     int64_t lost;
     *taken = from != NULL;
-    if (load(d, from, err) != SF_OK)
-        return err->status;
+    SF_TRY(load(d, from, err));
     d->saved = from ? d->s->step : -1;
     if (from)
         resume_rebounded(d);

@@ -23,8 +23,7 @@ static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, con
             err, SF_ERR_INPUT,
             "%s ended \"%.80s\" with %lld points in contact: a pad goes on only after the missile has left it",
             path, status, (long long)*touching);
-    free(status);
-    free(touching);
+    SF_FREE(status, touching);
     return err->status;
 }
 

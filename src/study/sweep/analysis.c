@@ -279,10 +279,8 @@ sf_status sf_analysis_make(const sf_runs *runs, sf_analysis *a, sf_error *err) {
 }
 
 void sf_analysis_free(sf_analysis *a) {
-    for (int k = 0; k < SF_SWEEP_FIGURES; k++) {
-        free(a->surface[k].simulated);
-        free(a->surface[k].left_out);
-    }
+    for (int k = 0; k < SF_SWEEP_FIGURES; k++)
+        SF_FREE(a->surface[k].simulated, a->surface[k].left_out);
     sf_probabilities_free(&a->probability);
     *a = (sf_analysis){0};
 }

@@ -478,10 +478,7 @@ void sf_factor_free(sf_factor *f) {
         if (f->label)
             free(f->label[k]);
     }
-    free(f->text);
-    free(f->label);
-    free(f->number);
-    free(f->value);
+    SF_FREE(f->text, f->label, f->number, f->value);
     *f = (sf_factor){0};
 }
 

@@ -161,8 +161,7 @@ static void number_words(sf_factor *f) {
             level++;
         f->value[k] = (double)level;
         if (level < kept) {
-            free(text);
-            free(label);
+            SF_FREE(text, label);
         } else {
             f->text[kept] = text;
             f->label[kept++] = label;
@@ -173,8 +172,7 @@ static void number_words(sf_factor *f) {
 
 static sf_status copy_levels(sf_factor *f, sf_error *err) {
     f->value = sf_alloc(err, (unsigned long)f->count, sizeof *f->value, "the values of a factor");
-    if (!f->value)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < f->count && !f->words; k++)
         f->value[k] = f->number[k];
     if (f->words)
@@ -415,9 +413,7 @@ void sf_plan_free(sf_plan *p) {
         sf_factor_free(&p->factor[k]);
     for (int k = 0; k < p->set_count; k++)
         free(p->set[k]);
-    free(p->folder);
-    free(p->case_path);
-    free(p->title);
+    SF_FREE(p->folder, p->case_path, p->title);
     *p = (sf_plan){0};
 }
 

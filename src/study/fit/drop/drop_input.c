@@ -229,9 +229,6 @@ sf_status sf_drop_input_read(const sf_config *config, sf_config_item *group, boo
 }
 
 void sf_drop_input_free(sf_fit_drop *drop) {
-    free(drop->case_path);
-    free(drop->curve_path);
-    free(drop->sample_time);
-    free(drop->sample_value);
+    SF_FREE(drop->case_path, drop->curve_path, drop->sample_time, drop->sample_value);
     *drop = (sf_fit_drop){0};
 }

@@ -488,8 +488,7 @@ static void release(work *w) {
         free(w->walker[c].path); /* and all behind it */
     }
     sf_emulator_free(&w->walk.emulator);
-    free(w->walker);
-    free(w->column);
+    SF_FREE(w->walker, w->column);
 }
 
 sf_status sf_chains_run(const sf_target *target, const double *start, const double *covariance,

@@ -235,8 +235,7 @@ typedef struct wide {
 } wide;
 
 static void free_wide(wide *w) {
-    free(w->weight);
-    free(w->conditional);
+    SF_FREE(w->weight, w->conditional);
 }
 
 static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const sf_leave_options *options,
