@@ -117,3 +117,10 @@ void sf_text_add(char *text, size_t size, const char *format, ...) {
     vsnprintf(text + used, size - used, format, arguments);
     va_end(arguments);
 }
+
+char *sf_text_close(FILE *stream, char **text) {
+    if (stream && fclose(stream) == 0)
+        return *text;
+    free(*text);
+    return *text = NULL;
+}

@@ -25,8 +25,7 @@ typedef struct sf_edit_settings {
     sf_edit_setting *setting; /* [count] in the order of the text, a group before the settings in it; owned */
 } sf_edit_settings;
 
-/* Finds all settings, or only those that name files. Release with free(settings->setting), also on failure.
- */
+/* Finds the settings, or those that name files. Release with free(settings->setting), also on failure. */
 sf_status sf_case_edit_find(const char *text, bool only_files, sf_edit_settings *settings, sf_error *err);
 
 /* The new name of the file that the setting `path` calls `name`; from malloc, NULL on failure. */

@@ -9,7 +9,7 @@
  * text beside an @include, and more text than a case can need (libconfig's time grows with the square of the
  * number of settings). */
 
-/* Refuses a value on one line of its own likewise, and one with a comment; `name` stands before the sentence.
+/* Refuses a value on one line of its own likewise, and one with a comment; the sentence begins with `name`.
  */
 sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err);
 

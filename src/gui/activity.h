@@ -70,8 +70,7 @@ typedef struct sf_watch {
 sf_watch_stamp sf_watch_stamp_of(const char *path);
 bool sf_watch_same(const sf_watch_stamp *a, const sf_watch_stamp *b);
 
-/* Watches what this process has read from entry `first` of the register on (io/plain_file.h), as it is now.
- */
+/* Watches what this process has read from entry `first` of the register on (io/plain_file.h), as it is. */
 void sf_watch_register(sf_watch *watch, size_t first);
 void sf_watch_add(sf_watch *watch, const char *path);
 /* The first file that is not as it was; NULL: none. From now on it is watched as it is now. */

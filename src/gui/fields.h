@@ -90,8 +90,7 @@ const sf_field *sf_fields_find(const sf_fields *fields, const char *key);
 sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_error *err);
 void sf_overrides_free(sf_overrides *overrides);
 
-/* Parameters of geometries whose variables are not known can be seen and not changed: no run would have them.
- */
+/* Parameters of geometries whose variables are not known can be seen, not changed: no run would have them. */
 void sf_fields_lock_unknown(sf_fields *fields);
 
 /* Marks the fields that the sentence of an error names (NULL: none), in the tree too. */

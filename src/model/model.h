@@ -159,8 +159,7 @@ typedef struct sf_model {
     int32_t *rest_node; /* [rest_count] ascending, on one plane z = constant */
     double *rest_load;  /* [rest_count] N, of the anvil on the pad at t = 0; their sum is the pad's weight */
 
-    /* The faces of the pad that may touch the pad itself or the anvil, turned outwards; none: nothing does.
-     */
+    /* The faces of the pad that may touch the pad itself or the anvil, turned outwards; or none. */
     int64_t skin_count;
     int32_t *skin_triangle; /* [skin_count][3] nodes */
     double skin_friction;   /* -, Coulomb coefficient between them */

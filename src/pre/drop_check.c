@@ -63,8 +63,7 @@ static double mean_spacing(const sf_model *m, const double centre[2], double rad
     return volume > 0 ? sqrt(sum / volume) : 0;
 }
 
-/* The zone when the missile stands `part` of the thickness deep, by fine x fine points for each contact node.
- */
+/* The zone when the missile stands `part` of the thickness deep, by fine x fine points a contact node. */
 static void measure_at(const sf_model *m, double part, int fine, sf_contact_zone *zone) {
     const sf_surface missile = sf_surface_of_missile(m);
     double centre[2], wide, deepest = m->missile.gap - part * m->thickness / m->missile.direction[2];

@@ -26,6 +26,5 @@ sf_status sf_hold_find(const sf_model *model, sf_hold *hold, sf_error *err);
 /* SF_ERR_INPUT if the pad or a layer can be moved vertically or tilted without being deformed; a pad on a
  * rigid support may. */
 sf_status sf_hold_check(const sf_hold *hold, const sf_model *model, sf_error *err);
-/* Tells `sink` of an underside that is mostly free, and of a missile that pushes the pad along a free motion.
- */
+/* Tells `sink` of a mostly free underside, and of a missile that pushes the pad along a free motion. */
 void sf_hold_warn(const sf_hold *hold, const sf_model *model, const sf_sink *sink);

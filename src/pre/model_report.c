@@ -243,11 +243,8 @@ char *sf_model_report_text(const sf_model_report *report, sf_error *err) {
     FILE *out = open_memstream(&text, &size);
     for (int k = 0; out && k < report->count; k++)
         fprintf(out, "%s\t%s\t%s\n", report->line[k].key, report->line[k].name, report->line[k].value);
-    if (!out || fclose(out) != 0) {
+    if (!sf_text_close(out, &text))
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the report of the model");
-        free(text);
-        return NULL;
-    }
     return text;
 }
 

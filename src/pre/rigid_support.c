@@ -52,8 +52,7 @@ static void join_corners(const triangles *s, const sf_half_edge *edge, int64_t *
     }
 }
 
-/* Appends the triangles to those of the model, as support `part`. Its nodes are the corners that were joined.
- */
+/* Appends the triangles to those of the model, as support `part`. Its nodes are the joined corners. */
 static sf_status split_edges(const triangles *s, int part, sf_model *m, sf_error *err) {
     int64_t corners = 3 * s->count;
     SF_OWNED sf_half_edge *edge = sf_half_edges(s->count, s->node, err);
@@ -272,7 +271,7 @@ static sf_status take(const sf_case *c, int k, sf_surface *surface, const triang
 
 sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf_error *err) {
     triangles pad = {0, m->position, NULL};
-    int32_t *face = NULL;
+    SF_OWNED int32_t *face = NULL;
     unsigned long count = 0;
     m->support_count = mesh->support_count;
     for (int k = 0; k < mesh->support_count; k++)
@@ -286,7 +285,6 @@ sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf
     m->support_friction = sf_alloc(err, SF_SUPPORTS, sizeof *m->support_friction, "support");
     for (int k = 0; k < mesh->support_count && err->status == SF_OK; k++)
         take(c, k, &mesh->support[k], &pad, m, err);
-    free(face);
     return err->status;
 }
 

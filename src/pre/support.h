@@ -27,6 +27,5 @@ sf_status sf_base_mark(const sf_case *c, const sf_mesh *mesh, const sf_model *mo
 /* The resting nodes of the model with the loads that carry its weight. Needs the masses. */
 sf_status sf_base_rest(const sf_case *c, const sf_base_marks *marks, sf_model *model, sf_error *err);
 
-/* The anvil below the pad: the plane of its underside if most of that is held or rests; else there is none.
- */
+/* The anvil below the pad: the plane of its underside if most of that is held or rests; or none. */
 void sf_base_place_anvil(const sf_case *c, const sf_hold *hold, sf_model *model);

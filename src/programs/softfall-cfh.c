@@ -193,7 +193,7 @@ static sf_status read_posterior(const char *case_path, sf_case *c, setting *out,
 static sf_status read_setting(const sf_study *study, setting *out, sf_error *err) {
     const options *o = &out->options;
     sf_case c;
-    char *material = NULL;
+    SF_OWNED char *material = NULL;
     const char *list[SF_RUNNER_OVERRIDES + 1];
     int count = 0;
     if (o->material) {
@@ -216,7 +216,6 @@ static sf_status read_setting(const sf_study *study, setting *out, sf_error *err
             read_posterior(study->input, &c, out, err);
         sf_case_free(&c);
     }
-    free(material);
     return err->status;
 }
 

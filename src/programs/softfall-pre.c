@@ -126,9 +126,8 @@ int main(int argc, char **argv) {
         sf_case_print_keys(stdout);
         return sf_error_report(&err, "softfall-pre");
     }
-    char *command = sf_command_line(argc, argv);
+    SF_OWNED char *command = sf_command_line(argc, argv);
     if (sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK)
         build(&o, command ? command : "softfall-pre", 1, &err);
-    free(command);
     return sf_error_report(&err, "softfall-pre");
 }

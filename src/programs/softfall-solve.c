@@ -423,8 +423,7 @@ static void request_stop(int signal_number) {
  * another process wants a processor. The OpenMP runtimes read their policy from the environment before main,
  * so the program starts itself once more with the passive one; a value set by the user is kept. */
 static void limit_spinning(char **argv) {
-    /* a spin of some 0.2 ms bridges the barriers of a step, and costs little where threads share a processor
-     */
+    /* a spin of some 0.2 ms bridges the barriers of a step, and costs little where threads share one */
     if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 1) == 0 &&
         setenv("GOMP_SPINCOUNT", "5000", 0) == 0)
         execv("/proc/self/exe", argv); /* returns only if it cannot: then the run is merely slower */
@@ -460,8 +459,7 @@ int main(int argc, char **argv) {
     struct sigaction action = {.sa_handler = request_stop};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    char *command = sf_command_line(argc, argv);
+    SF_OWNED char *command = sf_command_line(argc, argv);
     solve(&o, command ? command : "softfall-solve", &stop_requested, &err);
-    free(command);
     return sf_error_report(&err, "softfall-solve");
 }

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A text as gnuplot's string: between single quotes, where gnuplot substitutes nothing; lines joined by "\n".
+/* A text as gnuplot's string: between single quotes, which gnuplot takes as they are; lines joined by "\n".
  */
 static void put_text(FILE *g, const char *text) {
     fputc('\'', g);

@@ -373,8 +373,7 @@ void sf_window_remove(const char *name) {
     gmshOnelabClear(name, &unasked);
 }
 
-/* Sends an entry of a geometry again, with `addition` at its end: of two members of one name the last counts.
- */
+/* Sends an entry of a geometry again, with `addition` at its end: of two of one name the last counts. */
 static void change(const char *name, const char *addition) {
     char *json = NULL, *changed = NULL;
     int ierr = 0;

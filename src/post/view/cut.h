@@ -38,11 +38,11 @@ typedef struct sf_cut {
     bool mirrored;             /* the other half, mirrored at the axis, belongs to the pad too */
     double x[2], z[2];         /* m, extent of the undeformed pad in the plane, without the other half */
     double missile[2];         /* m, extent of the missile along x in the plane */
-    int64_t polygon_count, polygon_room;
+    int64_t polygon_count;
     sf_cut_polygon *polygon; /* of the tetrahedra that fill the cells */
-    int64_t line_count, line_room;
+    int64_t line_count;
     sf_cut_point (*line)[2]; /* of the faces of the cells */
-    int64_t outline_count, outline_room;
+    int64_t outline_count;
     double (*outline)[2][2]; /* m, x and z of both ends: of the missile's triangles at t = 0, and of */
     int64_t support_first;   /* the supports' triangles from this one on */
 } sf_cut;

@@ -179,7 +179,7 @@ static void put_parameter(const page *p, sf_html_table *table, const char *name,
 
 static void put_missile(const page *p) {
     const sf_results *r = p->results;
-    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     if (r->driven) {
         put_parameter(p, &table, "missile.motion", "prescribed motion");
     } else {
@@ -196,12 +196,11 @@ static void put_missile(const page *p) {
         sf_html_fact(&table, "impact point", "x = %.4g mm, y = %.4g mm", r->impact_x * 1e3,
                      r->impact_y * 1e3);
     put_parameter(p, &table, "missile.friction", "friction on the pad");
-    sf_html_table_end(&table);
 }
 
 static void put_pad(const page *p) {
     const sf_results *r = p->results;
-    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     sf_html_fact(&table, "thickness", "%.4g mm", r->thickness * 1e3);
     sf_html_fact(&table, "mean cross-section", "%.4g cm²: volume of the whole pad over its extent along z",
                  p->figures->area * 1e4);
@@ -218,7 +217,6 @@ static void put_pad(const page *p) {
         put_parameter(p, &table, "pad.gravity", "gravity on the pad");
     }
     put_parameter(p, &table, "pad.sliding_interfaces", "sliding layers");
-    sf_html_table_end(&table);
 }
 
 /* Words of the case about the test. */
@@ -229,11 +227,10 @@ static void put_test(const page *p) {
         count += sf_origin_find_report(p->parameters, sf_origin_report_keys[k], &key);
     if (count == 0)
         return;
-    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     for (int k = 0; k < SF_ORIGIN_REPORT_KEYS; k++)
         if (sf_origin_find_report(p->parameters, sf_origin_report_keys[k], &key))
             sf_html_fact(&table, sf_origin_report_keys[k], "%s", key.value);
-    sf_html_table_end(&table);
 }
 
 static void put_bodies(const page *p) {

@@ -33,8 +33,7 @@ void sf_shown_free(sf_shown *shown);
  * ParaView. Written so that all three XDMF readers of ParaView 5.11 take it: the topology is repeated in
  * every step (no Reference), connectivities are int32, number types and precisions are explicit, tensors have
  * nine components. The data bear the hash of their content in their name: a pad.xdmf never speaks of those of
- * another run, at whatever instant softfall-post is killed. Array names carry their units, e.g. von_mises_Pa.
- */
+ * another run, whenever softfall-post is killed. Array names carry their units, e.g. von_mises_Pa. */
 
 enum { SF_XDMF_NAME_SIZE = 32 };
 

@@ -228,7 +228,7 @@ static sf_status look_around(builder *b, const double *support, sf_error *err) {
 static sf_status integrate_with_growth(builder *b, double *support, sf_error *err) {
     const double *first = NULL;
     int64_t n = b->mesh->node_count;
-    double *start = sf_alloc(err, (unsigned long)n, sizeof *start, "supports");
+    SF_OWNED double *start = sf_alloc(err, (unsigned long)n, sizeof *start, "supports");
     SF_TRY(err->status);
     memcpy(start, support, (size_t)n * sizeof *start);
     first = start;
@@ -262,7 +262,6 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
         b->out->figures.largest_enlargement =
             fmax(b->out->figures.largest_enlargement, support[i] / first[i]);
     }
-    free(start);
     return err->status;
 }
 

@@ -64,8 +64,7 @@ static void add_name(name_list *list, sf_geo_token t) {
     list->name[list->count++][t.length] = '\0';
 }
 
-/* After DefineConstant: the names at the outermost level of its brackets, each at the beginning of an item.
- */
+/* After DefineConstant: names at the outermost level of its brackets, each at the beginning of an item. */
 static void read_constants(const char **text, name_list *list) {
     int depth = 0;
     bool expecting = false;

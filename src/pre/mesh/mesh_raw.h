@@ -55,8 +55,7 @@ int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]
 sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_mesh *mesh, sf_error *err);
 
 /* All faces as triangles, turned away from the cells behind them; where there are no cells, away from the
- * centroid of all faces, part by part. A face between two cells is refused. On failure `*surface` is empty.
- */
+ * centroid of all faces, part by part. A face between cells is refused. On failure `*surface` is empty. */
 sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err);
 
 /* Adds the hull to a surface that was assembled from the same mesh: of all cells that are joined through

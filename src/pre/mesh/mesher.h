@@ -14,8 +14,7 @@
 double sf_memory_available(void);
 
 /* The path of softfall-mesh: in SF_BIN_DIR if that is set, else beside this program or library, in
- * libexec/softfall or bin of a folder above it, or where it was to be installed. SF_ERR_IO if it is nowhere.
- */
+ * libexec/softfall or bin of a folder above it, or where it was to be installed. SF_ERR_IO: it is nowhere. */
 sf_status sf_mesher_find(char *path, size_t size, sf_error *err);
 
 /* Runs gmsh on a geometry in a process of its own, softfall-mesh, that can neither start programs nor open

@@ -332,8 +332,7 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
                         s->missile.contact_time, err);
 }
 
-/* The complete results.h5, with a frame of the last step; a state that holds a NaN or infinity is not shown.
- */
+/* The complete results.h5, with a frame of the last step; a state with a NaN or infinity is not shown. */
 static sf_status conclude(drop *d, const char *status, sf_error *err) {
     sf_h5 *file = NULL;
     int64_t frames = d->r.frames;

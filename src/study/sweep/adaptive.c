@@ -87,8 +87,7 @@ static void list_inputs(sf_sweep_adaptive *a) {
     a->inputs = a->factors;
 }
 
-/* Makes the figures of the columns inputs, too: foams that differ as words are near to each other by these.
- */
+/* Makes the figures of the columns inputs, too: foams, which differ as words, are near by these. */
 static void add_columns(sf_sweep_adaptive *a) {
     for (int k = 0; k < SF_TREND_INDENTATION && !a->trend.problem; k++) {
         double low = INFINITY, high = -INFINITY;

@@ -11,8 +11,7 @@
 #include <stdint.h>
 
 /* A factor of a sweep: a key of the case and the values that it takes. A factor of numbers has one unit, that
- * of its first value; all others are converted. A factor of words (names, files, lists) has numbered levels.
- */
+ * of its first value; all others are converted. One of words (names, files, lists) has numbered levels. */
 
 enum { SF_FACTOR_KEY_SIZE = 200, SF_FACTOR_UNIT_SIZE = 32, SF_FACTOR_WHERE_SIZE = 512 };
 

@@ -310,10 +310,7 @@ static char *own_heading(const sf_runs *r) {
     if (!out)
         return NULL;
     put_heading(out, r);
-    if (fclose(out) == 0)
-        return text;
-    free(text);
-    return NULL;
+    return sf_text_close(out, &text);
 }
 
 sf_status sf_runs_read(sf_runs *r, const char *path, uint64_t hash, sf_error *err) {

@@ -67,7 +67,7 @@ static double evaluate(const walk *w, walker *c, const double *u) {
     return density == density ? density : -INFINITY;
 }
 
-/* The same by the emulator, flattened: its tails, where it knows little, are to be heavier than the target's.
+/* The same by the emulator, flattened: its tails, where it knows little, shall be heavier than the target's.
  */
 static double emulate(const walk *w, walker *c, const double *u) {
     double y[SF_RESPONSES_MOST];

@@ -5,8 +5,7 @@
 #include "base/error.h"
 #include "study/fit/posterior/chains.h"
 
-/* The integral of a target's density by importance sampling, and weights of importance sampling in general.
- */
+/* The integral of a target's density by importance sampling, and weights of importance sampling. */
 typedef struct sf_evidence {
     double log_value;
     double error;     /* standard error of log_value */

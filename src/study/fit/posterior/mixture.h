@@ -25,8 +25,7 @@ typedef struct sf_target {
     int shape;
     bool (*respond)(const void *context, const double *u, double *y); /* false: outside */
     int quantities; /* followed beside the parameters, for example predictions; 0: none */
-    /* Quantities of u; what is random in them follows from `seed`. NaN: no value. Called by several threads.
-     */
+    /* Quantities of u; what is random in them follows from `seed`. NaN: none. Called by several threads. */
     void (*observe)(const void *context, const double *u, uint64_t seed, double *quantity);
 } sf_target;
 
