@@ -16,7 +16,7 @@
 #include "case/curves.h"
 #include "pre/mesh/geo_parameters.h"
 #include "pre/mesh/gmsh_session.h"
-#include "pre/mesh/mesh_stream.h"
+#include "pre/mesh/mesher.h"
 #include "study/sweep/analysis.h"
 #include <ftw.h>
 #include <hdf5.h>

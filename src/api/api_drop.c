@@ -7,8 +7,6 @@
 #include "model/model_io.h"
 #include "post/figures/figures.h"
 #include "solver/operators.h"
-#include "solver/run/frame.h"
-#include "solver/run/recorder.h"
 #include "solver/run/run.h"
 #include "solver/state.h"
 #include "solver/step.h"

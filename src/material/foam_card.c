@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "material/unloading.h"
+#include "material/memory.h"
 
 #define HAS(name, condition)                                                                                 \
     bool sf_foam_has_##name(const void *card) {                                                              \

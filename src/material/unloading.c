@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "material/unloading.h"
+#include "material/memory.h"
 
 #include <stdbool.h>
 

@@ -4,18 +4,11 @@
 
 #include "base/mat3.h"
 #include "model/stability.h"
-#include "pre/support.h"
 #include "material/point.h"
 #include "pre/cloud/cloud.h"
-#include "pre/cloud/connectivity.h"
-#include "pre/cloud/domain_store.h"
-#include "pre/foam_path.h"
-#include "pre/membrane.h"
-#include "pre/missile_body.h"
 #include "pre/rigid_support.h"
 #include "pre/cloud/dual.h"
 #include "pre/cloud/layers.h"
-#include "pre/impact.h"
 #include "pre/mesh/missile_shape.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/drop_check.h"
+#include "pre/build.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,6 @@
 #include "model/flight.h"
 #include "model/good_run.h"
 #include "pre/mesh/missile_shape.h"
-#include "pre/missile_body.h"
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
 static const double EARLY = 0.1; /* steps of depth before that */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/hold.h"
+#include "pre/build.h"
 
 #include <gsl/gsl_eigen.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/impact.h"
+#include "pre/build.h"
 #include "pre/mesh/missile_shape.h"
 
 #include <gsl/gsl_sort.h>

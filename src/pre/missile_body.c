@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/missile_body.h"
+#include "pre/build.h"
 
 #include <stdlib.h>
 #include <string.h>

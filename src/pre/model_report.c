@@ -5,10 +5,9 @@
 #include "base/mat3.h"
 #include "model/flight.h"
 #include "model/model.h"
-#include "pre/missile_body.h"
+#include "pre/build.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "pre/impact.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

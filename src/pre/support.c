@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/support.h"
+#include "pre/build.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #include "base/mat3.h"
-#include "pre/impact.h"
 
 const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {
     const sf_node_set *set = sf_mesh_find_set(mesh, name);

@@ -22,7 +22,6 @@
 #include "model/good_run.h"
 #include "model/model_io.h"
 #include "solver/run/run.h"
-#include "solver/run/series.h"
 
 /* ---- the command line ---- */
 

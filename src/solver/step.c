@@ -3,12 +3,10 @@
 
 #include "base/lanes.h"
 #include "base/mat3.h"
-#include "base/lanes.h"
 #include "solver/contact/contact.h"
 #include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
 #include "solver/ledger.h"
-#include "solver/field/stabilisation.h"
 #include "solver/time_step.h"
 #include <math.h>
 #include <string.h>

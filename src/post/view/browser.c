@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/browser.h"
+#include "post/view/report.h"
 
 #include <float.h>
 #include <math.h>
@@ -9,7 +9,6 @@
 #include "build_info.h"
 #include "model/cells.h"
 #include "model/model.h"
-#include "post/view/paraview.h"
 #include "post/view/cut.h"
 #include "report/row.h"
 

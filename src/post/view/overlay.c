@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/overlay.h"
+#include "post/view/report.h"
 
 #include "build_info.h"
 #include "base/program.h"
@@ -10,8 +10,6 @@
 #include "post/figures/figures.h"
 #include "post/figures/verdict.h"
 #include "post/view/cut.h"
-#include "post/view/report.h"
-#include "post/view/report_picture.h"
 #include <argp.h>
 #include <limits.h>
 #include <math.h>

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/report_picture.h"
+#include "post/view/report.h"
 
 #include "report/chart.h"
 #include "post/view/cut.h"
-#include "post/view/plot.h"
-#include "post/view/csv.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

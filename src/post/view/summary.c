@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/summary.h"
+#include "post/view/report.h"
 
 #include "build_info.h"
 #include "post/results/origin.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/xdmf.h"
+#include "post/view/report.h"
 
 #include <dirent.h>
 #include <float.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/cloud/domain_store.h"
+#include "pre/cloud/cloud.h"
 
 #include "base/hash.h"
 #include "io/plain_file.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/grid.h"
 #include "base/sets.h"
-#include "pre/cloud/domains.h"
+#include "pre/cloud/cloud.h"
 
 #include "pre/cloud/mls.h"
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/mesh/mesh_stream.h"
+#include "pre/mesh/mesher.h"
 
 #include "base/sets.h"
 #include "pre/mesh/mesher_protocol.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/checkpoint.h"
+#include "solver/run/run.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/frame.h"
+#include "solver/run/run.h"
 
 #include "base/mat3.h"
 #include "solver/field/domain_stress.h"
-#include "solver/field/stabilisation.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/output.h"
+#include "solver/run/run.h"
 
 #include <errno.h>
 #include <math.h>
@@ -13,7 +13,6 @@
 #include "model/columns.h"
 #include "model/flight.h"
 #include "solver/missile.h"
-#include "solver/run/frame.h"
 
 /* Returns the place of the symmetry plane normal to an axis; NaN: there is none. */
 static double find_plane(const sf_model *m, int axis) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/recorder.h"
+#include "solver/run/run.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/series.h"
+#include "solver/run/run.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "solver/field/domain_stress.h"
-#include "solver/run/checkpoint.h"
 
 /* The earlier run must have come to its end, and the missile off the pad. */
 static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, const char *path,

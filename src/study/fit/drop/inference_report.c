@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/average.h"
+#include "study/fit/drop/inference.h"
 
 #include "report/html.h"
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/posterior/chains.h"
+#include "study/fit/posterior/posterior.h"
 
 #include <gsl/gsl_randist.h>
 #include <math.h>

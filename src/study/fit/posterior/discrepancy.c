@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/posterior/discrepancy.h"
+#include "study/fit/posterior/posterior.h"
 
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_cdf.h>
