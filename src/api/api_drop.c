@@ -214,8 +214,7 @@ static sf_status read_text(const sf_h5 *file, const char *path, char **text, sf_
 }
 
 static sf_status read_model(const char *path, softfall_model *m, sf_error *err) {
-    sf_h5 *file = NULL;
-    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
+    SF_OWNED_BY(sf_h5_drop) sf_h5 *file = NULL;
     SF_OWNED char *libraries = NULL;
     if (sf_model_read(path, &m->model, &file, err) == SF_OK &&
         read_text(file, "/provenance/case_text", &m->case_text, err) == SF_OK &&
@@ -224,7 +223,6 @@ static sf_status read_model(const char *path, softfall_model *m, sf_error *err) 
         read_text(file, "/provenance/geometry_files", &m->geometry_files, err) == SF_OK)
         read_text(file, "/provenance/libraries", &libraries, err);
     snprintf(m->libraries, sizeof m->libraries, "%s", libraries ? libraries : "");
-    sf_h5_close(&file, &ignored);
     return err->status;
 }
 

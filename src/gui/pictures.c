@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/pictures.h"
 
+#include "base/mat3.h"
 #include "base/units.h"
 #include "io/h5.h"
 #include "io/plain_file.h"
@@ -60,12 +61,9 @@ static void place_point(const missile_surface *m, int64_t triangle, int parts, i
  * foam behind a plane would be seen through the open half. Returns the number of triangles behind the `count`
  * at `corner`. */
 static int64_t close_missile(const missile_surface *m, double *corner, int64_t count) {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
+    double low[3], high[3], middle[3];
     int64_t made = 0;
-    for (int64_t k = 0; k < 9 * count; k++) {
-        low[k % 3] = fmin(low[k % 3], corner[k]);
-        high[k % 3] = fmax(high[k % 3], corner[k]);
-    }
+    sf_box3(3 * count, corner, low, high);
     for (int d = 0; d < 3; d++)
         middle[d] = d == 2 ? high[d] : isfinite(m->plane[d]) ? m->plane[d] : 0.5 * (low[d] + high[d]);
     for (int64_t k = 0; k < 3 * count; k++)
@@ -195,7 +193,7 @@ static const char *const keys[SF_CHECK_ENTRIES] = {
 };
 
 sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err) {
-    sf_h5 *file = NULL;
+    SF_OWNED_BY(sf_h5_drop) sf_h5 *file = NULL;
     SF_OWNED char *text = NULL;
     out->count = 0;
     if (sf_h5_open(model, &file, err) == SF_OK)
@@ -208,8 +206,6 @@ sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err
         snprintf(e->name, sizeof e->name, "3Checks/%02d%s", k, name);
         out->count++;
     }
-    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
-    sf_h5_close(&file, &ignored);
     return err->status;
 }
 

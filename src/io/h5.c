@@ -125,6 +125,11 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
     return status;
 }
 
+void sf_h5_drop(sf_h5 **file) {
+    sf_error ignored = SF_ERROR_INIT;
+    sf_h5_close(file, &ignored);
+}
+
 enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE, LINK_DAMAGED };
 enum { OBJECT_SIZE = 512 };
 

@@ -49,6 +49,8 @@ void sf_hold_warn(const sf_hold *hold, const sf_model *model, const sf_sink *sin
 /* The group that the case names under `key`; NULL: SF_ERR_INPUT with the groups that exist. */
 const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const char *name, sf_error *err);
 
+/* True if the group is a plane normal to the axis, at `place` (m). */
+bool sf_group_is_plane(const sf_model *model, const sf_node_set *set, int axis, double *place);
 /* The axis (0 x, 1 y, 2 z) that a plane group is normal to, or -1. Needs positions and thickness. */
 int sf_group_plane_axis(const sf_model *model, const sf_node_set *set);
 

@@ -209,23 +209,15 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
 
 /* ---- symmetry ---- */
 
-/* The plane x or y = `place` of a held symmetry group: -1 axis if there is none of that axis. */
-static int find_plane(const sf_case *c, const sf_mesh *mesh, const sf_model *m, int axis, double *place,
-                      const char **name) {
+/* The symmetry group that the case holds in a plane x or y = `place`; NULL: there is none of that axis. */
+static const char *find_plane(const sf_case *c, const sf_mesh *mesh, const sf_model *m, int axis,
+                              double *place) {
     for (int g = 0; g < c->symmetry_count; g++) {
         const sf_node_set *set = sf_mesh_find_set(mesh, c->symmetry_group[g]);
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t k = 0; set && k < set->count; k++) {
-            low = fmin(low, m->position[3 * (int64_t)set->node[k] + axis]);
-            high = fmax(high, m->position[3 * (int64_t)set->node[k] + axis]);
-        }
-        if (!set || high - low > 1e-9 * m->thickness)
-            continue;
-        *place = low;
-        *name = set->name;
-        return 1;
+        if (set && sf_group_is_plane(m, set, axis, place))
+            return set->name;
     }
-    return 0;
+    return NULL;
 }
 
 /* On which side of the plane the pad lies. */
@@ -410,8 +402,8 @@ static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_
     const rims r = m->missile.shape == SF_SHAPE_SURFACE ? list_rims(m, err) : (rims){0, NULL};
     for (int axis = 0; axis < 2 && err->status == SF_OK; axis++) {
         double place = 0;
-        const char *name = NULL;
-        if (find_plane(c, mesh, m, axis, &place, &name))
+        const char *name = find_plane(c, mesh, m, axis, &place);
+        if (name)
             check_plane(m, axis, place, name, err);
         else
             check_whole(m, &r, axis, err);

@@ -533,8 +533,7 @@ sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) 
 }
 
 void sf_results_close(sf_results *results) {
-    sf_error ignored = SF_ERROR_INIT; /* nothing was written, so nothing can be lost */
-    sf_h5_close(&results->file, &ignored);
+    sf_h5_drop(&results->file);
     SF_FREE(results->position, results->volume, results->cell_type, results->cell_ptr, results->cell_node,
             results->surface_position, results->surface_triangle, results->support_position,
             results->support_triangle, results->node_layer, results->layer_name, results->layer_names,

@@ -263,7 +263,7 @@ static sf_status write_frames(const store *s, sf_results *r, sf_shown *shown, sf
     bool moved = true;
     for (int64_t k = 0; k < shown->count; k++) {
         const sf_frame_head *head = shown->head[k];
-        sf_frame frame = {0};
+        SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
         sf_error problem = SF_ERROR_INIT;
         if (sf_frame_read_fields(r, head, fields_wanted(r, shown, k), &frame, &problem) != SF_OK) {
             if (sf_results_ended_well(r))
@@ -275,9 +275,7 @@ static sf_status write_frames(const store *s, sf_results *r, sf_shown *shown, sf
         moved = moved && frame.field[SF_FRAME_DISPLACEMENT];
         shown->fields[k] = fields_of(&frame);
         note_largest(r, &frame, shown->largest);
-        write_frame(s, head, &frame, k, err);
-        sf_frame_free(&frame);
-        SF_TRY(err->status);
+        SF_TRY(write_frame(s, head, &frame, k, err));
     }
     if (!moved)
         sf_results_note(r, "the frames hold no displacement: ParaView shows the pad undeformed");
@@ -441,7 +439,7 @@ static sf_xdmf tell(const sf_shown *shown) {
 
 sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_xdmf_options *options,
                         char data[SF_XDMF_NAME_SIZE], sf_xdmf *made, sf_error *err) {
-    sf_shown shown = {0};
+    SF_OWNED_BY(sf_shown_free) sf_shown shown = {0};
     SF_OWNED char *path = sf_staging_path(output, NEW_DATA, err);
     if (path && sf_shown_find(results, &shown, err) == SF_OK)
         write_data(path, results, options, &shown, err);
@@ -450,7 +448,6 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_
     else if (err->status == SF_OK && name_data(output, path, data, err) == SF_OK)
         write_text(output, results, &shown, data, options->full, err);
     *made = tell(&shown);
-    sf_shown_free(&shown);
     return err->status;
 }
 
@@ -460,14 +457,14 @@ static bool is_named(const char *directory, const char *data) {
     bool named = !listing;
     for (struct dirent *entry = listing ? readdir(listing) : NULL; entry && !named;
          entry = readdir(listing)) {
-        char path[SF_PATH_SIZE], *text = NULL;
+        char path[SF_PATH_SIZE];
+        SF_OWNED char *text = NULL;
         sf_error unread = SF_ERROR_INIT;
         size_t length = strlen(entry->d_name);
         if (length < 5 || strcmp(entry->d_name + length - 5, ".xdmf") != 0)
             continue;
         named = snprintf(path, sizeof path, "%s/%s", directory, entry->d_name) >= (int)sizeof path ||
                 sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &unread) != SF_OK || strstr(text, data);
-        free(text);
     }
     if (listing)
         closedir(listing);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "base/mat3.h"
 #include "base/sets.h"
 
 typedef struct keyed_node {
@@ -85,9 +86,7 @@ void sf_cloud_spacing(const sf_mesh *mesh, const sf_dual *dual, double *spacing)
         int count = 0;
         for (int64_t k = dual->edge_ptr[i]; k < dual->edge_ptr[i + 1]; k++) {
             const double *a = &mesh->position[3 * i], *b = &mesh->position[3 * (int64_t)dual->edge_node[k]];
-            double square =
-                (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
-            keep_smallest(sqrt(square), SF_SPACING_NEIGHBOURS, &count, nearest);
+            keep_smallest(sf_distance3(a, b), SF_SPACING_NEIGHBOURS, &count, nearest);
         }
         for (int k = 0; k < count; k++)
             sum += nearest[k];

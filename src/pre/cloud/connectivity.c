@@ -14,11 +14,6 @@
     "fuse the volumes, so that their meshes share nodes and faces (in gmsh BooleanUnion, BooleanFragments or " \
     "Coherence)"
 
-static double distance(const double a[3], const double b[3]) {
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 static void mean_of(const sf_mesh *mesh, const int32_t *node, int64_t count, double out[3]) {
     out[0] = out[1] = out[2] = 0;
     for (int64_t k = 0; k < count; k++)
@@ -116,7 +111,7 @@ static sf_status check_cell(const sf_mesh *mesh, const sf_grid *grid, const prob
     double centre[3], radius = 0;
     cell_centre(mesh, cell, centre);
     for (int64_t k = mesh->cell_ptr[cell]; k < mesh->cell_ptr[cell + 1]; k++)
-        radius = fmax(radius, distance(&mesh->position[3 * (int64_t)mesh->cell_node[k]], centre));
+        radius = fmax(radius, sf_distance3(&mesh->position[3 * (int64_t)mesh->cell_node[k]], centre));
     int64_t count = sf_grid_gather(grid, centre, (1 - DEPTH) * radius, p->count, p->near);
     for (int64_t k = 0; k < count; k++) {
         int32_t probe = p->near[k];

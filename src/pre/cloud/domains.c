@@ -3,6 +3,8 @@
 #include "base/sets.h"
 #include "pre/cloud/cloud.h"
 
+#include "base/mat3.h"
+
 #include "pre/cloud/mls.h"
 #include <math.h>
 #include <stdbool.h>
@@ -65,11 +67,6 @@ static void mark_around(const builder *b, int32_t node) {
     }
 }
 
-static double distance(const double a[3], const double b[3]) {
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 static void edge_middle(const builder *b, int64_t e, double middle[3]) {
     for (int k = 0; k < 3; k++)
         middle[k] = 0.5 * (b->mesh->position[3 * b->dual->edge[2 * e] + k] +
@@ -85,14 +82,14 @@ static void measure_reach(builder *b) {
             sf_facet_triangle t[2];
             sf_dual_facet(b->mesh, &b->dual->use[u], t);
             for (int s = 0; s < 2; s++)
-                b->edge_reach[e] = fmax(b->edge_reach[e], distance(t[s].centroid, middle));
+                b->edge_reach[e] = fmax(b->edge_reach[e], sf_distance3(t[s].centroid, middle));
         }
         b->edge_reach[e] *= 1 + 1e-12;
     }
     for (int64_t e = 0; e < b->dual->edge_count; e++) {
         const int32_t *end = &b->dual->edge[2 * e];
-        double half =
-            0.5 * distance(&b->mesh->position[3 * (int64_t)end[0]], &b->mesh->position[3 * (int64_t)end[1]]);
+        double half = 0.5 * sf_distance3(&b->mesh->position[3 * (int64_t)end[0]],
+                                         &b->mesh->position[3 * (int64_t)end[1]]);
         for (int k = 0; k < 2; k++)
             b->reach[end[k]] = fmax(b->reach[end[k]], (b->edge_reach[e] + half) * (1 + 1e-12));
     }
@@ -274,7 +271,7 @@ static void find_gap(builder *b) {
         out->figures.hidden_count += b->hidden[i].count > 0;
         for (int64_t k = 0; k < b->hidden[i].count; k++) {
             const double *y = &b->mesh->position[3 * (int64_t)b->hidden[i].node[k]];
-            double gap = distance(x, y);
+            double gap = sf_distance3(x, y);
             if (gap >= out->figures.hidden_distance)
                 continue;
             out->figures.hidden_distance = gap;

@@ -125,12 +125,10 @@ enum { NAME_SIZE = SF_PATH_SIZE + 32 };
 
 static const char BASE[] = "base.h5", PEAK[] = "peak.h5", PEAK_GROUP[] = "/peak";
 
-static void frame_group(char group[32], int64_t index) {
-    snprintf(group, 32, "/frames/%06lld", (long long)index);
-}
-
-static void frame_name(char name[32], int64_t index) {
+/* Names the file of a frame, and its group in the file. */
+static void name_frame(int64_t index, char name[32], char group[32]) {
     snprintf(name, 32, "frame-%06lld.h5", (long long)index);
+    snprintf(group, 32, "/frames/%06lld", (long long)index);
 }
 
 /* folder/name, and the name to write it under. */
@@ -194,8 +192,7 @@ void sf_output_clear(const sf_output *o) {
     sf_folder_leave(o->folder);
 }
 
-/* Closes a file, seals it and gives it its name; removes it if it failed. */
-static sf_status commit(sf_h5 **file, const char *partial, const char *path, sf_error *err) {
+sf_status sf_output_seal(sf_h5 **file, const char *partial, const char *path, sf_error *err) {
     sf_h5_close(file, err);
     if (err->status == SF_OK && sf_seal_add(partial, err) == SF_OK)
         return sf_replace_commit(partial, path, err);
@@ -244,7 +241,7 @@ static sf_status write_state(const sf_output *o, const sf_model *m, const sf_ope
     if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
     sf_frame_write(m, op, s, fields, group, file, err);
-    if (commit(&file, partial, path, err) == SF_OK && size)
+    if (sf_output_seal(&file, partial, path, err) == SF_OK && size)
         *size += size_of(path);
     return err->status;
 }
@@ -252,8 +249,7 @@ static sf_status write_state(const sf_output *o, const sf_model *m, const sf_ope
 sf_status sf_output_frame(sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
                           int64_t index, sf_error *err) {
     char name[32], group[32];
-    frame_name(name, index);
-    frame_group(group, index);
+    name_frame(index, name, group);
     return write_state(o, m, op, s, m->run.output_fields, name, group, &o->fresh, err);
 }
 
@@ -268,7 +264,7 @@ static sf_status recover(const sf_h5 *from, const char *group, const char *path,
     sf_h5 *file = NULL;
     SF_TRY(sf_h5_create(partial, &file, err));
     sf_h5_copy(from, group, file, err);
-    return commit(&file, partial, path, err);
+    return sf_output_seal(&file, partial, path, err);
 }
 
 sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf_error *err) {
@@ -289,8 +285,7 @@ static sf_status open_results(const sf_output *o, sf_h5 **results, sf_error *err
 static sf_status recover_frame(const sf_output *o, int64_t k, sf_h5 **results, bool *lost, sf_error *err) {
     char name[32], group[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
     sf_seal_state state;
-    frame_name(name, k);
-    frame_group(group, k);
+    name_frame(k, name, group);
     if (place(o, name, path, partial, err) != SF_OK || sf_seal_examine(path, &state, err) != SF_OK ||
         state == SF_SEAL_SOUND)
         return err->status;
@@ -347,15 +342,14 @@ sf_status sf_output_begin(sf_output *o, bool copied, int64_t count, sf_h5 **file
     take(o, copied, BASE, base, *file, err);
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         char name[32], group[32];
-        frame_name(name, k);
-        frame_group(group, k);
+        name_frame(k, name, group);
         take(o, copied, name, (const char *const[]){group, NULL}, *file, err);
     }
     return err->status;
 }
 
 sf_status sf_output_commit(sf_output *o, sf_h5 **file, sf_error *err) {
-    if (commit(file, o->partial, o->results, err) == SF_OK) {
+    if (sf_output_seal(file, o->partial, o->results, err) == SF_OK) {
         o->fresh = 0;
         o->size = size_of(o->results);
     }

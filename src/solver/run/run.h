@@ -125,6 +125,9 @@ typedef struct sf_output {
     int64_t size;                  /* bytes of that results.h5; 0: none yet */
 } sf_output;
 
+/* Closes a file, seals it and gives it its name; removes it if it failed. */
+sf_status sf_output_seal(sf_h5 **file, const char *partial, const char *path, sf_error *err);
+
 /* The names only. */
 sf_status sf_output_name(sf_output *output, const char *results, sf_error *err);
 
@@ -168,13 +171,6 @@ sf_status sf_output_commit(sf_output *output, sf_h5 **file, sf_error *err);
 
 /* Removes the folder with its files. */
 void sf_output_clear(const sf_output *output);
-
-/* The state in a checkpoint: everything that the next step needs, bit by bit. */
-
-/* To and from the group /state; `state` is from sf_state_create for the same model. SF_ERR_IO if a dataset is
- * missing, of another size or not possible. */
-sf_status sf_state_write(const sf_model *model, const sf_state *state, sf_h5 *file, sf_error *err);
-sf_status sf_state_read(const sf_model *model, sf_state *state, const sf_h5 *file, sf_error *err);
 
 /* Checkpoints (docs/formats.md): a sealed HDF5 file. With the model it resumes a run bit for bit as if
  * uninterrupted. It holds the state after sf_step_evaluate. */
@@ -237,14 +233,6 @@ bool sf_ending_finished(const sf_model *model, const sf_state *state);
 /* Tells the sink; `state` is that of the last step. */
 void sf_run_tell(const sf_model *model, const sf_state *state, const sf_extremes *extremes,
                  const sf_sink *sink);
-
-/* Lines, each ended by '\n'. */
-typedef struct sf_run_notes {
-    char text[4096]; /* cut */
-} sf_run_notes;
-
-/* A sink that adds a line to `notes`; borrowed. */
-sf_sink sf_run_notes_sink(sf_run_notes *notes);
 
 /* A whole run: steps until the end, with history, frames, the peak and the summary in results.h5, and
  * checkpoints from which it can be resumed. */
