@@ -3,7 +3,7 @@
  * mapping against what it approximates, the input's refusals, and a whole fit on a coarse mesh. */
 #include "extreme.h"
 #include "study/column.h"
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 #include "study/fit/form/form.h"
 #include "study/fit/space_mapping.h"
 #include "foam_fixture.h"

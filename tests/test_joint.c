@@ -4,7 +4,7 @@
  * refusals. */
 #include "study/cfh/spread.h"
 #include "study/fit/drop/inference.h"
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 #include "material/point.h"
 #include "program_fixture.h"
 #include "material/low_density_foam.h"

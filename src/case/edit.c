@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/edit.h"
-
 #include "case/grammar.h"
-#include "case/values.h"
+
+#include "case/keys.h"
 #include "io/plain_file.h"
 #include <libconfig.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
  */
 #include "case/case.h"
 
-#include "case/values.h"
+#include "case/keys.h"
 #include "case/reader.h"
 
 #include "base/hash.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gui/pictures.h"
+#include "gui/session.h"
 
 #include "base/mat3.h"
 #include "base/units.h"

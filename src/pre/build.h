@@ -176,7 +176,7 @@ typedef struct sf_build_report {
     sf_domain_figures domains; /* of all layers */
     double unheld[3];          /* m, a face that will pass through another one or the anvil; NaN: none */
     double first_step;         /* s, before any safety factor */
-    double slowdown;           /* -, first step over the mean one of a compression (estimate_slowdown) */
+    double slowdown;           /* -, first step over the mean one of a compression (model/stability.h) */
     bool contact_held;         /* every contact point is held along z: nothing to drop on */
     sf_hold hold;
     sf_contact_zone zone;

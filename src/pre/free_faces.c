@@ -2,7 +2,6 @@
 #include "pre/free_faces.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/grid.h"

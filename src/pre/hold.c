@@ -8,7 +8,6 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "pre/mesh/mesh.h"
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
 

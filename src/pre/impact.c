@@ -4,7 +4,6 @@
 
 #include <gsl/gsl_sort.h>
 #include <math.h>
-#include <stdlib.h>
 
 static const double LEVEL = 1e-6;           /* of the missile's extent: as low as its lowest node */
 static const double ON_PLANE = 1e-6;        /* of the thickness */

@@ -2,7 +2,6 @@
 #include "pre/build.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/mat3.h"
 

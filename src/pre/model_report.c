@@ -5,12 +5,10 @@
 #include "base/mat3.h"
 #include "model/flight.h"
 #include "model/model.h"
-#include "pre/build.h"
 #include "base/text.h"
 #include "base/units.h"
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop

@@ -2,7 +2,6 @@
 #include "pre/rigid_support.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mat3.h"

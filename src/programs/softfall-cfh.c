@@ -14,7 +14,6 @@
 #include <math.h>
 #include <omp.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- options ---- */

@@ -3,7 +3,7 @@
 #include "base/program.h"
 #include "model/model_io.h"
 #include "io/replace.h"
-#include "case/values.h"
+#include "case/keys.h"
 #include "pre/make.h"
 #include "pre/model_report.h"
 

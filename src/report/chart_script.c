@@ -3,7 +3,6 @@
 #include "report/chart_data.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A text as gnuplot's string: between single quotes, which gnuplot takes as they are; lines joined by "\n".

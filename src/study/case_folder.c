@@ -4,7 +4,6 @@
 #include "build_info.h"
 #include "study/run_folder.h"
 #include "case/case.h"
-#include "case/edit.h"
 #include "case/grammar.h"
 #include "base/hash.h"
 #include "io/plain_file.h"
@@ -40,7 +39,7 @@ typedef struct folder {
     int read_count;
     geometry_file *read;    /* [read_count] */
     char *case_folder;      /* from / */
-    char *text;             /* of the case (case/edit.h) */
+    char *text;             /* of the case (case/edit.c) */
     sf_edit_settings named; /* the settings in it that name files */
     int count;
     folder_file *file; /* [count] */

@@ -8,7 +8,6 @@
 #include <dlfcn.h>
 #include <gmshc.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include "base/text.h"
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mat3.h"

@@ -5,10 +5,7 @@
 #include "base/program.h"
 #include "model/model.h"
 #include "report/chart.h"
-#include "report/html.h"
 #include "io/provenance.h"
-#include "post/figures/figures.h"
-#include "post/figures/verdict.h"
 #include "post/view/cut.h"
 #include <argp.h>
 #include <limits.h>

@@ -5,7 +5,6 @@
 #include "post/results/origin.h"
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 static const char caution[] = "indicative, not a certification";
 

@@ -5,14 +5,12 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "io/plain_file.h"
 #include "io/provenance.h"
 #include "io/replace.h"
-#include "post/figures/figures.h"
 
 enum { SPEED, ACCELERATION, FORCE, CENTRE /* only of an exact sphere: the last */, MISSILE_ARRAYS };
 

@@ -2,7 +2,6 @@
 /* Opens files for softfall-mesh, which can open none: it gets a sealed copy of the content that was read and
  * hashed here, once per file. */
 #pragma once
-#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -2,9 +2,7 @@
 #include "pre/mesh/geo_parameters.h"
 
 #include <ctype.h>
-#include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "io/plain_file.h"

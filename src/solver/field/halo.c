@@ -2,7 +2,6 @@
 #include "solver/field/halo.h"
 
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Lists the nodes of other groups that group g sees, marked in `seen` (zero on entry and exit), into `list`

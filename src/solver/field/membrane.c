@@ -2,7 +2,6 @@
 #include "solver/field/membrane.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mat3.h"

@@ -3,14 +3,12 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "io/folder.h"
-#include "model/columns.h"
 #include "model/flight.h"
 #include "solver/missile.h"
 

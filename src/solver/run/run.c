@@ -2,7 +2,6 @@
 #include "solver/run/run.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/plan.h"
 
-#include "case/values.h"
-#include "case/values.h"
+#include "case/keys.h"
 #include "base/text.h"
 #include "io/plain_file.h"
 #include "study/material_file.h"

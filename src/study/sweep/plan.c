@@ -48,16 +48,15 @@ static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error 
     gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
     if (!q)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the Sobol' sequence");
-    if (seed != 1 && draw_shift(d, seed, shift, err) != SF_OK)
-        goto done;
-    for (int64_t k = 0; k < count; k++) {
+    if (seed != 1)
+        draw_shift(d, seed, shift, err);
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         gsl_qrng_get(q, u + k * d);
         for (int i = 0; i < d; i++) {
             double x = u[k * d + i] + shift[i];
             u[k * d + i] = x > 1 ? x - 1 : x < 1 ? x : 0.5; /* 1 is no quantile */
         }
     }
-done:
     gsl_qrng_free(q);
     return err->status;
 }

@@ -2,7 +2,6 @@
 #include "study/fit/drop/inference.h"
 
 #include "study/material_file.h"
-#include "study/fit/posterior/posterior.h"
 #include "material/low_density_foam.h"
 #include <gsl/gsl_sort.h>
 #include <math.h>

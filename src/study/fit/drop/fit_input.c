@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/program.h"
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 
 #include "io/plain_file.h"
 #include "case/case.h"

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 
 #include "base/hash.h"
 #include "base/units.h"
 #include "io/plain_file.h"
 #include "io/table_csv.h"
-#include "study/column.h"
 #include "study/fit/compression/compression_config.h"
 #include <math.h>
 #include <string.h>
