@@ -293,7 +293,7 @@ static bool is_offered(const sf_figure *figure) {
 static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
     size_t count;
     const sf_figure *list = sf_figure_list(&count);
-    sf_figures f = {0};
+    SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     SF_TRY(check_filter(filter, err));
     SF_TRY(sf_figures_compute(results, filter, &f, err));
     softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
@@ -302,7 +302,6 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
             made->figure[made->count] = (softfall_quantity){list[k].row.key, "", list[k].row.meaning, 1};
             made->value[made->count++] = sf_row_number(&list[k].row, &f);
         }
-    sf_figures_free(&f);
     return err->status;
 }
 
@@ -353,11 +352,10 @@ softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, 
 softfall_status softfall_results_figures(const char *path, double filter, softfall_figures **out,
                                          softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
-    sf_results r = {0};
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
     *out = NULL;
     if (sf_results_open(path, &r, &err) == SF_OK)
         compute(&r, filter, out, &err);
-    sf_results_close(&r);
     return softfall_return(&err, error);
 }
 
@@ -411,12 +409,11 @@ softfall_status softfall_cfc(const double *time, const double *value, int64_t co
                              double *filtered, softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     const sf_series curve = borrow(time, value, count);
-    sf_series made = {0};
+    SF_OWNED_BY(sf_series_free) sf_series made = {0};
     if (check_filter(filter, &err) == SF_OK &&
         sf_series_check(&curve, "the curve to filter", &err) == SF_OK &&
         sf_signal_filter(&curve, filter, &made, &err) == SF_OK)
         for (int64_t i = 0; i < count; i++)
             filtered[i] = sf_series_at(&made, time[i]);
-    sf_series_free(&made);
     return softfall_return(&err, error);
 }

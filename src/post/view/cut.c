@@ -161,7 +161,9 @@ static bool cross_triangle(const sf_cut *cut, const double *const corner[3], dou
     return count == 2;
 }
 
-bool sf_cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t t, double end[2][2]) {
+/* The missile's triangle where it is in that frame: x and z of both ends of its part of the plane; false: it
+ * is not in the plane. */
+static bool cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t t, double end[2][2]) {
     const sf_results *r = cut->results;
     double x[3][3];
     for (int k = 0; k < 3; k++)
@@ -357,7 +359,7 @@ static int64_t outline_count(const layout *l) {
 /* Piece k of the missile's outline in that frame; x and z of both ends. */
 static bool find_outline(const layout *l, const sf_frame_head *head, int64_t k, double end[2][2]) {
     if (l->cut->results->turns)
-        return sf_cut_triangle(l->cut, head, k, end);
+        return cut_triangle(l->cut, head, k, end);
     for (int e = 0; e < 2; e++)
         for (int c = 0; c < 2; c++)
             end[e][c] = l->cut->outline[k][e][c] + head->missile_displacement[2 * c];

@@ -51,10 +51,6 @@ typedef struct sf_cut {
 sf_status sf_cut_make(const sf_results *results, sf_cut *cut, sf_error *err);
 void sf_cut_free(sf_cut *cut);
 
-/* The missile's triangle where it is in that frame: x and z of both ends of its part of the plane; false: it
- * is not in the plane. */
-bool sf_cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t triangle, double end[2][2]);
-
 /* Value of a field ([node_count][components]) at a point. */
 double sf_cut_value(const sf_cut_point *point, const double *field, int components, int component);
 

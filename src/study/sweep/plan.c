@@ -5,6 +5,7 @@
 #include "io/plain_file.h"
 #include "post/figures/figures.h"
 #include "pre/mesh/geo_parameters.h"
+#include "study/fit/posterior/mixture.h"
 #include "study/run_folder.h"
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_randist.h>
@@ -21,17 +22,8 @@ int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
     return method == SF_SAMPLING_SALTELLI ? count * (d + 2) : count;
 }
 
-gsl_rng *sf_sample_random(uint64_t seed, sf_error *err) {
-    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    if (rng)
-        gsl_rng_set(rng, seed);
-    else
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
-    return rng;
-}
-
 static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
-    gsl_rng *rng = sf_sample_random(seed, err);
+    gsl_rng *rng = sf_random(seed, err);
     for (int i = 0; rng && i < d; i++)
         shift[i] = gsl_rng_uniform_pos(rng);
     gsl_rng_free(rng);
@@ -98,7 +90,7 @@ sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, dou
         return sobol(d, count, seed, u, err);
     if (method == SF_SAMPLING_SALTELLI)
         return saltelli(d, count, seed, u, err);
-    gsl_rng *rng = sf_sample_random(seed, err);
+    gsl_rng *rng = sf_random(seed, err);
     if (rng && method == SF_SAMPLING_LATIN)
         latin(rng, d, count, u, err);
     else if (rng)

@@ -65,9 +65,6 @@ typedef enum sf_sampling {
 
 #define SF_SAMPLING_WORDS "random|latin_hypercube|sobol|saltelli"
 
-/* Returns a generator with this seed, for gsl_rng_free; NULL on failure. */
-gsl_rng *sf_sample_random(uint64_t seed, sf_error *err);
-
 /* Coordinates that the Sobol' sequence of GSL has. */
 enum { SF_SOBOL_DIMENSIONS = 40 };
 

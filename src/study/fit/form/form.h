@@ -214,7 +214,6 @@ int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARA
  * values make no curve. */
 sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
                             sf_foam_card *card, sf_error *err);
-sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err);
 /* Puts a fine table, to 0.975 of the strain limit or 1 GPa, in place of each curve and its densification. */
 sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err);
 void sf_foam_card_free(sf_foam_card *card);
