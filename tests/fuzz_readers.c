@@ -6,7 +6,7 @@
 #include "study/cfh/points.h"
 #include "material/curve.h"
 #include "study/fit/compression/compression_config.h"
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 #include "model/model_io.h"
 #include "io/plain_file.h"
 #include "post/figures/compare.h"
@@ -16,7 +16,7 @@
 #include "case/curves.h"
 #include "pre/mesh/geo_parameters.h"
 #include "pre/mesh/gmsh_session.h"
-#include "pre/mesh/mesh_stream.h"
+#include "pre/mesh/mesher.h"
 #include "study/sweep/analysis.h"
 #include <ftw.h>
 #include <hdf5.h>

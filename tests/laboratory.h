@@ -5,7 +5,7 @@
 #ifndef SF_TESTS_LABORATORY_H
 #define SF_TESTS_LABORATORY_H
 
-#include "study/fit/drop/average.h"
+#include "study/fit/drop/inference.h"
 #include "point_fixture.h"
 #include <gsl/gsl_rng.h>
 

@@ -5,7 +5,6 @@
 
 #include "pre/mesh/gmsh_session.h"
 #include "solver/field/domain_stress.h"
-#include "solver/field/stabilisation.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>

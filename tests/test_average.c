@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Predictions of a posterior some of whose draws have no value, as their foam collapses: peaks count as above
  * every value, the HIC window is that of the others, and table, terminal and fit.json say so. */
-#include "study/fit/drop/average.h"
+#include "study/fit/drop/inference.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The confinement itself, without gmsh: a process that entered it tries everything. */
-#include "pre/mesher/confine.h"
+#include "pre/mesher/work.h"
 #include "pre/mesh/broker.h"
 #include "pre/mesh/mesher_protocol.h"
 

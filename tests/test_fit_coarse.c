@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* coarse_set of softfall-fit drop: the first iterations with a coarser mesh save iterations of the drops, and
  * leave the result theirs. */
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 #include "study/fit/space_mapping.h"
 #include "fit_fixture.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Identification from drops: the refusals of the input, and whole fits on a coarse mesh. */
 #include "extreme.h"
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 #include "study/fit/form/form.h"
 #include "foam_fixture.h"
 #include "io/folder.h"

@@ -4,10 +4,8 @@
  * itself: test_gui. */
 #include "program_fixture.h"
 
-#include "case/values.h"
-#include "gui/activity.h"
-#include "gui/pictures.h"
-#include "gui/fields.h"
+#include "case/keys.h"
+#include "gui/session.h"
 #include "io/process.h"
 #include <errno.h>
 #include <math.h>

@@ -3,8 +3,8 @@
  * the solver's law and whose cushion curve is that of a block, from each, from both, and with drops;
  * refusals. */
 #include "study/cfh/spread.h"
-#include "study/fit/drop/average.h"
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/inference.h"
+#include "study/fit/drop/drop_fit.h"
 #include "material/point.h"
 #include "program_fixture.h"
 #include "material/low_density_foam.h"

@@ -5,7 +5,6 @@
 #include "model_fixture.h"
 
 #include "solver/field/domain_stress.h"
-#include "solver/field/stabilisation.h"
 #include "solver/time_step.h"
 
 #include <math.h>

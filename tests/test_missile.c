@@ -161,17 +161,14 @@ static void every_point_moves_as_the_whole(void **state) {
     sf_missile missile;
     sf_missile_begin(&m, &missile);
     for (int64_t step = 0; step < 1500; step++) {
-        double before[3], after[3], velocity[3], motion[3];
+        double before[3], after[3], motion[3];
         sf_missile_translation(&m, &missile, before);
         take_step(&m, &missile, step, force);
         sf_missile_translation(&m, &missile, after);
         for (int p = 0; p < 3; p++) {
-            sf_missile_velocity_at(&m, &missile, points[p], velocity);
             sf_missile_motion_at(&m, &missile, points[p], motion);
-            for (int r = 0; r < 3; r++) {
-                assert_close(velocity[r], missile.velocity_now * m.missile.direction[r], 1e-15);
+            for (int r = 0; r < 3; r++)
                 assert_close(motion[r], after[r] - before[r], 1e-15);
-            }
             assert_true(sqrt(sf_dot3(motion, motion)) <= DT * sf_missile_fastest(&m, &missile) * (1 + 1e-9));
         }
     }

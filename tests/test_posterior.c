@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sampling of densities whose answers are known in closed form. */
-#include "study/fit/posterior/chains.h"
-#include "study/fit/posterior/discrepancy.h"
-#include "study/fit/posterior/leave_one_out.h"
+#include "study/fit/posterior/posterior.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>

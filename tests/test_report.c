@@ -5,7 +5,7 @@
 #include "report/html.h"
 #include "post/view/cut.h"
 #include "post/results/origin.h"
-#include "post/view/plot.h"
+#include "post/view/report.h"
 #include "post_fixture.h"
 #include "program_fixture.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Volume, centroid and inertia of closed surfaces, against closed forms. */
-#include "pre/missile_body.h"
+#include "pre/build.h"
 
 #include <math.h>
 #include <setjmp.h>

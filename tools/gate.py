@@ -42,7 +42,6 @@ ALLOWED = {
     "base/units": {"library": "the unit system of UDUNITS"},
     "post/view/xdmf": {"list": "for the data of earlier runs of softfall-post",
                   "remove": "these data, and moves new ones within its own folder"},
-    "solver/run/checkpoint": {"remove": "its own partial file"},
     "solver/run/output": {"remove": "its own partial files"},
     "programs/softfall-solve": {"remove": "results and checkpoint of an earlier run, with --force"},
     "programs/softfall-new": {"list": "the folder of the examples"},

@@ -7,8 +7,6 @@
 #include "model/model_io.h"
 #include "post/figures/figures.h"
 #include "solver/operators.h"
-#include "solver/run/frame.h"
-#include "solver/run/recorder.h"
 #include "solver/run/run.h"
 #include "solver/state.h"
 #include "solver/step.h"
@@ -216,9 +214,8 @@ static sf_status read_text(const sf_h5 *file, const char *path, char **text, sf_
 }
 
 static sf_status read_model(const char *path, softfall_model *m, sf_error *err) {
-    sf_h5 *file = NULL;
-    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
-    char *libraries = NULL;
+    SF_OWNED_BY(sf_h5_drop) sf_h5 *file = NULL;
+    SF_OWNED char *libraries = NULL;
     if (sf_model_read(path, &m->model, &file, err) == SF_OK &&
         read_text(file, "/provenance/case_text", &m->case_text, err) == SF_OK &&
         read_text(file, "/provenance/parameters", &m->parameters, err) == SF_OK &&
@@ -226,8 +223,6 @@ static sf_status read_model(const char *path, softfall_model *m, sf_error *err) 
         read_text(file, "/provenance/geometry_files", &m->geometry_files, err) == SF_OK)
         read_text(file, "/provenance/libraries", &libraries, err);
     snprintf(m->libraries, sizeof m->libraries, "%s", libraries ? libraries : "");
-    free(libraries);
-    sf_h5_close(&file, &ignored);
     return err->status;
 }
 
@@ -257,11 +252,7 @@ void softfall_model_free(softfall_model *m) {
     if (!m)
         return;
     sf_model_free(&m->model);
-    free(m->case_text);
-    free(m->parameters);
-    free(m->mesh_hash);
-    free(m->geometry_files);
-    free(m);
+    SF_FREE(m->case_text, m->parameters, m->mesh_hash, m->geometry_files, m);
 }
 
 softfall_model_info softfall_model_describe(const softfall_model *model) {
@@ -302,7 +293,7 @@ static bool is_offered(const sf_figure *figure) {
 static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
     size_t count;
     const sf_figure *list = sf_figure_list(&count);
-    sf_figures f = {0};
+    SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     SF_TRY(check_filter(filter, err));
     SF_TRY(sf_figures_compute(results, filter, &f, err));
     softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
@@ -311,7 +302,6 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
             made->figure[made->count] = (softfall_quantity){list[k].row.key, "", list[k].row.meaning, 1};
             made->value[made->count++] = sf_row_number(&list[k].row, &f);
         }
-    sf_figures_free(&f);
     return err->status;
 }
 
@@ -362,11 +352,10 @@ softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, 
 softfall_status softfall_results_figures(const char *path, double filter, softfall_figures **out,
                                          softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
-    sf_results r = {0};
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
     *out = NULL;
     if (sf_results_open(path, &r, &err) == SF_OK)
         compute(&r, filter, out, &err);
-    sf_results_close(&r);
     return softfall_return(&err, error);
 }
 
@@ -420,12 +409,11 @@ softfall_status softfall_cfc(const double *time, const double *value, int64_t co
                              double *filtered, softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     const sf_series curve = borrow(time, value, count);
-    sf_series made = {0};
+    SF_OWNED_BY(sf_series_free) sf_series made = {0};
     if (check_filter(filter, &err) == SF_OK &&
         sf_series_check(&curve, "the curve to filter", &err) == SF_OK &&
         sf_signal_filter(&curve, filter, &made, &err) == SF_OK)
         for (int64_t i = 0; i < count; i++)
             filtered[i] = sf_series_at(&made, time[i]);
-    sf_series_free(&made);
     return softfall_return(&err, error);
 }

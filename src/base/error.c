@@ -2,7 +2,6 @@
 #include "base/error.h"
 
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,6 +70,11 @@ void sf_release(void *pointer) {
     void *block;
     memcpy(&block, pointer, sizeof block);
     free(block);
+}
+
+void sf_free_all(size_t count, void *pointers[]) {
+    for (size_t k = 0; k < count; k++)
+        free(pointers[k]);
 }
 
 void sf_sink_tell(const sf_sink *sink, sf_severity severity, const char *format, ...) {

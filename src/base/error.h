@@ -62,6 +62,10 @@ void sf_error_clean(char *sentence);
 /* Calls free() with the pointer at this address. */
 void sf_release(void *pointer);
 
+/* Calls free() with each of several pointers. */
+#define SF_FREE(...) sf_free_all(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *), (void *[]){__VA_ARGS__})
+void sf_free_all(size_t count, void *pointers[]);
+
 /* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
  * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
 void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);

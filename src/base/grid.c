@@ -53,8 +53,7 @@ sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, co
 }
 
 void sf_grid_free(sf_grid *grid) {
-    free(grid->start);
-    free(grid->node);
+    SF_FREE(grid->start, grid->node);
     *grid = (sf_grid){0};
 }
 

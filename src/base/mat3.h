@@ -14,6 +14,11 @@ static inline void sf_cross3(const double a[3], const double b[3], double out[3]
         out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
+static inline double sf_distance3(const double a[3], const double b[3]) {
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
+}
+
 /* The smallest and the largest coordinates of `count` points; INFINITY and -INFINITY without any. */
 static inline void sf_box3(int64_t count, const double *position, double low[3], double high[3]) {
     for (int k = 0; k < 3; k++) {

@@ -4,10 +4,8 @@
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -116,4 +114,11 @@ void sf_text_add(char *text, size_t size, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text + used, size - used, format, arguments);
     va_end(arguments);
+}
+
+char *sf_text_close(FILE *stream, char **text) {
+    if (stream && fclose(stream) == 0)
+        return *text;
+    free(*text);
+    return *text = NULL;
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* Numbers, words and lines of texts. Numbers of the user are decimal ones alone. */
 
@@ -22,8 +23,7 @@ int sf_word_find(const char *list, const char *word);
 /* The word at the place (the last one if there are fewer) and its length. */
 const char *sf_word_at(const char *list, int place, int *length);
 
-/* Takes the next line from `rest`: what follows `name` and the separator in it; NULL if it begins otherwise.
- */
+/* Takes the next line from `rest`: what follows `name` and separator in it; NULL: it begins otherwise. */
 char *sf_line_take(char **rest, const char *name, char separator);
 
 /* Length of the well-formed UTF-8 sequence at `s`, 0 if there is none (RFC 3629). */
@@ -31,6 +31,10 @@ int sf_utf8_length(const unsigned char *s);
 
 /* Appends to the text in a buffer of `size` bytes, as far as there is room. */
 void sf_text_add(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Closes a stream of open_memstream, NULL if there was no memory for it; returns its text, owned by the
+ * caller, or NULL. */
+char *sf_text_close(FILE *stream, char **text);
 
 /* Length of `text`, or at most `size`, cut before a sequence that does not end there. */
 int sf_utf8_cut(const char *text, int size);

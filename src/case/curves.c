@@ -33,8 +33,7 @@ sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
 }
 
 void sf_case_curve_free(sf_case_curve *curve) {
-    free(curve->strain);
-    free(curve->stress);
+    SF_FREE(curve->strain, curve->stress);
     memset(curve, 0, sizeof *curve);
 }
 
@@ -77,7 +76,7 @@ static sf_status take_points(const sf_table *table, sf_case_curve *curve, sf_err
 
 sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err) {
     const sf_table_layout layout = sf_case_curve_layout("curve", check_point);
-    sf_table table;
+    SF_OWNED_BY(sf_table_free) sf_table table;
     memset(curve, 0, sizeof *curve);
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count < SF_CURVE_MIN_POINTS)
@@ -92,7 +91,6 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
         take_points(&table, curve, err);
     if (!table.plain)
         memcpy(curve->interpretation, table.interpretation, sizeof curve->interpretation);
-    sf_table_free(&table);
     if (err->status != SF_OK)
         sf_case_curve_free(curve);
     return err->status;
@@ -155,27 +153,19 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     if (!text || !*text)
         return SF_REFUSE_AT(reader, setting, err, "%s: the name of a curve's CSV file is expected",
                             reader->material_group);
-    char *path = sf_case_resolve(reader, setting, text, err);
-    if (!path)
-        return err->status;
-    sf_case_curve curve = {0};
+    SF_OWNED char *path = sf_case_resolve(reader, setting, text, err);
+    SF_TRY(err->status);
+    SF_OWNED_BY(sf_case_curve_free) sf_case_curve curve = {0};
     sf_error inner = SF_ERROR_INIT;
-    sf_status status = sf_case_curve_read(path, &curve, &inner);
-    if (status == SF_OK)
-        status = check_slopes(path, &curve, &inner);
-    if (status != SF_OK) {
-        SF_FAIL(err, status, "%s (named at %s)", inner.text, sf_case_where(reader, setting, where));
-    } else {
-        if (curve.interpretation[0])
-            sf_sink_tell(reader->sink, SF_NOTE, "curve %s: %s", path, curve.interpretation);
-        if (curve.extended)
-            sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
-                         path, curve.strain[1]);
-        status = add_curve(sf_material_curves(reader->material), rate, &curve, err);
-    }
-    sf_case_curve_free(&curve);
-    free(path);
-    return status;
+    if (sf_case_curve_read(path, &curve, &inner) != SF_OK || check_slopes(path, &curve, &inner) != SF_OK)
+        return SF_FAIL(err, inner.status, "%s (named at %s)", inner.text,
+                       sf_case_where(reader, setting, where));
+    if (curve.interpretation[0])
+        sf_sink_tell(reader->sink, SF_NOTE, "curve %s: %s", path, curve.interpretation);
+    if (curve.extended)
+        sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
+                     path, curve.strain[1]);
+    return add_curve(sf_material_curves(reader->material), rate, &curve, err);
 }
 
 /* The quantity in which the curves of a list differ. */
@@ -266,13 +256,12 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
     return SF_OK;
 }
 
-/* Leaves the curve at the pad's temperature, of those at several, whose temperatures stand in place of rates.
- */
+/* Leaves the curve at the pad's temperature, of several, whose temperatures stand in place of rates. */
 static sf_status take_temperature(sf_case_reader *reader, const config_setting_t *setting, sf_error *err) {
     sf_law_curves *card = sf_material_curves(reader->material);
     const double *t = card->curve_rate, at = reader->out->run.temperature;
     int64_t last = card->curve_count - 1, k = 0;
-    sf_case_curve curve = {0};
+    SF_OWNED_BY(sf_case_curve_free) sf_case_curve curve = {0};
     if (last < 1 || at == 0)
         return SF_REFUSE_AT(
             reader, setting, err, "%s.curves: curves at temperatures need %s", reader->material_group,
@@ -295,7 +284,6 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
         add_curve(card, 0, &curve, err);
         reader->out->temperature_acts = reader->thermal = true;
     }
-    sf_case_curve_free(&curve);
     return err->status;
 }
 
@@ -396,16 +384,14 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
         return SF_REFUSE_AT(reader, setting, err, "missile.motion: the name of a CSV file is expected");
-    char *path = sf_case_resolve(reader, setting, text, err);
-    if (!path)
-        return err->status;
+    SF_OWNED char *path = sf_case_resolve(reader, setting, text, err);
+    SF_TRY(err->status);
     sf_table table = {0};
     sf_error inner = SF_ERROR_INIT;
     if (sf_table_read(path, &motion_layout, &table, &inner) == SF_OK)
         check_motion_table(path, &table, &inner);
     if (inner.status == SF_OK && !table.plain)
         sf_sink_tell(reader->sink, SF_NOTE, "motion %s: %s", path, table.interpretation);
-    free(path);
     c->motion_count = table.count;
     c->motion_time = table.value[0];
     c->motion_displacement = table.value[1];

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/edit.h"
-
 #include "case/grammar.h"
-#include "case/values.h"
+
+#include "case/keys.h"
 #include "io/plain_file.h"
 #include <libconfig.h>
 #include <stdlib.h>
@@ -152,8 +151,7 @@ sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const s
         else
             no_memory(err);
         begin = s->end;
-        free(name);
-        free(renamed);
+        SF_FREE(name, renamed);
     }
     fprintf(out, "%.*s", (int)(end - begin), text + begin);
     return err->status;
@@ -242,8 +240,7 @@ static sf_status add(char **text, const sf_edit_settings *settings, char *path, 
         no_memory(err);
     else
         replace(text, own ? from : at, own ? from : at, line, err);
-    free(value);
-    free(line);
+    SF_FREE(value, line);
     return err->status;
 }
 
@@ -273,7 +270,6 @@ sf_status sf_case_edit_set(char **text, const char *path, const char *set, sf_er
             value = NULL;
         }
     }
-    free(value);
-    free(settings.setting);
+    SF_FREE(value, settings.setting);
     return err->status;
 }

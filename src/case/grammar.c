@@ -5,8 +5,6 @@
 #include <errno.h>
 #include <limits.h>
 #include <stdarg.h>
-#include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -311,10 +309,7 @@ static sf_status begin_piece(const walk *w, const char *path, int line, sf_error
     sf_case_source *source = w->source;
     if (!source)
         return SF_OK;
-    sf_case_piece *grown = realloc(source->piece, (size_t)(source->count + 1) * sizeof *grown);
-    if (grown)
-        source->piece = grown;
-    char *name = grown ? strdup(path) : NULL;
+    char *name = sf_grow(&source->piece, (size_t)source->count, sizeof *source->piece) ? strdup(path) : NULL;
     if (!name)
         return no_memory(path, err);
     source->piece[source->count++] = (sf_case_piece){w->lines + 1, line, name};
@@ -326,7 +321,7 @@ static sf_status walk_file(walk *w, const char *path, const char *from, int line
 /* The file of an include in place of its line, `text`. */
 static sf_status walk_include(walk *w, slice text, slice name, const char *path, int line, int depth,
                               sf_error *err) {
-    char *included = NULL, *whole = NULL;
+    SF_OWNED char *included = NULL, *whole = NULL;
     const char *shown = name.text;
     int length = (int)name.length;
     if (++w->includes > MOST_INCLUDES)
@@ -349,8 +344,6 @@ static sf_status walk_include(walk *w, slice text, slice name, const char *path,
         begin_piece(w, path, line + 1, err);
     if (w->marked)
         fprintf(w->out, "#%c\n", SF_CASE_END);
-    free(included);
-    free(whole);
     return err->status;
 }
 
@@ -382,7 +375,8 @@ static sf_status walk_lines(walk *w, const char *text, size_t size, const char *
 /* `from`: the file with the @include, at `line`; NULL: none. Refuses includes that are missing or no plain
  * files, nested or many beyond reason, and what the scan refuses. */
 static sf_status walk_file(walk *w, const char *path, const char *from, int line, int depth, sf_error *err) {
-    char where[SF_CASE_WHERE_SIZE] = "", *text = NULL;
+    char where[SF_CASE_WHERE_SIZE] = "";
+    SF_OWNED char *text = NULL;
     size_t size = 0;
     sf_error inner = SF_ERROR_INIT;
     if (from)
@@ -397,7 +391,6 @@ static sf_status walk_file(walk *w, const char *path, const char *from, int line
         SF_REFUSE(err, "%sthe file %s and its includes are larger than %d bytes", where, path, LARGEST_TEXT);
     else if (begin_piece(w, path, 1, err) == SF_OK)
         walk_lines(w, text + mark, size - mark, path, depth, err);
-    free(text);
     return err->status;
 }
 
@@ -405,10 +398,10 @@ static sf_status walk_file(walk *w, const char *path, const char *from, int line
 
 /* A file that stands in place of a group, each line as a comment. */
 static sf_status copy_as_comment(const char *path, FILE *out, sf_error *err) {
-    char *text = sf_case_load_text(path, 0, NULL, NULL, err), *rest = text;
+    SF_OWNED char *text = sf_case_load_text(path, 0, NULL, NULL, err);
+    char *rest = text;
     for (char *line = strsep(&rest, "\n"); line && (rest || *line); line = strsep(&rest, "\n"))
         fprintf(out, "#     %s\n", line);
-    free(text);
     return err->status;
 }
 
@@ -421,7 +414,8 @@ static void put_override(const char *text, FILE *out) {
 }
 
 static char *load(walk *w, const char *path, int count, const char *const *overrides, sf_error *err) {
-    char *text = NULL, *folder = sf_case_folder_of(path, err);
+    char *text = NULL;
+    SF_OWNED char *folder = sf_case_folder_of(path, err);
     size_t size = 0;
     w->folder = folder;
     w->out = folder ? open_memstream(&text, &size) : NULL;
@@ -433,9 +427,8 @@ static char *load(walk *w, const char *path, int count, const char *const *overr
         if (file)
             copy_as_comment(file, w->out, err);
     }
-    if (!w->out || fclose(w->out) != 0)
+    if (!sf_text_close(w->out, &text))
         no_memory(path, err);
-    free(folder);
     if (err->status == SF_OK)
         return text;
     free(text);

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdbool.h>
-
 #include "base/error.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
 
 /* Looks at a text in libconfig syntax before libconfig does, and refuses what libconfig would drop or cut
  * without a word: comments and strings that do not end, numbers that are none or do not fit, unknown escapes,
  * text beside an @include, and more text than a case can need (libconfig's time grows with the square of the
  * number of settings). */
 
-/* Refuses a value on one line of its own likewise, and one with a comment; `name` stands before the sentence.
+/* Refuses a value on one line of its own likewise, and one with a comment; the sentence begins with `name`.
  */
 sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err);
 
@@ -39,7 +40,7 @@ typedef struct sf_case_source {
  * that are missing or no plain files are refused. `source` (may be NULL) is filled. */
 char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
                         sf_error *err);
-/* The text of a case file for case/edit.h: two marks, comments on lines of their own, frame the text of an
+/* The text of a case file for case/edit.c: two marks, comments on lines of their own, frame the text of an
  * included file: "#" and SF_CASE_BEGIN with the line of the include behind them, "#" and SF_CASE_END. No
  * other line holds these characters. `whole`: the includes are named from / on. From malloc, NULL on failure.
  */
@@ -58,3 +59,34 @@ char *sf_case_folder_of(const char *path, sf_error *err);
 /* The file of a text "group=@file" or "materials.NAME=@file", NULL for "group.key=value". Relative to the
  * working directory. */
 const char *sf_case_override_file(const char *text);
+
+/* The text of a case with its includes in place, to be changed and written at another place: its lines stay
+ * as they are but for the values of --set texts and the names of files. Only of cases that sf_case_read took
+ * with the same texts. sf_case_load_marked reads it. */
+
+/* Puts a --set text, "group.key=value" or "group=@file", where it belongs; the names of files in it become
+ * paths from /. `*text` is from malloc and may move; `path` is that of the case. */
+sf_status sf_case_edit_set(char **text, const char *path, const char *set, sf_error *err);
+
+enum { SF_EDIT_PATH_SIZE = 256 };
+
+/* The value of a setting: text[begin, end), with the brackets of a group, list or array. */
+typedef struct sf_edit_setting {
+    char path[SF_EDIT_PATH_SIZE]; /* "group.key"; within a list that of the list, and the names below it */
+    size_t begin, end;
+} sf_edit_setting;
+
+typedef struct sf_edit_settings {
+    int count;
+    sf_edit_setting *setting; /* [count] in the order of the text, a group before the settings in it; owned */
+} sf_edit_settings;
+
+/* Finds the settings, or those that name files. Release with free(settings->setting), also on failure. */
+sf_status sf_case_edit_find(const char *text, bool only_files, sf_edit_settings *settings, sf_error *err);
+
+/* The new name of the file that the setting `path` calls `name`; from malloc, NULL on failure. */
+typedef char *sf_edit_rename(void *context, const char *path, const char *name, sf_error *err);
+
+/* Writes text[begin, end) with new names of the files. SF_ERR_INPUT: one of the names does not end there. */
+sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const sf_edit_settings *files,
+                             sf_edit_rename *rename, void *context, FILE *out, sf_error *err);

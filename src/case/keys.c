@@ -3,7 +3,6 @@
 
 #include "model/model.h"
 #include <assert.h>
-#include <stdio.h>
 #include <string.h>
 
 #define AT(member) .offset = offsetof(sf_case, member)

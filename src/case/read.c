@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a case: file, overrides, unknown keys, every row of the table, then the rules that join several keys.
+/* Reads a case: file, overrides, unknown keys, the rows of the table, then the rules that join several keys.
  */
 #include "case/case.h"
 
-#include "case/values.h"
+#include "case/keys.h"
 #include "case/reader.h"
 
 #include "base/hash.h"
@@ -156,7 +156,7 @@ static void tell_value(const sf_case_reader *reader, const sf_key *key, const co
 
 static void list_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                        const char *detail, const char *origin) {
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     size_t size = 0;
     FILE *value = open_memstream(&text, &size);
     if (!value)
@@ -175,24 +175,19 @@ static void list_value(sf_case_reader *reader, const sf_key *key, const config_s
     fprintf(reader->listing, "%-34s %-24s %-24s %s\n", name, text ? text : "", detail, origin);
     hash_value(reader, key, name, text ? text : "", detail);
     tell_value(reader, key, setting, text ? text : "", strcmp(origin, "given") == 0);
-    free(text);
 }
 
 static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_error *err) {
-    config_t scratch;
+    SF_OWNED_BY(config_destroy) config_t scratch;
     char line[512], detail[128] = "-";
     snprintf(line, sizeof line, "%s = %s;", key->name, key->fallback);
     config_init(&scratch);
-    sf_status status = SF_OK;
     if (!config_read_string(&scratch, line))
-        status = SF_REFUSE(err, "the default of %s.%s is not valid: %s", key->group, key->name, line);
-    else
-        status = sf_case_read_value(reader, key, config_setting_get_elem(scratch.root, 0), detail,
-                                    sizeof detail, err);
-    if (status == SF_OK)
-        list_value(reader, key, config_setting_get_elem(scratch.root, 0), detail, "default");
-    config_destroy(&scratch);
-    return status;
+        return SF_REFUSE(err, "the default of %s.%s is not valid: %s", key->group, key->name, line);
+    const config_setting_t *value = config_setting_get_elem(scratch.root, 0);
+    SF_TRY(sf_case_read_value(reader, key, value, detail, sizeof detail, err));
+    list_value(reader, key, value, detail, "default");
+    return SF_OK;
 }
 
 static sf_status read_layers(sf_case_reader *reader, sf_error *err);
@@ -296,9 +291,8 @@ static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
 /* The material of one layer, by the same keys as those of `material`. */
 static sf_status read_layer(const sf_case_reader *reader, const config_setting_t *setting,
                             sf_material *material, sf_error *err) {
-    sf_case_reader *own = sf_alloc(err, 1, sizeof *own, "a layer's material");
-    if (!own)
-        return err->status;
+    SF_OWNED sf_case_reader *own = sf_alloc(err, 1, sizeof *own, "a layer's material");
+    SF_TRY(err->status);
     *own = *reader;
     own->layers = NULL;
     own->material_only = true;
@@ -307,7 +301,6 @@ static sf_status read_layer(const sf_case_reader *reader, const config_setting_t
     if (choose_law(own, err) == SF_OK && check_names(own, setting, own->material_group, err) == SF_OK &&
         read_keys(own, err) == SF_OK && sf_case_check_card(own, err) == SF_OK)
         snprintf(material->name, sizeof material->name, "%s", config_setting_name(setting));
-    free(own);
     return err->status;
 }
 
@@ -457,7 +450,7 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
 static sf_status begin_reading(sf_case_reader *reader, int count, const char *const *overrides,
                                sf_error *err) {
     sf_case *c = reader->out;
-    char *material = NULL;
+    SF_OWNED char *material = NULL;
     config_init(&reader->config);
     config_set_destructor(&reader->config, free); /* of the hooks */
     reader->listing = open_memstream(&c->parameters, &reader->listing_size);
@@ -471,7 +464,6 @@ static sf_status begin_reading(sf_case_reader *reader, int count, const char *co
                (c->text = sf_case_load_text(reader->path, count, overrides, &reader->source, err))) {
         parse_text(reader, count, overrides, err);
     }
-    free(material);
     return err->status;
 }
 
@@ -524,37 +516,27 @@ static sf_status read_alone(const char *path, sf_case *scratch, sf_error *err) {
 }
 
 sf_status sf_case_check_material(const char *path, sf_error *err) {
-    sf_case scratch = {0};
-    read_alone(path, &scratch, err);
-    sf_case_free(&scratch);
-    return err->status;
+    SF_OWNED_BY(sf_case_free) sf_case scratch = {0};
+    return read_alone(path, &scratch, err);
 }
 
 sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err) {
-    sf_case scratch = {0};
+    SF_OWNED_BY(sf_case_free) sf_case scratch = {0};
     *material = (sf_material){0};
     if (read_alone(path, &scratch, err) == SF_OK) {
         *material = scratch.material;
         scratch.material = (sf_material){0};
     }
-    sf_case_free(&scratch);
     return err->status;
 }
 
 void sf_case_free(sf_case *c) {
-    free(c->path);
-    free(c->text);
-    free(c->parameters);
-    free(c->geometry_files);
-    free(c->pad.path);
-    free(c->missile.path);
+    SF_FREE(c->path, c->text, c->parameters, c->geometry_files, c->pad.path, c->missile.path);
     for (int k = 0; k < SF_SUPPORTS; k++)
         free(c->support[k].source.path);
     sf_material_free(&c->material);
     for (int k = 0; c->layer && k < c->layer_count; k++)
         sf_material_free(&c->layer[k]);
-    free(c->layer);
-    free(c->motion_time);
-    free(c->motion_displacement);
+    SF_FREE(c->layer, c->motion_time, c->motion_displacement);
     memset(c, 0, sizeof *c);
 }

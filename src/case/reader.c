@@ -29,12 +29,10 @@ char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *sett
     const char *file = origin && origin->line > 0 ? origin->text
                        : !origin && line > 0      ? sf_case_source_find(&reader->source, line, &line)
                                                   : reader->path;
-    char *folder = sf_case_folder_of(file, err);
-    if (folder && *path == '/')
-        out = strdup(path);
-    else if (folder && asprintf(&out, "%s/%s", folder, path) < 0)
+    SF_OWNED char *folder = sf_case_folder_of(file, err);
+    bool below = *path != '/';
+    if (folder && asprintf(&out, "%s%s%s", below ? folder : "", below ? "/" : "", path) < 0)
         out = NULL;
-    free(folder);
     if (!out)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
     return out;
@@ -142,12 +140,10 @@ static sf_status put_value(config_setting_t *parent, const char *name, const cha
     config_t scratch;
     config_init(&scratch);
     bool done = false, parsed = false;
-    char *line = NULL;
-    if (asprintf(&line, "value = %s;", value) >= 0) {
+    SF_OWNED char *line = NULL;
+    if (asprintf(&line, "value = %s;", value) >= 0)
         parsed = !strpbrk(value, "\r\n") && config_read_string(&scratch, line) &&
                  config_setting_length(scratch.root) == 1;
-        free(line);
-    }
     sf_error fault = SF_ERROR_INIT;
     if (parsed && sf_case_scan_value("", value, &fault) != SF_OK) {
         SF_FAIL(err, fault.status, "--set %s%s", text, fault.text);
@@ -181,7 +177,7 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
     config_t scratch;
     config_init(&scratch);
     sf_case_source lines = {0};
-    char *whole = sf_case_load_text(path, 0, NULL, &lines, err);
+    SF_OWNED char *whole = sf_case_load_text(path, 0, NULL, &lines, err);
     if (whole) {
         const copy_source source = {.source = &lines};
         const char *dot = strchr(name, '.'), *member = dot ? dot + 1 : name;
@@ -207,7 +203,6 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
     }
     config_destroy(&scratch);
     sf_case_source_free(&lines);
-    free(whole);
     return err->status;
 }
 

@@ -2,7 +2,6 @@
 #include "case/reader.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/mat3.h"

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/values.h"
+#include "case/keys.h"
 
-#include <stdbool.h>
 #include <string.h>
 
-#include "base/units.h"
-#include "case/keys.h"
 #include "material/laws.h"
 
 static void print_text(FILE *file, const char *text) {

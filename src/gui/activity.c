@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gui/activity.h"
+#include "gui/session.h"
 
 #include "base/hash.h"
-#include "gui/fields.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"

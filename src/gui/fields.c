@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gui/fields.h"
+#include "gui/session.h"
 
 #include <ctype.h>
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
-#include "case/values.h"
+#include "case/keys.h"
 #include "io/plain_file.h"
 #include "pre/mesh/geo_parameters.h"
 

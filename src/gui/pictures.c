@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gui/pictures.h"
+#include "gui/session.h"
 
 #include "base/mat3.h"
 #include "base/units.h"
@@ -64,12 +64,9 @@ static void place_point(const missile_surface *m, int64_t triangle, int parts, i
  * foam behind a plane would be seen through the open half. Returns the number of triangles behind the `count`
  * at `corner`. */
 static int64_t close_missile(const missile_surface *m, double *corner, int64_t count) {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
+    double low[3], high[3], middle[3];
     int64_t made = 0;
-    for (int64_t k = 0; k < 9 * count; k++) {
-        low[k % 3] = fmin(low[k % 3], corner[k]);
-        high[k % 3] = fmax(high[k % 3], corner[k]);
-    }
+    sf_box3(3 * count, corner, low, high);
     for (int d = 0; d < 3; d++)
         middle[d] = d == 2 ? high[d] : isfinite(m->plane[d]) ? m->plane[d] : 0.5 * (low[d] + high[d]);
     for (int64_t k = 0; k < 3 * count; k++)
@@ -170,12 +167,8 @@ sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_
 }
 
 void sf_shape_free(sf_shape *s) {
-    free(s->pad.position);
-    free(s->pad.face);
-    free(s->pad_node);
-    free(s->missile.position);
-    free(s->missile.face);
-    free(s->missile_position);
+    SF_FREE(s->pad.position, s->pad.face, s->pad_node, s->missile.position, s->missile.face,
+            s->missile_position);
     *s = (sf_shape){0};
 }
 
@@ -190,9 +183,7 @@ static void gather(const sf_shape *s, const sf_frame *fields, sf_shape_frame *ou
 }
 
 static void free_shape_frame(sf_shape_frame *f) {
-    free(f->pad);
-    free(f->stress);
-    free(f->missile);
+    SF_FREE(f->pad, f->stress, f->missile);
     *f = (sf_shape_frame){0};
 }
 
@@ -227,7 +218,7 @@ static const char *const keys[SF_CHECK_ENTRIES] = {
 };
 
 sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err) {
-    sf_h5 *file = NULL;
+    SF_OWNED_BY(sf_h5_drop) sf_h5 *file = NULL;
     SF_OWNED char *text = NULL;
     out->count = 0;
     if (sf_h5_open(model, &file, err) == SF_OK)
@@ -240,8 +231,6 @@ sf_status sf_checks_read(const char *model, sf_check_entries *out, sf_error *err
         snprintf(e->name, sizeof e->name, "3Checks/%02d%s", k, name);
         out->count++;
     }
-    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
-    sf_h5_close(&file, &ignored);
     return err->status;
 }
 

@@ -288,6 +288,12 @@ static bool is_there(const char *path) {
     return sf_watch_stamp_of(path).inode != 0;
 }
 
+static void tell_not_started(sf_session *s, const char *sentence) {
+    s->activity = SF_FAILED;
+    unlock(s);
+    tell(s, true, sentence);
+}
+
 /* Starts the program of the activity that begins. */
 static void start(sf_session *s) {
     sf_error err = SF_ERROR_INIT;
@@ -316,11 +322,7 @@ static void start(sf_session *s) {
     if (err.status == SF_OK)
         tell(s, false, text);
     else
-        s->activity = SF_FAILED;
-    if (err.status != SF_OK) {
-        unlock(s);
-        tell(s, true, err.text);
-    }
+        tell_not_started(s, err.text);
 }
 
 /* A finished run of the same values is shown at once. */
@@ -405,11 +407,8 @@ static void end_program(sf_session *s, int code) {
     if (before == SF_RUNNING && event == SF_CHILD_FAILED && s->resuming &&
         !s->told) { /* it cannot be resumed */
         sf_error err = SF_ERROR_INIT;
-        if (start_solve(s, false, &err) != SF_OK) {
-            s->activity = SF_FAILED;
-            unlock(s);
-            tell(s, true, err.text);
-        }
+        if (start_solve(s, false, &err) != SF_OK)
+            tell_not_started(s, err.text);
         return;
     }
     if (event == SF_CHILD_DONE && (before == SF_RUNNING || before == SF_STOPPING))

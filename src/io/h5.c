@@ -120,10 +120,14 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
     if (H5Fclose((*file)->id) < 0)
         status = SF_FAIL(err, SF_ERR_IO, "closing %s failed: its last data may be missing (disk full?)",
                          (*file)->path);
-    free((*file)->path);
-    free(*file);
+    SF_FREE((*file)->path, *file);
     *file = NULL;
     return status;
+}
+
+void sf_h5_drop(sf_h5 **file) {
+    sf_error ignored = SF_ERROR_INIT;
+    sf_h5_close(file, &ignored);
 }
 
 enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE, LINK_DAMAGED };
@@ -432,7 +436,7 @@ static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, s
 }
 
 /* The storage of a dataset must be known before any other property is asked for: even the extent of a
- * virtual dataset is looked up in the other files. */
+ * virtual dataset is looked up in the other files. The caller closes *set, also on failure. */
 static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, sf_error *err) {
     hid_t in;
     int found = find_object(file, path, &in);
@@ -448,11 +452,7 @@ static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, s
         return SF_FAIL(err, SF_ERR_IO, "%s: the file of its run that holds %s is damaged", file->path, path);
     if (*set < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: %s is not a dataset", file->path, path);
-    if (check_storage(file, path, *set, err) != SF_OK) {
-        H5Dclose(*set);
-        *set = -1;
-    }
-    return err->status;
+    return check_storage(file, path, *set, err);
 }
 
 /* Rank and extents of an open dataset against what the caller expects; fills dims and the number of items.
@@ -682,12 +682,11 @@ sf_status sf_members_read(const sf_h5 *file, const char *group, const sf_member 
                           void *base, sf_error *err) {
     for (size_t k = 0; k < count && err->status == SF_OK; k++) {
         char path[128];
-        void *data = NULL;
+        SF_OWNED void *data = NULL;
         int64_t items = member[k].count;
         snprintf(path, sizeof path, "%s/%s", group, member[k].name);
         if (sf_h5_read(file, path, member[k].type, 1, &items, &data, err) == SF_OK)
             memcpy((char *)base + member[k].offset, data, (size_t)items * 8);
-        free(data);
     }
     return err->status;
 }

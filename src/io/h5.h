@@ -29,6 +29,8 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
 sf_status sf_h5_open_alone(const char *path, sf_h5 **file, sf_error *err);
 /* Closes; `*file` may be NULL and is NULL afterwards. Reports a failed final write. */
 sf_status sf_h5_close(sf_h5 **file, sf_error *err);
+/* The same of a file into which nothing was written, so that nothing can be lost. */
+void sf_h5_drop(sf_h5 **file);
 
 /* True if a group or dataset of this path exists in the file itself, or by a link of sf_h5_link in a plain
  * file of the folder of its run (FILE.run), and there without any further link; other soft and external links

@@ -37,7 +37,7 @@ typedef struct sf_replacement {
     char path[SF_PATH_SIZE], partial[SF_PATH_SIZE];
 } sf_replacement;
 
-/* Begins and creates: the file, or NULL. sf_replace_close closes it, reports writes that failed, and commits.
+/* Begins and creates: a file, or NULL. sf_replace_close closes it, reports writes that failed, and commits.
  */
 FILE *sf_replace_open(const char *path, sf_replacement *out, sf_error *err);
 sf_status sf_replace_close(sf_replacement *out, sf_error *err);
@@ -78,8 +78,7 @@ typedef enum sf_seal_state {
 /* The state of a file; fails if it is not known, as the system refused to open or read the file. */
 sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err);
 
-/* SF_ERR_INPUT if the file is not plain; SF_ERR_IO if it is missing, cannot be read, was cut or has changed.
- */
+/* SF_ERR_INPUT if the file is not plain; SF_ERR_IO: it is missing, not readable, cut or has changed. */
 sf_status sf_seal_check(const char *path, sf_error *err);
 /* The same for a file that may have come from another tool (h5repack), without a seal: then SF_OK. */
 sf_status sf_seal_check_any(const char *path, sf_error *err);

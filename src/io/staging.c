@@ -9,7 +9,6 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -172,8 +171,7 @@ void sf_staging_end(sf_staging *output) {
         remove_flat(AT_FDCWD, output->aside);
     if (output->created)
         rmdir(output->directory);
-    free(output->aside);
-    free(output->directory);
+    SF_FREE(output->aside, output->directory);
     *output = (sf_staging){0};
 }
 
@@ -321,8 +319,6 @@ void sf_tree_end(sf_tree *tree) {
     }
     if (tree->aside)
         rmdir(tree->aside);
-    free(tree->made);
-    free(tree->aside);
-    free(tree->path);
+    SF_FREE(tree->made, tree->aside, tree->path);
     *tree = (sf_tree){0};
 }

@@ -34,9 +34,7 @@ typedef struct csv {
 } csv;
 
 void sf_table_free(sf_table *table) {
-    free(table->value[0]);
-    free(table->value[1]);
-    free(table->line);
+    SF_FREE(table->value[0], table->value[1], table->line);
     memset(table, 0, sizeof *table);
 }
 
@@ -445,8 +443,7 @@ static sf_status check_mark(csv *file, const char *name, const char *text, sf_er
 }
 
 /* "1,017.76" or "1.017,76": groups of three digits and another decimal mark. In a file with decimal points
- * whose commas separate columns, a quoted "1,017" is of thousands too. Writes the number without the groups.
- */
+ * whose commas separate columns, a quoted "1,017" is of thousands too. Writes it without the groups. */
 static bool has_thousands(const csv *file, const char *text, char *plain, size_t size) {
     const char *digits = text + strspn(text, "+-"), *mark = strpbrk(digits, ",.");
     size_t used = (size_t)(digits - text);

@@ -138,8 +138,7 @@ static char *trim(char *text) {
     return text;
 }
 
-/* The separator that ends the cell at `text`, or NULL at the line's end. Separators in quotes do not count.
- */
+/* The separator that ends the cell at `text`, or NULL at the line's end. Those in quotes do not count. */
 static char *cell_end(char *text, char separator) {
     char *first = text;
     while (is_blank(*first) && *first != separator)

@@ -13,10 +13,7 @@ sf_status sf_material_create(const sf_law *law, sf_material *material, sf_error 
 }
 
 void sf_law_curves_free(sf_law_curves *curves) {
-    free(curves->curve_rate);
-    free(curves->curve_ptr);
-    free(curves->curve_strain);
-    free(curves->curve_stress);
+    SF_FREE(curves->curve_rate, curves->curve_ptr, curves->curve_strain, curves->curve_stress);
     *curves = (sf_law_curves){0};
 }
 
@@ -143,8 +140,7 @@ sf_status sf_material_check(const sf_material *m, int64_t index, sf_error *err) 
     if (!m->law || !m->card)
         return SF_FAIL(err, SF_ERR_MODEL, "material %lld has no law", (long long)index);
     for (int k = 0; k < m->law->parameter_count; k++)
-        if (check_parameter(m, &m->law->parameter[k], index, err) != SF_OK)
-            return err->status;
+        SF_TRY(check_parameter(m, &m->law->parameter[k], index, err));
     const sf_law_curves *curves = sf_material_curves(m);
     if (curves && check_curves(curves, err) != SF_OK)
         return err->status;

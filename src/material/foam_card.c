@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#include "material/unloading.h"
-
 #define HAS(name, condition)                                                                                 \
     bool sf_foam_has_##name(const void *card) {                                                              \
         const sf_foam_shared *foam = card;                                                                   \

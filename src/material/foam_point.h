@@ -6,7 +6,6 @@
 #include "material/foam_card.h"
 #include "material/laws.h"
 #include "material/memory.h"
-#include "material/unloading.h"
 
 /* The common part of the foam laws at a material point: a law gives the loading energy W of the principal
  * stretches and its derivatives (sf_foam_kind); hysteresis, Maxwell branch, Kelvin and DAMP viscosity,

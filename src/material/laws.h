@@ -5,7 +5,7 @@
  * variables, its functions and the entry `const sf_law sf_NAME` (material/card.h); and one line in laws.def.
  * Case, model.h5, checks, written material files, docs (`softfall-pre --keys`), state, checkpoints and solver
  * follow the entry; tests/test_law.c walks the table: uniaxial stress against the batch, stress against the
- * energy. These files make the library softfall_material, which needs src/core alone. */
+ * energy. These files make the library softfall_material, which needs base alone. */
 #pragma once
 #include "base/lanes.h"
 #include "material/card.h"
@@ -31,7 +31,7 @@ typedef struct sf_law_batch {
                                     directions, at least that at rest on either side, since directions across
                                     the  load are at rest, on either side by rounding */
     double direction_tangent[3][SF_LANES];   /* Pa, bounds on the tangent dP/dF by principal direction
-                                                (foam_tangent.h) */
+                                              */
     double direction_viscosity[3][SF_LANES]; /* Pa s, the same on dP/d(rate of F) */
     double tangent[SF_LANES];                /* Pa, the largest of them: bound on the tangent */
     double viscosity[SF_LANES];              /* Pa s */

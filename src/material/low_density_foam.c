@@ -28,8 +28,7 @@ sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) 
 void sf_foam_free(sf_foam *foam) {
     for (int64_t k = 0; foam->curve && k < foam->curve_count; k++)
         sf_curve_free(&foam->curve[k]);
-    free(foam->curve);
-    free(foam->curve_rate);
+    SF_FREE(foam->curve, foam->curve_rate);
     *foam = (sf_foam){0};
 }
 

@@ -1,6 +1,114 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/memory.h"
 
+/* Sum of c[k] x^k. */
+static inline double sum(const double c[SF_UNLOADING_TERMS], double x) {
+    double total = 0;
+    for (int k = SF_UNLOADING_TERMS - 1; k >= 0; k--)
+        total = total * x + c[k];
+    return total;
+}
+
+/* (1 - x)^a = sum of b[k] x^k, integrated as x^(scale k + shift) dx / x. */
+static void make_series(double a, double scale, double shift, double c[SF_UNLOADING_TERMS]) {
+    double binomial = 1;
+    for (int k = 0; k < SF_UNLOADING_TERMS; k++) {
+        c[k] = binomial / (scale * k + shift);
+        binomial *= (k - a) / (k + 1);
+    }
+}
+
+/* Part of the integral above w: u = 1 - w^SHAPE, power = u^ALPHA. */
+static inline double upper(const sf_unloading *o, double u, double power) {
+    return u * power * sum(o->high, u);
+}
+
+void sf_unloading_build(double hu, double shape, double alpha, sf_unloading *o) {
+    *o = (sf_unloading){.hu = hu, .shape = shape, .alpha = alpha};
+    o->whole = shape / (1 + shape);
+    o->steepest = INFINITY;
+    if (alpha == 1)
+        return;
+    make_series(alpha, shape, 1, o->low);
+    make_series(1 / shape - 1, shape, shape * (alpha + 1), o->high);
+    o->whole = pow(0.5, 1 / shape) * sum(o->low, 0.5) + upper(o, 0.5, pow(0.5, alpha));
+    if (alpha < 1)
+        o->steepest = (1 - hu) * pow(-expm1(shape * log1p(-SF_UNLOADING_BAND)), alpha) / SF_UNLOADING_BAND;
+}
+
+double sf_unloading_integral(const sf_unloading *o, double ratio) {
+    double power = pow(ratio, o->shape), u = 1 - power;
+    if (o->alpha == 1)
+        return ratio * (1 - power / (1 + o->shape));
+    return power <= 0.5 ? ratio * sum(o->low, power) : o->whole - upper(o, u, pow(u, o->alpha));
+}
+
+/* ALPHA = 1; `power` is w^SHAPE, 1 while loading. */
+static inline void straight(const sf_unloading *o, const double energy[SF_LANES], double peak[SF_LANES],
+                            const double power[SF_LANES], double factor[SF_LANES], double softening[SF_LANES],
+                            double stored[SF_LANES], double lost[SF_LANES]) {
+    double hu = o->hu, shape = o->shape, kept = (1 - hu) / (1 + shape);
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double w = energy[l], ratio = (1 - hu) * shape * power[l] / w;
+        bool unloaded = w < peak[l];
+        factor[l] = unloaded ? 1 - (1 - hu) * (1 - power[l]) : 1;
+        softening[l] = unloaded && w > 0 ? ratio : 0;
+        peak[l] = unloaded ? peak[l] : w;
+        stored[l] = w * (hu + kept * power[l]);
+        lost[l] = peak[l] * kept * shape;
+    }
+}
+
+static inline void curved(const sf_unloading *o, const double energy[SF_LANES], double peak[SF_LANES],
+                          const double power[SF_LANES], double factor[SF_LANES], double softening[SF_LANES],
+                          double stored[SF_LANES], double lost[SF_LANES]) {
+    double gap = 1 - o->hu, alpha = o->alpha, shape = o->shape, whole = o->whole, most = o->steepest;
+    double bent[SF_LANES], low[SF_LANES], high[SF_LANES];
+    for (int l = 0; l < SF_LANES; l++)
+        bent[l] = power[l] == 1 ? 0 : pow(1 - power[l], alpha);
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        low[l] = high[l] = 0;
+    for (int k = SF_UNLOADING_TERMS - 1; k >= 0; k--)
+#pragma omp simd
+        for (int l = 0; l < SF_LANES; l++) {
+            low[l] = low[l] * power[l] + o->low[k];
+            high[l] = high[l] * (1 - power[l]) + o->high[k];
+        }
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++) {
+        double w = energy[l], top = peak[l], rest = 1 - power[l];
+        double below = w * low[l], above = whole - bent[l] * rest * high[l];
+        double slope = gap * alpha * shape * bent[l] / rest * power[l] / w, bound = most / top;
+        double lower = slope < bound ? slope : bound;
+        bool unloaded = w < top;
+        double base = unloaded ? top : w;
+        double integral = power[l] <= 0.5 ? below : base * above;
+        factor[l] = unloaded ? 1 - gap * bent[l] : 1;
+        softening[l] = (unloaded & (w > 0)) ? (rest > 0 ? lower : alpha < 1 ? bound : 0) : 0;
+        peak[l] = base;
+        stored[l] = w - gap * integral;
+        lost[l] = base * gap * whole;
+    }
+}
+
+SF_KERNEL void sf_unloading_lanes(const sf_unloading *o, const double energy[SF_LANES], double peak[SF_LANES],
+                                  double factor[SF_LANES], double softening[SF_LANES],
+                                  double stored[SF_LANES], double lost[SF_LANES]) {
+    double power[SF_LANES], shape = o->shape;
+#pragma omp simd
+    for (int l = 0; l < SF_LANES; l++)
+        power[l] = energy[l] < peak[l] ? energy[l] / peak[l] : 1;
+    for (int l = 0; l < SF_LANES && shape != 1; l++)
+        if (power[l] != 1)
+            power[l] = pow(power[l], shape);
+    if (o->alpha == 1)
+        straight(o, energy, peak, power, factor, softening, stored, lost);
+    else
+        curved(o, energy, peak, power, factor, softening, stored, lost);
+}
+
 /* Decay of what has recovered, with each whole unloading: 5 % remain. */
 static const double RENEWAL = 3;
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static void set_stretch(double f[9][SF_LANES], double stretch) {
+void sf_material_point_stretch(double f[9][SF_LANES], double stretch) {
     memset(f, 0, 9 * sizeof *f);
     for (int l = 0; l < SF_LANES; l++) {
         f[0][l] = f[4][l] = 1;
@@ -17,14 +17,14 @@ void sf_material_point_drive(const sf_material_law *law, double rate, double ste
     sf_law_batch batch;
     double at = 0, last = 0;
     memset(&batch, 0, sizeof batch);
-    set_stretch(batch.f, 1);
+    sf_material_point_stretch(batch.f, 1);
     for (int i = 0; i < count; i++) {
         int steps = (int)ceil(fabs(strain[i] - at) / step);
         double from = at;
         for (int k = 1; k <= steps; k++) {
             double next = from + (strain[i] - from) * k / steps;
             memcpy(batch.f_old, batch.f, sizeof batch.f);
-            set_stretch(batch.f, 1 - next);
+            sf_material_point_stretch(batch.f, 1 - next);
             law->law->update(law->numbers, fabs(next - at) / rate, &batch);
             at = next;
             last = -batch.p[8][0];

@@ -112,7 +112,6 @@ sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err)
 }
 
 void sf_skin_faces_free(sf_skin_faces *s) {
-    free(s->face);
-    free(s->node);
+    SF_FREE(s->face, s->node);
     *s = (sf_skin_faces){0};
 }

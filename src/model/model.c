@@ -302,9 +302,7 @@ void sf_model_free(sf_model *model) {
 }
 
 void sf_model_drop_mesh(sf_model *model) {
-    free(model->cell_type);
-    free(model->cell_ptr);
-    free(model->cell_node);
+    SF_FREE(model->cell_type, model->cell_ptr, model->cell_node);
     model->cell_type = NULL;
     model->cell_ptr = NULL;
     model->cell_node = NULL;
@@ -312,15 +310,13 @@ void sf_model_drop_mesh(sf_model *model) {
 }
 
 void sf_model_drop_domain_nodes(sf_model *model) {
-    free(model->domain_node);
-    free(model->support);
+    SF_FREE(model->domain_node, model->support);
     model->domain_node = NULL;
     model->support = NULL;
 }
 
 void sf_model_drop_edges(sf_model *model) {
-    free(model->edge_ptr);
-    free(model->edge_node);
+    SF_FREE(model->edge_ptr, model->edge_node);
     model->edge_ptr = NULL;
     model->edge_node = NULL;
 }

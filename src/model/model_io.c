@@ -4,7 +4,6 @@
 #include "io/replace.h"
 #include "material/laws.h"
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 

@@ -5,8 +5,7 @@
 #include "io/h5.h"
 #include "io/provenance.h"
 
-/* Writes a model under a temporary name beside `path` and renames it: an earlier file stays whole on failure.
- */
+/* Writes a model under a temporary name beside `path` and renames it: on failure an earlier file stays. */
 sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance,
                          sf_error *err);
 

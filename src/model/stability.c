@@ -2,12 +2,13 @@
 #include "model/stability.h"
 
 #include "base/mat3.h"
+#include "material/point.h"
+#include <string.h>
 
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err) {
     SF_OWNED double *share =
         sf_alloc(err, (unsigned long)model->node_count, sizeof *share, "stability constants");
-    if (!share)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t l = 0; l < model->node_count; l++)
         for (int64_t k = model->domain_ptr[l]; k < model->domain_ptr[l + 1]; k++) {
             const double *b = &model->domain_b[3 * k];
@@ -68,5 +69,66 @@ sf_status sf_stability_membrane(const sf_model *m, double *load, sf_error *err) 
             row += fabs(m->phi_value[e]) * column[m->phi_node[e]] / m->mass[m->phi_node[e]];
         *load = fmax(*load, row * stiff[i]);
     }
+    return err->status;
+}
+
+/* The bound on the step at rest. */
+static sf_status first_step(const sf_model *m, double *step, int64_t *critical, double *constant,
+                            sf_error *err) {
+    SF_OWNED double *c = sf_alloc(err, (unsigned long)m->node_count, sizeof *c, "stability constants");
+    SF_TRY(err->status);
+    SF_TRY(sf_stability_constants(m, c, err));
+    *step = INFINITY;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        const sf_material *material = sf_model_material(m, i);
+        double tangent, viscosity;
+        material->law->rest_bounds(material->card, sf_material_length(material, m->spacing[i]), &tangent,
+                                   &viscosity);
+        double own = sf_stability_step(c[i], tangent, viscosity);
+        if (own < *step) {
+            *step = own;
+            *critical = i;
+            *constant = c[i];
+        }
+    }
+    return SF_OK;
+}
+
+/* The steps shrink as the foam stiffens, by its curves and its rate terms: takes the law of the node with the
+ * shortest first step through half a sine of compression that begins at the missile's speed over the
+ * thickness, and returns the mean over time of the first step over the present one. */
+static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double constant, double first,
+                                   double *slowdown, sf_error *err) {
+    enum { STEPS = 400 };
+    const double deepest = 0.7, speed = fmax(m->missile.speed, 1e-3);
+    const sf_material *material = sf_model_material(m, critical);
+    double length = sf_material_length(material, m->spacing[critical]), sum = 0,
+           start = fmin(m->run.step_limit, m->run.step_safety * first);
+    sf_law_batch batch;
+    sf_material_law law;
+    SF_TRY(sf_material_law_build(material, &law, err));
+    memset(&batch, 0, sizeof batch);
+    sf_material_point_stretch(batch.f, 1);
+    for (int l = 0; l < SF_LANES; l++)
+        batch.length[l] = length;
+    for (int k = 1; k <= STEPS; k++) {
+        memcpy(batch.f_old, batch.f, sizeof batch.f);
+        sf_material_point_stretch(batch.f, 1 - deepest * sin(M_PI * k / STEPS));
+        law.law->update(law.numbers, M_PI * deepest * m->thickness / speed / STEPS, &batch);
+        double own = sf_stability_step(constant, batch.tangent[0], batch.viscosity[0]);
+        sum += start / fmin(m->run.step_limit, m->run.step_safety * own);
+    }
+    *slowdown = sum / STEPS;
+    sf_material_law_free(&law);
+    return SF_OK;
+}
+
+sf_status sf_stability_first_step(const sf_model *m, double *step, int64_t *critical, double *slowdown,
+                                  sf_error *err) {
+    double constant = 0;
+    *slowdown = 1;
+    SF_TRY(first_step(m, step, critical, &constant, err));
+    if (!sf_missile_is_driven(m))
+        estimate_slowdown(m, *critical, constant, *step, slowdown, err);
     return err->status;
 }

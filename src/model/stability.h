@@ -36,3 +36,8 @@ sf_status sf_stability_membrane(const sf_model *model, double *load, sf_error *e
 static inline double sf_stability_with_membrane(double load, double step) {
     return load > 0 ? 2 * step / (1 + sqrt(1 + load * step * step)) : step;
 }
+
+/* The largest stable step (s) of the foam at rest, of the node `critical`, and the first step over the mean
+ * one of a compression by the missile's speed; 1 with a prescribed motion. */
+sf_status sf_stability_first_step(const sf_model *model, double *step, int64_t *critical, double *slowdown,
+                                  sf_error *err);

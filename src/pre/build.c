@@ -4,17 +4,7 @@
 
 #include "base/mat3.h"
 #include "model/stability.h"
-#include "pre/support.h"
-#include "material/laws.h"
-#include "pre/cloud/cloud.h"
-#include "pre/cloud/connectivity.h"
-#include "pre/cloud/domain_store.h"
-#include "pre/foam_path.h"
-#include "pre/membrane.h"
-#include "pre/missile_body.h"
 #include "pre/rigid_support.h"
-#include "pre/cloud/dual.h"
-#include "pre/impact.h"
 #include "pre/mesh/missile_shape.h"
 #include <math.h>
 #include <stdlib.h>
@@ -343,8 +333,7 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_laye
     m->fixed_node = sf_alloc(err, (unsigned long)m->fixed_count, sizeof *m->fixed_node, "constraints");
     m->fixed_mask = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
     m->fixed_base = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     /* A node that is held altogether cannot give way to the missile: it is no contact point. */
     for (int64_t k = 0; k < points; k++)
         if (mask[contact[k]] != (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
@@ -368,14 +357,6 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_laye
         m->fixed_base[used++] = base[i];
     }
     return err->status;
-}
-
-/* Height (m) of the missile's lowest point above the pad's highest. */
-static double find_clearance(const sf_model *m) {
-    const sf_surface missile = sf_surface_of_missile(m);
-    double lowest[3];
-    sf_impact_lowest(&missile, &m->missile, lowest);
-    return lowest[2] - sf_impact_top(m);
 }
 
 /* A half or quarter of a missile would be held by its planes. */
@@ -458,7 +439,9 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     surface->position = NULL;
     surface->triangle = NULL;
     sf_surface_free(surface);
-    m->missile.clearance = find_clearance(m);
+    const sf_surface placed = sf_surface_of_missile(m);
+    sf_impact_lowest(&placed, &m->missile, impact);
+    m->missile.clearance = impact[2] - sf_impact_top(m); /* of its lowest point above the pad */
     m->missile.impact_known = 1;
     sf_impact_point(m, impact);
     for (int k = 0; k < 2; k++) /* below a nanometre it is rounding */
@@ -509,8 +492,7 @@ static sf_status take_series(const sf_case *c, sf_model *m, sf_error *err) {
 
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->frame_time = sf_alloc(err, (unsigned long)c->frame_time_count, sizeof *m->frame_time, "frame times");
-    if (!m->frame_time)
-        return err->status;
+    SF_TRY(err->status);
     m->frame_time_count = c->frame_time_count;
     memcpy(m->frame_time, c->frame_time, (size_t)c->frame_time_count * sizeof *m->frame_time);
     if (sf_model_take_materials(m, c->layer ? c->layer : &c->material, c->layer ? c->layer_count : 1, err) !=
@@ -521,8 +503,7 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     m->motion_displacement = c->motion_displacement;
     c->motion_time = c->motion_displacement = NULL;
     c->motion_count = 0;
-    if (take_series(c, m, err) != SF_OK)
-        return err->status;
+    SF_TRY(take_series(c, m, err));
     m->run = c->run;
     m->run.kinematic = c->kinematic;
     if (m->skin_count > 0 && !m->skin_alone && !c->stabilised)
@@ -530,87 +511,13 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     return check_depth(m, err);
 }
 
-/* The bound on the step at rest. */
-static sf_status first_step(const sf_model *m, double *step, int64_t *critical, double *constant,
-                            sf_error *err) {
-    double *c = sf_alloc(err, (unsigned long)m->node_count, sizeof *c, "stability constants");
-    if (!c || sf_stability_constants(m, c, err) != SF_OK) {
-        free(c);
-        return err->status;
-    }
-    *step = INFINITY;
-    for (int64_t i = 0; i < m->node_count; i++) {
-        const sf_material *material = sf_model_material(m, i);
-        double tangent, viscosity;
-        material->law->rest_bounds(material->card, sf_material_length(material, m->spacing[i]), &tangent,
-                                   &viscosity);
-        double own = sf_stability_step(c[i], tangent, viscosity);
-        if (own < *step) {
-            *step = own;
-            *critical = i;
-            *constant = c[i];
-        }
-    }
-    free(c);
-    return SF_OK;
-}
-
-static void set_stretch(double f[9][SF_LANES], double stretch) {
-    memset(f, 0, 9 * sizeof *f);
-    for (int l = 0; l < SF_LANES; l++) {
-        f[0][l] = f[4][l] = 1;
-        f[8][l] = stretch;
-    }
-}
-
-/* The steps shrink as the foam stiffens, by its curves and its rate terms: takes the law of the node with the
- * shortest first step through half a sine of compression that begins at the missile's speed over the
- * thickness, and returns the mean over time of the first step over the present one. */
-static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double constant, double first,
-                                   double *slowdown, sf_error *err) {
-    enum { STEPS = 400 };
-    const double deepest = 0.7, speed = fmax(m->missile.speed, 1e-3);
-    const sf_material *material = sf_model_material(m, critical);
-    double length = sf_material_length(material, m->spacing[critical]), sum = 0,
-           start = fmin(m->run.step_limit, m->run.step_safety * first);
-    sf_law_batch batch;
-    sf_material_law law;
-    SF_TRY(sf_material_law_build(material, &law, err));
-    memset(&batch, 0, sizeof batch);
-    set_stretch(batch.f, 1);
-    for (int l = 0; l < SF_LANES; l++)
-        batch.length[l] = length;
-    for (int k = 1; k <= STEPS; k++) {
-        memcpy(batch.f_old, batch.f, sizeof batch.f);
-        set_stretch(batch.f, 1 - deepest * sin(M_PI * k / STEPS));
-        law.law->update(law.numbers, M_PI * deepest * m->thickness / speed / STEPS, &batch);
-        double own = sf_stability_step(constant, batch.tangent[0], batch.viscosity[0]);
-        sum += start / fmin(m->run.step_limit, m->run.step_safety * own);
-    }
-    *slowdown = sum / STEPS;
-    sf_material_law_free(&law);
-    return SF_OK;
-}
-
 /* `critical`: the node with the shortest step. */
 static sf_status measure_step(const sf_model *m, int64_t *critical, sf_build_report *report, sf_error *err) {
-    double constant = 0;
-    report->slowdown = 1;
     double load;
-    if (first_step(m, &report->first_step, critical, &constant, err) != SF_OK ||
-        sf_stability_membrane(m, &load, err) != SF_OK)
-        return err->status;
-    if (!sf_missile_is_driven(m))
-        estimate_slowdown(m, *critical, constant, report->first_step, &report->slowdown, err);
+    SF_TRY(sf_stability_first_step(m, &report->first_step, critical, &report->slowdown, err));
+    SF_TRY(sf_stability_membrane(m, &load, err));
     report->first_step = sf_stability_with_membrane(load, report->first_step);
-    return err->status;
-}
-
-static void estimate_mesh_error(sf_model *m, sf_build_report *report) {
-    if (report->contact_held)
-        return;
-    sf_contact_zone_measure(m, &report->zone);
-    m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
+    return SF_OK;
 }
 
 /* A run that would stop at its first step, of the node `critical`. */
@@ -671,7 +578,10 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
         sf_hold_find(m, &report->hold, err) == SF_OK && (sf_layers_loosen(c, m), true) &&
         sf_support_take(c, mesh, m, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
         find_skin(c, m, report, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
-        estimate_mesh_error(m, report);
+        if (!report->contact_held) {
+            sf_contact_zone_measure(m, &report->zone);
+            m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
+        }
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
             sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/drop_check.h"
+#include "pre/build.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,10 +7,10 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "base/triangle.h"
 #include "model/flight.h"
 #include "model/good_run.h"
 #include "pre/mesh/missile_shape.h"
-#include "pre/missile_body.h"
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
 static const double EARLY = 0.1; /* steps of depth before that */
@@ -62,8 +62,7 @@ static double mean_spacing(const sf_model *m, const double centre[2], double rad
     return volume > 0 ? sqrt(sum / volume) : 0;
 }
 
-/* The zone when the missile stands `part` of the thickness deep, by fine x fine points for each contact node.
- */
+/* The zone when the missile stands `part` of the thickness deep, by fine x fine points a contact node. */
 static void measure_at(const sf_model *m, double part, int fine, sf_contact_zone *zone) {
     const sf_surface missile = sf_surface_of_missile(m);
     double centre[2], wide, deepest = m->missile.gap - part * m->thickness / m->missile.direction[2];
@@ -210,23 +209,15 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
 
 /* ---- symmetry ---- */
 
-/* The plane x or y = `place` of a held symmetry group: -1 axis if there is none of that axis. */
-static int find_plane(const sf_case *c, const sf_mesh *mesh, const sf_model *m, int axis, double *place,
-                      const char **name) {
+/* The symmetry group that the case holds in a plane x or y = `place`; NULL: there is none of that axis. */
+static const char *find_plane(const sf_case *c, const sf_mesh *mesh, const sf_model *m, int axis,
+                              double *place) {
     for (int g = 0; g < c->symmetry_count; g++) {
         const sf_node_set *set = sf_mesh_find_set(mesh, c->symmetry_group[g]);
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t k = 0; set && k < set->count; k++) {
-            low = fmin(low, m->position[3 * (int64_t)set->node[k] + axis]);
-            high = fmax(high, m->position[3 * (int64_t)set->node[k] + axis]);
-        }
-        if (!set || high - low > 1e-9 * m->thickness)
-            continue;
-        *place = low;
-        *name = set->name;
-        return 1;
+        if (set && sf_group_is_plane(m, set, axis, place))
+            return set->name;
     }
-    return 0;
+    return NULL;
 }
 
 /* On which side of the plane the pad lies. */
@@ -309,39 +300,30 @@ static sf_status check_plane(const sf_model *m, int axis, double place, const ch
         'x' + axis, 1e3 * low, 1e3 * high, name, 'x' + axis, 1e3 * place);
 }
 
-typedef struct edge {
-    int32_t node[2]; /* ascending */
-} edge;
+/* The edges of one triangle alone, which bound the missile's surface. */
+typedef struct rims {
+    int64_t count;
+    sf_half_edge *list; /* [count]; owned */
+} rims;
 
-static int compare_edge(const void *a, const void *b) {
-    const edge *p = a, *q = b;
-    int first = (p->node[0] > q->node[0]) - (p->node[0] < q->node[0]);
-    return first ? first : (p->node[1] > q->node[1]) - (p->node[1] < q->node[1]);
-}
-
-/* [3 triangle_count] sorted; owned by the caller. */
-static edge *list_edges(const sf_model *m, sf_error *err) {
-    int64_t count = 3 * m->surface_triangle_count;
-    edge *list = sf_alloc(err, (unsigned long)count, sizeof *list, "edges of the missile");
-    for (int64_t k = 0; list && k < count; k++) {
-        int32_t a = m->surface_triangle[k], b = m->surface_triangle[k % 3 == 2 ? k - 2 : k + 1];
-        list[k] = (edge){{a < b ? a : b, a < b ? b : a}};
+static rims list_rims(const sf_model *m, sf_error *err) {
+    int64_t all = 3 * m->surface_triangle_count;
+    rims r = {0, sf_half_edges(m->surface_triangle_count, m->surface_triangle, err)};
+    for (int64_t k = 0, end; r.list && k < all; k = end) {
+        end = sf_half_edges_end(r.list, k, all);
+        if (end == k + 1)
+            r.list[r.count++] = r.list[k];
     }
-    if (list)
-        qsort(list, (size_t)count, sizeof *list, compare_edge);
-    return list;
+    return r;
 }
 
 /* True if a rim of the surface runs up or down in the plane x or y = `place`: the missile was cut there. A
  * level rim is that of an open top or of a flat platen. */
-static bool is_cut(const sf_model *m, const edge *list, int axis, double place, double extent) {
-    int64_t count = 3 * m->surface_triangle_count;
-    for (int64_t k = 0; k < count; k++) {
-        bool twin = (k > 0 && compare_edge(&list[k], &list[k - 1]) == 0) ||
-                    (k + 1 < count && compare_edge(&list[k], &list[k + 1]) == 0);
-        const double *a = &m->surface_position[3 * (int64_t)list[k].node[0]],
-                     *b = &m->surface_position[3 * (int64_t)list[k].node[1]];
-        if (!twin && fabs(a[axis] - place) <= 1e-9 * extent && fabs(b[axis] - place) <= 1e-9 * extent &&
+static bool is_cut(const sf_model *m, const rims *r, int axis, double place, double extent) {
+    for (int64_t k = 0; k < r->count; k++) {
+        const double *a = &m->surface_position[3 * (int64_t)r->list[k].low],
+                     *b = &m->surface_position[3 * (int64_t)r->list[k].high];
+        if (fabs(a[axis] - place) <= 1e-9 * extent && fabs(b[axis] - place) <= 1e-9 * extent &&
             fabs(a[2] - b[2]) > 1e-6 * extent)
             return true;
     }
@@ -354,12 +336,12 @@ static double round_off(double place, double extent) {
 }
 
 /* Without a symmetry plane of this axis the missile must be whole. */
-static sf_status check_whole(const sf_model *m, const edge *list, int axis, sf_error *err) {
+static sf_status check_whole(const sf_model *m, const rims *r, int axis, sf_error *err) {
     double low[3], high[3];
     sf_box3(m->surface_node_count, m->surface_position, low, high);
     double extent = high[axis] - low[axis];
-    bool below = is_cut(m, list, axis, low[axis], extent);
-    if (!below && !is_cut(m, list, axis, high[axis], extent))
+    bool below = is_cut(m, r, axis, low[axis], extent);
+    if (!below && !is_cut(m, r, axis, high[axis], extent))
         return SF_OK;
     return SF_REFUSE(err,
                      "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: "
@@ -388,15 +370,6 @@ static double edge_slope(const sf_model *m, int64_t t, int side, double middle[3
     return sf_dot3(out, m->missile.direction) / sqrt(sf_dot3(out, out));
 }
 
-static bool is_rim(const sf_model *m, const edge *list, int64_t t, int k) {
-    int32_t a = m->surface_triangle[3 * t + k], b = m->surface_triangle[3 * t + (k + 1) % 3];
-    const edge wanted = {{a < b ? a : b, a < b ? b : a}};
-    size_t count = (size_t)(3 * m->surface_triangle_count);
-    const edge *found = bsearch(&wanted, list, count, sizeof *list, compare_edge);
-    return (found == list || compare_edge(found - 1, &wanted) != 0) &&
-           (found + 1 == list + count || compare_edge(found + 1, &wanted) != 0);
-}
-
 /* Can the pad meet the edge before any other part of the missile? */
 static bool leads(const sf_model *m, const double middle[3]) {
     const sf_surface missile = sf_surface_of_missile(m);
@@ -411,34 +384,33 @@ static bool leads(const sf_model *m, const double middle[3]) {
 }
 
 /* Contact acts on faces: beside the free edge of a steep sheet the pad would pass. */
-static sf_status check_blades(const sf_model *m, const edge *list, sf_error *err) {
-    for (int64_t t = 0; t < m->surface_triangle_count; t++)
-        for (int k = 0; k < 3; k++) {
-            double middle[3], slope = edge_slope(m, t, k, middle);
-            if (slope < STEEP || !is_rim(m, list, t, k) || !leads(m, middle))
-                continue;
+static sf_status check_blades(const sf_model *m, const rims *r, sf_error *err) {
+    for (int64_t k = 0; k < r->count; k++) {
+        double middle[3], slope = edge_slope(m, r->list[k].slot / 3, (int)(r->list[k].slot % 3), middle);
+        if (slope >= STEEP && leads(m, middle))
             return SF_REFUSE(
                 err,
                 "missile.group: the surface ends in an edge at (%.4g, %.4g, %.4g) mm that points at the pad, "
                 "in a sheet %.3g degrees steep: the pad would pass beside it; close the missile below, or "
                 "leave that part out of the group",
                 1e3 * middle[0], 1e3 * middle[1], 1e3 * middle[2], asin(fmin(slope, 1)) * 180 / M_PI);
-        }
+    }
     return SF_OK;
 }
 
 static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
-    SF_OWNED edge *list = m->missile.shape == SF_SHAPE_SURFACE ? list_edges(m, err) : NULL;
+    const rims r = m->missile.shape == SF_SHAPE_SURFACE ? list_rims(m, err) : (rims){0, NULL};
     for (int axis = 0; axis < 2 && err->status == SF_OK; axis++) {
         double place = 0;
-        const char *name = NULL;
-        if (find_plane(c, mesh, m, axis, &place, &name))
+        const char *name = find_plane(c, mesh, m, axis, &place);
+        if (name)
             check_plane(m, axis, place, name, err);
-        else if (list)
-            check_whole(m, list, axis, err);
+        else
+            check_whole(m, &r, axis, err);
     }
-    if (list && err->status == SF_OK)
-        check_blades(m, list, err);
+    if (err->status == SF_OK)
+        check_blades(m, &r, err);
+    free(r.list);
     return err->status;
 }
 

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/foam_path.h"
+#include "pre/build.h"
 
 #include "base/mat3.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/free_faces.h"
-#include "pre/impact.h"
 #include "pre/rigid_support.h"
 #include <math.h>
 #include <stdlib.h>

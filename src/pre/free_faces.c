@@ -98,11 +98,7 @@ typedef struct faces {
 
 static void faces_free(faces *f) {
     sf_grid_free(&f->grid);
-    free(f->node);
-    free(f->half);
-    free(f->shape);
-    free(f->position);
-    free(f->radius);
+    SF_FREE(f->node, f->half, f->shape, f->position, f->radius);
     *f = (faces){0};
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/hold.h"
+#include "pre/build.h"
 
 #include <gsl/gsl_eigen.h>
 #include <math.h>
@@ -8,7 +8,6 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "pre/mesh/mesh.h"
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
 
@@ -57,8 +56,8 @@ static void list_faces(const sf_model *m, int64_t *place, cell_face *face) {
 /* [cell_count] the lowest cell of each one's body; owned by the caller. */
 static int64_t *join_cells(const sf_model *m, sf_error *err) {
     int64_t count = count_faces(m);
-    int64_t *place = sf_sets_alone(m->node_count, "parts of the pad", err),
-            *parent = sf_sets_alone(m->cell_count, "parts of the pad", err);
+    SF_OWNED int64_t *place = sf_sets_alone(m->node_count, "parts of the pad", err);
+    int64_t *parent = sf_sets_alone(m->cell_count, "parts of the pad", err);
     SF_OWNED cell_face *face = sf_alloc(err, (unsigned long)count, sizeof *face, "faces of the cells");
     if (err->status == SF_OK) {
         for (int64_t k = 0; k < m->tie_count; k++)
@@ -72,7 +71,6 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
         for (int64_t c = 0; c < m->cell_count; c++)
             parent[c] = sf_sets_find(parent, c);
     }
-    free(place);
     if (err->status == SF_OK)
         return parent;
     free(parent);
@@ -113,9 +111,7 @@ static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
 }
 
 static void free_bodies(body_list *b) {
-    free(b->cell);
-    free(b->node);
-    free(b->first);
+    SF_FREE(b->cell, b->node, b->first);
     *b = (body_list){0};
 }
 

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/impact.h"
+#include "pre/build.h"
 #include "pre/mesh/missile_shape.h"
 
 #include <gsl/gsl_sort.h>
 #include <math.h>
-#include <stdlib.h>
 
 static const double LEVEL = 1e-6;           /* of the missile's extent: as low as its lowest node */
 static const double ON_PLANE = 1e-6;        /* of the thickness */
@@ -77,8 +76,7 @@ static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, 
     bool at_node = false;
     SF_OWNED double *angle =
         sf_alloc(err, 4 * (unsigned long)m->contact_count, sizeof *angle, "impact point");
-    if (!angle)
-        return err->status;
+    SF_TRY(err->status);
     for (int image = 0; image < 4; image++) {
         if ((image & 1 && !plane[0]) || (image & 2 && !plane[1]))
             continue;

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/membrane.h"
+#include "pre/build.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/mat3.h"
-#include "pre/support.h"
 
 /* Adds the triangles of a boundary face: of a quadrangle those on both diagonals. */
 static void add_face(const sf_mesh *mesh, const sf_layers *l, const sf_boundary_face *face, sf_model *m) {

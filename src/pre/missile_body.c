@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/missile_body.h"
+#include "pre/build.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mat3.h"
 #include "base/triangle.h"
+
+/* Components of a symmetric tensor in the order of base/mat3.h. */
+static const int ROW[6] = {0, 1, 2, 0, 1, 0}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
 
 static sf_status refuse_edge(const sf_half_edge *s, int64_t count, const double *position, sf_error *err) {
     const double *a = &position[3 * (int64_t)s->low], *b = &position[3 * (int64_t)s->high];
@@ -52,7 +54,6 @@ static void find_middle(int64_t count, const double *position, double middle[3])
 /* Adds the tetrahedron of the triangle x and the origin: for its volume V and the sum s of its corners, the
  * integral of x is V s / 4, that of x x^T is V (sum of the corners' x x^T + s s^T) / 20. */
 static void add_tetrahedron(const double x[3][3], double *volume, double first[3], double second[6]) {
-    static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
     double part = sf_triple3(x[0], x[1], x[2]) / 6, s[3];
     *volume += part;
     for (int c = 0; c < 3; c++) {
@@ -60,16 +61,15 @@ static void add_tetrahedron(const double x[3][3], double *volume, double first[3
         first[c] += part * s[c] / 4;
     }
     for (int k = 0; k < 6; k++) {
-        int a = row[k], b = column[k];
+        int a = ROW[k], b = COLUMN[k];
         second[k] += part * (x[0][a] * x[0][b] + x[1][a] * x[1][b] + x[2][a] * x[2][b] + s[a] * s[b]) / 20;
     }
 }
 
 /* `second`: the integral of x x^T about the same place as the centroid. */
 static void set_inertia(double volume, const double centroid[3], double second[6], double inertia[6]) {
-    static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
     for (int k = 0; k < 6; k++)
-        second[k] -= volume * centroid[row[k]] * centroid[column[k]];
+        second[k] -= volume * centroid[ROW[k]] * centroid[COLUMN[k]];
     for (int k = 0; k < 3; k++)
         inertia[k] = second[(k + 1) % 3] + second[(k + 2) % 3];
     for (int k = 3; k < 6; k++)
@@ -104,8 +104,6 @@ sf_status sf_solid_measure(int64_t node_count, const double *position, int64_t t
         solid->centroid[c] = middle[c] + first[c];
     return SF_OK;
 }
-
-static const int ROW[6] = {0, 1, 2, 0, 1, 0}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
 
 /* Volume, and integrals of x and x x^T over it. */
 typedef struct moments {

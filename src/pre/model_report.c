@@ -5,12 +5,10 @@
 #include "base/mat3.h"
 #include "model/flight.h"
 #include "model/model.h"
-#include "pre/missile_body.h"
+#include "base/text.h"
 #include "base/units.h"
-#include "pre/impact.h"
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
@@ -31,14 +29,9 @@ add(sf_model_report *out, const char *key, const char *name, const char *format,
     va_end(arguments);
 }
 
-/* Appends to the value of the last line. */
-static void __attribute__((format(printf, 2, 3))) append(sf_model_report *out, const char *format, ...) {
-    va_list arguments;
-    sf_report_line *line = &out->line[out->count - 1];
-    size_t used = strlen(line->value);
-    va_start(arguments, format);
-    vsnprintf(line->value + used, sizeof line->value - used, format, arguments);
-    va_end(arguments);
+/* Returns the value of the last line, to be continued. */
+static char *last(sf_model_report *out) {
+    return out->line[out->count - 1].value;
 }
 
 static void add_spacing(sf_model_report *out, const sf_model *m) {
@@ -130,7 +123,8 @@ static void add_body(sf_model_report *out, const sf_model *m) {
     add(out, "missile_body", "missile body", "%.4g cm3, its centroid %.4g mm above its lowest point",
         1e6 * solid.volume, 1e3 * (solid.centroid[2] - lowest[2]));
     if (m->missile.mass > 0)
-        append(out, "; if uniform %.4g kg/m3", m->missile.mass / solid.volume);
+        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, "; if uniform %.4g kg/m3",
+                    m->missile.mass / solid.volume);
 }
 
 /* In mm; what is rounding of coordinates is 0. */
@@ -146,11 +140,13 @@ static void add_interfaces(sf_model_report *out, const sf_model *m, const sf_int
         add(out, "interface", "interface", "%s, %s: %s", m->material[i->layer[0]].name,
             m->material[i->layer[1]].name, kind[i->kind]);
         if (i->kind == SF_INTERFACE_LOOSE)
-            append(out, ", friction %g", i->friction);
-        append(out, i->faces > 0 ? ", %lld faces" : ", bodies apart", (long long)i->faces);
+            sf_text_add(last(out), SF_MODEL_REPORT_VALUE, ", friction %g", i->friction);
+        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, i->faces > 0 ? ", %lld faces" : ", bodies apart",
+                    (long long)i->faces);
     }
     if (all->count > SF_INTERFACES_LISTED)
-        append(out, "; and %d more interfaces", all->count - SF_INTERFACES_LISTED);
+        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, "; and %d more interfaces",
+                    all->count - SF_INTERFACES_LISTED);
 }
 
 static void add_masses(sf_model_report *out, const sf_model *m, const sf_build_report *r) {
@@ -241,13 +237,13 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
     add(out, "boundary_nodes", "boundary nodes", "%lld held, %lld may be touched", (long long)m->fixed_count,
         (long long)m->contact_count);
     if (m->rest_count > 0)
-        append(out, ", %lld rest on the anvil", (long long)m->rest_count);
+        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, ", %lld rest on the anvil", (long long)m->rest_count);
     if (!m->skin_alone ? m->skin_count > 0 : m->support_triangle_count > 0)
-        append(out, ", %lld faces may touch %s%s", (long long)m->skin_count,
-               m->skin_alone ? "" : "each other or the anvil",
-               m->support_triangle_count == 0 ? ""
-               : m->skin_alone                ? "the support"
-                                              : ", and the support");
+        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, ", %lld faces may touch %s%s", (long long)m->skin_count,
+                    m->skin_alone ? "" : "each other or the anvil",
+                    m->support_triangle_count == 0 ? ""
+                    : m->skin_alone                ? "the support"
+                                                   : ", and the support");
     add_interfaces(out, m, &r->interfaces);
     add_masses(out, m, r);
     add_mesh_error(out, m, &r->zone);
@@ -266,11 +262,8 @@ char *sf_model_report_text(const sf_model_report *report, sf_error *err) {
     FILE *out = open_memstream(&text, &size);
     for (int k = 0; out && k < report->count; k++)
         fprintf(out, "%s\t%s\t%s\n", report->line[k].key, report->line[k].name, report->line[k].value);
-    if (!out || fclose(out) != 0) {
+    if (!sf_text_close(out, &text))
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the report of the model");
-        free(text);
-        return NULL;
-    }
     return text;
 }
 

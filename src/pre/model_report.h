@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report of softfall-pre: size and checks of the model, before a run. It is printed as a table, and
- * stands in model.h5 (/provenance/report) as a line for each entry: key, name and value, separated by tabs.
- */
+ * stands in model.h5 (/provenance/report) a line for each entry: key, name and value, separated by tabs. */
 #pragma once
 #include "pre/build.h"
 #include <stdio.h>

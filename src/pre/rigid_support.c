@@ -2,7 +2,6 @@
 #include "pre/rigid_support.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mat3.h"
@@ -52,8 +51,7 @@ static void join_corners(const triangles *s, const sf_half_edge *edge, int64_t *
     }
 }
 
-/* Appends the triangles to those of the model, as support `part`. Its nodes are the corners that were joined.
- */
+/* Appends the triangles to those of the model, as support `part`. Its nodes are the joined corners. */
 static sf_status split_edges(const triangles *s, int part, sf_model *m, sf_error *err) {
     int64_t corners = 3 * s->count;
     SF_OWNED sf_half_edge *edge = sf_half_edges(s->count, s->node, err);
@@ -238,8 +236,7 @@ sf_status sf_support_plane(const sf_case_support *plane, const sf_mesh *mesh, sf
     double width = WIDTH * sqrt(sf_dot3(diagonal, diagonal)), height = sf_dot3(middle, n) - plane->place;
     *out = (sf_surface){.position = sf_alloc(err, 12, sizeof *out->position, "support"),
                         .triangle = sf_alloc(err, 6, sizeof *out->triangle, "support")};
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int k = 0; k < 4; k++)
         for (int r = 0; r < 3; r++)
             out->position[3 * k + r] =
@@ -273,7 +270,7 @@ static sf_status take(const sf_case *c, int k, sf_surface *surface, const triang
 
 sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf_error *err) {
     triangles pad = {0, m->position, NULL};
-    int32_t *face = NULL;
+    SF_OWNED int32_t *face = NULL;
     unsigned long count = 0;
     m->support_count = mesh->support_count;
     for (int k = 0; k < mesh->support_count; k++)
@@ -287,7 +284,6 @@ sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf
     m->support_friction = sf_alloc(err, SF_SUPPORTS, sizeof *m->support_friction, "support");
     for (int k = 0; k < mesh->support_count && err->status == SF_OK; k++)
         take(c, k, &mesh->support[k], &pad, m, err);
-    free(face);
     return err->status;
 }
 

@@ -12,8 +12,7 @@ sf_status sf_support_plane(const sf_case_support *plane, const sf_mesh *mesh, sf
 
 /* Takes the surfaces of the mesh into the model: turned outwards (open parts of files against the missile's
  * direction), with the nodes of sharp edges once for each side. Needs the pad's cells. SF_ERR_INPUT: a part
- * lies inside the pad at the start, or no face of the pad has a support before it within the pad's thickness.
- */
+ * lies inside the pad at the start, or no face of it has a support before it within the pad's thickness. */
 sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *model, sf_error *err);
 
 /* Sets the missile's way to the supports; the missile is in its place. SF_ERR_INPUT: it meets one

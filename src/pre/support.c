@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/support.h"
+#include "pre/build.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #include "base/mat3.h"
-#include "pre/impact.h"
 
 const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {
     const sf_node_set *set = sf_mesh_find_set(mesh, name);
@@ -21,17 +20,22 @@ const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const cha
     return NULL;
 }
 
-int sf_group_plane_axis(const sf_model *m, const sf_node_set *set) {
-    for (int axis = 0; axis < 3; axis++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t k = 0; k < set->count; k++) {
-            low = fmin(low, m->position[3 * (int64_t)set->node[k] + axis]);
-            high = fmax(high, m->position[3 * (int64_t)set->node[k] + axis]);
-        }
-        if (high - low <= 1e-9 * m->thickness)
-            return axis;
+bool sf_group_is_plane(const sf_model *m, const sf_node_set *set, int axis, double *place) {
+    double low = INFINITY, high = -INFINITY;
+    for (int64_t k = 0; k < set->count; k++) {
+        low = fmin(low, m->position[3 * (int64_t)set->node[k] + axis]);
+        high = fmax(high, m->position[3 * (int64_t)set->node[k] + axis]);
     }
-    return -1;
+    *place = low;
+    return high - low <= 1e-9 * m->thickness;
+}
+
+int sf_group_plane_axis(const sf_model *m, const sf_node_set *set) {
+    double place;
+    int axis = 0;
+    while (axis < 3 && !sf_group_is_plane(m, set, axis, &place))
+        axis++;
+    return axis < 3 ? axis : -1;
 }
 
 static const double LOWEST = 1e-9; /* of the thickness: on the plane of the base */

@@ -15,7 +15,6 @@
 #include <math.h>
 #include <omp.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- options ---- */
@@ -207,7 +206,7 @@ static sf_status check_series(const sf_case *c, bool posterior, sf_error *err) {
 static sf_status read_setting(const sf_study *study, setting *out, sf_error *err) {
     const options *o = &out->options;
     sf_case c;
-    char *material = NULL;
+    SF_OWNED char *material = NULL;
     const char *list[SF_RUNNER_OVERRIDES + 1];
     int count = 0;
     if (o->material) {
@@ -231,7 +230,6 @@ static sf_status read_setting(const sf_study *study, setting *out, sf_error *err
             read_posterior(study->input, &c, out, err);
         sf_case_free(&c);
     }
-    free(material);
     return err->status;
 }
 
@@ -387,8 +385,7 @@ int main(int argc, char **argv) {
                              .max_height = DEFAULT_MAX_HEIGHT,
                              .checks = DEFAULT_CHECKS}};
     int code = sf_study_main(argc, argv, &program, &s);
-    free(s.text);
-    free(s.parameters);
+    SF_FREE(s.text, s.parameters);
     sf_cfh_draws_free(&s.draws);
     sf_material_law_free(&s.law);
     sf_material_free(&s.material);

@@ -164,12 +164,11 @@ static void live(sf_session *session, script_state *script, sf_error *err) {
 }
 
 static sf_status run(const options *o, sf_error *err) {
-    script_state script = {0};
-    sf_session *session = sf_alloc(err, 1, sizeof *session, "the window");
-    if (!session || (o->script && open_script(o->script, &script, err) != SF_OK)) {
-        free(session);
-        return err->status;
-    }
+    SF_OWNED_BY(close_script) script_state script = {0};
+    SF_OWNED sf_session *session = sf_alloc(err, 1, sizeof *session, "the window");
+    SF_TRY(err->status);
+    if (o->script)
+        SF_TRY(open_script(o->script, &script, err));
     session->case_path = o->case_path ? o->case_path : "case.cfg";
     session->threads = o->threads;
     if (sf_window_start(err) == SF_OK) {
@@ -180,8 +179,6 @@ static sf_status run(const options *o, sf_error *err) {
         sf_session_end(session);
         sf_window_end();
     }
-    close_script(&script);
-    free(session);
     return err->status;
 }
 

@@ -27,8 +27,7 @@ typedef struct example_list {
 static void free_examples(example_list *e) {
     for (int k = 0; k < e->count; k++)
         free(e->entry[k]);
-    free(e->entry);
-    free(e->folder);
+    SF_FREE(e->entry, e->folder);
 }
 
 static void write_path(const example_list *e, int k, char path[PATH_MAX]) {
@@ -60,13 +59,13 @@ static sf_status print_examples(const example_list *e, sf_error *err) {
     for (int k = 0; k < e->count; k++)
         width = (int)strlen(e->entry[k]->d_name) > width ? (int)strlen(e->entry[k]->d_name) : width;
     for (int k = 0; k < e->count; k++) {
-        char path[PATH_MAX], *text = NULL;
+        char path[PATH_MAX];
+        SF_OWNED char *text = NULL;
         write_path(e, k, path);
         SF_TRY(sf_plain_read(path, "example", SF_PLAIN_TEXT, &text, NULL, err));
         const char *line = text + strspn(text, "# ");
         printf("%-*s  %.*s\n", width, e->entry[k]->d_name, (int)strcspn(line, "\r\n"),
                *text == '#' ? line : "");
-        free(text);
     }
     return SF_OK;
 }
@@ -130,7 +129,7 @@ static sf_status make(const options *o, const char *path, const char *origin, sf
 static sf_status run(const options *o, sf_error *err) {
     const char *from = o->from ? o->from : USUAL;
     char origin[200], path[PATH_MAX];
-    example_list examples = {0};
+    SF_OWNED_BY(free_examples) example_list examples = {0};
     bool file = strchr(from, '/') || (strlen(from) > 4 && strcmp(from + strlen(from) - 4, ".cfg") == 0);
     if (file && !o->list)
         return make(o, from, from, err);
@@ -139,7 +138,6 @@ static sf_status run(const options *o, sf_error *err) {
         print_examples(&examples, err);
     else if (err->status == SF_OK && find_case(&examples, from, path, err) == SF_OK)
         make(o, path, origin, err);
-    free_examples(&examples);
     return err->status;
 }
 

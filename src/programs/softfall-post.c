@@ -5,18 +5,11 @@
 #include "io/provenance.h"
 #include "post/figures/strain_field.h"
 #include "post/figures/compare.h"
-#include "post/view/browser.h"
-#include "post/view/csv.h"
+#include "post/view/report.h"
 #include "post/figures/figures.h"
 #include "io/staging.h"
-#include "post/view/overlay.h"
-#include "post/view/paraview.h"
-#include "post/view/plot.h"
-#include "post/view/report.h"
 #include "post/results/results.h"
-#include "post/view/summary.h"
 #include "post/figures/verdict.h"
-#include "post/view/xdmf.h"
 
 #include <assert.h>
 #include <math.h>
@@ -370,8 +363,7 @@ int main(int argc, char **argv) {
         sf_comparison_free(&j.comparison);
     sf_figures_free(&j.figures);
     sf_results_close(&j.results);
-    free(j.command_line);
-    free(o.regions);
+    SF_FREE(j.command_line, o.regions);
     int code = sf_error_report(&err, "softfall-post");
     return code == 0 && o.strict ? strict_codes[j.verdict.grade] : code;
 }

@@ -3,7 +3,7 @@
 #include "base/program.h"
 #include "model/model_io.h"
 #include "io/replace.h"
-#include "case/values.h"
+#include "case/keys.h"
 #include "pre/make.h"
 #include "pre/model_report.h"
 
@@ -52,11 +52,10 @@ static sf_status read_drop(const options *o, int drop, const sf_sink *sink, sf_c
 static sf_status check_drops(const options *o, const sf_case *first, sf_error *err) {
     for (int k = 1; k < first->drops && err->status == SF_OK; k++) {
         char path[SF_PATH_SIZE];
-        sf_case c = {0};
+        SF_OWNED_BY(sf_case_free) sf_case c = {0};
         sf_model_series_file(o->output, k + 1, path, sizeof path);
         if (first->drop[k].own && check_output(o, path, err) == SF_OK)
             read_drop(o, k + 1, NULL, &c, err);
-        sf_case_free(&c);
     }
     return err->status;
 }
@@ -64,18 +63,18 @@ static sf_status check_drops(const options *o, const sf_case *first, sf_error *e
 /* Makes the model of a drop, from 1, and returns its hash, 0 on failure. That of the first of a series makes
  * those of later drops before, and holds their hashes. */
 static int64_t build(const options *o, const char *command, int drop, sf_error *err) {
-    sf_case c = {0};
-    sf_model model = {0};
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
+    SF_OWNED_BY(sf_model_free) sf_model model = {0};
     sf_build_report report;
     sf_model_report table;
-    char *text = NULL, libraries[SF_LIBRARIES_SIZE], output[SF_PATH_SIZE], hash[SF_MODEL_HASH_SIZE] = "0";
+    char libraries[SF_LIBRARIES_SIZE], output[SF_PATH_SIZE], hash[SF_MODEL_HASH_SIZE] = "0";
     const sf_sink sink = sf_program_sink("softfall-pre");
     int64_t own[SF_SERIES_MOST] = {0};
     sf_model_series_file(o->output, drop, output, sizeof output);
     if (check_output(o, output, err) != SF_OK ||
         read_drop(o, drop, drop == 1 ? &sink : NULL, &c, err) != SF_OK ||
         (drop == 1 && check_drops(o, &c, err) != SF_OK))
-        goto done;
+        return 0;
     for (int k = 1; drop == 1 && k < c.drops && err->status == SF_OK; k++)
         own[k] = c.drop[k].own ? build(o, command, k + 1, err) : 0;
     c.store = o->store;
@@ -83,13 +82,13 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
     if (err->status != SF_OK || sf_replace_check(output, err) != SF_OK || /* not one of what the case names */
         sf_model_make(&c, &model, &report, libraries, &sink, err) != SF_OK ||
         sf_replace_check(output, err) != SF_OK) /* nor of what a geometry names */
-        goto done;
+        return 0;
     for (int64_t k = 0; k < model.series_count; k++)
         model.series_model[k] = own[k];
     sf_replace_clean(output);
     sf_model_report_make(&model, &report, &table);
     sf_model_report_print(stdout, &table);
-    text = sf_model_report_text(&table, err);
+    SF_OWNED char *text = sf_model_report_text(&table, err);
     sf_provenance provenance = {.program = "softfall-pre",
                                 .command_line = command,
                                 .libraries = libraries,
@@ -102,10 +101,6 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
         printf("%-26s%s\n", "written", output);
         sf_model_hash(&model, hash);
     }
-done:
-    free(text);
-    sf_model_free(&model);
-    sf_case_free(&c);
     return (int64_t)strtoull(hash, NULL, 16);
 }
 
@@ -126,9 +121,8 @@ int main(int argc, char **argv) {
         sf_case_print_keys(stdout);
         return sf_error_report(&err, "softfall-pre");
     }
-    char *command = sf_command_line(argc, argv);
+    SF_OWNED char *command = sf_command_line(argc, argv);
     if (sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK)
         build(&o, command ? command : "softfall-pre", 1, &err);
-    free(command);
     return sf_error_report(&err, "softfall-pre");
 }

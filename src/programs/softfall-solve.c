@@ -22,7 +22,6 @@
 #include "model/good_run.h"
 #include "model/model_io.h"
 #include "solver/run/run.h"
-#include "solver/run/series.h"
 
 /* ---- the command line ---- */
 
@@ -326,12 +325,12 @@ static sf_status start(const options *o, const sf_provenance *provenance, sf_out
 /* Solves one drop, or resumes it; of the first, k = 1, `all` receives what the model says of a series. */
 static sf_status solve_drop(const options *o, int64_t k, series *all, const char *command,
                             const volatile sig_atomic_t *stop, sf_error *err) {
-    sf_model model = {0};
-    sf_operators operators = {0};
-    sf_state state = {0};
-    sf_output output;
-    sf_checkpoint from = {0};
-    sf_h5 *model_file = NULL;
+    SF_OWNED_BY(sf_model_free) sf_model model = {0};
+    SF_OWNED_BY(sf_operators_free) sf_operators operators = {0};
+    SF_OWNED_BY(sf_state_free) sf_state state = {0};
+    SF_OWNED_BY(sf_output_close) sf_output output = {.lock = -1};
+    SF_OWNED_BY(sf_checkpoint_close) sf_checkpoint from = {0};
+    SF_OWNED_BY(sf_h5_drop) sf_h5 *model_file = NULL;
     char libraries[64], hash[SF_MODEL_HASH_SIZE], path[PATH_MAX];
     sf_provenance provenance = {.program = "softfall-solve",
                                 .command_line = command,
@@ -345,23 +344,23 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
     if (read_model(o, &from, &model, &model_file, hash, err) != SF_OK ||
         (!o->restart && check_names(&output, err) != SF_OK) || /* now that the input is known */
         set_end_time(o, &from, &model, err) != SF_OK)
-        goto done;
+        return err->status;
     const char *named = o->model ? o->model : from.model_path;
     if (!realpath(named, path))
         snprintf(path, sizeof path, "%s", named);
-    if (k > 1 && check_own(all, k, hash, err) != SF_OK)
-        goto done;
+    if (k > 1)
+        SF_TRY(check_own(all, k, hash, err));
     if (k == 1) {
         take_series(&model, path, all);
-        if (check_series(o, all, err) != SF_OK || (o->restart && all->drops > 1 && has_begun(o->output, 2)))
-            goto done;
+        SF_TRY(check_series(o, all, err));
+        if (o->restart && all->drops > 1 && has_begun(o->output, 2))
+            return SF_OK;
     }
     print_model(&model, o->threads);
     char note[1024] = "";
     if (o->restart)
         compare_builds(&from, note);
-    if (start(o, &provenance, &output, &model, &model_file, &operators, &state, err) != SF_OK)
-        goto done;
+    SF_TRY(start(o, &provenance, &output, &model, &model_file, &operators, &state, err));
     for (int64_t later = 2; k == 1 && later <= all->drops && !o->restart; later++) {
         char checkpoint[SF_PATH_SIZE]; /* of an earlier series, which this one would seem to have reached */
         name_checkpoint(o->output, later, checkpoint);
@@ -385,13 +384,6 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
         print_ledger(&model, &state, &run);
     if (err->status == SF_ERR_NUMERIC && (o->remove_failed || strcmp(run.ending, "anvil") != 0))
         handle_failure(o, &output, &state, run.shown);
-done:
-    sf_output_close(&output);
-    sf_checkpoint_close(&from);
-    sf_h5_close(&model_file, err);
-    sf_state_free(&state);
-    sf_operators_free(&operators);
-    sf_model_free(&model);
     return err->status;
 }
 
@@ -433,8 +425,7 @@ static void request_stop(int signal_number) {
  * another process wants a processor. The OpenMP runtimes read their policy from the environment before main,
  * so the program starts itself once more with the passive one; a value set by the user is kept. */
 static void limit_spinning(char **argv) {
-    /* a spin of some 0.2 ms bridges the barriers of a step, and costs little where threads share a processor
-     */
+    /* a spin of some 0.2 ms bridges the barriers of a step, and costs little where threads share one */
     if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 1) == 0 &&
         setenv("GOMP_SPINCOUNT", "5000", 0) == 0)
         execv("/proc/self/exe", argv); /* returns only if it cannot: then the run is merely slower */
@@ -470,8 +461,7 @@ int main(int argc, char **argv) {
     struct sigaction action = {.sa_handler = request_stop};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    char *command = sf_command_line(argc, argv);
+    SF_OWNED char *command = sf_command_line(argc, argv);
     solve(&o, command ? command : "softfall-solve", &stop_requested, &err);
-    free(command);
     return sf_error_report(&err, "softfall-solve");
 }

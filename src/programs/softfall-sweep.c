@@ -11,7 +11,6 @@
 
 #include <malloc.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 enum { TABLE_ROWS = 10 };

@@ -78,8 +78,7 @@ typedef struct sf_panel {
 typedef struct sf_chart sf_chart;
 typedef struct sf_series_data sf_series_data;
 
-/* A chart of width x height pixels with the file name NAME; NULL without memory. Release with sf_chart_free.
- */
+/* A chart of width x height pixels with the file name NAME; NULL: no memory. Release with sf_chart_free. */
 sf_chart *sf_chart_new(const char *name, int width, int height, sf_error *err);
 void sf_chart_free(sf_chart *chart);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/chart_data.h"
 
+#include "base/text.h"
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "report/html.h"
@@ -50,19 +51,15 @@ void sf_chart_free(sf_chart *chart) {
         for (size_t s = 0; s < p->series_count; s++) {
             for (size_t i = 0; p->series[s]->text && i < p->series[s]->count; i++)
                 free(p->series[s]->text[i]);
-            free(p->series[s]->text);
-            free(p->series[s]->value);
-            free(p->series[s]);
+            SF_FREE(p->series[s]->text, p->series[s]->value, p->series[s]);
         }
-        free(p->series);
-        free(p->mark);
+        SF_FREE(p->series, p->mark);
         free_axis(&p->shown.x);
         free_axis(&p->shown.y);
         free_axis(&p->shown.x2);
         free(p);
     }
-    free(chart->panel);
-    free(chart);
+    SF_FREE(chart->panel, chart);
 }
 
 void sf_chart_title(sf_chart *chart, const char *format, ...) {
@@ -214,12 +211,12 @@ static void run(const sf_staging *output, const char *name, const char *ending, 
 /* Reads a file of the staging directory and removes it; NULL on failure. */
 static char *take_file(const sf_staging *output, const char *name) {
     sf_error ignored = SF_ERROR_INIT;
-    char *text = NULL, *path = sf_staging_path(output, name, &ignored);
+    char *text = NULL;
+    SF_OWNED char *path = sf_staging_path(output, name, &ignored);
     if (path) {
         sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &ignored);
         sf_staging_remove(output, name);
     }
-    free(path);
     return text;
 }
 
@@ -259,10 +256,7 @@ char *sf_gnuplot_element(const char *text, const char *name) {
             fprintf(out, "%s-", name);
         at += length > 0 ? length : 1;
     }
-    if (fclose(out) == 0)
-        return element;
-    free(element);
-    return NULL;
+    return sf_text_close(out, &element);
 }
 
 char *sf_chart_svg(const sf_staging *output, const char *name, const char *program, char *warning,

@@ -3,10 +3,9 @@
 #include "report/chart_data.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* A text as gnuplot's string: between single quotes, where gnuplot substitutes nothing; lines joined by "\n".
+/* A text as gnuplot's string: between single quotes, which gnuplot takes as they are; lines joined by "\n".
  */
 static void put_text(FILE *g, const char *text) {
     fputc('\'', g);

@@ -7,7 +7,6 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The character, or what stands for it in XML. */
@@ -36,11 +35,10 @@ void sf_html_text(FILE *page, const char *text) {
 
 /* Texts are of any length: pieces of the case stand in them. */
 static void put_arguments(FILE *page, const char *format, va_list arguments) {
-    char *text = NULL;
+    SF_OWNED char *text = NULL;
     if (vasprintf(&text, format, arguments) < 0)
         return;
     sf_html_text(page, text);
-    free(text);
 }
 
 /* Writes the arguments between the opening and the closing tag of an element. */
@@ -160,10 +158,7 @@ static char *png_element(const unsigned char *data, size_t size) {
             width, height, width, height);
     sf_html_base64(out, data, size);
     fputs("\"/></svg>\n", out);
-    if (fclose(out) == 0)
-        return element;
-    free(element);
-    return NULL;
+    return sf_text_close(out, &element);
 }
 
 char *sf_html_png(const sf_staging *output, const char *name) {

@@ -23,8 +23,7 @@ void sf_html_note(FILE *page, const char *format, ...) __attribute__((format(pri
 void sf_html_pre(FILE *page, const char *text);
 void sf_html_prose(FILE *page, const char *text);
 
-/* The line at the top that says what to think of all that follows. `kind`: "good", "fair", "bad" or "plain".
- */
+/* The line at the top that judges all that follows. `kind`: "good", "fair", "bad" or "plain". */
 void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
@@ -81,6 +80,8 @@ void sf_html_numbers(sf_html_table *table, int digits, const double *value, int 
 void sf_html_line(sf_html_table *table, const char *first, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 void sf_html_table_end(sf_html_table *table);
+/* A table that ends with the block of its variable. */
+#define SF_HTML_TABLE SF_OWNED_BY(sf_html_table_end) sf_html_table
 /* Adds a row to a table without headings. */
 void sf_html_fact(sf_html_table *table, const char *title, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -4,7 +4,6 @@
 #include "base/text.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- JSON ---- */
@@ -247,14 +246,13 @@ static char *table_headings(sf_rows rows) {
 
 void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records) {
     SF_OWNED char *headings = table_headings(rows);
-    sf_html_table table = sf_html_table_begin(page, kind, headings ? headings : "");
+    SF_HTML_TABLE table = sf_html_table_begin(page, kind, headings ? headings : "");
     for (int64_t k = 0; k < records.count; k++) {
         sf_html_row(&table);
         for (size_t c = 0; c < rows.count; c++)
             if (rows.row[c].name)
                 put_html_cell(&table, &rows.row[c], record_at(records, k));
     }
-    sf_html_table_end(&table);
 }
 
 /* ---- text ---- */

@@ -69,8 +69,7 @@ typedef struct sf_row {
     sf_value (*value)(const void *record); /* replaces the member; NULL: the member */
 } sf_row;
 
-/* Type and offset of a member, for an initialiser: {.key = "mass_kg", SF_ROW_OF(NUMBER, sf_results, mass)}.
- */
+/* Type and offset, for an initialiser: {.key = "mass_kg", SF_ROW_OF(NUMBER, sf_results, mass)}. */
 #define SF_ROW_OF(kind, record, member) .type = SF_ROW_##kind, .offset = offsetof(record, member)
 
 /* A list of declarations, from an array of them. */

@@ -123,19 +123,6 @@ static void find_arm(const sf_model *m, const sf_missile *missile, const double 
         arm[r] = x[r] - arm[r];
 }
 
-void sf_missile_velocity_at(const sf_model *m, const sf_missile *missile, const double x[3], double out[3]) {
-    double arm[3], omega[3], across[3];
-    if (!sf_missile_turns(m)) {
-        scale(missile->velocity_now, m->missile.direction, out);
-        return;
-    }
-    find_arm(m, missile, x, arm);
-    sf_rigid_angular_velocity(m->missile.inertia, missile->quaternion, missile->spin_now, omega);
-    sf_cross3(omega, arm, across);
-    for (int r = 0; r < 3; r++)
-        out[r] = missile->rate_now[r] + across[r];
-}
-
 void sf_missile_motion_at(const sf_model *m, const sf_missile *missile, const double x[3], double out[3]) {
     static const double upright[4] = {1, 0, 0, 0};
     double arm[3], before[3], turn[4], across[3];

@@ -68,9 +68,6 @@ typedef struct sf_missile_view {
     double angular_acceleration[3]; /* rad s-2 */
 } sf_missile_view;
 sf_missile_view sf_missile_read(const sf_model *model, const sf_missile *missile);
-/* Velocity (m s-1), at the present time, of the missile's material point at x. */
-void sf_missile_velocity_at(const sf_model *model, const sf_missile *missile, const double x[3],
-                            double out[3]);
 /* Displacement (m), in the last step, of the missile's material point at x. */
 void sf_missile_motion_at(const sf_model *model, const sf_missile *missile, const double x[3], double out[3]);
 /* Bound (m s-1) on the speed of all its points at the half step. */

@@ -3,12 +3,10 @@
 
 #include "base/lanes.h"
 #include "base/mat3.h"
-#include "base/lanes.h"
 #include "solver/contact/contact.h"
 #include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
 #include "solver/ledger.h"
-#include "solver/field/stabilisation.h"
 #include "solver/time_step.h"
 #include <math.h>
 #include <string.h>
@@ -251,8 +249,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
 #pragma omp master
         sf_lap(s->watch, SF_PHASE_FORCE);
     }
-    if (check_domains(m, s, err) != SF_OK)
-        return err->status;
+    SF_TRY(check_domains(m, s, err));
     sf_membrane_force(m, &op->membrane, s->d, &s->membrane, s->force); /* f += phi^T f of the membrane */
     sf_time_step_choose(m, op, s);
     sf_lap(s->watch, SF_PHASE_TIME_STEP);

@@ -46,8 +46,7 @@ static power_work use_work(const sf_model *m, const sf_halo *h) {
     return w;
 }
 
-/* The gradient of a field in domain l; two sums run side by side, as each addition waits for the one before.
- */
+/* The gradient of a field in domain l; two sums run side by side, as an addition waits for the one before. */
 static inline void field_gradient(const sf_model *m, const sf_halo *h, int64_t l, const double *field,
                                   float g[3]) {
     const int64_t first = m->domain_ptr[l], count = m->domain_ptr[l + 1] - first;

@@ -273,8 +273,7 @@ sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
 }
 
 void sf_manifest_free(sf_manifest *m) {
-    free(m->run);
-    free(m->text);
+    SF_FREE(m->run, m->text);
     *m = (sf_manifest){0};
 }
 
@@ -315,12 +314,12 @@ static void take_failure(const char *line, int count, const sf_manifest_run *run
 
 int sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure) {
     sf_error none = SF_ERROR_INIT;
-    char *text = NULL, *line;
+    SF_OWNED char *text = NULL;
+    char *line;
     int lines = 0;
     if (!sf_replace_exists(path) || sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
         return -1;
     for (char *rest = text; (line = strsep(&rest, "\n")) && rest; lines++)
         take_failure(line, count, run, failure);
-    free(text);
     return lines;
 }

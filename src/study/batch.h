@@ -46,8 +46,7 @@ sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err);
 sf_status sf_engine_run(const sf_runner_engine *engine, int threads, const char *manifest,
                         void (*tick)(void *context), void *context, int *code, sf_error *err);
 
-/* " (sentence)", the last one of sbatch in the log of Snakemake, from byte `begin` on; "" if there is none.
- */
+/* " (sentence)", the last one of sbatch in the log of Snakemake, from byte `begin` on; "" if none. */
 void sf_engine_complaint(const char *log, size_t begin, char *text, size_t size);
 
 /* The manifest of a batch: its drops on disk, in groups, for an engine that starts softfall-batch once for

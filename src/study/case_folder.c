@@ -4,7 +4,6 @@
 #include "build_info.h"
 #include "study/run_folder.h"
 #include "case/case.h"
-#include "case/edit.h"
 #include "case/grammar.h"
 #include "base/hash.h"
 #include "io/plain_file.h"
@@ -40,7 +39,7 @@ typedef struct folder {
     int read_count;
     geometry_file *read;    /* [read_count] */
     char *case_folder;      /* from / */
-    char *text;             /* of the case (case/edit.h) */
+    char *text;             /* of the case (case/edit.c) */
     sf_edit_settings named; /* the settings in it that name files */
     int count;
     folder_file *file; /* [count] */
@@ -66,9 +65,7 @@ static sf_status add_file(folder *f, const char *name, const char *path, char *t
         f->file[f->count++] = file;
         return SF_OK;
     }
-    free(file.name);
-    free(file.path);
-    free(text);
+    SF_FREE(file.name, file.path, text);
     return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of %s", f->request->folder);
 }
 
@@ -239,8 +236,7 @@ static const char *write_include(const part *p, const char *at, FILE *out, sf_er
         else
             free(own);
     }
-    free(asked);
-    free(path);
+    SF_FREE(asked, path);
     return behind + 1;
 }
 
@@ -371,22 +367,15 @@ static sf_status check(const folder *f, sf_error *err) {
 
 static void release(folder *f) {
     sf_tree_end(&f->tree);
-    for (int k = 0; k < f->count; k++) {
-        free(f->file[k].name);
-        free(f->file[k].path);
-        free(f->file[k].text);
-    }
+    for (int k = 0; k < f->count; k++)
+        SF_FREE(f->file[k].name, f->file[k].path, f->file[k].text);
     free(f->file);
-    for (int k = 0; k < f->read_count; k++) {
-        free(f->read[k].geometry);
-        free(f->read[k].path);
-    }
+    for (int k = 0; k < f->read_count; k++)
+        SF_FREE(f->read[k].geometry, f->read[k].path);
     free(f->read);
     for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&f->mesh[k]);
-    free(f->named.setting);
-    free(f->text);
-    free(f->case_folder);
+    SF_FREE(f->named.setting, f->text, f->case_folder);
     sf_case_free(&f->c);
 }
 

@@ -386,8 +386,7 @@ sf_status sf_pulse_hic(const sf_series *a, sf_hic *hic, sf_error *err) {
     if (a->count < 3 || !is_single(&p))
         return sf_hic_evaluate(a, INFINITY, hic, err);
     p.integral = sf_alloc(err, (unsigned long)a->count, sizeof(double), "a pulse");
-    if (!p.integral)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 1; k < a->count; k++)
         p.integral[k] =
             p.integral[k - 1] + 0.5 * (a->value[k] + a->value[k - 1]) * (a->time[k] - a->time[k - 1]);

@@ -48,8 +48,7 @@ sf_status sf_config_text(const sf_config *config, const config_setting_t *group,
 /* The index of the text among `words` ("auto|H1|H2"). */
 sf_status sf_config_choice(const sf_config *config, const config_setting_t *group, const char *name,
                            const char *words, int *out, sf_error *err);
-/* The name of a file that can be read, resolved against the file's folder; from malloc, owned by the caller.
- */
+/* The name of a file that can be read, resolved against the file's folder; owned by the caller. */
 sf_status sf_config_file(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, char **out, sf_error *err);
 /* A name resolved in the same way, cut at PATH_MAX. */

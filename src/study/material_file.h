@@ -19,8 +19,7 @@ typedef struct sf_material_text {
 sf_status sf_material_write(const char *folder, const char *name, const sf_material *material,
                             const sf_material_text *text, sf_error *err);
 
-/* The same, but SF_ERR_MODEL with the reason, and no <name>.cfg, if softfall-pre would refuse the material.
- */
+/* The same, but SF_ERR_MODEL with the reason, and no <name>.cfg, if softfall-pre would refuse it. */
 sf_status sf_material_write_checked(const char *folder, const char *name, const sf_material *material,
                                     const sf_material_text *text, sf_error *err);
 

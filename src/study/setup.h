@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The set-up that all programs of studies share: `PROGRAM INPUT -o DIR` with its options, the output
- * directory that is staged and locked, the runner of drops with its engine, warnings and the closing lines.
- */
+ * directory that is staged and locked, the runner with its engine, warnings and closing lines. */
 #pragma once
 #include "base/program.h"
 #include "io/staging.h"

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/gmsh/window.h"
 
+#include "base/mat3.h"
 #include "io/plain_file.h"
 #include "report/row.h"
 
 #include <dlfcn.h>
 #include <gmshc.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,18 +46,6 @@ void sf_geometry_box(double low[3], double high[3]) {
     gmshModelGetBoundingBox(-1, -1, &low[0], &low[1], &low[2], &high[0], &high[1], &high[2], &unasked);
 }
 
-static void measure(sf_triangles *s) {
-    for (int c = 0; c < 3; c++) {
-        s->low[c] = INFINITY;
-        s->high[c] = -INFINITY;
-    }
-    for (int64_t k = 0; k < 3 * s->count; k++)
-        for (int c = 0; c < 3; c++) {
-            s->low[c] = fmin(s->low[c], s->corner[3 * k + c]);
-            s->high[c] = fmax(s->high[c], s->corner[3 * k + c]);
-        }
-}
-
 /* The triangles (element type 2) of the model's surfaces. */
 static sf_status take_triangles(sf_triangles *out, sf_error *err) {
     size_t *element = NULL, *node = NULL, *corner = NULL, elements = 0, nodes = 0, corners = 0,
@@ -82,7 +70,7 @@ static sf_status take_triangles(sf_triangles *out, sf_error *err) {
     gmshFree(node);
     gmshFree(position);
     gmshFree(parameter);
-    measure(out);
+    sf_box3(3 * out->count, out->corner, out->low, out->high);
     return err->status;
 }
 
@@ -373,16 +361,15 @@ void sf_window_remove(const char *name) {
     gmshOnelabClear(name, &unasked);
 }
 
-/* Sends an entry of a geometry again, with `addition` at its end: of two members of one name the last counts.
- */
+/* Sends an entry of a geometry again, with `addition` at its end: of two of one name the last counts. */
 static void change(const char *name, const char *addition) {
-    char *json = NULL, *changed = NULL;
+    char *json = NULL;
+    SF_OWNED char *changed = NULL;
     int ierr = 0;
     gmshOnelabGet(&json, name, "json", &ierr);
     char *end = json ? strrchr(json, '}') : NULL;
     if (ierr == 0 && end && asprintf(&changed, "%.*s, %s }", (int)(end - json), json, addition) >= 0)
         send(changed);
-    free(changed);
     gmshFree(json);
 }
 

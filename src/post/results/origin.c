@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/results/origin.h"
 
+#include "base/text.h"
 #include "io/provenance.h"
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 char *sf_origin_text(const sf_results *results, const char *path) {
@@ -122,10 +122,7 @@ static char *collect(const char *line, const char *prefix, bool to_brace) {
         else if (*p != '#' && !to_brace)
             break;
     }
-    if (fclose(out) == 0)
-        return text;
-    free(text);
-    return NULL;
+    return sf_text_close(out, &text);
 }
 
 char *sf_origin_title(const char *case_text) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/results/results.h"
 
+#include "base/text.h"
 #include "io/provenance.h"
 #include "io/replace.h"
 #include "model/cells.h"
@@ -19,8 +20,7 @@
 static const double LONGEST_TIME = 1001;
 
 bool sf_results_ended_well(const sf_results *r) {
-    return strcmp(r->status, "finished") == 0 || strcmp(r->status, "rebound") == 0 ||
-           strcmp(r->status, "interrupted") == 0;
+    return sf_word_find("finished|rebound|interrupted", r->status) >= 0;
 }
 
 void sf_results_note(sf_results *r, const char *format, ...) {
@@ -140,13 +140,12 @@ static sf_status check_lengths(sf_results *r, const int64_t *rows, sf_error *err
         if (rows[c] < r->history.rows)
             r->history.rows = rows[c];
     }
-    for (int c = 0; c < SF_HISTORY_COUNT; c++) {
-        if (rows[c] != r->history.rows) {
-            sf_results_note(r, "the columns of /history differ in length: the first %lld rows are used",
-                            (long long)r->history.rows);
-            break;
-        }
-    }
+    int longer = 0;
+    while (longer < SF_HISTORY_COUNT && rows[longer] == r->history.rows)
+        longer++;
+    if (longer < SF_HISTORY_COUNT)
+        sf_results_note(r, "the columns of /history differ in length: the first %lld rows are used",
+                        (long long)r->history.rows);
     return SF_OK;
 }
 
@@ -232,24 +231,18 @@ static sf_status read_array(const sf_results *r, const char *path, sf_h5_type ty
 }
 
 static sf_status read_integer(const sf_results *r, const char *path, int64_t *value, sf_error *err) {
-    void *data = NULL;
+    SF_OWNED void *data = NULL;
     SF_TRY(sf_h5_read(r->file, path, SF_H5_I64, 0, NULL, &data, err));
     *value = *(int64_t *)data;
-    free(data);
     return SF_OK;
 }
 
 static sf_status read_numbers(const sf_results *r, const char *path, int64_t count, double *numbers,
                               sf_error *err) {
-    double *data = NULL;
+    SF_OWNED double *data = NULL;
     SF_TRY(read_array(r, path, SF_H5_F64, &count, 1, &data, err));
     memcpy(numbers, data, (size_t)count * sizeof *numbers);
-    free(data);
     return SF_OK;
-}
-
-static sf_status read_vector(const sf_results *r, const char *path, double vector[3], sf_error *err) {
-    return read_numbers(r, path, 3, vector, err);
 }
 
 /* NaN: the law of the mesh error does not apply. */
@@ -281,7 +274,7 @@ static sf_status read_optional(const sf_results *r, const char *path, double *va
 static sf_status read_gravity(sf_results *r, sf_error *err) {
     SF_TRY(sf_h5_read_scalar(r->file, "/model/gravity_along", &r->gravity_along, err));
     if (sf_h5_exists(r->file, "/model/gravity"))
-        return read_vector(r, "/model/gravity", r->gravity, err);
+        return read_numbers(r, "/model/gravity", 3, r->gravity, err);
     r->gravity[2] = r->gravity_along / r->missile_direction[2];
     return SF_OK;
 }
@@ -291,7 +284,7 @@ static sf_status read_sphere(sf_results *r, sf_error *err) {
     SF_TRY(read_optional(r, "/model/sphere_radius", &r->sphere_radius, err));
     if (!(r->sphere_radius > 0))
         r->sphere_radius = NAN;
-    else if (read_vector(r, "/model/sphere_centre", r->sphere_centre, err) == SF_OK)
+    else if (read_numbers(r, "/model/sphere_centre", 3, r->sphere_centre, err) == SF_OK)
         check_finite(r->sphere_centre, 3, "/model/sphere_centre", err);
     return err->status;
 }
@@ -346,14 +339,13 @@ static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_er
     r->layer_sums = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_sums, "sums of layers");
     for (int k = 0; k < 4 && err->status == SF_OK; k++) {
         char path[80];
-        double *value = NULL;
+        SF_OWNED double *value = NULL;
         int64_t count = r->layer_count;
         snprintf(path, sizeof path, "%s/%s", head->group, names[k]);
         if (read_array(r, path, SF_H5_F64, &count, 1, &value, err) != SF_OK)
             break;
         for (int64_t i = 0; i < count && check_finite(value, count, path, err) == SF_OK; i++)
             *(double *)((char *)&r->layer_sums[i] + offsets[k]) = value[i];
-        free(value);
     }
     return err->status;
 }
@@ -385,12 +377,12 @@ static sf_status read_model(sf_results *r, sf_error *err) {
     SF_TRY(sf_h5_read_scalar(r->file, "/model/density", &r->density, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/missile_speed", &r->missile_speed, err));
-    SF_TRY(read_vector(r, "/model/missile_direction", r->missile_direction, err));
+    SF_TRY(read_numbers(r, "/model/missile_direction", 3, r->missile_direction, err));
     SF_TRY(read_gravity(r, err));
     SF_TRY(read_flag(r, "/model/kinematic", &r->kinematic, err));
     SF_TRY(read_flag(r, "/model/missile_driven", &r->driven, err));
     SF_TRY(read_flag(r, "/model/missile_free", &r->turns, err));
-    SF_TRY(read_vector(r, "/model/missile_centre", r->missile_centre, err));
+    SF_TRY(read_numbers(r, "/model/missile_centre", 3, r->missile_centre, err));
     SF_TRY(read_mesh_error(r, err));
     SF_TRY(read_optional(r, "/model/informed_strain", &r->informed_strain, err));
     SF_TRY(read_optional(r, "/model/impact_x", &r->impact_x, err));
@@ -411,7 +403,8 @@ static sf_status read_model(sf_results *r, sf_error *err) {
 
 /* The solver's notes, a sentence per line; files of earlier versions have none. */
 static sf_status read_notes(sf_results *r, sf_error *err) {
-    char *notes = NULL, *rest = NULL;
+    SF_OWNED char *notes = NULL;
+    char *rest = NULL;
     if (!sf_h5_exists(r->file, "/summary/notes"))
         return SF_OK;
     SF_TRY(sf_h5_read_text(r->file, "/summary/notes", &notes, err));
@@ -422,7 +415,6 @@ static sf_status read_notes(sf_results *r, sf_error *err) {
         else
             sf_results_note(r, "%s", line);
     }
-    free(notes);
     return SF_OK;
 }
 
@@ -435,10 +427,9 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
             r, "there is no /summary: the run still runs or was killed; the data written so far are used");
         return SF_OK;
     }
-    char *status = NULL;
+    SF_OWNED char *status = NULL;
     SF_TRY(sf_h5_read_text(r->file, "/summary/status", &status, err));
     snprintf(r->status, sizeof r->status, "%s", status);
-    free(status);
     SF_TRY(read_integer(r, "/summary/steps", &r->steps, err));
     SF_TRY(read_integer(r, "/summary/threads", &r->threads, err));
     SF_TRY(read_integer(r, "/summary/interactions", &r->interactions, err));
@@ -471,7 +462,7 @@ static sf_status read_head(const sf_results *r, sf_frame_head *head, sf_error *e
     snprintf(path, sizeof path, "%s/acceleration", head->group);
     SF_TRY(sf_h5_read_scalar(r->file, path, &head->acceleration, err));
     snprintf(path, sizeof path, "%s/missile_displacement", head->group);
-    SF_TRY(read_vector(r, path, head->missile_displacement, err));
+    SF_TRY(read_numbers(r, path, 3, head->missile_displacement, err));
     snprintf(path, sizeof path, "%s/missile_quaternion", head->group);
     SF_TRY(read_numbers(r, path, 4, head->missile_quaternion, err));
     const double *u = head->missile_displacement, *q = head->missile_quaternion;
@@ -483,22 +474,19 @@ static sf_status read_head(const sf_results *r, sf_frame_head *head, sf_error *e
     return SF_OK;
 }
 
-/* True if the error is to be passed on; otherwise it becomes a note, as the run did not end well. */
-static bool keep_error(sf_results *r, sf_error *problem, sf_error *err) {
-    if (sf_results_ended_well(r)) {
-        SF_FAIL(err, problem->status, "%s", problem->text);
-        return true;
-    }
+/* Passes the error on; of a run that did not end well it becomes a note. */
+static sf_status keep_error(sf_results *r, const sf_error *problem, sf_error *err) {
+    if (sf_results_ended_well(r))
+        return SF_FAIL(err, problem->status, "%s", problem->text);
     sf_results_note(r, "left out: %.200s", problem->text);
-    return false;
+    return SF_OK;
 }
 
 static sf_status read_frame_list(sf_results *r, sf_error *err) {
     int64_t count = sf_h5_group_size(r->file, "/frames");
     r->frames =
         sf_alloc(err, (unsigned long)(count > 0 ? count : 0), sizeof *r->frames, "the list of frames");
-    if (!r->frames)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < count; k++) {
         char name[16];
         sf_error problem = SF_ERROR_INIT;
@@ -511,16 +499,15 @@ static sf_status read_frame_list(sf_results *r, sf_error *err) {
                     head->group, head->time, head[-1].time);
         if (problem.status == SF_OK)
             r->frame_count++;
-        else if (keep_error(r, &problem, err))
-            return err->status;
+        else
+            SF_TRY(keep_error(r, &problem, err));
     }
     sf_error problem = SF_ERROR_INIT;
     if (r->frame_count > 0 && r->layer_count > 0 &&
         read_layer_sums(r, &r->frames[r->frame_count - 1], &problem) != SF_OK) {
         free(r->layer_sums);
         r->layer_sums = NULL;
-        if (keep_error(r, &problem, err))
-            return err->status;
+        SF_TRY(keep_error(r, &problem, err));
     }
     if (r->frame_count == 0)
         sf_results_note(r, "there are no frames: nothing to show in ParaView");
@@ -546,23 +533,11 @@ sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) 
 }
 
 void sf_results_close(sf_results *results) {
-    sf_error ignored = SF_ERROR_INIT; /* nothing was written, so nothing can be lost */
-    sf_h5_close(&results->file, &ignored);
-    free(results->position);
-    free(results->volume);
-    free(results->cell_type);
-    free(results->cell_ptr);
-    free(results->cell_node);
-    free(results->surface_position);
-    free(results->surface_triangle);
-    free(results->support_position);
-    free(results->support_triangle);
-    free(results->node_layer);
-    free(results->layer_name);
-    free(results->layer_names);
-    free(results->layer_density);
-    free(results->layer_informed);
-    free(results->layer_sums);
+    sf_h5_drop(&results->file);
+    SF_FREE(results->position, results->volume, results->cell_type, results->cell_ptr, results->cell_node,
+            results->surface_position, results->surface_triangle, results->support_position,
+            results->support_triangle, results->node_layer, results->layer_name, results->layer_names,
+            results->layer_density, results->layer_informed, results->layer_sums);
     sf_history_free(&results->history);
     free(results->frames);
     *results = (sf_results){0};

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/browser.h"
+#include "post/view/report.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "build_info.h"
 #include "model/cells.h"
 #include "model/model.h"
-#include "post/view/paraview.h"
 #include "post/view/cut.h"
 #include "report/row.h"
 
@@ -247,26 +245,19 @@ static void put_cells(page *p) {
     sf_json_close(&p->json, '}');
 }
 
-static void put_missile(page *p) {
-    const sf_results *r = p->results;
-    if (r->surface_triangle_count == 0)
+/* Writes a surface of triangles, and the exact sphere of the missile if it has one; nothing without
+ * triangles.
+ */
+static void put_surface(page *p, const char *key, int64_t nodes, const double *position, int64_t triangles,
+                        const int32_t *triangle, double radius) {
+    const double *c = p->results->sphere_centre, sphere[4] = {c[0], c[1], c[2], radius};
+    if (triangles == 0)
         return;
-    sf_json_open(&p->json, "missile", '{');
-    put_quantised(p, "position", r->surface_position, r->surface_node_count, 3);
-    put_indices(p, "triangle", r->surface_triangle, 3 * r->surface_triangle_count);
-    const double *c = r->sphere_centre, sphere[4] = {c[0], c[1], c[2], r->sphere_radius};
-    if (r->sphere_radius > 0)
+    sf_json_open(&p->json, key, '{');
+    put_quantised(p, "position", position, nodes, 3);
+    put_indices(p, "triangle", triangle, 3 * triangles);
+    if (radius > 0)
         put_numbers(p, "sphere", sphere, 4, 1);
-    sf_json_close(&p->json, '}');
-}
-
-static void put_supports(page *p) {
-    const sf_results *r = p->results;
-    if (r->support_triangle_count == 0)
-        return;
-    sf_json_open(&p->json, "support", '{');
-    put_quantised(p, "position", r->support_position, r->support_node_count, 3);
-    put_indices(p, "triangle", r->support_triangle, 3 * r->support_triangle_count);
     sf_json_close(&p->json, '}');
 }
 
@@ -301,12 +292,11 @@ static void put_motion(page *p, const sf_frame_head *head) {
 
 static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
     const sf_results *r = p->results;
-    sf_frame frame = {0};
+    SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
     int fields = p->made->fields & SF_FIELD_DISPLACEMENT;
     for (int k = 0; k < COLOURINGS; k++)
         fields |= p->made->fields & 1 << colourings[k].field;
-    if (sf_frame_read_fields(r, head, fields, &frame, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_frame_read_fields(r, head, fields, &frame, err));
     sf_json_open(&p->json, NULL, '{');
     sf_json_number(&p->json, "time", head->time);
     put_motion(p, head);
@@ -326,7 +316,6 @@ static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
     }
     sf_json_close(&p->json, ']');
     sf_json_close(&p->json, '}');
-    sf_frame_free(&frame);
     return SF_OK;
 }
 
@@ -355,8 +344,7 @@ static sf_status write_facts(page *p, sf_error *err) {
                       4 * p->skin.face_count + r->cell_nnz; /* more than the longest array has */
     p->value = sf_alloc(err, 3 * (unsigned long)p->node_count, sizeof *p->value, "view.html");
     p->coded = sf_alloc(err, (unsigned long)numbers, 4, "view.html");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     sf_axis_find(r, axis);
     sf_json_open(&p->json, NULL, '{');
     put_texts(p);
@@ -366,8 +354,10 @@ static sf_status write_facts(page *p, sf_error *err) {
     put_numbers(p, "axis", axis, 2, 1);
     put_skin(p);
     put_cells(p);
-    put_missile(p);
-    put_supports(p);
+    put_surface(p, "missile", r->surface_node_count, r->surface_position, r->surface_triangle_count,
+                r->surface_triangle, r->sphere_radius);
+    put_surface(p, "support", r->support_node_count, r->support_position, r->support_triangle_count,
+                r->support_triangle, 0);
     put_curve(p);
     put_frames(p, err);
     sf_json_close(&p->json, '}');
@@ -410,7 +400,6 @@ sf_status sf_browser_write(const sf_staging *output, const sf_report *report, co
         write_page(&p, output, text, err);
     sf_skin_faces_free(&p.skin);
     sf_shown_free(&p.shown);
-    free(p.value);
-    free(p.coded);
+    SF_FREE(p.value, p.coded);
     return err->status;
 }

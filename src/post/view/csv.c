@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/csv.h"
+#include "post/view/report.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -201,8 +201,7 @@ static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *fra
     SF_OWNED int32_t *nodes =
         sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
     size_t count = 0;
-    if (!nodes)
-        return err->status;
+    SF_TRY(err->status);
     sf_axis_find(r, axis);
     top = sf_section_stations(r, station);
     for (int64_t i = 0; i < r->node_count; i++) {

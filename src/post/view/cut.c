@@ -2,7 +2,7 @@
 #include "post/view/cut.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include "base/text.h"
 #include <string.h>
 
 #include "base/mat3.h"
@@ -53,17 +53,20 @@ void sf_axis_find(const sf_results *r, double axis[2]) {
         axis[k] = isfinite(place[k]) ? place[k] : 0.5 * (low[k] + high[k]);
 }
 
-/* The array with room for one more item; NULL, and the array as it was, if there is no memory. */
-static void *grow(void *items, int64_t count, int64_t *room, size_t size, sf_error *err) {
-    if (count < *room)
-        return items;
-    int64_t more = *room ? 2 * *room : 256;
-    void *grown = realloc(items, (size_t)more * size);
-    if (!grown)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the pictures of the report");
-    else
-        *room = more;
-    return grown;
+static char *no_memory(sf_error *err) {
+    SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the pictures of the report");
+    return NULL;
+}
+
+/* Appends an item to an array, the address of a pointer. */
+static sf_status append(void *array, int64_t *count, const void *item, size_t size, sf_error *err) {
+    char *items;
+    if (!sf_grow(array, (size_t)*count, size))
+        no_memory(err);
+    SF_TRY(err->status);
+    memcpy(&items, array, sizeof items);
+    memcpy(items + (size_t)(*count)++ * size, item, size);
+    return SF_OK;
 }
 
 double sf_cut_value(const sf_cut_point *p, const double *field, int components, int component) {
@@ -87,8 +90,7 @@ static bool cross_edge(const sf_cut *cut, int32_t a, int32_t b, sf_cut_point *po
 }
 
 /* A tetrahedron has a triangle or a quadrangle in the plane. The edges of the list follow each other around
- * it: of the four that a quadrangle crosses, those that are opposite in the tetrahedron are never neighbours.
- */
+ * it: of the four that a quadrangle crosses, those opposite in the tetrahedron are never neighbours. */
 static sf_status cut_tetrahedron(sf_cut *cut, const int32_t *cell, const int corner[4], sf_error *err) {
     static const int edge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     sf_cut_polygon polygon = {0};
@@ -111,12 +113,7 @@ static sf_status cut_tetrahedron(sf_cut *cut, const int32_t *cell, const int cor
             }
         }
     }
-    void *grown = grow(cut->polygon, cut->polygon_count, &cut->polygon_room, sizeof polygon, err);
-    if (!grown)
-        return err->status;
-    cut->polygon = grown;
-    cut->polygon[cut->polygon_count++] = polygon;
-    return SF_OK;
+    return append(&cut->polygon, &cut->polygon_count, &polygon, sizeof polygon, err);
 }
 
 static sf_status cut_face(sf_cut *cut, const int32_t *cell, const int corner[4], sf_error *err) {
@@ -126,12 +123,7 @@ static sf_status cut_face(sf_cut *cut, const int32_t *cell, const int corner[4],
         count += cross_edge(cut, cell[corner[k]], cell[corner[(k + 1) % sides]], &point[count]);
     if (count != 2)
         return SF_OK;
-    void *grown = grow(cut->line, cut->line_count, &cut->line_room, sizeof *cut->line, err);
-    if (!grown)
-        return err->status;
-    cut->line = grown;
-    memcpy(cut->line[cut->line_count++], point, sizeof *cut->line);
-    return SF_OK;
+    return append(&cut->line, &cut->line_count, point, sizeof *cut->line, err);
 }
 
 static sf_status cut_cells(sf_cut *cut, sf_error *err) {
@@ -169,7 +161,9 @@ static bool cross_triangle(const sf_cut *cut, const double *const corner[3], dou
     return count == 2;
 }
 
-bool sf_cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t t, double end[2][2]) {
+/* The missile's triangle where it is in that frame: x and z of both ends of its part of the plane; false: it
+ * is not in the plane. */
+static bool cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t t, double end[2][2]) {
     const sf_results *r = cut->results;
     double x[3][3];
     for (int k = 0; k < 3; k++)
@@ -185,13 +179,8 @@ static sf_status cut_surface(sf_cut *cut, int64_t count, const double *position,
         const double *corner[3];
         for (int k = 0; k < 3; k++)
             corner[k] = &position[3 * (int64_t)triangle[3 * t + k]];
-        if (!cross_triangle(cut, corner, segment))
-            continue;
-        void *grown = grow(cut->outline, cut->outline_count, &cut->outline_room, sizeof *cut->outline, err);
-        if (!grown)
-            return err->status;
-        cut->outline = grown;
-        memcpy(cut->outline[cut->outline_count++], segment, sizeof *cut->outline);
+        if (cross_triangle(cut, corner, segment))
+            SF_TRY(append(&cut->outline, &cut->outline_count, segment, sizeof *cut->outline, err));
     }
     return SF_OK;
 }
@@ -235,9 +224,7 @@ sf_status sf_cut_make(const sf_results *results, sf_cut *cut, sf_error *err) {
 }
 
 void sf_cut_free(sf_cut *cut) {
-    free(cut->polygon);
-    free(cut->line);
-    free(cut->outline);
+    SF_FREE(cut->polygon, cut->line, cut->outline);
     *cut = (sf_cut){0};
 }
 
@@ -372,7 +359,7 @@ static int64_t outline_count(const layout *l) {
 /* Piece k of the missile's outline in that frame; x and z of both ends. */
 static bool find_outline(const layout *l, const sf_frame_head *head, int64_t k, double end[2][2]) {
     if (l->cut->results->turns)
-        return sf_cut_triangle(l->cut, head, k, end);
+        return cut_triangle(l->cut, head, k, end);
     for (int e = 0; e < 2; e++)
         for (int c = 0; c < 2; c++)
             end[e][c] = l->cut->outline[k][e][c] + head->missile_displacement[2 * c];
@@ -480,10 +467,8 @@ char *sf_picture_draw(const sf_cut *cut, const sf_picture *pictures, int count, 
     char *text = NULL;
     size_t size = 0;
     layout l = {.cut = cut, .style = style, .svg = open_memstream(&text, &size)};
-    if (!l.svg) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a picture of the report");
-        return NULL;
-    }
+    if (!l.svg)
+        return no_memory(err);
     lay_out(&l, pictures, count);
     fprintf(l.svg, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %.0f\">\n", WIDTH,
             TITLE + l.height + SCALE);
@@ -491,9 +476,5 @@ char *sf_picture_draw(const sf_cut *cut, const sf_picture *pictures, int count, 
         put_panel(&l, &pictures[k], k);
     put_scale(&l);
     fputs("</svg>\n", l.svg);
-    if (fclose(l.svg) == 0)
-        return text;
-    SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a picture of the report");
-    free(text);
-    return NULL;
+    return sf_text_close(l.svg, &text) ? text : no_memory(err);
 }

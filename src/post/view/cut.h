@@ -38,11 +38,11 @@ typedef struct sf_cut {
     bool mirrored;             /* the other half, mirrored at the axis, belongs to the pad too */
     double x[2], z[2];         /* m, extent of the undeformed pad in the plane, without the other half */
     double missile[2];         /* m, extent of the missile along x in the plane */
-    int64_t polygon_count, polygon_room;
+    int64_t polygon_count;
     sf_cut_polygon *polygon; /* of the tetrahedra that fill the cells */
-    int64_t line_count, line_room;
+    int64_t line_count;
     sf_cut_point (*line)[2]; /* of the faces of the cells */
-    int64_t outline_count, outline_room;
+    int64_t outline_count;
     double (*outline)[2][2]; /* m, x and z of both ends: of the missile's triangles at t = 0, and of */
     int64_t support_first;   /* the supports' triangles from this one on */
 } sf_cut;
@@ -50,10 +50,6 @@ typedef struct sf_cut {
 /* Release with sf_cut_free, also after a failure. */
 sf_status sf_cut_make(const sf_results *results, sf_cut *cut, sf_error *err);
 void sf_cut_free(sf_cut *cut);
-
-/* The missile's triangle where it is in that frame: x and z of both ends of its part of the plane; false: it
- * is not in the plane. */
-bool sf_cut_triangle(const sf_cut *cut, const sf_frame_head *head, int64_t triangle, double end[2][2]);
 
 /* Value of a field ([node_count][components]) at a point. */
 double sf_cut_value(const sf_cut_point *point, const double *field, int components, int component);

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/overlay.h"
+#include "post/view/report.h"
 
 #include "build_info.h"
 #include "base/program.h"
 #include "model/model.h"
 #include "report/chart.h"
-#include "report/html.h"
 #include "io/provenance.h"
-#include "post/figures/figures.h"
-#include "post/figures/verdict.h"
 #include "post/view/cut.h"
-#include "post/view/report.h"
-#include "post/view/report_picture.h"
 #include <argp.h>
 #include <limits.h>
 #include <math.h>
@@ -212,22 +207,15 @@ static void put_pads(FILE *page, const overlay *o) {
     for (int k = 1; k < o->count; k++) {
         char text[400];
         sf_error why = SF_ERROR_INIT;
-        char *svg = sf_report_picture_before(&o->run[k].results, text, sizeof text, &why);
+        SF_OWNED char *svg = sf_report_picture_before(&o->run[k].results, text, sizeof text, &why);
         sf_html_figure(page, svg, "Drop %d. %s", k + 1, text);
-        free(svg);
     }
 }
 
 static void put_series(FILE *page, const overlay *o) {
     sf_html_heading(page, "Drops of the series");
     sf_html_table t = sf_html_table_begin(page, "dense", NULL);
-    sf_html_row(&t);
-    sf_html_cell(&t, "drop");
-    sf_html_cell(&t, "speed (m/s), place (mm)");
-    sf_html_cell(&t, "a_max (g)");
-    sf_html_cell(&t, "over the first");
-    sf_html_cell(&t, "HIC");
-    sf_html_cell(&t, "over the first");
+    sf_html_line(&t, "drop", "speed (m/s), place (mm)|a_max (g)|over the first|HIC|over the first");
     bool differ = false; /* in speed, mass or place */
     for (int k = 0; k <= o->count; k++) {
         sf_html_row(&t);
@@ -340,7 +328,7 @@ static sf_status write_picture(const overlay *o, char *warning, size_t size, sf_
 }
 
 static void put_table(FILE *page, const overlay *o) {
-    sf_html_table t = sf_html_table_begin(page, "dense", NULL);
+    SF_HTML_TABLE t = sf_html_table_begin(page, "dense", NULL);
     sf_html_row(&t);
     sf_html_cell(&t, "run");
     for (int k = 0; k < o->count; k++)
@@ -358,7 +346,6 @@ static void put_table(FILE *page, const overlay *o) {
             sf_html_cell(&t, isnan(value) ? "–" : "%.5g", value);
         }
     }
-    sf_html_table_end(&t);
 }
 
 static void put_remarks(FILE *page, const overlay *o) {
@@ -372,7 +359,6 @@ static void put_remarks(FILE *page, const overlay *o) {
 }
 
 static sf_status write_page(const overlay *o, sf_error *err) {
-    char warning[320];
     sf_grade worst = SF_GRADE_VALID;
     FILE *page = sf_html_begin(&o->output, "Comparison of runs", NULL, err);
     if (!page)
@@ -381,10 +367,8 @@ static sf_status write_page(const overlay *o, sf_error *err) {
         worst = o->run[k].verdict.grade > worst ? o->run[k].verdict.grade : worst;
     sf_html_banner(page, sf_report_kind(worst), sf_verdict_phrase(worst),
                    "The worst verdict of %d runs. Indicative, not a certification.", o->count);
-    char *svg = sf_chart_svg(&o->output, "compare", "softfall-post", warning, sizeof warning);
-    sf_html_figure(page, svg, "%s.",
-                   svg ? "Deceleration from first contact on, filtered with CFC 1000" : warning);
-    free(svg);
+    sf_chart_figure(page, &o->output, "compare", "softfall-post",
+                    "Deceleration from first contact on, filtered with CFC 1000");
     if (o->series)
         put_series(page, o);
     sf_html_heading(page, "Figures");

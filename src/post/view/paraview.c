@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/paraview.h"
+#include "post/view/report.h"
 
 #include "io/plain_file.h"
 #include "io/process.h"
@@ -156,7 +156,8 @@ static void strip_colours(char *line) {
 /* The last line of what the programs printed that says something; "" if there is none. */
 static void read_reason(const sf_staging *output, char *line, size_t size) {
     sf_error ignored = SF_ERROR_INIT;
-    char *rest = NULL, *text = NULL, *path = sf_staging_path(output, LOG, &ignored);
+    char *rest = NULL;
+    SF_OWNED char *text = NULL, *path = sf_staging_path(output, LOG, &ignored);
     *line = '\0';
     if (path && sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &ignored) == SF_OK)
         for (char *k = strtok_r(text, "\n", &rest); k; k = strtok_r(NULL, "\n", &rest))
@@ -164,8 +165,6 @@ static void read_reason(const sf_staging *output, char *line, size_t size) {
                 snprintf(line, size, "%s", k);
     strip_colours(line);
     sf_error_clean(line);
-    free(text);
-    free(path);
 }
 
 sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error *err) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/plot.h"
+#include "post/view/report.h"
 
 #include "report/chart.h"
 #include <math.h>

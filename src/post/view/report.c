@@ -10,8 +10,6 @@
 #include "build_info.h"
 #include "model/model.h"
 #include "post/results/origin.h"
-#include "post/view/plot.h"
-#include "post/view/report_picture.h"
 #include "report/chart.h"
 
 /* Without the brackets and quotes of the case's syntax. */
@@ -179,7 +177,7 @@ static void put_parameter(const page *p, sf_html_table *table, const char *name,
 
 static void put_missile(const page *p) {
     const sf_results *r = p->results;
-    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     if (r->driven) {
         put_parameter(p, &table, "missile.motion", "prescribed motion");
     } else {
@@ -196,7 +194,6 @@ static void put_missile(const page *p) {
         sf_html_fact(&table, "impact point", "x = %.4g mm, y = %.4g mm", r->impact_x * 1e3,
                      r->impact_y * 1e3);
     put_parameter(p, &table, "missile.friction", "friction on the pad");
-    sf_html_table_end(&table);
 }
 
 static void put_interfaces(const page *p, sf_html_table *table) {
@@ -217,7 +214,7 @@ static void put_interfaces(const page *p, sf_html_table *table) {
 
 static void put_pad(const page *p) {
     const sf_results *r = p->results;
-    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     sf_html_fact(&table, "thickness", "%.4g mm", r->thickness * 1e3);
     sf_html_fact(&table, "mean cross-section", "%.4g cm²: volume of the whole pad over its extent along z",
                  p->figures->area * 1e4);
@@ -236,7 +233,6 @@ static void put_pad(const page *p) {
     put_parameter(p, &table, "pad.sliding_interfaces", "sliding layers");
     put_parameter(p, &table, "pad.loose_interfaces", "loose layers");
     put_interfaces(p, &table);
-    sf_html_table_end(&table);
 }
 
 /* Words of the case about the test. */
@@ -247,11 +243,10 @@ static void put_test(const page *p) {
         count += sf_origin_find_report(p->parameters, sf_origin_report_keys[k], &key);
     if (count == 0)
         return;
-    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     for (int k = 0; k < SF_ORIGIN_REPORT_KEYS; k++)
         if (sf_origin_find_report(p->parameters, sf_origin_report_keys[k], &key))
             sf_html_fact(&table, sf_origin_report_keys[k], "%s", key.value);
-    sf_html_table_end(&table);
 }
 
 static void put_bodies(const page *p) {
@@ -586,7 +581,6 @@ sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_
     else if (sf_report_pictures_make(output, s->results, s->figures, &pictures, err) == SF_OK)
         write_page(&p, output, err);
     sf_report_pictures_free(&pictures);
-    free(p.case_text);
-    free(p.parameters);
+    SF_FREE(p.case_text, p.parameters);
     return err->status;
 }

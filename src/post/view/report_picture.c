@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/report_picture.h"
+#include "post/view/report.h"
 
 #include "report/chart.h"
 #include "post/view/cut.h"
-#include "post/view/plot.h"
-#include "post/view/csv.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* An instant: a third of the way to the peak, the peak, half its force after it. */
@@ -317,11 +314,6 @@ sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *re
 }
 
 void sf_report_pictures_free(sf_report_pictures *p) {
-    free(p->before);
-    free(p->pad);
-    free(p->instants);
-    free(p->profile);
-    free(p->force);
-    free(p->energies);
+    SF_FREE(p->before, p->pad, p->instants, p->profile, p->force, p->energies);
     *p = (sf_report_pictures){0};
 }

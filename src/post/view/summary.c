@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/summary.h"
+#include "post/view/report.h"
 
 #include "build_info.h"
 #include "post/results/origin.h"
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 static const char caution[] = "indicative, not a certification";
 

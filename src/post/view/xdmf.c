@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/xdmf.h"
+#include "post/view/report.h"
 
 #include <dirent.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "io/plain_file.h"
 #include "io/provenance.h"
 #include "io/replace.h"
-#include "post/figures/figures.h"
 
 enum { SPEED, ACCELERATION, FORCE, CENTRE /* only of an exact sphere: the last */, MISSILE_ARRAYS };
 
@@ -63,8 +61,7 @@ sf_status sf_shown_find(const sf_results *r, sf_shown *s, sf_error *err) {
 }
 
 void sf_shown_free(sf_shown *s) {
-    free(s->head);
-    free(s->fields);
+    SF_FREE(s->head, s->fields);
     *s = (sf_shown){0};
 }
 
@@ -111,8 +108,7 @@ static sf_status write_topology(const store *s, sf_error *err) {
     const sf_results *r = s->results;
     int64_t length = r->cell_nnz + r->cell_count, k = 0;
     SF_OWNED int32_t *mixed = sf_alloc(err, (unsigned long)length, sizeof *mixed, "the topology");
-    if (!mixed)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t c = 0; c < r->cell_count; c++) {
         mixed[k++] = r->cell_type[c];
         for (int64_t v = r->cell_ptr[c]; v < r->cell_ptr[c + 1]; v++)
@@ -148,8 +144,7 @@ static sf_status write_materials(const store *s, sf_error *err) {
 static sf_status write_points(const store *s, const sf_h5_info *info, int64_t count, const double *position,
                               const double *displacement, const sf_frame_head *head, sf_error *err) {
     SF_OWNED double *moved = sf_alloc(err, 3 * (unsigned long)count, sizeof *moved, info->description);
-    if (!moved)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t i = 0; i < count; i++)
         if (head)
             sf_results_place(s->results, head, &position[3 * i], &moved[3 * i]);
@@ -266,7 +261,7 @@ static sf_status write_frames(const store *s, sf_results *r, sf_shown *shown, sf
     bool moved = true;
     for (int64_t k = 0; k < shown->count; k++) {
         const sf_frame_head *head = shown->head[k];
-        sf_frame frame = {0};
+        SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
         sf_error problem = SF_ERROR_INIT;
         if (sf_frame_read_fields(r, head, fields_wanted(r, shown, k), &frame, &problem) != SF_OK) {
             if (sf_results_ended_well(r))
@@ -278,9 +273,7 @@ static sf_status write_frames(const store *s, sf_results *r, sf_shown *shown, sf
         moved = moved && frame.field[SF_FRAME_DISPLACEMENT];
         shown->fields[k] = fields_of(&frame);
         note_largest(r, &frame, shown->largest);
-        write_frame(s, head, &frame, k, err);
-        sf_frame_free(&frame);
-        SF_TRY(err->status);
+        SF_TRY(write_frame(s, head, &frame, k, err));
     }
     if (!moved)
         sf_results_note(r, "the frames hold no displacement: ParaView shows the pad undeformed");
@@ -444,7 +437,7 @@ static sf_xdmf tell(const sf_shown *shown) {
 
 sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_xdmf_options *options,
                         char data[SF_XDMF_NAME_SIZE], sf_xdmf *made, sf_error *err) {
-    sf_shown shown = {0};
+    SF_OWNED_BY(sf_shown_free) sf_shown shown = {0};
     SF_OWNED char *path = sf_staging_path(output, NEW_DATA, err);
     if (path && sf_shown_find(results, &shown, err) == SF_OK)
         write_data(path, results, options, &shown, err);
@@ -453,7 +446,6 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_
     else if (err->status == SF_OK && name_data(output, path, data, err) == SF_OK)
         write_text(output, results, &shown, data, options->full, err);
     *made = tell(&shown);
-    sf_shown_free(&shown);
     return err->status;
 }
 
@@ -463,14 +455,14 @@ static bool is_named(const char *directory, const char *data) {
     bool named = !listing;
     for (struct dirent *entry = listing ? readdir(listing) : NULL; entry && !named;
          entry = readdir(listing)) {
-        char path[SF_PATH_SIZE], *text = NULL;
+        char path[SF_PATH_SIZE];
+        SF_OWNED char *text = NULL;
         sf_error unread = SF_ERROR_INIT;
         size_t length = strlen(entry->d_name);
         if (length < 5 || strcmp(entry->d_name + length - 5, ".xdmf") != 0)
             continue;
         named = snprintf(path, sizeof path, "%s/%s", directory, entry->d_name) >= (int)sizeof path ||
                 sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &unread) != SF_OK || strstr(text, data);
-        free(text);
     }
     if (listing)
         closedir(listing);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/grid.h"
 #include "base/sets.h"
-#include "pre/cloud/connectivity.h"
+#include "pre/cloud/cloud.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -13,11 +13,6 @@
 #define ADVICE                                                                                                 \
     "fuse the volumes, so that their meshes share nodes and faces (in gmsh BooleanUnion, BooleanFragments or " \
     "Coherence)"
-
-static double distance(const double a[3], const double b[3]) {
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
-}
 
 static void mean_of(const sf_mesh *mesh, const int32_t *node, int64_t count, double out[3]) {
     out[0] = out[1] = out[2] = 0;
@@ -46,10 +41,7 @@ typedef struct probes {
 } probes;
 
 static void free_probes(probes *p) {
-    free(p->node);
-    free(p->position);
-    free(p->zero);
-    free(p->near);
+    SF_FREE(p->node, p->position, p->zero, p->near);
 }
 
 static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p, sf_error *err) {
@@ -59,8 +51,7 @@ static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p
     p->position = sf_alloc(err, 3 * most, sizeof *p->position, "surface points");
     p->zero = sf_alloc(err, most, sizeof *p->zero, "surface points");
     p->near = sf_alloc(err, most, sizeof *p->near, "surface points");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t f = 0; f < dual->face_count; f++)
         for (int k = 0; k < dual->face[f].size; k++)
             surface[dual->face[f].node[k]] = 1;
@@ -120,7 +111,7 @@ static sf_status check_cell(const sf_mesh *mesh, const sf_grid *grid, const prob
     double centre[3], radius = 0;
     cell_centre(mesh, cell, centre);
     for (int64_t k = mesh->cell_ptr[cell]; k < mesh->cell_ptr[cell + 1]; k++)
-        radius = fmax(radius, distance(&mesh->position[3 * (int64_t)mesh->cell_node[k]], centre));
+        radius = fmax(radius, sf_distance3(&mesh->position[3 * (int64_t)mesh->cell_node[k]], centre));
     int64_t count = sf_grid_gather(grid, centre, (1 - DEPTH) * radius, p->count, p->near);
     for (int64_t k = 0; k < count; k++) {
         int32_t probe = p->near[k];
@@ -155,8 +146,7 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     SF_OWNED int64_t *cells =
         sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
-    if (!cells)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t c = 0; c < mesh->cell_count; c++)
         cells[sf_sets_find(parent, c)]++;
     for (int64_t c = 0; c < mesh->cell_count; c++) {
@@ -207,8 +197,7 @@ static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error
     int64_t corners = mesh->cell_ptr[mesh->cell_count];
     SF_OWNED int64_t *parent = sf_sets_alone(corners, "connected cells", err);
     SF_OWNED int64_t *root = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *root, "connected cells");
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t f = 0; f < dual->inner_count; f++)
         for (int k = 0; k < 4; k++) {
             const sf_inner_face *face = &dual->inner[f];
@@ -389,7 +378,6 @@ sf_status sf_group_check(const sf_case *c, const sf_mesh *mesh, const sf_dual *d
                 list[k].name == c->symmetry_group)
                 check_plane(c, mesh, dual, set, err);
         }
-    free(lists.outer);
-    free(lists.inner);
+    SF_FREE(lists.outer, lists.inner);
     return err->status;
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/grid.h"
 #include "base/sets.h"
-#include "pre/cloud/domains.h"
+#include "pre/cloud/cloud.h"
+
+#include "base/mat3.h"
 
 #include "pre/cloud/mls.h"
 #include <math.h>
@@ -65,11 +67,6 @@ static void mark_around(const builder *b, int32_t node) {
     }
 }
 
-static double distance(const double a[3], const double b[3]) {
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 static void edge_middle(const builder *b, int64_t e, double middle[3]) {
     for (int k = 0; k < 3; k++)
         middle[k] = 0.5 * (b->mesh->position[3 * b->dual->edge[2 * e] + k] +
@@ -85,14 +82,14 @@ static void measure_reach(builder *b) {
             sf_facet_triangle t[2];
             sf_dual_facet(b->mesh, &b->dual->use[u], t);
             for (int s = 0; s < 2; s++)
-                b->edge_reach[e] = fmax(b->edge_reach[e], distance(t[s].centroid, middle));
+                b->edge_reach[e] = fmax(b->edge_reach[e], sf_distance3(t[s].centroid, middle));
         }
         b->edge_reach[e] *= 1 + 1e-12;
     }
     for (int64_t e = 0; e < b->dual->edge_count; e++) {
         const int32_t *end = &b->dual->edge[2 * e];
-        double half =
-            0.5 * distance(&b->mesh->position[3 * (int64_t)end[0]], &b->mesh->position[3 * (int64_t)end[1]]);
+        double half = 0.5 * sf_distance3(&b->mesh->position[3 * (int64_t)end[0]],
+                                         &b->mesh->position[3 * (int64_t)end[1]]);
         for (int k = 0; k < 2; k++)
             b->reach[end[k]] = fmax(b->reach[end[k]], (b->edge_reach[e] + half) * (1 + 1e-12));
     }
@@ -228,7 +225,7 @@ static sf_status look_around(builder *b, const double *support, sf_error *err) {
 static sf_status integrate_with_growth(builder *b, double *support, sf_error *err) {
     const double *first = NULL;
     int64_t n = b->mesh->node_count;
-    double *start = sf_alloc(err, (unsigned long)n, sizeof *start, "supports");
+    SF_OWNED double *start = sf_alloc(err, (unsigned long)n, sizeof *start, "supports");
     SF_TRY(err->status);
     memcpy(start, support, (size_t)n * sizeof *start);
     first = start;
@@ -262,7 +259,6 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
         b->out->figures.largest_enlargement =
             fmax(b->out->figures.largest_enlargement, support[i] / first[i]);
     }
-    free(start);
     return err->status;
 }
 
@@ -275,7 +271,7 @@ static void find_gap(builder *b) {
         out->figures.hidden_count += b->hidden[i].count > 0;
         for (int64_t k = 0; k < b->hidden[i].count; k++) {
             const double *y = &b->mesh->position[3 * (int64_t)b->hidden[i].node[k]];
-            double gap = distance(x, y);
+            double gap = sf_distance3(x, y);
             if (gap >= out->figures.hidden_distance)
                 continue;
             out->figures.hidden_distance = gap;
@@ -437,10 +433,7 @@ static sf_status assemble_rows(builder *b, sf_error *err) {
         finish_row(&row, out->volume[i], &out->node[out->ptr[i]], &out->b[3 * out->ptr[i]]);
     }
 done:
-    free(corner);
-    free(row.slot);
-    free(row.node);
-    free(row.sum);
+    SF_FREE(corner, row.slot, row.node, row.sum);
     return err->status;
 }
 
@@ -467,10 +460,7 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
         clear_edges(&b);
     sf_visibility_free(b.hidden, mesh->node_count);
     sf_grid_free(&b.grid);
-    free(b.edge);
-    free(b.poor);
-    free(b.edge_reach);
-    free(b.reach);
+    SF_FREE(b.edge, b.poor, b.edge_reach, b.reach);
     if (err->status != SF_OK)
         sf_domains_free(out);
     return err->status;
@@ -489,19 +479,12 @@ sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const d
     }
     sf_visibility_free(b.hidden, mesh->node_count);
     sf_grid_free(&b.grid);
-    free(b.edge_reach);
-    free(b.reach);
+    SF_FREE(b.edge_reach, b.reach);
     return err->status;
 }
 
 void sf_domains_free(sf_domains *d) {
-    free(d->volume);
-    free(d->ptr);
-    free(d->node);
-    free(d->b);
-    free(d->phi_ptr);
-    free(d->phi_node);
-    free(d->phi_value);
+    SF_FREE(d->volume, d->ptr, d->node, d->b, d->phi_ptr, d->phi_node, d->phi_value);
     memset(d, 0, sizeof *d);
 }
 

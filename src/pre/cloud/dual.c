@@ -185,14 +185,8 @@ sf_status sf_dual_build(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
 }
 
 void sf_dual_free(sf_dual *dual) {
-    free(dual->edge);
-    free(dual->use_ptr);
-    free(dual->use);
-    free(dual->face);
-    free(dual->inner);
-    free(dual->edge_ptr);
-    free(dual->edge_node);
-    free(dual->edge_id);
+    SF_FREE(dual->edge, dual->use_ptr, dual->use, dual->face, dual->inner, dual->edge_ptr, dual->edge_node,
+            dual->edge_id);
     memset(dual, 0, sizeof *dual);
 }
 

@@ -45,8 +45,7 @@ typedef struct sf_dual {
     int64_t *edge_id;     /* [2 edge_count] which edge it is */
 } sf_dual;
 
-/* Builds the dual of a mesh; refuses a face shared by more than two cells or seen from the same side by both.
- */
+/* Builds the dual of a mesh; refuses a face of more than two cells or seen from the same side by both. */
 sf_status sf_dual_build(const sf_mesh *mesh, sf_dual *dual, sf_error *err);
 void sf_dual_free(sf_dual *dual);
 

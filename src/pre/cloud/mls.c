@@ -118,11 +118,7 @@ static void look_around(searcher *s, const sf_grid *grid, double reach, int32_t 
 static void release(searcher *s) {
     if (!s)
         return;
-    free(s->seen);
-    free(s->level);
-    free(s->queue);
-    free(s->queued);
-    free(s);
+    SF_FREE(s->seen, s->level, s->queue, s->queued, s);
 }
 
 static searcher *make_searcher(const sf_mesh *mesh, const sf_dual *dual) {

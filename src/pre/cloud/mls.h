@@ -48,7 +48,7 @@ typedef struct sf_mls_point {
 } sf_mls_point;
 
 /* Evaluates phi at `x` from `count` candidate nodes (those out of reach are skipped). Returns 0, or -1 when
- * the moment matrix is singular or too many nodes reach the point: then only `count` and `condition` are set.
+ * the moment matrix is singular or too many nodes reach the point: only `count` and `condition` are set then.
  */
 int sf_mls_evaluate(const sf_mls_cloud *cloud, const double x[3], int64_t count, const int32_t *candidate,
                     sf_mls_point *out);

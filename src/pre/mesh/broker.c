@@ -24,8 +24,7 @@ void sf_broker_free(sf_broker *b) {
     for (size_t k = 0; k < b->count; k++) {
         if (b->file[k].text)
             close(b->file[k].memory);
-        free(b->file[k].path);
-        free(b->file[k].text);
+        SF_FREE(b->file[k].path, b->file[k].text);
     }
     free(b->file);
     *b = (sf_broker){0};
@@ -78,19 +77,6 @@ static sf_status end_last_line(sf_broker_file *f, sf_error *err) {
     return SF_OK;
 }
 
-static sf_broker_file *add_file(sf_broker *b) {
-    if (b->count == b->capacity) {
-        size_t capacity = b->capacity ? 2 * b->capacity : 8;
-        sf_broker_file *grown = realloc(b->file, capacity * sizeof *grown);
-        if (!grown)
-            return NULL;
-        b->file = grown;
-        b->capacity = capacity;
-    }
-    b->file[b->count] = (sf_broker_file){0};
-    return &b->file[b->count];
-}
-
 static void refuse(sf_broker *b, const char *path, const char *cause) {
     if (*b->refused == '\0')
         snprintf(b->refused, sizeof b->refused, "%.300s cannot be handed over: %.200s", path, cause);
@@ -118,9 +104,10 @@ static int copy(sf_broker *b, sf_broker_file *f) {
 /* Reads the file through the gate and keeps it. 0 or an errno value. */
 static int read_file(sf_broker *b, const char *path, const sf_broker_file **out) {
     sf_error err = SF_ERROR_INIT;
-    sf_broker_file *f = b->count < MOST_FILES ? add_file(b) : NULL;
-    if (!f)
+    if (b->count == MOST_FILES || !sf_grow(&b->file, b->count, sizeof *b->file))
         return ENFILE;
+    sf_broker_file *f = &b->file[b->count];
+    *f = (sf_broker_file){0};
     if (access(path, F_OK) != 0)
         return errno;
     uint64_t room = b->bytes < b->most ? (b->most - b->bytes) / 2 : 0;
@@ -137,8 +124,7 @@ static int read_file(sf_broker *b, const char *path, const sf_broker_file **out)
     } else if (*b->refused == '\0') {
         snprintf(b->refused, sizeof b->refused, "%.590s", err.text);
     }
-    free(f->path);
-    free(f->text);
+    SF_FREE(f->path, f->text);
     return EACCES;
 }
 

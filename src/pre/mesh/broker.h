@@ -2,7 +2,6 @@
 /* Opens files for softfall-mesh, which can open none: it gets a sealed copy of the content that was read and
  * hashed here, once per file. */
 #pragma once
-#include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -23,7 +22,7 @@ typedef struct sf_broker {
     const char *parameters; /* what SF_MESHER_PARAMETERS_NAME holds; borrowed */
     bool ready;             /* gmsh is started: what it opens is the geometry's */
     uint64_t bytes, most;   /* of all contents and their copies so far, and the most that they may be */
-    size_t count, capacity;
+    size_t count;
     sf_broker_file *file; /* [count] */
     char refused[600];    /* sentence about the first file that is there and is not handed over; "" */
     char written[300];    /* the first file that it tried to open for writing; "" */

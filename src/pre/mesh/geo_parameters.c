@@ -2,9 +2,7 @@
 #include "pre/mesh/geo_parameters.h"
 
 #include <ctype.h>
-#include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "io/plain_file.h"
@@ -64,8 +62,7 @@ static void add_name(name_list *list, sf_geo_token t) {
     list->name[list->count++][t.length] = '\0';
 }
 
-/* After DefineConstant: the names at the outermost level of its brackets, each at the beginning of an item.
- */
+/* After DefineConstant: names at the outermost level of its brackets, each at the beginning of an item. */
 static void read_constants(const char **text, name_list *list) {
     int depth = 0;
     bool expecting = false;

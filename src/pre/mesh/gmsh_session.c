@@ -23,8 +23,7 @@ void sf_gmsh_end(sf_gmsh **session) {
     if (!*session)
         return;
     sf_meshed_free(&(*session)->open);
-    free((*session)->files);
-    free(*session);
+    SF_FREE((*session)->files, *session);
     *session = NULL;
 }
 
@@ -369,14 +368,11 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
 
 static sf_status read_faces(const sf_gmsh *session, const sf_geo_group *g, sf_raw_mesh *raw, sf_error *err) {
     const sf_geo_data *data = &session->open.data;
-    char **names = realloc(raw->group_name, (size_t)(raw->group_count + 1) * sizeof *names);
-    if (names)
-        raw->group_name = names;
-    char *name = names ? strdup(g->name) : NULL;
-    if (!name)
+    const destination to = {.raw = raw, .group = (int32_t)raw->group_count};
+    if (!sf_grow(&raw->group_name, (size_t)raw->group_count, sizeof *raw->group_name) ||
+        !(raw->group_name[raw->group_count] = strdup(g->name)))
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the group \"%s\"", g->name);
-    raw->group_name[raw->group_count++] = name;
-    const destination to = {.raw = raw, .group = (int32_t)(raw->group_count - 1)};
+    raw->group_count++;
     size_t before = raw->face_count;
     for (size_t i = 0; i < g->count && err->status == SF_OK; i++) {
         size_t end, k = sf_geo_data_blocks(data, 2, g->entity[i], &end);

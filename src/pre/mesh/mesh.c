@@ -81,26 +81,16 @@ int sf_face_compare(const int32_t a[4], const int32_t b[4]) {
 }
 
 void sf_mesh_free(sf_mesh *mesh) {
-    free(mesh->position);
-    free(mesh->cell_type);
-    free(mesh->cell_ptr);
-    free(mesh->cell_node);
-    free(mesh->cell_layer);
-    for (int s = 0; s < mesh->set_count; s++) {
-        free(mesh->set[s].name);
-        free(mesh->set[s].node);
-        free(mesh->set[s].face);
-    }
+    SF_FREE(mesh->position, mesh->cell_type, mesh->cell_ptr, mesh->cell_node, mesh->cell_layer);
+    for (int s = 0; s < mesh->set_count; s++)
+        SF_FREE(mesh->set[s].name, mesh->set[s].node, mesh->set[s].face);
     free(mesh->set);
     memset(mesh, 0, sizeof *mesh);
 }
 
 void sf_surface_free(sf_surface *surface) {
-    free(surface->position);
-    free(surface->triangle);
-    free(surface->solid);
-    free(surface->hull_position);
-    free(surface->hull_triangle);
+    SF_FREE(surface->position, surface->triangle, surface->solid, surface->hull_position,
+            surface->hull_triangle);
     memset(surface, 0, sizeof *surface);
 }
 

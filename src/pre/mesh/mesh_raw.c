@@ -7,40 +7,20 @@
 #include "base/mat3.h"
 
 void sf_raw_mesh_free(sf_raw_mesh *raw) {
-    free(raw->tag);
-    free(raw->xyz);
-    free(raw->cell_type);
-    free(raw->cell_chosen);
-    free(raw->cell_node);
-    free(raw->face_group);
-    free(raw->face_part);
-    free(raw->face_node);
+    SF_FREE(raw->tag, raw->xyz, raw->cell_type, raw->cell_chosen, raw->cell_node, raw->face_group,
+            raw->face_part, raw->face_node);
     for (int g = 0; g < raw->group_count; g++)
         free(raw->group_name[g]);
     free(raw->group_name);
     memset(raw, 0, sizeof *raw);
 }
 
-/* Makes room for `capacity` items in *array. */
-static bool grow(void *array, size_t capacity, size_t size) {
-    void *old;
-    memcpy(&old, array, sizeof old);
-    void *block = realloc(old, capacity * size);
-    if (block)
-        memcpy(array, &block, sizeof block);
-    return block != NULL;
-}
-
 sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, int chosen, const size_t *node, int count,
                                sf_error *err) {
-    if (raw->cell_count == raw->cell_capacity) {
-        size_t capacity = raw->cell_capacity ? 2 * raw->cell_capacity : 4096;
-        if (!grow(&raw->cell_type, capacity, sizeof *raw->cell_type) ||
-            !grow(&raw->cell_chosen, capacity, sizeof *raw->cell_chosen) ||
-            !grow(&raw->cell_node, capacity, SF_RAW_CELL * sizeof *raw->cell_node))
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu mesh cells", capacity);
-        raw->cell_capacity = capacity;
-    }
+    if (!sf_grow(&raw->cell_type, raw->cell_count, sizeof *raw->cell_type) ||
+        !sf_grow(&raw->cell_chosen, raw->cell_count, sizeof *raw->cell_chosen) ||
+        !sf_grow(&raw->cell_node, raw->cell_count, SF_RAW_CELL * sizeof *raw->cell_node))
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu mesh cells", raw->cell_count);
     size_t k = raw->cell_count++;
     raw->cell_type[k] = (uint8_t)type;
     raw->cell_chosen[k] = (uint8_t)chosen;
@@ -51,14 +31,10 @@ sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, int chosen, const siz
 
 sf_status sf_raw_mesh_add_face(sf_raw_mesh *raw, int32_t group, int32_t part, const size_t *node, int count,
                                sf_error *err) {
-    if (raw->face_count == raw->face_capacity) {
-        size_t capacity = raw->face_capacity ? 2 * raw->face_capacity : 4096;
-        if (!grow(&raw->face_group, capacity, sizeof *raw->face_group) ||
-            !grow(&raw->face_part, capacity, sizeof *raw->face_part) ||
-            !grow(&raw->face_node, capacity, SF_RAW_FACE * sizeof *raw->face_node))
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu mesh faces", capacity);
-        raw->face_capacity = capacity;
-    }
+    if (!sf_grow(&raw->face_group, raw->face_count, sizeof *raw->face_group) ||
+        !sf_grow(&raw->face_part, raw->face_count, sizeof *raw->face_part) ||
+        !sf_grow(&raw->face_node, raw->face_count, SF_RAW_FACE * sizeof *raw->face_node))
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu mesh faces", raw->face_count);
     size_t k = raw->face_count++;
     raw->face_group[k] = group;
     raw->face_part[k] = part;
@@ -238,12 +214,10 @@ static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, c
 
 sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_mesh *mesh, sf_error *err) {
     memset(mesh, 0, sizeof *mesh);
-    SF_OWNED int32_t *number = NULL;
-    SF_OWNED sf_tag_index *index = NULL;
     if (raw->node_count > INT32_MAX)
         return SF_REFUSE(err, "the mesh has %zu nodes; at most %d are supported", raw->node_count, INT32_MAX);
-    index = sf_raw_mesh_index(raw, err);
-    number = sf_alloc(err, raw->node_count, sizeof *number, "node numbers");
+    SF_OWNED sf_tag_index *index = sf_raw_mesh_index(raw, err);
+    SF_OWNED int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "node numbers");
     if (err->status == SF_OK && number_nodes(raw, index, number, mesh, err) == SF_OK &&
         copy_cells(raw, index, number, layers, unit, mesh, err) == SF_OK)
         build_sets(raw, index, number, mesh, err);
@@ -430,20 +404,13 @@ static sf_status write_surface(const surface_builder *b, const uint8_t *reverse,
 sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err) {
     memset(surface, 0, sizeof *surface);
     surface_builder b = {.raw = raw};
-    SF_OWNED uint8_t *reverse = NULL;
-    if (prepare(&b, err) != SF_OK || match_cells(&b, err) != SF_OK)
-        goto done;
-    find_outward(&b);
-    reverse = sf_alloc(err, raw->face_count, 1, "face marks");
-    if (!reverse)
-        goto done;
-    decide(&b, reverse);
-    write_surface(&b, reverse, unit, surface, err);
-done:
-    free(b.nodes);
-    free(b.keys);
-    free(b.outward);
-    free(b.known);
+    SF_OWNED uint8_t *reverse = sf_alloc(err, raw->face_count, 1, "face marks");
+    if (reverse && prepare(&b, err) == SF_OK && match_cells(&b, err) == SF_OK) {
+        find_outward(&b);
+        decide(&b, reverse);
+        write_surface(&b, reverse, unit, surface, err);
+    }
+    SF_FREE(b.nodes, b.keys, b.outward, b.known);
     if (err->status != SF_OK)
         sf_surface_free(surface);
     return err->status;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -16,11 +15,11 @@ typedef struct sf_raw_mesh {
     size_t node_count;
     size_t *tag; /* [node_count] positive, in any order */
     double *xyz; /* [node_count][3] in the geometry's unit */
-    size_t cell_count, cell_capacity;
+    size_t cell_count;
     uint8_t *cell_type;   /* [cell_count] SF_CELL_* */
     uint8_t *cell_chosen; /* [cell_count] 0: of no group asked for; else 1 + place of its group among them */
     size_t *cell_node;    /* [cell_count][SF_RAW_CELL] tags, VTK order; unused ones 0 */
-    size_t face_count, face_capacity;
+    size_t face_count;
     int32_t *face_group; /* [face_count] index of the surface group */
     int32_t *face_part;  /* [face_count] geometrical entity: faces of one part are turned alike */
     size_t *face_node;   /* [face_count][SF_RAW_FACE] tags; the fourth is 0 for a triangle */
@@ -55,8 +54,7 @@ int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]
 sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_mesh *mesh, sf_error *err);
 
 /* All faces as triangles, turned away from the cells behind them; where there are no cells, away from the
- * centroid of all faces, part by part. A face between two cells is refused. On failure `*surface` is empty.
- */
+ * centroid of all faces, part by part. A face between cells is refused. On failure `*surface` is empty. */
 sf_status sf_surface_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err);
 
 /* Adds the hull to a surface that was assembled from the same mesh: of all cells that are joined through

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/mesh/mesh_stream.h"
+#include "pre/mesh/mesher.h"
 
+#include "base/sets.h"
 #include "pre/mesh/mesher_protocol.h"
 #include <assert.h>
 #include <math.h>
@@ -82,11 +83,6 @@ static sf_status read_nodes(reader *r, const char *file, sf_geo_data *out, sf_er
     return SF_OK;
 }
 
-static int compare_entities(const void *a, const void *b) {
-    const int32_t *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 static sf_status read_groups(reader *r, const char *file, sf_geo_data *out, sf_error *err) {
     size_t count = take_count(r, 4);
     if (count > SF_GEO_MAX_GROUPS)
@@ -103,7 +99,7 @@ static sf_status read_groups(reader *r, const char *file, sf_geo_data *out, sf_e
         for (size_t i = 0; group->entity && i < entities; i++)
             group->entity[group->count++] = take_int(r, INT32_MIN, INT32_MAX);
         if (group->count > 0)
-            qsort(group->entity, group->count, sizeof *group->entity, compare_entities);
+            qsort(group->entity, group->count, sizeof *group->entity, sf_by_number);
     }
     return err->status;
 }
@@ -149,14 +145,13 @@ sf_status sf_geo_data_read(const void *data, size_t size, const char *file, sf_g
 void sf_geo_data_free(sf_geo_data *data) {
     for (size_t g = 0; g < data->group_count; g++)
         free(data->group[g].entity);
-    free(data->group);
-    free(data->block);
+    SF_FREE(data->group, data->block);
     memset(data, 0, sizeof *data);
 }
 
 bool sf_geo_group_has(const sf_geo_group *group, int32_t entity) {
     return group->count > 0 &&
-           bsearch(&entity, group->entity, group->count, sizeof *group->entity, compare_entities) != NULL;
+           bsearch(&entity, group->entity, group->count, sizeof *group->entity, sf_by_number) != NULL;
 }
 
 size_t sf_geo_data_blocks(const sf_geo_data *data, int dimension, int entity, size_t *end) {

@@ -143,11 +143,7 @@ sf_status sf_surface_turn(sf_surface *surface, const double direction[3], sf_err
         for (int64_t t = 0, count; t < surface->triangle_count && err->status == SF_OK; t++)
             if (!o.part[t] && walk(&o, t, &count, err) == SF_OK)
                 turn_part(&o, count, direction, surface);
-    free(o.beyond);
-    free(o.twisted);
-    free(o.part);
-    free(o.flip);
-    free(o.member);
+    SF_FREE(o.beyond, o.twisted, o.part, o.flip, o.member);
     return err->status;
 }
 
@@ -306,10 +302,7 @@ sf_status sf_hull_assemble(const sf_raw_mesh *raw, double unit, sf_surface *s, s
         find_cells(&b);
         write_hull(&b, unit, s, err);
     }
-    free(b.nodes);
-    free(b.list);
-    free(b.parent);
-    free(b.ours);
+    SF_FREE(b.nodes, b.list, b.parent, b.ours);
     return err->status;
 }
 

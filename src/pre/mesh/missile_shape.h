@@ -30,7 +30,7 @@ sf_status sf_missile_distance(const sf_surface *surface, const sf_missile_card *
                               int64_t count, const int32_t *node, double *distance, sf_error *err);
 
 /* Travel (m) of a triangle along the direction until it touches x, negative if it has passed x: intersection
- * with the line through x (Moeller and Trumbore 1997). Infinity if the line misses it or lies in its plane.
+ * with the line through x (Moeller and Trumbore 1997). Infinity if it is missed or the line is in its plane.
  */
 double sf_triangle_travel(const double *a, const double *b, const double *c, const double direction[3],
                           const double x[3]);

@@ -2,7 +2,6 @@
 #include "solver/field/halo.h"
 
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Lists the nodes of other groups that group g sees, marked in `seen` (zero on entry and exit), into `list`
@@ -92,12 +91,7 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
 }
 
 void sf_halo_free(sf_halo *h) {
-    free(h->ptr);
-    free(h->node);
-    free(h->local);
-    free(h->slot_ptr);
-    free(h->slot);
-    free(h->work);
+    SF_FREE(h->ptr, h->node, h->local, h->slot_ptr, h->slot, h->work);
     memset(h, 0, sizeof *h);
 }
 
@@ -172,13 +166,7 @@ sf_status sf_pairs_build(const sf_model *m, sf_pairs *p, sf_error *err) {
 }
 
 void sf_pairs_free(sf_pairs *p) {
-    free(p->inner_ptr);
-    free(p->inner_end);
-    free(p->inner_place);
-    free(p->outer_ptr);
-    free(p->outer_end);
-    free(p->outer_node);
-    free(p->inner_weight);
-    free(p->outer_weight);
+    SF_FREE(p->inner_ptr, p->inner_end, p->inner_place, p->outer_ptr, p->outer_end, p->outer_node,
+            p->inner_weight, p->outer_weight);
     memset(p, 0, sizeof *p);
 }

@@ -2,7 +2,6 @@
 #include "solver/field/membrane.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mat3.h"
@@ -73,10 +72,7 @@ sf_status sf_membrane_build(const sf_model *m, sf_membrane *b, sf_error *err) {
 }
 
 void sf_membrane_free(sf_membrane *b) {
-    free(b->node);
-    free(b->triangle);
-    free(b->gradient);
-    free(b->volume);
+    SF_FREE(b->node, b->triangle, b->gradient, b->volume);
     sf_contact_rows_free(&b->rows);
     *b = (sf_membrane){0};
 }

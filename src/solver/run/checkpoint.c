@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/checkpoint.h"
+#include "solver/run/run.h"
 
 #include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include "io/replace.h"
 
 static const sf_member members[] = {
 #define NUMBER(type, name, size, units, meaning) SF_MEMBER(sf_state, name, type, units, meaning),
@@ -21,6 +18,8 @@ static const sf_member members[] = {
 };
 enum { MEMBERS = sizeof members / sizeof members[0] };
 
+/* The state: everything that the next step needs, bit by bit. */
+
 static bool is_kept(const sf_model *m, const sf_state_array *a) {
     return a->name && sf_state_rows(m, a->rows) > 0;
 }
@@ -31,7 +30,7 @@ static void name_array(const sf_model *m, const sf_state_array *a, char path[64]
     dims[1] = a->bytes / (int)sizeof(double);
 }
 
-sf_status sf_state_write(const sf_model *m, const sf_state *s, sf_h5 *file, sf_error *err) {
+static sf_status write_state(const sf_model *m, const sf_state *s, sf_h5 *file, sf_error *err) {
     size_t count;
     const sf_state_array *array = sf_state_arrays(&count);
     sf_members_write(file, "/state", members, MEMBERS, s, err);
@@ -58,7 +57,7 @@ static sf_status check(const sf_model *m, const sf_state *s, sf_error *err) {
     return SF_OK;
 }
 
-sf_status sf_state_read(const sf_model *m, sf_state *s, const sf_h5 *file, sf_error *err) {
+static sf_status read_state(const sf_model *m, sf_state *s, const sf_h5 *file, sf_error *err) {
     size_t count;
     const sf_state_array *array = sf_state_arrays(&count);
     sf_members_read(file, "/state", members, MEMBERS, s, err);
@@ -91,13 +90,9 @@ sf_status sf_checkpoint_write(const sf_output *o, const sf_provenance *provenanc
     if (sf_provenance_write(file, FORMAT, provenance, err) == SF_OK &&
         sf_h5_write_scalar(file, &end, m->run.end_time, err) == SF_OK &&
         sf_h5_write_scalar(file, &before, s->time - s->dt_old, err) == SF_OK &&
-        sf_state_write(m, s, file, err) == SF_OK && sf_recorder_write(r, file, err) == SF_OK)
+        write_state(m, s, file, err) == SF_OK && sf_recorder_write(r, file, err) == SF_OK)
         sf_output_copy_peak(o, file, err);
-    sf_h5_close(&file, err);
-    if (err->status == SF_OK && sf_seal_add(partial, err) == SF_OK)
-        return sf_replace_commit(partial, o->checkpoint, err);
-    unlink(partial);
-    return err->status;
+    return sf_output_seal(&file, partial, o->checkpoint, err);
 }
 
 sf_status sf_checkpoint_open(const char *path, sf_checkpoint *c, sf_error *err) {
@@ -123,19 +118,14 @@ sf_status sf_checkpoint_open(const char *path, sf_checkpoint *c, sf_error *err) 
 }
 
 void sf_checkpoint_close(sf_checkpoint *c) {
-    sf_error ignored = SF_ERROR_INIT; /* nothing was written */
-    sf_h5_close(&c->file, &ignored);
-    free(c->path);
-    free(c->model_path);
-    free(c->model_hash);
-    free(c->git_revision);
-    free(c->compiler_flags);
+    sf_h5_drop(&c->file);
+    SF_FREE(c->path, c->model_path, c->model_hash, c->git_revision, c->compiler_flags);
     memset(c, 0, sizeof *c);
 }
 
 sf_status sf_checkpoint_read(const sf_checkpoint *c, const sf_model *m, const sf_output *o, sf_state *s,
                              sf_recorder *r, sf_error *err) {
-    if (sf_state_read(m, s, c->file, err) != SF_OK || sf_recorder_read(r, m, s, c->file, err) != SF_OK)
+    if (read_state(m, s, c->file, err) != SF_OK || sf_recorder_read(r, m, s, c->file, err) != SF_OK)
         return err->status;
     return sf_output_recover_peak(o, c->file, err);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/frame.h"
+#include "solver/run/run.h"
 
 #include "base/mat3.h"
 #include "solver/field/domain_stress.h"
-#include "solver/field/stabilisation.h"
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { SLAB = 64 * SF_LANES }; /* nodes: more would be felt in the memory of a run */
@@ -183,13 +180,12 @@ static sf_status write_layers(const sf_model *m, const sf_operators *op, const s
     int64_t count = m->material_count;
     if (count < 2)
         return SF_OK;
-    double *sums = sf_alloc(err, 4 * (unsigned long)count, sizeof *sums, "sums of the layers");
+    SF_OWNED double *sums = sf_alloc(err, 4 * (unsigned long)count, sizeof *sums, "sums of the layers");
     if (sums)
         sum_layers(m, op, s, sums);
     for (int k = 0; k < 4 && err->status == SF_OK; k++)
         write_item(file, path, rows[k].name, rows[k].units, rows[k].description, 1, &count, &sums[k * count],
                    err);
-    free(sums);
     return err->status;
 }
 
@@ -235,13 +231,12 @@ static sf_status write_field(const sf_model *m, const sf_operators *op, const sf
 
 sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t wanted,
                          const char *path, sf_h5 *file, sf_error *err) {
-    double *buffer = sf_alloc(err, SLAB, 9 * sizeof *buffer, "fields of a frame");
+    SF_OWNED double *buffer = sf_alloc(err, SLAB, 9 * sizeof *buffer, "fields of a frame");
     if (buffer && write_head(m, s, path, file, err) == SF_OK)
         write_layers(m, op, s, path, file, err);
     for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
         if ((wanted >> k & 1) && (k != SF_FRAME_SOFTENING || s->drop > 1))
             write_field(m, op, s, (sf_frame_field)k, path, buffer, file, err);
-    free(buffer);
     return err->status;
 }
 

@@ -1,19 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/output.h"
+#include "solver/run/run.h"
 
 #include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "io/folder.h"
-#include "model/columns.h"
 #include "model/flight.h"
 #include "solver/missile.h"
-#include "solver/run/frame.h"
 
 /* Returns the place of the symmetry plane normal to an axis; NaN: there is none. */
 static double find_plane(const sf_model *m, int axis) {
@@ -112,8 +109,7 @@ static sf_status write_layers(const sf_model *m, sf_h5 *file, sf_error *err) {
 
 sf_status sf_results_create(const char *path, const sf_model *m, const sf_h5 *model_file,
                             const sf_provenance *provenance, sf_h5 **file, sf_error *err) {
-    if (sf_h5_create(path, file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_create(path, file, err));
     if (sf_provenance_write(*file, "softfall-results", provenance, err) == SF_OK &&
         sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK &&
         write_layers(m, *file, err) == SF_OK)
@@ -127,12 +123,10 @@ enum { NAME_SIZE = SF_PATH_SIZE + 32 };
 
 static const char BASE[] = "base.h5", PEAK[] = "peak.h5", PEAK_GROUP[] = "/peak";
 
-static void frame_group(char group[32], int64_t index) {
-    snprintf(group, 32, "/frames/%06lld", (long long)index);
-}
-
-static void frame_name(char name[32], int64_t index) {
+/* Names the file of a frame, and its group in the file. */
+static void name_frame(int64_t index, char name[32], char group[32]) {
     snprintf(name, 32, "frame-%06lld.h5", (long long)index);
+    snprintf(group, 32, "/frames/%06lld", (long long)index);
 }
 
 /* folder/name, and the name to write it under. */
@@ -172,8 +166,7 @@ static bool is_rest(const char *name) {
 }
 
 sf_status sf_output_open(sf_output *o, sf_error *err) {
-    if (sf_folder_own(o->folder, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_folder_own(o->folder, err));
     o->lock = sf_folder_open(o->folder);
     if (o->lock < 0)
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be opened: %s", o->folder, strerror(errno));
@@ -197,8 +190,7 @@ void sf_output_clear(const sf_output *o) {
     sf_folder_leave(o->folder);
 }
 
-/* Closes a file, seals it and gives it its name; removes it if it failed. */
-static sf_status commit(sf_h5 **file, const char *partial, const char *path, sf_error *err) {
+sf_status sf_output_seal(sf_h5 **file, const char *partial, const char *path, sf_error *err) {
     sf_h5_close(file, err);
     if (err->status == SF_OK && sf_seal_add(partial, err) == SF_OK)
         return sf_replace_commit(partial, path, err);
@@ -215,16 +207,14 @@ sf_status sf_output_base(const sf_output *o, const sf_model *m, const sf_h5 *mod
                          const sf_provenance *provenance, sf_error *err) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
     sf_h5 *file = NULL;
-    if (place(o, BASE, path, partial, err) != SF_OK)
-        return err->status;
+    SF_TRY(place(o, BASE, path, partial, err));
     sf_results_create(partial, m, model_file, provenance, &file, err);
     return sf_h5_close(&file, err) == SF_OK && err->status == SF_OK ? sf_seal_add(partial, err) : err->status;
 }
 
 sf_status sf_output_start(const sf_output *o, bool keep, sf_error *err) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
-    if (place(o, BASE, path, partial, err) != SF_OK)
-        return err->status;
+    SF_TRY(place(o, BASE, path, partial, err));
     if (sf_replace_commit(partial, path, err) == SF_OK && !keep)
         sf_folder_remove_known(o->lock, is_name, BASE);
     return err->status;
@@ -249,7 +239,7 @@ static sf_status write_state(const sf_output *o, const sf_model *m, const sf_ope
     if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
     sf_frame_write(m, op, s, fields, group, file, err);
-    if (commit(&file, partial, path, err) == SF_OK && size)
+    if (sf_output_seal(&file, partial, path, err) == SF_OK && size)
         *size += size_of(path);
     return err->status;
 }
@@ -257,8 +247,7 @@ static sf_status write_state(const sf_output *o, const sf_model *m, const sf_ope
 sf_status sf_output_frame(sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
                           int64_t index, sf_error *err) {
     char name[32], group[32];
-    frame_name(name, index);
-    frame_group(group, index);
+    name_frame(index, name, group);
     return write_state(o, m, op, s, m->run.output_fields, name, group, &o->fresh, err);
 }
 
@@ -271,16 +260,14 @@ sf_status sf_output_peak(const sf_output *o, const sf_model *m, const sf_operato
 static sf_status recover(const sf_h5 *from, const char *group, const char *path, const char *partial,
                          sf_error *err) {
     sf_h5 *file = NULL;
-    if (sf_h5_create(partial, &file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_h5_create(partial, &file, err));
     sf_h5_copy(from, group, file, err);
-    return commit(&file, partial, path, err);
+    return sf_output_seal(&file, partial, path, err);
 }
 
 sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf_error *err) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
-    if (place(o, PEAK, path, partial, err) != SF_OK)
-        return err->status;
+    SF_TRY(place(o, PEAK, path, partial, err));
     return recover(checkpoint, PEAK_GROUP, path, partial, err);
 }
 
@@ -296,8 +283,7 @@ static sf_status open_results(const sf_output *o, sf_h5 **results, sf_error *err
 static sf_status recover_frame(const sf_output *o, int64_t k, sf_h5 **results, bool *lost, sf_error *err) {
     char name[32], group[32], path[NAME_SIZE], partial[SF_PATH_SIZE];
     sf_seal_state state;
-    frame_name(name, k);
-    frame_group(group, k);
+    name_frame(k, name, group);
     if (place(o, name, path, partial, err) != SF_OK || sf_seal_examine(path, &state, err) != SF_OK ||
         state == SF_SEAL_SOUND)
         return err->status;
@@ -354,15 +340,14 @@ sf_status sf_output_begin(sf_output *o, bool copied, int64_t count, sf_h5 **file
     take(o, copied, BASE, base, *file, err);
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         char name[32], group[32];
-        frame_name(name, k);
-        frame_group(group, k);
+        name_frame(k, name, group);
         take(o, copied, name, (const char *const[]){group, NULL}, *file, err);
     }
     return err->status;
 }
 
 sf_status sf_output_commit(sf_output *o, sf_h5 **file, sf_error *err) {
-    if (commit(file, o->partial, o->results, err) == SF_OK) {
+    if (sf_output_seal(file, o->partial, o->results, err) == SF_OK) {
         o->fresh = 0;
         o->size = size_of(o->results);
     }

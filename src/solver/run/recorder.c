@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/recorder.h"
+#include "solver/run/run.h"
 
 #include <math.h>
 #include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,8 +65,7 @@ sf_extremes sf_recorder_extremes(const sf_recorder *r) {
 
 sf_status sf_recorder_add(sf_recorder *r, const sf_model *m, const sf_state *s, sf_error *err) {
     sf_history *h = &r->history;
-    if (sf_history_add(h, m, s, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_history_add(h, m, s, err));
     double value = lasting_value(m, h);
     if (value > r->peak_value) {
         r->peak_value = value;
@@ -231,8 +229,7 @@ static sf_status grow(sf_history *h, sf_error *err) {
 
 sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf_error *err) {
     double whole = sf_model_whole(m);
-    if (grow(h, err) != SF_OK)
-        return err->status;
+    SF_TRY(grow(h, err));
     for (int k = 0; k < SF_HISTORY_COUNT; k++)
         h->column[k][h->rows] = values[k](m, s, whole);
     h->rows++;
@@ -250,8 +247,7 @@ sf_status sf_history_write(const sf_history *h, sf_h5 *file, sf_error *err) {
     for (int k = 0; k < SF_HISTORY_COUNT; k++) {
         char path[64];
         sf_h5_info info = dataset(k, path);
-        if (sf_h5_write(file, &info, SF_H5_F64, 1, &h->rows, h->column[k], err) != SF_OK)
-            return err->status;
+        SF_TRY(sf_h5_write(file, &info, SF_H5_F64, 1, &h->rows, h->column[k], err));
     }
     return SF_OK;
 }

@@ -2,10 +2,10 @@
 #include "solver/run/run.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "base/units.h"
 #include "material/curve.h"
 #include "material/low_density_foam.h"
@@ -115,16 +115,16 @@ void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, con
         sf_sink_tell(sink, SF_WARNING, "the missile never touched the pad");
 }
 
-static void add_line(void *user, sf_severity severity, const char *sentence) {
-    sf_run_notes *notes = user;
-    size_t used = strlen(notes->text);
-    (void)severity;
-    if (used + strlen(sentence) + 2 <= sizeof notes->text)
-        snprintf(notes->text + used, sizeof notes->text - used, "%s\n", sentence);
-}
+/* Sentences of a run, each ended by '\n'; cut. */
+typedef struct notes {
+    char text[4096];
+} notes;
 
-sf_sink sf_run_notes_sink(sf_run_notes *notes) {
-    return (sf_sink){add_line, notes};
+static void add_line(void *user, sf_severity severity, const char *sentence) {
+    notes *n = user;
+    (void)severity;
+    if (strlen(n->text) + strlen(sentence) + 2 <= sizeof n->text)
+        sf_text_add(n->text, sizeof n->text, "%s\n", sentence);
 }
 
 static const double PROGRESS_INTERVAL = 5;  /* s of wall time between plain lines */
@@ -222,8 +222,7 @@ static sf_status take_step(drop *d, sf_error *err) {
         return err->status;
     if (!sf_recorder_frame_due(&d->r, d->m, d->s) || d->replay)
         return SF_OK;
-    if (sf_output_frame(d->out, d->m, d->op, d->s, d->r.frames - 1, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_output_frame(d->out, d->m, d->op, d->s, d->r.frames - 1, err));
     return publish_if_due(d, err);
 }
 
@@ -253,23 +252,12 @@ static sf_status run_steps(drop *d, bool taken, sf_error *err) {
         }
         if (checkpoint_is_due(d) && save(d, err) == SF_OK)
             publish_if_due(d, err);
-        if (err->status != SF_OK)
-            return err->status;
+        SF_TRY(err->status);
         sf_step_advance(d->m, d->s);
     }
 }
 
-static sf_status write_scalar(sf_h5 *file, const char *path, const char *units, const char *text,
-                              double value, sf_error *err) {
-    sf_h5_info info = {path, units, text};
-    return sf_h5_write_scalar(file, &info, value, err);
-}
-
-static sf_status write_count(sf_h5 *file, const char *path, const char *text, int64_t value, sf_error *err) {
-    sf_h5_info info = {path, "1", text};
-    return sf_h5_write(file, &info, SF_H5_I64, 0, NULL, &value, err);
-}
-
+/* True if every material has a reloading path of its own. */
 static bool has_memory(const sf_model *m) {
     bool all = true;
     for (int64_t k = 0; k < m->material_count; k++)
@@ -280,8 +268,8 @@ static bool has_memory(const sf_model *m) {
 /* The notes on the run, beginning with that of the program. */
 static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     sf_h5_info info = {"/summary/notes", "1", "what the solver noted of the run, a sentence per line"};
-    sf_run_notes notes = {""};
-    const sf_sink sink = sf_run_notes_sink(&notes);
+    notes list = {""};
+    const sf_sink sink = {add_line, &list};
     const sf_extremes extremes = sf_recorder_extremes(&d->r);
     if (d->note[0])
         sf_sink_tell(&sink, SF_WARNING, "%s", d->note);
@@ -293,42 +281,43 @@ static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
                              : ", and a material without `memory` loads along its unloading path up to "
                                "the largest energy so far: too soft");
     sf_run_tell(d->m, d->s, &extremes, &sink);
-    return sf_h5_write_text(file, &info, notes.text, err);
+    return sf_h5_write_text(file, &info, list.text, err);
 }
 
 static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, sf_error *err) {
     const sf_model *m = d->m;
     const sf_state *s = d->s;
-    sf_h5_info info = {"/summary/status", "1", "how the run ended"};
-    if (sf_h5_write_text(file, &info, status, err) != SF_OK ||
-        write_count(file, "/summary/steps", "time steps", s->step, err) != SF_OK ||
-        write_count(file, "/summary/threads", "OpenMP threads", d->run->threads, err) != SF_OK ||
-        write_count(file, "/summary/nodes", "nodes", m->node_count, err) != SF_OK ||
-        write_count(file, "/summary/interactions", "(domain, node) pairs", m->domain_nnz, err) != SF_OK ||
-        write_count(file, "/summary/power_iterations", "spent on the time step", s->power_iterations, err) !=
-            SF_OK ||
-        (m->series_count > 1 &&
-         write_count(file, "/summary/drops", "drops of the series", m->series_count, err) != SF_OK) ||
-        (s->drop > 1 &&
-         (write_count(file, "/summary/drop", "number of the drop on this pad, from 1", s->drop, err) !=
-              SF_OK ||
-          write_scalar(file, "/summary/pause", "s", "rest of the pad before it", s->pause, err) != SF_OK)) ||
-        write_count(file, "/summary/restarts", "times that the run went on from a checkpoint", d->r.restarts,
-                    err) != SF_OK ||
-        write_notes(d, file, err) != SF_OK ||
-        write_scalar(file, "/summary/wall_time", "s", "time of the run", d->run->wall_time, err) != SF_OK)
-        return err->status;
-    if (write_scalar(
-            file, "/summary/given_back", "J",
-            "most that dissipation of single nodes had given back at one time, summed over the nodes",
-            sf_model_whole(m) * s->given_back, err) != SF_OK)
-        return err->status;
-    return write_scalar(file, "/summary/contact_time", "s", "first contact, NaN if none",
-                        s->missile.contact_time, err);
+    const bool later = s->drop > 1;
+    const double given_back = sf_model_whole(m) * s->given_back;
+    const struct {
+        bool told;
+        sf_h5_info info;
+        const void *value;
+        sf_h5_type type;
+    } item[] = {
+        /* clang-format off */
+        {true, {"/summary/steps", "1", "time steps"}, &s->step, SF_H5_I64},
+        {true, {"/summary/threads", "1", "OpenMP threads"}, &(int64_t){d->run->threads}, SF_H5_I64},
+        {true, {"/summary/nodes", "1", "nodes"}, &m->node_count, SF_H5_I64},
+        {true, {"/summary/interactions", "1", "(domain, node) pairs"}, &m->domain_nnz, SF_H5_I64},
+        {true, {"/summary/power_iterations", "1", "spent on the time step"}, &s->power_iterations, SF_H5_I64},
+        {m->series_count > 1, {"/summary/drops", "1", "drops of the series"}, &m->series_count, SF_H5_I64},
+        {later, {"/summary/drop", "1", "number of the drop on this pad, from 1"}, &s->drop, SF_H5_I64},
+        {later, {"/summary/pause", "s", "rest of the pad before it"}, &s->pause, SF_H5_F64},
+        {true, {"/summary/restarts", "1", "times that the run went on from a checkpoint"}, &d->r.restarts, SF_H5_I64},
+        {true, {"/summary/wall_time", "s", "time of the run"}, &d->run->wall_time, SF_H5_F64},
+        {true, {"/summary/given_back", "J", "most that dissipation of single nodes had given back at one time, summed over the nodes"}, &given_back, SF_H5_F64},
+        {true, {"/summary/contact_time", "s", "first contact, NaN if none"}, &s->missile.contact_time, SF_H5_F64},
+        /* clang-format on */
+    };
+    sf_h5_write_text(file, &(sf_h5_info){"/summary/status", "1", "how the run ended"}, status, err);
+    for (size_t k = 0; k < sizeof item / sizeof item[0] && err->status == SF_OK; k++)
+        if (item[k].told)
+            sf_h5_write(file, &item[k].info, item[k].type, 0, NULL, item[k].value, err);
+    return err->status == SF_OK ? write_notes(d, file, err) : err->status;
 }
 
-/* The complete results.h5, with a frame of the last step; a state that holds a NaN or infinity is not shown.
- */
+/* The complete results.h5, with a frame of the last step; a state with a NaN or infinity is not shown. */
 static sf_status conclude(drop *d, const char *status, sf_error *err) {
     sf_h5 *file = NULL;
     int64_t frames = d->r.frames;
@@ -397,8 +386,7 @@ static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
 static sf_status begin(drop *d, const sf_checkpoint *from, bool *taken, sf_error *err) {
     int64_t lost;
     *taken = from != NULL;
-    if (load(d, from, err) != SF_OK)
-        return err->status;
+    SF_TRY(load(d, from, err));
     d->saved = from ? d->s->step : -1;
     if (from)
         resume_rebounded(d);
@@ -411,7 +399,7 @@ static sf_status begin(drop *d, const sf_checkpoint *from, bool *taken, sf_error
 
 /* After a failure: repeats the steps up to the last valid one, for a checkpoint there. */
 static sf_status replay(drop *d, sf_error *err) {
-    sf_checkpoint last = {0};
+    SF_OWNED_BY(sf_checkpoint_close) sf_checkpoint last = {0};
     d->last_step = d->s->step - 1;
     d->replay = true;
     if (d->last_step < 0)
@@ -424,7 +412,6 @@ static sf_status replay(drop *d, sf_error *err) {
     if ((there ? sf_state_create(d->m, d->s, err) : begin_again(d, err)) == SF_OK &&
         load(d, there ? &last : NULL, err) == SF_OK && run_steps(d, there, err) == SF_OK)
         save(d, err);
-    sf_checkpoint_close(&last);
     return err->status;
 }
 

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/series.h"
+#include "solver/run/run.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "solver/field/domain_stress.h"
-#include "solver/run/checkpoint.h"
 
 /* The earlier run must have come to its end, and the missile off the pad. */
 static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, const char *path,
@@ -23,8 +22,7 @@ static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, con
             err, SF_ERR_INPUT,
             "%s ended \"%.80s\" with %lld points in contact: a pad goes on only after the missile has left it",
             path, status, (long long)*touching);
-    free(status);
-    free(touching);
+    SF_FREE(status, touching);
     return err->status;
 }
 

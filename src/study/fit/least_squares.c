@@ -4,7 +4,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
-#include "material/unloading.h"
+#include "material/memory.h"
 
 enum { TURNS = 200 };
 

@@ -489,18 +489,12 @@ sf_status sf_mapping_solve(const sf_mapping_problem *p, sf_mapping_result *r, sf
     r->offset = s.best.offset;
     r->misfit = s.best.misfit;
     r->objective = s.best.objective;
-    free(s.trial.y);
-    free(s.trial.offset);
-    free(s.u);
-    free(s.offset);
+    SF_FREE(s.trial.y, s.trial.offset, s.u, s.offset);
     return err->status;
 }
 
 void sf_mapping_free(sf_mapping_result *r) {
-    free(r->y);
-    free(r->corrected);
-    free(r->offset);
-    free(r->matrix);
+    SF_FREE(r->y, r->corrected, r->offset, r->matrix);
     *r = (sf_mapping_result){0};
 }
 

@@ -87,8 +87,7 @@ static void list_inputs(sf_sweep_adaptive *a) {
     a->inputs = a->factors;
 }
 
-/* Makes the figures of the columns inputs, too: foams that differ as words are near to each other by these.
- */
+/* Makes the figures of the columns inputs, too: foams, which differ as words, are near by these. */
 static void add_columns(sf_sweep_adaptive *a) {
     for (int k = 0; k < SF_TREND_INDENTATION && !a->trend.problem; k++) {
         double low = INFINITY, high = -INFINITY;
@@ -175,8 +174,7 @@ static int choose_apart(const sf_sweep_adaptive *a, const sf_runs *runs, int mos
 static sf_status expect(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err) {
     if (a->expected)
         return SF_OK;
-    if (sf_sweep_trend_learn(runs, a->drops, &a->trend, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_sweep_trend_learn(runs, a->drops, &a->trend, err));
     a->expected =
         sf_alloc(err, (unsigned long)runs->count, SF_TRENDS * sizeof *a->expected, "columns of the rows");
     for (int64_t row = 0; row < runs->count && err->status == SF_OK; row++) {
@@ -242,8 +240,7 @@ static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int tar
     SF_OWNED double *room = sf_alloc(err, (unsigned long)(p->count + a->checks), sizeof *room, "predictions");
     double x[INPUTS], mean, deviation;
     int64_t n = 0, held = 0;
-    if (!room)
-        return err->status;
+    SF_TRY(err->status);
     double *z = room + p->count;
     for (int64_t row = 0; row < runs->count; row++) {
         double value = a->check[row] && is_simulated(runs, row) ? output_of(a, runs, target, row) : NAN;
@@ -270,8 +267,7 @@ static sf_status fit_target(sf_sweep_adaptive *a, const sf_runs *runs, int targe
     SF_OWNED double *x = sf_alloc(err, MOST_POINTS, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
     bool is_figure = target < a->plan->figure_count;
     int n = 0;
-    if (!x)
-        return err->status;
+    SF_TRY(err->status);
     double *y = x + (int64_t)MOST_POINTS * a->inputs;
     for (int64_t row = 0; row < runs->count && n < MOST_POINTS; row++) {
         double value = is_simulated(runs, row) && !a->check[row] ? output_of(a, runs, target, row) : NAN;
@@ -507,9 +503,7 @@ void sf_sweep_adaptive_free(sf_sweep_adaptive *a) {
     if (!a)
         return;
     free_models(a);
-    free(a->expected);
-    free(a->check);
-    free(a);
+    SF_FREE(a->expected, a->check, a);
 }
 
 sf_sweep_chooser sf_sweep_adaptive_chooser(sf_sweep_adaptive *a) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/analysis.h"
 
+#include "study/fit/posterior/mixture.h"
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>
@@ -56,7 +57,7 @@ static void estimate(const sample *s, const int64_t *pick, double *out) {
 
 /* value [resamples][2 d] */
 static sf_status resample(const sample *s, uint64_t seed, int resamples, double *value, sf_error *err) {
-    gsl_rng *rng = sf_sample_random(seed, err);
+    gsl_rng *rng = sf_random(seed, err);
     SF_OWNED int64_t *pick = sf_alloc(err, (unsigned long)s->used, sizeof *pick, "bootstrap samples");
     for (int r = 0; r < resamples && err->status == SF_OK; r++) {
         for (int64_t k = 0; k < s->used; k++)
@@ -182,7 +183,7 @@ static bool is_drawn(gsl_rng *random, int64_t wanted, int64_t left) {
 
 bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err) {
     int64_t picked = 0;
-    gsl_rng *random = sf_sample_random(SURFACE_SEED, err);
+    gsl_rng *random = sf_random(SURFACE_SEED, err);
     bool *pick = sf_alloc(err, (unsigned long)count, sizeof *pick, "a picture");
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         pick[k] = picked < most && is_drawn(random, most - picked, count - k);
@@ -201,7 +202,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
                                    offsets = count_offsets(a->plan);
     s->of = count_values(a, figure);
     int64_t most = s->of < SF_SURFACE_ROWS ? s->of : SF_SURFACE_ROWS, left = s->of;
-    gsl_rng *random = sf_sample_random(SURFACE_SEED, err);
+    gsl_rng *random = sf_random(SURFACE_SEED, err);
     SF_OWNED double *x =
         sf_alloc(err, (unsigned long)most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
     s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
@@ -279,10 +280,8 @@ sf_status sf_analysis_make(const sf_runs *runs, sf_analysis *a, sf_error *err) {
 }
 
 void sf_analysis_free(sf_analysis *a) {
-    for (int k = 0; k < SF_SWEEP_FIGURES; k++) {
-        free(a->surface[k].simulated);
-        free(a->surface[k].left_out);
-    }
+    for (int k = 0; k < SF_SWEEP_FIGURES; k++)
+        SF_FREE(a->surface[k].simulated, a->surface[k].left_out);
     sf_probabilities_free(&a->probability);
     *a = (sf_analysis){0};
 }

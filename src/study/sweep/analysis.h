@@ -148,6 +148,5 @@ bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err);
 /* The names of the terms of a surface, in their order. */
 void sf_analysis_term(const sf_analysis *a, const sf_quadratic *s, int term, char *text, size_t size);
 
-/* The factors that are numbers and have more than one value, in the order of the surface; returns how many.
- */
+/* The factors that are numbers and have more than one value, in the surface's order; returns how many. */
 int sf_analysis_numbers(const sf_plan *plan, int list[SF_SWEEP_FACTORS]);

@@ -233,8 +233,7 @@ sf_status sf_groups_make(const sf_plan *p, int factor, sf_groups *g, sf_error *e
 }
 
 void sf_groups_free(sf_groups *g) {
-    free(g->of_row);
-    free(g->middle);
+    SF_FREE(g->of_row, g->middle);
     *g = (sf_groups){0};
 }
 
@@ -445,7 +444,6 @@ sf_status sf_probabilities_count(const sf_runs *r, sf_probabilities *p, sf_error
 }
 
 void sf_probabilities_free(sf_probabilities *p) {
-    free(p->cell);
-    free(p->row);
+    SF_FREE(p->cell, p->row);
     *p = (sf_probabilities){0};
 }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/plan.h"
 
-#include "case/values.h"
-#include "case/values.h"
+#include "case/keys.h"
 #include "base/text.h"
 #include "io/plain_file.h"
 #include "study/material_file.h"
@@ -478,10 +477,7 @@ void sf_factor_free(sf_factor *f) {
         if (f->label)
             free(f->label[k]);
     }
-    free(f->text);
-    free(f->label);
-    free(f->number);
-    free(f->value);
+    SF_FREE(f->text, f->label, f->number, f->value);
     *f = (sf_factor){0};
 }
 

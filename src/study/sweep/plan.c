@@ -5,6 +5,7 @@
 #include "io/plain_file.h"
 #include "post/figures/figures.h"
 #include "pre/mesh/geo_parameters.h"
+#include "study/fit/posterior/mixture.h"
 #include "study/run_folder.h"
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_randist.h>
@@ -21,17 +22,8 @@ int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
     return method == SF_SAMPLING_SALTELLI ? count * (d + 2) : count;
 }
 
-gsl_rng *sf_sample_random(uint64_t seed, sf_error *err) {
-    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    if (rng)
-        gsl_rng_set(rng, seed);
-    else
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
-    return rng;
-}
-
 static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
-    gsl_rng *rng = sf_sample_random(seed, err);
+    gsl_rng *rng = sf_random(seed, err);
     for (int i = 0; rng && i < d; i++)
         shift[i] = gsl_rng_uniform_pos(rng);
     gsl_rng_free(rng);
@@ -48,16 +40,15 @@ static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error 
     gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
     if (!q)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the Sobol' sequence");
-    if (seed != 1 && draw_shift(d, seed, shift, err) != SF_OK)
-        goto done;
-    for (int64_t k = 0; k < count; k++) {
+    if (seed != 1)
+        draw_shift(d, seed, shift, err);
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         gsl_qrng_get(q, u + k * d);
         for (int i = 0; i < d; i++) {
             double x = u[k * d + i] + shift[i];
             u[k * d + i] = x > 1 ? x - 1 : x < 1 ? x : 0.5; /* 1 is no quantile */
         }
     }
-done:
     gsl_qrng_free(q);
     return err->status;
 }
@@ -99,7 +90,7 @@ sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, dou
         return sobol(d, count, seed, u, err);
     if (method == SF_SAMPLING_SALTELLI)
         return saltelli(d, count, seed, u, err);
-    gsl_rng *rng = sf_sample_random(seed, err);
+    gsl_rng *rng = sf_random(seed, err);
     if (rng && method == SF_SAMPLING_LATIN)
         latin(rng, d, count, u, err);
     else if (rng)
@@ -161,8 +152,7 @@ static void number_words(sf_factor *f) {
             level++;
         f->value[k] = (double)level;
         if (level < kept) {
-            free(text);
-            free(label);
+            SF_FREE(text, label);
         } else {
             f->text[kept] = text;
             f->label[kept++] = label;
@@ -173,8 +163,7 @@ static void number_words(sf_factor *f) {
 
 static sf_status copy_levels(sf_factor *f, sf_error *err) {
     f->value = sf_alloc(err, (unsigned long)f->count, sizeof *f->value, "the values of a factor");
-    if (!f->value)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = 0; k < f->count && !f->words; k++)
         f->value[k] = f->number[k];
     if (f->words)
@@ -415,9 +404,7 @@ void sf_plan_free(sf_plan *p) {
         sf_factor_free(&p->factor[k]);
     for (int k = 0; k < p->set_count; k++)
         free(p->set[k]);
-    free(p->folder);
-    free(p->case_path);
-    free(p->title);
+    SF_FREE(p->folder, p->case_path, p->title);
     *p = (sf_plan){0};
 }
 

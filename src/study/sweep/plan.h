@@ -11,8 +11,7 @@
 #include <stdint.h>
 
 /* A factor of a sweep: a key of the case and the values that it takes. A factor of numbers has one unit, that
- * of its first value; all others are converted. A factor of words (names, files, lists) has numbered levels.
- */
+ * of its first value; all others are converted. One of words (names, files, lists) has numbered levels. */
 
 enum { SF_FACTOR_KEY_SIZE = 200, SF_FACTOR_UNIT_SIZE = 32, SF_FACTOR_WHERE_SIZE = 512 };
 
@@ -65,9 +64,6 @@ typedef enum sf_sampling {
 } sf_sampling;
 
 #define SF_SAMPLING_WORDS "random|latin_hypercube|sobol|saltelli"
-
-/* Returns a generator with this seed, for gsl_rng_free; NULL on failure. */
-gsl_rng *sf_sample_random(uint64_t seed, sf_error *err);
 
 /* Coordinates that the Sobol' sequence of GSL has. */
 enum { SF_SOBOL_DIMENSIONS = 40 };

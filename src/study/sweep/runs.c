@@ -39,12 +39,7 @@ void sf_runs_free(sf_runs *r) {
         if (r->message)
             free(r->message[k]);
     }
-    free(r->state);
-    free(r->grade);
-    free(r->folder);
-    free(r->message);
-    free(r->value);
-    free(r->half);
+    SF_FREE(r->state, r->grade, r->folder, r->message, r->value, r->half);
     *r = (sf_runs){0};
 }
 
@@ -112,8 +107,7 @@ sf_status sf_runs_failed(sf_runs *r, int64_t row, const char *message, sf_error 
 void sf_runs_open(sf_runs *r, int64_t row) {
     double *place = sf_runs_place(r, row);
     r->state[row] = SF_SWEEP_OPEN;
-    free(r->message[row]);
-    free(r->folder[row]);
+    SF_FREE(r->message[row], r->folder[row]);
     r->message[row] = r->folder[row] = NULL;
     for (size_t k = 0; k < r->figures; k++)
         place[k] = NAN;
@@ -316,10 +310,7 @@ static char *own_heading(const sf_runs *r) {
     if (!out)
         return NULL;
     put_heading(out, r);
-    if (fclose(out) == 0)
-        return text;
-    free(text);
-    return NULL;
+    return sf_text_close(out, &text);
 }
 
 sf_status sf_runs_read(sf_runs *r, const char *path, uint64_t hash, sf_error *err) {

@@ -5,7 +5,6 @@
 #include "build_info.h"
 #include "report/chart.h"
 #include "report/html.h"
-#include "report/row.h"
 #include <math.h>
 
 enum { LISTED = 50, CELLS_LISTED = 200 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/sweep/views.h"
+#include "study/sweep/sweep_report.h"
 
 #include "io/folder.h"
 #include "io/plain_file.h"

@@ -3,7 +3,7 @@
 
 #include "material/curve.h"
 #include "study/fit/compression/point_model.h"
-#include "material/unloading.h"
+#include "material/memory.h"
 #include <gsl/gsl_errno.h>
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "io/table_csv.h"
-#include "material/unloading.h"
+#include "material/memory.h"
 #include "report/row.h"
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_errno.h>

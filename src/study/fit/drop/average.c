@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/average.h"
+#include "study/fit/drop/inference.h"
 
 #include "study/material_file.h"
-#include "study/fit/posterior/leave_one_out.h"
 #include "material/low_density_foam.h"
 #include <gsl/gsl_sort.h>
 #include <math.h>

@@ -2,7 +2,6 @@
 #include "study/fit/drop/drop_fit.h"
 
 #include "study/material_file.h"
-#include "base/hash.h"
 #include "io/process.h"
 #include "material/low_density_foam.h"
 #include "material/foam_card.h"

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "io/plain_file.h"
-#include "post/figures/compare.h"
 
 static const double SAMPLE_INTERVAL = 0.5e-3; /* s, of a measured curve */
 static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are left out */
@@ -229,9 +227,6 @@ sf_status sf_drop_input_read(const sf_config *config, sf_config_item *group, boo
 }
 
 void sf_drop_input_free(sf_fit_drop *drop) {
-    free(drop->case_path);
-    free(drop->curve_path);
-    free(drop->sample_time);
-    free(drop->sample_value);
+    SF_FREE(drop->case_path, drop->curve_path, drop->sample_time, drop->sample_value);
     *drop = (sf_fit_drop){0};
 }

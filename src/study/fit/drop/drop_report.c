@@ -80,14 +80,13 @@ static void put_chain(FILE *f, const sf_drop_fit *fit) {
         f,
         "Every simulated number of the drops on this page is what the accelerometer reads on its mount and "
         "behind its high pass, not what the missile does. The drops share both.");
-    sf_html_table table =
+    SF_HTML_TABLE table =
         sf_html_table_begin(f, "dense", "accelerometer|>given|>standard deviation (%)|>in the fit|>95 %");
     for (const sf_chain_shown *c = shown; c < shown + count; c++) {
         sf_html_line(&table, c->name, "%.4g%s%s|%.3g|%.4g%s%s", c->given, c->blank, c->unit, 100 * c->sd,
                      c->value, c->blank, c->unit);
         sf_html_cell(&table, c->sd > 0 ? "%.4g to %.4g" : "known", c->low, c->high);
     }
-    sf_html_table_end(&table);
 }
 
 /* "a_max (g)" */
@@ -105,7 +104,7 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
         "The simulation with the identified material against the measurement, as the accelerometer reads "
         "(F/m), CFC 1000. \"From the others\": the same drop left out of the fit and predicted by the rest "
         "(corrected surrogate).");
-    sf_html_table table = sf_html_table_begin(
+    SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense", "drop|quantity|>measured|>± %|>simulated|>difference|>from the others");
     for (int d = 0; d < fit->measured_drops; d++)
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
@@ -126,7 +125,6 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
     for (int d = 0; d < fit->measured_drops; d++)
         sf_html_line(&table, fit->input->drop[d].name, "%.2f|%.3f|%s", sf_drop_curve_rmse(fit, d),
                      fit->simulated[d].max_local_strain, sf_verdict_phrase(fit->simulated[d].grade));
-    sf_html_table_end(&table);
 }
 
 /* Compression tests and cushion curves. */
@@ -141,7 +139,7 @@ static void put_joint(FILE *f, const sf_drop_fit *fit) {
         "The law at a material point, and as one column of foam under a flat mass. Deviations of a "
         "test are root mean squares over its largest stress. Below rate_reference the law has no effect of "
         "the rate.");
-    sf_html_table table =
+    SF_HTML_TABLE table =
         sf_html_table_begin(f, "dense", "test|>rate (1/s)|>± %|>loading|>unloading|>largest strain");
     for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
         const sf_joint_test *test = &joint->test[t];
@@ -159,7 +157,6 @@ static void put_joint(FILE *f, const sf_drop_fit *fit) {
                          1e-3 * cushion->static_stress[k], cushion->peak_g[k], 100 * cushion->sd, exp(*y),
                          difference(*y, cushion->peak_g[k]));
         }
-    sf_html_table_end(&table);
 }
 
 static void put_misfit(FILE *f, const sf_drop_fit *fit) {
@@ -186,7 +183,7 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
     sf_html_paragraph(
         f, "The speeds are known with a standard deviation only, and are unknowns of the fit; the table "
            "above is simulated with the given ones.");
-    sf_html_table table =
+    SF_HTML_TABLE table =
         sf_html_table_begin(f, "dense", "drop|>given (m/s)|>standard deviation (%)|>in the fit (%)|>95 %");
     for (int d = 0; d < fit->measured_drops; d++) {
         int k = fit->speed[d];
@@ -197,7 +194,6 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
                      fit->columns[d].speed, 100 * fit->input->drop[d].speed_sd, 100 * expm1(shift),
                      100 * expm1(shift - width), 100 * expm1(shift + width));
     }
-    sf_html_table_end(&table);
 }
 
 static void put_predictions(FILE *f, const sf_drop_fit *fit) {
@@ -248,7 +244,7 @@ static void put_parameters(FILE *f, const sf_drop_fit *fit) {
         f,
         "95 %% intervals (of the logarithm, linearised). A parameter that keeps 90 %% or more of its prior's "
         "width was hardly seen by the drops.");
-    sf_html_table table = sf_html_table_begin(
+    SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense", "parameter|>value|>95 %|>prior|>prior factor (1 sd)|>width left of the prior|meaning");
     for (int k = 0; k < in->unknown_count; k++) {
         sf_estimate_shown e = sf_drop_estimate(fit, k);
@@ -268,14 +264,13 @@ static void put_parameters(FILE *f, const sf_drop_fit *fit) {
             sf_html_cell(&table, "%+.2f",
                          r->covariance[j][k] / sqrt(r->covariance[j][j] * r->covariance[k][k]));
     }
-    sf_html_table_end(&table);
 }
 
 static void put_sensitivities(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     sf_html_heading(f, "Sensitivity");
     sf_html_note(f, "Change of the response in %% for 1 %% more of the parameter.");
-    sf_html_table table = begin_matrix(f, in, "response");
+    SF_HTML_TABLE table = begin_matrix(f, in, "response");
     for (int d = 0; d < in->drop_count; d++)
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
             if (!sf_drop_shows(fit, d, kind))
@@ -285,7 +280,6 @@ static void put_sensitivities(FILE *f, const sf_drop_fit *fit) {
             for (int k = 0; k < in->unknown_count; k++)
                 sf_html_cell(&table, "%+.3f", fit->gradient[(fit->row[d] + kind) * fit->parameters + k]);
         }
-    sf_html_table_end(&table);
 }
 
 static void put_curve(FILE *f, const sf_drop_fit *fit) {
@@ -297,7 +291,7 @@ static void put_curve(FILE *f, const sf_drop_fit *fit) {
         "Nine tenths of the information lie between strains of %.2f and %.2f. Outside, its form and the priors "
         "determine the curve.",
         low, high);
-    sf_html_table table = sf_html_table_begin(
+    SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense", "strain|>part of the information|>standard deviation of the stress|>before the data");
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
         sf_html_row(&table);
@@ -305,7 +299,6 @@ static void put_curve(FILE *f, const sf_drop_fit *fit) {
                      100 * fit->information[b] / fmax(sf_drop_information(fit), 1e-300),
                      100 * expm1(fit->curve_sd[b]), 100 * expm1(fit->curve_prior_sd[b]));
     }
-    sf_html_table_end(&table);
 }
 
 static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The output of `softfall-fit drop`: report.html, fit.json, fit.png with its data, and the material file. */
 #pragma once
-#include "study/fit/drop/average.h"
+#include "study/fit/drop/inference.h"
 #include "study/fit/drop/drop_fit.h"
 #include "io/staging.h"
 

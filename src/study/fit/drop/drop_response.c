@@ -8,7 +8,6 @@
 #include "io/process.h"
 #include "io/replace.h"
 #include "material/low_density_foam.h"
-#include "post/figures/compare.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/program.h"
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 
 #include "io/plain_file.h"
 #include "case/case.h"
@@ -465,7 +465,6 @@ void sf_fit_input_free(sf_fit_input *in) {
     for (int k = 0; k < in->coarse_count; k++)
         free(in->coarse[k]);
     sf_foam_card_free(&in->form.base);
-    free(in->material_path);
-    free(in->text);
+    SF_FREE(in->material_path, in->text);
     *in = (sf_fit_input){0};
 }

@@ -479,10 +479,7 @@ sf_status sf_drop_infer(const sf_drop_fit *fit, const sf_inference_options *opti
 }
 
 void sf_drop_inference_free(sf_drop_inference *in) {
-    free(in->data_row);
-    free(in->offset);
-    free(in->jacobian);
-    free(in->base);
+    SF_FREE(in->data_row, in->offset, in->jacobian, in->base);
     sf_discrepancy_free(&in->all);
     for (int d = 0; d < SF_FIT_MAX_DROPS; d++)
         sf_discrepancy_free(&in->without[d]);

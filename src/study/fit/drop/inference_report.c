@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/average.h"
+#include "study/fit/drop/inference.h"
 
 #include "report/html.h"
 #include <math.h>
@@ -85,7 +85,7 @@ static void put_models(FILE *f, const sf_drop_average *a) {
             : "Weights by the leave-one-out predictive densities: each drop predicted by the others, averaged over a "
               "Bayesian bootstrap of the drops. The evidence, which depends on the widths of the priors, stands beside for "
               "comparison. Misfit: at the maximum.");
-    sf_html_table table = sf_html_table_begin(
+    SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense",
         "model|>weight|>log predictive density of left-out drops|>log evidence|>± (1 sd)|>weight by evidence|>unknowns|>misfit");
     for (int m = 0; m < a->models; m++) {
@@ -101,7 +101,6 @@ static void put_models(FILE *f, const sf_drop_average *a) {
         sf_html_cell(&table, "%s: FAILED, %s", a->failure[m].label, a->failure[m].sentence);
         sf_html_line(&table, NULL, "0.000|–|–|–|–|–|–");
     }
-    sf_html_table_end(&table);
 }
 
 static bool has_missing(const sf_drop_average *a) {
@@ -130,7 +129,7 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
         return SF_OK;
     sf_html_heading(f, "Predictions, averaged over the models");
     put_prediction_notes(f, a);
-    sf_html_table table = sf_html_table_begin(
+    SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense", "drop|quantity|>median|>95 %|>95 % of the model with the largest weight alone");
     for (int q = 0; q < in->quantities; q++) {
         const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
@@ -144,7 +143,6 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
         sf_html_line(&table, NULL, "%s|%s|%s|%s", text, median_text(about->digits, all, median),
                      interval_text(about->digits, all, shown), interval_text(about->digits, best, alone));
     }
-    sf_html_table_end(&table);
     return SF_OK;
 }
 
@@ -163,7 +161,7 @@ static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err
         "Medians and 95 %% intervals by Markov chains. tau: standard deviation of the logarithm of "
         "the true loading curve over the form's; a large one says that the form does not fit. kappa: the model's other "
         "errors, as a multiple of 1 %% of a_max and 2 %% of the other numbers.");
-    sf_html_table table =
+    SF_HTML_TABLE table =
         sf_html_table_begin(f, "dense", "model|parameter|>median|>95 %|>R-hat|>effective sample size");
     for (int m = 0; m < a->models; m++) {
         const sf_drop_inference *in = a->model[m];
@@ -178,7 +176,6 @@ static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err
                          in->chains.rhat[k], in->chains.effective[k]);
         }
     }
-    sf_html_table_end(&table);
     return SF_OK;
 }
 
@@ -190,7 +187,7 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
         f,
         "log p of a drop's data given the others'. By importance weights of the whole posterior where "
         "their Pareto k is below 0.5; else by draws of a wider distribution if enough of them count; else by chains without the drop.");
-    sf_html_table table = sf_html_table_begin(f, "dense", "model|drop|>log density|>Pareto k|by");
+    SF_HTML_TABLE table = sf_html_table_begin(f, "dense", "model|drop|>log density|>Pareto k|by");
     for (int m = 0; m < a->models; m++)
         for (int d = 0; d < a->model[m]->fit->measured_drops; d++) {
             const sf_left_out *out = &a->model[m]->left_out[d];
@@ -201,7 +198,6 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
                                       : "weights",
                          out->converged ? "" : " (criteria not reached)");
         }
-    sf_html_table_end(&table);
 }
 
 static void put_diagnostics(FILE *f, const sf_drop_average *a) {
@@ -209,7 +205,7 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
     sf_html_note(f,
                  "Reached: R-hat below 1.02 and an effective sample size above 400 for every parameter and "
                  "prediction; the evidence from at least 100 effective draws.");
-    sf_html_table table = sf_html_table_begin(
+    SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense",
         "model|>largest R-hat|>least effective size|>states kept|>accepted (%)|>evaluations|>effective draws of the evidence|reached");
     for (int m = 0; m < a->models; m++) {
@@ -221,7 +217,6 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
                      in->evidence.effective, in->evidence.draws, in->chains.converged ? "yes" : "NO: chains",
                      in->evidence.trusted ? "" : "; NO: evidence");
     }
-    sf_html_table_end(&table);
 }
 
 /* Models and simulations that ended without a result. */

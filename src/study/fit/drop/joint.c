@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/drop/fit_input.h"
+#include "study/fit/drop/drop_fit.h"
 
 #include "base/hash.h"
 #include "base/units.h"
 #include "io/plain_file.h"
 #include "io/table_csv.h"
-#include "study/column.h"
 #include "study/fit/compression/compression_config.h"
 #include <math.h>
 #include <string.h>
@@ -139,8 +138,7 @@ static void put_point(const sf_compression_test *t, int first, int last, double 
 }
 
 /* Points of both branches, half a step and whole steps from rest, clear of the turn and of the strain that
- * loading begins with: below it nothing was measured. A file that begins within SPREAD of rest begins there.
- */
+ * loading begins with: below it nothing was measured. One that begins within SPREAD of rest begins there. */
 static void take_points(const sf_compression_test *t, sf_joint_test *out) {
     int n = (int)floor((t->largest_strain - SPREAD) / GRID);
     double first = t->strain[0] > SPREAD ? t->strain[0] + SPREAD : 0;

@@ -315,7 +315,7 @@ static void copy_items(void *to, const void *from, int64_t count, size_t size) {
         memcpy(to, from, (size_t)count * size);
 }
 
-sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {
+static sf_status copy_card(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {
     *to = *from;
     SF_TRY(sf_form_curves_alloc(from->curve_count, from->curve_points, &to->curves, err));
     copy_items(to->curve_rate, from->curve_rate, from->curve_count, sizeof(double));
@@ -332,7 +332,7 @@ void sf_foam_card_free(sf_foam_card *card) {
 
 sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
                             sf_foam_card *card, sf_error *err) {
-    SF_TRY(sf_foam_card_copy(&form->base, card, err));
+    SF_TRY(copy_card(&form->base, card, err));
     for (int k = 0; k < MEMBERS; k++)
         *(double *)((char *)card + members[k].offset) = value[members[k].parameter];
     card->hysteresis_hu = fmin(1, card->hysteresis_hu);

@@ -90,8 +90,7 @@ typedef struct sf_curve_form {
     const char *formula; /* for people; e is the strain; without full stop */
     int entry_count;
     const sf_form_entry *entry; /* [entry_count]; static storage */
-    /* Medians of the form's priors into `value`, from E and the solid fraction that are there (0: not known).
-     */
+    /* Medians of the form's priors into `value`, from E and solid fraction that are there (0: unknown). */
     void (*start)(double *value);
     /* SF_ERR_NUMERIC: the values make no curve, with the reason. */
     sf_status (*check)(const double *value, sf_error *err);
@@ -215,8 +214,6 @@ int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARA
  * values make no curve. */
 sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
                             sf_foam_card *card, sf_error *err);
-sf_status sf_foam_card_copy(const sf_foam_card *from, sf_foam_card *to, sf_error *err);
-/* Puts a fine table, up to 0.975 of the strain limit or 1 GPa, in place of each curve and its densification.
- */
+/* Puts a fine table, to 0.975 of the strain limit or 1 GPa, in place of each curve and its densification. */
 sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err);
 void sf_foam_card_free(sf_foam_card *card);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/posterior/chains.h"
+#include "study/fit/posterior/posterior.h"
 
 #include <gsl/gsl_randist.h>
 #include <math.h>
@@ -67,7 +67,7 @@ static double evaluate(const walk *w, walker *c, const double *u) {
     return density == density ? density : -INFINITY;
 }
 
-/* The same by the emulator, flattened: its tails, where it knows little, are to be heavier than the target's.
+/* The same by the emulator, flattened: its tails, where it knows little, shall be heavier than the target's.
  */
 static double emulate(const walk *w, walker *c, const double *u) {
     double y[SF_RESPONSES_MOST];
@@ -488,8 +488,7 @@ static void release(work *w) {
         free(w->walker[c].path); /* and all behind it */
     }
     sf_emulator_free(&w->walk.emulator);
-    free(w->walker);
-    free(w->column);
+    SF_FREE(w->walker, w->column);
 }
 
 sf_status sf_chains_run(const sf_target *target, const double *start, const double *covariance,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/posterior/discrepancy.h"
+#include "study/fit/posterior/posterior.h"
 
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_cdf.h>
@@ -109,12 +109,7 @@ sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const
 }
 
 void sf_discrepancy_free(sf_discrepancy *d) {
-    free(d->root);
-    free(d->base_root);
-    free(d->white);
-    free(d->gram);
-    free(d->spread[0]);
-    free(d->spread[1]);
+    SF_FREE(d->root, d->base_root, d->white, d->gram, d->spread[0], d->spread[1]);
     *d = (sf_discrepancy){0};
 }
 

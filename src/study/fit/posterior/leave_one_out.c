@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/posterior/leave_one_out.h"
+#include "study/fit/posterior/posterior.h"
 
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_sort.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* ---- importance sampling ---- */
 
@@ -235,8 +234,7 @@ typedef struct wide {
 } wide;
 
 static void free_wide(wide *w) {
-    free(w->weight);
-    free(w->conditional);
+    SF_FREE(w->weight, w->conditional);
 }
 
 static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const sf_leave_options *options,

@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 
-/* A probability density of a few parameters, known up to a constant: what chains.h samples. Nothing in this
- * folder knows a foam. All logarithms are natural. */
+/* A probability density of a few parameters, known up to a constant: which posterior.h samples. Nothing in
+ * this folder knows a foam. All logarithms are natural. */
 
 enum {
     SF_POSTERIOR_MOST = 24,
@@ -25,8 +25,7 @@ typedef struct sf_target {
     int shape;
     bool (*respond)(const void *context, const double *u, double *y); /* false: outside */
     int quantities; /* followed beside the parameters, for example predictions; 0: none */
-    /* Quantities of u; what is random in them follows from `seed`. NaN: no value. Called by several threads.
-     */
+    /* Quantities of u; what is random in them follows from `seed`. NaN: none. Called by several threads. */
     void (*observe)(const void *context, const double *u, uint64_t seed, double *quantity);
 } sf_target;
 
@@ -85,7 +84,7 @@ double sf_mixture_log_density(const sf_mixture *mixture, const double *u);
 void sf_mixture_draw(const sf_mixture *mixture, gsl_rng *random, double *u);
 
 /* A polynomial through responses that cost much: where Markov chains look before they pay for the responses
- * themselves (chains.h). It need not be exact for the chains to be. */
+ * themselves (posterior.h). It need not be exact for the chains to be. */
 enum { SF_EMULATOR_MOST_TERMS = 600 };
 
 typedef struct sf_emulator {
