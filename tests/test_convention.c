@@ -85,7 +85,6 @@ static void the_reading_is_the_force_over_the_mass(void **state) {
     release(&d);
 }
 
-/* Free flight of 5 ms precedes the contact in the filtered curve, wherever the history begins. */
 /* A plate that carries the force on the missile shows its filtered peak, whatever mount the missile has. */
 static void a_force_plate_has_the_class_of_the_accelerometer(void **state) {
     sf_error err = SF_ERROR_INIT;
@@ -108,6 +107,7 @@ static void a_force_plate_has_the_class_of_the_accelerometer(void **state) {
     release(&d);
 }
 
+/* Free flight of 5 ms precedes the contact in the filtered curve, wherever the history begins. */
 static void curves_begin_before_the_contact(void **state) {
     drop late = falling(*state, "late.h5", "missile.friction=0.0");
     drop early = falling(*state, "early.h5", "missile.gap='\"0 mm\"'");

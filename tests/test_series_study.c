@@ -94,7 +94,8 @@ static void a_row_is_the_series_by_hand(void **state) {
     assert_relative(cell(p, "out/runs.csv", 2, "steps"),
                     cell(p, "out/drops.csv", 3, "steps") + cell(p, "out/drops.csv", 4, "steps"), 0);
     program_assert_page(p, "out/report.html", "judged by drop 2 of 2");
-    assert_int_equal(program_shell(p, "ls out/runs/*/*.restart out/runs/*/model*.h5").code, 2);
+    assert_int_equal(
+        program_shell(p, "find out/runs -name '*.restart' -o -name 'model*.h5' | grep -q .").code, 1);
 }
 
 /* The drops that count may change: no drop is simulated again, and the table follows. */

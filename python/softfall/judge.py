@@ -66,7 +66,7 @@ def judge(p: Protocol, drops: Drops) -> Outcome:
 def _why(lines: list[Line]) -> str:
     """Returns why a limit is not decided: of the first drop that is not to be used, or else of the first line."""
     open_lines = [line for line in lines if line.limit is not None and line.passed is None]
-    line = next((line for line in open_lines if "not to be used" in line.note), open_lines[0])
+    line = next((line for line in open_lines if "not to be used" in line.note or "there is no" in line.note), open_lines[0])
     return f"{line.of}: {line.note or f'there is no {line.figure}'}"
 
 
@@ -208,7 +208,7 @@ def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome
         bad = next((h for h, value in zip(order, values) if math.isnan(value) and h < first), None)
         if bad is not None:
             made.lines.append(Line(of, figure.label, math.nan, figure.limit, None,
-                                   note=f"{bad:g} m: {_unusable(heights[bad], _counted(p, heights[bad]))}"))
+                                   note=f"{bad:g} m: {_unusable(heights[bad], _counted(p, heights[bad])) or f'there is no {figure.label}'}"))
             return math.nan, False
         k = next((k for k, value in enumerate(values) if value >= figure.limit), None)
         if k is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Iterator, Mapping
 
@@ -152,17 +153,22 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
     told = advice.advise(pads, question, _tests(p, Path(posterior), notes))
     notes += measured.missing
     notes.append(f"{pads.effective_draws:.0f} of {pads.draws} draws are left after what was measured")
+    unexpected = sum(bool(line.note) for line in lines)
+    doubts = [measured.doubt] if measured.doubt else []
+    if unexpected:
+        doubts.append(f"{unexpected} of {len(lines)} measured figures were not expected: check height and scale of the record, or the foam is none of the draws")
+    if doubts:
+        told = replace(told, decision=None, stop=False)
     outcome = Outcome(_stated(p, question, told), told.decision, told.height[1], told.height[0], told.height[2], lines, notes,
                       meaning="measured; the interval was expected before the drop")
+    if doubts and not told.problem:
+        outcome.stated += f"; but {' and '.join(doubts)}"
     if any("is not simulated" in note for note in notes) and told.decision:
         outcome.passed, outcome.stated = None, outcome.stated + " in what was simulated, and not decided for the rest"
-    unexpected = sum(bool(line.note) for line in lines)
-    if unexpected and not told.problem:
-        outcome.passed = None
-        outcome.stated += f"; but {unexpected} of {len(lines)} measured figures were not expected: check height and scale of the record, or the foam is none of the draws"
     if 1 not in p.counted:
         outcome.passed = None if outcome.passed else outcome.passed
         outcome.stated += "; this is of first drops, and those that count are not decided"
+    told = replace(told, decision=outcome.passed)
     notes += search_notes(p, searches)
     return told, outcome, Drops(searches=searches)
 
@@ -174,7 +180,9 @@ def _stated(p: Protocol, question: advice.Question, told: advice.Advice) -> str:
         return f"not decided: {told.problem}"
     if told.stop:
         return f"{'passed' if told.decision else 'not passed'} ({known}); stop" if question.decides else f"stop ({known})"
-    best = f": {told.choices[0].name}" if told.choices else ""
+    if not told.choices:
+        return f"not decided ({known})"
+    best = f": {told.choices[0].name}"
     return f"go on{best} ({known}; measuring stops below {100 * told.bound:g} % {'of a wrong decision' if question.decides else 'of the height'})"
 
 

@@ -388,13 +388,16 @@ def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -
             continue
         if drop.curve is None and results:
             drop.figures, drop.curve, drop.mesh_error = _read(p, results)
-        if "foam" in cell:
+        if "foam" in cell and results and any(figure.least_window for figure in p.figures):
+            drop.draws[cell["foam"]] = _read(p, results)[0]
+        elif "foam" in cell:
             drop.draws[cell["foam"]] = take_figures(p.figures, {key: float(text) for key, text in cell.items()
                                                                  if key in {f.key for f in p.figures} and text}, None)
     for drop in drops.values():
         if len(drop.draws) > 1:
             drop.note = "; ".join(part for part in (f"medians of {len(drop.draws)} draws; curve and file are of the first", drop.note) if part)
-            drop.figures = {key: float(np.median([values[key] for values in drop.draws.values()])) for key in drop.figures}
+            drop.figures = {key: float(np.median([values[key] for values in drop.draws.values() if key in values])) for key in drop.figures
+                            if any(key in values for values in drop.draws.values())}
     return list(drops.values())
 
 

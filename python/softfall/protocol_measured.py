@@ -46,7 +46,7 @@ def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: boo
         _refuse_missing(p, folder, set(seen))
     made.missing += [f"records have no {figure.label}" for figure in p.figures if made.drops and all(figure.label not in drop.figures for drop in made.drops)]
     _mark_others(made)
-    _mark_exchanged(made)
+    _mark_exchanged(p, made)
     return made
 
 
@@ -71,9 +71,12 @@ def _mark_others(made: Drops) -> None:
 SCATTER = 0.05  # of a_max from drop to drop, relative, beyond which a lower height is not expected to be harder
 
 
-def _mark_exchanged(made: Drops) -> None:
-    """Marks drops of one place and number whose a_max falls with the height: the two of the largest fall look exchanged."""
-    peak = {id(drop): float(np.max(drop.curve[1])) for drop in made.drops if drop.curve is not None}
+def _mark_exchanged(p: Protocol, made: Drops) -> None:
+    """Marks drops of one place and number whose a_max falls with the height: the two of the largest fall look exchanged.
+
+    Nothing is decided by drops that count then.
+    """
+    peak = {id(drop): float(np.max(drop.curve[1])) for drop in made.drops if drop.curve is not None and drop.is_usable}
     groups: dict[tuple[Any, ...], list[Drop]] = {}
     for drop in made.drops:
         if peak.get(id(drop), 0.0) > 0:
@@ -87,7 +90,7 @@ def _mark_exchanged(made: Drops) -> None:
         said = (f"drops {low.number} at {low.spot} and at {high.spot} look exchanged: a_max falls from {peak[id(low)]:.4g} to {peak[id(high)]:.4g} g "
                 "where the height grows; check the heights and the files")
         made.missing.append(said)
-        made.doubt = "drops look exchanged"
+        made.doubt = "drops look exchanged" if low.number in p.counted else made.doubt
         for drop, other in ((low, high), (high, low)):
             drop.note = "; ".join(part for part in (drop.note, f"looks exchanged with the drop from {other.spot.height:g} m") if part)
 

@@ -76,7 +76,7 @@ static sf_status take_points(const sf_table *table, sf_case_curve *curve, sf_err
 
 sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err) {
     const sf_table_layout layout = sf_case_curve_layout("curve", check_point);
-    SF_OWNED_BY(sf_table_free) sf_table table;
+    SF_OWNED_BY(sf_table_free) sf_table table = {0};
     memset(curve, 0, sizeof *curve);
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count < SF_CURVE_MIN_POINTS)

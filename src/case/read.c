@@ -179,9 +179,9 @@ static void list_value(sf_case_reader *reader, const sf_key *key, const config_s
 
 static sf_status read_default(sf_case_reader *reader, const sf_key *key, sf_error *err) {
     SF_OWNED_BY(config_destroy) config_t scratch;
+    config_init(&scratch);
     char line[512], detail[128] = "-";
     snprintf(line, sizeof line, "%s = %s;", key->name, key->fallback);
-    config_init(&scratch);
     if (!config_read_string(&scratch, line))
         return SF_REFUSE(err, "the default of %s.%s is not valid: %s", key->group, key->name, line);
     const config_setting_t *value = config_setting_get_elem(scratch.root, 0);

@@ -162,8 +162,8 @@ typedef struct sf_model {
     /* The faces of the pad that may touch the pad itself or the anvil, turned outwards; or none. */
     int64_t skin_count;
     int32_t *skin_triangle; /* [skin_count][3] nodes */
-    uint8_t *skin_half;   /* [skin_count] 1, 2: halves of a quadrangle, one after the other: its nodes 0, 1, 2
-                             and   0, 2, 3; 0: a triangle */
+    uint8_t *skin_half;     /* [skin_count] 1, 2: halves of a quadrangle, one after the other, with its nodes
+                               0, 1, 2 and 0, 2, 3; 0: a triangle */
     double skin_friction; /* -, Coulomb coefficient between them */
     int64_t pair_count;   /* pairs of materials between whose faces the friction is another */
     uint8_t *pair_layer;  /* [pair_count][2] numbers of the materials, ascending */

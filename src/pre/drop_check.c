@@ -387,7 +387,7 @@ static bool leads(const sf_model *m, const double middle[3]) {
 static sf_status check_blades(const sf_model *m, const rims *r, sf_error *err) {
     for (int64_t k = 0; k < r->count; k++) {
         double middle[3], slope = edge_slope(m, r->list[k].slot / 3, (int)(r->list[k].slot % 3), middle);
-        if (slope >= STEEP && leads(m, middle))
+        if (!(slope < STEEP) && leads(m, middle)) /* also a triangle without area, of no slope */
             return SF_REFUSE(
                 err,
                 "missile.group: the surface ends in an edge at (%.4g, %.4g, %.4g) mm that points at the pad, "

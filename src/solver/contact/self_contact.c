@@ -129,7 +129,7 @@ static void take_both_diagonals(const sf_skin *skin, const sf_state *s, touch *q
         sf_triangle_normal(a, &s->self_position[3 * (int64_t)half[1]],
                            &s->self_position[3 * (int64_t)half[2]], own);
         double across = sf_dot3(q->normal, own);
-        if (!(across > 0))
+        if (!(across > 0.5 * sqrt(sf_dot3(own, own)))) /* as in meet_facet */
             return;
         for (int r = 0; r < 3; r++)
             gap += (x[r] - a[r]) * own[r] / across;

@@ -26,12 +26,14 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
         skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
     skin->count = skin->moving + m->support_node_count;
     skin->half = sf_alloc(err, (unsigned long)skin->facet_count, 1, "skin of the pad");
-    for (int64_t k = 1; err->status == SF_OK && k < m->skin_count;
-         k++) /* of one half alone nothing follows */
-        if (m->skin_half[k - 1] == 1 && m->skin_half[k] == 2) {
+    /* A half whose other one cannot touch is a triangle. */
+    for (int64_t k = 1; err->status == SF_OK && k < m->skin_count; k++) {
+        const int32_t *one = &skin->facet[3 * (k - 1)], *two = &skin->facet[3 * k];
+        if (m->skin_half[k - 1] == 1 && m->skin_half[k] == 2 && one[0] == two[0] && one[2] == two[1]) {
             skin->half[k - 1] = 1;
             skin->half[k] = 2;
         }
+    }
     return err->status;
 }
 

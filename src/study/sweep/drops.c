@@ -184,7 +184,9 @@ sf_status sf_sweep_write_drops(const sf_staging *output, const sf_runs *r, const
     for (int64_t row = 0; row < r->count && err->status == SF_OK; row++) {
         SF_OWNED_BY(sf_case_free) sf_case c = {0};
         sf_run_folder at;
-        if (r->state[row] != SF_SWEEP_DONE || sf_sweep_read_case(r->plan, row, &c, err) != SF_OK)
+        if (r->state[row] != SF_SWEEP_DONE || !r->folder[row] ||
+            strncmp(r->folder[row], SF_SWEEP_LABEL "-", strlen(SF_SWEEP_LABEL "-")) != 0 ||
+            sf_sweep_read_case(r->plan, row, &c, err) != SF_OK)
             continue;
         const char *key = r->folder[row] + strlen(SF_SWEEP_LABEL "-");
         sf_run_folder_name_key(folder, SF_SWEEP_LABEL, strtoull(key, NULL, 16), &at);

@@ -72,8 +72,8 @@ static void put_cycles(FILE *out, const sf_form_fit *fit) {
             fprintf(out, "%s %s %.3g +- %.2g", k ? "," : "", sf_cycle_fit_name(k), fit->memory[k],
                     fit->memory_width[k]);
         else
-            fprintf(out, "%s %s %.3g (no record tells it)", k ? "," : "", sf_cycle_fit_name(k),
-                    fit->memory[k]);
+            fprintf(out, "%s %s %.3g (at its bound, or no record tells it)", k ? "," : "",
+                    sf_cycle_fit_name(k), fit->memory[k]);
     for (int n = 0; n < fit->config->record_count; n++) {
         const sf_cycle_record *r = &fit->config->cycles[n];
         const sf_cycle_result *c = &fit->cycles[n];
