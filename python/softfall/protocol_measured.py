@@ -45,8 +45,10 @@ def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: boo
     if complete:
         _refuse_missing(p, folder, set(seen))
     made.missing += [f"records have no {figure.label}" for figure in p.figures if made.drops and all(figure.label not in drop.figures for drop in made.drops)]
-    _mark_others(made)
     _mark_exchanged(p, made)
+    for drop in made.drops:
+        _check_pulse(drop)
+    _mark_others(made)
     return made
 
 
@@ -69,6 +71,7 @@ def _mark_others(made: Drops) -> None:
 
 
 SCATTER = 0.05  # of a_max from drop to drop, relative, beyond which a lower height is not expected to be harder
+MOST_FALL = 3.0  # factor of a_max between heights that are exchanged; a greater one is another unit
 
 
 def _mark_exchanged(p: Protocol, made: Drops) -> None:
@@ -83,7 +86,8 @@ def _mark_exchanged(p: Protocol, made: Drops) -> None:
             spot = drop.spot
             groups.setdefault((spot.condition, spot.position, spot.mass, spot.missile, drop.number), []).append(drop)
     for group in groups.values():
-        pairs = [(peak[id(low)] / peak[id(high)], low, high) for low in group for high in group if low.spot.height < high.spot.height]
+        pairs = [(peak[id(low)] / peak[id(high)], low, high) for low in group for high in group
+                 if low.spot.height < high.spot.height and peak[id(low)] <= MOST_FALL * peak[id(high)]]
         fall, low, high = max(pairs, key=lambda pair: pair[0], default=(0.0, None, None))
         if low is None or high is None or fall <= 1 + SCATTER:
             continue
@@ -197,7 +201,6 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
         raise InputError(f"{where}: the record is shorter than the least window of {absent.label} in {p.path}, {1e3 * absent.least_window:g} ms")
     if absent:
         raise InputError(f"{p.path} limits what a measured record does not have: {missing('figure', absent.key, record.figures).args[0]}")
-    _check_pulse(drop)
     drop.reading = f"{record.interpretation.rstrip('.')}; its velocity changes by {_change(drop) / speed(height):.2f} times that of the fall"
     return drop
 
