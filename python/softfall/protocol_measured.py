@@ -45,7 +45,7 @@ def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: boo
     if complete:
         _refuse_missing(p, folder, set(seen))
     made.missing += [f"records have no {figure.label}" for figure in p.figures if made.drops and all(figure.label not in drop.figures for drop in made.drops)]
-    _mark_exchanged(p, made)
+    _mark_exchanged(p.counted if complete else (1,), made)  # --advise learns from first drops
     for drop in made.drops:
         _check_pulse(drop)
     _mark_others(made)
@@ -74,7 +74,7 @@ SCATTER = 0.05  # of a_max from drop to drop, relative, beyond which a lower hei
 MOST_FALL = 3.0  # factor of a_max between heights that are exchanged; a greater one is another unit
 
 
-def _mark_exchanged(p: Protocol, made: Drops) -> None:
+def _mark_exchanged(counted: tuple[int, ...], made: Drops) -> None:
     """Marks drops of one place and number whose a_max falls with the height: the two of the largest fall look exchanged.
 
     Nothing is decided by drops that count then.
@@ -94,7 +94,7 @@ def _mark_exchanged(p: Protocol, made: Drops) -> None:
         said = (f"drops {low.number} at {low.spot} and at {high.spot} look exchanged: a_max falls from {peak[id(low)]:.4g} to {peak[id(high)]:.4g} g "
                 "where the height grows; check the heights and the files")
         made.missing.append(said)
-        made.doubt = "drops look exchanged" if low.number in p.counted else made.doubt
+        made.doubt = "drops look exchanged" if low.number in counted else made.doubt
         for drop, other in ((low, high), (high, low)):
             drop.note = "; ".join(part for part in (drop.note, f"looks exchanged with the drop from {other.spot.height:g} m") if part)
 
