@@ -101,11 +101,14 @@ static sf_status estimate(const sf_study *study, job *j, sf_error *err) {
     SF_TRY(sf_sweep_cost_estimate(&j->runs, open, study->runs, &cost, err));
     sf_sweep_print_table(stdout, &j->plan, TABLE_ROWS);
     sf_sweep_cost_print(stdout, &cost, elsewhere ? 0 : study->jobs);
-    if (sf_plan_is_adaptive(&j->plan))
+    if (sf_plan_is_adaptive(&j->plan)) {
+        int64_t first = sf_sweep_adaptive_design(&j->plan);
         printf(
             "  (at most: %lld rows are simulated first, then those without which the others are not predicted as "
             "accurately as the plan asks)\n",
-            (long long)sf_sweep_adaptive_design(&j->plan));
+            (long long)first);
+        cost.open = first < cost.open ? first : cost.open; /* for which the disk must have room */
+    }
     fflush(stdout);
     j->drop_seconds = cost.seconds;
     int abreast = !elsewhere ? study->jobs : open < SF_MANIFEST_GROUPS ? (int)open : SF_MANIFEST_GROUPS;

@@ -18,7 +18,8 @@ enum {
     SAMPLE = 2000, /* open rows that a round looks at */
     DESIGN_SAMPLE = 20000,
     ROUND_PART = 6,    /* a round simulates one row for so many that are there */
-    MOST_POINTS = 3000 /* of a process: 72 MB and 10 s a fit */
+    MOST_POINTS = 3000, /* of a process: 72 MB and 10 s a fit */
+    MANY_ROWS = 10000   /* whose columns take half a minute */
 };
 
 /* Quantities that tell whether the figures of a row can be used, and what is said of a row in which they
@@ -177,6 +178,10 @@ static sf_status expect(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err
     SF_TRY(sf_sweep_trend_learn(runs, a->drops, &a->trend, err));
     a->expected =
         sf_alloc(err, (unsigned long)runs->count, SF_TRENDS * sizeof *a->expected, "columns of the rows");
+    if (a->log && runs->count > MANY_ROWS) {
+        fprintf(a->log, "  %lld rows are read, and their columns computed\n", (long long)runs->count);
+        fflush(a->log);
+    }
     for (int64_t row = 0; row < runs->count && err->status == SF_OK; row++) {
         if (sf_process_stopped())
             return SF_FAIL(err, SF_INTERRUPTED, "interrupted");
@@ -234,7 +239,8 @@ static void free_models(sf_sweep_adaptive *a) {
         sf_predictor_free(&a->model[t]);
 }
 
-/* Widens the intervals of a figure until they hold 95 % of the check rows. */
+/* Widens the intervals of a figure until they hold 95 % of the check rows and the next random row (split
+ * conformal prediction): of n checks the ceil(0.95 (n + 1))-th residual. */
 static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int target, sf_error *err) {
     sf_predictor *p = &a->model[target];
     SF_OWNED double *room = sf_alloc(err, (unsigned long)(p->count + a->checks), sizeof *room, "predictions");
@@ -252,7 +258,7 @@ static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int tar
     }
     if (n > 0) {
         gsl_sort(z, 1, (size_t)n);
-        double wider = fmax(1, z[(int64_t)(HELD * (double)(n - 1) + 0.5)]);
+        double wider = fmax(1, z[(int64_t)fmin(ceil(HELD * (double)(n + 1)), (double)n) - 1]);
         p->calibration *= wider;
         while (held < n && z[held] <= wider)
             held++;
