@@ -8,26 +8,32 @@
 #                                                names without .cfg, default all
 #     SF_SPACING=17.5 tools/accuracy_study.sh ROWS [PLAN...]     the same on nodes of 17.5 mm (30 mm outside) in place of
 #                                                10 mm, in a third of the time: to compare ways to predict
+#     SF_MATERIAL=leap tools/accuracy_study.sh ROWS pad          with another foam, by the name of its file in
+#                                                examples/materials
 #
-# Folders out/accuracy-PLAN keep the drops. The programs are those in build/bin, or in $SF_BIN_DIR.
+# Folders out/accuracy-PLAN keep the drops, and begin with OUT in place of "out" with SF_OUT=OUT. The programs are those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 [ $# -ge 1 ] && [[ $1 =~ ^[0-9]+$ ]] || { echo 'usage: tools/accuracy_study.sh ROWS [PLAN...]' >&2 && exit 2; }
 rows=$1
 shift
 [ $# -gt 0 ] || set -- $(cd examples/accuracy && ls ./*.cfg | sed 's,^\./,,; s,\.cfg$,,')
-mkdir -p out
+out=${SF_OUT:-out}
+folders=()
+mkdir -p "$out"
 for plan in "$@"; do
-    folder=out/accuracy-$plan
+    folder=$out/accuracy-$plan${SF_MATERIAL:+-$SF_MATERIAL}
+    folders+=("$folder")
     sed -e "s/count = 2000/count = $rows/" -e "s,\"\.\./,\"$PWD/examples/,g" "examples/accuracy/$plan.cfg" >"$folder.cfg"
     [ -z "${SF_SPACING:-}" ] || sed -i -e "s/fine_spacing=10.0/fine_spacing=$SF_SPACING/" \
         -e "s/outer_spacing=20.0/outer_spacing=30.0\", \"pad.mesh_error_limit=1/" "$folder.cfg"
+    [ -z "${SF_MATERIAL:-}" ] || sed -i "s,^set = \[,&\"material=@$PWD/examples/materials/$SF_MATERIAL.cfg\"\, ," "$folder.cfg"
     sed -e 's/ accuracy = [0-9.]*;//g' "$folder.cfg" >"$folder-all.cfg"
     "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder.cfg" -o "$folder" >"$folder.log"
     cp "$folder/runs.csv" "$folder-predicted.csv"
     "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder-all.cfg" -o "$folder" >"$folder-all.log"
 done
-exec python3 - "$@" <<'PYTHON'
+exec python3 - "${folders[@]}" <<'PYTHON'
 import csv
 import math
 import sys
@@ -40,8 +46,9 @@ def read(path):
 
 print("| plan | rows | simulated | left open | figure | predicted | intervals that hold | largest error | rms error |")
 print("|---|---:|---:|---:|---|---:|---:|---:|---:|")
-for plan in sys.argv[1:]:
-    rows, drops = read(f"out/accuracy-{plan}-predicted.csv"), read(f"out/accuracy-{plan}/runs.csv")
+for folder in sys.argv[1:]:
+    plan = folder.split("/accuracy-")[-1]
+    rows, drops = read(f"{folder}-predicted.csv"), read(f"{folder}/runs.csv")
     simulated = sum(row["run_status"] in ("done", "failed") for row in rows)
     left = sum(row["run_status"] == "open" for row in rows)
     for low in [name for name in rows[0] if name.endswith("_low")]:
