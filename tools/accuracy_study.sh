@@ -10,8 +10,11 @@
 #                                                10 mm, in a third of the time: to compare ways to predict
 #     SF_MATERIAL=leap tools/accuracy_study.sh ROWS pad          with another foam, by the name of its file in
 #                                                examples/materials
+#     SF_TIME=90m tools/accuracy_study.sh ROWS [PLAN...]         stops to simulate the rows of a plan after that time, and
+#                                                compares those that were reached
 #
-# Folders out/accuracy-PLAN keep the drops, and begin with OUT in place of "out" with SF_OUT=OUT. The programs are those in build/bin, or in $SF_BIN_DIR.
+# Folders out/accuracy-PLAN keep the drops, and begin with OUT in place of "out" with SF_OUT=OUT. The programs are those in
+# build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 [ $# -ge 1 ] && [[ $1 =~ ^[0-9]+$ ]] || { echo 'usage: tools/accuracy_study.sh ROWS [PLAN...]' >&2 && exit 2; }
@@ -31,7 +34,8 @@ for plan in "$@"; do
     sed -e 's/ accuracy = [0-9.]*;//g' "$folder.cfg" >"$folder-all.cfg"
     "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder.cfg" -o "$folder" >"$folder.log"
     cp "$folder/runs.csv" "$folder-predicted.csv"
-    "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder-all.cfg" -o "$folder" >"$folder-all.log"
+    ${SF_TIME:+timeout -s INT "$SF_TIME"} "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder-all.cfg" -o "$folder" \
+        >"$folder-all.log" || [ $? -eq 124 ]
 done
 exec python3 - "${folders[@]}" <<'PYTHON'
 import csv
@@ -44,7 +48,7 @@ def read(path):
         return list(csv.DictReader(stream))
 
 
-print("| plan | rows | simulated | left open | figure | predicted | intervals that hold | largest error | rms error |")
+print("| plan | rows | simulated | left open | figure | predicted and compared | intervals that hold | largest error | rms error |")
 print("|---|---:|---:|---:|---|---:|---:|---:|---:|")
 for folder in sys.argv[1:]:
     plan = folder.split("/accuracy-")[-1]
@@ -55,7 +59,7 @@ for folder in sys.argv[1:]:
         figure = low[: -len("_low")]
         errors, held, wrong = [], 0, 0
         for row, drop in zip(rows, drops):
-            if row["run_status"] != "predicted":
+            if row["run_status"] != "predicted" or drop["run_status"] == "open":
                 continue
             if drop["run_status"] != "done" or drop["grade"] == "do not use" or not drop[figure]:
                 wrong += 1

@@ -342,8 +342,8 @@ static void put_surface_panel(sf_chart *chart, const sf_analysis *a, int figure,
     SF_OWNED bool *shown = sf_analysis_pick(s->rows, POINTS, err);
     sf_panel *panel = sf_chart_panel(chart);
     double low = INFINITY, high = -INFINITY;
-    sf_axis_label(&panel->x, "%s, simulated", a->plan->figure[figure].figure);
-    sf_axis_label(&panel->y, "by the surface without its place");
+    sf_axis_label(&panel->x, "%s of the run", a->plan->figure[figure].figure);
+    sf_axis_label(&panel->y, "by the surface without that run");
     sf_series_data *points = sf_chart_series(chart, surface_points, NULL);
     for (int64_t k = 0; k < s->rows && shown; k++) {
         if (!shown[k])
