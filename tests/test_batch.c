@@ -73,7 +73,7 @@ static void run(const char *folder, const sf_runner_engine *engine, int count, c
                 sf_error *failure) {
     sf_error err = SF_ERROR_INIT;
     sf_runner runner = {.folder = folder, .threads = 2, .engine = *engine};
-    if (sf_runner_simulate_each(&runner, count, drop, failure, &err) != SF_OK)
+    if (sf_runner_run_each(&runner, count, drop, NULL, failure, &err) != SF_OK)
         fail_msg("%s", err.text);
 }
 
@@ -410,7 +410,7 @@ static pid_t begin_elsewhere(const program_place *p, const char *folder) {
         list_drops(drop);
         sf_process_handle_signals();
         if (sf_folder_lock(folder, &lock, &err) == SF_OK)
-            sf_runner_simulate_each(&runner, 2, drop, failure, &err);
+            sf_runner_run_each(&runner, 2, drop, NULL, failure, &err);
         _exit((int)err.status);
     }
     for (int k = 0; child > 0 && calls(p, "solve") == 0 && k < 2400; k++)

@@ -16,8 +16,8 @@
 #include <cmocka.h>
 
 #include "post_check.h"
-#include "pre/make.h"
-#include "solver/ledger.h"
+#include "pre/build.h"
+#include "solver/state.h"
 #include "solver/step.h"
 
 static const double MODULUS = 1e6, DENSITY = 100;           /* Pa, kg m-3 */

@@ -6,7 +6,7 @@
 
 #include "material/curve.h"
 #include "base/hash.h"
-#include "solver/ledger.h"
+#include "solver/state.h"
 #include "solver/step.h"
 #include <math.h>
 #include <omp.h>

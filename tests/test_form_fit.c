@@ -4,7 +4,7 @@
  * sources; refusals and files. */
 #include "study/fit/compression/form_fit.h"
 #include "study/fit/form/form.h"
-#include "material/point.h"
+#include "material/laws.h"
 #include "program_fixture.h"
 #include "material/low_density_foam.h"
 

@@ -3,7 +3,7 @@
  * own derivatives, and a fit from the files of tests to a material that softfall-pre reads. */
 #include "material/low_density_foam.h"
 #include "study/fit/compression/table_fit.h"
-#include "material/point.h"
+#include "material/laws.h"
 #include "case/case.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "study/cfh/spread.h"
 #include "study/fit/drop/inference.h"
 #include "study/fit/drop/drop_fit.h"
-#include "material/point.h"
+#include "material/laws.h"
 #include "program_fixture.h"
 #include "material/low_density_foam.h"
 #include "study/column.h"

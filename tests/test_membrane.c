@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "post_check.h"
-#include "pre/make.h"
+#include "pre/build.h"
 #include "solver/constraint/constraint.h"
 #include "solver/field/membrane.h"
 

@@ -4,7 +4,7 @@
 #include "report/chart.h"
 #include "report/html.h"
 #include "post/view/cut.h"
-#include "post/results/origin.h"
+#include "post/results/results.h"
 #include "post/view/report.h"
 #include "post_fixture.h"
 #include "program_fixture.h"

@@ -4,7 +4,7 @@
  * and its intervals must hold the truth as often as they say. */
 #include "material/low_density_foam.h"
 #include "study/fit/compression/table_fit.h"
-#include "material/point.h"
+#include "material/laws.h"
 #include "study.h"
 
 #include <gsl/gsl_cdf.h>

@@ -3,7 +3,7 @@
 #include "api/api.h"
 
 #include "case/case.h"
-#include "pre/make.h"
+#include "pre/build.h"
 #include <stdlib.h>
 #include <string.h>
 

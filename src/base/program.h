@@ -2,8 +2,6 @@
 /* For the programs alone: command lines, printing, and exit codes from status codes. */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
-#include <stddef.h>
 
 enum { SF_MOST_THREADS = 1024 };
 

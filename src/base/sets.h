@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include <stdint.h>
+#include <stdlib.h>
 
 #include "base/error.h"
 
-/* Lists and disjoint sets of numbers.
+/* Lists and disjoint sets of numbers, and the edges of triangles.
  *
  * Disjoint sets of the numbers from 0 on: `parent` leads from each to the lowest of its set. */
 
@@ -33,4 +34,38 @@ static inline void sf_sets_join(int64_t *parent, int64_t a, int64_t b) {
 static inline int sf_by_number(const void *a, const void *b) {
     int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
     return (x > y) - (x < y);
+}
+
+/* An edge of a triangle. */
+typedef struct sf_half_edge {
+    int32_t low, high; /* nodes */
+    int64_t slot;      /* 3 * triangle + place of the vertex that it runs from */
+    bool rises;        /* it runs from low to high */
+} sf_half_edge;
+
+static inline int sf_half_edge_compare(const void *a, const void *b) {
+    const sf_half_edge *x = a, *y = b;
+    int low = (x->low > y->low) - (x->low < y->low), high = (x->high > y->high) - (x->high < y->high);
+    return low ? low : high ? high : (x->slot > y->slot) - (x->slot < y->slot);
+}
+
+/* [3 count] the edges of the triangles, those at the same place together; owned by the caller, NULL on
+ * failure. */
+static inline sf_half_edge *sf_half_edges(int64_t count, const int32_t *triangle, sf_error *err) {
+    sf_half_edge *edge = sf_alloc(err, 3 * (unsigned long)count, sizeof *edge, "edges of triangles");
+    for (int64_t k = 0; edge && k < 3 * count; k++) {
+        int32_t a = triangle[k], b = triangle[k % 3 == 2 ? k - 2 : k + 1];
+        edge[k] = (sf_half_edge){a < b ? a : b, a < b ? b : a, k, a < b};
+    }
+    if (edge)
+        qsort(edge, 3 * (size_t)count, sizeof *edge, sf_half_edge_compare);
+    return edge;
+}
+
+/* Returns the first of `count` that is at another place than `first`. */
+static inline int64_t sf_half_edges_end(const sf_half_edge *edge, int64_t first, int64_t count) {
+    int64_t end = first + 1;
+    while (end < count && edge[end].low == edge[first].low && edge[end].high == edge[first].high)
+        end++;
+    return end;
 }

@@ -3,7 +3,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <udunits2.h>
@@ -275,8 +274,7 @@ void sf_units_let_go(void) {
 
 sf_status sf_units_open(sf_units **units, sf_error *err) {
     *units = sf_alloc(err, 1, sizeof **units, "the unit system");
-    if (!*units)
-        return err->status;
+    SF_TRY(err->status);
     if (held) {
         **units = *held;
         (*units)->borrowed = true;

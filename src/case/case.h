@@ -4,9 +4,7 @@
  */
 #pragma once
 #include "model/good_run.h"
-#include "base/error.h"
 #include "model/model.h"
-#include <stdio.h>
 
 enum {
     SF_CASE_NAME_SIZE = 128,

@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/model.h"
-
 sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
     static const sf_table_name names[] = {{"strain", 0, 1.0, "1"},
                                           {"strain_percent", 0, 0.01, "%"},
@@ -100,32 +98,26 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
 
 enum { MOST_CURVES = 64 };
 
-/* `array`: the address of a pointer from malloc, to `had` bytes. */
-static bool append(void *array, size_t had, const void *more, size_t bytes) {
-    void *before;
-    memcpy(&before, array, sizeof before);
-    char *grown = realloc(before, had + bytes);
-    if (!grown)
-        return false;
-    memcpy(grown + had, more, bytes);
-    memcpy(array, &grown, sizeof grown);
-    return true;
-}
-
 /* Appends a curve to the card's lists. */
 static sf_status add_curve(sf_law_curves *card, double rate, const sf_case_curve *curve, sf_error *err) {
-    size_t curves = (size_t)card->curve_count * sizeof rate,
-           ends_before = curves > 0 ? curves + sizeof rate : 0,
-           points = (size_t)card->curve_points * sizeof rate, more = (size_t)curve->count * sizeof rate;
-    const int64_t ends[2] = {0, card->curve_points + curve->count};
-    if (!append(&card->curve_rate, curves, &rate, sizeof rate) ||
-        !append(&card->curve_ptr, ends_before, &ends[curves > 0],
-                sizeof ends - (curves > 0 ? sizeof *ends : 0)) ||
-        !append(&card->curve_strain, points, curve->strain, more) ||
-        !append(&card->curve_stress, points, curve->stress, more))
+    size_t k = (size_t)card->curve_count;
+    bool room = sf_grow(&card->curve_rate, k, sizeof rate) &&
+                (k > 0 || sf_grow(&card->curve_ptr, 0, sizeof *card->curve_ptr)) &&
+                sf_grow(&card->curve_ptr, k + 1, sizeof *card->curve_ptr);
+    for (int64_t i = 0; room && i < curve->count; i++) {
+        size_t at = (size_t)card->curve_points;
+        room = sf_grow(&card->curve_strain, at, sizeof rate) && sf_grow(&card->curve_stress, at, sizeof rate);
+        if (room) {
+            card->curve_strain[at] = curve->strain[i];
+            card->curve_stress[at] = curve->stress[i];
+            card->curve_points++;
+        }
+    }
+    if (!room)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the curves of a material");
-    card->curve_count++;
-    card->curve_points = ends[1];
+    card->curve_rate[k] = rate;
+    card->curve_ptr[0] = 0;
+    card->curve_ptr[++card->curve_count] = card->curve_points;
     return SF_OK;
 }
 

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdbool.h>
-#include <stdint.h>
-
-#include "base/error.h"
 #include "case/reader.h"
 #include "io/table_csv.h"
 

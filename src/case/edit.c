@@ -86,8 +86,7 @@ sf_status sf_case_edit_find(const char *text, bool only_files, sf_edit_settings 
     for (const char *at = text; (at = strpbrk(at, "=:")); at++)
         most++;
     *settings = (sf_edit_settings){0, sf_alloc(err, most, sizeof *settings->setting, "a case's settings")};
-    if (!settings->setting)
-        return err->status;
+    SF_TRY(err->status);
     finder f = {text, settings};
     pass_settings(&f, text, "");
     for (int k = 0; k < settings->count; k++)

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 
 /* Looks at a text in libconfig syntax before libconfig does, and refuses what libconfig would drop or cut

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/keys.h"
 
-#include "model/model.h"
 #include <assert.h>
 #include <string.h>
 

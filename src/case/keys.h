@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/units.h"
 #include "case/case.h"
 #include <libconfig.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdio.h>
 
 /* The table of the case file's keys. Internal to src/case.
  *

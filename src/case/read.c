@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads a case: file, overrides, unknown keys, the rows of the table, then the rules that join several keys.
  */
-#include "case/case.h"
 
-#include "case/keys.h"
 #include "case/reader.h"
 
 #include "base/hash.h"
 #include "base/mat3.h"
+#include "base/text.h"
 #include "material/laws.h"
 #include <math.h>
 #include <stdlib.h>
@@ -24,13 +23,12 @@ typedef struct unknown {
 } unknown;
 
 static void add_unknown(unknown *u, const config_setting_t *item, const char *group) {
-    size_t used = strlen(u->others);
     if (u->count++ == 0) {
         u->first = item;
         snprintf(u->group, sizeof u->group, "%s", group);
     } else if (u->count <= NAMED_UNKNOWN) {
-        snprintf(u->others + used, sizeof u->others - used, "%s%s%s%.24s", used ? ", " : "", group,
-                 *group ? "." : "", config_setting_name(item));
+        sf_text_add(u->others, sizeof u->others, "%s%s%s%.24s", *u->others ? ", " : "", group,
+                    *group ? "." : "", config_setting_name(item));
     }
 }
 
@@ -274,10 +272,8 @@ static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
     const sf_law *law = setting ? (name ? sf_law_find(name) : NULL) : sf_law_get(0);
     if (!law) {
         char known[256] = "";
-        size_t used = 0;
-        for (int k = 0; sf_law_get(k) && used < sizeof known; k++)
-            used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", k ? ", " : "",
-                                     sf_law_get(k)->name);
+        for (int k = 0; sf_law_get(k); k++)
+            sf_text_add(known, sizeof known, "%s%s", k ? ", " : "", sf_law_get(k)->name);
         return SF_REFUSE_AT(reader, setting, err, "%s: \"%.80s\" is none of: %s", path, name ? name : "",
                             known);
     }

@@ -2,14 +2,8 @@
 /* Shared by the readers of a case's keys: the case under construction, the location of a setting, the keys
  * given. Internal to src/case. */
 #pragma once
-#include "case/case.h"
 #include "case/keys.h"
 #include "case/grammar.h"
-#include "base/error.h"
-#include "base/units.h"
-#include <libconfig.h>
-#include <stdbool.h>
-#include <stdio.h>
 
 typedef struct sf_case_reader {
     const char *path; /* of the case file, as given */

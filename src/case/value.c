@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/reader.h"
 
 #include <ctype.h>
 #include <gsl/gsl_sort.h>
@@ -178,13 +177,12 @@ static sf_status read_names(const slot *s) {
 
 static sf_status find_word(const slot *s, const config_setting_t *item, int *index) {
     const char *text = config_setting_get_string(item), *words = s->key->words;
-    char list[256];
-    size_t used = 0;
+    char list[256] = "";
     *index = text ? sf_word_find(words, text) : -1;
     if (*index >= 0)
         return SF_OK;
-    for (; *words && used < sizeof list; words++)
-        used += (size_t)snprintf(list + used, sizeof list - used, *words == '|' ? ", " : "%c", *words);
+    for (; *words; words++)
+        sf_text_add(list, sizeof list, *words == '|' ? ", " : "%c", *words);
     return REFUSE(s, "%s%s%s is none of: %s", text ? "\"" : "", text ? text : type_phrase(item),
                   text ? "\"" : "", list);
 }
@@ -470,9 +468,8 @@ static sf_status read_kind(sf_case_reader *reader, const config_setting_t *group
                             shared ? about->error_key : about->sd_key,
                             shared ? about->sd_key : about->error_key);
     reader->out->response_error.given[kind] = true;
-    if (read_deviation(reader, shared, path, -LARGEST, SHARED + (size_t)kind * sizeof(double), err) == SF_OK)
-        read_deviation(reader, own, path, 0, OWN + (size_t)kind * sizeof(double), err);
-    return err->status;
+    SF_TRY(read_deviation(reader, shared, path, -LARGEST, SHARED + (size_t)kind * sizeof(double), err));
+    return read_deviation(reader, own, path, 0, OWN + (size_t)kind * sizeof(double), err);
 }
 
 sf_status sf_case_read_response_error(sf_case_reader *reader, sf_error *err) {

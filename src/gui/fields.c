@@ -253,7 +253,7 @@ void sf_fields_show(const sf_fields *fields) {
 }
 
 /* The value as the tree has it now. */
-static bool read(const sf_field *f, char *text, size_t size) {
+static bool read_field(const sf_field *f, char *text, size_t size) {
     double value = 0;
     int length;
     if (f->kind == SF_ENTRY_TEXT || f->kind == SF_ENTRY_FILE)
@@ -275,7 +275,7 @@ void sf_fields_take(sf_fields *fields, bool *case_changed, bool *geometry_change
     for (int k = 0; k < fields->count; k++) {
         sf_field *f = &fields->field[k];
         char text[SF_FIELD_TEXT_SIZE];
-        if (!read(f, text, sizeof text) || strcmp(text, f->now) == 0)
+        if (!read_field(f, text, sizeof text) || strcmp(text, f->now) == 0)
             continue;
         memcpy(f->now, text, sizeof text);
         *(f->of_geometry ? geometry_changed : case_changed) = true;

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/session.h"
 
-#include "base/mat3.h"
-#include "base/units.h"
-#include "io/h5.h"
 #include "io/plain_file.h"
 #include "model/cells.h"
 #include "model/model_io.h"
-#include "post/figures/figures.h"
-#include "post/figures/verdict.h"
-#include "pre/model_report.h"
+#include "pre/build.h"
 
 #include <math.h>
 #include <stdio.h>

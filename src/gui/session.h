@@ -1,15 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
-#include "case/case.h"
 #include "gui/gmsh/window.h"
 #include "io/process.h"
-#include "post/results/results.h"
 #include "study/run_folder.h"
-#include <limits.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 /* The parameters of a .geo file: gmsh's tree knows them by their Name, a case by their variable. gmsh tells
  * no one which belongs to which, so the text of the file (and of what it includes) is looked through:

@@ -4,8 +4,6 @@
  * record failures in `err` and return its status; a failing read returns no buffer. */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 typedef struct sf_h5 sf_h5;

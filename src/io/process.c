@@ -78,10 +78,11 @@ static void watch(int slot, pid_t child) {
         tell(child, SIGTERM);
 }
 
-void sf_process_handle_signals(void) {
+const volatile sig_atomic_t *sf_process_handle_signals(void) {
     struct sigaction action = {.sa_handler = pass_on};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    return &stopped;
 }
 
 bool sf_process_stopped(void) {

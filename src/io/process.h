@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdbool.h>
-#include <stddef.h>
+#include <signal.h>
 #include <stdio.h>
 #include <sys/types.h>
 
@@ -39,8 +38,8 @@ typedef struct sf_process {
 int sf_process_run(const sf_process *process, int *exit_code);
 
 /* After this call SIGINT and SIGTERM do not end this process but are passed on to the stoppable program
- * that runs; one that is started later gets SIGTERM at once. */
-void sf_process_handle_signals(void);
+ * that runs; one that is started later gets SIGTERM at once. Returns the flag that is not 0 from then on. */
+const volatile sig_atomic_t *sf_process_handle_signals(void);
 /* True once such a signal has come. */
 bool sf_process_stopped(void);
 

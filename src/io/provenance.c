@@ -64,16 +64,13 @@ sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *f
 sf_status sf_provenance_copy(const sf_h5 *from, sf_h5 *to, sf_error *err) {
     int64_t count = sf_h5_group_size(from, "/provenance");
     for (int64_t k = 0; k < count; k++) {
-        char name[128], source[160], target[176], *text = NULL;
+        char name[128], source[160], target[176];
+        SF_OWNED char *text = NULL;
         SF_TRY(sf_h5_group_member(from, "/provenance", k, name, sizeof name, err));
         snprintf(source, sizeof source, "/provenance/%s", name);
         snprintf(target, sizeof target, "/provenance/model/%s", name);
         SF_TRY(sf_h5_read_text(from, source, &text, err));
-        sf_h5_info info = {target, "1", "of the model"};
-        sf_status status = sf_h5_write_text(to, &info, text, err);
-        free(text);
-        if (status != SF_OK)
-            return status;
+        SF_TRY(sf_h5_write_text(to, &(sf_h5_info){target, "1", "of the model"}, text, err));
     }
     return SF_OK;
 }

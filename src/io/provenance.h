@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The provenance of a file: the texts under /provenance (docs/formats.md). */
 #pragma once
-#include "base/error.h"
 #include "io/h5.h"
 
 enum { SF_FORMAT_VERSION = 6 };

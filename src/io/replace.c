@@ -296,7 +296,7 @@ sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err)
     return err->status;
 }
 
-static sf_status check(const char *path, bool required, sf_error *err) {
+sf_status sf_seal_check(const char *path, bool required, sf_error *err) {
     sf_seal_state state;
     SF_TRY(sf_seal_examine(path, &state, err));
     if (state == SF_SEAL_NO_FILE)
@@ -307,12 +307,4 @@ static sf_status check(const char *path, bool required, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "%s is damaged: it does not have the checksum that it ends with",
                        path);
     return SF_OK;
-}
-
-sf_status sf_seal_check(const char *path, sf_error *err) {
-    return check(path, true, err);
-}
-
-sf_status sf_seal_check_any(const char *path, sf_error *err) {
-    return check(path, false, err);
 }

@@ -7,7 +7,6 @@
  * followed nor overwritten. */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
 #include <stdio.h>
 
 enum { SF_PATH_SIZE = 4096 };
@@ -78,7 +77,6 @@ typedef enum sf_seal_state {
 /* The state of a file; fails if it is not known, as the system refused to open or read the file. */
 sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err);
 
-/* SF_ERR_INPUT if the file is not plain; SF_ERR_IO: it is missing, not readable, cut or has changed. */
-sf_status sf_seal_check(const char *path, sf_error *err);
-/* The same for a file that may have come from another tool (h5repack), without a seal: then SF_OK. */
-sf_status sf_seal_check_any(const char *path, sf_error *err);
+/* SF_ERR_INPUT if the file is not plain; SF_ERR_IO: it is missing, not readable, cut or has changed. Unless
+ * `required`, it may have come from another tool (h5repack), without a seal. */
+sf_status sf_seal_check(const char *path, bool required, sf_error *err);

@@ -98,11 +98,11 @@ sf_status sf_staging_begin(const char *directory, const char *const *names, bool
     output->directory = strdup(directory);
     if (!output->directory)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", directory);
-    if (make_directory(output, force, err) != SF_OK)
-        goto failed;
-    remove_stale(directory);
-    snprintf(name, sizeof name, STAGING "%d-XXXXXX", (int)getpid());
-    output->aside = join(directory, name, err);
+    if (make_directory(output, force, err) == SF_OK) {
+        remove_stale(directory);
+        snprintf(name, sizeof name, STAGING "%d-XXXXXX", (int)getpid());
+        output->aside = join(directory, name, err);
+    }
     if (output->aside && !mkdtemp(output->aside)) {
         SF_FAIL(err, SF_ERR_IO, "cannot write in %s: %s", directory, strerror(errno));
         free(output->aside);
@@ -110,7 +110,6 @@ sf_status sf_staging_begin(const char *directory, const char *const *names, bool
     }
     if (output->aside && sf_folder_own(output->aside, err) == SF_OK)
         return SF_OK;
-failed:
     sf_staging_end(output);
     return err->status;
 }

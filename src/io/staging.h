@@ -5,8 +5,6 @@
  * directory bears the process's number; that of a run that was killed is removed by the next one. */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 
 typedef struct sf_staging {

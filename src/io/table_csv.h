@@ -15,9 +15,7 @@
  *
  * What could be read in two ways is refused. Each sentence names file, line and cell. */
 #pragma once
-#include "base/error.h"
 #include "base/units.h"
-#include <stdbool.h>
 #include <stdint.h>
 
 /* The requirements of a program on a table of two columns. */

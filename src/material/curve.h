@@ -20,9 +20,7 @@
  * takes the rest.
  */
 #pragma once
-#include "base/error.h"
 #include "material/foam_card.h"
-#include "base/lanes.h"
 
 enum { SF_CURVE_INTERVALS = 1024 };
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/foam_point.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 enum { XX, YY, ZZ, XY, YZ, XZ };

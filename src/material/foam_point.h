@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <math.h>
-
-#include "base/lanes.h"
 #include "material/foam_card.h"
 #include "material/laws.h"
-#include "material/memory.h"
 
 /* The common part of the foam laws at a material point: a law gives the loading energy W of the principal
  * stretches and its derivatives (sf_foam_kind); hysteresis, Maxwell branch, Kelvin and DAMP viscosity,

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/hyperfoam.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "base/lanes.h"
-#include "material/foam_card.h"
 
 /* The entry of the hyperfoam in the table of laws: its parameters and rules. The update of a batch is in
  * hyperfoam_point.c. */
@@ -230,7 +226,7 @@ const sf_law sf_hyperfoam_law = {
     .uniaxial = uniaxial,
 };
 
-double sf_hyperfoam_beta(const sf_hyperfoam_term *term) {
+static double beta_of(const sf_hyperfoam_term *term) {
     return term->beta + term->nu / (1 - 2 * term->nu);
 }
 
@@ -240,7 +236,7 @@ sf_hyperfoam sf_hyperfoam_build(const sf_hyperfoam_card *card) {
         if (card->term[k].mu != 0) {
             foam.mu[foam.count] = card->term[k].mu;
             foam.alpha[foam.count] = card->term[k].alpha;
-            foam.beta[foam.count] = sf_hyperfoam_beta(&card->term[k]);
+            foam.beta[foam.count] = beta_of(&card->term[k]);
             foam.rest += 2 * foam.mu[foam.count] * (1 + foam.beta[foam.count]);
             foam.count++;
         }

@@ -47,7 +47,6 @@ static inline sf_material sf_hyperfoam_material(const sf_hyperfoam_card *card) {
     return (sf_material){.law = &sf_hyperfoam_law, .card = (void *)(uintptr_t)card};
 }
 
-double sf_hyperfoam_beta(const sf_hyperfoam_term *term);
 sf_hyperfoam sf_hyperfoam_build(const sf_hyperfoam_card *card);
 
 /* Loading at one point: W (J m-3), nominal principal stresses and their derivatives by the stretches (Pa). */

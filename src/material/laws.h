@@ -7,7 +7,6 @@
  * follow the entry; tests/test_law.c walks the table: uniaxial stress against the batch, stress against the
  * energy. These files make the library softfall_material, which needs base alone. */
 #pragma once
-#include "base/lanes.h"
 #include "material/card.h"
 
 enum { SF_LAW_HISTORY = 24 }; /* rows of history at most */
@@ -79,3 +78,13 @@ int sf_material_history_rows(const sf_material *material);
 /* Rows of history between the state's [rows][SF_LANES] and the batch; rows that are not kept are 0. */
 void sf_material_load_history(const sf_material_law *law, const double *from, sf_law_batch *batch);
 void sf_material_store_history(const sf_material_law *law, const sf_law_batch *batch, double *to);
+
+/* A material point in uniaxial compression: what a written card gives in the test that it was fitted to. */
+
+/* Sets F [9] of every lane to a stretch along z. */
+void sf_material_point_stretch(double f[9][SF_LANES], double stretch);
+
+/* Takes the point through `strain` [count] (from rest, in order) at the nominal rate (s-1), in steps of at
+ * most `step` strain; `stress` [count] receives the compressive nominal stress (Pa). */
+void sf_material_point_drive(const sf_material_law *law, double rate, double step, int count,
+                             const double *strain, double *stress);

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "material/foam_card.h"
-
 sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) {
     *foam = (sf_foam){
         .options = sf_foam_options_build(&card->shared),

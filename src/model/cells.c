@@ -107,8 +107,7 @@ sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err)
     list_faces(c, list);
     qsort(list, (size_t)count, sizeof *list, by_nodes);
     s->face_count = keep_single(list, count);
-    number_nodes(c, list, s, err);
-    return err->status;
+    return number_nodes(c, list, s, err);
 }
 
 void sf_skin_faces_free(sf_skin_faces *s) {

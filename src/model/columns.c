@@ -3,7 +3,6 @@
 
 #include "model/good_run.h"
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 

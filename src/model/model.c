@@ -8,7 +8,6 @@
 
 #include "base/mat3.h"
 #include "material/low_density_foam.h"
-#include "material/foam_card.h"
 
 #define ARRAY(member, type, rows, extra, columns, path, units, text)                                         \
     {                                                                                                        \

@@ -176,12 +176,6 @@ static sf_status read_materials(const sf_h5 *h5, sf_model *model, sf_error *err)
 
 /* ---- the hash of the content ---- */
 
-static void write_content_hash(sf_h5 *h5, const sf_model *model, sf_error *err) {
-    char hash[SF_MODEL_HASH_SIZE];
-    sf_model_hash(model, hash);
-    sf_h5_set_attribute(h5, "/", "content_hash", hash, err);
-}
-
 /* A flipped bit may give another valid model: only the hash tells. */
 static sf_status check_content_hash(const sf_h5 *h5, const sf_model *model, sf_error *err) {
     char stored[64], hash[SF_MODEL_HASH_SIZE];
@@ -195,7 +189,7 @@ static sf_status check_content_hash(const sf_h5 *h5, const sf_model *model, sf_e
 
 sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance,
                          sf_error *err) {
-    char partial[SF_PATH_SIZE];
+    char partial[SF_PATH_SIZE], hash[SF_MODEL_HASH_SIZE];
     sf_h5 *h5 = NULL;
     if (sf_replace_begin(path, partial, err) != SF_OK || sf_h5_create(partial, &h5, err) != SF_OK)
         return err->status;
@@ -203,8 +197,9 @@ sf_status sf_model_write(const char *path, const sf_model *model, const sf_prove
         write_fields(h5, model, err);
     for (int64_t k = 0; k < model->material_count && err->status == SF_OK; k++)
         write_material(h5, &model->material[k], k, err);
+    sf_model_hash(model, hash);
     if (err->status == SF_OK)
-        write_content_hash(h5, model, err);
+        sf_h5_set_attribute(h5, "/", "content_hash", hash, err);
     sf_h5_close(&h5, err);
     if (err->status == SF_OK)
         return sf_replace_commit(partial, path, err);

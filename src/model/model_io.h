@@ -2,7 +2,6 @@
 /* model.h5: the model's field table and its provenance (docs/formats.md). */
 #pragma once
 #include "model/model.h"
-#include "io/h5.h"
 #include "io/provenance.h"
 
 /* Writes a model under a temporary name beside `path` and renames it: on failure an earlier file stays. */

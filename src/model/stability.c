@@ -2,7 +2,7 @@
 #include "model/stability.h"
 
 #include "base/mat3.h"
-#include "material/point.h"
+#include "material/laws.h"
 #include <string.h>
 
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err) {

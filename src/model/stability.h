@@ -7,7 +7,6 @@
  * pass over the domains a step, holds for any field of tangents, and with damping eta_L (Pa s) gives the time
  * step from c_L (a_L dt^2 + 2 eta_L dt) <= 4. */
 #pragma once
-#include "base/error.h"
 #include "model/model.h"
 #include <math.h>
 

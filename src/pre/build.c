@@ -205,34 +205,30 @@ static sf_status alloc_cloud(sf_model *m, int64_t count, double **contact_area, 
  * then parted, and ends in the model. */
 static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_layers *layers,
                              double **contact_area, sf_build_report *report, sf_error *err) {
-    sf_dual dual = {0};
-    if (sf_mesh_check(mesh, &report->mesh_volume, err) != SF_OK || sf_cloud_reorder(mesh, err) != SF_OK ||
-        sf_dual_build(mesh, &dual, err) != SF_OK || sf_group_check(c, mesh, &dual, err) != SF_OK ||
-        sf_connectivity_check(mesh, &dual, c->separate, err) != SF_OK ||
-        sf_layers_build(c, mesh, &dual, layers, err) != SF_OK)
-        goto done;
+    SF_OWNED_BY(sf_dual_free) sf_dual dual = {0};
+    SF_TRY(sf_mesh_check(mesh, &report->mesh_volume, err));
+    SF_TRY(sf_cloud_reorder(mesh, err));
+    SF_TRY(sf_dual_build(mesh, &dual, err));
+    SF_TRY(sf_group_check(c, mesh, &dual, err));
+    SF_TRY(sf_connectivity_check(mesh, &dual, c->separate, err));
+    SF_TRY(sf_layers_build(c, mesh, &dual, layers, err));
     report->interfaces = layers->interfaces;
     sf_cloud_hash(mesh, report->mesh_hash);
-    if (alloc_cloud(m, layers->first[layers->count], contact_area, err) != SF_OK ||
-        build_contact(c, mesh, &dual, layers, *contact_area, err) != SF_OK ||
-        sf_membrane_take(c, mesh, &dual, layers, m, err) != SF_OK)
-        goto done;
+    SF_TRY(alloc_cloud(m, layers->first[layers->count], contact_area, err));
+    SF_TRY(build_contact(c, mesh, &dual, layers, *contact_area, err));
+    SF_TRY(sf_membrane_take(c, mesh, &dual, layers, m, err));
     if (layers->count > 1) {
-        if (build_layers(c, mesh, layers, m, report, err) != SF_OK ||
-            report_gaps(mesh, &dual, layers, m, report, err) != SF_OK ||
-            sf_layers_split(mesh, &dual, layers, err) != SF_OK)
-            goto done;
-    } else if (build_layer(c, mesh, &dual, report->mesh_volume, c->layer ? c->layer : &c->material, 0, m,
-                           report, err) != SF_OK) {
-        goto done;
+        SF_TRY(build_layers(c, mesh, layers, m, report, err));
+        SF_TRY(report_gaps(mesh, &dual, layers, m, report, err));
+        SF_TRY(sf_layers_split(mesh, &dual, layers, err));
     } else {
+        SF_TRY(build_layer(c, mesh, &dual, report->mesh_volume, c->layer ? c->layer : &c->material, 0, m,
+                           report, err));
         m->slit_fraction = (double)report->domains.hidden_count / (double)mesh->node_count;
     }
     take_mesh(mesh, m, report);
     sf_membrane_weigh(m);
-done:
-    sf_dual_free(&dual);
-    return err->status;
+    return SF_OK;
 }
 
 static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *m, uint8_t *mask,
@@ -243,8 +239,7 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
         if (!c->symmetry_given && !sf_mesh_find_set(mesh, c->symmetry_group[g]))
             continue;
         const sf_node_set *set = sf_group_need(mesh, "pad.symmetry", c->symmetry_group[g], err);
-        if (!set)
-            return err->status;
+        SF_TRY(err->status);
         int axis = sf_group_plane_axis(m, set);
         if (axis != 0 && axis != 1)
             return SF_REFUSE(err, "the symmetry group \"%s\" is not a plane normal to x or y", set->name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/build.h"
+#include "pre/steps.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,9 +7,8 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "base/triangle.h"
+#include "base/sets.h"
 #include "model/flight.h"
-#include "model/good_run.h"
 #include "pre/mesh/missile_shape.h"
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/build.h"
+#include "pre/steps.h"
 
 #include "base/mat3.h"
 #include "pre/mesh/missile_shape.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/make.h"
+#include "pre/build.h"
 
 #include "base/mat3.h"
 #include "io/h5.h"

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/model_report.h"
+#include "pre/build.h"
 #include "pre/mesh/missile_shape.h"
 
 #include "base/mat3.h"
 #include "model/flight.h"
-#include "model/model.h"
 #include "base/text.h"
-#include "base/units.h"
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "base/triangle.h"
 #include "base/sets.h"
 #include "pre/free_faces.h"
 #include "pre/mesh/missile_shape.h"

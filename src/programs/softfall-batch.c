@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-batch MANIFEST [--group GROUP]: what an engine starts for each group of a batch. */
-#include "study/batch.h"
 #include "study/runner.h"
 #include "base/program.h"
-#include "base/units.h"
 #include "io/process.h"
 #include "io/replace.h"
 
 #include <errno.h>
 #include <limits.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -90,7 +87,7 @@ static sf_status run_group(const options *o, const sf_manifest *m, const char *o
     for (int k = 0; err->status == SF_OK && k < count; k++)
         sf_runner_key(&runner, &drop[k], &key[k], err);
     if (err->status == SF_OK && check_keys(count, run, key, err) == SF_OK &&
-        sf_runner_simulate_each(&runner, count, drop, failure, err) == SF_OK)
+        sf_runner_run_each(&runner, count, drop, NULL, failure, err) == SF_OK)
         finish_group(outcome, count, run, failure, err);
     return err->status;
 }

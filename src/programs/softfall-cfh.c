@@ -1,20 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-cfh CASE -o DIR: critical fall height of a pad, from drops that it simulates. */
 #include "base/text.h"
-#include "base/units.h"
-#include "case/case.h"
-#include "post/figures/verdict.h"
-#include "study/batch.h"
 #include "study/cfh/cfh_report.h"
-#include "study/cfh/points.h"
-#include "study/cfh/spread.h"
-#include "study/run_folder.h"
 #include "study/setup.h"
 
 #include <gsl/gsl_sort.h>
 #include <math.h>
 #include <omp.h>
-#include <stddef.h>
 #include <string.h>
 
 /* ---- options ---- */
@@ -185,10 +177,9 @@ static sf_status read_posterior(const char *case_path, sf_case *c, setting *out,
             case_path, c->layer[0].name);
     out->material = c->material;
     c->material = (sf_material){0}; /* moved */
-    if (sf_material_law_build(&out->material, &out->law, err) == SF_OK)
-        sf_cfh_draws_read(o->posterior, case_path, o->override_count, o->overrides, &out->material,
-                          &out->draws, err);
-    return err->status;
+    SF_TRY(sf_material_law_build(&out->material, &out->law, err));
+    return sf_cfh_draws_read(o->posterior, case_path, o->override_count, o->overrides, &out->material,
+                             &out->draws, err);
 }
 
 /* One height belongs to all drops of a series, and the columns that stand for draws are of a first drop. */

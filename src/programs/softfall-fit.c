@@ -3,7 +3,6 @@
  * measurement. */
 #include "build_info.h"
 #include "base/program.h"
-#include "base/error.h"
 #include "study/fit/compression/compression_kind.h"
 #include "study/fit/drop/drop_report.h"
 

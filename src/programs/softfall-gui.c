@@ -3,10 +3,8 @@
 #include "base/program.h"
 #include "gui/session.h"
 #include "io/plain_file.h"
-#include "io/process.h"
 
 #include <signal.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -145,17 +143,10 @@ static const sf_option list[] = {
     {0},
 };
 
-static volatile sig_atomic_t stop_requested; /* the one global: a signal handler can reach nothing else */
-
-static void request_stop(int signal_number) {
-    (void)signal_number;
-    stop_requested = 1;
-}
-
 /* Until the window is closed, the script quits or a signal comes. */
 static void live(sf_session *session, script_state *script, sf_error *err) {
     char action[64];
-    while (!stop_requested && !script->ended && err->status == SF_OK && sf_window_wait(0.05)) {
+    while (!sf_process_stopped() && !script->ended && err->status == SF_OK && sf_window_wait(0.05)) {
         if (sf_window_take_action(action, sizeof action))
             sf_session_act(session, action);
         sf_session_refresh(session);
@@ -195,12 +186,12 @@ int main(int argc, char **argv) {
         .operand = offsetof(options, case_path),
         .is_usage = true,
         .list = {{list, &o}}};
-    const struct sigaction action = {.sa_handler = request_stop};
+    struct sigaction action;
     if (sf_program_begin(argv, &err) != SF_OK || sf_command_parse(&line, argc, argv, &err) != SF_OK)
         return sf_error_report(&err, "softfall-gui");
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    sigaction(SIGHUP, &action, NULL);
+    sf_process_handle_signals();
+    sigaction(SIGTERM, NULL, &action);
+    sigaction(SIGHUP, &action, NULL); /* as the others */
     run(&o, &err);
     return sf_error_report(&err, "softfall-gui");
 }

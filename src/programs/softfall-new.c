@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-new DIR [--from EXAMPLE]: a case in a folder of its own. */
-#include "base/error.h"
 #include "base/program.h"
 #include "io/plain_file.h"
 #include "io/process.h"
@@ -9,7 +8,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,17 +3,10 @@
 #include "base/text.h"
 #include "base/program.h"
 #include "io/provenance.h"
-#include "post/figures/strain_field.h"
-#include "post/figures/compare.h"
 #include "post/view/report.h"
-#include "post/figures/figures.h"
-#include "io/staging.h"
-#include "post/results/results.h"
-#include "post/figures/verdict.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -4,11 +4,9 @@
 #include "model/model_io.h"
 #include "io/replace.h"
 #include "case/keys.h"
-#include "pre/make.h"
-#include "pre/model_report.h"
+#include "pre/build.h"
 
 #include <omp.h>
-#include <stddef.h>
 #include <stdlib.h>
 
 typedef struct options {

@@ -4,21 +4,15 @@
 #include <malloc.h>
 #include <math.h>
 #include <omp.h>
-#include <signal.h>
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "base/error.h"
 #include "base/program.h"
-#include "base/units.h"
 #include "build_info.h"
-#include "io/provenance.h"
-#include "io/replace.h"
+#include "io/process.h"
 #include "model/good_run.h"
 #include "model/model_io.h"
 #include "solver/run/run.h"
@@ -210,16 +204,12 @@ static void compare_builds(const sf_checkpoint *from, char note[1024]) {
     sf_sink_tell(&sink, SF_WARNING, "%s", note);
 }
 
-static void remove_all(const sf_output *output) {
-    unlink(output->results);
-    unlink(output->checkpoint);
-    sf_output_clear(output);
-}
-
 /* After a failure: removes the files, or reports which of them remain. */
 static void handle_failure(const options *o, const sf_output *output, const sf_state *state, bool shown) {
     if (o->remove_failed) {
-        remove_all(output);
+        unlink(output->results);
+        unlink(output->checkpoint);
+        sf_output_clear(output);
         return;
     }
     fprintf(stderr, "softfall-solve: note: %s %s", output->results,
@@ -414,13 +404,6 @@ static sf_status solve(const options *o, const char *command, const volatile sig
 
 /* ---- the program ---- */
 
-static volatile sig_atomic_t stop_requested; /* the one global: a signal handler can reach nothing else */
-
-static void request_stop(int signal_number) {
-    (void)signal_number;
-    stop_requested = 1;
-}
-
 /* Waiting threads spin for billions of cycles by default, which costs a factor of ten and more as soon as
  * another process wants a processor. The OpenMP runtimes read their policy from the environment before main,
  * so the program starts itself once more with the passive one; a value set by the user is kept. */
@@ -458,10 +441,7 @@ int main(int argc, char **argv) {
     if (sf_program_try_threads(o.threads, &err) != SF_OK)
         return sf_error_report(&err, "softfall-solve");
     omp_set_num_threads(o.threads);
-    struct sigaction action = {.sa_handler = request_stop};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
     SF_OWNED char *command = sf_command_line(argc, argv);
-    solve(&o, command ? command : "softfall-solve", &stop_requested, &err);
+    solve(&o, command ? command : "softfall-solve", sf_process_handle_signals(), &err);
     return sf_error_report(&err, "softfall-solve");
 }

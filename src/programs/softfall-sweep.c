@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-sweep PLAN.cfg -o DIR: many drops of one case, by a plan. */
-#include "base/program.h"
-#include "base/units.h"
 #include "io/process.h"
-#include "study/batch.h"
 #include "study/setup.h"
 #include "study/sweep/adaptive.h"
-#include "study/sweep/campaign.h"
 #include "study/sweep/sweep_report.h"
 
 #include <malloc.h>
-#include <stddef.h>
 #include <unistd.h>
 
 enum { TABLE_ROWS = 10 };

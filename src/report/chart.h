@@ -6,11 +6,8 @@
  * The functions below add to a chart and never fail at once: a failure is kept in the sf_error of
  * sf_chart_new, and sf_chart_write returns it. Texts are copied. */
 #pragma once
-#include "base/error.h"
 #include "io/staging.h"
-#include <stdbool.h>
 #include <stdint.h>
-#include <stdio.h>
 
 enum { SF_CHART_TEXT = 192 };
 

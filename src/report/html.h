@@ -3,9 +3,7 @@
  * this template. The page is well-formed XML; texts are escaped, bytes that are not UTF-8 become U+FFFD.
  * Failed writes are reported by sf_staging_close. */
 #pragma once
-#include "base/error.h"
 #include "io/staging.h"
-#include <stdio.h>
 
 /* Opens report.html in the staging directory: head, style, title and the line below it (NULL: none). NULL on
  * failure. */

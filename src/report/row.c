@@ -122,10 +122,6 @@ static double factor_of(const sf_row *row) {
     return row->factor != 0 ? row->factor : 1;
 }
 
-static double shown_factor(const sf_row *row) {
-    return row->shown != 0 ? row->shown : factor_of(row);
-}
-
 static bool is_defined(sf_value value) {
     switch (value.kind) {
     case SF_VALUE_REAL:
@@ -158,7 +154,7 @@ double sf_row_number(const sf_row *row, const void *record) {
 #pragma GCC diagnostic ignored "-Wformat-nonliteral" /* formats are those of the declarations */
 const char *sf_row_shown(const sf_row *row, const void *record, const char *dash, char *text, size_t size) {
     sf_value value = sf_row_value(row, record);
-    double shown = value.real * shown_factor(row);
+    double shown = value.real * (row->shown != 0 ? row->shown : factor_of(row));
     if (!is_defined(value))
         snprintf(text, size, "%s", dash);
     else if (value.kind == SF_VALUE_REAL)

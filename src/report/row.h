@@ -6,10 +6,7 @@
  * readers. */
 #pragma once
 #include "report/html.h"
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
 /* Writes strictly valid JSON (RFC 8259): a number that is not finite becomes null, texts are escaped and
  * bytes that are not UTF-8 become U+FFFD. A key of NULL stands for an element of an array. No text holds a

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/ledger.h"
+#include "solver/state.h"
 
 #include "base/mat3.h"
 #include "model/flight.h"

@@ -13,7 +13,6 @@
  * symmetry; sf_model_whole is the factor to the whole. Points and vectors are in the geometry's frame. A
  * scalar "along" is the component in the direction of the missile card. */
 #pragma once
-#include "model/model.h"
 #include "io/h5.h"
 #include "solver/contact/rigid_surface.h"
 
@@ -145,7 +144,7 @@ double sf_missile_along(const sf_model *model, const double vector[3]);
 double sf_missile_momentum(const sf_model *model, const sf_missile *missile);
 /* Kinetic energy (J) at the present time, after sf_missile_kick; dt_v (s): the distance of the half steps. */
 double sf_missile_kinetic(const sf_model *model, const sf_missile *missile, double dt_v);
-/* Returns the missile's part in the balance of momentum in space (solver/ledger.h): momentum (kg m s-1)
+/* Returns the missile's part in the balance of momentum in space (solver/state.h): momentum (kg m s-1)
  * and angular momentum about the origin (kg m2 s-1) at the half step, 0 unless it turns. */
 void sf_missile_momenta(const sf_model *model, const sf_missile *missile, double linear[3],
                         double angular[3]);

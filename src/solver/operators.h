@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* sf_operators: data derived from the model before the first step, constant afterwards. */
 #pragma once
-#include "base/error.h"
-#include "model/model.h"
 #include "solver/constraint/constraint.h"
 #include "solver/contact/rigid_surface.h"
-#include "solver/contact/contact_rows.h"
 #include "solver/contact/skin.h"
 #include "material/laws.h"
 #include "solver/field/halo.h"

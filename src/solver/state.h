@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stddef.h>
 #include <time.h>
 
-#include "base/error.h"
-#include "io/h5.h"
 #include "material/laws.h"
-#include "model/model.h"
 #include "solver/field/membrane.h"
 #include "solver/missile.h"
 
@@ -85,7 +81,7 @@ typedef struct sf_partial {
     X(double, external, , "J", "work of gravity on the missile, or of its prescribed motion")                           \
     X(double, weight, , "J", "work of gravity on a resting pad")                                                       \
     X(double, anvil, , "J", "part of `contact` and `friction` that is lost at the anvil")                              \
-    X(double, reference, , "J", "to which errors refer: total at first contact; see ledger.h")                                 \
+    X(double, reference, , "J", "to which errors refer: total at first contact; see state.h")                                 \
     X(double, error, , "1", "of the balance, over `reference`")                                                        \
     X(double, largest_error, , "1", "largest |error| so far")                                                          \
     X(double, momentum_reference, , "kg m s-1", "along the missile's direction, to which the momentum error refers")   \
@@ -227,3 +223,30 @@ sf_status sf_state_create(const sf_model *model, sf_state *state, sf_error *err)
 /* Can the state be shown: are displacements, velocities, forces and the squares of stresses finite? */
 bool sf_state_is_finite(const sf_model *model, const sf_state *state);
 void sf_state_free(sf_state *state);
+
+/* The energy ledger and the momentum balance. Stored and hysteretic energy are state functions of W and its
+ * maximum, not integrals of the forces: their agreement with the kinetic energy is a check, not an identity.
+ *
+ * Errors are relative to the energy and momentum at first contact of a free missile; with a prescribed
+ * motion, to the largest work and the impulse of the motion so far. The balance in space counts the pad, and
+ * a missile that turns (sf_missile_momenta); angular momentum is about the origin, its error refers to the
+ * same momentum times the pad's thickness. Both hold to rounding, whatever the step: theory, section
+ * "Ledger". */
+
+/* Force (N) and moment (N m, about the origin) on the pad of all that is outside the balance: constraints,
+ * anvil, weight; but for the missile. Whoever applies such a force adds it. */
+typedef struct sf_wrench {
+    double force[3], moment[3];
+} sf_wrench;
+
+/* A force (N) at the place x (m, present). */
+void sf_wrench_add(sf_wrench *wrench, const double x[3], const double force[3]);
+
+/* Completes the ledger of the present time from the partial sums of the domains, the stabilisation and the
+ * integration; contact and friction have been added already. `outside`: for the balance of momentum, along
+ * the missile's direction and, with that of angular momentum, in space. `dt_v` (s): the distance of the half
+ * steps. */
+void sf_ledger_close(const sf_model *model, sf_state *state, const sf_wrench *outside, double dt_v);
+
+/* Internal energy: stored + hysteresis + viscous + stabilisation, J. */
+double sf_ledger_internal(const sf_ledger *ledger);

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/step.h"
 
-#include "base/lanes.h"
 #include "base/mat3.h"
 #include "solver/contact/contact.h"
 #include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
-#include "solver/ledger.h"
 #include "solver/time_step.h"
 #include <math.h>
 #include <string.h>

@@ -2,8 +2,6 @@
 /* A drop of a campaign, and what runs a batch of them. */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 enum { SF_RUNNER_OVERRIDES = 16 };

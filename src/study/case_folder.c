@@ -3,13 +3,10 @@
 
 #include "build_info.h"
 #include "study/run_folder.h"
-#include "case/case.h"
 #include "case/grammar.h"
 #include "base/hash.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include "io/staging.h"
-#include "pre/mesh/mesher.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,11 +54,8 @@ static const folder_file *find_name(const folder *f, const char *name) {
 
 /* `text`: of an included file, else NULL; taken. */
 static sf_status add_file(folder *f, const char *name, const char *path, char *text, sf_error *err) {
-    folder_file *grown = realloc(f->file, (size_t)(f->count + 1) * sizeof *grown);
-    if (grown)
-        f->file = grown;
     folder_file file = {strdup(name), strdup(path), text};
-    if (grown && file.name && file.path) {
+    if (file.name && file.path && sf_grow(&f->file, (size_t)f->count, sizeof file)) {
         f->file[f->count++] = file;
         return SF_OK;
     }
@@ -288,9 +282,8 @@ static sf_status write_readme(folder *f, sf_error *err) {
         "Edit case.cfg and run the three again, each with --force. softfall-pre --keys explains every key.\n",
         out);
     fclose(out);
-    if (add_file(f, README_NAME, "", NULL, err) == SF_OK)
-        sf_tree_put(&f->tree, README_NAME, text, size, err);
-    return err->status;
+    SF_TRY(add_file(f, README_NAME, "", NULL, err));
+    return sf_tree_put(&f->tree, README_NAME, text, size, err);
 }
 
 /* Writes the files of the new folder, the case with its --set texts first. */

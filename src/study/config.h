@@ -2,12 +2,10 @@
 /* The input file of a campaign: libconfig syntax, dimensional values as texts with units. Every sentence of
  * an error begins with "file:line: group.key". File names are relative to the file that holds them. */
 #pragma once
-#include "base/error.h"
 #include "base/units.h"
 #include "case/grammar.h"
 #include <libconfig.h>
 #include <limits.h>
-#include <stdbool.h>
 
 typedef struct sf_config {
     const char *path; /* borrowed */

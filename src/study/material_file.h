@@ -6,7 +6,6 @@
 #pragma once
 #include "model/good_run.h"
 #include "material/card.h"
-#include <stddef.h>
 
 typedef struct sf_material_text {
     const char *title;      /* first line of both files: a description of the material */

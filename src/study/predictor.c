@@ -243,8 +243,7 @@ sf_status sf_predictor_fit(int inputs, const bool *word, int count, const double
     size_t n = (size_t)count, width = (size_t)inputs;
     *p = (sf_predictor){
         .inputs = inputs, .count = count, .x = sf_alloc(err, n, (width + n + 2) * sizeof *x, "a predictor")};
-    if (!p->x)
-        return err->status;
+    SF_TRY(err->status);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     memcpy(p->word, word, width * sizeof *word);
     memcpy(p->x, x, n * width * sizeof *x);

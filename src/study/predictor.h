@@ -11,7 +11,6 @@
 #pragma once
 #include "base/error.h"
 #include <gsl/gsl_matrix.h>
-#include <stdbool.h>
 
 enum { SF_PREDICTOR_INPUTS = 20 };
 #define SF_PREDICTOR_SIDES 1.959963984540054 /* standard deviations on each side of a 95 % interval */

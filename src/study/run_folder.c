@@ -5,13 +5,10 @@
 #include "base/text.h"
 #include "build_info.h"
 #include "io/folder.h"
-#include "io/h5.h"
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "io/replace.h"
 #include "material/laws.h"
-#include "post/results/results.h"
-#include "pre/mesh/mesher.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -136,8 +133,7 @@ bool sf_run_record_read(const char *path, const char *results, sf_run_record *ou
 }
 
 void sf_run_record_free(sf_run_record *record) {
-    free(record->figure);
-    free(record->text);
+    SF_FREE(record->figure, record->text);
     *record = (sf_run_record){0};
 }
 
@@ -336,10 +332,6 @@ bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
     if (failed)
         SF_FAIL(failure, SF_ERR_NUMERIC, "%s", sentence);
     return failed;
-}
-
-void sf_run_folder_clear_failure(const sf_run_folder *at) {
-    sf_folder_remove_file(at->failed);
 }
 
 /* The last line of a log that says something, for an error's sentence. */

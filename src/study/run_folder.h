@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key of a drop, its folder, and the figures of a finished drop. */
 #pragma once
-#include "base/error.h"
-#include "case/case.h"
 #include "post/figures/verdict.h"
 #include "pre/mesh/mesh_store.h"
 #include <limits.h>
-#include <stdbool.h>
-#include <stdint.h>
 
 /* Figures of a finished drop, cached beside its results in a small text, figures.txt. It is read in place
  * of results.h5 as long as that is the file that it was made of (size and time); without it, or with one
@@ -94,8 +90,6 @@ bool sf_run_folder_is_finished(const sf_run_folder *folder);
  * was then: `*failure` is as it was. A failure of softfall-pre is not kept: it costs little, and what else
  * its geometry would have read is not known. */
 bool sf_run_folder_has_failed(const sf_run_folder *folder, sf_error *failure);
-/* Forgets that. */
-void sf_run_folder_clear_failure(const sf_run_folder *folder);
 
 /* True if softfall-solve is at work in the folder. */
 bool sf_run_folder_is_running(const sf_run_folder *folder);

@@ -6,12 +6,7 @@
  * The programs are those in the folder of the running program, or in SF_BIN_DIR if that is set. */
 #pragma once
 #include "study/batch.h"
-#include "base/error.h"
-#include "post/figures/signal.h"
-#include "post/figures/verdict.h"
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
+#include "study/run_folder.h"
 
 typedef struct sf_runner {
     const char *folder; /* holds the drops' folders; made if need be; borrowed */
@@ -51,6 +46,10 @@ typedef struct sf_runner_result {
     bool reused;
 } sf_runner_result;
 
+/* Reads the single drop of a folder, or all drops of its series; writes the record of figures that is
+ * missing. `figures_only`: the record is enough. */
+sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err);
+
 /* A number of the list of figures; NaN: the run does not define it. */
 double sf_runner_figure(const sf_runner_result *result, const char *key);
 
@@ -73,15 +72,11 @@ sf_status sf_runner_run(sf_runner *runner, const sf_runner_drop *drop, sf_runner
 sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
                               sf_runner_result *result, sf_error *err);
 /* The same, but a drop that fails does not end the others: failure [count] holds each one's status and
- * sentence; a drop without one has its result. Errors: of what all drops need, and interruptions. */
+ * sentence; a drop without one has its result. `result` NULL: no results are read, as of many drops, and
+ * neither simulated nor reused ones are counted. Errors: of what all drops need, and interruptions. */
 sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
                              sf_runner_result *result, sf_error *failure, sf_error *err);
 void sf_runner_result_free(sf_runner_result *result);
-
-/* The same as sf_runner_run_each, but no results are read: for many drops. Counts neither simulated nor
- * reused. */
-sf_status sf_runner_simulate_each(sf_runner *runner, int count, const sf_runner_drop *drop, sf_error *failure,
-                                  sf_error *err);
 
 /* The key of the drop's inputs: its folder is runner->folder/label-<key, 16 hexadecimal digits>. */
 sf_status sf_runner_key(const sf_runner *runner, const sf_runner_drop *drop, uint64_t *key, sf_error *err);

@@ -5,10 +5,8 @@
 #include "io/folder.h"
 #include "io/process.h"
 #include "io/provenance.h"
-#include "study/batch.h"
 #include <gsl/gsl_errno.h>
 #include <omp.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 

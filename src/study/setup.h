@@ -3,9 +3,7 @@
  * directory that is staged and locked, the runner with its engine, warnings and closing lines. */
 #pragma once
 #include "base/program.h"
-#include "io/staging.h"
 #include "study/runner.h"
-#include <limits.h>
 
 typedef struct sf_study {
     const char *input, *directory; /* as given; borrowed from argv */

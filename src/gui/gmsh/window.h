@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* A user's own geometry in gmsh's window, as in gmsh itself: its language may do there what it may do in

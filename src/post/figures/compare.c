@@ -43,8 +43,7 @@ sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count
     if (most > MOST_REGIONS)
         return SF_REFUSE(err, "%lu regions; at most %d are compared", most, MOST_REGIONS);
     *regions = sf_alloc(err, most, sizeof **regions, "the regions");
-    if (!*regions)
-        return err->status;
+    SF_TRY(err->status);
     const char *rest = text;
     while (parse_region(&rest, "-", &(*regions)[*count])) {
         ++*count;
@@ -167,8 +166,7 @@ static sf_status fit_all(const sf_compare_options *options, const sf_series *mod
         window = (sf_region){c->injury.hic.t1, c->injury.hic.t2};
     c->fits =
         sf_alloc(err, 2 * (unsigned long)(options->region_count + 1), sizeof *c->fits, "the comparison");
-    if (!c->fits)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t k = -1; k < options->region_count; k++) {
         sf_region region = k < 0 ? window : options->regions[k];
         for (int j = 0; j < 2; j++) {
@@ -224,30 +222,28 @@ static sf_status read_measured(const sf_compare_options *options, sf_comparison 
     return sf_injury_evaluate(&c->measured, &c->injury, err);
 }
 
-sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
+static sf_status compare(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
                          sf_error *err) {
-    double measured_contact = 0, model_contact = 0;
+    double measured_contact = 0, model_contact = 0, zero = NAN;
     const char *path = options->reference.path;
-    *c = (sf_comparison){.shift = options->shift, .shift_given = !isnan(options->shift)};
-    if (read_measured(options, c, err) != SF_OK)
-        goto done;
-    if (!(c->injury.a_max_g > 0)) {
-        SF_REFUSE(err, "%s has no positive acceleration: positive means that the missile is slowed down",
-                  path);
-        goto done;
-    }
+    SF_TRY(read_measured(options, c, err));
+    if (!(c->injury.a_max_g > 0))
+        return SF_REFUSE(
+            err, "%s has no positive acceleration: positive means that the missile is slowed down", path);
     if (!c->shift_given) {
-        double zero = NAN;
-        if (sf_record_offset(&c->raw, &c->raw, &zero, err) != SF_OK ||
-            sf_contact_instant(&c->measured, path, isnan(zero) ? 0 : zero, &measured_contact, err) != SF_OK ||
-            sf_contact_instant(model, "the computed curve", 0, &model_contact, err) != SF_OK)
-            goto done;
+        SF_TRY(sf_record_offset(&c->raw, &c->raw, &zero, err));
+        SF_TRY(sf_contact_instant(&c->measured, path, isnan(zero) ? 0 : zero, &measured_contact, err));
+        SF_TRY(sf_contact_instant(model, "the computed curve", 0, &model_contact, err));
         c->shift = model_contact - measured_contact;
     }
     c->peak_error = model->value[sf_series_peak(model)] / c->injury.a_max_g - 1;
-    fit_all(options, model, c, err);
-done:
-    if (err->status != SF_OK)
+    return fit_all(options, model, c, err);
+}
+
+sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
+                         sf_error *err) {
+    *c = (sf_comparison){.shift = options->shift, .shift_given = !isnan(options->shift)};
+    if (compare(options, model, c, err) != SF_OK)
         sf_comparison_free(c);
     return err->status;
 }

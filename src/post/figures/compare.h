@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "post/figures/signal.h"
 #include "post/figures/verdict.h"
-#include "report/row.h"
-#include <stdbool.h>
 
 /* May a measured record be compared with? It is judged like a run: every check of SF_GOOD_RECORD becomes a
  * row, the worst row is the grade. The checks know the shape of one impact: rest or free flight, a pulse,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/figures.h"
 
-#include "base/mat3.h"
 #include "base/units.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -521,42 +520,45 @@ sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *
     return sf_figures_compute_through(results, cfc, NULL, f, err);
 }
 
-sf_status sf_figures_compute_through(const sf_results *results, double cfc, const sf_signal_chain *chain,
-                                     sf_figures *f, sf_error *err) {
+/* The figures behind the curves. */
+static sf_status compute(const sf_results *results, sf_figures *f, sf_error *err) {
     const sf_history *h = &results->history;
-    *f = (sf_figures){0};
-    set_undefined(f);
-    f->chain = chain ? *chain : (sf_signal_chain){0};
-    take_facts(results, cfc, f);
-    name_acceleration(f);
-    if (compute_curves(results, f, err) != SF_OK)
-        goto done;
+    SF_TRY(compute_curves(results, f, err));
     f->energy_error = sf_history_largest(h, h->energy_error);
     f->momentum_error = sf_history_largest(h, h->momentum_error);
     f->momentum_error_space = sf_history_largest(h, h->momentum_error_space);
     f->angular_momentum_error = sf_history_largest(h, h->angular_momentum_error);
     f->constraint_residual = sf_history_largest(h, h->constraint_residual);
-    if (compute_base_force(results, f, err) != SF_OK || !f->touched)
-        goto done;
+    SF_TRY(compute_base_force(results, f, err));
+    if (!f->touched)
+        return SF_OK;
     compute_energies(results, f);
     compute_extremes(results, f);
-    if (compute_fields(results, f, err) != SF_OK || compute_below_anvil(results, f, err) != SF_OK)
-        goto done;
+    SF_TRY(compute_fields(results, f, err));
+    SF_TRY(compute_below_anvil(results, f, err));
     if (f->driven) {
         compute_compression(results, f);
-        goto done;
+        return SF_OK;
     }
-    if (sf_injury_evaluate_peak(&f->raw, &f->injury_raw, err) != SF_OK ||
-        sf_injury_evaluate(&f->filtered, &f->injury, err) != SF_OK)
-        goto done;
-    if (f->turns && compute_rotation(results, f, err) != SF_OK)
-        goto done;
+    SF_TRY(sf_injury_evaluate_peak(&f->raw, &f->injury_raw, err));
+    SF_TRY(sf_injury_evaluate(&f->filtered, &f->injury, err));
+    if (f->turns)
+        SF_TRY(compute_rotation(results, f, err));
     f->raw_peak_rows = count_peak_rows(&f->raw);
     compute_rebound(results, f);
     if (f->rebounded)
         estimate_edge(results, f);
-done:
-    if (err->status != SF_OK)
+    return SF_OK;
+}
+
+sf_status sf_figures_compute_through(const sf_results *results, double cfc, const sf_signal_chain *chain,
+                                     sf_figures *f, sf_error *err) {
+    *f = (sf_figures){0};
+    set_undefined(f);
+    f->chain = chain ? *chain : (sf_signal_chain){0};
+    take_facts(results, cfc, f);
+    name_acceleration(f);
+    if (compute(results, f, err) != SF_OK)
         sf_figures_free(f);
     return err->status;
 }

@@ -7,9 +7,6 @@
 #pragma once
 #include "post/figures/signal.h"
 #include "post/figures/strain_field.h"
-#include "post/results/results.h"
-#include "report/row.h"
-#include <stddef.h>
 
 /* X(kind, member, key in summary.json, factor from SI to the unit in the key, meaning), in the order of
  * summary.json. A key ends with its unit; one that does not is dimensionless. NUMBER, COUNT and FLAG declare

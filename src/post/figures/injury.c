@@ -42,8 +42,7 @@ static sf_status grid_build(search *s, const sf_series *curve, sf_error *err) {
     for (int64_t i = 1; i < curve->count; i++)
         s->count += (int64_t)fmax(1, ceil((curve->time[i] - curve->time[i - 1]) / longest - 1e-9));
     s->t = sf_alloc(err, (unsigned long)s->count * 3, sizeof(double), "the HIC grid");
-    if (!s->t)
-        return err->status;
+    SF_TRY(err->status);
     s->a = s->t + s->count;
     s->v = s->a + s->count;
     s->t[0] = curve->time[0];
@@ -71,8 +70,7 @@ static sf_status levels_build(search *s, sf_error *err) {
             break;
     }
     s->memory = sf_alloc(err, (unsigned long)total * 3, sizeof(double), "the HIC search");
-    if (!s->memory)
-        return err->status;
+    SF_TRY(err->status);
     double *next = s->memory;
     for (int l = 0; l < s->level_count; l++) {
         level *here = &s->levels[l];
@@ -241,17 +239,15 @@ sf_status sf_hic_evaluate(const sf_series *acceleration_g, double window, sf_hic
     if (!(window > 0))
         return SF_REFUSE(err, "a HIC window of %g s is not positive", window);
     SF_TRY(sf_series_check(acceleration_g, "the acceleration curve", err));
-    if (grid_build(&s, acceleration_g, err) != SF_OK || levels_build(&s, err) != SF_OK)
-        goto done;
-    search_start(&s);
-    search_pairs(&s, s.level_count - 1, 0, 0);
+    if (grid_build(&s, acceleration_g, err) == SF_OK && levels_build(&s, err) == SF_OK) {
+        search_start(&s);
+        search_pairs(&s, s.level_count - 1, 0, 0);
+    }
     if (s.best > 0) {
         refine(&s);
         *hic = (sf_hic){sqrt(s.best), s.t1, s.t2};
     }
-done:
-    free(s.t);
-    free(s.memory);
+    SF_FREE(s.t, s.memory);
     return err->status;
 }
 

@@ -26,8 +26,7 @@ static double median_of(const double *value, int64_t count, double *work) {
 }
 
 static void record_free(record *r) {
-    free(r->median);
-    free(r->work);
+    SF_FREE(r->median, r->work);
     *r = (record){0};
 }
 

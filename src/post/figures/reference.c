@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "base/units.h"
 #include "io/table_csv.h"
 
 enum { FEWEST_POINTS = 3 };
@@ -236,10 +235,9 @@ static sf_status choose_part(record *r, sf_reference *reference, sf_error *err) 
     if (o->from < o->to)
         SF_TRY(cut_out(r, reference, o->from, o->to, err));
     SF_TRY(sf_record_find_impacts(&reference->raw, impact, &count, err));
-    size_t used = 0, size = sizeof reference->impacts;
-    for (int k = 0; count > 1 && k < count && used < size; k++)
-        used += (size_t)snprintf(list + used, size - used, "%s%d at %.4g ms (%.4g g)", k ? ", " : "", k + 1,
-                                 1e3 * impact[k].time, impact[k].peak);
+    for (int k = 0; count > 1 && k < count; k++)
+        sf_text_add(list, sizeof reference->impacts, "%s%d at %.4g ms (%.4g g)", k ? ", " : "", k + 1,
+                    1e3 * impact[k].time, impact[k].peak);
     int chosen = o->impact;
     for (int k = 0; k < count && o->impact == 0; k++)
         chosen = chosen == 0 || impact[k].peak > impact[chosen - 1].peak ? k + 1 : chosen;

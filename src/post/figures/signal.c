@@ -2,7 +2,6 @@
 #include "post/figures/signal.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,8 +21,7 @@ sf_status sf_series_create(int64_t count, sf_series *series, sf_error *err) {
 }
 
 void sf_series_free(sf_series *series) {
-    free(series->time);
-    free(series->value);
+    SF_FREE(series->time, series->value);
     *series = (sf_series){0};
 }
 
@@ -196,8 +194,8 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     int64_t pad = (int64_t)ceil(30 / (pole * step)) + 2;
     int64_t total = uniform->count + 2 * pad;
     work = sf_alloc(err, (unsigned long)total, sizeof *work, "the padded curve");
-    if (!work || sf_series_create(uniform->count, filtered, err) != SF_OK)
-        goto done;
+    SF_TRY(err->status);
+    SF_TRY(sf_series_create(uniform->count, filtered, err));
     for (int64_t k = 0; k < total; k++)
         work[k] = reflected(uniform, k - pad);
     cfc_coefficients c = cfc_design(pole, step);
@@ -205,8 +203,7 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     cfc_pass(c, work, total, total - 1, -1);
     memcpy(filtered->time, uniform->time, (size_t)uniform->count * sizeof(double));
     memcpy(filtered->value, work + pad, (size_t)uniform->count * sizeof(double));
-done:
-    return err->status;
+    return SF_OK;
 }
 
 /* The samples on their own uniform clock, if written times that are rounded are all that speaks against it.

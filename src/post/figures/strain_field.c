@@ -3,7 +3,6 @@
 
 #include <gsl/gsl_sort.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,14 +69,13 @@ static int64_t *order_by_place(const sf_results *r, sf_error *err) {
 
 /* [node_count] the next node at the same place, in a ring; owned by the caller. */
 static int64_t *ring_copies(const sf_results *r, sf_error *err) {
-    int64_t *order = order_by_place(r, err),
-            *next = sf_alloc(err, (unsigned long)r->node_count, sizeof *next, "nodes by place");
+    SF_OWNED int64_t *order = order_by_place(r, err);
+    int64_t *next = sf_alloc(err, (unsigned long)r->node_count, sizeof *next, "nodes by place");
     for (int64_t k = 0, first = 0; err->status == SF_OK && k < r->node_count; k++) {
         bool last = k + 1 == r->node_count || !is_one_place(r, order[k], order[k + 1]);
         next[order[k]] = last ? order[first] : order[k + 1];
         first = last ? k + 1 : first;
     }
-    free(order);
     return next;
 }
 
@@ -158,10 +156,7 @@ sf_status sf_strain_field_collapse(const sf_results *r, const double *compressio
     for (int64_t i = 0; err->status == SF_OK && i < r->node_count; i++)
         if (compression[i] > *collapse)
             *collapse = fmax(*collapse, excess_of(&s, i));
-    free(s.room);
-    free(s.next);
-    free(s.cells.first);
-    free(s.cells.cell);
+    SF_FREE(s.room, s.next, s.cells.first, s.cells.cell);
     return err->status;
 }
 
@@ -275,7 +270,8 @@ sf_status sf_layers_note_slip(sf_results *r, sf_error *err) {
     if (r->layer_count == 0 || !r->has_peak ||
         sf_frame_read_fields(r, &r->peak, SF_FIELD_DISPLACEMENT, &peak, &problem) != SF_OK)
         return SF_OK; /* the figures say what is damaged */
-    int64_t *order = order_by_place(r, err), at = 0;
+    SF_OWNED int64_t *order = order_by_place(r, err);
+    int64_t at = 0;
     double slip = order && peak.field[SF_FRAME_DISPLACEMENT]
                       ? largest_slip(r, peak.field[SF_FRAME_DISPLACEMENT], order, &at)
                       : 0;
@@ -286,6 +282,5 @@ sf_status sf_layers_note_slip(sf_results *r, sf_error *err) {
             "layers slide on each other by up to %.3g mm, at (%.4g, %.4g, %.4g) mm: their ties hold "
             "along the undeformed normal, which is right for small slips",
             1e3 * slip, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
-    free(order);
     return err->status;
 }

@@ -2,7 +2,6 @@
 #include "post/figures/verdict.h"
 
 #include "base/text.h"
-#include "post/results/results.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -183,13 +182,12 @@ void sf_verdict_compute(const sf_results *results, const sf_figures *figures, co
 
 void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size) {
     enum { SHOWN = 3 };
-    size_t used = (size_t)snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
     int found = 0;
+    snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
     for (int grade = SF_GRADE_DO_NOT_USE; grade > SF_GRADE_VALID; grade--)
-        for (int k = 0; k < verdict->count && used < size; k++)
+        for (int k = 0; k < verdict->count; k++)
             if (verdict->rows[k].grade == (sf_grade)grade && found++ < SHOWN)
-                used += (size_t)snprintf(text + used, size - used, "%s%s", found == 1 ? ": " : "; ",
-                                         verdict->rows[k].text);
-    if (found > SHOWN && used < size)
-        snprintf(text + used, size - used, "; and %d more", found - SHOWN);
+                sf_text_add(text, size, "%s%s", found == 1 ? ": " : "; ", verdict->rows[k].text);
+    if (found > SHOWN)
+        sf_text_add(text, size, "; and %d more", found - SHOWN);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/results/origin.h"
+#include "post/results/results.h"
 
 #include "base/text.h"
 #include "io/provenance.h"

@@ -7,12 +7,9 @@
  * file whose run ended well (/summary/status `finished`, `rebound` or `interrupted`) the same defects are
  * errors. */
 #pragma once
-#include "base/error.h"
 #include "base/mat3.h"
 #include "io/h5.h"
 #include "model/columns.h"
-#include <stdbool.h>
-#include <stdint.h>
 
 typedef struct sf_frame_head {
     char group[24];                 /* "/frames/000012" or "/peak" */
@@ -144,3 +141,36 @@ bool sf_results_ended_well(const sf_results *results);
 
 /* Adds a sentence to the notes; further ones are dropped when they are full. */
 void sf_results_note(sf_results *results, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The texts of /provenance in results.h5 about its case, for a report. */
+
+/* A text of the file ("/provenance/model/case_text"); from malloc, owned by the caller; "" if the file does
+ * not hold it, NULL only without memory. */
+char *sf_origin_text(const sf_results *results, const char *path);
+
+enum { SF_ORIGIN_NAME_SIZE = 160 };
+
+/* A line of /provenance/model/parameters. */
+typedef struct sf_origin_key {
+    char name[SF_ORIGIN_NAME_SIZE];
+    char value[512]; /* as used, a text without its quotes */
+    char si[64];     /* in SI units, or what was read; "-": the same */
+    bool given;      /* in the case; else the default */
+} sf_origin_key;
+
+/* The line at `*text`, and the next one there; false at the end. */
+bool sf_origin_next(const char **text, sf_origin_key *key);
+/* The line of that name. */
+bool sf_origin_find(const char *parameters, const char *name, sf_origin_key *key);
+
+/* The keys of the group `report` of a case, words about the test. */
+enum { SF_ORIGIN_REPORT_KEYS = 3 };
+extern const char *const sf_origin_report_keys[SF_ORIGIN_REPORT_KEYS];
+/* The line of report.NAME; false if the case does not give it. */
+bool sf_origin_find_report(const char *parameters, const char *name, sf_origin_key *key);
+
+/* The comments at the begin of the case, and those in its group material (of the file that --set put in its
+ * place), without '#', a line each; from malloc, owned by the caller; "" if there are none, NULL only without
+ * memory. `layer`: the comments of its group in `materials`; NULL: of the one material. */
+char *sf_origin_title(const char *case_text);
+char *sf_origin_material(const char *case_text, const char *layer);

@@ -6,10 +6,8 @@
 #include <string.h>
 
 #include "build_info.h"
-#include "model/cells.h"
 #include "model/model.h"
 #include "post/view/cut.h"
-#include "report/row.h"
 
 static const char PAGE[] = "view.html", FACTS[] = "id=\"drop\">{}";
 

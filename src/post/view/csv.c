@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/mat3.h"
 #include "post/view/cut.h"
 
 sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
@@ -244,8 +243,7 @@ sf_status sf_section_write(const sf_staging *output, const sf_results *results, 
     if (sf_frame_read(results, head, &frame, err) != SF_OK || !frame.field[SF_FRAME_VON_MISES])
         return err->status;
     FILE *file = sf_staging_open(output, "section.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fputs("set,node,x_mm,y_mm,z_mm,depth_mm,displacement_x_mm,displacement_y_mm,displacement_z_mm,von_mises_"
           "kPa,stress_zz_kPa,largest_compression_1\n",
           file);

@@ -5,7 +5,6 @@
 #include "base/text.h"
 #include <string.h>
 
-#include "base/mat3.h"
 #include <stdio.h>
 
 /* A point closer to an end than this part of the thickness is at the end. */
@@ -218,9 +217,8 @@ static void find_plane(sf_cut *cut) {
 sf_status sf_cut_make(const sf_results *results, sf_cut *cut, sf_error *err) {
     *cut = (sf_cut){.results = results};
     find_plane(cut);
-    if (cut_cells(cut, err) == SF_OK)
-        cut_bodies(cut, err);
-    return err->status;
+    SF_TRY(cut_cells(cut, err));
+    return cut_bodies(cut, err);
 }
 
 void sf_cut_free(sf_cut *cut) {

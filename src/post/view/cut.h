@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdbool.h>
-
 #include "model/cells.h"
 #include "post/results/results.h"
 

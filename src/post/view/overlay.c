@@ -23,7 +23,6 @@ typedef struct overlay_run {
     int64_t drop;        /* of a series, from 1 */
     double pause;        /* s, of the pad before it */
     double place[2];     /* m, x and y of the missile's axis */
-    bool open;           /* the members below are to be released */
     sf_results results;
     sf_figures figures;
     sf_verdict verdict;
@@ -94,7 +93,6 @@ static sf_status read_run(overlay_run *r, sf_error *err) {
     const sf_limits limits = SF_DEFAULT_LIMITS;
     if (name_results(r, err) != SF_OK || sf_results_open(r->path, &r->results, err) != SF_OK)
         return err->status;
-    r->open = true;
     SF_TRY(sf_figures_compute(&r->results, 1000, &r->figures, err));
     if (r->figures.driven || !r->figures.touched)
         return SF_REFUSE(err, "%s cannot be compared: %s", r->path,
@@ -177,8 +175,7 @@ static double series_mean(const overlay *o, int figure) {
 /* A row for each drop and one of the mean; growth is that over the first drop. */
 static sf_status write_series(const overlay *o, sf_error *err) {
     FILE *csv = sf_staging_open(&o->output, "series.csv", err);
-    if (!csv)
-        return err->status;
+    SF_TRY(err->status);
     fputs("drop,pause_s", csv);
     for (int f = 0; f < OF_SERIES; f++)
         fprintf(csv, ",%s,%s_growth", of_series[f], of_series[f]);
@@ -287,8 +284,7 @@ static sf_status write_csv(const overlay *o, sf_error *err) {
     size_t count;
     const sf_figure *list = sf_figure_list(&count);
     FILE *csv = sf_staging_open(&o->output, "compare.csv", err);
-    if (!csv)
-        return err->status;
+    SF_TRY(err->status);
     fputs("figure", csv);
     for (int k = 0; k < o->count; k++) {
         fputc(',', csv);
@@ -361,8 +357,7 @@ static void put_remarks(FILE *page, const overlay *o) {
 static sf_status write_page(const overlay *o, sf_error *err) {
     sf_grade worst = SF_GRADE_VALID;
     FILE *page = sf_html_begin(&o->output, "Comparison of runs", NULL, err);
-    if (!page)
-        return err->status;
+    SF_TRY(err->status);
     for (int k = 0; k < o->count; k++)
         worst = o->run[k].verdict.grade > worst ? o->run[k].verdict.grade : worst;
     sf_html_banner(page, sf_report_kind(worst), sf_verdict_phrase(worst),
@@ -405,11 +400,10 @@ static sf_status run(overlay *o, sf_error *err) {
 
 static void release(overlay *o) {
     sf_staging_end(&o->output);
-    for (int k = 0; k < o->count; k++)
-        if (o->run[k].open) {
-            sf_figures_free(&o->run[k].figures);
-            sf_results_close(&o->run[k].results);
-        }
+    for (int k = 0; k < o->count; k++) {
+        sf_figures_free(&o->run[k].figures);
+        sf_results_close(&o->run[k].results);
+    }
     free(o->command);
 }
 

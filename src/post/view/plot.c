@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/report.h"
 
+#include "base/text.h"
 #include "report/chart.h"
 #include <math.h>
-#include <string.h>
 
 enum { WIDTH = 1600, HEIGHT = 830 };
 static const double SEEN = 0.01; /* of the largest value: a curve this far from another is seen beside it */
@@ -113,10 +113,9 @@ static void put_title(sf_chart *chart, const picture *p) {
     char limits[160] = "";
     for (int k = 0; k < p->verdict->limit_count; k++) {
         const sf_limit *limit = &p->verdict->limits[k];
-        size_t used = strlen(limits);
         if (isfinite(limit->value))
-            snprintf(limits + used, sizeof limits - used, "%s%s %.4g, limit %.4g: %s", used ? "; " : "\n",
-                     limit->title, limit->value, limit->bound, sf_limit_phrase(limit));
+            sf_text_add(limits, sizeof limits, "%s%s %.4g, limit %.4g: %s", *limits ? "; " : "\n",
+                        limit->title, limit->value, limit->bound, sf_limit_phrase(limit));
     }
     sf_chart_title(chart, "Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm: %s%s", r->missile_mass,
                    r->missile_speed, r->thickness * 1e3, sf_verdict_phrase(p->verdict->grade), limits);

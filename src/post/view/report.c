@@ -6,10 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/units.h"
 #include "build_info.h"
+#include "base/text.h"
 #include "model/model.h"
-#include "post/results/origin.h"
 #include "report/chart.h"
 
 /* Without the brackets and quotes of the case's syntax. */
@@ -435,11 +434,9 @@ static void count_cells(const sf_results *r, char *text, size_t size) {
         if (r->cell_type[c] >= SF_CELL_TETRAHEDRON && r->cell_type[c] <= SF_CELL_HEXAHEDRON)
             count[r->cell_type[c] - SF_CELL_TETRAHEDRON]++;
     *text = '\0';
-    for (int k = 3; k >= 0; k--) {
-        size_t used = strlen(text);
+    for (int k = 3; k >= 0; k--)
         if (count[k])
-            snprintf(text + used, size - used, "%s%lld %s", used ? ", " : "", (long long)count[k], names[k]);
-    }
+            sf_text_add(text, size, "%s%lld %s", *text ? ", " : "", (long long)count[k], names[k]);
 }
 
 static void put_text_fact(const page *p, sf_html_table *table, const char *title, const char *path) {

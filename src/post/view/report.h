@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "io/staging.h"
 #include "post/figures/compare.h"
-#include "post/figures/figures.h"
-#include "post/figures/verdict.h"
-#include "post/results/results.h"
-#include "report/html.h"
 
 /* Curves as CSV: a heading whose names carry the units, then one row per point. */
 
@@ -163,7 +158,7 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *summary, 
  * indicative. */
 void sf_summary_print(FILE *out, const sf_summary *summary);
 
-/* The material and the case in a report, from their texts (post/results/origin.h). */
+/* The material and the case in a report, from their texts (post/results/results.h). */
 
 /* The section Material: the keys that the case gives, and the comments of the material. */
 void sf_origin_put_material(FILE *page, const char *case_text, const char *parameters);

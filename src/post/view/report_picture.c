@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/report.h"
 
+#include "base/text.h"
 #include "report/chart.h"
 #include "post/view/cut.h"
 #include <math.h>
@@ -84,13 +85,11 @@ static int name_missing(const instant list[SF_INSTANTS], char *text, size_t size
     int count = 0;
     *text = '\0';
     for (int k = 0; k < SF_INSTANTS; k++) {
-        size_t used = strlen(text);
         if (list[k].head)
             continue;
-        snprintf(text + used, size - used, "%s%s", count++ ? ", " : "", moments[k]);
-        used = strlen(text);
+        sf_text_add(text, size, "%s%s", count++ ? ", " : "", moments[k]);
         if (list[k].wanted > 0)
-            snprintf(text + used, size - used, " (%.1f ms)", list[k].wanted * 1e3);
+            sf_text_add(text, size, " (%.1f ms)", list[k].wanted * 1e3);
     }
     return count;
 }

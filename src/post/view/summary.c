@@ -2,7 +2,6 @@
 #include "post/view/report.h"
 
 #include "build_info.h"
-#include "post/results/origin.h"
 #include <assert.h>
 #include <math.h>
 
@@ -208,12 +207,6 @@ static void print_drop(FILE *out, const sf_summary *s) {
         print_figures(out, s, rotation_keys);
 }
 
-static void print_compression(FILE *out, const sf_summary *s) {
-    fprintf(out, "Prescribed motion of the missile on %.4g mm: no drop, so no injury figures\n",
-            s->results->thickness * 1e3);
-    print_figures(out, s, compression_keys);
-}
-
 static void print_verdict(FILE *out, const sf_verdict *v) {
     char line[SF_VERDICT_LINE_SIZE];
     sf_verdict_line(v, line, sizeof line);
@@ -232,10 +225,13 @@ static void print_verdict(FILE *out, const sf_verdict *v) {
 
 void sf_summary_print(FILE *out, const sf_summary *s) {
     print_verdict(out, s->verdict);
-    if (s->figures->driven)
-        print_compression(out, s);
-    else
+    if (s->figures->driven) {
+        fprintf(out, "Prescribed motion of the missile on %.4g mm: no drop, so no injury figures\n",
+                s->results->thickness * 1e3);
+        print_figures(out, s, compression_keys);
+    } else {
         print_drop(out, s);
+    }
     print_figures(out, s, common_keys);
     if (s->figures->layers)
         sf_rows_text_table(out, sf_layer_figure_rows(), layers_of(s));

@@ -151,8 +151,7 @@ static sf_status write_points(const store *s, const sf_h5_info *info, int64_t co
         else
             for (int64_t k = 3 * i; k < 3 * i + 3; k++)
                 moved[k] = position[k] + (displacement ? displacement[k] : 0);
-    put(s, info, count, 3, moved, err);
-    return err->status;
+    return put(s, info, count, 3, moved, err);
 }
 
 static sf_status write_supports(const store *s, sf_error *err) {
@@ -397,8 +396,7 @@ static void put_frame(const scene *x, const sf_results *r, int fields, double ti
 static sf_status write_text(const sf_staging *output, const sf_results *r, const sf_shown *shown,
                             const char *data, bool full, sf_error *err) {
     const scene x = {sf_staging_open(output, "pad.xdmf", err), data, full ? 8 : 4};
-    if (!x.file)
-        return err->status;
+    SF_TRY(err->status);
     fputs("<?xml version=\"1.0\" ?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf Version=\"2.0\">\n  "
           "<Domain>\n"
           "    <Grid Name=\"softfall\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",

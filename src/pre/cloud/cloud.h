@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
 #include "case/case.h"
 #include "pre/cloud/dual.h"
-#include "pre/mesh/mesh.h"
 
 /* The cloud of particles: the nodes of the background mesh, their order and their spacing. */
 

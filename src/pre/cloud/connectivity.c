@@ -4,7 +4,6 @@
 #include "pre/cloud/cloud.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,11 +18,6 @@ static void mean_of(const sf_mesh *mesh, const int32_t *node, int64_t count, dou
     for (int64_t k = 0; k < count; k++)
         for (int c = 0; c < 3; c++)
             out[c] += mesh->position[3 * (int64_t)node[k] + c] / (double)count;
-}
-
-static void cell_centre(const sf_mesh *mesh, int64_t cell, double out[3]) {
-    mean_of(mesh, &mesh->cell_node[mesh->cell_ptr[cell]], mesh->cell_ptr[cell + 1] - mesh->cell_ptr[cell],
-            out);
 }
 
 /* ---- cells in each other ---- */
@@ -109,7 +103,8 @@ static bool has_node(const sf_mesh *mesh, int64_t cell, int32_t node) {
 static sf_status check_cell(const sf_mesh *mesh, const sf_grid *grid, const probes *p, int64_t cell,
                             sf_error *err) {
     double centre[3], radius = 0;
-    cell_centre(mesh, cell, centre);
+    mean_of(mesh, &mesh->cell_node[mesh->cell_ptr[cell]], mesh->cell_ptr[cell + 1] - mesh->cell_ptr[cell],
+            centre);
     for (int64_t k = mesh->cell_ptr[cell]; k < mesh->cell_ptr[cell + 1]; k++)
         radius = fmax(radius, sf_distance3(&mesh->position[3 * (int64_t)mesh->cell_node[k]], centre));
     int64_t count = sf_grid_gather(grid, centre, (1 - DEPTH) * radius, p->count, p->near);
@@ -173,8 +168,7 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
 
 static sf_status check_parts(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
     SF_OWNED int64_t *parent = sf_sets_alone(mesh->cell_count, "connected cells", err);
-    if (!parent)
-        return err->status;
+    SF_TRY(err->status);
     for (int64_t f = 0; f < dual->inner_count; f++)
         sf_sets_join(parent, dual->inner[f].cell[0], dual->inner[f].cell[1]);
     for (int64_t c = 0; c < mesh->cell_count && err->status == SF_OK; c++)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/dual.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,13 +112,10 @@ static sf_status add_inner(const sf_mesh *mesh, const raw_face *raw, sf_dual *du
 /* Faces sorted by their vertices: alone = boundary, pairs = interior. */
 static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t count = count_parts(mesh, false), k = 0;
-    raw_face *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell faces");
+    SF_OWNED raw_face *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell faces");
     dual->face = sf_alloc(err, (unsigned long)count, sizeof *dual->face, "boundary faces");
     dual->inner = sf_alloc(err, (unsigned long)count / 2, sizeof *dual->inner, "inner faces");
-    if (err->status != SF_OK) {
-        free(raw);
-        return err->status;
-    }
+    SF_TRY(err->status);
     for (int64_t c = 0; c < mesh->cell_count; c++) {
         const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
         const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
@@ -149,7 +145,6 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
         }
         k = end;
     }
-    free(raw);
     return err->status;
 }
 

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdint.h>
-
-#include "base/error.h"
 #include "pre/mesh/mesh.h"
 
 /* Topology of the median dual of the background mesh: its edges with the cells around each, and its boundary

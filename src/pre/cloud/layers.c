@@ -4,7 +4,6 @@
 #include "base/mat3.h"
 #include "base/sets.h"
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -189,12 +188,7 @@ sf_status sf_layers_build(const sf_case *c, const sf_mesh *mesh, const sf_dual *
 }
 
 void sf_layers_free(sf_layers *l) {
-    free(l->first);
-    free(l->origin);
-    free(l->copy_ptr);
-    free(l->copy);
-    free(l->tie);
-    free(l->together);
+    SF_FREE(l->first, l->origin, l->copy_ptr, l->copy, l->tie, l->together);
     *l = (sf_layers){0};
 }
 
@@ -278,8 +272,7 @@ static sf_status split_set(const sf_mesh *mesh, const sf_dual *dual, const sf_la
         count += mark[i];
     int32_t *node = sf_alloc(err, (unsigned long)count, sizeof *node, "a node set");
     SF_TRY(err->status);
-    free(set->node);
-    free(set->face);
+    SF_FREE(set->node, set->face);
     set->node = node;
     set->face = NULL;
     set->count = set->face_count = 0;

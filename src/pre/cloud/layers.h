@@ -3,10 +3,7 @@
  * no shape function reaches across, and ties join the nodes that stand at one place (docs/adr/0017). */
 #pragma once
 #include "case/case.h"
-#include "base/error.h"
-#include "model/model.h"
 #include "pre/cloud/dual.h"
-#include "pre/mesh/mesh.h"
 
 /* Two nodes of the parted mesh at one place, whose layers share a face there. */
 typedef struct sf_layer_tie {

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdint.h>
-
 #include "base/grid.h"
-#include "base/error.h"
 #include "pre/cloud/dual.h"
-#include "pre/mesh/mesh.h"
 
 /* Which nodes do not see each other although they are near? The support of a node is a ball; across a slit or
  * a gap it would join what is apart. Two nodes see each other if mesh edges lead from one to the other

@@ -2,9 +2,9 @@
 #include "pre/mesh/geo_parameters.h"
 
 #include <ctype.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "io/plain_file.h"
 
 static const char *skip_blank(const char *p) {
@@ -115,11 +115,9 @@ static sf_status refuse_missing(const sf_geo_source *source, const name_list *li
     for (int k = 0; k < source->parameter_count; k++) {
         if (has_name(list, source->parameter[k].name))
             continue;
-        char names[640];
-        size_t used = 0;
-        names[0] = '\0';
-        for (int i = 0; i < list->count && used < sizeof names; i++)
-            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", list->name[i]);
+        char names[640] = "";
+        for (int i = 0; i < list->count; i++)
+            sf_text_add(names, sizeof names, "%s%s", i ? ", " : "", list->name[i]);
         return SF_REFUSE(err, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
                          source->path, source->parameter[k].name, list->count ? names : "none");
     }

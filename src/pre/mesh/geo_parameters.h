@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdbool.h>
-
-#include "base/error.h"
 #include "case/case.h"
 #include "pre/mesh/broker.h"
 

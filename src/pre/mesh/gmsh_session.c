@@ -212,10 +212,6 @@ static int cell_code(int gmsh_type, int *vertices) {
     }
 }
 
-static int face_vertices(int gmsh_type) {
-    return gmsh_type == 2 ? 3 : gmsh_type == 3 ? 4 : 0;
-}
-
 /* The destination of the elements of one entity. */
 typedef struct destination {
     sf_raw_mesh *raw;
@@ -229,7 +225,7 @@ static sf_status add_elements(const sf_gmsh *session, const destination *to, con
     if (block->dimension == 3)
         code = cell_code(block->type, &vertices);
     else
-        vertices = face_vertices(block->type);
+        vertices = block->type == 2 ? 3 : block->type == 3 ? 4 : 0;
     if (vertices == 0)
         return SF_REFUSE(
             err,
@@ -417,8 +413,7 @@ sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, d
         if (data->group[g].dimension == 2 && *data->group[g].name &&
             read_faces(session, &data->group[g], &raw, err) != SF_OK)
             return err->status;
-    sf_mesh_assemble(&raw, volumes->count, unit, mesh, err);
-    return err->status;
+    return sf_mesh_assemble(&raw, volumes->count, unit, mesh, err);
 }
 
 /* Nodes, cells and the faces of the missile's group. */
@@ -436,15 +431,13 @@ sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, doub
                                sf_error *err) {
     SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     memset(surface, 0, sizeof *surface);
-    if (read_missile(session, surface_group, &raw, err) == SF_OK)
-        sf_surface_assemble(&raw, unit, surface, err);
-    return err->status;
+    SF_TRY(read_missile(session, surface_group, &raw, err));
+    return sf_surface_assemble(&raw, unit, surface, err);
 }
 
 sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                             sf_error *err) {
     SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
-    if (read_missile(session, surface_group, &raw, err) == SF_OK)
-        sf_hull_assemble(&raw, unit, surface, err);
-    return err->status;
+    SF_TRY(read_missile(session, surface_group, &raw, err));
+    return sf_hull_assemble(&raw, unit, surface, err);
 }

@@ -3,12 +3,8 @@
  * parameters, meshes it if it holds no mesh, and hands out the pad's cells and the missile's surface. gmsh
  * itself runs in a confined process (mesher.h), one for each geometry. */
 #pragma once
-#include "base/error.h"
-#include "case/case.h"
 #include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesh.h"
-#include "pre/mesh/mesher.h"
-#include <stdbool.h>
 
 typedef struct sf_gmsh {
     sf_mesher_limits limits; /* for each geometry; zeros: those of mesher.h */

@@ -2,7 +2,6 @@
 #include "pre/mesh/mesh.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stddef.h>
-#include <stdint.h>
-
-#include "base/error.h"
 #include "pre/mesh/mesh.h"
 
 /* The raw mesh of a mesh generator: nodes by tag, cells and faces by node tags; and its conversion to

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdbool.h>
-
 #include "pre/mesh/mesher.h"
 
 /* The list of what geometries read (sf_gmsh.files), compared with the files as they are. */

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
 #include "case/case.h"
 #include "pre/mesh/broker.h"
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 /* Reads the mesh stream of softfall-mesh (mesher_protocol.h), which may hold anything: every count is checked
  * against what is there, every number against its range, before anything is allocated. */

@@ -3,13 +3,11 @@
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "base/triangle.h"
 #include "pre/mesh/mesh_raw.h"
 
 static const double EDGE_ON = 1e-3; /* share of the area: below it a surface faces neither way */

@@ -3,7 +3,6 @@
 
 #include <errno.h>
 #include <gmshc.h>
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>

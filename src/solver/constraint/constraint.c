@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint/constraint.h"
 
-#include "base/lanes.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,13 +98,7 @@ static void list_by_node(sf_constraint *c) {
 }
 
 static void free_lists(sf_constraint *c) {
-    free(c->touched);
-    free(c->row_ptr);
-    free(c->row_place);
-    free(c->row_phi);
-    free(c->node_ptr);
-    free(c->node_row);
-    free(c->node_phi);
+    SF_FREE(c->touched, c->row_ptr, c->row_place, c->row_phi, c->node_ptr, c->node_row, c->node_phi);
     c->touched = c->row_place = c->node_row = NULL;
     c->row_ptr = c->node_ptr = NULL;
     c->row_phi = c->node_phi = NULL;
@@ -209,9 +201,7 @@ sf_status sf_constraint_build(const sf_model *m, sf_constraint *c, sf_error *err
         if (build_lists(m, c, err) == SF_OK)
             build_work(m, c, err);
     }
-    free(a.row);
-    free(a.column);
-    free(a.value);
+    SF_FREE(a.row, a.column, a.value);
     if (err->status != SF_OK)
         sf_constraint_free(c);
     return err->status;
@@ -220,10 +210,7 @@ sf_status sf_constraint_build(const sf_model *m, sf_constraint *c, sf_error *err
 void sf_constraint_free(sf_constraint *c) {
     free_lists(c);
     sf_ldl_free(&c->factor);
-    free(c->row);
-    free(c->mobility);
-    free(c->field);
-    free(c->lambda);
+    SF_FREE(c->row, c->mobility, c->field, c->lambda);
     memset(c, 0, sizeof *c);
 }
 

@@ -5,7 +5,6 @@
  * of G stands for a node held in all components, or for one component of a node that is held in some. Ties
  * between layers are rows too: phi(X_c) of one cloud less that of the other. */
 #pragma once
-#include "base/error.h"
 #include "model/model.h"
 #include "solver/constraint/ldl.h"
 

@@ -36,9 +36,7 @@ static sf_status build_tree(const cholmod_factor *l, int64_t shared, tree *t, sf
 }
 
 static void free_tree(tree *t) {
-    free(t->parent);
-    free(t->below);
-    free(t->branch);
+    SF_FREE(t->parent, t->below, t->branch);
 }
 
 /* Cuts the tree: the largest subtree gives its root to the trunk until it is no larger than its share, or the
@@ -358,15 +356,7 @@ sf_status sf_ldl_build(const sf_ldl_entries *a, sf_ldl *f, sf_error *err) {
 }
 
 void sf_ldl_free(sf_ldl *f) {
-    free(f->order);
-    free(f->column);
-    free(f->trunk_from);
-    free(f->list);
-    free(f->place);
-    free(f->value);
-    free(f->inverse);
-    free(f->mask);
-    free(f->carried);
+    SF_FREE(f->order, f->column, f->trunk_from, f->list, f->place, f->value, f->inverse, f->mask, f->carried);
     memset(f, 0, sizeof *f);
 }
 

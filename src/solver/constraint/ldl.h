@@ -7,8 +7,6 @@
 #pragma once
 #include "base/error.h"
 #include "base/lanes.h"
-#include <stdbool.h>
-#include <stdint.h>
 
 enum { SF_LDL_BRANCHES = 4 };
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "base/triangle.h"
+#include "base/sets.h"
 
 /* Behind the rim of an open surface a point counts as inside only straight behind it: the part of its ray
  * across the rim's normal may be this much of the part along it, as on the rim of a quarter missile, whose

@@ -8,7 +8,7 @@
  * one that lies deeper behind a face than it may, as behind the other side of a thin wall, does not see it.
  */
 #pragma once
-#include "solver/ledger.h"
+#include "solver/state.h"
 #include "solver/operators.h"
 
 /* Finds the forces of this step, adds them to state->force, and the work lost since the last step to the

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/field/halo.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 /* Lists the nodes of other groups that group g sees, marked in `seen` (zero on entry and exit), into `list`

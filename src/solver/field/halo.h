@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
 #include "model/model.h"
 
 /* Groups of consecutive nodes. A group owns its nodes; its ghosts are the nodes of other groups in the

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/mat3.h"
-#include "base/lanes.h"
 #include "model/stability.h"
 
 /* ---- constants ---- */

@@ -2,8 +2,6 @@
 /* The membrane on faces of the pad: triangles of constant strain between the physical positions of its nodes,
  * x = X + Phi d, whose forces act on the coefficients by the same rows (theory, section "Membranes"). */
 #pragma once
-#include "base/error.h"
-#include "model/model.h"
 #include "solver/contact/contact_rows.h"
 
 enum { SF_MEMBRANE_ROW = 11 }; /* numbers of a triangle: forces on its nodes, N, energy, J, largest strain */

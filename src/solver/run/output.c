@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "io/folder.h"
 #include "model/flight.h"
-#include "solver/missile.h"
 
 /* Returns the place of the symmetry plane normal to an axis; NaN: there is none. */
 static double find_plane(const sf_model *m, int axis) {
@@ -85,15 +85,14 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
 /* The layers of a pad of several materials. */
 static sf_status write_layers(const sf_model *m, sf_h5 *file, sf_error *err) {
     double density[SF_MATERIAL_MAX], informed[SF_MATERIAL_MAX];
-    char names[SF_MATERIAL_MAX * SF_MATERIAL_NAME_SIZE];
-    size_t used = 0;
+    char names[SF_MATERIAL_MAX * SF_MATERIAL_NAME_SIZE] = "";
     if (m->material_count < 2)
         return SF_OK;
     for (int64_t k = 0; k < m->material_count; k++) {
         const sf_material *material = &m->material[k];
         density[k] = sf_material_density(material);
         informed[k] = sf_material_informed(material);
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", k ? "\n" : "", material->name);
+        sf_text_add(names, sizeof names, "%s%s", k ? "\n" : "", material->name);
     }
     sf_h5_write(file, &(sf_h5_info){"/model/node_layer", "1", "number of the layer of each node, ascending"},
                 SF_H5_U8, 1, &m->node_count, m->node_material, err);
@@ -107,8 +106,10 @@ static sf_status write_layers(const sf_model *m, sf_h5 *file, sf_error *err) {
         file, &(sf_h5_info){"/model/layer_names", "1", "names of the layers, a line each"}, names, err);
 }
 
-sf_status sf_results_create(const char *path, const sf_model *m, const sf_h5 *model_file,
-                            const sf_provenance *provenance, sf_h5 **file, sf_error *err) {
+/* Creates results.h5 before the first step, with its provenance and that of the model, and the part of the
+ * model that post-processing needs. On success the caller owns `*file`. */
+static sf_status create_results(const char *path, const sf_model *m, const sf_h5 *model_file,
+                                const sf_provenance *provenance, sf_h5 **file, sf_error *err) {
     SF_TRY(sf_h5_create(path, file, err));
     if (sf_provenance_write(*file, "softfall-results", provenance, err) == SF_OK &&
         sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK &&
@@ -208,7 +209,7 @@ sf_status sf_output_base(const sf_output *o, const sf_model *m, const sf_h5 *mod
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
     sf_h5 *file = NULL;
     SF_TRY(place(o, BASE, path, partial, err));
-    sf_results_create(partial, m, model_file, provenance, &file, err);
+    create_results(partial, m, model_file, provenance, &file, err);
     return sf_h5_close(&file, err) == SF_OK && err->status == SF_OK ? sf_seal_add(partial, err) : err->status;
 }
 
@@ -315,7 +316,7 @@ static sf_status take(const sf_output *o, bool copied, const char *name, const c
     const char *slash = strrchr(o->folder, '/');
     sf_h5 *part = NULL;
     snprintf(path, sizeof path, "%s/%s", copied ? o->folder : slash ? slash + 1 : o->folder, name);
-    if (copied && (sf_seal_check(path, err) != SF_OK || sf_h5_open_alone(path, &part, err) != SF_OK))
+    if (copied && (sf_seal_check(path, true, err) != SF_OK || sf_h5_open_alone(path, &part, err) != SF_OK))
         return err->status;
     for (; *objects && err->status == SF_OK; objects++) {
         if (copied)

@@ -2,7 +2,6 @@
 #include "solver/run/run.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -114,10 +113,33 @@ sf_status sf_recorder_write(const sf_recorder *r, sf_h5 *file, sf_error *err) {
     return err->status == SF_OK ? sf_history_write(&r->history, file, err) : err->status;
 }
 
+/* The dataset of column k; its path is in `path`. */
+static sf_h5_info dataset(int k, char path[64]) {
+    const sf_history_column *column = sf_history_column_get(k);
+    snprintf(path, 64, "/history/%s", column->name);
+    return (sf_h5_info){path, column->units, column->description};
+}
+
+/* Into an empty history. */
+static sf_status read_history(sf_history *h, const sf_h5 *file, sf_error *err) {
+    int64_t rows = -1;
+    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
+        char path[64];
+        void *data = NULL;
+        if (sf_h5_read(file, dataset(k, path).path, SF_H5_F64, 1, &rows, &data, err) != SF_OK) {
+            sf_history_free(h);
+            return err->status;
+        }
+        h->column[k] = data;
+    }
+    h->rows = h->room = rows;
+    return SF_OK;
+}
+
 sf_status sf_recorder_read(sf_recorder *r, const sf_model *m, const sf_state *s, const sf_h5 *file,
                            sf_error *err) {
     if (sf_members_read(file, "/recorder", members, MEMBERS, r, err) != SF_OK ||
-        sf_history_read(&r->history, file, err) != SF_OK)
+        read_history(&r->history, file, err) != SF_OK)
         return err->status;
     bool whole = r->history.rows == s->step + 1 && r->frames >= 0 && r->frames <= r->history.rows &&
                  r->next_frame > s->time && r->next_extra >= 0 && r->next_extra <= m->frame_time_count;
@@ -236,33 +258,11 @@ sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf
     return SF_OK;
 }
 
-/* The dataset of column k; its path is in `path`. */
-static sf_h5_info dataset(int k, char path[64]) {
-    const sf_history_column *column = sf_history_column_get(k);
-    snprintf(path, 64, "/history/%s", column->name);
-    return (sf_h5_info){path, column->units, column->description};
-}
-
 sf_status sf_history_write(const sf_history *h, sf_h5 *file, sf_error *err) {
     for (int k = 0; k < SF_HISTORY_COUNT; k++) {
         char path[64];
         sf_h5_info info = dataset(k, path);
         SF_TRY(sf_h5_write(file, &info, SF_H5_F64, 1, &h->rows, h->column[k], err));
     }
-    return SF_OK;
-}
-
-sf_status sf_history_read(sf_history *h, const sf_h5 *file, sf_error *err) {
-    int64_t rows = -1;
-    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
-        char path[64];
-        void *data = NULL;
-        if (sf_h5_read(file, dataset(k, path).path, SF_H5_F64, 1, &rows, &data, err) != SF_OK) {
-            sf_history_free(h);
-            return err->status;
-        }
-        h->column[k] = data;
-    }
-    h->rows = h->room = rows;
     return SF_OK;
 }

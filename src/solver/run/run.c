@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "base/units.h"
-#include "material/curve.h"
 #include "material/low_density_foam.h"
 #include "solver/step.h"
 

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
-#include "io/h5.h"
 #include "io/provenance.h"
 #include "io/replace.h"
-#include "model/columns.h"
-#include "model/model.h"
 #include "solver/operators.h"
 #include "solver/state.h"
 #include <signal.h>
-#include <stdio.h>
 
 /* A frame: the fields at the nodes at one time, as docs/formats.md lists them. */
 
@@ -28,9 +23,8 @@ void sf_frame_take(const sf_model *model, const sf_operators *operators, const s
 /* Adds the present state as a row of a history that began empty ({0}); release with sf_history_free. */
 sf_status sf_history_add(sf_history *history, const sf_model *model, const sf_state *state, sf_error *err);
 
-/* All rows to /history, and back; a history that is read must be empty. */
+/* All rows to /history. */
 sf_status sf_history_write(const sf_history *history, sf_h5 *file, sf_error *err);
-sf_status sf_history_read(sf_history *history, const sf_h5 *file, sf_error *err);
 
 /* Data that a run carries from step to step beside the state: the history, the peak, and the times at which
  * the fields are due, as a frame or as the fields at the peak (sf_output writes them). */
@@ -101,13 +95,6 @@ bool sf_recorder_frame_due(sf_recorder *recorder, const sf_model *model, const s
 sf_status sf_recorder_write(const sf_recorder *recorder, sf_h5 *file, sf_error *err);
 sf_status sf_recorder_read(sf_recorder *recorder, const sf_model *model, const sf_state *state,
                            const sf_h5 *file, sf_error *err);
-
-/* results.h5 before the first step: provenance and the part of the model that post-processing needs. */
-
-/* Creates `path` (truncating) with /provenance, the model's provenance from `model_file`, and /model. On
- * success the caller owns `*file`. */
-sf_status sf_results_create(const char *path, const sf_model *model, const sf_h5 *model_file,
-                            const sf_provenance *provenance, sf_h5 **file, sf_error *err);
 
 /* results.h5 while it grows (docs/formats.md, section "While a run goes on"). Every file is written under
  * another name and renamed, so that results.h5 is complete at any instant. During the run, results.h5 holds

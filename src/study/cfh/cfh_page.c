@@ -4,10 +4,8 @@
 
 #include "base/text.h"
 #include "build_info.h"
-#include "post/results/origin.h"
 #include "post/view/report.h"
 #include "report/chart.h"
-#include "report/html.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -161,13 +159,6 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *wa
 
 /* ---- the section about the interval ---- */
 
-/* The line of the interval that a single pad and drop have. */
-static const char *single_drop_text(const sf_cfh_spread *s) {
-    return isnan(s->scatter[SF_CFH_A_MAX][0])
-               ? "of a single pad and drop: not known, as above"
-               : "of a single pad and drop, with the scatter of speed and thickness; not in the whole interval";
-}
-
 /* A line of the table: `i` of the first criterion that is met, and, unless NULL, of each. */
 static void put_part(sf_html_table *table, const sf_cfh_interval *i, const sf_cfh_interval *each,
                      double share, const char *words, const char *more) {
@@ -192,7 +183,12 @@ static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig)
                  sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST), words[part],
                  part == SF_CFH_PART_RESPONSE && !s->with_response ? ": not known, not in it" : "");
     const sf_cfh_interval *drop = s->part[SF_CFH_PARTS];
-    put_part(&table, &drop[SF_CFH_FIRST], drop, NAN, single_drop_text(s), "");
+    put_part(
+        &table, &drop[SF_CFH_FIRST], drop, NAN,
+        isnan(s->scatter[SF_CFH_A_MAX][0])
+            ? "of a single pad and drop: not known, as above"
+            : "of a single pad and drop, with the scatter of speed and thickness; not in the whole interval",
+        "");
     if (rig->pairs > 0)
         put_part(&table, &s->rig, NULL, NAN, "without that, and g_eff: on the rig", "");
     sf_html_table_end(&table);

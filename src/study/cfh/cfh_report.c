@@ -380,8 +380,7 @@ static double least_end(const sf_cfh_foams *foams) {
 sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
     sf_cfh_point_row points[SF_CFH_MAX_POINTS];
     FILE *file = sf_staging_open(output, "cfh.json", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     sf_json json = {.file = file};
     sf_json_open(&json, NULL, '{');
     sf_json_text(&json, "program", "softfall-cfh " SF_VERSION);
@@ -417,8 +416,7 @@ static void put_cell(FILE *file, double value) {
 
 sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
     FILE *file = sf_staging_open(output, "cfh.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fputs("height_m,speed_m_s,a_max_g,hic_1,a_max_fit_g,hic_fit_1,v_rebound_m_s,max_indentation_mm,max_local_"
           "strain_1,energy_error_1,failed_1",
           file);
@@ -443,8 +441,7 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
 
 static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
     FILE *file = sf_staging_open(output, "cfh_band.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fputs(
         "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,a_max_scatter_1,"
         "hic_scatter_1\n",
@@ -465,8 +462,7 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
 
 static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
     FILE *file = sf_staging_open(output, "cfh_draws.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fputs("draw_1,height_m,a_max_height_m,hic_height_m,a_max_shared_1,hic_shared_1,a_max_sd_1,hic_sd_1,"
           "a_max_columns_sd_1,hic_columns_sd_1\n",
           file);
@@ -491,8 +487,7 @@ static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *
 /* The corrected columns of each draw over the height, as far as they do not collapse. */
 static sf_status write_curves(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
     FILE *file = sf_staging_open(output, "cfh_curves.csv", err);
-    if (!file)
-        return err->status;
+    SF_TRY(err->status);
     fputs("draw_1,height_m,a_max_g,hic_1,a_max_columns_g,hic_columns_1\n", file);
     for (int d = 0; d < s->draws; d++)
         for (int k = 0; k < s->draw[d].reach; k++) {

@@ -2,8 +2,6 @@
 /* Output of softfall-cfh: cfh.json, cfh.csv, cfh_band.csv, cfh_draws.csv, report.html, and the lines on the
  * terminal. */
 #pragma once
-#include "io/staging.h"
-#include "report/row.h"
 #include "study/cfh/spread.h"
 
 typedef struct sf_cfh_report {

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/cfh/points.h"
 
-#include "base/units.h"
-
 #include <assert.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_fit.h>

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
 #include "io/table_csv.h"
 #include "post/figures/verdict.h"
-#include <stdbool.h>
 
 /* Drop height and speed at contact. In free fall v^2 = 2 g h with g = 9.80665 m s-2. On a rig whose guides
  * rub, v^2 = 2 g_eff h with a g_eff below that, fitted to measured pairs of height and speed. */

@@ -33,7 +33,8 @@ static void note_extrapolation(const sf_runner_result *r, const sf_cfh_foams *fo
     }
 }
 
-sf_cfh_point sf_cfh_point_at(double height) {
+/* A point without figures. */
+static sf_cfh_point point_at(double height) {
     return (sf_cfh_point){.height = height,
                           .speed = sf_cfh_speed(height),
                           .value = {NAN, NAN},
@@ -73,8 +74,7 @@ static sf_status learn_pad(const sf_runner_result *result, sf_cfh_pad *pad, sf_e
         return SF_OK;
     SF_TRY(sf_results_open(result->path, &r, err));
     pad->mesh_error = r.expected_mesh_error;
-    sf_columns_build(&r, &pad->columns, err);
-    return err->status;
+    return sf_columns_build(&r, &pad->columns, err);
 }
 
 /* Drops that run side by side. */
@@ -90,7 +90,7 @@ static void add_drop(const sf_cfh_series *s, drops *d, const char *material, dou
     int k = d->count++;
     sf_runner_drop *drop = &d->drop[k];
     *drop = *s->base;
-    d->point[k] = sf_cfh_point_at(height);
+    d->point[k] = point_at(height);
     snprintf(d->velocity[k], sizeof d->velocity[k], "missile.velocity=%.12g m/s", d->point[k].speed);
     drop->label = d->label[k];
     drop->material = material ? material : drop->material;

@@ -3,7 +3,6 @@
 
 #include "io/process.h"
 #include "study/predictor.h"
-#include "study/run_folder.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>

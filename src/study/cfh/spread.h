@@ -11,13 +11,9 @@
  * fit, of the corrected columns and of the rig. Heights are those of free fall (m) unless a name says "rig".
  * The same bits for any number of threads. */
 #pragma once
-#include "case/case.h"
-#include "material/laws.h"
-#include "model/good_run.h"
 #include "study/cfh/points.h"
 #include "study/column.h"
 #include "study/runner.h"
-#include <limits.h>
 
 /* The draws of a foam's posterior: material files draw-001.cfg, draw-002.cfg, ... of a folder, each as
  * probable as any other, as softfall-fit drop writes them. */
@@ -195,9 +191,6 @@ typedef struct sf_cfh_series {
     const sf_cfh_foams *foams;
     sf_cfh_pad *pad; /* filled from the first drop that has results; NULL: not wanted */
 } sf_cfh_series;
-
-/* A point without figures. */
-sf_cfh_point sf_cfh_point_at(double height);
 
 /* The point at height and speed of `point` with the result of its drop: figures and, for one with remarks,
  * the verdict as a note; or, with a verdict of "do not use", a point that failed, with the reason. */

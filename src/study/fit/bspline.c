@@ -8,7 +8,6 @@
 #include <gsl/gsl_multimin.h>
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
-#include <stdbool.h>
 
 static const double STRENGTH = 0.85; /* width at the ends over width in the middle: (1 - .) / (1 + .) */
 static const double FOOT = 0.02;     /* strain over which a foam leaves its linear range */
@@ -182,8 +181,7 @@ static sf_status smooth(const sf_scatter_branch *b, sf_spline_grading grading, i
     gsl_stats_minmax(&low, &high, b->x, 1, (size_t)b->count);
     int count = sf_spline_place(grading, intervals, low, high, 1, &data, breaks);
     SF_TRY(sf_spline_init(&spline, count, breaks, err));
-    solve(b, &spline, out, err);
-    return err->status;
+    return solve(b, &spline, out, err);
 }
 
 /* Smooths all branches; returns the score of generalised cross-validation, INFINITY if a branch has too few

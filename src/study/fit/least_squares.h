@@ -4,7 +4,6 @@
 #pragma once
 #include "base/error.h"
 #include <math.h>
-#include <stdbool.h>
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_rng.h>
 

@@ -12,7 +12,6 @@
  * parameters and of responses. */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
 
 enum { SF_MAPPING_MAX_PARAMETERS = 47 };
 

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The statements of the report about the runs, figure by figure of the plan. */
 #pragma once
-#include "base/error.h"
-#include "study/sweep/plan.h"
 #include "study/sweep/runs.h"
-#include <stdbool.h>
-#include <stdint.h>
 
 /* The response surface, the main effects and the probabilities of the runs of a sweep. */
 

@@ -2,9 +2,7 @@
 /* Runs the open rows of a plan in pieces, and keeps runs.csv up to date, so that a campaign that was
  * interrupted or killed resumes. */
 #pragma once
-#include "io/staging.h"
 #include "study/sweep/runs.h"
-#include <stdio.h>
 
 /* Runs `count` rows: each becomes done or failed in `runs`, or stays open. `fresh` receives the number of
  * those that had to be simulated. Errors: those that end the campaign; SF_INTERRUPTED. */

@@ -4,10 +4,7 @@
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include "pre/make.h"
-#include "pre/model_report.h"
-#include "study/batch.h"
-#include "study/run_folder.h"
+#include "pre/build.h"
 
 #include <gsl/gsl_sort.h>
 #include <limits.h>
@@ -57,9 +54,7 @@ static void end_piece(piece *p) {
             free((char *)p->drop[k].overrides[i]);
     for (int k = 0; k < p->count && p->result; k++)
         sf_runner_result_free(&p->result[k]);
-    free(p->drop);
-    free(p->result);
-    free(p->failure);
+    SF_FREE(p->drop, p->result, p->failure);
 }
 
 static sf_status take_result(sf_runs *runs, int64_t row, const sf_runner_result *result, sf_error *err) {

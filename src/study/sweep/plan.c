@@ -3,10 +3,8 @@
 
 #include "base/hash.h"
 #include "io/plain_file.h"
-#include "post/figures/figures.h"
 #include "pre/mesh/geo_parameters.h"
 #include "study/fit/posterior/mixture.h"
-#include "study/run_folder.h"
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_randist.h>
 #include <math.h>
@@ -394,9 +392,8 @@ static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_er
 sf_status sf_plan_read(const char *path, bool huge, sf_plan *p, sf_error *err) {
     SF_OWNED_BY(sf_config_close) sf_config config = {0};
     *p = (sf_plan){.path = path};
-    if (sf_config_open(path, &config, err) == SF_OK)
-        read_plan(&config, huge, p, err);
-    return err->status;
+    SF_TRY(sf_config_open(path, &config, err));
+    return read_plan(&config, huge, p, err);
 }
 
 void sf_plan_free(sf_plan *p) {

@@ -3,12 +3,9 @@
  * full product of the blocks, the last block the fastest. A block is one list, a group of lists of one length
  * (zip), or a sample of several factors. docs/campaigns.md has the keys. */
 #pragma once
-#include "base/error.h"
-#include "case/case.h"
 #include "study/config.h"
 #include "study/runner.h"
 #include <gsl/gsl_rng.h>
-#include <stdint.h>
 
 /* A factor of a sweep: a key of the case and the values that it takes. A factor of numbers has one unit, that
  * of its first value; all others are converted. One of words (names, files, lists) has numbered levels. */

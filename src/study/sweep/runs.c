@@ -230,13 +230,6 @@ static void put_row(FILE *out, const sf_runs *r, int64_t row) {
     fputc('\n', out);
 }
 
-/* Hashes the text that has been written under the partial name, before another program knows the file. */
-static sf_status hash_written(const sf_replacement *out, uint64_t *hash, sf_error *err) {
-    if (fflush(out->file) != 0)
-        return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", out->path);
-    return sf_plain_hash(out->partial, "table of the runs", SF_PLAIN_ANY, hash, err);
-}
-
 sf_status sf_runs_write(const sf_runs *r, const char *path, uint64_t *hash, sf_error *err) {
     sf_replacement out;
     FILE *file = sf_replace_open(path, &out, err);
@@ -244,7 +237,10 @@ sf_status sf_runs_write(const sf_runs *r, const char *path, uint64_t *hash, sf_e
     put_heading(file, r);
     for (int64_t row = 0; row < r->count; row++)
         put_row(file, r, row);
-    hash_written(&out, hash, err);
+    if (fflush(file) != 0)
+        SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", path);
+    else /* under the partial name, before another program knows the file */
+        sf_plain_hash(out.partial, "table of the runs", SF_PLAIN_ANY, hash, err);
     return sf_replace_close(&out, err);
 }
 

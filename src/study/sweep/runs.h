@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state of every run of a plan and its figures: the table runs.csv. */
 #pragma once
-#include "post/figures/verdict.h"
 #include "study/sweep/plan.h"
 
 typedef enum sf_sweep_state {

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "io/staging.h"
-#include "report/row.h"
 #include "study/sweep/analysis.h"
-#include "study/sweep/runs.h"
-#include <stdio.h>
 
 /* Runs of a plan that are simulated once more with all fields, for their own report.html and view.html. */
 

@@ -4,8 +4,6 @@
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
-#include "report/html.h"
-#include "study/run_folder.h"
 #include "study/sweep/campaign.h"
 
 #include <math.h>

@@ -7,7 +7,7 @@
 #include "io/plain_file.h"
 #include "material/low_density_foam.h"
 #include "io/replace.h"
-#include "material/point.h"
+#include "material/laws.h"
 #include "post/results/results.h"
 #include "study/material_file.h"
 #include "study/runner.h"

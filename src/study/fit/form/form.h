@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdbool.h>
-
-#include "base/units.h"
 #include "material/foam_card.h"
 #include "study/config.h"
 

@@ -168,8 +168,7 @@ static sf_status learn(walk *w, int count, const walker *list, sf_error *err) {
                 memcpy(&y[(size_t)near++ * m], &list[c].tried_y[k * m], m * sizeof *y);
             }
     sf_emulator_free(&w->emulator);
-    sf_emulator_fit((int)n, (int)m, near, u, y, &w->emulator, err);
-    return err->status;
+    return sf_emulator_fit((int)n, (int)m, near, u, y, &w->emulator, err);
 }
 
 /* A walker with room for walks of `round` steps, that keeps at most `most` evaluated states to learn from. */

@@ -8,7 +8,8 @@
 
 /* ---- importance sampling ---- */
 
-double sf_log_mean(int count, const double *x) {
+/* log of the mean of exp(x). */
+static double log_mean(int count, const double *x) {
     double largest = -INFINITY, sum = 0;
     for (int k = 0; k < count; k++)
         largest = fmax(largest, x[k]);
@@ -44,7 +45,7 @@ sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixtur
 #pragma omp parallel for schedule(dynamic, 8)
     for (int k = 0; k < draws; k++)
         weight[k] = sf_target_at(target, &u[k * n]) - sf_mixture_log_density(mixture, &u[k * n]);
-    e->log_value = sf_log_mean(draws, weight);
+    e->log_value = log_mean(draws, weight);
     e->effective = effective_size(draws, weight);
     e->error = e->effective > 0 ? sqrt(fmax(0, 1 / e->effective - 1. / draws)) : INFINITY;
     e->trusted = e->effective >= 100 && e->effective >= draws / 50.;
@@ -191,7 +192,7 @@ static sf_status weigh(const double *all, int groups, int g, int count, double *
     out->converged = out->pareto_k < USABLE;
     for (int s = 0; s < count; s++)
         sum[s] = scratch[s] + all[s * groups + g];
-    out->log_density = sf_log_mean(count, sum) - sf_log_mean(count, scratch);
+    out->log_density = log_mean(count, sum) - log_mean(count, scratch);
     return err->status;
 }
 
@@ -217,7 +218,7 @@ static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
     SF_TRY(err->status);
     for (int s = 0; s < count; s++)
         all[s] = all[s * g->groups + group];
-    out->log_density = sf_log_mean(count, all);
+    out->log_density = log_mean(count, all);
     out->sampled = true;
     out->converged = chains.converged;
     return SF_OK;
@@ -275,7 +276,7 @@ static sf_status take_wide(const wide *w, int groups, int group, double effectiv
         others[k] = isinf(w->weight[k]) ? -INFINITY : w->weight[k] - w->conditional[k * groups + group];
     out->drawn = out->converged = w->count > 0 && effective_size(w->count, others) >= effective;
     if (out->drawn)
-        out->log_density = sf_log_mean(w->count, w->weight) - sf_log_mean(w->count, others);
+        out->log_density = log_mean(w->count, w->weight) - log_mean(w->count, others);
     return SF_OK;
 }
 

@@ -25,7 +25,8 @@ gsl_rng *sf_random(uint64_t seed, sf_error *err) {
 
 /* ---- density and draws ---- */
 
-double sf_mixture_standardise(const sf_mixture_part *part, int n, const double *u, double *z) {
+/* z = L^-1 (u - centre) [n]; returns |z|^2, the squared distance from the part's centre in its scale. */
+static double standardise(const sf_mixture_part *part, int n, const double *u, double *z) {
     double sum = 0;
     for (int i = 0; i < n; i++) {
         z[i] = u[i] - part->centre[i];
@@ -39,7 +40,7 @@ double sf_mixture_standardise(const sf_mixture_part *part, int n, const double *
 
 static double distance(const sf_mixture_part *part, int n, const double *u) {
     double z[N];
-    return sf_mixture_standardise(part, n, u, z);
+    return standardise(part, n, u, z);
 }
 
 static double part_log_density(const sf_mixture *m, const sf_mixture_part *part, const double *u) {
@@ -295,10 +296,6 @@ static void list_terms(sf_emulator *e, int degree) {
     }
 }
 
-static double standardise(const sf_emulator *e, const double *u, double *z) {
-    return sf_mixture_standardise(&e->frame, e->parameters, u, z);
-}
-
 static void fill_terms(const sf_emulator *e, const double *z, double *term) {
     term[0] = 1;
     for (int t = 1; t < e->terms; t++)
@@ -321,7 +318,8 @@ static void add_points(sf_emulator *e, int count, const double *u, const double 
     double z[N], term[SF_EMULATOR_MOST_TERMS];
     int terms = e->terms, m = e->responses;
     for (int k = 0; k < count; k++) {
-        e->most_distance = fmax(e->most_distance, standardise(e, &u[k * e->parameters], z));
+        e->most_distance =
+            fmax(e->most_distance, standardise(&e->frame, e->parameters, &u[k * e->parameters], z));
         fill_terms(e, z, term);
         for (int i = 0; i < terms; i++)
             for (int j = 0; j <= i; j++)
@@ -380,7 +378,7 @@ sf_status sf_emulator_fit(int parameters, int responses, int count, const double
 
 bool sf_emulator_at(const sf_emulator *e, const double *u, double *y) {
     double z[N], term[SF_EMULATOR_MOST_TERMS];
-    if (!(standardise(e, u, z) <= REACH * e->most_distance))
+    if (!(standardise(&e->frame, e->parameters, u, z) <= REACH * e->most_distance))
         return false;
     fill_terms(e, z, term);
     for (int r = 0; r < e->responses; r++) {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include <gsl/gsl_rng.h>
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/error.h"
@@ -66,8 +65,6 @@ typedef struct sf_mixture {
 
 /* Mean [n] and covariance [n][n] of samples [count][n]. */
 void sf_moments(int n, int count, const double *sample, double *mean, double *covariance);
-/* z = L^-1 (u - centre) [n]; returns |z|^2, the squared distance from the part's centre in its scale. */
-double sf_mixture_standardise(const sf_mixture_part *part, int n, const double *u, double *z);
 
 /* One part with this centre [n] and scale matrix [n][n]. Errors: it is not positive definite. */
 sf_status sf_mixture_single(int n, const double *centre, const double *scale, double freedom,

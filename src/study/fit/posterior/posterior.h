@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
 #include "study/fit/posterior/mixture.h"
-#include <gsl/gsl_rng.h>
-#include <stdint.h>
 
 /* Markov chain Monte Carlo. A step of a chain is, by chance, one of three Metropolis-Hastings steps:
  *
@@ -124,9 +121,6 @@ typedef struct sf_evidence {
  * number of threads. */
 sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixture, int draws, uint64_t seed,
                                sf_evidence *evidence, sf_error *err);
-
-/* log of the mean of exp(log_weight). */
-double sf_log_mean(int count, const double *log_weight);
 
 /* Pareto-smoothed importance sampling (Vehtari, Simpson, Gelman, Yao, Gabry 2024): the largest weights are
  * replaced by the quantiles of the generalised Pareto distribution that fits them (Zhang and Stephens 2009).

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An open HDF5 file and the objects in it. Internal to src/io: h5.c opens files and finds objects, h5_data.c
+ * reads and writes what they hold. */
+#pragma once
+#include <hdf5.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct sf_h5 {
+    hid_t id;
+    char *path;
+    bool alone;                 /* no link is followed, not even into its own folder */
+    char checked[NAME_MAX + 1]; /* the file of that folder whose seal was checked last */
+} sf_h5;
+
+/* A path leads to its object not at all, by hard links, by another link, or into a damaged file. */
+enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE, LINK_DAMAGED };
+
+/* The object at a path, and the file that it is `in`, which sf_h5_leave gives back. Links into other files
+ * are found but not followed, but for a file's own, and those one deep: a file speaks of itself only. */
+int sf_h5_find(const sf_h5 *file, const char *path, hid_t *in);
+void sf_h5_leave(const sf_h5 *file, hid_t in);
+
+/* Bytes of the file that holds an open object. */
+uint64_t sf_h5_file_bytes(hid_t object);

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/runner.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *out) {
+    sf_verdict verdict;
+    const sf_limits limits = SF_DEFAULT_LIMITS; /* no part of the grade */
+    sf_verdict_compute(r, f, &limits, &verdict);
+    out->grade = verdict.grade;
+    sf_verdict_line(&verdict, out->verdict, sizeof out->verdict);
+}
+
+static sf_status take_layers(const sf_results *r, const sf_figures *f, sf_runner_result *out, sf_error *err) {
+    if (r->layer_count == 0 || !f->layers)
+        return SF_OK;
+    out->layer_strain = sf_alloc(err, (unsigned long)r->layer_count, sizeof *out->layer_strain, "layers");
+    out->layer_count = out->layer_strain ? r->layer_count : 0;
+    for (int k = 0; k < out->layer_count; k++)
+        out->layer_strain[k] = f->layers[k].max_local_strain;
+    return err->status;
+}
+
+static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runner_result *out,
+                              sf_error *err) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    out->figure = sf_alloc(err, count, sizeof *out->figure, "figures");
+    for (size_t k = 0; out->figure && k < count; k++)
+        out->figure[k] = sf_figure_number(&list[k], r, f);
+    snprintf(out->status, sizeof out->status, "%.*s", (int)sizeof out->status - 1, r->status);
+    return err->status;
+}
+
+/* The end of every reading: the path, or nothing if anything failed. */
+static sf_status finish_result(const char *path, sf_runner_result *out, sf_error *err) {
+    out->path = strdup(path);
+    if (!out->path)
+        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    if (err->status != SF_OK)
+        sf_runner_result_free(out);
+    return err->status;
+}
+
+/* For the next time, if it is the results of a drop that ran to its end. */
+static void write_record(const sf_run_folder *at, const sf_results *r, const sf_figures *f,
+                         const sf_runner_result *result) {
+    bool finished = strcmp(r->status, "finished") == 0 || strcmp(r->status, "rebound") == 0;
+    SF_OWNED char *geometry =
+        finished ? sf_campaign_geometry_list(at->results, "/provenance/model/geometry_files") : NULL;
+    if (geometry)
+        sf_run_record_write(at->figures, at->results, r, f, result->grade, result->verdict, geometry);
+}
+
+/* Writes the record of the figures, too. */
+static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
+    const char *path = at->results;
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
+    SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
+    SF_TRY(sf_results_open(path, &r, err));
+    if (sf_figures_compute(&r, 1000, &f, err) == SF_OK && !f.touched)
+        SF_FAIL(err, SF_ERR_INPUT, "the missile of %s never touched the pad", path);
+    SF_TRY(err->status);
+    *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
+                              .hic = f.injury.hic.value,
+                              .hic_window = f.injury.hic.t2 - f.injury.hic.t1,
+                              .contact_time = f.rebound_time - r.contact_time,
+                              .v0 = f.v0,
+                              .v_rebound = f.v_rebound,
+                              .max_indentation = f.max_indentation,
+                              .max_local_strain = f.max_local_strain,
+                              .energy_error = f.energy_error,
+                              .nodes = r.node_count,
+                              .steps = r.steps,
+                              .curve = f.filtered};
+    judge(&r, &f, out);
+    write_record(at, &r, &f, out);
+    f.filtered = (sf_series){0};
+    if (take_layers(&r, &f, out, err) == SF_OK)
+        take_figures(&r, &f, out, err);
+    return finish_result(path, out, err);
+}
+
+static double figure_of(const double *figure, const char *key) {
+    size_t count;
+    return figure ? figure[sf_figure_find(key) - sf_figure_list(&count)] : NAN;
+}
+
+double sf_runner_figure(const sf_runner_result *result, const char *key) {
+    return figure_of(result->figure, key);
+}
+
+/* Sets the numbers that are figures, of which it takes the list; what has no figure is NaN. */
+static void take_numbers(double *f, sf_runner_result *out) {
+    out->a_max_g = figure_of(f, "a_max_g");
+    out->hic = figure_of(f, "hic");
+    out->hic_window = out->contact_time = NAN;
+    out->v0 = figure_of(f, "v0_m_s");
+    out->v_rebound = figure_of(f, "v_rebound_m_s");
+    out->max_indentation = 1e-3 * figure_of(f, "max_indentation_mm");
+    out->energy_error = figure_of(f, "energy_error");
+    out->nodes = (int64_t)figure_of(f, "nodes");
+    out->steps = (int64_t)figure_of(f, "steps");
+    out->figure = f;
+}
+
+/* Reads one drop, of which `figures_only` are wanted: from its record, without the results, if there is one.
+ */
+static sf_status read_drop(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err) {
+    SF_OWNED_BY(sf_run_record_free) sf_run_record record = {0};
+    if (!figures_only || !sf_run_record_read(at->figures, at->results, &record))
+        return read_result(at, out, err);
+    *out = (sf_runner_result){.grade = record.grade,
+                              .max_local_strain = figure_of(record.figure, "max_local_strain")};
+    take_numbers(record.figure, out);
+    record.figure = NULL;
+    snprintf(out->verdict, sizeof out->verdict, "%s", record.verdict);
+    snprintf(out->status, sizeof out->status, "%s", record.status);
+    return finish_result(at->results, out, err);
+}
+
+/* Adds the figures of a drop of a series, from 1, to those of the drops before it. */
+static void add_figures(const sf_run_folder *at, int drop, const double *figure, double *sum) {
+    size_t count;
+    const sf_figure *list = sf_figure_list(&count);
+    int counted = __builtin_popcountll((unsigned long long)at->counted);
+    for (size_t k = 0; k < count; k++) {
+        bool whole = strcmp(list[k].row.key, "steps") == 0 || strcmp(list[k].row.key, "wall_s") == 0;
+        sum[k] += whole || at->counted >> (drop - 1) & 1 ? figure[k] : 0;
+        sum[k] /= drop == at->drops && !whole ? counted : 1;
+    }
+}
+
+/* Adds a drop of a series to the result, which holds those before it: the worst of both. Moves its curve. */
+static void add_drop(int drop, sf_runner_result *one, sf_runner_result *all) {
+    if (drop == 1 || one->grade > all->grade) {
+        all->grade = one->grade;
+        snprintf(all->verdict, sizeof all->verdict, "drop %d: %.*s", drop, SF_VERDICT_LINE_SIZE - 20,
+                 one->verdict);
+    }
+    all->max_local_strain = fmax(all->max_local_strain, one->max_local_strain);
+    for (int k = 0; k < all->layer_count && k < one->layer_count; k++)
+        one->layer_strain[k] = fmax(one->layer_strain[k], all->layer_strain[k]);
+    free(all->layer_strain);
+    all->layer_strain = one->layer_strain;
+    all->layer_count = one->layer_count;
+    one->layer_strain = NULL;
+    sf_series_free(&all->curve);
+    all->curve = one->curve;
+    one->curve = (sf_series){0};
+    memcpy(all->status, one->status, sizeof all->status);
+}
+
+sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err) {
+    size_t count;
+    sf_runner_result all = {0};
+    if (at->drops == 1)
+        return read_drop(at, figures_only, out, err);
+    sf_figure_list(&count);
+    double *sum = sf_alloc(err, count, sizeof *sum, "figures");
+    for (int k = 1; k <= at->drops && err->status == SF_OK; k++) {
+        const sf_run_folder drop = sf_run_folder_of_drop(at, k);
+        SF_OWNED_BY(sf_runner_result_free) sf_runner_result one = {0};
+        if (read_drop(&drop, figures_only, &one, err) != SF_OK)
+            break;
+        add_figures(at, k, one.figure, sum);
+        add_drop(k, &one, &all);
+    }
+    if (sum)
+        take_numbers(sum, &all);
+    sf_run_counted_text(at->drops, at->counted, all.counted, sizeof all.counted);
+    *out = all;
+    return finish_result(at->results, out, err);
+}
+
+void sf_runner_result_free(sf_runner_result *result) {
+    sf_series_free(&result->curve);
+    SF_FREE(result->path, result->figure, result->layer_strain);
+    *result = (sf_runner_result){0};
+}
