@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 #include <cmocka.h>
@@ -107,4 +108,26 @@ pid_t run_start(const program_place *p, const char *const *words) {
         _exit(99);
     }
     return child;
+}
+
+int64_t run_restarts(const program_place *p, const char *name) {
+    sf_error err = SF_ERROR_INIT;
+    void *data = NULL;
+    sf_h5 *file = program_open_h5(p, name);
+    assert_int_equal(sf_h5_read(file, "/summary/restarts", SF_H5_I64, 0, NULL, &data, &err), SF_OK);
+    int64_t restarts = *(int64_t *)data;
+    free(data);
+    sf_h5_close(&file, &err);
+    return restarts;
+}
+
+struct timespec run_written_at(const char *folder, const char *name) {
+    struct stat info;
+    char path[2048];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0, 0};
+}
+
+bool run_is_other(struct timespec a, struct timespec b) {
+    return b.tv_sec != 0 && (a.tv_sec != b.tv_sec || a.tv_nsec != b.tv_nsec);
 }

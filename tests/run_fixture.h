@@ -6,6 +6,7 @@
 #include "program_fixture.h"
 #include <stdbool.h>
 #include <sys/types.h>
+#include <time.h>
 
 /* Starts softfall-solve in the folder with up to 15 words, the last NULL; "log" and "errors" get its words.
  */
@@ -19,5 +20,13 @@ bool run_is_there(const program_place *place, const char *name);
 void run_assert_same(const program_place *place, const char *first, const char *second);
 /* The same of all that the group holds. */
 void run_assert_same_group(const sf_h5 *a, const sf_h5 *b, const char *path);
+
+/* How often a run was resumed. */
+int64_t run_restarts(const program_place *place, const char *name);
+
+/* When the file was written, 0: it is not there. */
+struct timespec run_written_at(const char *folder, const char *name);
+/* Is `b` there, and another file than `a`? */
+bool run_is_other(struct timespec a, struct timespec b);
 
 #endif

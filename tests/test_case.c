@@ -2,10 +2,7 @@
 /* Case files: what a good one gives, and the sentence that each fault gets. */
 #include "material/hyperfoam.h"
 #include "material/foam_card.h"
-#include "program_fixture.h"
-
-#include "case/case.h"
-#include "case/curves.h"
+#include "case_fixture.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -15,115 +12,35 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <cmocka.h>
 
-static program_place place; /* of this run's files; set up once before the tests */
-
-#define GEOMETRY "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; };\n"
-#define MATERIAL "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curve = \"foam.csv\"; };\n"
-#define MISSILE "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"
-#define SOLVER "solver: { end_time = \"40 ms\"; };\n"
-#define GOOD GEOMETRY MATERIAL MISSILE SOLVER
-
-static const char *in_folder(const char *name) {
-    return program_path(&place, name);
-}
-
-static void write_file(const char *name, const char *text) {
-    program_write_text(&place, name, text);
-}
-
-static int make_folder(void **state) {
-    (void)state;
-    program_set_up(&place);
-    mkdir(in_folder("materials"), 0700);
-    write_file("pad.geo", "DefineConstant[ side = 1 ];\n");
-    write_file("ball.geo", "DefineConstant[ diameter = 1 ];\n");
-    write_file("foam.csv", "# a foam\nstrain,stress_kPa\n0,0\n0.1,20\n0.5,100\n0.8,900\n");
-    write_file("fast.csv", "strain,stress_kPa\n0,0\n0.1,30\n0.5,150\n0.7,1500\n");
-    write_file("materials/inner.csv", "strain_percent,stress_MPa\n0,0\n10,0.02\n50,0.1\n80,0.9\n");
-    write_file("materials/soft.cfg", "density = \"35 kg/m3\";\nE = \"0.4 MPa\";\ncurve = \"inner.csv\";\n");
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    program_tear_down(&place);
-    return 0;
-}
-
-/* Reads `text` as case.cfg with up to one override. */
-static sf_status read_text(const char *text, const char *override, sf_case *c, sf_error *err) {
-    write_file("case.cfg", text);
-    return sf_case_read(in_folder("case.cfg"), override ? 1 : 0, &override, NULL, c, err);
-}
-
-static void read_good(const char *text, const char *override, sf_case *c) {
-    sf_error err = SF_ERROR_INIT;
-    if (read_text(text, override, c, &err) != SF_OK)
-        fail_msg("%s", err.text);
-}
-
-/* The case must be refused with a sentence that holds every one of the parts (up to NULL). */
-static void assert_refused(const char *text, const char *override, ...) {
-    sf_error err = SF_ERROR_INIT;
-    sf_case c;
-    if (read_text(text, override, &c, &err) == SF_OK)
-        fail_msg("accepted: %s %s", text, override ? override : "");
-    assert_int_equal(err.status, SF_ERR_INPUT);
-    assert_null(c.path);
-    va_list parts;
-    va_start(parts, override);
-    for (const char *part = va_arg(parts, const char *); part; part = va_arg(parts, const char *))
-        if (!strstr(err.text, part))
-            fail_msg("the sentence is '%s' and lacks '%s'", err.text, part);
-    va_end(parts);
-}
-
-static void assert_curve_refused(const char *text, const char *part) {
-    sf_error err = SF_ERROR_INIT;
-    sf_case_curve curve;
-    write_file("bad.csv", text);
-    if (sf_case_curve_read(in_folder("bad.csv"), &curve, &err) == SF_OK)
-        fail_msg("accepted: %s", text);
-    assert_int_equal(err.status, SF_ERR_INPUT);
-    assert_non_null(strstr(err.text, "bad.csv"));
-    if (!strstr(err.text, part))
-        fail_msg("the sentence is '%s' and lacks '%s'", err.text, part);
-}
-
 static void good_case_is_in_si(void **state) {
     (void)state;
-    sf_case c;
-    read_good(GEOMETRY
-              "material: { density = \"0.035 g/cm3\"; E = \"0.4136 MPa\"; curve = \"foam.csv\"; HU = 0.01; "
-              "SHAPE = 2;\n"
-              "  DAMP = 0.35; damp_length = \"5 mm\"; ED = \"3.43 MPa\"; BETA1 = \"5000 1/s\"; eta = \"690 "
-              "Pa s\";\n"
-              "  tension_cutoff = \"20 kPa\"; densification = { start = 0.7; exponent = 3.0; }; };\n"
-              "missile: { mass = \"4600 g\"; velocity = \"16.2 km/h\"; direction = [0.0, 3.0, -4.0]; "
-              "friction = 0.3;\n"
-              "  shape = \"surface\"; gap = \"2 mm\"; position = [\"30 mm\", \"-1 in\"]; };\n"
-              "pad: { group = \"foam\"; fixed = [\"base\", \"wall\"]; symmetry = []; };\n"
-              "solver: { end_time = \"40 ms\"; step_limit = \"10 us\"; stop_after_rebound = false; };\n"
-              "output: { frame_interval = \"0.5 ms\"; times = [\"12.2 ms\", \"300 us\"];\n"
-              "  fields = [\"displacement\", \"von_mises\"]; };\n",
-              NULL, &c);
-    assert_true(fabs(sf_foam_card_of(&c.material)->density - 35.0) < 1e-12);
-    assert_true(fabs(sf_foam_card_of(&c.material)->modulus - 413600.0) < 1e-8);
-    assert_true(sf_foam_card_of(&c.material)->hysteresis_hu == 0.01 &&
-                sf_foam_card_of(&c.material)->hysteresis_shape == 2.0 &&
-                sf_foam_card_of(&c.material)->damp == 0.35);
-    assert_true(fabs(sf_foam_card_of(&c.material)->damp_length - 0.005) < 1e-16 &&
-                sf_foam_card_of(&c.material)->maxwell_rate == 5000.0);
-    assert_true(fabs(sf_foam_card_of(&c.material)->maxwell_modulus - 3.43e6) < 1e-8 &&
-                sf_foam_card_of(&c.material)->kelvin_viscosity == 690.0);
-    assert_true(sf_foam_card_of(&c.material)->tension_cutoff == 20000.0 &&
-                sf_foam_card_of(&c.material)->densification_exponent == 3.0);
-    assert_true(sf_foam_card_of(&c.material)->densification_start == 0.7 &&
-                sf_foam_card_of(&c.material)->densification_limit == 1.0);
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
+    case_read_good(
+        GEOMETRY
+        "material: { density = \"0.035 g/cm3\"; E = \"0.4136 MPa\"; curve = \"foam.csv\"; HU = 0.01; "
+        "SHAPE = 2;\n"
+        "  DAMP = 0.35; damp_length = \"5 mm\"; ED = \"3.43 MPa\"; BETA1 = \"5000 1/s\"; eta = \"690 "
+        "Pa s\";\n"
+        "  tension_cutoff = \"20 kPa\"; densification = { start = 0.7; exponent = 3.0; }; };\n"
+        "missile: { mass = \"4600 g\"; velocity = \"16.2 km/h\"; direction = [0.0, 3.0, -4.0]; "
+        "friction = 0.3;\n"
+        "  shape = \"surface\"; gap = \"2 mm\"; position = [\"30 mm\", \"-1 in\"]; };\n"
+        "pad: { group = \"foam\"; fixed = [\"base\", \"wall\"]; symmetry = []; };\n"
+        "solver: { end_time = \"40 ms\"; step_limit = \"10 us\"; stop_after_rebound = false; };\n"
+        "output: { frame_interval = \"0.5 ms\"; times = [\"12.2 ms\", \"300 us\"];\n"
+        "  fields = [\"displacement\", \"von_mises\"]; };\n",
+        NULL, &c);
+    const sf_foam_card *foam = sf_foam_card_of(&c.material);
+    assert_true(fabs(foam->density - 35.0) < 1e-12);
+    assert_true(fabs(foam->modulus - 413600.0) < 1e-8);
+    assert_true(foam->hysteresis_hu == 0.01 && foam->hysteresis_shape == 2.0 && foam->damp == 0.35);
+    assert_true(fabs(foam->damp_length - 0.005) < 1e-16 && foam->maxwell_rate == 5000.0);
+    assert_true(fabs(foam->maxwell_modulus - 3.43e6) < 1e-8 && foam->kelvin_viscosity == 690.0);
+    assert_true(foam->tension_cutoff == 20000.0 && foam->densification_exponent == 3.0);
+    assert_true(foam->densification_start == 0.7 && foam->densification_limit == 1.0);
     assert_true(fabs(c.missile_card.mass - 4.6) < 1e-14 && fabs(c.missile_card.speed - 4.5) < 1e-14);
     assert_true(fabs(c.missile_card.direction[1] - 0.6) < 1e-15 &&
                 fabs(c.missile_card.direction[2] + 0.8) < 1e-15);
@@ -144,17 +61,16 @@ static void good_case_is_in_si(void **state) {
     assert_true(fabs(c.frame_time[0] - 3e-4) < 1e-18 && fabs(c.frame_time[1] - 0.0122) < 1e-16);
     assert_int_equal(c.run.stop_after_rebound, 0);
     assert_int_equal(c.run.output_fields, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_count, 1);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
-    assert_true(sf_foam_card_of(&c.material)->curve_strain[2] == 0.5 &&
-                sf_foam_card_of(&c.material)->curve_stress[2] == 100e3);
-    sf_case_free(&c);
+    assert_int_equal(foam->curve_count, 1);
+    assert_int_equal(foam->curve_points, 4);
+    assert_true(foam->curve_strain[2] == 0.5 && foam->curve_stress[2] == 100e3);
 }
 
 static void defaults_are_those_of_the_table(void **state) {
     (void)state;
-    sf_case c;
-    read_good(GOOD, NULL, &c);
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
+    case_read_good(GOOD, NULL, &c);
+    const sf_foam_card *foam = sf_foam_card_of(&c.material);
     assert_string_equal(c.pad_group, "pad");
     assert_string_equal(c.fixed_group[0], "base");
     assert_int_equal(c.symmetry_count, 2);
@@ -162,18 +78,14 @@ static void defaults_are_those_of_the_table(void **state) {
     assert_string_equal(c.symmetry_group[1], "symmetry_y");
     assert_string_equal(c.surface_group, "missile_surface");
     assert_true(c.support_ratio == 1.4 && c.run.stabilisation == 0.1 && c.run.step_safety == 0.95);
-    assert_true(sf_foam_card_of(&c.material)->hysteresis_hu == 1.0 &&
-                sf_foam_card_of(&c.material)->damp_length == 0.0 &&
-                sf_foam_card_of(&c.material)->maxwell_modulus == 0.0);
-    assert_true(sf_foam_card_of(&c.material)->tension_cutoff >= 1e30 &&
-                isfinite(sf_foam_card_of(&c.material)->tension_cutoff));
+    assert_true(foam->hysteresis_hu == 1.0 && foam->damp_length == 0.0 && foam->maxwell_modulus == 0.0);
+    assert_true(foam->tension_cutoff >= 1e30 && isfinite(foam->tension_cutoff));
     assert_true(c.missile_card.direction[2] == -1.0);
     assert_int_equal(c.run.output_fields, SF_FIELD_ALL);
     assert_int_equal(c.run.stop_after_rebound, 1);
     assert_null(c.missile.path);
     assert_non_null(strstr(c.parameters, "given"));
     assert_non_null(strstr(c.parameters, "kernel.support_ratio"));
-    sf_case_free(&c);
 }
 
 /* The line of the listing that begins with `key`. */
@@ -185,9 +97,9 @@ static void listed_line(const sf_case *c, const char *key, char *out, size_t siz
 
 static void listing_has_value_si_value_and_origin(void **state) {
     (void)state;
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     char line[512];
-    read_good(GOOD, "missile.velocity=18 km/h", &c);
+    case_read_good(GOOD, "missile.velocity=18 km/h", &c);
     listed_line(&c, "missile.velocity", line, sizeof line);
     assert_non_null(strstr(line, "\"18 km/h\""));
     assert_non_null(strstr(line, "5 m s-1"));
@@ -195,13 +107,12 @@ static void listing_has_value_si_value_and_origin(void **state) {
     listed_line(&c, "missile.gravity", line, sizeof line);
     assert_non_null(strstr(line, "9.80665 m s-2"));
     assert_non_null(strstr(line, "default"));
-    sf_case_free(&c);
 }
 
 static void set_overrides_every_kind_of_value(void **state) {
     (void)state;
-    sf_case c;
-    write_file("case.cfg", GOOD);
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
+    case_write("case.cfg", GOOD);
     const char *const sets[] = {
         "missile.velocity=5.2 m/s",        "missile.mass = \"5 kg\"",
         "geometry.parameters.side=70",     "geometry.parameters.quarter=true",
@@ -209,41 +120,41 @@ static void set_overrides_every_kind_of_value(void **state) {
         "solver.stop_after_rebound=false", "kernel.support_ratio=1.5",
         "pad.fixed=[\"left\", \"right\"]", "material.densification.start=0.6"};
     sf_error err = SF_ERROR_INIT;
-    if (sf_case_read(in_folder("case.cfg"), 10, sets, NULL, &c, &err) != SF_OK)
+    if (sf_case_read(case_path("case.cfg"), 10, sets, NULL, &c, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_true(c.missile_card.speed == 5.2 && c.missile_card.mass == 5.0);
     assert_int_equal(c.pad.parameter_count, 2);
     assert_string_equal(c.pad.parameter[0].name, "side");
     assert_true(c.pad.parameter[0].value == 70.0 && c.pad.parameter[1].value == 1.0);
-    assert_string_equal(c.missile.path, in_folder("ball.geo"));
+    assert_string_equal(c.missile.path, case_path("ball.geo"));
     assert_true(c.missile.parameter[0].value == 160.0);
     assert_int_equal(c.run.stop_after_rebound, 0);
     assert_true(c.support_ratio == 1.5);
     assert_string_equal(c.fixed_group[1], "right");
     assert_true(sf_foam_card_of(&c.material)->densification_start == 0.6);
     assert_non_null(strstr(c.text, "# --set missile.velocity=5.2 m/s\n"));
-    sf_case_free(&c);
 }
 
 static void set_replaces_a_group_by_a_file(void **state) {
     (void)state;
     sf_case c;
     char set[600], where[600];
-    snprintf(set, sizeof set, "material=@%s", in_folder("materials/soft.cfg"));
-    read_good(GOOD, set, &c);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
-    assert_true(sf_foam_card_of(&c.material)->curve_stress[3] == 0.9e6); /* inner.csv, beside soft.cfg */
+    snprintf(set, sizeof set, "material=@%s", case_path("materials/soft.cfg"));
+    case_read_good(GOOD, set, &c);
+    const sf_foam_card *foam = sf_foam_card_of(&c.material);
+    assert_int_equal(foam->curve_points, 4);
+    assert_true(foam->curve_stress[3] == 0.9e6); /* inner.csv, beside soft.cfg */
     assert_non_null(strstr(c.text, "#     curve = \"inner.csv\";\n"));
     sf_case_free(&c);
 
-    write_file("materials/other.cfg", "density = \"35 kg/m3\";\nE = \"3 kg\";\ncurve = \"inner.csv\";\n");
-    snprintf(set, sizeof set, "material=@%s", in_folder("materials/other.cfg"));
-    snprintf(where, sizeof where, "%s:2: material.E", in_folder("materials/other.cfg"));
-    assert_refused(GOOD, set, where, NULL);
-    assert_refused(GOOD, "material=@none.cfg", "the file none.cfg cannot be read", NULL);
-    write_file("materials/broken.cfg", "density = ;\n");
-    snprintf(set, sizeof set, "material=@%s", in_folder("materials/broken.cfg"));
-    assert_refused(GOOD, set, "broken.cfg:1: syntax error", NULL);
+    case_write("materials/other.cfg", "density = \"35 kg/m3\";\nE = \"3 kg\";\ncurve = \"inner.csv\";\n");
+    snprintf(set, sizeof set, "material=@%s", case_path("materials/other.cfg"));
+    snprintf(where, sizeof where, "%s:2: material.E", case_path("materials/other.cfg"));
+    case_assert_refused(GOOD, set, where, NULL);
+    case_assert_refused(GOOD, "material=@none.cfg", "the file none.cfg cannot be read", NULL);
+    case_write("materials/broken.cfg", "density = ;\n");
+    snprintf(set, sizeof set, "material=@%s", case_path("materials/broken.cfg"));
+    case_assert_refused(GOOD, set, "broken.cfg:1: syntax error", NULL);
 }
 
 /* A draw of a posterior states errors of the responses: read from the file, of no effect on the foam. */
@@ -251,23 +162,23 @@ static void response_errors_of_a_material_are_read(void **state) {
     (void)state;
     sf_case c;
     char set[600];
-    read_good(GOOD, NULL, &c);
+    case_read_good(GOOD, NULL, &c);
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
         assert_false(c.response_error.given[kind]);
     sf_case_free(&c);
-    write_file("materials/draw.cfg",
+    case_write("materials/draw.cfg",
                "density = \"35 kg/m3\";\nE = \"0.4 MPa\";\ncurve = \"inner.csv\";\n"
                "response_error = { HIC = -0.0125; HIC_sd = 0.02; a_max = 1e-3; a_max_sd = 0; };\n");
-    snprintf(set, sizeof set, "material=@%s", in_folder("materials/draw.cfg"));
-    read_good(GOOD, set, &c);
+    snprintf(set, sizeof set, "material=@%s", case_path("materials/draw.cfg"));
+    case_read_good(GOOD, set, &c);
     assert_true(c.response_error.given[SF_FIT_HIC] && c.response_error.given[SF_FIT_A_MAX]);
     assert_false(c.response_error.given[SF_FIT_WINDOW]);
     assert_true(c.response_error.shared[SF_FIT_HIC] == -0.0125 &&
                 c.response_error.own_sd[SF_FIT_HIC] == 0.02);
     assert_true(c.response_error.shared[SF_FIT_A_MAX] == 1e-3 && c.response_error.own_sd[SF_FIT_A_MAX] == 0);
     sf_case_free(&c);
-    snprintf(set, sizeof set, "materials.core=@%s", in_folder("materials/draw.cfg"));
-    read_good(GEOMETRY MISSILE SOLVER "materials: { core: {}; };\n", set, &c);
+    snprintf(set, sizeof set, "materials.core=@%s", case_path("materials/draw.cfg"));
+    case_read_good(GEOMETRY MISSILE SOLVER "materials: { core: {}; };\n", set, &c);
     assert_int_equal(c.layer_count, 1);
     assert_false(c.response_error.given[SF_FIT_HIC]); /* of a pad of one material */
     sf_case_free(&c);
@@ -295,203 +206,191 @@ static void response_errors_that_cannot_be_meant_are_refused(void **state) {
                  "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curve = \"foam.csv\";\n"
                  "response_error = %s; };\n",
                  cases[k].group);
-        assert_refused(text, NULL, "case.cfg:5: ", cases[k].part, NULL);
+        case_assert_refused(text, NULL, "case.cfg:5: ", cases[k].part, NULL);
     }
-    assert_refused(GOOD, "material.response_eror=3", "unknown key \"response_eror\"", ", response_error",
-                   NULL);
+    case_assert_refused(GOOD, "material.response_eror=3", "unknown key \"response_eror\"", ", response_error",
+                        NULL);
 }
 
 static void include_brings_its_own_folder_for_the_curve(void **state) {
     (void)state;
-    sf_case c;
-    read_good(GEOMETRY "material: {\n@include \"materials/soft.cfg\"\n};\n" MISSILE SOLVER, NULL, &c);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
-    assert_true(fabs(sf_foam_card_of(&c.material)->curve_strain[1] - 0.1) < 1e-16 &&
-                fabs(sf_foam_card_of(&c.material)->curve_stress[3] - 0.9e6) < 1e-9);
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
+    case_read_good(GEOMETRY "material: {\n@include \"materials/soft.cfg\"\n};\n" MISSILE SOLVER, NULL, &c);
+    const sf_foam_card *foam = sf_foam_card_of(&c.material);
+    assert_int_equal(foam->curve_points, 4);
+    assert_true(fabs(foam->curve_strain[1] - 0.1) < 1e-16 && fabs(foam->curve_stress[3] - 0.9e6) < 1e-9);
     assert_non_null(strstr(c.text, "density = \"35 kg/m3\";\nE = "));
     assert_null(strstr(c.text, "@include"));
-    sf_case_free(&c);
 }
 
 /* Also inside an included file, and the lines after it keep their numbers. */
 static void include_may_be_absolute(void **state) {
     (void)state;
     char text[2048];
-    write_file("materials/outer.cfg",
+    case_write("materials/outer.cfg",
                "density = \"35 kg/m3\";\n@include \"materials/rest.cfg\"\nHU = 3.0;\n");
-    write_file("materials/rest.cfg", "E = \"0.4 MPa\";\ncurve = \"inner.csv\";\n");
+    case_write("materials/rest.cfg", "E = \"0.4 MPa\";\ncurve = \"inner.csv\";\n");
     snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\n%s%s", GEOMETRY,
-             in_folder("materials/soft.cfg"), MISSILE, SOLVER);
+             case_path("materials/soft.cfg"), MISSILE, SOLVER);
     sf_case c;
-    read_good(text, NULL, &c);
+    case_read_good(text, NULL, &c);
     assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
     sf_case_free(&c);
-    assert_refused(text, "missile.mass=3", "--set missile.mass=3: ", NULL);
+    case_assert_refused(text, "missile.mass=3", "--set missile.mass=3: ", NULL);
     snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\n%s%s", GEOMETRY,
-             in_folder("materials/outer.cfg"), MISSILE, SOLVER);
-    assert_refused(text, NULL, "materials/outer.cfg:3: material.HU: 3 is out of bounds", NULL);
+             case_path("materials/outer.cfg"), MISSILE, SOLVER);
+    case_assert_refused(text, NULL, "materials/outer.cfg:3: material.HU: 3 is out of bounds", NULL);
     snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\nmissile: { mass = 3; };\n", GEOMETRY,
-             in_folder("materials/soft.cfg"));
-    assert_refused(text, NULL, "case.cfg:5: missile.mass: the value is a plain number", NULL);
+             case_path("materials/soft.cfg"));
+    case_assert_refused(text, NULL, "case.cfg:5: missile.mass: the value is a plain number", NULL);
     snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\nmissile: { mass = ; };\n", GEOMETRY,
-             in_folder("materials/soft.cfg"));
-    assert_refused(text, NULL, "case.cfg:5: syntax error", NULL);
-}
-
-static void curves_at_several_rates_ascend(void **state) {
-    (void)state;
-    sf_case c;
-    read_good(
-        GEOMETRY MISSILE SOLVER
-        "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = (\n"
-        "{ rate = \"0.01 1/s\"; file = \"foam.csv\"; }, { rate = \"100 1/s\"; file = \"fast.csv\"; } ); };\n",
-        NULL, &c);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_count, 2);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 8);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_ptr[1], 4);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_ptr[2], 8);
-    assert_true(sf_foam_card_of(&c.material)->curve_rate[0] == 0.01 &&
-                sf_foam_card_of(&c.material)->curve_rate[1] == 100.0);
-    assert_true(sf_foam_card_of(&c.material)->curve_strain[7] == 0.7 &&
-                sf_foam_card_of(&c.material)->curve_stress[7] == 1.5e6 &&
-                sf_foam_card_of(&c.material)->curve_stress[3] == 9e5);
-    sf_case_free(&c);
+             case_path("materials/soft.cfg"));
+    case_assert_refused(text, NULL, "case.cfg:5: syntax error", NULL);
 }
 
 static void h2_takes_limit_and_exponent(void **state) {
     (void)state;
-    sf_case c;
-    read_good(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; exponent = 2.5; }", &c);
-    assert_int_equal(sf_foam_card_of(&c.material)->densification_rule, SF_DENSIFICATION_H2);
-    assert_true(sf_foam_card_of(&c.material)->densification_limit == 0.95 &&
-                sf_foam_card_of(&c.material)->densification_exponent == 2.5);
-    sf_case_free(&c);
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
+    case_read_good(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; exponent = 2.5; }", &c);
+    const sf_foam_card *foam = sf_foam_card_of(&c.material);
+    assert_int_equal(foam->densification_rule, SF_DENSIFICATION_H2);
+    assert_true(foam->densification_limit == 0.95 && foam->densification_exponent == 2.5);
 }
 
 static void unknown_names_are_refused_with_what_exists(void **state) {
     (void)state;
-    assert_refused(GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\";\n velocty = \"4.5 m/s\"; };\n",
-                   NULL, "case.cfg:5: unknown key \"velocty\" in group missile (did you mean \"velocity\"?)",
-                   "mass, velocity, speed_scatter, motion, direction, position, friction", NULL);
-    assert_refused(
+    case_assert_refused(
+        GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\";\n velocty = \"4.5 m/s\"; };\n", NULL,
+        "case.cfg:5: unknown key \"velocty\" in group missile (did you mean \"velocity\"?)",
+        "mass, velocity, speed_scatter, motion, direction, position, friction", NULL);
+    case_assert_refused(
         GOOD "missle: { };\n", NULL,
         "case.cfg:5: unknown group \"missle\" (did you mean \"missile\"?); the groups are geometry, pad, "
         "material, missile, support, interfaces, membrane, kernel, solver, series, output, report",
         NULL);
-    assert_refused(GOOD "colour = 3;\n", NULL, "case.cfg:5: unknown group \"colour\"; the groups are", NULL);
-    assert_refused(GOOD, "missile.weight=3 kg", "--set missile.weight=3 kg: unknown key \"weight\"", NULL);
-    assert_refused(GOOD, "material.densification.power=3",
-                   "unknown key \"power\" in group material.densification", "rule, start, exponent, limit",
-                   NULL);
-    assert_refused(GOOD, "material.densification=3", "material.densification must be a group", NULL);
-    assert_refused(GOOD "pad = 3;\n", NULL, "case.cfg:5: pad must be a group", NULL);
-    assert_refused(GEOMETRY MISSILE SOLVER "material: {\n@include \"materials/soft.cfg\"\ncolor = 3; };\n",
-                   NULL, "case.cfg:6: unknown key \"color\"", NULL);
-    write_file("materials/wrong.cfg", "density = \"35 kg/m3\";\n\nmodulus = 3;\n");
-    assert_refused(GEOMETRY MISSILE SOLVER "material: {\n@include \"materials/wrong.cfg\"\n};\n", NULL,
-                   "materials/wrong.cfg:3: unknown key \"modulus\" in group material", NULL);
+    case_assert_refused(GOOD "colour = 3;\n", NULL, "case.cfg:5: unknown group \"colour\"; the groups are",
+                        NULL);
+    case_assert_refused(GOOD, "missile.weight=3 kg", "--set missile.weight=3 kg: unknown key \"weight\"",
+                        NULL);
+    case_assert_refused(GOOD, "material.densification.power=3",
+                        "unknown key \"power\" in group material.densification",
+                        "rule, start, exponent, limit", NULL);
+    case_assert_refused(GOOD, "material.densification=3", "material.densification must be a group", NULL);
+    case_assert_refused(GOOD "pad = 3;\n", NULL, "case.cfg:5: pad must be a group", NULL);
+    case_assert_refused(GEOMETRY MISSILE SOLVER
+                        "material: {\n@include \"materials/soft.cfg\"\ncolor = 3; };\n",
+                        NULL, "case.cfg:6: unknown key \"color\"", NULL);
+    case_write("materials/wrong.cfg", "density = \"35 kg/m3\";\n\nmodulus = 3;\n");
+    case_assert_refused(GEOMETRY MISSILE SOLVER "material: {\n@include \"materials/wrong.cfg\"\n};\n", NULL,
+                        "materials/wrong.cfg:3: unknown key \"modulus\" in group material", NULL);
 }
 
 static void missing_keys_are_refused(void **state) {
     (void)state;
-    assert_refused(
+    case_assert_refused(
         GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\"; };\n", NULL,
         "case.cfg:4: missile.velocity is missing: speed when it first touches the pad, whatever the gap; required without "
         "`motion`, for "
         "example velocity = \"4.5 m/s\"",
         NULL);
-    assert_refused(GEOMETRY MATERIAL MISSILE, NULL, "solver.end_time is missing (there is no such group)",
-                   NULL);
-    assert_refused(MATERIAL MISSILE SOLVER, NULL, "geometry.file is missing", NULL);
-    assert_refused(GEOMETRY MISSILE SOLVER "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; };\n", NULL,
-                   "material.curve is missing", NULL);
-    assert_refused(GOOD, "material.ED=1 MPa", "material.BETA1 is missing", NULL);
-    assert_refused(GOOD, "material.densification.rule=H2", "material.densification.limit is missing", NULL);
-    assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; }",
-                   "material.densification.exponent is missing: rule H2 needs it", NULL);
+    case_assert_refused(GEOMETRY MATERIAL MISSILE, NULL,
+                        "solver.end_time is missing (there is no such group)", NULL);
+    case_assert_refused(MATERIAL MISSILE SOLVER, NULL, "geometry.file is missing", NULL);
+    case_assert_refused(GEOMETRY MISSILE SOLVER "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; };\n",
+                        NULL, "material.curve is missing", NULL);
+    case_assert_refused(GOOD, "material.ED=1 MPa", "material.BETA1 is missing", NULL);
+    case_assert_refused(GOOD, "material.densification.rule=H2", "material.densification.limit is missing",
+                        NULL);
+    case_assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; }",
+                        "material.densification.exponent is missing: rule H2 needs it", NULL);
 }
 
 static void units_of_another_kind_are_refused(void **state) {
     (void)state;
-    assert_refused(
+    case_assert_refused(
         GEOMETRY MATERIAL SOLVER "missile: { mass = \"4.6 kg\";\n\n velocity = \"4.6 kg\"; };\n", NULL,
         "case.cfg:6: missile.velocity: \"4.6 kg\" is a mass; expected a speed, for example \"4.5 m/s\"",
         NULL);
-    assert_refused(GOOD, "missile.gravity=5 g", "is a mass; expected an acceleration", NULL);
-    assert_refused(GOOD, "missile.mass=4.6",
-                   "missile.mass: the value is a plain number; expected a mass as a text", NULL);
-    assert_refused(GOOD, "material.E=0.4 GigaPascals!", "is not a unit", NULL);
-    assert_refused(GOOD, "material.damp_length=cell",
-                   "material.damp_length: \"cell\" does not begin with a number", "or \"spacing\"", NULL);
-    assert_refused(GOOD, "geometry.length_unit=kg", "\"kg\" is not a unit of length", NULL);
-    assert_refused(GOOD, "output.times=[\"1 ms\", \"2 kg\"]",
-                   "output.times: \"2 kg\" is a mass; expected a time", NULL);
-    assert_refused(GOOD, "output.times=[1.0]", "item 1 is a plain number; expected a time", NULL);
-    assert_refused(GOOD, "output.times=\"1 ms\"", "expected an array of at most", NULL);
-    assert_refused(GOOD, "output.times=[\"-1 ms\"]", "output.times: -0.001 s is out of bounds", NULL);
-    assert_refused(GOOD, "kernel.support_ratio=\"1.4\"", "the value is a text; expected a plain number",
-                   NULL);
+    case_assert_refused(GOOD, "missile.gravity=5 g", "is a mass; expected an acceleration", NULL);
+    case_assert_refused(GOOD, "missile.mass=4.6",
+                        "missile.mass: the value is a plain number; expected a mass as a text", NULL);
+    case_assert_refused(GOOD, "material.E=0.4 GigaPascals!", "is not a unit", NULL);
+    case_assert_refused(GOOD, "material.damp_length=cell",
+                        "material.damp_length: \"cell\" does not begin with a number", "or \"spacing\"",
+                        NULL);
+    case_assert_refused(GOOD, "geometry.length_unit=kg", "\"kg\" is not a unit of length", NULL);
+    case_assert_refused(GOOD, "output.times=[\"1 ms\", \"2 kg\"]",
+                        "output.times: \"2 kg\" is a mass; expected a time", NULL);
+    case_assert_refused(GOOD, "output.times=[1.0]", "item 1 is a plain number; expected a time", NULL);
+    case_assert_refused(GOOD, "output.times=\"1 ms\"", "expected an array of at most", NULL);
+    case_assert_refused(GOOD, "kernel.support_ratio=\"1.4\"", "the value is a text; expected a plain number",
+                        NULL);
 }
 
 static void values_out_of_bounds_are_refused(void **state) {
     (void)state;
-    assert_refused(GOOD, "missile.mass=0 kg",
-                   "missile.mass: 0 kg is out of bounds; it must be at least 1e-09 kg", NULL);
-    assert_refused(GOOD, "material.HU=1.5",
-                   "material.HU: 1.5 is out of bounds; it must be at least 1e-06 and at most 1", NULL);
-    assert_refused(GOOD, "material.HU=0", "material.HU: 0 is out of bounds", NULL);
-    assert_refused(GOOD, "solver.step_limit=1 ms", "solver.step_limit: 0.001 s is out of bounds", "5e-05 s",
-                   NULL);
-    assert_refused(GOOD, "missile.friction=-0.1",
-                   "missile.friction: -0.1 is out of bounds; it must be at least 0", NULL);
-    assert_refused(GOOD, "kernel.support_ratio=1", "must be greater than 1", NULL);
-    assert_refused(GOOD, "missile.friction=1e999", "not finite", NULL);
-    assert_refused(GOOD, "missile.velocity=1000 m/s", "missile.velocity: 1000 m s-1 is out of bounds",
-                   "at most 200 m s-1", NULL);
-    assert_refused(GOOD, "solver.end_time=59 us", "solver.end_time: 5.9e-05 s is less than 3 times", NULL);
-    assert_refused(GOOD, "output.frame_interval=0.3 us", "1.33e+05 frames", "at most 100000", NULL);
-    assert_refused(GOOD, "missile.gap=1 m", "missile.gap: the missile travels 0.039", "never reaches the pad",
-                   "1 m away", NULL);
-    assert_refused(GOOD, "output.times=[\"-1 ms\"]", "output.times: -0.001 s is out of bounds", NULL);
-    assert_refused(GOOD, "missile.direction=[0, 0, 1]",
-                   "missile.direction: [0, 0, 1] does not point to the pad", NULL);
-    assert_refused(GOOD, "missile.direction=[0, -1]", "expected three plain numbers", NULL);
-    assert_refused(GOOD, "missile.position=[\"0 mm\"]", "expected an array of two lengths, x and y", NULL);
-    assert_refused(GOOD, "missile.position=\"0 mm\"", "expected an array of two lengths, x and y", NULL);
-    assert_refused(GOOD, "missile.position=[1, 2]", "item 1 is a plain number; expected a length", NULL);
-    assert_refused(GOOD, "missile.position=[\"0 mm\", \"3 kg\"]", "\"3 kg\" is a mass; expected a length",
-                   NULL);
-    assert_refused(GOOD, "missile.position=[\"0 mm\", \"-2 km\"]", "-2000 m is out of bounds", NULL);
-    assert_refused(GOOD, "material.densification.start=0.9",
-                   "0.9 lies beyond the end of the compression table (0.8)", NULL);
-    assert_refused(GOOD, "material.densification.limit=0.9", "0.9 belongs to rule H2", NULL);
-    assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; exponent = 0; }",
-                   "exponent: rule H2 needs one above 0", NULL);
-    assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.5; exponent = 2; }",
-                   "0.5 is not above the strain 0.8 at which the law starts", NULL);
+    case_assert_refused(GOOD, "missile.mass=0 kg",
+                        "missile.mass: 0 kg is out of bounds; it must be at least 1e-09 kg", NULL);
+    case_assert_refused(GOOD, "material.HU=1.5",
+                        "material.HU: 1.5 is out of bounds; it must be at least 1e-06 and at most 1", NULL);
+    case_assert_refused(GOOD, "material.HU=0", "material.HU: 0 is out of bounds", NULL);
+    case_assert_refused(GOOD, "solver.step_limit=1 ms", "solver.step_limit: 0.001 s is out of bounds",
+                        "5e-05 s", NULL);
+    case_assert_refused(GOOD, "missile.friction=-0.1",
+                        "missile.friction: -0.1 is out of bounds; it must be at least 0", NULL);
+    case_assert_refused(GOOD, "kernel.support_ratio=1", "must be greater than 1", NULL);
+    case_assert_refused(GOOD, "missile.friction=1e999", "not finite", NULL);
+    case_assert_refused(GOOD, "missile.velocity=1000 m/s", "missile.velocity: 1000 m s-1 is out of bounds",
+                        "at most 200 m s-1", NULL);
+    case_assert_refused(GOOD, "solver.end_time=59 us", "solver.end_time: 5.9e-05 s is less than 3 times",
+                        NULL);
+    case_assert_refused(GOOD, "output.frame_interval=0.3 us", "1.33e+05 frames", "at most 100000", NULL);
+    case_assert_refused(GOOD, "missile.gap=1 m", "missile.gap: the missile travels 0.039",
+                        "never reaches the pad", "1 m away", NULL);
+    case_assert_refused(GOOD, "output.times=[\"-1 ms\"]", "output.times: -0.001 s is out of bounds", NULL);
+    case_assert_refused(GOOD, "missile.direction=[0, 0, 1]",
+                        "missile.direction: [0, 0, 1] does not point to the pad", NULL);
+    case_assert_refused(GOOD, "missile.direction=[0, -1]", "expected three plain numbers", NULL);
+    case_assert_refused(GOOD, "missile.position=[\"0 mm\"]", "expected an array of two lengths, x and y",
+                        NULL);
+    case_assert_refused(GOOD, "missile.position=\"0 mm\"", "expected an array of two lengths, x and y", NULL);
+    case_assert_refused(GOOD, "missile.position=[1, 2]", "item 1 is a plain number; expected a length", NULL);
+    case_assert_refused(GOOD, "missile.position=[\"0 mm\", \"3 kg\"]",
+                        "\"3 kg\" is a mass; expected a length", NULL);
+    case_assert_refused(GOOD, "missile.position=[\"0 mm\", \"-2 km\"]", "-2000 m is out of bounds", NULL);
+    case_assert_refused(GOOD, "material.densification.start=0.9",
+                        "0.9 lies beyond the end of the compression table (0.8)", NULL);
+    case_assert_refused(GOOD, "material.densification.limit=0.9", "0.9 belongs to rule H2", NULL);
+    case_assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.95; exponent = 0; }",
+                        "exponent: rule H2 needs one above 0", NULL);
+    case_assert_refused(GOOD, "material.densification={ rule = \"H2\"; limit = 0.5; exponent = 2; }",
+                        "0.5 is not above the strain 0.8 at which the law starts", NULL);
 }
 
 static void wrong_types_and_words_are_refused(void **state) {
     (void)state;
-    assert_refused(GOOD, "missile.shape=cube", "missile.shape: \"cube\" is none of: auto, sphere, surface",
-                   NULL);
-    assert_refused(GOOD, "output.fields=[\"stress\"]", "\"stress\" is none of: displacement, velocity", NULL);
-    assert_refused(GOOD, "output.fields=all", "expected an array of field names", NULL);
-    assert_refused(GOOD, "solver.stop_after_rebound=1", "expected true or false", NULL);
-    assert_refused(GOOD, "pad.fixed=base", "the value is a text; expected an array of names", NULL);
-    assert_refused(GOOD, "pad.fixed=[\"base\", \"base\"]", "\"base\" is named twice", NULL);
-    assert_refused(GOOD, "pad.fixed=[]", "pad.fixed: at least one surface must hold the pad", NULL);
-    assert_refused(GOOD, "pad.group=3", "pad.group: a plain number stands where a name is expected", NULL);
-    assert_refused(GOOD, "pad.group=true", "true or false stands where a name is expected", NULL);
-    assert_refused(GOOD, "pad.group=[1]", "an array stands where a name is expected", NULL);
-    assert_refused(GOOD, "pad.group=(1)", "a list stands where a name is expected", NULL);
-    assert_refused(GOOD, "pad.group=\"\"", "pad.group: the name is empty", NULL);
-    assert_refused(GOOD, "geometry.file=\"\"", "an empty text stands where a file name is expected", NULL);
-    assert_refused(GOOD, "geometry.length_unit=3", "expected a unit of length, for example", NULL);
-    assert_refused(GOOD, "geometry.length_unit=kg", "\"kg\" is not a unit of length", NULL);
-    assert_refused(GOOD, "geometry.parameters=3", "expected a group such as", NULL);
-    assert_refused(GOOD, "geometry.parameters.side=40 mm", "\"side\" is not a finite plain number", NULL);
-    assert_refused(GOOD, "geometry.missile_parameters.diameter=3", "no geometry.missile_file", NULL);
+    case_assert_refused(GOOD, "missile.shape=cube",
+                        "missile.shape: \"cube\" is none of: auto, sphere, surface", NULL);
+    case_assert_refused(GOOD, "output.fields=[\"stress\"]", "\"stress\" is none of: displacement, velocity",
+                        NULL);
+    case_assert_refused(GOOD, "output.fields=all", "expected an array of field names", NULL);
+    case_assert_refused(GOOD, "solver.stop_after_rebound=1", "expected true or false", NULL);
+    case_assert_refused(GOOD, "pad.fixed=base", "the value is a text; expected an array of names", NULL);
+    case_assert_refused(GOOD, "pad.fixed=[\"base\", \"base\"]", "\"base\" is named twice", NULL);
+    case_assert_refused(GOOD, "pad.fixed=[]", "pad.fixed: at least one surface must hold the pad", NULL);
+    case_assert_refused(GOOD, "pad.group=3", "pad.group: a plain number stands where a name is expected",
+                        NULL);
+    case_assert_refused(GOOD, "pad.group=true", "true or false stands where a name is expected", NULL);
+    case_assert_refused(GOOD, "pad.group=[1]", "an array stands where a name is expected", NULL);
+    case_assert_refused(GOOD, "pad.group=(1)", "a list stands where a name is expected", NULL);
+    case_assert_refused(GOOD, "pad.group=\"\"", "pad.group: the name is empty", NULL);
+    case_assert_refused(GOOD, "geometry.file=\"\"", "an empty text stands where a file name is expected",
+                        NULL);
+    case_assert_refused(GOOD, "geometry.length_unit=3", "expected a unit of length, for example", NULL);
+    case_assert_refused(GOOD, "geometry.parameters=3", "expected a group such as", NULL);
+    case_assert_refused(GOOD, "geometry.parameters.side=40 mm", "\"side\" is not a finite plain number",
+                        NULL);
+    case_assert_refused(GOOD, "geometry.missile_parameters.diameter=3", "no geometry.missile_file", NULL);
 }
 
 static void names_and_lists_that_are_too_long_are_refused(void **state) {
@@ -500,81 +399,84 @@ static void names_and_lists_that_are_too_long_are_refused(void **state) {
     memset(name, 'n', SF_CASE_NAME_SIZE);
     name[SF_CASE_NAME_SIZE] = '\0';
     snprintf(set, sizeof set, "pad.group=%s", name);
-    assert_refused(GOOD, set, "the name is longer than 127 characters", NULL);
+    case_assert_refused(GOOD, set, "the name is longer than 127 characters", NULL);
     snprintf(set, sizeof set, "geometry.parameters={ %s = 1; }", name);
-    assert_refused(GOOD, set, "is longer than 127 characters", NULL);
+    case_assert_refused(GOOD, set, "is longer than 127 characters", NULL);
     snprintf(set, sizeof set, "missile.%s%s%s=1", name, name, name);
-    assert_refused(GOOD, set, "the key is longer than 255 characters", NULL);
+    case_assert_refused(GOOD, set, "the key is longer than 255 characters", NULL);
 
     int length = snprintf(set, sizeof set, "pad.fixed=[\"n0\"");
     for (int k = 1; k <= SF_CASE_MAX_GROUPS; k++)
         length += snprintf(set + length, sizeof set - (size_t)length, ", \"n%d\"", k);
     snprintf(set + length, sizeof set - (size_t)length, "]");
-    assert_refused(GOOD, set, "17 names; at most 16 are allowed", NULL);
+    case_assert_refused(GOOD, set, "17 names; at most 16 are allowed", NULL);
     length = snprintf(set, sizeof set, "geometry.parameters={ ");
     for (int k = 0; k <= SF_CASE_MAX_PARAMETERS; k++)
         length += snprintf(set + length, sizeof set - (size_t)length, "p%d = 1; ", k);
     snprintf(set + length, sizeof set - (size_t)length, "}");
-    assert_refused(GOOD, set, "65 parameters; at most 64 are allowed", NULL);
+    case_assert_refused(GOOD, set, "65 parameters; at most 64 are allowed", NULL);
 }
 
 /* libconfig's own type for whole numbers beyond 32 bits, in the file and by --set. */
 static void long_whole_numbers_are_numbers(void **state) {
     (void)state;
     sf_case c;
-    read_good(GEOMETRY MATERIAL SOLVER
-              "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; friction = 1L; };\n",
-              "geometry.parameters={ side = 5000000000L; thickness = 50; }", &c);
+    case_read_good(GEOMETRY MATERIAL SOLVER
+                   "missile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; friction = 1L; };\n",
+                   "geometry.parameters={ side = 5000000000L; thickness = 50; }", &c);
     assert_true(c.missile_card.friction == 1.0);
     assert_true(c.pad.parameter[0].value == 5e9 && c.pad.parameter[1].value == 50.0);
     sf_case_free(&c);
-    assert_refused(GOOD, "geometry.parameters.side=5000000000", "--set", "5000000000 is too large", NULL);
-    assert_refused(GOOD, "geometry.parameters={ a = 1; b = 99999999999999999999L; }",
-                   "99999999999999999999L is too large", NULL);
-    assert_refused(GEOMETRY MATERIAL SOLVER "# 3000000000 /* \" */\nmissile: { mass = \"4000000000 kg\";\n"
-                                            "velocity = \"4.5 m/s\"; friction = -3000000000; };\n",
-                   NULL, "case.cfg:6: -3000000000 is too large", NULL);
-    assert_refused(GOOD "pad: { fixed = 0x100000000; };\n", NULL, "case.cfg:5: 0x100000000 is", NULL);
-    read_good(GOOD "# 5000000000\n", "geometry.parameters={ side5000000000 = 5000000000.0; }", &c);
+    case_assert_refused(GOOD, "geometry.parameters.side=5000000000", "--set", "5000000000 is too large",
+                        NULL);
+    case_assert_refused(GOOD, "geometry.parameters={ a = 1; b = 99999999999999999999L; }",
+                        "99999999999999999999L is too large", NULL);
+    case_assert_refused(GEOMETRY MATERIAL SOLVER
+                        "# 3000000000 /* \" */\nmissile: { mass = \"4000000000 kg\";\n"
+                        "velocity = \"4.5 m/s\"; friction = -3000000000; };\n",
+                        NULL, "case.cfg:6: -3000000000 is too large", NULL);
+    case_assert_refused(GOOD "pad: { fixed = 0x100000000; };\n", NULL, "case.cfg:5: 0x100000000 is", NULL);
+    case_read_good(GOOD "# 5000000000\n", "geometry.parameters={ side5000000000 = 5000000000.0; }", &c);
     assert_true(c.pad.parameter[0].value == 5e9);
     sf_case_free(&c);
 }
 
 static void files_that_are_not_there_are_refused(void **state) {
     (void)state;
-    assert_refused(GOOD, "geometry.file=none.geo", "geometry.file: \"none.geo\": ", NULL);
-    assert_refused(GOOD, "material.curve=none.csv", "none.csv cannot be read: No such file",
-                   "(named at --set material.curve=none.csv)", NULL);
-    assert_refused(GOOD, "material.curve=materials", "is not a plain file", NULL);
-    assert_refused(GOOD "@include \"none.cfg\"\n", NULL, "case.cfg:5: ", "none.cfg cannot be read", NULL);
-    assert_refused(GOOD "@include \"materials\"\n", NULL, "is not a plain file", NULL);
-    assert_refused(GOOD "@include \"case.cfg\"\n", NULL, "nested more than", NULL);
+    case_assert_refused(GOOD, "geometry.file=none.geo", "geometry.file: \"none.geo\": ", NULL);
+    case_assert_refused(GOOD, "material.curve=none.csv", "none.csv cannot be read: No such file",
+                        "(named at --set material.curve=none.csv)", NULL);
+    case_assert_refused(GOOD, "material.curve=materials", "is not a plain file", NULL);
+    case_assert_refused(GOOD "@include \"none.cfg\"\n", NULL, "case.cfg:5: ", "none.cfg cannot be read",
+                        NULL);
+    case_assert_refused(GOOD "@include \"materials\"\n", NULL, "is not a plain file", NULL);
+    case_assert_refused(GOOD "@include \"case.cfg\"\n", NULL, "nested more than", NULL);
     sf_error err = SF_ERROR_INIT;
     sf_case c;
-    assert_int_equal(sf_case_read(in_folder("absent.cfg"), 0, NULL, NULL, &c, &err), SF_ERR_INPUT);
+    assert_int_equal(sf_case_read(case_path("absent.cfg"), 0, NULL, NULL, &c, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "absent.cfg cannot be read"));
     sf_error of_folder = SF_ERROR_INIT;
-    assert_int_equal(sf_case_read(place.folder, 0, NULL, NULL, &c, &of_folder), SF_ERR_INPUT);
+    assert_int_equal(sf_case_read(case_path(""), 0, NULL, NULL, &c, &of_folder), SF_ERR_INPUT);
     assert_non_null(strstr(of_folder.text, "is not a plain file"));
 }
 
 static void broken_syntax_names_file_and_line(void **state) {
     (void)state;
-    assert_refused(GEOMETRY "missile: { mass = 4.6 kg; };\n", NULL, "case.cfg:2: syntax error", NULL);
-    assert_refused(GOOD "pad: { group = \"a\"; group = \"b\"; };\n", NULL,
-                   "case.cfg:5: duplicate setting name", NULL);
-    write_file("materials/broken.cfg", "density = ;\n");
-    assert_refused(GEOMETRY "material: {\n@include \"materials/broken.cfg\"\n};\n", NULL,
-                   "materials/broken.cfg:1: syntax error", NULL);
-    assert_refused(GOOD, "velocity=3", "--set velocity=3: expected group.key=value", NULL);
-    assert_refused(GOOD, "missile.velocity", "--set missile.velocity: expected group.key=value", NULL);
-    assert_refused(GOOD, "missile.mass.value=3", "\"mass\" is not a group", NULL);
-    assert_refused(GOOD, "missile.=3", "--set missile.=3: \"\" is not a valid key", NULL);
+    case_assert_refused(GEOMETRY "missile: { mass = 4.6 kg; };\n", NULL, "case.cfg:2: syntax error", NULL);
+    case_assert_refused(GOOD "pad: { group = \"a\"; group = \"b\"; };\n", NULL,
+                        "case.cfg:5: duplicate setting name", NULL);
+    case_write("materials/broken.cfg", "density = ;\n");
+    case_assert_refused(GEOMETRY "material: {\n@include \"materials/broken.cfg\"\n};\n", NULL,
+                        "materials/broken.cfg:1: syntax error", NULL);
+    case_assert_refused(GOOD, "velocity=3", "--set velocity=3: expected group.key=value", NULL);
+    case_assert_refused(GOOD, "missile.velocity", "--set missile.velocity: expected group.key=value", NULL);
+    case_assert_refused(GOOD, "missile.mass.value=3", "\"mass\" is not a group", NULL);
+    case_assert_refused(GOOD, "missile.=3", "--set missile.=3: \"\" is not a valid key", NULL);
 }
 
 static void assert_faults_are_refused(const char *const (*faults)[3], size_t count) {
     for (size_t k = 0; k < count; k++)
-        assert_refused(faults[k][0], NULL, faults[k][1], faults[k][2], NULL);
+        case_assert_refused(faults[k][0], NULL, faults[k][1], faults[k][2], NULL);
 }
 
 /* libconfig 1.5 alone drops or cuts each of these, and reads the rest. */
@@ -605,19 +507,19 @@ static void nothing_of_the_text_is_dropped(void **state) {
         {GOOD "};\n", "case.cfg:5", "syntax error"},
     };
     sf_case c;
-    write_file("empty.cfg", "");
-    write_file("open.cfg", "\n/* a\n");
+    case_write("empty.cfg", "");
+    case_write("open.cfg", "\n/* a\n");
     assert_faults_are_refused(faults, sizeof faults / sizeof *faults);
-    assert_refused(GOOD, "solver.energy_limit=0.1 /* 2", "--set solver.energy_limit=0.1 /* 2: ", "not closed",
-                   NULL);
-    assert_refused(GOOD, "solver.energy_limit=0.1 /* 2 */",
-                   "--set solver.energy_limit=0.1 /* 2 */: ", "a comment", NULL);
-    read_good(GOOD "@include \"empty.cfg\"   # nothing\n\t@include \"empty.cfg\"\t// nothing\n"
-                   "/* @include \"none.cfg\" \" */ pad: { group = \"#/*@\\\"\\x41\"; }; // \" /* @\n",
-              NULL, &c);
+    case_assert_refused(GOOD, "solver.energy_limit=0.1 /* 2",
+                        "--set solver.energy_limit=0.1 /* 2: ", "not closed", NULL);
+    case_assert_refused(GOOD, "solver.energy_limit=0.1 /* 2 */",
+                        "--set solver.energy_limit=0.1 /* 2 */: ", "a comment", NULL);
+    case_read_good(GOOD "@include \"empty.cfg\"   # nothing\n\t@include \"empty.cfg\"\t// nothing\n"
+                        "/* @include \"none.cfg\" \" */ pad: { group = \"#/*@\\\"\\x41\"; }; // \" /* @\n",
+                   NULL, &c);
     assert_string_equal(c.pad_group, "#/*@\"A");
     sf_case_free(&c);
-    read_good("\xEF\xBB\xBF# Windows\r\n" GEOMETRY "\r\n" MATERIAL MISSILE SOLVER, NULL, &c);
+    case_read_good("\xEF\xBB\xBF# Windows\r\n" GEOMETRY "\r\n" MATERIAL MISSILE SOLVER, NULL, &c);
     sf_case_free(&c);
 }
 
@@ -649,12 +551,12 @@ static void work_does_not_grow_with_what_a_case_asks_for(void **state) {
         for (int i = 0; i < 20; i++)
             used += (size_t)snprintf(text + used, sizeof text - used, "@include \"level%d.cfg\"\n", k + 1);
         snprintf(name, sizeof name, "level%d.cfg", k);
-        write_file(name, text);
+        case_write(name, text);
     }
-    write_file("level9.cfg", "\n");
-    assert_refused(GOOD "@include \"level0.cfg\"\n", NULL, "more than 200 files are included", NULL);
+    case_write("level9.cfg", "\n");
+    case_assert_refused(GOOD "@include \"level0.cfg\"\n", NULL, "more than 200 files are included", NULL);
 
-    assert_refused(
+    case_assert_refused(
         "geometry: { file = \"pad.geo\"; length_unit = \"mm\"; parameters = { side = 1e300; }; };\n" MATERIAL
             MISSILE SOLVER,
         NULL, "case.cfg:1: geometry.parameters: side = 1e+300 is out of bounds", "between -1e+12 and 1e+12",
@@ -668,185 +570,22 @@ static void work_does_not_grow_with_what_a_case_asks_for(void **state) {
         fprintf(list, "%s{ rate = \"%d 1/s\"; file = \"foam.csv\"; }", k > 1 ? ", " : "", k);
     fputs("); };\n", list);
     fclose(list);
-    assert_refused(curves, NULL, "material.curves: 65 curves; at most 64 are read", NULL);
+    case_assert_refused(curves, NULL, "material.curves: 65 curves; at most 64 are read", NULL);
     free(curves);
 
     char *many = repeat("u%06d = 1;\n", 70000), *few = repeat("u%d = 1;\n", 700),
          *deep = repeat("x%d: (", 40), *wide = repeat("x = [1,1,1,1,1,1,1,1,1,1 /* %d */ ];\n", 2000);
-    assert_refused(many, NULL, "case.cfg:", "more than 20000 names and values", NULL);
-    assert_refused(few, NULL, "case.cfg:5: unknown group \"u0\"",
-                   "; unknown too: u1, u2, u3, u4, u5, u6, u7, u8, u9 and 690 more; the groups are", NULL);
-    assert_refused(deep, NULL, "case.cfg:5: brackets are nested", "32 deep", NULL);
-    assert_refused(wide, NULL, "more than 20000 names and values", NULL);
+    case_assert_refused(many, NULL, "case.cfg:", "more than 20000 names and values", NULL);
+    case_assert_refused(few, NULL, "case.cfg:5: unknown group \"u0\"",
+                        "; unknown too: u1, u2, u3, u4, u5, u6, u7, u8, u9 and 690 more; the groups are",
+                        NULL);
+    case_assert_refused(deep, NULL, "case.cfg:5: brackets are nested", "32 deep", NULL);
+    case_assert_refused(wide, NULL, "more than 20000 names and values", NULL);
     free(many);
     free(few);
     free(deep);
     free(wide);
     assert_true(seconds() - begin < 20);
-}
-
-static void rate_curves_are_checked(void **state) {
-    (void)state;
-    assert_refused(GOOD, "material.curves=( { rate = \"1 1/s\"; file = \"foam.csv\"; } )",
-                   "material has both curve and curves", NULL);
-#define RATES(list)                                                                                          \
-    GEOMETRY MISSILE SOLVER "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\"; curves = " list "; };\n"
-    assert_refused(RATES("( )"), NULL, "material.curves must be a list", NULL);
-    assert_refused(GOOD, "material.rate_factor=0.1", "material.rate_reference is missing", NULL);
-    assert_refused(
-        GEOMETRY MISSILE SOLVER
-        "material: { density = \"35 kg/m3\"; E = \"0.4 MPa\";\n"
-        "rate_factor = 0.1; rate_reference = \"1 1/s\"; curves = (\n"
-        "{ rate = \"1 1/s\"; file = \"foam.csv\"; }, { rate = \"9 1/s\"; file = \"fast.csv\"; } ); };\n",
-        NULL, "case.cfg:5: material.rate_factor is 0.1 and there are 2 curves at several rates", NULL);
-    assert_refused(
-        RATES("( { rate = \"1 1/s\"; file = \"fast.csv\"; }, { rate = \"9 1/s\"; file = \"foam.csv\"; } )"),
-        NULL, "the stress falls with the rate", "(fast.csv) to",
-        "(foam.csv): are the rates or the files exchanged?", NULL);
-    assert_refused(RATES("( { rate = \"1 1/s\"; } )"), NULL, "each entry must be { rate", NULL);
-    assert_refused(RATES("( { rate = \"1 1/s\"; file = \"\"; } )"), NULL, "the name of a curve's CSV file",
-                   NULL);
-    assert_refused(RATES("( { rate = 1; file = \"foam.csv\"; } )"), NULL, "the rate must be a text", NULL);
-    assert_refused(RATES("( { rate = \"1 s\"; file = \"foam.csv\"; } )"), NULL, "is a time; expected a rate",
-                   NULL);
-    assert_refused(
-        RATES("( { rate = \"9 1/s\"; file = \"foam.csv\"; }, { rate = \"1 1/s\"; file = \"fast.csv\"; } )"),
-        NULL, "the rate 1 s-1 is not above 9 s-1 before it", NULL);
-}
-
-static void curve_faults_name_file_line_and_value(void **state) {
-    (void)state;
-#define HEAD "strain,stress_kPa\n"
-    assert_curve_refused("# nothing\n", "0 points; a compression curve needs at least 4");
-    assert_curve_refused(HEAD "0,0\n0.1,2\n0.2,3\n", "3 points; a compression curve needs at least 4");
-    assert_curve_refused("eps,stress_kPa\n0,0\n", ":1: the header has no column \"strain\"");
-    assert_curve_refused("strain,stress\n0,0\n", ":1: the header has no column \"stress_Pa\"");
-    assert_curve_refused("strain,stress_kPa,stress_Pa\n0,0,0\n", "two stress columns");
-    assert_curve_refused("#\n" HEAD "0,0\n0.1,abc\n", ":4: stress \"abc\" is not a number");
-    assert_curve_refused(HEAD "0,0\n0.1,2 kPa\n", ":3: stress \"2 kPa\" is not a number");
-    assert_curve_refused(HEAD "0,0\n0,1,2\n", ":3: 3 values where the header has 2 columns");
-    assert_curve_refused(HEAD "0,0\n0.1\n", ":3: 1 values where the header has 2 columns");
-    assert_curve_refused(HEAD "0,0\n0.1,2\n0.1,3\n", ":4: strain 0.1 is not above the one before it (0.1)");
-    assert_curve_refused(HEAD "0,0\n0.1,2\n0.2,1.5\n", ":4: stress 1.5 is below the one before it (2)");
-    assert_curve_refused(HEAD "0,0\n0.1,nan\n", ":3: stress \"nan\" is not finite");
-    assert_curve_refused(HEAD "0,0\n-0.1,-2\n", ":3: strain -0.1 is negative; compression is positive");
-    assert_curve_refused(HEAD "0,0\n0.1,-2\n", ":3: stress -2 is negative");
-    assert_curve_refused(HEAD "0,0\n1.2,5\n", ":3: strain 1.2 means a compression to nothing");
-    assert_curve_refused(HEAD "0,4\n0.1,5\n", ":2: stress 4 at zero strain; the curve must start at (0, 0)");
-    assert_curve_refused(HEAD "0,0\n0.1,0\n0.2,0\n0.3,0\n", "the stress is zero everywhere");
-}
-
-#define DRIVEN(rest) GEOMETRY MATERIAL SOLVER "missile: { motion = \"press.csv\"; " rest "};\n"
-
-static void motion_replaces_mass_and_speed(void **state) {
-    (void)state;
-    sf_case c;
-    write_file("press.csv", "# a press\nforce_N,displacement_mm,time_ms\n1,0,0\n2,25,50\n3,-5.5,80\n");
-    read_good(DRIVEN(""), NULL, &c);
-    assert_int_equal(c.motion_count, 3);
-    assert_true(c.motion_time[0] == 0.0 && c.motion_displacement[0] == 0.0);
-    assert_true(fabs(c.motion_time[1] - 0.05) < 1e-16 && fabs(c.motion_time[2] - 0.08) < 1e-16);
-    assert_true(fabs(c.motion_displacement[1] - 0.025) < 1e-16);
-    assert_true(fabs(c.motion_displacement[2] + 0.0055) < 1e-16);
-    assert_true(c.missile_card.mass == 0.0 && c.missile_card.speed == 0.0 && c.missile_card.gravity == 0.0);
-    assert_non_null(strstr(c.parameters, "3 points, to 0.08 s"));
-    sf_case_free(&c);
-    write_file("press.csv", "time_s,displacement_m\n0,0\n0.04,0.025\n"); /* may end with the run */
-    read_good(DRIVEN("gap = \"1 mm\"; friction = 0.5; "), NULL, &c);
-    assert_true(c.motion_displacement[1] == 0.025 && c.missile_card.gap == 1e-3);
-    sf_case_free(&c);
-    assert_refused(DRIVEN("mass = \"4.6 kg\"; "), NULL, "case.cfg:4: missile.mass has no meaning", NULL);
-    assert_refused(DRIVEN(""), "missile.velocity=4 m/s",
-                   "--set missile.velocity=4 m/s: missile.velocity has no meaning", NULL);
-    assert_refused(DRIVEN(""), "missile.gravity=1 m/s2", "missile.gravity has no meaning", NULL);
-    assert_refused(DRIVEN(""), "solver.end_time=41 ms",
-                   "solver.end_time: 0.041 s lies beyond the end of missile.motion (0.04 s)", NULL);
-    assert_refused(DRIVEN(""), "missile.motion=none.csv", "the motion",
-                   "none.csv cannot be read: No such file", "(named at --set missile.motion=none.csv)", NULL);
-    assert_refused(DRIVEN(""), "missile.motion=materials", "is not a plain file", NULL);
-    assert_refused(DRIVEN(""), "missile.motion=3", "missile.motion: the name of a CSV file is expected",
-                   NULL);
-}
-
-static void motion_faults_name_file_line_and_value(void **state) {
-    (void)state;
-    static const struct {
-        const char *text, *part;
-    } faults[] = {
-        {"", "0 points; a motion needs at least 2"},
-        {"0,0\n", "1 points; a motion needs at least 2"},
-        {"1,0\n2,1\n", ":2: time 1 in the first point; a motion starts at (0, 0)"},
-        {"0,1\n2,1\n", ":2: displacement 1 in the first point; a motion starts at (0, 0)"},
-        {"0,0\n2,1\n2,3\n", ":4: time 2 is not above the one before it (2)"},
-        {"0,0\n2,1\n1,3\n", ":4: time 1 is not above the one before it (2)"},
-        {"0,0\n2,x\n", ":3: displacement \"x\" is not a number"},
-        {"0,0\ninf,1\n", ":3: time \"inf\" is not finite"},
-        {"0,0\n2\n", ":3: 1 values where the header has 2 columns"},
-        {"0,0\n1,201\n", ":3: displacement 201 after 0 means a speed of 201 m/s"},
-        {"0,0\n50,0\n", "the displacement is zero everywhere"},
-    };
-    for (size_t k = 0; k < sizeof faults / sizeof faults[0]; k++) {
-        char text[256];
-        snprintf(text, sizeof text, "time_ms,displacement_mm\n%s", faults[k].text);
-        write_file("press.csv", text);
-        assert_refused(DRIVEN(""), NULL, "press.csv", faults[k].part, "(named at ", "case.cfg:4)", NULL);
-    }
-    write_file("press.csv", "time,displacement_mm\n0,0\n");
-    assert_refused(DRIVEN(""), NULL, ":1: the header has no column \"time_s\" or \"time_ms\"", NULL);
-    write_file("press.csv", "time_s,displacement\n0,0\n");
-    assert_refused(DRIVEN(""), NULL, ":1: the header has no column \"displacement_m\" or \"displacement_mm\"",
-                   NULL);
-    write_file("press.csv", "time_s,time_ms,displacement_m\n0,0\n");
-    assert_refused(DRIVEN(""), NULL, "two time columns", NULL);
-}
-
-static void curve_without_origin_is_extended_to_it(void **state) {
-    (void)state;
-    sf_error err = SF_ERROR_INIT;
-    sf_case_curve curve;
-    write_file(
-        "late.csv",
-        "\xEF\xBB\xBF# from a spreadsheet\r\n time , strain_percent , stress_Pa \r\n1,5,100\r\n2,10,200\r\n"
-        "3,20,300\r\n\r\n4,30,300\r\n");
-    if (sf_case_curve_read(in_folder("late.csv"), &curve, &err) != SF_OK)
-        fail_msg("%s", err.text);
-    assert_true(curve.extended);
-    assert_int_equal(curve.count, 5);
-    assert_true(curve.strain[0] == 0.0 && curve.stress[0] == 0.0 && fabs(curve.strain[1] - 0.05) < 1e-16);
-    assert_true(curve.stress[4] == 300.0);
-    sf_case_curve_free(&curve);
-}
-
-static void note_sentence(void *user, sf_severity severity, const char *sentence) {
-    assert_int_equal(severity, SF_NOTE);
-    strcat(user, sentence);
-}
-
-/* Files of a laboratory are read, and the user sees how; nothing is told of plain ones. */
-static void laboratory_files_are_read_and_told(void **state) {
-    (void)state;
-    char told[2048] = "";
-    const sf_sink sink = {note_sentence, told};
-    sf_error err = SF_ERROR_INIT;
-    sf_case c;
-    const char *override = "material.curve=lab.csv";
-    write_file("lab.csv", "Strain [%];Stress [N/mm2]\r\n0;0\r\n10,5;0,02\r\n50;0,1\r\n80;0,9\r\n");
-    write_file("press.csv", "Time\tExtension\nms\tmm\n0\t0\n50\t25\n");
-    write_file("case.cfg", DRIVEN(""));
-    if (sf_case_read(in_folder("case.cfg"), 1, &override, &sink, &c, &err) != SF_OK)
-        fail_msg("%s", err.text);
-    assert_true(c.motion_displacement[1] == 0.025);
-    assert_true(sf_foam_card_of(&c.material)->curve_strain[1] == 0.105 &&
-                sf_foam_card_of(&c.material)->curve_stress[3] == 0.9e6);
-    assert_non_null(strstr(told, "lab.csv: separator \";\", decimal comma, strain in %, stress in N/mm2"));
-    assert_non_null(strstr(told, "press.csv: separator tab, decimal point, time in ms, displacement in mm"));
-    sf_case_free(&c);
-    told[0] = '\0';
-    write_file("press.csv", "time_s,displacement_m\n0,0\n0.04,0.025\n");
-    if (sf_case_read(in_folder("case.cfg"), 0, NULL, &sink, &c, &err) != SF_OK)
-        fail_msg("%s", err.text);
-    assert_string_equal(told, "");
-    sf_case_free(&c);
 }
 
 /* Every example reads, and they differ in what their names say. */
@@ -911,15 +650,15 @@ static void hyperfoam_terms_are_checked(void **state) {
         {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; E = \"1 MPa\";", "unknown key \"E\" in group material"},
     };
     char text[1200];
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         snprintf(text, sizeof text,
                  GEOMETRY
                  "material: { law = \"hyperfoam\"; density = \"100 kg/m3\";\n%s\n};\n" MISSILE SOLVER,
                  cases[k].keys);
-        assert_refused(text, NULL, cases[k].sentence, NULL);
+        case_assert_refused(text, NULL, cases[k].sentence, NULL);
     }
-    read_good(
+    case_read_good(
         GEOMETRY
         "material: { law = \"hyperfoam\"; density = \"100 kg/m3\"; stable_to = 0.3; HU = 0.2; ALPHA = 0.4;"
         "term_1 = { mu = \"200 kPa\"; alpha = 8.0; nu = 0.25; };"
@@ -928,7 +667,6 @@ static void hyperfoam_terms_are_checked(void **state) {
     const sf_hyperfoam_card *card = c.material.card;
     assert_true(card->term[0].mu == 2e5 && card->term[1].mu == 0 && card->term[2].beta == 0.1);
     assert_true(card->hysteresis_alpha == 0.4 && sf_material_informed(&c.material) == 0.3);
-    sf_case_free(&c);
 }
 
 /* docs/case.md ends with the table as the program prints it. */
@@ -966,7 +704,6 @@ int main(void) {
         cmocka_unit_test(response_errors_that_cannot_be_meant_are_refused),
         cmocka_unit_test(include_brings_its_own_folder_for_the_curve),
         cmocka_unit_test(include_may_be_absolute),
-        cmocka_unit_test(curves_at_several_rates_ascend),
         cmocka_unit_test(h2_takes_limit_and_exponent),
         cmocka_unit_test(unknown_names_are_refused_with_what_exists),
         cmocka_unit_test(missing_keys_are_refused),
@@ -979,15 +716,9 @@ int main(void) {
         cmocka_unit_test(broken_syntax_names_file_and_line),
         cmocka_unit_test(nothing_of_the_text_is_dropped),
         cmocka_unit_test(work_does_not_grow_with_what_a_case_asks_for),
-        cmocka_unit_test(rate_curves_are_checked),
-        cmocka_unit_test(curve_faults_name_file_line_and_value),
-        cmocka_unit_test(motion_replaces_mass_and_speed),
-        cmocka_unit_test(motion_faults_name_file_line_and_value),
-        cmocka_unit_test(curve_without_origin_is_extended_to_it),
-        cmocka_unit_test(laboratory_files_are_read_and_told),
         cmocka_unit_test(examples_are_the_drops_they_are_called),
         cmocka_unit_test(hyperfoam_terms_are_checked),
         cmocka_unit_test(reference_is_the_table),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
 }

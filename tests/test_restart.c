@@ -5,7 +5,6 @@
 #include "program_fixture.h"
 #include "run_fixture.h"
 
-#include "study/runner.h"
 #include "io/h5.h"
 #include "model/model_io.h"
 #include "io/provenance.h"
@@ -73,17 +72,6 @@ static int set_up(void **state) {
     return 0;
 }
 
-static int64_t restarts_of(const program_place *p, const char *name) {
-    sf_error err = SF_ERROR_INIT;
-    void *data = NULL;
-    sf_h5 *file = program_open_h5(p, name);
-    assert_int_equal(sf_h5_read(file, "/summary/restarts", SF_H5_I64, 0, NULL, &data, &err), SF_OK);
-    int64_t restarts = *(int64_t *)data;
-    free(data);
-    sf_h5_close(&file, &err);
-    return restarts;
-}
-
 /* ---- one run in parts ---- */
 
 static void finished_run_goes_on_to_a_later_end(void **state) {
@@ -100,7 +88,7 @@ static void finished_run_goes_on_to_a_later_end(void **state) {
     }
     program_succeed(p, "solve", "--restart parts.h5 --end-time '20 ms' --threads 2");
     assert_true(parts >= 5);
-    assert_int_equal(restarts_of(p, "parts.h5"), parts + 1);
+    assert_int_equal(run_restarts(p, "parts.h5"), parts + 1);
     run_assert_same(p, "full.h5", "parts.h5");
     program_succeed(p, "solve",
                     "--restart parts.h5 --threads 1"); /* nothing is left to do, nothing changes */
@@ -136,19 +124,6 @@ static void rate_factor_goes_on_with_the_same_bits(void **state) {
     run_assert_same(p, "rate_full.h5", "rate_parts.h5");
 }
 
-/* When the file was written, 0: it is not there. */
-static struct timespec written_at(const char *folder, const char *name) {
-    struct stat info;
-    char path[2048];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return stat(path, &info) == 0 ? info.st_mtim : (struct timespec){0, 0};
-}
-
-/* Is `b` there, and another file than `a`? */
-static bool is_other(struct timespec a, struct timespec b) {
-    return b.tv_sec != 0 && (a.tv_sec != b.tv_sec || a.tv_nsec != b.tv_nsec);
-}
-
 /* Runs to the end with a signal after a random time, again and again, at least `least` times; `after_steps`:
  * not before it has a checkpoint of its own steps. The file opens after each; post-processing reads it. */
 static void run_with_signals(const program_place *p, const char *results, const int *numbers, int count,
@@ -161,13 +136,13 @@ static void run_with_signals(const program_place *p, const char *results, const 
     for (int turn = 0; turn < 100 * least; turn++) {
         const char *anew[] = {"model.h5", "-o", results, "--force", "--checkpoint-every", "0.02 s", NULL};
         const char *again[] = {"--restart", results, "--checkpoint-every", "0.02 s", NULL};
-        struct timespec before = written_at(p->folder, checkpoint);
+        struct timespec before = run_written_at(p->folder, checkpoint);
         pid_t child = run_start(p, before.tv_sec ? again : anew);
         int status = 0, number = numbers[turn % count];
         double wait =
             killed < least ? start_time + 0.5 * longest * (1 + fixture_random(&seed)) : 1e3 * run_time;
         while ((time_of(child) < wait ||
-                (after_steps && !is_other(before, written_at(p->folder, checkpoint)))) &&
+                (after_steps && !run_is_other(before, run_written_at(p->folder, checkpoint)))) &&
                waitpid(child, &status, WNOHANG) == 0)
             run_sleep(0.002);
         if (kill(child, number) == 0 && waitpid(child, &status, 0) == child)
@@ -196,7 +171,7 @@ static void run_with_signals(const program_place *p, const char *results, const 
 static void interrupted_run_goes_on(void **state) {
     static const int numbers[] = {SIGINT, SIGTERM};
     run_with_signals(*state, "interrupted.h5", numbers, 2, 6, true);
-    assert_true(restarts_of(*state, "interrupted.h5") >= 5);
+    assert_true(run_restarts(*state, "interrupted.h5") >= 5);
 }
 
 static void killed_run_loses_nothing(void **state) {
@@ -614,124 +589,8 @@ static void rebounded_run_goes_on_when_an_end_time_is_given(void **state) {
     sf_results_close(&r);
 }
 
-/* ---- campaigns ---- */
-
-#define SMALL_STEP "solver.step_safety=0.1" /* there is time to interrupt */
-static const char *step_of_drops = SMALL_STEP;
-
-static void run_drop(const program_place *p, const char *folder, sf_runner_result *result, sf_error *err) {
-    char path[1024], source[1024];
-    snprintf(path, sizeof path, "%s", program_path(p, folder));
-    snprintf(source, sizeof source, "%s", fixture_source(EXAMPLE));
-    sf_runner runner = {.folder = path, .threads = 1};
-    sf_runner_drop drop = {.case_path = source,
-                           .label = "drop",
-                           .override_count = 5,
-                           .overrides = {"geometry.parameters.fine_spacing=20.0",
-                                         "geometry.parameters.outer_spacing=20.0",
-                                         "geometry.missile_parameters.element_size=20.0", step_of_drops,
-                                         "pad.mesh_error_limit=1"}};
-    sf_runner_run(&runner, &drop, result, err);
-}
-
-static void campaign_goes_on_with_an_interrupted_drop(void **state) {
-    const program_place *p = *state;
-    sf_error err = SF_ERROR_INIT;
-    sf_runner_result one, two;
-    run_drop(p, "campaign_one", &one, &err);
-    assert_int_equal(err.status, SF_OK);
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child == 0) {
-        setpgid(0, 0);
-        signal(SIGTERM, SIG_IGN); /* the solver sets its own handler */
-        run_drop(p, "campaign_two", &two, &err);
-        _exit(err.status == SF_INTERRUPTED ? 0 : 1);
-    }
-    while (program_shell(p, "ls campaign_two/*/results.h5").code != 0)
-        run_sleep(0.01);
-    int status = 0;
-    kill(-child, SIGTERM);
-    waitpid(child, &status, 0);
-    assert_int_equal(status, 0);
-    assert_int_equal(program_shell(p, "ls campaign_two/*/results.h5.restart").code, 0);
-
-    run_drop(p, "campaign_two", &two, &err);
-    assert_int_equal(err.status, SF_OK);
-    assert_false(two.reused);
-    assert_memory_equal(&one.a_max_g, &two.a_max_g, sizeof one.a_max_g);
-    assert_int_equal(one.steps, two.steps);
-    const char *name = two.path + strlen(p->folder) + 1;
-    assert_int_equal(restarts_of(p, name), 1);
-    assert_int_equal(program_shell(p, "ls campaign_two/*").code, 0);
-    assert_null(strstr(program_shell(p, "ls campaign_two/*").out, "restart"));
-    assert_null(strstr(program_shell(p, "ls campaign_two/*").out, "model"));
-    sf_runner_result_free(&one);
-    sf_runner_result_free(&two);
-}
-
-/* A drop of a campaign that is killed with its programs (or alone) as soon as it has a new model or
- * checkpoint: each life goes on where the one before was killed, and none begins anew. */
-static int count_lives(const program_place *p, const char *parent, const char *folder, bool alone) {
-    for (int life = 1; life <= 150; life++) {
-        struct timespec model = written_at(folder, "model.h5"),
-                        checkpoint = written_at(folder, "results.h5.restart");
-        int status = 0;
-        pid_t child = fork();
-        assert_true(child >= 0);
-        if (child == 0) {
-            sf_error err = SF_ERROR_INIT;
-            sf_runner_result result;
-            setpgid(0, 0);
-            run_drop(p, parent, &result, &err);
-            _exit(err.status == SF_OK ? 0 : 1);
-        }
-        setpgid(child, child);
-        while (waitpid(child, &status, WNOHANG) == 0)
-            if (is_other(model, written_at(folder, "model.h5")) ||
-                is_other(checkpoint, written_at(folder, "results.h5.restart")))
-                kill(alone ? child : -child, SIGKILL);
-            else
-                run_sleep(0.001);
-        if (WIFEXITED(status)) {
-            assert_int_equal(WEXITSTATUS(status), 0);
-            return life;
-        }
-        assert_false(life > 1 && is_other(model, written_at(folder, "model.h5"))); /* not made again */
-    }
-    return 0;
-}
-
-static void killed_campaign_makes_progress_in_every_life(void **state) {
-    const program_place *p = *state;
-    static const char *const parents[] = {"campaign_killed", "campaign_left"};
-    sf_error err = SF_ERROR_INIT;
-    sf_runner_result one, two;
-    step_of_drops = "solver.step_safety=0.9"; /* each life has 0.1 s of wall time, on a busy machine little */
-    run_drop(p, "campaign_one", &one, &err);
-    assert_int_equal(err.status, SF_OK);
-    char leaf[512], folder[1024];
-    snprintf(leaf, sizeof leaf, "%s", strstr(one.path, "campaign_one/") + strlen("campaign_one/"));
-    *strchr(leaf, '/') = '\0';
-    for (int alone = 0; alone < 2; alone++) {
-        snprintf(folder, sizeof folder, "%s/%s", program_path(p, parents[alone]), leaf);
-        int lives = count_lives(p, parents[alone], folder, alone);
-        print_message("%d lives\n", lives);
-        assert_true(lives > 1);
-        run_drop(p, parents[alone], &two, &err);
-        assert_int_equal(err.status, SF_OK);
-        assert_true(two.reused);
-        assert_memory_equal(&one.a_max_g, &two.a_max_g, sizeof one.a_max_g);
-        assert_int_equal(one.steps, two.steps);
-        sf_runner_result_free(&two);
-    }
-    sf_runner_result_free(&one);
-    step_of_drops = SMALL_STEP;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(killed_campaign_makes_progress_in_every_life),
         cmocka_unit_test(finished_run_goes_on_to_a_later_end),
         cmocka_unit_test(hyperfoam_goes_on_with_the_same_bits),
         cmocka_unit_test(rate_factor_goes_on_with_the_same_bits),
@@ -749,7 +608,6 @@ int main(void) {
         cmocka_unit_test(failed_run_leaves_its_state),
         cmocka_unit_test(overflow_leaves_the_last_finite_state),
         cmocka_unit_test(rebounded_run_goes_on_when_an_end_time_is_given),
-        cmocka_unit_test(campaign_goes_on_with_an_interrupted_drop),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }
