@@ -44,7 +44,7 @@ typedef struct sf_missile_card {
     double clearance;        /* m, height of its lowest point above the top of the undeformed pad, its highest
                                 point, at t = 0; negative over a hole */
     int64_t impact_known;    /* 1: the next line holds; models of older versions do not say */
-    double impact[2];        /* m, x and y of the impact point (pre/build.h) */
+    double impact[2];        /* m, x and y of the impact point (pre/steps.h) */
     int64_t shape;           /* SF_SHAPE_* */
     double sphere_centre[3]; /* m, at t = 0 (SF_SHAPE_SPHERE) */
     double sphere_radius;    /* m */
@@ -209,7 +209,7 @@ typedef struct sf_model {
     int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness; /* m, of the foam under the contact, along the missile's path, its vertical part */
     double air;       /* m, on the same way: gaps of a pad with a skin, which close first */
-    double expected_mesh_error; /* fraction of a_max, see pre/build.h; 0 = not estimated */
+    double expected_mesh_error; /* fraction of a_max, see pre/steps.h; 0 = not estimated */
     double slit_fraction;       /* of the nodes: those at a slit, hole or gap narrower than their supports */
     int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */
     sf_material *material;      /* [material_count] owned */

@@ -55,7 +55,7 @@ typedef struct sf_results {
                                  say */
     double thickness;         /* m */
     double density;           /* kg m-3, mean */
-    double expected_mesh_error; /* fraction of a_max, see pre/build.h; NaN: not estimated */
+    double expected_mesh_error; /* fraction of a_max, see pre/steps.h; NaN: not estimated */
     double air;                 /* m, gaps on the way of the thickness, which close first; NaN: not stored */
     double speed_scatter, thickness_tolerance; /* -, m: standard deviations; NaN: not stored */
     double lock_up, lock_begin; /* -, see sf_model_lock_up; NaN: none, or the file does not say */
