@@ -405,7 +405,7 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
                          want->example);
     if (kind == SF_TEMPERATURE &&
         strcmp(name, "degC") == 0) { /* the only scale that does not begin at zero */
-        *si = number + 273.15;
+        *si = number + SF_CELSIUS;
         return SF_OK;
     }
     const unit_text factors = read_unit(name);

@@ -10,6 +10,7 @@
 
 /* m s-2: the g of a_max and of drop heights (CGPM 1901), and as the text of a quantity. */
 #define SF_STANDARD_GRAVITY 9.80665
+#define SF_CELSIUS 273.15 /* K, of 0 degC */
 #define SF_STANDARD_GRAVITY_TEXT SF_UNITS_QUOTE(SF_STANDARD_GRAVITY) " m/s2"
 #define SF_UNITS_QUOTE(value) SF_UNITS_QUOTE_AS_IS(value)
 #define SF_UNITS_QUOTE_AS_IS(value) #value
@@ -30,7 +31,7 @@ typedef enum sf_quantity {
     SF_INERTIA,
     SF_VOLTAGE,
     SF_SENSITIVITY,      /* of an accelerometer */
-    SF_TEMPERATURE,      /* K, or degC of the scale that begins at 273.15 K */
+    SF_TEMPERATURE,      /* K, or degC of the scale that begins at SF_CELSIUS */
     SF_MOLAR_ENERGY,     /* of an activation */
     SF_ANGULAR_VELOCITY, /* last: UDUNITS takes a radian for 1, so that it has the dimension of a rate */
     SF_QUANTITY_COUNT,

@@ -263,7 +263,7 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
             reader, setting, err,
             "%s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
             "extrapolation",
-            reader->material_group, at - 273.15, t[0] - 273.15, t[last] - 273.15);
+            reader->material_group, at - SF_CELSIUS, t[0] - SF_CELSIUS, t[last] - SF_CELSIUS);
     while (k < last - 1 && at > t[k + 1])
         k++;
     if (interpolate(card, k, (at - t[k]) / (t[k + 1] - t[k]), &curve, err) == SF_OK) {
@@ -271,7 +271,7 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
             reader->sink, SF_NOTE,
             "%s: the curve at %g degC lies between those at %g and %g degC; E, unloading, memory and rate are "
             "the same at any temperature",
-            reader->material_group, at - 273.15, t[k] - 273.15, t[k + 1] - 273.15);
+            reader->material_group, at - SF_CELSIUS, t[k] - SF_CELSIUS, t[k + 1] - SF_CELSIUS);
         sf_law_curves_free(card);
         add_curve(card, 0, &curve, err);
         reader->out->temperature_acts = reader->thermal = true;

@@ -113,11 +113,11 @@ static sf_status shift_rates(const sf_case_reader *reader, sf_error *err) {
         return REFUSE("material.shift",
                       "at pad.temperature, %g degC, the rates are shifted by more than 6 decades or, below "
                       "T_ref - C2, not at all: such a shift says nothing",
-                      at - 273.15);
+                      at - SF_CELSIUS);
     sf_sink_tell(reader->sink, SF_NOTE,
                  "%s: a rate at %g degC acts as %.4g times that rate does in the material's data; the curves "
                  "themselves, E, unloading and memory are the same at any temperature",
-                 reader->material_group, at - 273.15, shift);
+                 reader->material_group, at - SF_CELSIUS, shift);
     return SF_OK;
 }
 

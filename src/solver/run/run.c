@@ -90,7 +90,7 @@ static void tell_rates(const sf_model *m, const sf_sink *sink) {
                 sink, SF_WARNING,
                 "at %g degC the rate of the impact, speed over thickness, is %.3g s-1, %s rate of the "
                 "foam's data there, %.3g s-1: the stress of that rate is taken",
-                m->run.temperature - 273.15, rate, rate < low ? "below the lowest" : "above the highest",
+                m->run.temperature - SF_CELSIUS, rate, rate < low ? "below the lowest" : "above the highest",
                 rate < low ? low : high);
     }
 }
