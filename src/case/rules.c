@@ -406,11 +406,12 @@ static sf_status check_speed(const sf_case_reader *reader, sf_error *err) {
 /* The drops of a series, with the interval before each, and those by which it is judged. */
 static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
     sf_case *c = reader->out;
-    bool series = c->drops > 1, has_interval = sf_case_is_given(reader, "series", "interval");
+    bool series = c->drops > 1, single = !series && sf_case_is_given(reader, "series", "drops"),
+         has_interval = sf_case_is_given(reader, "series", "interval");
     const char *wrong =
-        c->drops != floor(c->drops) ? "the number of drops is a whole number"
-        : !series && has_interval   ? "an interval belongs to a series: give series.drops, from 2 on"
-        : c->drop[0].interval > 0   ? "nothing was before the first drop: it has no interval"
+        c->drops != floor(c->drops)          ? "the number of drops is a whole number"
+        : !series && !single && has_interval ? "an interval belongs to a series: give series.drops, from 2 on"
+        : c->drop[0].interval > 0            ? "nothing was before the first drop: it has no interval"
         : series && c->motion_count > 0
             ? "a prescribed motion is no series of drops: put its cycles into missile.motion"
         : series && !c->run.stop_after_rebound
@@ -423,6 +424,7 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
     }
     if (wrong)
         return REFUSE_AT("series.drops", "series.drops = %g: %s", c->drops, wrong);
+    c->counted = single ? 1 : c->counted; /* what the case says of later drops has no effect */
     if (c->counted && c->counted >> ((int)c->drops - 1) != 1)
         return REFUSE_AT("series.counted",
                          "series.counted: the last drop that it names is not the last of the series "

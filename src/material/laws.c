@@ -109,3 +109,13 @@ void sf_material_point_drive(const sf_material_law *law, double rate, double ste
         stress[i] = last;
     }
 }
+
+void sf_material_point_rest(const sf_material_law *law, double pause, sf_uniaxial *point) {
+    double rows[SF_LAW_HISTORY][SF_LANES] = {{0}};
+    law->law->uniaxial(law->numbers, 1, 0, point);
+    for (int k = 0; k < SF_LAW_HISTORY; k++)
+        rows[k][0] = point->history[k];
+    law->law->rest(law->numbers, pause, rows);
+    for (int k = 0; k < SF_LAW_HISTORY; k++)
+        point->history[k] = rows[k][0];
+}

@@ -88,3 +88,6 @@ void sf_material_point_stretch(double f[9][SF_LANES], double stretch);
  * most `step` strain; `stress` [count] receives the compressive nominal stress (Pa). */
 void sf_material_point_drive(const sf_material_law *law, double rate, double step, int count,
                              const double *strain, double *stress);
+
+/* Unloads a point, and leaves it at rest for `pause` (s). */
+void sf_material_point_rest(const sf_material_law *law, double pause, sf_uniaxial *point);

@@ -13,6 +13,7 @@ typedef struct sf_runner_drop {
     const char *material;  /* file that replaces the case's group material, NULL: none */
     int override_count;
     const char *overrides[SF_RUNNER_OVERRIDES]; /* "group.key=value" */
+    int number; /* of a series, from 1: the drop whose figures are wanted; 0: those of the drops that count */
 } sf_runner_drop;
 
 /* The engine of a batch, and the part of the batch that it runs. Strings are borrowed. */

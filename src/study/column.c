@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/units.h"
+#include "material/laws.h"
 
 /* ---- columns below the missile ---- */
 
@@ -199,25 +200,39 @@ void sf_columns_scale(const sf_columns_figures *f, double y[SF_COLUMNS_LOGARITHM
     y[SF_COLUMNS_STRAIN] = log(f->strain);
 }
 
-sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
-                          sf_columns_figures *out, sf_error *err) {
-    flight f = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP}, before;
-    int64_t room = 512;
+/* A drop on the points as they are. */
+static sf_status drop(flight *f, int64_t *room, sf_series *curve, sf_columns_figures *out, sf_error *err) {
+    flight before;
     out->v_rebound = out->contact_time = NAN;
-    SF_TRY(sf_series_create(room, curve, err));
     curve->count = 0;
-    while (put_point(&f, &room, curve, err) == SF_OK && !has_left(&f) && f.time < LONGEST) {
-        if (f.speed < 0)
-            before = f;
-        if (advance(&f, err) != SF_OK)
-            break;
-        if (has_left(&f)) {
-            out->contact_time = end_of_contact(&before, f.step);
+    while (put_point(f, room, curve, err) == SF_OK && !has_left(f) && f->time < LONGEST) {
+        if (f->speed < 0)
+            before = *f;
+        SF_TRY(advance(f, err));
+        if (has_left(f)) {
+            out->contact_time = end_of_contact(&before, f->step);
             out->v_rebound = -before.speed;
         }
     }
-    out->strain = f.deepest / columns->thickness;
-    if (err->status != SF_OK)
+    out->strain = f->deepest / f->columns->thickness;
+    return err->status;
+}
+
+sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
+                          sf_columns_figures *out, sf_error *err) {
+    const flight start = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP};
+    flight f = start;
+    int64_t room = 512;
+    SF_TRY(sf_series_create(room, curve, err));
+    for (int k = 0; k < columns->before && drop(&f, &room, curve, out, err) == SF_OK; k++) {
+        flight next = start;
+        for (int c = 0; c < columns->count; c++) {
+            next.point[c] = f.point[c];
+            sf_material_point_rest(law, columns->pause[k], &next.point[c]);
+        }
+        f = next;
+    }
+    if (err->status != SF_OK || drop(&f, &room, curve, out, err) != SF_OK)
         sf_series_free(curve);
     return err->status;
 }

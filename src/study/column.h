@@ -2,6 +2,7 @@
 #pragma once
 #include "material/laws.h"
 #include "model/good_run.h"
+#include "model/model.h"
 #include "post/figures/signal.h"
 #include "post/results/results.h"
 
@@ -11,6 +12,7 @@
  *     F(t) = sum_k A_k P(eps_k, history),   eps_k = (delta - g_k) / H,   m d2(delta)/dt2 = m g - F.
  *
  * P is the uniaxial nominal stress of the law (sf_law.uniaxial). A three-dimensional pad is somewhat stiffer.
+ * A later drop of a series begins with the histories that the same drops before it have left.
  * It costs a fifth of a millisecond: the surrogate of identification. */
 
 enum { SF_COLUMNS = 48 };
@@ -22,6 +24,8 @@ typedef struct sf_columns {
     int count;
     double area[SF_COLUMNS]; /* m2, of the whole pad, A_k */
     double gap[SF_COLUMNS];  /* m, g_k: height above the missile's lowest point, ascending */
+    int before;              /* drops like this one before it on the pad; 0: the foam is new */
+    double pause[SF_SERIES_MOST]; /* [before] s, at rest after each of them */
 } sf_columns;
 
 /* Columns below the missile's surface, as results.h5 holds it, and within the pad's outline. Errors: the

@@ -96,7 +96,6 @@ double sf_runner_figure(const sf_runner_result *result, const char *key) {
 static void take_numbers(double *f, sf_runner_result *out) {
     out->a_max_g = figure_of(f, "a_max_g");
     out->hic = figure_of(f, "hic");
-    out->hic_window = out->contact_time = NAN;
     out->v0 = figure_of(f, "v0_m_s");
     out->v_rebound = figure_of(f, "v_rebound_m_s");
     out->max_indentation = 1e-3 * figure_of(f, "max_indentation_mm");
@@ -113,6 +112,8 @@ static sf_status read_drop(const sf_run_folder *at, bool figures_only, sf_runner
     if (!figures_only || !sf_run_record_read(at->figures, at->results, &record))
         return read_result(at, out, err);
     *out = (sf_runner_result){.grade = record.grade,
+                              .hic_window = NAN,
+                              .contact_time = NAN,
                               .max_local_strain = figure_of(record.figure, "max_local_strain")};
     take_numbers(record.figure, out);
     record.figure = NULL;
@@ -150,6 +151,8 @@ static void add_drop(int drop, sf_runner_result *one, sf_runner_result *all) {
     sf_series_free(&all->curve);
     all->curve = one->curve;
     one->curve = (sf_series){0};
+    all->hic_window = one->hic_window;
+    all->contact_time = one->contact_time;
     memcpy(all->status, one->status, sizeof all->status);
 }
 
@@ -170,7 +173,6 @@ sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_r
     }
     if (sum)
         take_numbers(sum, &all);
-    sf_run_counted_text(at->drops, at->counted, all.counted, sizeof all.counted);
     *out = all;
     return finish_result(at->results, out, err);
 }

@@ -389,9 +389,10 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
                              sf_runner_result *result, sf_error *err) {
     sf_run_folder at;
     sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
-    at.drops = r->drops;
-    at.counted = r->counted;
+    at.drops = drop->number > 0 ? drop->number : r->drops;
+    at.counted = drop->number > 0 ? (int64_t)1 << (drop->number - 1) : r->counted;
     SF_TRY(sf_runner_read(&at, runner->figures_only, result, err));
+    sf_run_counted_text(r->drops, at.counted, result->counted, sizeof result->counted);
     result->reused = r->reused;
     *(r->reused ? &runner->reused : &runner->simulated) += 1;
     if (runner->log) {

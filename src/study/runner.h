@@ -24,7 +24,8 @@ enum { SF_RUNNER_COUNTED = 104 };
 
 /* The results of a drop for a campaign; figures of the CFC 1000 curve. Those of a series of drops on one pad
  * are the means over the drops that count (sf_case.counted), `steps` and `wall_s` the sums over all; the
- * largest local strains and the grade are those of the worst drop, curve and `status` those of the last. */
+ * largest local strains and the grade are those of the worst drop, curve, window, contact time and `status`
+ * those of the last. Of a series up to the drop sf_runner_drop.number that drop alone counts. */
 typedef struct sf_runner_result {
     double a_max_g, hic;                /* g, - */
     double hic_window;                  /* s, length of its window */

@@ -9,6 +9,7 @@
 #include "case/curves.h"
 #include "io/table_csv.h"
 #include "material/low_density_foam.h"
+#include "material/laws.h"
 
 /* ---- the record ---- */
 
@@ -146,14 +147,16 @@ void sf_cycle_record_free(sf_cycle_record *r) {
 enum { HYSTERESIS = 3, MEMORY = SF_CYCLE_MEMORY, MOST = SF_FORM_UNKNOWNS + HYSTERESIS + MEMORY };
 static const double FAR = 10; /* deviation where the values make no foam */
 
-const char *sf_cycle_fit_name(int number) {
-    static const char *const names[MEMORY] = {"reload", "drift", "recovery"};
-    return names[number];
+/* Bounds of HU, SHAPE and ALPHA; those of the memory are the parameters' own. The logarithm is searched. */
+static const double LEAST[HYSTERESIS] = {1e-4, 0.05, 0.1}, LARGEST[HYSTERESIS] = {0.999, 20, 5};
+
+static double least_of(int k) {
+    return k < HYSTERESIS ? LEAST[k] : sf_cycle_parameter(k - HYSTERESIS)->low;
 }
 
-/* Bounds of HU, SHAPE, ALPHA, reload, drift and recovery; their logarithm is searched. */
-static const double LEAST[HYSTERESIS + MEMORY] = {1e-4, 0.05, 0.1, 1e-3, 1e-4, 1e-4},
-                                       LARGEST[HYSTERESIS + MEMORY] = {0.999, 20, 5, 1, 10, 1};
+static double largest_of(int k) {
+    return k < HYSTERESIS ? LARGEST[k] : sf_cycle_parameter(k - HYSTERESIS)->high;
+}
 
 typedef struct problem {
     const sf_form_fit *fit;
@@ -184,7 +187,7 @@ static void take(const problem *p, const gsl_vector *x, double *value, double ow
     }
     for (int k = 0; k < HYSTERESIS + MEMORY; k++)
         own[k] = k < HYSTERESIS + p->memory
-                     ? bounded(LEAST[k], LARGEST[k], gsl_vector_get(x, (size_t)(r->unknown_count + k)))
+                     ? bounded(least_of(k), largest_of(k), gsl_vector_get(x, (size_t)(r->unknown_count + k)))
                      : 0;
 }
 
@@ -199,20 +202,13 @@ static void put_hysteresis(const double own[HYSTERESIS + MEMORY], sf_foam_card *
 static sf_status follow(const sf_cycle_record *r, const sf_foam_card *card, int end, double *stress,
                         sf_error *err) {
     const sf_material material = sf_foam_material(card);
-    double rows[SF_LAW_HISTORY][SF_LANES] = {{0}};
     SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     sf_uniaxial point = {0};
     SF_TRY(sf_material_law_build(&material, &law, err));
     for (int i = 0; i < end; i++) {
         double pause = sf_cycle_record_pause(r, i);
-        if (pause > 0) { /* without load */
-            law.law->uniaxial(law.numbers, 1, 0, &point);
-            for (int k = 0; k < SF_LAW_HISTORY; k++)
-                rows[k][0] = point.history[k];
-            law.law->rest(law.numbers, pause, rows);
-            for (int k = 0; k < SF_LAW_HISTORY; k++)
-                point.history[k] = rows[k][0];
-        }
+        if (pause > 0)
+            sf_material_point_rest(&law, pause, &point);
         double step = i > 0 ? r->time[i] - r->time[i - 1] : 1;
         stress[i] = law.law->uniaxial(law.numbers, step, r->strain[i], &point);
     }
@@ -248,7 +244,7 @@ static void put_start(const problem *p, gsl_vector *x) {
     }
     for (int k = 0; k < HYSTERESIS + p->memory; k++)
         gsl_vector_set(x, (size_t)(r->unknown_count + k),
-                       unbounded(LEAST[k], LARGEST[k],
+                       unbounded(least_of(k), largest_of(k),
                                  k < HYSTERESIS ? p->fit->unloading.fit.value[k] : memory[k - HYSTERESIS]));
 }
 
@@ -268,7 +264,8 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
             fit->unloading.fit.at_bound[of_law] = sf_is_at_end(part);
         } else {
             fit->memory_width[of_law - HYSTERESIS] =
-                sf_is_at_end(part) ? NAN : 2 * own[of_law] * log(LARGEST[of_law] / LEAST[of_law]) * error;
+                sf_is_at_end(part) ? NAN
+                                   : 2 * own[of_law] * log(largest_of(of_law) / least_of(of_law)) * error;
         }
     }
 }
@@ -298,7 +295,7 @@ static sf_status conclude(const double *value, const double own[HYSTERESIS + MEM
     fit->value[SF_PARAMETER_HU] = own[0];
     fit->value[SF_PARAMETER_SHAPE] = own[1];
     fit->value[SF_PARAMETER_ALPHA] = own[2];
-    memcpy(fit->memory, own + HYSTERESIS, sizeof fit->memory);
+    memcpy(&fit->value[SF_PARAMETER_RELOAD], own + HYSTERESIS, MEMORY * sizeof *own);
     for (int k = 0; k < records; k++) {
         SF_TRY(follow_record(&fit->config->cycles[k], &fit->card, &fit->cycles[k], err));
         for (int branch = 0; branch < 2; branch++)

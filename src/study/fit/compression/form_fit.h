@@ -38,8 +38,7 @@ typedef struct sf_form_fit {
     sf_form_unloading unloading_of_one; /* with ALPHA = 1 */
     sf_form_unloading unloading;        /* ALPHA too */
     sf_form_test test[SF_COMPRESSION_TESTS], predicted[SF_COMPRESSION_TESTS];
-    double memory[SF_CYCLE_MEMORY],
-        memory_width[SF_CYCLE_MEMORY]; /* by the records, and half widths; see sf_cycle_fit_name */
+    double memory_width[SF_CYCLE_MEMORY]; /* by the records, half widths; see sf_cycle_parameter */
     sf_cycle_result cycles[SF_CYCLE_RECORDS];
     sf_foam_card card; /* the material; curves owned */
 } sf_form_fit;
@@ -70,11 +69,14 @@ bool sf_form_fit_is_poor(const sf_form_fit *fit);
 
 /* The law with memory along records of cycles: the form's unknowns, HU, SHAPE and ALPHA, reload and drift,
  * and recovery where a record has pauses, together by least squares over the fitted cycles of all records.
- * Names: "reload", "drift", "recovery", and the half width of their interval (two standard errors; NaN: no
- * record tells it, and its value is that without effect). */
-const char *sf_cycle_fit_name(int number);
+ * The half width of an interval of these three is two standard errors; NaN: no record tells it, and its value
+ * is that without effect. */
+static inline const sf_parameter_info *sf_cycle_parameter(int number) {
+    return sf_parameter_get((sf_foam_parameter)(SF_PARAMETER_RELOAD + number));
+}
 
-/* Refines `fit`, whose values are the start, by the records of its configuration; fills memory and cycles. */
+/* Refines `fit`, whose values are the start, by the records of its configuration; fills memory_width and
+ * cycles. */
 sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err);
 
 /* Largest rms, over the largest stress, of loading (0) or unloading (1) of the cycles first .. last - 1. */

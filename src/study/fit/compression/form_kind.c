@@ -69,11 +69,11 @@ static void put_cycles(FILE *out, const sf_form_fit *fit) {
     fputs("  memory, by the fitted cycles:", out);
     for (int k = 0; k < SF_CYCLE_MEMORY; k++)
         if (isfinite(fit->memory_width[k]))
-            fprintf(out, "%s %s %.3g +- %.2g", k ? "," : "", sf_cycle_fit_name(k), fit->memory[k],
-                    fit->memory_width[k]);
+            fprintf(out, "%s %s %.3g +- %.2g", k ? "," : "", sf_cycle_parameter(k)->name,
+                    fit->value[SF_PARAMETER_RELOAD + k], fit->memory_width[k]);
         else
             fprintf(out, "%s %s %.3g (at its bound, or no record tells it)", k ? "," : "",
-                    sf_cycle_fit_name(k), fit->memory[k]);
+                    sf_cycle_parameter(k)->name, fit->value[SF_PARAMETER_RELOAD + k]);
     for (int n = 0; n < fit->config->record_count; n++) {
         const sf_cycle_record *r = &fit->config->cycles[n];
         const sf_cycle_result *c = &fit->cycles[n];
@@ -195,8 +195,8 @@ static void json_cycles(sf_json *json, const sf_form_fit *fit) {
     sf_json_open(json, "memory", '{');
     for (int k = 0; k < SF_CYCLE_MEMORY; k++) {
         char key[64];
-        sf_json_number(json, sf_cycle_fit_name(k), fit->memory[k]);
-        snprintf(key, sizeof key, "%s_half_width", sf_cycle_fit_name(k));
+        sf_json_number(json, sf_cycle_parameter(k)->name, fit->value[SF_PARAMETER_RELOAD + k]);
+        snprintf(key, sizeof key, "%s_half_width", sf_cycle_parameter(k)->name);
         sf_json_number(json, key, fit->memory_width[k]);
     }
     sf_json_open(json, "records", '[');

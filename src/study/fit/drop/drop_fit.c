@@ -22,10 +22,13 @@ static sf_status surrogate(void *context, const double *u, double *y, sf_error *
 
 /* ---- simulation ---- */
 
-static sf_status find_columns(const char *path, sf_columns *columns, sf_error *err) {
+static sf_status find_columns(const char *path, const sf_fit_drop *drop, sf_columns *columns, sf_error *err) {
     SF_OWNED_BY(sf_results_close) sf_results r = {0};
     SF_TRY(sf_results_open(path, &r, err));
-    return sf_columns_build(&r, columns, err);
+    SF_TRY(sf_columns_build(&r, columns, err));
+    columns->before = drop->number > 0 ? drop->number - 1 : 0;
+    memcpy(columns->pause, drop->pause, sizeof columns->pause);
+    return SF_OK;
 }
 
 /* Checks that a coarse drop is the same as the drop but for the mesh, since its result is used for the
@@ -50,7 +53,7 @@ static sf_status find_own_columns(sf_drop_fit *fit, int d, const char *path, sf_
     if (before.count > 0 && !replaced)
         return SF_OK;
     fit->borrowed[d] = fit->coarse;
-    if (find_columns(path, &fit->columns[d], err) == SF_OK && replaced)
+    if (find_columns(path, &fit->input->drop[d], &fit->columns[d], err) == SF_OK && replaced)
         check_coarse(&fit->input->drop[d], &before, &fit->columns[d], err);
     return err->status;
 }
@@ -88,14 +91,14 @@ static void find_columns_early(sf_drop_fit *fit, int d, const char *material) {
     sf_runner_drop request = {.label = fit->input->drop[d].name,
                               .case_path = fit->input->drop[d].case_path,
                               .material = material,
-                              .override_count = 1,
-                              .overrides = {"solver.end_time=2 ms"}};
+                              .override_count = 2,
+                              .overrides = {"solver.end_time=2 ms", "series.drops=1"}};
     sf_runner quiet = *fit->runner;
     sf_runner_result result = {0};
     sf_error none = SF_ERROR_INIT;
     quiet.log = NULL;
     if (sf_runner_run(&quiet, &request, &result, &none) == SF_OK)
-        find_columns(result.path, &fit->columns[d], &none);
+        find_columns(result.path, &fit->input->drop[d], &fit->columns[d], &none);
     sf_runner_result_free(&result);
 }
 
@@ -120,12 +123,23 @@ static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const ch
     }
 }
 
+/* The drops of a series are simulated once, in one folder: that of its first entry. */
+static const char *label_of(const sf_fit_input *in, int d) {
+    int k = 0;
+    while (k < d && !(in->drop[k].number > 0 && strcmp(in->drop[k].case_path, in->drop[d].case_path) == 0))
+        k++;
+    return in->drop[k].name;
+}
+
 /* Fills the requests of drops; those of measured drops have the coarse keys where the fit is coarse. */
 static void fill_requests(const sf_drop_fit *fit, int first, int last, const char *material,
                           sf_runner_drop *request) {
     for (int d = first; d < last; d++, request++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
-        *request = (sf_runner_drop){.label = drop->name, .case_path = drop->case_path, .material = material};
+        *request = (sf_runner_drop){.label = label_of(fit->input, d),
+                                    .case_path = drop->case_path,
+                                    .material = material,
+                                    .number = drop->number};
         if (fit->coarse && !drop->predicted) {
             request->override_count = fit->input->coarse_count;
             memcpy(request->overrides, fit->input->coarse, sizeof fit->input->coarse);

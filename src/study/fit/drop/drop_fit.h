@@ -79,6 +79,8 @@ typedef struct sf_fit_drop {
     char name[SF_FIT_NAME_SIZE];
     char *case_path; /* owned */
     bool predicted;
+    int number;                   /* of the drop in the series of its case, from 1; 0: the case has none */
+    double pause[SF_SERIES_MOST]; /* [number - 1] s, after each of the drops before it */
     double value[SF_FIT_SAMPLES]; /* measured, in the unit of its key (kinds.h); NaN: not */
     double sd[SF_FIT_SAMPLES];    /* relative standard deviations */
     double speed_sd;              /* relative standard deviation of the case's speed; 0: it is known */

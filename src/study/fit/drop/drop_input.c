@@ -191,7 +191,8 @@ static bool is_same_measurement(const sf_fit_drop *a, const sf_fit_drop *b) {
 static sf_status check_drop(const sf_config *config, sf_config_item *group, const sf_fit_drop *first,
                             const sf_fit_drop *drop, sf_error *err) {
     for (const sf_fit_drop *earlier = first; earlier < drop; earlier++) {
-        if (is_same_measurement(earlier, drop) && is_same_file(earlier->case_path, drop->case_path))
+        if (earlier->number == drop->number && is_same_measurement(earlier, drop) &&
+            is_same_file(earlier->case_path, drop->case_path))
             return sf_config_refuse(config, group, err,
                                     "the drop \"%s\" has the case and every measured value of \"%s\": give "
                                     "the same data once (of drops that were repeated, the mean)",
@@ -210,16 +211,19 @@ static sf_status check_drop(const sf_config *config, sf_config_item *group, cons
 sf_status sf_drop_input_read(const sf_config *config, sf_config_item *group, bool predicted, int count,
                              sf_fit_drop *drop, sf_error *err) {
     static const char *const names[2] = {
-        "name|case|" SF_DROP_KINDS(
+        "name|case|drop|" SF_DROP_KINDS(
             KIND_KEYS) "HIC_window_resolution_ms|speed_sd|curve|curve_sd|curve_filter|curve_column|curve_columns|curve_heading|curve_scale|curve_rate|curve_invert|curve_zero",
-        "name|case"};
+        "name|case|drop"};
     sf_fit_drop *last = &drop[count];
+    double number = 0;
     *last = (sf_fit_drop){.predicted = predicted};
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
         last->value[kind] = NAN;
     SF_TRY(sf_config_names(config, group, names[predicted], err));
     SF_TRY(name_drop(config, group, count, drop, err));
     SF_TRY(sf_config_file(config, group, "case", true, &last->case_path, err));
+    SF_TRY(sf_config_whole(config, group, "drop", false, 1, SF_SERIES_MOST, &number, err));
+    last->number = (int)number;
     if (predicted)
         return SF_OK;
     SF_TRY(read_measurement(config, group, last, err));

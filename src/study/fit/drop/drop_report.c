@@ -356,6 +356,8 @@ static void json_drops(sf_json *j, const sf_drop_fit *fit) {
         sf_json_open(j, NULL, '{');
         sf_json_text(j, "name", drop->name);
         sf_json_bool(j, "used", !drop->predicted);
+        if (drop->number > 0)
+            sf_json_number(j, "drop_of_series", drop->number);
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
             json_kind(j, fit, d, kind);
         SF_JSON_NUMBERS(j, {"curve_rmse_g", sf_drop_curve_rmse(fit, d)},

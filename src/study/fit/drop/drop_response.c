@@ -218,6 +218,7 @@ static uint64_t hash_columns(uint64_t hash, const sf_columns *c) {
     const double missile[] = {c->mass, c->speed, c->thickness};
     hash = sf_hash_identity(hash, missile, sizeof missile);
     hash = sf_hash_identity(hash, &c->count, sizeof c->count);
+    hash = sf_hash_identity(hash, c->pause, (size_t)c->before * sizeof *c->pause);
     hash = sf_hash_identity(hash, c->area, (size_t)c->count * sizeof *c->area);
     return sf_hash_identity(hash, c->gap, (size_t)c->count * sizeof *c->gap);
 }

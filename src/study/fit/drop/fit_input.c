@@ -89,25 +89,37 @@ static sf_status take_material(sf_material *material, bool first, sf_fit_input *
     return SF_OK;
 }
 
-/* The responses and the columns that correct them are of a first drop. */
-static sf_status check_single(const sf_fit_drop *drop, const sf_case *c, sf_error *err) {
-    return c->drops == 1
-               ? SF_OK
-               : SF_REFUSE(err, "%s: series.drops = %g: softfall-fit drop fits first drops on new foam",
-                           drop->case_path, c->drops);
+/* Which drop of the case's series it is. The columns of a later one are those of the drops before it, and
+ * have their speed. */
+static sf_status take_series(const sf_case *c, sf_fit_drop *drop, sf_error *err) {
+    const char *wrong = drop->number > c->drops ? "its key drop, the number in the series, is larger"
+                        : c->drops > 1 && drop->number == 0
+                            ? "say which of them was measured by its number, such as drop = 2"
+                        : c->drops > 1 && drop->speed_sd > 0 ? "speed_sd is for single drops only"
+                                                             : NULL;
+    for (int k = 1; k < drop->number && !wrong; k++) {
+        drop->pause[k - 1] = c->drop[k].interval;
+        if (c->drop[k].own)
+            wrong = "softfall-fit drop takes a series whose drops have one missile, speed and place";
+    }
+    if (wrong)
+        return SF_REFUSE(err, "the drop \"%s\": %s: series.drops = %g: %s", drop->name, drop->case_path,
+                         c->drops, wrong);
+    drop->number = c->drops > 1 ? drop->number : 0;
+    return SF_OK;
 }
 
-static sf_status read_case(const sf_fit_drop *drop, const char *material, bool first, sf_fit_input *in,
+static sf_status read_case(sf_fit_drop *drop, const char *material, bool first, sf_fit_input *in,
                            sf_error *err) {
     const sf_sink sink = sf_program_sink("softfall-fit");
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
     SF_TRY(sf_case_read(drop->case_path, 1, &material, &sink, &c, err));
-    SF_TRY(check_single(drop, &c, err));
+    SF_TRY(take_series(&c, drop, err));
     return take_material(&c.material, first, in, err);
 }
 
 /* Checks the coarse drop as the runner will make it: the material, then the keys. */
-static sf_status check_coarse(const sf_fit_drop *drop, const char *material, const sf_fit_input *in,
+static sf_status check_coarse(sf_fit_drop *drop, const char *material, const sf_fit_input *in,
                               sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
@@ -115,7 +127,7 @@ static sf_status check_coarse(const sf_fit_drop *drop, const char *material, con
     memcpy(&overrides[1], in->coarse, sizeof in->coarse);
     if (sf_case_read(drop->case_path, 1 + in->coarse_count, overrides, NULL, &c, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "coarse_set: %.800s", inner.text);
-    return check_single(drop, &c, err);
+    return take_series(&c, drop, err);
 }
 
 /* The start material, read as the first drop's case would. */
@@ -369,6 +381,20 @@ static sf_status check_rate_factor(const sf_config *config, sf_config_item *mode
     return SF_OK;
 }
 
+/* The simulations refuse it too, but only when they begin. */
+static sf_status check_memory(const sf_config *config, sf_config_item *model, const sf_fit_input *in,
+                              sf_error *err) {
+    for (int k = 0; k < in->drop_count; k++)
+        if (in->drop[k].number > 0 &&
+            !(in->start[SF_PARAMETER_RELOAD] > 0 || in->start[SF_PARAMETER_RECOVERY] > 0))
+            return sf_config_refuse(
+                config, model, err,
+                "the drop \"%s\" is of a series, but the foam of %s remembers nothing: give "
+                "it material.memory, or start: { reload = 0.4; }",
+                in->drop[k].name, in->material_path);
+    return SF_OK;
+}
+
 /* Reads the unknowns of an entry of `forms`: those that the file lists for all models, and its own or
  * those usual for the form, with the rate terms that it names. */
 static sf_status read_unknowns(const sf_config *config, sf_config_item *root, sf_fit_input *in,
@@ -385,6 +411,7 @@ static sf_status read_unknowns(const sf_config *config, sf_config_item *root, sf
         SF_TRY(add_unknown(config, model, in, SF_PARAMETER_RATE_FACTOR, err));
     }
     SF_TRY(check_rate_factor(config, model, in, err));
+    SF_TRY(check_memory(config, model, in, err));
     return sf_foam_form_check_fraction(config, root, model, curve_key(root, model), &in->form,
                                        in->unknown_count, in->unknown, err);
 }

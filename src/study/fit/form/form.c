@@ -213,7 +213,10 @@ static const struct {
                {SF_PARAMETER_BETA1, offsetof(sf_foam_card, maxwell_rate)},
                {SF_PARAMETER_ETA, offsetof(sf_foam_card, kelvin_viscosity)},
                {SF_PARAMETER_RATE_FACTOR, offsetof(sf_foam_card, rate_factor)},
-               {SF_PARAMETER_RATE_REFERENCE, offsetof(sf_foam_card, rate_reference)}};
+               {SF_PARAMETER_RATE_REFERENCE, offsetof(sf_foam_card, rate_reference)},
+               {SF_PARAMETER_RELOAD, offsetof(sf_foam_card, memory.reload)},
+               {SF_PARAMETER_DRIFT, offsetof(sf_foam_card, memory.drift)},
+               {SF_PARAMETER_RECOVERY, offsetof(sf_foam_card, memory.recovery)}};
 enum { MEMBERS = sizeof members / sizeof *members };
 
 void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]) {

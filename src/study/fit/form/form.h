@@ -46,7 +46,10 @@
     X(BETA1, "BETA1", SF_RATE, "1/s", 1, 1e-6, 1e9, 1, "its decay rate") \
     X(ETA, "eta", SF_VISCOSITY, "Pa s", 1, 1e-3, 1e6, 1, "Kelvin viscosity") \
     X(RATE_FACTOR, "rate_factor", NONE, "", 1, 1e-4, 10, 0.7, "growth of the stress with each decade of the strain rate") \
-    X(RATE_REFERENCE, "rate_reference", SF_RATE, "1/s", 1, 1e-9, 1e6, 0.7, "strain rate up to which the curve holds as it is")
+    X(RATE_REFERENCE, "rate_reference", SF_RATE, "1/s", 1, 1e-9, 1e6, 0.7, "strain rate up to which the curve holds as it is") \
+    X(RELOAD, "reload", NONE, "", 1, 1e-3, 1, 0.5, "part that a second loading has of what unloading took (material.memory)") \
+    X(DRIFT, "drift", NONE, "", 1, 1e-4, 10, 1, "fall of reload from loading to loading") \
+    X(RECOVERY, "recovery", NONE, "", 1, 1e-4, 1, 1, "part of the softening that a decade of time at rest takes back")
 /* clang-format on */
 
 typedef enum sf_foam_parameter {
