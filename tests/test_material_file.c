@@ -22,7 +22,7 @@ static void good_material_is_written_and_read(void **state) {
     sf_case c;
     fixture_case(&c, NULL);
     assert_int_equal(sf_material_write_checked(p->folder, "good", &c.material, &TEXT, &err), SF_OK);
-    assert_int_equal(sf_case_check_material(program_path(p, "good.cfg"), &err), SF_OK);
+    assert_int_equal(sf_case_check_material(program_path(p, "good.cfg"), 0, &err), SF_OK);
     sf_case_free(&c);
 }
 

@@ -2,6 +2,7 @@
 /* Curves at several temperatures, between which the pad's lies. */
 #include "extreme.h"
 #include "model_fixture.h"
+#include "post_check.h"
 #include "program_fixture.h"
 
 #include "material/foam_card.h"
@@ -11,6 +12,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
 
@@ -209,6 +211,97 @@ static void a_rate_outside_the_data_is_told(void **state) {
     assert_null(strstr(program_run(p, "solve", "t.h5 -o t-plain.h5 --force").err, "rate of the impact"));
 }
 
+/* ---- softfall-fit compression ---- */
+
+/* Stress (kPa) and energy of a foam that a temperature makes stiffer by `factor`. */
+static double stress_of(double factor, double e) {
+    return factor * (8 * (1 - exp(-50 * e)) + 100 * e / (1 - e));
+}
+
+static double energy_of(double e) {
+    return 8 * (e - (1 - exp(-50 * e)) / 50) + 100 * (-e - log(1 - e));
+}
+
+/* To a strain of 0.7 and back, with HU = 0.1 and SHAPE = 2 on the curve of this temperature. */
+static void put_test(const program_place *p, const char *name, double factor) {
+    FILE *file = fopen(program_path(p, name), "w");
+    assert_non_null(file);
+    fputs("strain,stress_kPa\n", file);
+    for (int k = 1; k < 280; k++) {
+        double e = 0.005 * (k <= 140 ? k : 280 - k), w = energy_of(e) / energy_of(0.7);
+        fprintf(file, "%.6f,%.9g\n", e, stress_of(factor, e) * (k <= 140 ? 1 : 1 - 0.9 * (1 - w * w)));
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+#define AT(temperature, name, rate)                                                                          \
+    "{ temperature = \"" temperature "\"; file = \"" name "\"; rate = \"" rate " 1/s\"; }"
+#define FIT(tests) "density = \"35 kg/m3\"; tests = ( " tests " );\n"
+#define THREE                                                                                                \
+    AT("49 degC", "at49.csv", "0.1")                                                                         \
+    ", " AT("-4 degC", "at-4.csv", "0.1") ", " AT("23 degC", "at23.csv", "0.1")
+
+/* One fit of three temperatures: one unloading and densification, a curve for each, which a case reads. */
+static void one_fit_has_a_curve_for_each_temperature(void **state) {
+    const program_place *p = *state;
+    sf_model m = {0};
+    sf_error err = SF_ERROR_INIT;
+    put_test(p, "at-4.csv", 1.6);
+    put_test(p, "at23.csv", 1);
+    put_test(p, "at49.csv", 0.7);
+    program_write_text(p, "fit.cfg", FIT(THREE));
+    program_result r = program_succeed(p, "fit", "compression fit.cfg -o fitted");
+    assert_non_null(strstr(r.out, "  -4 degC (at-4.csv): deviation 0."));
+    assert_non_null(strstr(r.out, "  49 degC (at49.csv): deviation 0."));
+    program_bytes json = program_read_file(program_path(p, "fitted/fit.json"));
+    assert_true(fabs(program_json_number(strstr(json.data, "at49.csv"), NULL, "temperature_K") - 322.15) <
+                1e-9);
+    assert_true(program_json_number(json.data, NULL, "card_difference_percent") < 1);
+    free(json.data);
+    assert_int_equal(make(p, TWO, "temperature = \"-4 degC\";").code, 0);
+    const struct {
+        const char *at;
+        double factor;
+    } cases[] = {{"23 degC", 1}, {"36 degC", sqrt(0.7)}, {"-4 degC", 1.6}};
+    for (int k = 0; k < 3; k++) {
+        program_succeed(
+            p, "pre", "t.cfg -o t.h5 --force --set material=@fitted/material.cfg --set pad.temperature='%s'",
+            cases[k].at);
+        assert_int_equal(sf_model_read(program_path(p, "t.h5"), &m, NULL, &err), SF_OK);
+        const sf_foam_card *card = sf_foam_card_of(&m.material[0]);
+        assert_int_equal(card->curve_count, 1);
+        assert_close(card->hysteresis_hu, 0.1, 0.01);
+        assert_close(card->hysteresis_shape, 2, 0.1);
+        assert_close(card->modulus, 320e3, 30e3); /* of 23 degC; the others have 1.6 and 0.7 times that */
+        for (int64_t i = 1; i < card->curve_points; i++)
+            if (card->curve_strain[i] > 0.02 && card->curve_strain[i] < 0.69)
+                assert_relative(card->curve_stress[i],
+                                1e3 * stress_of(cases[k].factor, card->curve_strain[i]), 0.02);
+        sf_model_free(&m);
+    }
+    expect(program_run(p, "pre",
+                       "t.cfg -o x.h5 --set material=@fitted/material.cfg --set pad.temperature='50 degC'"),
+           "outside the curves' -4 to 49 degC");
+}
+
+static void tests_at_temperatures_are_all_alike(void **state) {
+    const program_place *p = *state;
+    static const char *const bad[][2] = {
+        {FIT(THREE ", { file = \"warm.csv\"; rate = \"0.1 1/s\"; }"), "give it to all or to none"},
+        {FIT(AT("23 degC", "at23.csv", "0.1") ", " AT("23 degC", "at49.csv", "0.1")), "have each its own"},
+        {FIT(AT("23 degC", "at23.csv", "0.1") ", " AT("49 degC", "at49.csv", "1")), "and all the same rate"},
+        {FIT(AT("23 degC", "at23.csv", "0.1")), "a material needs curves at two or more"},
+        {FIT(THREE) "rate_model = \"log\";\n", "rate_model is for tests at several rates"},
+        {FIT(THREE) "curve_form = \"gas\";\n", "unknown key \"temperature\""},
+        {FIT(AT("23 kg", "at23.csv", "0.1")), "temperature: "},
+    };
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        program_write_text(p, "bad.cfg", bad[k][0]);
+        expect(program_run(p, "fit", "compression bad.cfg -o bad"), bad[k][1]);
+    }
+    expect(program_run(p, "fit", "compression fit.cfg -o bad --simulate t.cfg"), "--simulate does not work");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stresses_lie_between_by_their_logarithm),
@@ -216,6 +309,8 @@ int main(void) {
         cmocka_unit_test(a_shift_of_the_rate_is_one_of_time),
         cmocka_unit_test(a_shift_needs_rates_and_a_place),
         cmocka_unit_test(a_rate_outside_the_data_is_told),
+        cmocka_unit_test(one_fit_has_a_curve_for_each_temperature),
+        cmocka_unit_test(tests_at_temperatures_are_all_alike),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

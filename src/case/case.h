@@ -150,9 +150,9 @@ void sf_case_free(sf_case *c);
 /* The interface of two layers, in either order; NULL: the case does not name it, and it is tied. */
 const sf_case_interface *sf_case_interface_find(const sf_case *c, int layer, int other);
 
-/* Would a case with this material file (the keys of the group `material`) be refused for it? The sentence
- * names file, line and key. */
-sf_status sf_case_check_material(const char *path, sf_error *err);
+/* Would a case with this material file (the keys of the group `material`) be refused for it, on a pad of this
+ * temperature (K; 0: none is given)? The sentence names file, line and key. */
+sf_status sf_case_check_material(const char *path, double temperature, sf_error *err);
 /* The material of such a file; owned by the caller (sf_material_free). */
 sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err);
 

@@ -511,8 +511,8 @@ static sf_status read_alone(const char *path, sf_case *scratch, sf_error *err) {
     return err->status;
 }
 
-sf_status sf_case_check_material(const char *path, sf_error *err) {
-    SF_OWNED_BY(sf_case_free) sf_case scratch = {0};
+sf_status sf_case_check_material(const char *path, double temperature, sf_error *err) {
+    SF_OWNED_BY(sf_case_free) sf_case scratch = {.run.temperature = temperature};
     return read_alone(path, &scratch, err);
 }
 

@@ -45,14 +45,14 @@ static sf_status write_curve(const char *folder, const char *name, const sf_law_
     put_comment(file, text->title);
     fputs("# Engineering strain and nominal stress, positive in compression", file);
     if (curves->curve_count > 1)
-        fprintf(file, ", at %.6g per second", curves->curve_rate[index]);
+        fprintf(file, text->temperatures ? ", at %.6g K" : ", at %.6g per second", curves->curve_rate[index]);
     fputs(".\nstrain,stress_kPa\n", file);
     for (int64_t k = curves->curve_ptr[index]; k < curves->curve_ptr[index + 1]; k++)
         fprintf(file, "%.12g,%.12g\n", curves->curve_strain[k], 1e-3 * curves->curve_stress[k]);
     return sf_replace_close(&out, err);
 }
 
-static void put_curves(FILE *file, const char *name, const sf_law_curves *curves) {
+static void put_curves(FILE *file, const char *name, bool thermal, const sf_law_curves *curves) {
     char curve[PATH_SIZE];
     if (curves->curve_count == 1) {
         curve_name(name, curves, 0, curve);
@@ -62,8 +62,8 @@ static void put_curves(FILE *file, const char *name, const sf_law_curves *curves
     fputs("curves = (\n", file);
     for (int64_t k = 0; k < curves->curve_count; k++) {
         curve_name(name, curves, k, curve);
-        fprintf(file, "    { rate = \"%.12g 1/s\"; file = \"%s\"; }%s\n", curves->curve_rate[k], curve,
-                k + 1 < curves->curve_count ? "," : "");
+        fprintf(file, "    { %s = \"%.12g %s\"; file = \"%s\"; }%s\n", thermal ? "temperature" : "rate",
+                curves->curve_rate[k], thermal ? "K" : "1/s", curve, k + 1 < curves->curve_count ? "," : "");
     }
     fputs(");\n", file);
 }
@@ -86,7 +86,7 @@ static void put_value(FILE *file, const sf_parameter *p, double value) {
 }
 
 /* One key of a group per line, those of a sub-group on one. */
-static void put_card(FILE *file, const char *name, const sf_material *m) {
+static void put_card(FILE *file, const char *name, bool thermal, const sf_material *m) {
     const char *open = "material";
     fprintf(file, "law = \"%s\";\n", m->law->name);
     for (int k = 0; k < m->law->parameter_count; k++) {
@@ -102,7 +102,7 @@ static void put_card(FILE *file, const char *name, const sf_material *m) {
             open = p->group;
         }
         if (p->kind == SF_PARAMETER_CURVE)
-            put_curves(file, name, sf_material_curves(m));
+            put_curves(file, name, thermal, sf_material_curves(m));
         else if (p->kind == SF_PARAMETER_CHOICE)
             put_choice(file, p, *(const int64_t *)at);
         else
@@ -143,7 +143,7 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
         "# For a case: @include \"%s.cfg\" on a line of its own in the group material, or softfall-pre --set "
         "material=@%s.cfg\n",
         name, name);
-    put_card(file, name, material);
+    put_card(file, name, text->temperatures, material);
     if (text->response_error)
         put_response_error(file, text->response_error);
     return sf_replace_close(&out, err);
@@ -155,7 +155,11 @@ sf_status sf_material_write_checked(const char *folder, const char *name, const 
     sf_error inner = SF_ERROR_INIT;
     SF_TRY(sf_material_write(folder, name, material, text, err));
     snprintf(path, sizeof path, "%s/%s.cfg", folder, name);
-    if (sf_case_check_material(path, &inner) == SF_OK)
+    const sf_law_curves *curves = sf_material_curves(material);
+    for (int64_t k = 1; k < (text->temperatures ? curves->curve_count : 2) && inner.status == SF_OK; k++)
+        sf_case_check_material(
+            path, text->temperatures ? 0.5 * (curves->curve_rate[k - 1] + curves->curve_rate[k]) : 0, &inner);
+    if (inner.status == SF_OK)
         return SF_OK;
     remove(path);
     size_t skip = strlen(folder);

@@ -10,6 +10,7 @@
 typedef struct sf_material_text {
     const char *title;      /* first line of both files: a description of the material */
     const char *provenance; /* lines, each ended by '\n': where the numbers come from, their intervals */
+    bool temperatures;      /* the curves have a temperature (K) in place of the rate */
     const sf_response_error *response_error; /* of a draw of a posterior; NULL: none */
 } sf_material_text;
 

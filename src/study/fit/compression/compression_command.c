@@ -28,6 +28,9 @@ static sf_status check_job(const sf_compression_job *job, sf_study *study, const
                            ? "--simulate does not work with curve_form = \"%s\" in %s"
                            : "--simulate does not work with law = \"%s\" in %s",
                        config->form.form.curve ? config->form.form.curve->name : kind->label, job->path);
+    if (config->thermal && job->case_path)
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "--simulate does not work with tests at several temperatures, in %s", job->path);
     SF_TRY(sf_study_check(study, kind->outputs, err));
     return job->case_path ? sf_plain_hash(job->case_path, "case file", SF_PLAIN_TEXT, &ignored, err) : SF_OK;
 }
@@ -43,7 +46,7 @@ static void print_tests(FILE *out, const sf_compression_config *config) {
 }
 
 static sf_status write_material(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
-                                const char *title, sf_error *err) {
+                                const char *title, bool thermal, sf_error *err) {
     SF_OWNED char *text = NULL;
     size_t size;
     FILE *out = open_memstream(&text, &size);
@@ -53,13 +56,14 @@ static sf_status write_material(const sf_staging *output, const sf_compression_k
     }
     if (!out || fclose(out) != 0)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the comments of the material file");
-    const sf_material_text comments = {.title = title, .provenance = text};
+    const sf_material_text comments = {.title = title, .provenance = text, .temperatures = thermal};
     const sf_material material = kind->material(fit);
     return sf_material_write_checked(output->aside, "material", &material, &comments, err);
 }
 
 static sf_status write_all(const sf_compression_job *job, const sf_compression_kind *kind, sf_study *study,
-                           void *fit, const char *name, char *warning, size_t size, sf_error *err) {
+                           void *fit, const sf_compression_config *config, char *warning, size_t size,
+                           sf_error *err) {
     sf_staging *output = &study->output;
     SF_TRY(sf_staging_begin(job->directory, kind->outputs, study->force, output, err));
     FILE *points = sf_staging_open(output, "fit.csv", err);
@@ -74,7 +78,7 @@ static sf_status write_all(const sf_compression_job *job, const sf_compression_k
     kind->json(&json, fit, job->path);
     sf_json_close(&json, '}');
     SF_TRY(sf_staging_close(json.file, "fit.json", err));
-    SF_TRY(write_material(output, kind, fit, name, err));
+    SF_TRY(write_material(output, kind, fit, config->name, config->thermal, err));
     return sf_staging_commit(output, err);
 }
 
@@ -83,7 +87,7 @@ static sf_status fit_and_write(sf_study *study, const sf_compression_job *job,
                                void *fit, sf_error *err) {
     char warning[512] = "";
     SF_TRY(kind->run(config, fit, err));
-    SF_TRY(write_all(job, kind, study, fit, config->name, warning, sizeof warning, err));
+    SF_TRY(write_all(job, kind, study, fit, config, warning, sizeof warning, err));
     kind->describe(job->log, fit, false);
     sf_study_close(study, kind->files, warning);
     kind->warn(fit, &study->sink);

@@ -243,10 +243,23 @@ static sf_status read_specimen(const sf_config *file, sf_config_item *parent,
     return SF_OK;
 }
 
-static sf_status check_rate(const sf_config *file, sf_config_item *entry, double rate,
+/* Tests differ in rate or, all of them, in temperature. */
+static sf_status check_rate(const sf_config *file, sf_config_item *entry, double rate, double temperature,
                             const sf_compression_config *c, sf_error *err) {
     for (int k = 0; k < c->test_count; k++)
-        if (fabs(log(rate / c->test[k].rate)) < 1e-6)
+        if (!(temperature > 0) != !(c->test[k].temperature > 0))
+            return sf_config_refuse(
+                file, entry, err,
+                "one of the tests has a temperature, another has none: give it to all or to none");
+        else if (temperature > 0 && (fabs(temperature - c->test[k].temperature) < 0.1 ||
+                                     fabs(log(rate / c->test[k].rate)) > 0.01))
+            return sf_config_refuse(
+                file, entry, err,
+                "%.4g degC at %g 1/s beside %.4g degC at %g 1/s (%s): tests at temperatures have "
+                "each its own, and all the same rate",
+                temperature - SF_CELSIUS, rate, c->test[k].temperature - SF_CELSIUS, c->test[k].rate,
+                c->test[k].path);
+        else if (!(temperature > 0) && fabs(log(rate / c->test[k].rate)) < 1e-6)
             return sf_config_refuse(file, config_setting_get_member(entry, "rate"), err,
                                     "the rate %g 1/s is that of %s already; give each rate once (join the "
                                     "tests or take their mean)",
@@ -270,10 +283,12 @@ static sf_status check_points(const sf_config *file, sf_config_item *entry, cons
     return SF_OK;
 }
 
-/* Puts the test in its place by rate. */
+/* Puts the test in its place by temperature and rate. */
 static void insert_test(sf_compression_test *tests, int *count, const sf_compression_test *test) {
     int at = (*count)++;
-    for (; at > 0 && tests[at - 1].rate > test->rate; at--)
+    for (; at > 0 && (tests[at - 1].temperature > test->temperature ||
+                      (tests[at - 1].temperature == test->temperature && tests[at - 1].rate > test->rate));
+         at--)
         tests[at] = tests[at - 1];
     tests[at] = *test;
 }
@@ -328,15 +343,23 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, bool pr
     sf_error inner = SF_ERROR_INIT;
     SF_OWNED char *path = NULL;
     sf_compression_source source = {.toe = c->toe};
-    if (sf_config_names(file, entry, "file|" SF_COMPRESSION_SOURCE_KEYS, err) == SF_OK &&
+    double temperature = 0;
+    const char *names =
+        c->specimens ? "file|" SF_COMPRESSION_SOURCE_KEYS : "file|temperature|" SF_COMPRESSION_SOURCE_KEYS;
+    if (sf_config_names(file, entry, names, err) == SF_OK &&
+        sf_config_quantity(file, entry, "temperature", SF_TEMPERATURE, false, 0, &temperature, err) ==
+            SF_OK &&
         sf_compression_source_read(file, entry, c->specimen, &source, err) == SF_OK &&
-        (predicted || c->specimens || check_rate(file, entry, source.rate, c, err) == SF_OK) &&
+        (predicted || c->specimens || check_rate(file, entry, source.rate, temperature, c, err) == SF_OK) &&
         sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
         source.path = path;
         if (sf_compression_test_read(&source, &test, &inner) != SF_OK)
             SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
                     config_setting_source_line(entry));
-        else if (predicted)
+        test.temperature = temperature;
+        if (err->status != SF_OK)
+            return err->status;
+        if (predicted)
             insert_test(c->predicted, &c->predicted_count, &test);
         else if (check_points(file, entry, &test, c, err) == SF_OK)
             insert_test(c->test, &c->test_count, &test);
@@ -367,6 +390,26 @@ static sf_status read_name(const sf_config *file, sf_config_item *root, sf_compr
                                 "name must be a text of 1 to %d characters, without ', \\ and line ends",
                                 SF_COMPRESSION_NAME - 1);
     snprintf(c->name, sizeof c->name, "%s", text);
+    return SF_OK;
+}
+
+/* Tests at temperatures have a curve each, as those at rates where `rate_model` is "curves". */
+static sf_status take_temperatures(const sf_config *file, sf_config_item *root, sf_compression_config *c,
+                                   sf_error *err) {
+    static const double USUAL = SF_CELSIUS + 23;
+    c->thermal = c->test[0].temperature > 0;
+    if (!c->thermal)
+        return SF_OK;
+    if (c->test_count == 1 || c->rate_model != SF_RATE_AUTO)
+        return sf_config_refuse(
+            file, config_setting_get_member(root, c->test_count == 1 ? "tests" : "rate_model"), err,
+            c->test_count == 1 ? "one test has a temperature: a material needs curves at two or more"
+                               : "rate_model is for tests at several rates, and these have "
+                                 "temperatures");
+    c->rate_model = SF_RATE_CURVES;
+    for (int k = 1; k < c->test_count; k++)
+        if (fabs(c->test[k].temperature - USUAL) < fabs(c->test[c->middle].temperature - USUAL))
+            c->middle = k;
     return SF_OK;
 }
 
@@ -406,7 +449,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
     c->specimens = form;
     SF_TRY(read_tests(file, root, "tests", false, c, err));
     if (!form)
-        return SF_OK;
+        return take_temperatures(file, root, c, err);
     SF_TRY(read_tests(file, root, "predict", true, c, err));
     SF_TRY(sf_cycle_records_read(file, root, c, err));
     return sf_form_request_read(file, root, c, err);
@@ -452,11 +495,11 @@ static sf_status check_together(const char *path, const sf_compression_config *c
                          "%s: densification_start = %g leaves no data to fit the densification to: the tests "
                          "reach a strain of %g",
                          path, c->densification_start, shortest);
-    for (int i = 0; i < c->test[0].loading; i++)
-        below += c->test[0].strain[i] <= c->modulus_range;
+    for (int i = 0; i < c->test[c->middle].loading; i++)
+        below += c->test[c->middle].strain[i] <= c->modulus_range;
     if (below < 4)
         return SF_REFUSE(err, "%s: %d points below the strain %g (E_range) while loading; E needs at least 4",
-                         c->test[0].path, below, c->modulus_range);
+                         c->test[c->middle].path, below, c->modulus_range);
     if (c->test_count == 1 && c->rate_model != SF_RATE_AUTO && c->rate_model != SF_RATE_NONE)
         return SF_REFUSE(err, "%s: the rate model \"%s\" needs tests at two rates; there is one test", path,
                          sf_rate_model_names[c->rate_model]);

@@ -108,8 +108,10 @@ typedef struct sf_compression_config {
     sf_rate_model rate_model;
     sf_rule_choice rule;
     bool specimens; /* of a form: tests of several specimens may have one rate */
+    bool thermal;   /* the tests have temperatures of their own, and one rate */
+    int middle;     /* the test that E is of: the slowest, or that nearest to 23 degC */
     int test_count;
-    sf_compression_test test[SF_COMPRESSION_TESTS]; /* ascending rate; owned */
+    sf_compression_test test[SF_COMPRESSION_TESTS]; /* ascending rate or temperature; owned */
     sf_form_request form;           /* which form of the loading curve; its curve is NULL: a free spline */
     sf_hyperfoam_request hyperfoam; /* its terms are 0: another law */
     int record_count;               /* of cycles; of a form */

@@ -42,6 +42,7 @@ typedef struct sf_compression_source {
 typedef struct sf_compression_test {
     char *path;            /* owned */
     double rate;           /* s-1, nominal, of loading and of unloading */
+    double temperature;    /* K, of the foam; 0: the file does not say */
     int count;             /* points */
     int loading;           /* the first of them are loading, the rest unloading */
     double *strain;        /* [count] -, not falling while loading, not rising while unloading; owned */

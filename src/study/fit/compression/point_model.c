@@ -330,17 +330,17 @@ static double loading_stress(const sf_compression_model *model, const gsl_vector
 }
 
 /* Unloading runs on the slowest curve: the rate overstress follows the filtered rate of compression, which is
- * zero. */
+ * zero. At a temperature of its own there is one curve. */
 static double predict_unloading(const sf_compression_model *model, const gsl_vector *parameters,
                                 const numbers *n, int i, double *gradient) {
     const sf_compression_data *d = model->data;
     const sf_compression_test *t = &d->config->test[d->test[i]];
-    int count = model->spline.count;
+    int count = model->spline.count, curve = d->config->thermal ? d->test[i] : 0;
     double hu = n->value[SF_NUMBER_HU], shape = n->value[SF_NUMBER_SHAPE], alpha = n->value[SF_NUMBER_ALPHA];
     ordinate o, peak;
-    evaluate(model, n->coefficient[0], n, d->strain[i], &model->value_row[i * count],
+    evaluate(model, n->coefficient[curve], n, d->strain[i], &model->value_row[i * count],
              &model->area_row[i * count], &o);
-    evaluate(model, n->coefficient[0], n, t->largest_strain, model->peak_row[d->test[i]][0],
+    evaluate(model, n->coefficient[curve], n, t->largest_strain, model->peak_row[d->test[i]][0],
              model->peak_row[d->test[i]][1], &peak);
     double ratio = fmax(1e-12, fmin(1, o.energy / peak.energy)), power = pow(ratio, shape);
     double rest = fmax(1e-9, 1 - power), loss = pow(rest, alpha),
@@ -348,9 +348,9 @@ static double predict_unloading(const sf_compression_model *model, const gsl_vec
     double factor = sf_unloading_factor(hu, shape, alpha, ratio), bend = shape * slope * o.stress;
     if (gradient) {
         double by_energy = bend / fmax(o.energy, 1e-12 * peak.energy), by_peak = -bend / peak.energy;
-        add_coefficients(model, n, 0, o.stress_by, factor, gradient);
-        add_coefficients(model, n, 0, o.energy_by, by_energy, gradient);
-        add_coefficients(model, n, 0, peak.energy_by, by_peak, gradient);
+        add_coefficients(model, n, curve, o.stress_by, factor, gradient);
+        add_coefficients(model, n, curve, o.energy_by, by_energy, gradient);
+        add_coefficients(model, n, curve, peak.energy_by, by_peak, gradient);
         add_densification(model, parameters,
                           factor * o.stress_by_exponent + by_energy * o.energy_by_exponent +
                               by_peak * peak.energy_by_exponent,

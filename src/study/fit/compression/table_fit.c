@@ -259,13 +259,13 @@ static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e
     return SF_OK;
 }
 
-/* Slope of the line through the loading of the slowest test below the strain E_range. Its variance is that of
- * the scatter: the curve's own bend within the range is no uncertainty of the slope. */
+/* Slope of the line through the loading of one test, the slowest, below the strain E_range. Its variance is
+ * that of the scatter: the curve's own bend within the range is no uncertainty of the slope. */
 static void estimate_modulus(const sf_compression_fit *fit, sf_estimate *e) {
     const sf_compression_data *d = &fit->data;
     double weight[4096], c0, c00, c01, c11, chi2;
     int first, count, used = 0;
-    sf_compression_branch(d, 0, false, &first, &count);
+    sf_compression_branch(d, d->config->middle, false, &first, &count);
     for (; used < count && used < 4096 && d->strain[first + used] <= d->config->modulus_range; used++)
         weight[used] = 1 / (d->sigma[first + used] * d->sigma[first + used]);
     gsl_fit_wlinear(&d->strain[first], 1, weight, 1, &d->stress[first], 1, (size_t)used, &c0, &e->value, &c00,
@@ -572,7 +572,7 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
     int count = fit->table_count;
     SF_TRY(sf_form_curves_alloc(fit->rate_count, (int64_t)fit->rate_count * count, &card->curves, err));
     for (int r = 0; r < fit->rate_count; r++) {
-        card->curve_rate[r] = fit->rate_count > 1 ? c->test[r].rate : 0;
+        card->curve_rate[r] = c->thermal ? c->test[r].temperature : fit->rate_count > 1 ? c->test[r].rate : 0;
         memcpy(&card->curve_strain[r * count], fit->table_strain, (size_t)count * sizeof(double));
         memcpy(&card->curve_stress[r * count], fit->table_stress[r], (size_t)count * sizeof(double));
     }

@@ -80,7 +80,8 @@ void sf_compression_fit_free(sf_compression_fit *fit);
 /* Standard error of a quantity with this gradient [model.parameter_count] by the parameters. */
 double sf_compression_error(const sf_compression_fit *fit, const double *gradient);
 
-/* The foam card of the fit; released by the caller with sf_foam_card_free. */
+/* The foam card of the fit, whose curves have the temperature (K) in place of the rate where the tests have
+ * one; released by the caller with sf_foam_card_free. */
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err);
 
 /* The result of the fit of tables: the fit, its card in the solver's own law, and how both stand against the
@@ -107,10 +108,12 @@ typedef struct sf_table_result {
 } sf_table_result;
 
 /* Rows of an sf_table_test: all, and those of the simulated test. */
-extern const sf_rows sf_table_test_rows, sf_table_simulation_rows;
+sf_rows sf_table_test_rows(const sf_table_result *result);
+extern const sf_rows sf_table_simulation_rows;
 
-/* Phrases of sf_rate_model and sf_rule. */
-extern const char *const sf_table_rates[SF_RATE_MODELS], *const sf_table_rules[SF_RULES];
+/* Phrases of the rate dependence and of sf_rule. */
+const char *sf_table_rate_words(const sf_compression_fit *fit);
+extern const char *const sf_table_rules[SF_RULES];
 
 /* An estimate as a reader sees it. */
 typedef struct sf_table_estimate {

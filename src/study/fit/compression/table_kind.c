@@ -44,15 +44,32 @@ static void compare_test(const sf_compression_fit *fit, int k, sf_table_test *ou
     }
 }
 
+/* The card for test k: of several temperatures the curve of its own alone, whose ends go to `ptr`. */
+static sf_foam_card card_of_test(const sf_table_result *r, int k, int64_t ptr[2]) {
+    sf_foam_card card = r->card;
+    if (!r->fit.data.config->thermal)
+        return card;
+    int64_t first = card.curve_ptr[k];
+    ptr[0] = 0;
+    ptr[1] = card.curve_points = card.curve_ptr[k + 1] - first;
+    card.curve_count = 1;
+    card.curve_ptr = ptr;
+    card.curve_strain += first;
+    card.curve_stress += first;
+    return card;
+}
+
 static sf_status compare_card(sf_table_result *r, sf_error *err) {
     const sf_compression_data *d = &r->fit.data;
-    const sf_material material = sf_foam_material(&r->card);
-    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     SF_OWNED double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
     SF_TRY(err->status);
-    SF_TRY(sf_material_law_build(&material, &law, err));
     for (int k = 0, first = 0; k < d->config->test_count; k++) {
         const sf_compression_test *t = &d->config->test[k];
+        int64_t ptr[2];
+        sf_foam_card card = card_of_test(r, k, ptr);
+        const sf_material material = sf_foam_material(&card);
+        SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
+        SF_TRY(sf_material_law_build(&material, &law, err));
         sf_material_point_drive(&law, t->rate, CARD_STEP, t->count, &d->strain[first], &stress[first]);
         for (int i = first; i < first + t->count; i++)
             r->card_percent =
@@ -107,7 +124,8 @@ static void put_estimates(FILE *out, const sf_compression_fit *fit) {
 static void describe(FILE *out, const void *place, bool comments) {
     const sf_table_result *r = place;
     const sf_compression_fit *fit = &r->fit;
-    const char *rate = sf_table_rates[fit->model.form.rate], *rule = sf_table_rules[fit->model.form.rule];
+    bool thermal = fit->data.config->thermal;
+    const char *rate = sf_table_rate_words(fit), *rule = sf_table_rules[fit->model.form.rule];
     char misfit[160];
     if (!comments) {
         fprintf(out, "%s: %d test%s, %d points, strain to %.4g\n", fit->data.config->name, r->test_count,
@@ -121,14 +139,23 @@ static void describe(FILE *out, const void *place, bool comments) {
             if (fit->side[k].points > 0)
                 fprintf(out, "  %s: %s\n", k ? "unloading, given the loading" : "loading",
                         sf_table_misfit(&fit->side[k], misfit));
+        for (int k = 0; k < r->test_count && thermal; k++)
+            fprintf(out,
+                    "  %.4g degC (%s): deviation %.3g %% of the stress in loading, %.3g %% in unloading\n",
+                    r->test[k].test.temperature - SF_CELSIUS, r->test[k].name, r->test[k].percent[0],
+                    r->test[k].percent[1]);
         fprintf(out, "  card in the solver's law against the fit: largest difference %.2g %%\n",
                 r->card_percent);
         return;
     }
     fputs(" from\n", out);
-    for (int k = 0; k < r->test_count; k++)
-        fprintf(out, "  %s at %.6g 1/s, to a strain of %.4g\n", r->test[k].test.path, r->test[k].test.rate,
-                r->test[k].test.largest_strain);
+    for (int k = 0; k < r->test_count; k++) {
+        const sf_compression_test *t = &r->test[k].test;
+        fprintf(out, "  %s at %.6g 1/s", t->path, t->rate);
+        if (thermal)
+            fprintf(out, " and %.4g degC", t->temperature - SF_CELSIUS);
+        fprintf(out, ", to a strain of %.4g\n", t->largest_strain);
+    }
     fprintf(out, "Rate dependence %s.\nDensification from the strain %.4g on by %s.\n", rate, fit->data.start,
             rule);
     put_estimates(out, fit);
@@ -160,17 +187,22 @@ static void put_points(FILE *file, const void *place) {
 }
 
 static sf_status write_curves(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
+    const sf_compression_test *test = fit->data.config->test;
+    bool thermal = fit->data.config->thermal;
     FILE *file = sf_staging_open(output, "loading_curve.csv", err);
     SF_TRY(err->status);
-    fprintf(file, "# Loading curves of the fit with their %g %% intervals; rate 0: one curve for all rates\n",
-            100 * fit->data.config->confidence);
-    fputs("rate_1_s,strain,stress_kPa,low_kPa,high_kPa\n", file);
+    fprintf(file, "# Loading curves of the fit with their %g %% intervals%s\n",
+            100 * fit->data.config->confidence, thermal ? "" : "; rate 0: one curve for all rates");
+    fprintf(file, "%s,strain,stress_kPa,low_kPa,high_kPa\n", thermal ? "temperature_K" : "rate_1_s");
     for (int r = 0; r < fit->rate_count; r++)
         for (int k = 0; k < fit->table_count; k++) {
             double stress = fit->table_stress[r][k], width = fit->quantile * fit->table_error[r][k];
             fprintf(file, "%.9g,%.9g,%.9g,%.9g,%.9g\n",
-                    fit->rate_count > 1 ? fit->data.config->test[r].rate : 0, fit->table_strain[k],
-                    1e-3 * stress, 1e-3 * fmax(0, stress - width), 1e-3 * (stress + width));
+                    thermal               ? test[r].temperature
+                    : fit->rate_count > 1 ? test[r].rate
+                                          : 0,
+                    fit->table_strain[k], 1e-3 * stress, 1e-3 * fmax(0, stress - width),
+                    1e-3 * (stress + width));
         }
     return sf_staging_close(file, "loading_curve.csv", err);
 }
@@ -404,7 +436,7 @@ static void put_json(sf_json *json, const void *place, const char *path) {
     sf_json_text(json, "program", "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")");
     sf_json_text(json, "input", path);
     sf_json_text(json, "name", r->fit.data.config->name);
-    sf_rows_json_array(json, "tests", sf_table_test_rows,
+    sf_rows_json_array(json, "tests", sf_table_test_rows(r),
                        (sf_records){r->test, sizeof r->test[0], r->test_count});
     json_choice(json, &r->fit);
     json_estimates(json, &r->fit);

@@ -7,7 +7,7 @@
 #include "report/chart.h"
 #include <math.h>
 
-const char *const sf_table_rates[SF_RATE_MODELS] = {
+static const char *const rates[SF_RATE_MODELS] = {
     "none: one curve for all rates",
     "log: curve times 1 + c ln(rate/slowest rate), written as a curve for each rate",
     "maxwell: one curve and a Maxwell branch ED, BETA1",
@@ -18,6 +18,11 @@ const char *const sf_table_rules[SF_RULES] = {
     "H1, exponent free: A + B/(1 - strain)^m",
     "H2: A + B/(limit - strain)^m",
 };
+
+const char *sf_table_rate_words(const sf_compression_fit *fit) {
+    return fit->data.config->thermal ? "none: a curve of its own for each temperature, at one rate"
+                                     : rates[fit->model.form.rate];
+}
 
 /* A value of the estimate with its unit; pressures in kPa. */
 static void value_text(const sf_estimate *e, double value, char *out, size_t size) {
@@ -63,8 +68,16 @@ static const sf_row test_rows[] = {
     {"unloading_rms_over_sigma", "unloading", NULL, "%.3g", OF_TEST(NUMBER, rms[1])},
     {"loading_rms_percent", "deviation, loading", "%", "%.3g", OF_TEST(NUMBER, percent[0])},
     {"unloading_rms_percent", "unloading", "%", "%.3g", OF_TEST(NUMBER, percent[1])},
+    {.key = "temperature_K",
+     .name = "temperature",
+     .unit = "K",
+     .format = "%.2f",
+     OF_TEST(NUMBER, test.temperature)},
 };
-const sf_rows sf_table_test_rows = {test_rows, sizeof test_rows / sizeof *test_rows};
+
+sf_rows sf_table_test_rows(const sf_table_result *r) {
+    return (sf_rows){test_rows, sizeof test_rows / sizeof *test_rows - !r->fit.data.config->thermal};
+}
 
 static const sf_row simulation_rows[] = {
     {.key = "rate_1_s", .name = "rate", .unit = "1/s", OF_TEST(NUMBER, test.rate)},
@@ -105,8 +118,13 @@ static void put_curves(sf_chart *chart, const sf_compression_fit *fit, bool titl
     }
     for (int k = 0; k < d->config->test_count; k++) {
         const sf_series_style style = {.kind = SF_SERIES_LINE, .colour = LINE[k], .width = 1.8};
-        sf_series_data *line =
-            sf_chart_series(chart, style, titles ? "fit at %.3g 1/s" : NULL, d->config->test[k].rate);
+        const sf_compression_test *t = &d->config->test[k];
+        bool thermal = d->config->thermal;
+        sf_series_data *line = sf_chart_series(chart, style,
+                                               !titles   ? NULL
+                                               : thermal ? "fit at %.3g degC"
+                                                         : "fit at %.3g 1/s",
+                                               thermal ? t->temperature - SF_CELSIUS : t->rate);
         for (int i = 0; i < d->count; i++)
             if (d->test[i] == k)
                 sf_series_point(line, d->strain[i], 1e-3 * fit->stress[i]);
@@ -184,7 +202,7 @@ static void put_tests(FILE *out, const sf_table_result *r) {
     if (c->specimen.area > 0 && c->specimen.thickness > 0)
         sf_html_paragraph(out, "Specimen of %.5g mm², %.4g mm thick, %.4g kg/m³.", 1e6 * c->specimen.area,
                           1e3 * c->specimen.thickness, c->density);
-    sf_rows_html_table(out, "dense", sf_table_test_rows,
+    sf_rows_html_table(out, "dense", sf_table_test_rows(r),
                        (sf_records){r->test, sizeof r->test[0], r->test_count});
     sf_html_note(
         out, "Deviation: root mean square of data less fit, over the scatter (1: nothing but scatter) and in "
@@ -208,7 +226,7 @@ static void put_parameters(FILE *out, const sf_compression_fit *fit) {
     sf_html_table_end(&table);
     sf_html_note(
         out,
-        "E is the slope of a straight line through the loading of the slowest test below a strain of %g; "
+        "E is the slope of a straight line through the loading of the slowest test (of several temperatures: of that nearest to 23 degC) below a strain of %g; "
         "where the curve bends within that range the slope at rest is steeper. The loading curve with its "
         "interval is in loading_curve.csv.",
         fit->data.config->modulus_range);
@@ -237,8 +255,8 @@ static void put_choice(FILE *out, const sf_compression_fit *fit) {
     int rate = (int)fit->model.form.rate, rule = (int)fit->model.form.rule;
     sf_html_block_begin(out);
     sf_html_heading(out, "Choice of the law");
-    sf_html_paragraph(out, "Rate dependence: %s.", sf_table_rates[rate]);
-    if (!put_candidates(out, fit->rate, SF_RATE_MODELS, rate, sf_table_rates))
+    sf_html_paragraph(out, "Rate dependence: %s.", sf_table_rate_words(fit));
+    if (!put_candidates(out, fit->rate, SF_RATE_MODELS, rate, rates) && !fit->data.config->thermal)
         sf_html_paragraph(out, fit->data.config->test_count > 1 ? "It was prescribed."
                                                                 : "One test says nothing about it.");
     sf_html_paragraph(out, "Densification from the strain %.4g on: %s.", fit->data.start,
@@ -307,7 +325,7 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
             "Rates beyond %.3g 1/s: a drop is faster by orders of magnitude, there the branch is a "
             "spring of ED = %.4g kPa.",
             fastest, 1e-3 * e[SF_ESTIMATE_ED].value);
-    else if (fit->rate_count > 1)
+    else if (fit->rate_count > 1 && !c->thermal)
         sf_html_paragraph(
             out,
             "Rates beyond %.3g 1/s: the solver holds the fastest curve; a drop is faster by orders of "
@@ -316,10 +334,11 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
     else
         sf_html_paragraph(
             out, "Rates other than those of the tests (to %.3g 1/s): the law has no rate effect.", fastest);
-    sf_html_paragraph(
-        out,
-        "Unloading faster than in the tests, and reloading: the law unloads on the slowest curve, and its "
-        "hysteresis does not depend on the rate.");
+    sf_html_paragraph(out,
+                      "Unloading faster than in the tests, and reloading: the law unloads on %s, and its "
+                      "hysteresis does not depend on the %s.",
+                      c->thermal ? "the curve of the pad's temperature" : "the slowest curve",
+                      c->thermal ? "rate or the temperature" : "rate");
     sf_html_paragraph(out, "Tension: it takes the modulus E, which compression does not show.");
     sf_html_paragraph(out, "DAMP is not identified; it is written as given.");
     if (!isfinite(e[SF_ESTIMATE_HU].error))
