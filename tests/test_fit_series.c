@@ -18,16 +18,18 @@
 /* The case of the fixture as three drops on one pad, whose foam remembers. */
 static void put_case(const program_place *place) {
     fit_fixture_put_case(place);
-    program_shell(place, "echo 'series: { drops = ( {}, { interval = \"5 s\"; }, { interval = \"2 hour\"; } ); };' "
-                         ">> case.cfg; sed -i \"s|4.5 m/s|2 m/s|; s|40 ms|150 ms|\" case.cfg; sed -i \"s|HU = 0.01|HU = 0.15|\" start.cfg; cp start.cfg plain.cfg; echo 'ALPHA = 0.5; memory: { reload = 0.3; "
-                         "recovery = 0.08; };' >> start.cfg");
+    program_shell(
+        place,
+        "echo 'series: { drops = ( {}, { interval = \"5 s\"; }, { interval = \"2 hour\"; } ); };' "
+        ">> case.cfg; sed -i \"s|4.5 m/s|2 m/s|; s|40 ms|150 ms|\" case.cfg; sed -i \"s|HU = 0.01|HU = 0.15|\" start.cfg; cp start.cfg plain.cfg; echo 'ALPHA = 0.5; memory: { reload = 0.3; "
+        "recovery = 0.08; };' >> start.cfg");
 }
 
 /* ---- columns as truth ---- */
 
 enum { DROPS = 3, UNKNOWNS = 3, NOISES = 5, ROWS = DROPS * (SF_FIT_SAMPLES + 1) };
 static const double truth[UNKNOWNS] = {1.15, 0.45, 0.12}; /* stress_scale, reload, recovery */
-static const double SD[2] = {0.01, 0.02}, SPEED = 3; /* m s-1 */
+static const double SD[2] = {0.01, 0.02}, SPEED = 3;      /* m s-1 */
 
 /* A foam in a laboratory, whose simulation is a set of stiffer and thinner columns than the surrogate. */
 typedef struct bench {
@@ -38,7 +40,8 @@ typedef struct bench {
 } bench;
 
 static sf_columns hemisphere(const sf_fit_drop *drop, double area, double thinner) {
-    sf_columns c = {.mass = 4.6, .speed = SPEED, .thickness = 0.07 * thinner, .count = 15, .before = drop->number - 1};
+    sf_columns c = {
+        .mass = 4.6, .speed = SPEED, .thickness = 0.07 * thinner, .count = 15, .before = drop->number - 1};
     memcpy(c.pause, drop->pause, sizeof c.pause);
     for (int k = 0; k < c.count; k++) {
         c.gap[k] = 0.07 * (k + 0.5) / c.count;
@@ -73,11 +76,12 @@ static sf_status simulate(void *context, const double *u, double *y, sf_error *e
 static void begin(const program_place *place, int measured, bench *b) {
     sf_error err = SF_ERROR_INIT;
     *b = (bench){.in = {.drop_count = 0}};
-    program_write_text(place, "fit.cfg",
-                       "material = \"start.cfg\"; curve_form = \"table\"; unknown = ( { name = \"stress_scale\"; }, "
-                       "{ name = \"reload\"; }, { name = \"recovery\"; } );\n"
-                       "drops = ( { case = \"case.cfg\"; drop = 1; HIC = 3.0; }, { case = \"case.cfg\"; drop = 2; "
-                       "HIC = 3.0; }, { case = \"case.cfg\"; drop = 3; HIC = 3.0; } );\n");
+    program_write_text(
+        place, "fit.cfg",
+        "material = \"start.cfg\"; curve_form = \"table\"; unknown = ( { name = \"stress_scale\"; }, "
+        "{ name = \"reload\"; }, { name = \"recovery\"; } );\n"
+        "drops = ( { case = \"case.cfg\"; drop = 1; HIC = 3.0; }, { case = \"case.cfg\"; drop = 2; "
+        "HIC = 3.0; }, { case = \"case.cfg\"; drop = 3; HIC = 3.0; } );\n");
     if (sf_fit_input_read(program_path(place, "fit.cfg"), 0, &b->in, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_true(b->in.drop[2].number == 3 && b->in.drop[2].pause[0] == 5 && b->in.drop[2].pause[1] == 7200);
@@ -178,7 +182,8 @@ static void later_peaks_tell_the_memory(void **state) {
             measure_and_map(b, random);
             for (int k = 0; k < UNKNOWNS; k++) {
                 sd[measured][k] = sqrt(b->fit.result.covariance[k][k]);
-                inside += measured == DROPS && fabs(b->fit.result.u[k] - log(truth[k])) < 1.96 * sd[measured][k];
+                inside +=
+                    measured == DROPS && fabs(b->fit.result.u[k] - log(truth[k])) < 1.96 * sd[measured][k];
             }
             if (measured == 2)
                 assert_true(predicts_third(b, &width));
@@ -205,8 +210,8 @@ static double number(const char *text, int row, int column) {
     return strtod(text, NULL);
 }
 
-/* Two measured drops of a simulated series give its foam back, and the third drop; the series of an iterate is
- * simulated once. */
+/* Two measured drops of a simulated series give its foam back, and the third drop; the series of an iterate
+ * is simulated once. */
 static void a_simulated_series_is_identified(void **state) {
     const program_place *place = *state;
     char text[1024];
@@ -218,13 +223,14 @@ static void a_simulated_series_is_identified(void **state) {
     program_bytes csv = program_read_file(program_path(place, "series/series.csv"));
     const double peak[DROPS] = {number(csv.data, 1, 2), number(csv.data, 2, 2), number(csv.data, 3, 2)};
     free(csv.data);
-    snprintf(text, sizeof text,
-             "material = \"start.cfg\"; posterior = false; curve_form = \"table\"; unknown = ( { name = \"stress_scale\"; }, { name = "
-             "\"reload\"; } ); start: { E = \"0.47 MPa\"; };\n"
-             "drops = ( { name = \"first\"; case = \"case.cfg\"; drop = 1; a_max_g = %.9g; a_max_sd = 0.005; },\n"
-             "{ name = \"second\"; case = \"case.cfg\"; drop = 2; a_max_g = %.9g; a_max_sd = 0.005; } );\n"
-             "predict = ( { name = \"third\"; case = \"case.cfg\"; drop = 3; } );\n",
-             peak[0], peak[1]);
+    snprintf(
+        text, sizeof text,
+        "material = \"start.cfg\"; posterior = false; curve_form = \"table\"; unknown = ( { name = \"stress_scale\"; }, { name = "
+        "\"reload\"; } ); start: { E = \"0.47 MPa\"; };\n"
+        "drops = ( { name = \"first\"; case = \"case.cfg\"; drop = 1; a_max_g = %.9g; a_max_sd = 0.005; },\n"
+        "{ name = \"second\"; case = \"case.cfg\"; drop = 2; a_max_g = %.9g; a_max_sd = 0.005; } );\n"
+        "predict = ( { name = \"third\"; case = \"case.cfg\"; drop = 3; } );\n",
+        peak[0], peak[1]);
     program_write_text(place, "fit.cfg", text);
     program_result r = program_succeed(place, "fit", "drop fit.cfg -o out -t 1");
     print_message("%s", strstr(r.out, "\nConverged"));
@@ -232,7 +238,8 @@ static void a_simulated_series_is_identified(void **state) {
     static const double hidden[2] = {1.12, 0.45};
     const char *at = strstr(json.data, "\"parameters\":");
     for (int k = 0; k < 2; k++) {
-        double low = program_json_number(at, NULL, "low95_SI"), high = program_json_number(at, NULL, "high95_SI");
+        double low = program_json_number(at, NULL, "low95_SI"),
+               high = program_json_number(at, NULL, "high95_SI");
         assert_true(low < hidden[k] && hidden[k] < high && high < 1.5 * low);
         at = strstr(at, "\"high95_SI\":") + 1;
     }
@@ -241,10 +248,11 @@ static void a_simulated_series_is_identified(void **state) {
     assert_relative(program_json_number(third, NULL, "a_max_g"), peak[2], 0.01);
     assert_true(program_json_number(third, NULL, "a_max_sd_by_parameters") > 1e-4);
     free(json.data);
-    assert_int_equal(program_shell(place, "grep -q 'reload = 0\\.4[0-9]' out/material.cfg && ! ls -d out/runs/second-* "
-                                          "out/runs/third-* 2>&1 | grep -v 'No such'")
-                         .code,
-                     0);
+    assert_int_equal(
+        program_shell(place, "grep -q 'reload = 0\\.4[0-9]' out/material.cfg && ! ls -d out/runs/second-* "
+                             "out/runs/third-* 2>&1 | grep -v 'No such'")
+            .code,
+        0);
     r = program_succeed(place, "fit", "drop fit.cfg -o out -t 1 --force");
     assert_non_null(strstr(r.out, "\n0 drops simulated"));
 }
@@ -254,25 +262,29 @@ static void wrong_series_get_one_sentence(void **state) {
         const char *drop, *more, *sentence;
     } bad[] = {
         {"case = \"case.cfg\"; ", "", "series.drops = 3: say which of them was measured by its number"},
-        {"case = \"case.cfg\"; drop = 4; ", "", "series.drops = 3: its key drop, the number in the series, is larger"},
+        {"case = \"case.cfg\"; drop = 4; ", "",
+         "series.drops = 3: its key drop, the number in the series, is larger"},
         {"case = \"one.cfg\"; drop = 2; ", "", "series.drops = 1: its key drop"},
         {"case = \"case.cfg\"; drop = 0; ", "", "drop is 0, outside 1 to 20"},
         {"case = \"case.cfg\"; drop = 1.5; ", "", "it must be a whole number"},
         {"case = \"case.cfg\"; drop = \"second\"; ", "", "drop must be a"},
         {"case = \"case.cfg\"; drop = 2; speed_sd = 0.01; ", "", "speed_sd is for single drops only"},
-        {"case = \"list.cfg\"; drop = 2; ", "", "takes a series whose drops have one missile, speed and place"},
-        {"case = \"case.cfg\"; drop = 2; ", "material = \"plain.cfg\";",
-         "is of a series, but the foam of"},
-        {"case = \"case.cfg\"; drop = 2; ", "unknown = ( { name = \"drift\"; } );", "drift is 0 in the start material"},
+        {"case = \"list.cfg\"; drop = 2; ", "",
+         "takes a series whose drops have one missile, speed and place"},
+        {"case = \"case.cfg\"; drop = 2; ", "material = \"plain.cfg\";", "is of a series, but the foam of"},
+        {"case = \"case.cfg\"; drop = 2; ", "unknown = ( { name = \"drift\"; } );",
+         "drift is 0 in the start material"},
         {"case = \"case.cfg\"; drop = 2; ", "start: { reload = 1.5; };", "reload is 1.5, outside"},
     };
     const program_place *place = *state;
-    program_shell(place, "sed 's/^series.*//' case.cfg > one.cfg; sed 's/5 s\";/&velocity = \"3 m\\/s\";/' case.cfg > "
-                         "list.cfg");
+    program_shell(
+        place, "sed 's/^series.*//' case.cfg > one.cfg; sed 's/5 s\";/&velocity = \"3 m\\/s\";/' case.cfg > "
+               "list.cfg");
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         char text[512];
         snprintf(text, sizeof text, "%s %s drops = ( { name = \"a\"; %s a_max_g = 60.0; } );\n",
-                 strstr(bad[k].more, "material") ? "" : "material = \"start.cfg\";", bad[k].more, bad[k].drop);
+                 strstr(bad[k].more, "material") ? "" : "material = \"start.cfg\";", bad[k].more,
+                 bad[k].drop);
         program_write_text(place, "bad.cfg", text);
         program_result r = program_run(place, "fit", "drop bad.cfg -o bad");
         if (r.code == 0 || !strstr(r.err, bad[k].sentence) || strchr(r.err, '\n') != strrchr(r.err, '\n'))

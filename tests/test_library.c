@@ -21,6 +21,8 @@ static const char *const coarse[] = {"geometry.parameters.fine_spacing=20.0",
                                      "geometry.missile_parameters.element_size=20.0",
                                      "pad.mesh_error_limit=1",
                                      "kernel.support_ratio=2.0",
+                                     "material.HU=0.05",
+                                     "material.memory.reload=0.4",
                                      "output.frame_interval=\"30 ms\""};
 enum { COARSE = sizeof coarse / sizeof coarse[0] };
 
@@ -286,6 +288,41 @@ static void fields_are_those_of_the_frames(void **state) {
     sf_h5_close(&file, &err);
 }
 
+/* The next drop on the pad that a drop has left is that of softfall-solve --start-from. */
+static void the_next_drop_is_that_of_a_series(void **state) {
+    const place *p = *state;
+    softfall_drop *next = NULL, *none = NULL;
+    softfall_error error;
+    softfall_figures *first, *ours, *theirs;
+    softfall_ending ending;
+    int count;
+    assert_int_equal(softfall_drop_next(p->drop, 0, &none, &error), SOFTFALL_INPUT);
+    assert_non_null(strstr(error.text, "pause: 0 s is not above 0"));
+    if (softfall_drop_next(p->drop, 90, &next, &error) != SOFTFALL_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(softfall_drop_next(next, 90, &none, &error), SOFTFALL_INPUT);
+    assert_true(!none && strstr(error.text, "the drop has ended"));
+    assert_int_equal(softfall_drop_run(next, NULL, NULL, &ending, &error), SOFTFALL_OK);
+    assert_int_equal(ending, SOFTFALL_REBOUND);
+    program_succeed(&p->folder, "solve",
+                    "model.h5 -o second.h5 --start-from results.h5 --pause '90 s' --threads 1");
+    assert_int_equal(softfall_drop_figures(p->drop, 1000, &first, &error), SOFTFALL_OK);
+    assert_int_equal(softfall_drop_figures(next, 1000, &ours, &error), SOFTFALL_OK);
+    assert_int_equal(softfall_results_figures(program_path(&p->folder, "second.h5"), 1000, &theirs, &error),
+                     SOFTFALL_OK);
+    const softfall_quantity *list = softfall_figures_list(ours, &count);
+    for (int k = 0; k < count; k++) {
+        double a = figure(ours, list[k].name), b = figure(theirs, list[k].name);
+        if (isfinite(a) && strcmp(list[k].name, "wall_s") != 0)
+            assert_memory_equal(&a, &b, sizeof a);
+    }
+    assert_true(figure(ours, "a_max_g") > 1.02 * figure(first, "a_max_g"));
+    softfall_figures_free(first);
+    softfall_figures_free(ours);
+    softfall_figures_free(theirs);
+    softfall_drop_free(next);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(warnings_go_to_the_sink_and_errors_to_the_caller),
@@ -295,6 +332,7 @@ int main(void) {
         cmocka_unit_test(a_drop_can_be_stepped_observed_and_stopped),
         cmocka_unit_test(an_observer_can_stop_a_run),
         cmocka_unit_test(fields_are_those_of_the_frames),
+        cmocka_unit_test(the_next_drop_is_that_of_a_series),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -139,6 +139,11 @@ typedef struct softfall_quantity {
 SOFTFALL_API softfall_status softfall_drop_create(const softfall_model *model,
                                                   const softfall_drop_options *options, softfall_drop **out,
                                                   softfall_error *error);
+/* The next drop of the same missile on the pad as `before` has left it, after a rest of `pause` (s): the bits
+ * are those of a series of softfall-solve. `before` must have ended with the missile away from the pad; it
+ * does not change, and may be freed. */
+SOFTFALL_API softfall_status softfall_drop_next(const softfall_drop *before, double pause,
+                                                softfall_drop **out, softfall_error *error);
 SOFTFALL_API void softfall_drop_free(softfall_drop *drop);
 
 /* Advances the drop by one step; the first computes the state at t = 0. `ending` (may be NULL) tells whether

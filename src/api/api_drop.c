@@ -61,36 +61,58 @@ static sf_status check_options(const softfall_drop_options *o, sf_error *err) {
     return SF_OK;
 }
 
+/* The drop of a model; `before` and `pause`: as of sf_series_continue, NULL: on a new pad. */
+static sf_status create(const sf_model *model, int threads, const softfall_drop *before, double pause,
+                        softfall_drop **out, sf_error *err) {
+    softfall_drop *d = softfall_new(err, sizeof *d, "a drop");
+    SF_TRY(err->status);
+    d->model = *model;
+    d->threads = threads;
+    sf_recorder_begin(&d->recorder);
+    list_quantities(d);
+    int usual = enter(d);
+    if (d->model.series_count > 1)
+        SF_FAIL(
+            err, SF_ERR_INPUT,
+            "the model is a series of %lld drops; the library solves one after another: make the model of the "
+            "case with series.drops = 1, and its later drops with softfall_drop_next",
+            (long long)d->model.series_count);
+    if (err->status == SF_OK && sf_model_check(&d->model, err) == SF_OK &&
+        sf_operators_build(&d->model, &d->operators, err) == SF_OK)
+        sf_series_continue(before ? &before->state : NULL, pause, &d->model, &d->operators, &d->state, err);
+    omp_set_num_threads(usual);
+    if (err->status == SF_OK)
+        *out = d;
+    else
+        softfall_drop_free(d);
+    return err->status;
+}
+
 softfall_status softfall_drop_create(const softfall_model *model, const softfall_drop_options *options,
                                      softfall_drop **out, softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     const softfall_drop_options *o = options ? options : &by_default;
-    softfall_drop *d = NULL;
+    sf_model single = model->model;
     *out = NULL;
-    if (check_options(o, &err) == SF_OK)
-        d = softfall_new(&err, sizeof *d, "a drop");
-    if (!d)
-        return softfall_return(&err, error);
-    d->model = model->model;
-    d->threads = o->threads;
     if (o->end_time > 0)
-        d->model.run.end_time = o->end_time;
-    sf_recorder_begin(&d->recorder);
-    list_quantities(d);
-    int before = enter(d);
-    if (d->model.series_count > 1)
-        SF_FAIL(
-            &err, SF_ERR_INPUT,
-            "the model is a series of %lld drops; the library solves single ones: softfall-solve has series",
-            (long long)d->model.series_count);
-    if (err.status == SF_OK && sf_model_check(&d->model, &err) == SF_OK &&
-        sf_operators_build(&d->model, &d->operators, &err) == SF_OK)
-        sf_state_create(&d->model, &d->state, &err);
-    omp_set_num_threads(before);
-    if (err.status == SF_OK)
-        *out = d;
+        single.run.end_time = o->end_time;
+    if (check_options(o, &err) == SF_OK)
+        create(&single, o->threads, NULL, 0, out, &err);
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_drop_next(const softfall_drop *before, double pause, softfall_drop **out,
+                                   softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    *out = NULL;
+    if (!(pause > 0) || !isfinite(pause))
+        SF_FAIL(&err, SF_ERR_INPUT, "pause: %g s is not above 0", pause);
+    else if (before->ending == SOFTFALL_RUNNING || before->failure.status != SF_OK ||
+             before->state.contact_count > 0)
+        SF_FAIL(&err, SF_ERR_INPUT,
+                "a pad goes on only after the missile has left it, and the drop has ended");
     else
-        softfall_drop_free(d);
+        create(&before->model, before->threads, before, pause, out, &err);
     return softfall_return(&err, error);
 }
 

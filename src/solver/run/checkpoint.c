@@ -227,3 +227,15 @@ sf_status sf_series_begin(const sf_earlier *e, const sf_model *m, const sf_opera
         sf_state_free(s);
     return err->status;
 }
+
+sf_status sf_series_continue(const sf_state *before, double pause, const sf_model *m, const sf_operators *op,
+                             sf_state *s, sf_error *err) {
+    SF_TRY(sf_state_create(m, s, err));
+    if (!before)
+        return SF_OK;
+    memcpy(s->history, before->history, (size_t)sf_state_rows(m, 'h') * SF_LANES * sizeof *s->history);
+    s->drop = before->drop + 1;
+    s->ledger.before = sf_domain_rest(m, op, s, pause);
+    s->pause = pause;
+    return SF_OK;
+}

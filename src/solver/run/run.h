@@ -200,6 +200,10 @@ typedef struct sf_earlier {
 sf_status sf_series_begin(const sf_earlier *earlier, const sf_model *model, const sf_operators *operators,
                           sf_state *state, sf_error *err);
 
+/* The same, but by the last state of the earlier drop, of the same model; NULL: the pad is new. */
+sf_status sf_series_continue(const sf_state *before, double pause, const sf_model *model,
+                             const sf_operators *operators, sf_state *state, sf_error *err);
+
 /* When a run is over. */
 
 /* The missile has left the pad for good, and the run shall end then. A driven missile may come back. */
