@@ -216,24 +216,46 @@ static void a_block_passes_through_a_support(void **state) {
     fixture_free(&f);
 }
 
-static void a_block_slides_on_a_block(void **state) {
+/* The upper block lies `shift` cells aside, so that each has an edge over the other's face. */
+static void slide_on_a_block(double shift) {
     const fixture_block block = {.cells = {4, 4, 2 * HALF}, .spacing = 0.01};
     sf_case c;
     fixture f;
     double low[3], high[3];
-    (void)state;
     loose_case(&c, 2, FRICTION);
     layers_under_plate(&c, &block, by_height, &f);
+    for (int64_t i = 0; i < f.model.node_count; i++)
+        f.model.position[3 * i] += f.model.node_material[i] == 1 ? shift * block.spacing : 0;
     fixture_start(&f);
     throw_layer(&f, 1, SLIP, -DROP);
     while (f.state.time < 1.5 * 2 * 0.04 / sqrt(MODULUS / DENSITY))
         fixture_advance(&f);
     double mass[2] = {mean_velocity(&f, 0, low), mean_velocity(&f, 1, high)};
-    print_message("velocities (%.4f, %.4f) and (%.4f, %.4f) m/s\n", low[0], low[2], high[0], high[2]);
+    print_message("shift %g: velocities (%.4f, %.4f) and (%.4f, %.4f) m/s, friction %.5f\n", shift, low[0],
+                  low[2], high[0], high[2], -low[0] / low[2]);
     assert_true(fabs(mass[0] * low[2] + mass[1] * (high[2] + DROP)) < 1e-12 * mass[1] * DROP);
     assert_true(fabs(mass[0] * low[0] + mass[1] * (high[0] - SLIP)) < 1e-12 * mass[1] * SLIP);
-    assert_true(low[2] < -0.9 * DROP);
+    assert_true(low[2] < -(shift > 0 ? 0.5 : 0.9) * DROP);
     assert_relative(low[0], -FRICTION * low[2], 0.01);
+    fixture_free(&f);
+}
+
+static void a_block_slides_on_a_block(void **state) {
+    (void)state;
+    slide_on_a_block(0);
+    slide_on_a_block(1.37);
+}
+
+/* A damaged model: its numbers of halves are refused. */
+static void a_skin_with_a_third_half_is_refused(void **state) {
+    fixture f;
+    sf_error err = SF_ERROR_INIT;
+    (void)state;
+    block_on_plate(1e-5, &f);
+    assert_int_equal(sf_model_check(&f.model, &err), SF_OK);
+    f.model.skin_half[f.model.skin_count - 1] = 3;
+    assert_int_equal(sf_model_check(&f.model, &err), SF_ERR_MODEL);
+    assert_non_null(strstr(err.text, "of the pad's skin is half 3, of 0 to 2"));
     fixture_free(&f);
 }
 
@@ -367,8 +389,10 @@ static double hertz_ratio(const program_place *p, bool two, double fine) {
     double force = 0, moment = 0, rows = 0;
     while (f.state.time < END) {
         fixture_advance(&f);
-        for (int64_t n = 0; n < f.operators.skin.moving && f.state.time > RAMP; n++) {
+        for (int64_t n = 0; n < f.operators.skin.count && f.state.time > RAMP; n++) {
             const double *x = &f.state.self_position[3 * n], q = 4 * fabs(f.state.self_force[3 * n + 2]);
+            if (sf_skin_is_rigid(&f.operators.skin, n) || q == 0)
+                continue;
             force += q;
             moment += q * (x[0] * x[0] + x[1] * x[1]);
         }
@@ -398,6 +422,7 @@ int main(void) {
         cmocka_unit_test(a_block_passes_through_a_support),
         cmocka_unit_test(a_loose_stack_falls_apart_when_it_is_lifted),
         cmocka_unit_test(a_block_slides_on_a_block),
+        cmocka_unit_test(a_skin_with_a_third_half_is_refused),
         cmocka_unit_test(each_interface_has_its_own_friction),
         cmocka_unit_test(a_dome_on_a_slab_and_two_domes_obey_hertz),
     };

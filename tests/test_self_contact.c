@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
+#include <hdf5.h>
 
 #include "extreme.h"
 #include "post/results/results.h"
@@ -109,15 +110,22 @@ static void a_cut_block_is_as_stiff_as_the_whole_one(void **state) {
     assert_true(place[0] < 36 && fabs(place[2] - 20) < 0.2);
 }
 
-/* Two slabs of a block of 40 mm whose meshes do not match, with a gap of a hundredth of a millimetre. */
+/* Two slabs of a block of 40 mm whose meshes do not match, with a gap of a hundredth of a millimetre: of
+ * hexahedra, prisms over rows of triangles, prisms over triangles without order, or tetrahedra. */
+enum { HEXAHEDRA, ROWS_OF_PRISMS, PRISMS, TETRAHEDRA };
 static const char STACK[] =
+    "DefineConstant[ kind = 0, cells = 8, fewer = 3 ];\n"
     "For k In {0:1}\n"
-    "  n = 8 - 3*k; p = 100*k; z = 20.01*k; s = p + 1;\n"
+    "  n = cells - fewer*k; p = 100*k; z = 20.01*k; s = p + 1;\n"
     "  Point(p+1) = {0,0,z}; Point(p+2) = {40,0,z}; Point(p+3) = {40,40,z}; Point(p+4) = {0,40,z};\n"
     "  Line(p+1) = {p+1,p+2}; Line(p+2) = {p+2,p+3}; Line(p+3) = {p+3,p+4}; Line(p+4) = {p+4,p+1};\n"
     "  Curve Loop(s) = {p+1:p+4}; Plane Surface(s) = {s};\n"
-    "  Transfinite Curve {p+1:p+4} = n + 1; Transfinite Surface {s}; Recombine Surface {s};\n"
-    "  e[] = Extrude {0,0,20} { Surface{s}; Layers{Ceil(n/2)}; Recombine; }; v[k] = e[1];\n"
+    "  Transfinite Curve {p+1:p+4} = n + 1;\n"
+    "  If (kind < 2)\n Transfinite Surface {s};\n EndIf\n"
+    "  If (kind == 0)\n Recombine Surface {s};\n EndIf\n"
+    "  If (kind == 3)\n e[] = Extrude {0,0,20} { Surface{s}; Layers{Ceil(n/2)}; };\n"
+    "  Else\n e[] = Extrude {0,0,20} { Surface{s}; Layers{Ceil(n/2)}; Recombine; };\n EndIf\n"
+    "  v[k] = e[1];\n"
     "EndFor\n"
     "DefineConstant[ far = 0 ];\n"
     "If (far)\n  t[] = Translate {400,0,10} { Duplicata { Volume{v[0]}; } }; v[2] = t[0];\nEndIf\n"
@@ -129,26 +137,21 @@ static const char STACK[] =
     "Physical Surface(\"front\") = Surface In BoundingBox{-1,-0.01,-1,41,0.01,41};\n"
     "Physical Surface(\"back\") = Surface In BoundingBox{-1,39.99,-1,41,40.01,41};\n";
 
-/* A patch test across quadrangles that do not match: the stress is uniform in both bodies. */
-static void bodies_with_other_meshes_pass_on_the_stress(void **state) {
-    const program_place *p = *state;
+static void write_stack(const program_place *p) {
     program_write_text(p, "stack.geo", STACK);
     program_write_text(p, "case.cfg", CUT_CASE);
     program_write_text(p, "motion.csv",
                        "time_ms,displacement_mm\n0,0\n2,0.2\n4,0.8\n8,4\n10,4.8\n12,5\n24,5\n");
     program_shell(p, "sed -i 's#cut.geo#stack.geo#; s#slit = 0.1; cells = 8;##' case.cfg");
-    program_result r = program_run(p, "pre", "case.cfg -o m.h5 --force");
-    assert_true(r.code == 2 && strstr(r.err, "2 parts that share no faces") && strstr(r.err, "pad.separate"));
-    r = program_run(p, "pre",
-                    "case.cfg -o m.h5 --force --set pad.separate=true --set pad.self_contact='\"off\"'");
-    assert_true(r.code == 2 && strstr(r.err, "pad.separate: bodies touch each other by pad.self_contact"));
-    r = program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.separate=true");
-    assert_null(strstr(r.err, "out of reach"));
-    r = program_succeed(
-        p, "pre",
-        "case.cfg -o m.h5 --force --set pad.separate=true --set geometry.parameters='{ far = 1; }'");
-    assert_non_null(strstr(r.err, "1 of 3 bodies are out of reach, the first about (420, 20, 20) mm"));
-    figures f = run(p, "--set pad.separate=true");
+}
+
+/* A patch test across faces that do not match: the stress is uniform in both bodies, to these parts of it. */
+static void assert_uniform(const program_place *p, int kind, const char *more, double at_node, double at_ends,
+                           double in_mean) {
+    char words[128];
+    snprintf(words, sizeof words, "--set pad.separate=true --set geometry.parameters='{ kind = %d; %s }'",
+             kind, more);
+    figures f = run(p, words);
     assert_true(f.momentum < 1e-12 && f.angular < 1e-12 && f.energy_error < 1e-3);
     sf_results results;
     sf_frame frame;
@@ -168,12 +171,39 @@ static void bodies_with_other_meshes_pass_on_the_stress(void **state) {
         near = larger(near, error);
         far = z < 1e-6 || z > 0.040005 ? fmax(far, error) : far;
     }
-    print_message("stress %.1f and %.1f Pa, off by %.1e at most, by %.1e at the ends; penetration %.2g mm\n",
-                  mean, sum[1] / volume[1], near, far, f.penetration);
-    assert_true(mean < -1e4 && near < 1e-3 && far < 1e-4);
-    assert_relative(sum[1] / volume[1], mean, 1e-4);
+    print_message(
+        "kind %d: stress %.1f and %.1f Pa, off by %.1e at most, by %.1e at the ends; penetration %.2g mm\n",
+        kind, mean, sum[1] / volume[1], near, far, f.penetration);
+    assert_true(mean < -1e4 && near < at_node && far < at_ends);
+    assert_relative(sum[1] / volume[1], mean, in_mean);
     sf_frame_free(&frame);
     sf_results_close(&results);
+}
+
+static void bodies_with_other_meshes_pass_on_the_stress(void **state) {
+    const program_place *p = *state;
+    write_stack(p);
+    program_result r = program_run(p, "pre", "case.cfg -o m.h5 --force");
+    assert_true(r.code == 2 && strstr(r.err, "2 parts that share no faces") && strstr(r.err, "pad.separate"));
+    r = program_run(p, "pre",
+                    "case.cfg -o m.h5 --force --set pad.separate=true --set pad.self_contact='\"off\"'");
+    assert_true(r.code == 2 && strstr(r.err, "pad.separate: bodies touch each other by pad.self_contact"));
+    r = program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.separate=true");
+    assert_null(strstr(r.err, "out of reach"));
+    r = program_succeed(
+        p, "pre",
+        "case.cfg -o m.h5 --force --set pad.separate=true --set geometry.parameters='{ far = 1; }'");
+    assert_non_null(strstr(r.err, "1 of 3 bodies are out of reach, the first about (420, 20, 20) mm"));
+    assert_uniform(p, HEXAHEDRA, "", 1e-3, 1e-4, 1e-4);
+    assert_uniform(p, ROWS_OF_PRISMS, "", 0.01, 5e-3, 1e-3);
+}
+
+/* Triangles without order need the centroids in balance with the nodes, and many sweeps. */
+static void bodies_of_triangles_pass_on_the_stress(void **state) {
+    const program_place *p = *state;
+    write_stack(p);
+    assert_uniform(p, PRISMS, "cells = 6; fewer = 2;", 0.01, 5e-3, 1e-3);
+    assert_uniform(p, TETRAHEDRA, "cells = 6; fewer = 2;", 0.01, 5e-3, 1e-3);
 }
 
 static void use_tile(const program_place *p) {
@@ -266,6 +296,21 @@ static bool touches(const program_place *p, const char *words) {
     return strstr(r.out, "may touch each other") != NULL;
 }
 
+/* A model of the time before the halves of quadrangles were stored. */
+static void an_older_model_must_be_made_anew(void **state) {
+    const program_place *p = *state;
+    use_tile(p);
+    program_succeed(
+        p, "pre",
+        "case.cfg -o m.h5 --force --set geometry.parameters.spacing=10.0 --set pad.mesh_error_limit=1");
+    hid_t file = H5Fopen(program_path(p, "m.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(file >= 0 && H5Ldelete(file, "/skin/half", H5P_DEFAULT) >= 0 && H5Fclose(file) >= 0);
+    program_result r = program_run(p, "solve", "m.h5 -o r.h5 --force");
+    assert_int_equal(r.code, 2);
+    assert_non_null(strstr(r.err, "/skin/half is missing: an older version made this model"));
+    assert_non_null(strstr(r.err, "make it anew with softfall-pre"));
+}
+
 static void only_pads_that_can_touch_themselves_have_the_contact(void **state) {
     const program_place *p = *state;
     use_tile(p);
@@ -297,9 +342,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cut_block_is_as_stiff_as_the_whole_one),
         cmocka_unit_test(bodies_with_other_meshes_pass_on_the_stress),
+        cmocka_unit_test(bodies_of_triangles_pass_on_the_stress),
         cmocka_unit_test(a_tile_on_feet_comes_down_to_the_floor),
         cmocka_unit_test(the_bits_do_not_depend_on_threads_or_restarts),
         cmocka_unit_test(a_loose_cover_acts_as_a_glued_one_while_it_is_pressed),
+        cmocka_unit_test(an_older_model_must_be_made_anew),
         cmocka_unit_test(only_pads_that_can_touch_themselves_have_the_contact),
     };
     return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);

@@ -365,3 +365,15 @@ sf_motion_range sf_motion_measure(const sf_model *m) {
     }
     return range;
 }
+
+bool sf_model_skin_is_quadrangle(const sf_model *m, int64_t k) {
+    const int32_t *one = &m->skin_triangle[3 * (k - 1)], *two = &m->skin_triangle[3 * k];
+    return m->skin_half[k - 1] == 1 && m->skin_half[k] == 2 && one[0] == two[0] && one[2] == two[1];
+}
+
+int64_t sf_model_skin_centroids(const sf_model *m) {
+    int64_t count = m->skin_alone ? 0 : m->skin_count;
+    for (int64_t k = 1; k < m->skin_count && !m->skin_alone; k++)
+        count -= 2 * sf_model_skin_is_quadrangle(m, k);
+    return count;
+}

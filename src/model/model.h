@@ -318,6 +318,14 @@ const sf_model_field *sf_model_fields(size_t *count);
  * *place (m) is then its position on that axis, else 0. */
 bool sf_symmetry_plane(const sf_model *model, int axis, double *place);
 
+/* True if triangles k - 1 and k of the skin are halves of one quadrangle; a half whose other one cannot touch
+ * is a triangle. k > 0. */
+bool sf_model_skin_is_quadrangle(const sf_model *model, int64_t k);
+
+/* The skin's triangles that are no halves, whose centroids may touch the pad; none where it touches the
+ * supports only. */
+int64_t sf_model_skin_centroids(const sf_model *model);
+
 /* The prescribed motion of a missile driven by a machine (model->motion_*): displacement along its direction,
  * linear between the points of the table, independent of the forces. Only for models whose missile is driven
  * (sf_missile_is_driven). */

@@ -250,6 +250,14 @@ static sf_status check_triangles(const char *name, const sf_model *m, int64_t co
     return SF_OK;
 }
 
+static sf_status check_halves(const sf_model *m, sf_error *err) {
+    for (int64_t k = 0; k < m->skin_count; k++)
+        if (m->skin_half[k] > 2)
+            return SF_FAIL(err, SF_ERR_MODEL, "triangle %lld of the pad's skin is half %d, of 0 to 2",
+                           (long long)k, m->skin_half[k]);
+    return SF_OK;
+}
+
 static sf_status check_areas(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; k < m->contact_count; k++)
         if (!(m->contact_area[k] >= 0))
@@ -353,6 +361,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
     if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
         check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
+        check_halves(m, err) != SF_OK ||
         check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
         check_supports(m, err) != SF_OK || check_pairs(m, err) != SF_OK)
         return err->status;

@@ -222,6 +222,10 @@ static sf_status read_field(const sf_h5 *h5, const sf_model_field *field, sf_mod
                        (long long)rows, (long long)(INT64_MAX / 2));
     if (absent && rows == 0)
         return SF_OK;
+    if (absent)
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "%s is missing: an older version made this model; make it anew with softfall-pre",
+                       field->path);
     int64_t dims[2] = {rows + field->rows_extra, field->columns};
     sf_status status =
         sf_h5_read(h5, field->path, h5_type(field->type), field->columns > 1 ? 2 : 1, dims, &data, err);

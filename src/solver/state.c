@@ -48,7 +48,7 @@ static const sf_state_array arrays[] = {
     KEPT(self_weight, 's', 4),
     SCRATCH(self_push, 's', 3 * sizeof(double)),
     SCRATCH(self_candidate, 's', SF_SELF_CANDIDATES * sizeof(int32_t)),
-    SCRATCH(self_normal, 's', 3 * sizeof(double)),
+    SCRATCH(self_normal, 'f', 3 * sizeof(double)),
     SCRATCH(self_close, 's', sizeof(int32_t)),
     SCRATCH(self_near, 's', sizeof(int32_t)),
     SCRATCH(membrane.position, 'm', 3 * sizeof(double)),
@@ -84,7 +84,11 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
     case 'l':
         return model->material_count > 1 ? model->node_count : 0;
     case 's': /* at most all of them */
-        return model->skin_count > 0 ? model->node_count + model->support_node_count : 0;
+        return model->skin_count > 0
+                   ? model->node_count + model->support_node_count + sf_model_skin_centroids(model)
+                   : 0;
+    case 'f': /* at most one at each corner beside the points' own */
+        return sf_state_rows(model, 's') + 3 * model->skin_count;
     case 'm': /* at most all of them */
         return model->membrane_count > 0 ? model->node_count : 0;
     case 't':

@@ -178,7 +178,7 @@ typedef struct sf_state {
                                  up; arrays of other points are not up to date */
     int64_t contact_near_count;
 
-    /* Contact of the skin with itself (contact/self_contact.h); by node of the skin, only a pad with one has
+    /* Contact of the skin with itself (contact/self_contact.h); by point of the skin, only a pad with one has
      * these. */
     double *self_position;   /* [skin][3] m, physical, now; of nodes in self_near, as the next two */
     double *self_motion;     /* [skin][3] m, its last step */
@@ -188,7 +188,7 @@ typedef struct sf_state {
     double *self_weight;     /* [skin][4] of the facet's nodes, and of the fourth of its quadrangle */
     double *self_push;       /* [n][3] m s-2, acceleration by these forces; zero between steps */
     int32_t *self_candidate; /* [skin][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
-    double *self_normal;     /* [skin][3] outward now, unit; of the nodes in self_close */
+    double *self_normal;     /* [sides][3] outward now, unit; of the points in self_close */
     int32_t *self_close;     /* [skin] list of the nodes that may touch soon, and of their facets' nodes */
     int32_t *self_near;      /* [skin] list of these, and of the nodes of all facets at them */
     int64_t self_close_count, self_near_count;
@@ -211,7 +211,8 @@ typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
     char rows; /* n nodes, l nodes of a pad of layers, h rows of history of all blocks of lanes, c contact
-                  points, s nodes of the skin, m and t nodes and triangles of the membrane, k chunks */
+                  points, s points and f sides of the skin, m and t nodes and triangles of the membrane, k
+                  chunks */
     int bytes; /* of a row; doubles if it has a name */
 } sf_state_array;
 

@@ -47,7 +47,7 @@ static bool is_candidate(const sf_skin *skin, const neighbourhood *n, int64_t p,
         return false;
     if (!n->is_near[facet[0]] && !n->is_near[facet[1]] && !n->is_near[facet[2]])
         return true;
-    return sf_dot3(&skin->normal[3 * p], &skin->facet_normal[3 * f]) < FACING;
+    return p < skin->nodes && sf_dot3(&skin->normal[3 * p], &skin->facet_normal[3 * f]) < FACING;
 }
 
 /* The facets of pad and support as they lie now, each with its grid. */
@@ -148,7 +148,7 @@ static void choose_candidates(const sf_skin *skin, sf_state *s, int64_t p, doubl
                               neighbourhood *n, uint8_t *used) {
     enum { MOST = 256, OF_PAD = CANDIDATES / 2 };
     int32_t *own = &s->self_candidate[CANDIDATES * p], near[MOST];
-    bool across = skin->moving < skin->count, rigid = sf_skin_is_rigid(skin, p), stopped = false;
+    bool across = skin->moving < skin->nodes, rigid = sf_skin_is_rigid(skin, p), stopped = false;
     int count = 0, most = across ? OF_PAD : CANDIDATES;
     int64_t found = (skin->alone && !skin->watched) || rigid
                         ? 0
@@ -168,6 +168,8 @@ static void choose_candidates(const sf_skin *skin, sf_state *s, int64_t p, doubl
         stopped = stopped || (sf_skin_is_stopped(skin, p, k) &&
                               sf_skin_height(skin, &s->self_position[3 * p], k) < reach);
     used[p] |= count > 0 || stopped;
+    for (int k = 0; k < sf_skin_members(skin, p) && count > 0; k++)
+        used[sf_skin_member(skin, p, k)] = 1;
     for (int k = count; k < CANDIDATES; k++)
         own[k] = SF_NO_CANDIDATE;
 }

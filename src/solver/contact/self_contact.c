@@ -11,7 +11,9 @@
 
 /* Partners of a node: a facet, or one of these. */
 enum { NOTHING = SF_NO_CANDIDATE, FIRST_PLANE = -2 }; /* plane k: FIRST_PLANE - k */
-enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 60 };
+/* The sweeps of a step, and those where centroids take part, whose rows depend on those of the nodes. */
+enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 60, MORE_SWEEPS = 240 };
+static const double OVER = 1.6;     /* over-relaxation of the latter */
 static const double DEEPEST = 0.5;  /* of the spacing: no deeper does it go on */
 static const double RETURN = 0.1;   /* m s-1: no faster is a depth taken back */
 static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
@@ -30,14 +32,18 @@ static void move_nodes(const sf_model *m, const sf_skin *skin, sf_state *s, doub
     for (int64_t k = 0; k < count; k++) {
         int64_t p = list[k];
         double now[3] = {0}, last[3] = {0}, change[3] = {0};
-        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1]; e++) {
-            int64_t i = skin->rows.node[e];
-            double phi = skin->rows.value[e], inverse = phi * dt_v / m->mass[i];
-            for (int r = 0; r < 3; r++) {
-                now[r] += phi * s->d[3 * i + r];
-                last[r] += phi * s->v[3 * i + r];
-                change[r] += inverse * (s->force[3 * i + r] - s->reaction[3 * i + r]) +
-                             phi * dt_v * s->self_push[3 * i + r];
+        int members = sf_skin_members(skin, p);
+        for (int of = 0; of < members; of++) {
+            int64_t node = sf_skin_member(skin, p, of);
+            for (int64_t e = skin->rows.ptr[node]; e < skin->rows.ptr[node + 1]; e++) {
+                int64_t i = skin->rows.node[e];
+                double phi = skin->rows.value[e] / members, inverse = phi * dt_v / m->mass[i];
+                for (int r = 0; r < 3; r++) {
+                    now[r] += phi * s->d[3 * i + r];
+                    last[r] += phi * s->v[3 * i + r];
+                    change[r] += inverse * (s->force[3 * i + r] - s->reaction[3 * i + r]) +
+                                 phi * dt_v * s->self_push[3 * i + r];
+                }
             }
         }
         for (int r = 0; r < 3; r++) {
@@ -56,27 +62,59 @@ static void facet_normal(const sf_skin *skin, const sf_state *s, int64_t f, doub
 
 /* ---- gaps ---- */
 
-/* Outward normals of the nodes that may touch, weighted by the areas of their facets. */
+static double *side_normal(const sf_skin *skin, const sf_state *s, int64_t f, int corner) {
+    return &s->self_normal[3 * (int64_t)skin->side[3 * f + corner]];
+}
+
+/* Outward normals of the sides of the points that may touch, weighted by the areas of their facets; of a
+ * centroid the mean of its nodes', which come before it. */
 static void find_normals(const sf_skin *skin, sf_state *s) {
     for (int64_t k = 0; k < s->self_close_count; k++) {
         int64_t p = s->self_close[k];
-        double one[3], *own = &s->self_normal[3 * p];
-        memset(own, 0, 3 * sizeof *own);
+        for (int64_t side = p; side >= 0; side = skin->next_side[side])
+            memset(&s->self_normal[3 * side], 0, 3 * sizeof *s->self_normal);
         for (int64_t e = skin->ring_ptr[p]; e < skin->ring_ptr[p + 1]; e++) {
-            facet_normal(skin, s, skin->ring[e], one);
-            for (int r = 0; r < 3; r++)
-                own[r] += one[r];
+            int64_t f = skin->ring[e];
+            double one[3];
+            facet_normal(skin, s, f, one);
+            for (int c = 0; c < 3; c++) {
+                bool node = p < skin->nodes;
+                double *of = side_normal(skin, s, f, c), *sum = node ? of : &s->self_normal[3 * p];
+                for (int r = 0; r < 3 && (!node || skin->facet[3 * f + c] == p); r++)
+                    sum[r] += node ? one[r] : of[r];
+            }
         }
-        for (int r = 0; r < 3; r++) /* the other half lies beyond a symmetry plane */
-            own[r] *= !((skin->held[p] >> r) & 1);
-        sf_unit3(own);
+        for (int64_t side = p; side >= 0; side = skin->next_side[side]) {
+            for (int r = 0; r < 3; r++) /* the other half lies beyond a symmetry plane */
+                s->self_normal[3 * side + r] *= !((skin->held[p] >> r) & 1);
+            sf_unit3(&s->self_normal[3 * side]);
+        }
     }
 }
 
-/* A node and what it touches. */
+/* The normal of point p as seen from a facet of the unit normal `facing`: that of its only side, or the mean
+ * of its sides, each by how far it looks against the facet. False if none does. */
+static bool normal_against(const sf_skin *skin, const sf_state *s, int64_t p, const double facing[3],
+                           double out[3]) {
+    memset(out, 0, 3 * sizeof *out);
+    for (int64_t side = p; side >= 0; side = skin->next_side[side]) {
+        const double *normal = &s->self_normal[3 * side];
+        double against = OPPOSED - sf_dot3(normal, facing);
+        for (int r = 0; r < 3 && against > 0; r++)
+            out[r] += skin->next_side[p] < 0 ? normal[r] : against * normal[r];
+    }
+    if (skin->next_side[p] >= 0)
+        sf_unit3(out);
+    return sf_dot3(out, out) > 0;
+}
+
+/* A point of the skin and what it touches. */
 typedef struct touch {
     int64_t node, facet; /* facet: FIRST_PLANE - k for plane k */
     double weight[4];    /* of the facet's nodes, sf_skin_corner; zeros for a plane */
+    int parts;           /* the nodes of both, with their shares of the force */
+    int32_t part[7];
+    double share[7];
     double normal[3];    /* outward from the facet */
     double gap;          /* m, now; of a depth the part that the step takes back */
     double friction;     /* -, Coulomb coefficient */
@@ -148,6 +186,26 @@ static void take_both_diagonals(const sf_skin *skin, const sf_state *s, touch *q
     }
 }
 
+/* Lists the nodes of a pair and their shares. */
+static void list_parts(const sf_skin *skin, touch *q) {
+    int members = sf_skin_members(skin, q->node), corners = sf_skin_corners(skin, q->facet);
+    q->parts = 0;
+    for (int k = 0; k < members + corners; k++) {
+        double share = k < members ? 1.0 / members : -q->weight[k - members];
+        q->part[q->parts] = (int32_t)(k < members ? sf_skin_member(skin, q->node, k)
+                                                  : sf_skin_corner(skin, q->facet, k - members));
+        q->share[q->parts] = share;
+        q->parts += share != 0;
+    }
+}
+
+/* True if a centroid lies on that of a triangle: the nodes of the two carry its part. */
+static bool matches(const sf_skin *skin, const touch *q) {
+    static const double SLIGHTLY = 0.01;
+    double off = fmax(fabs(q->weight[0] - 1.0 / 3), fabs(q->weight[1] - 1.0 / 3));
+    return !skin->half[q->facet] && off < SLIGHTLY;
+}
+
 /* The pair of node and facet, if the node lies before or behind the facet and its own surface looks against
  * it. The normal is the mean of both surfaces: smooth over the facets, and the same seen from either side,
  * where facets that are tilted against each other would interlock; of a rigid facet it is that of the
@@ -155,12 +213,14 @@ static void take_both_diagonals(const sf_skin *skin, const sf_state *s, touch *q
 static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, touch *out) {
     const int32_t *n = &skin->facet[3 * f];
     const double *x = &s->self_position[3 * p], *a = &s->self_position[3 * (int64_t)n[0]];
-    double own[3], arm[3], point[3];
+    double own[3], facing[3], against[3], arm[3], point[3];
     facet_normal(skin, s, f, own);
     double area = sqrt(sf_dot3(own, own));
     bool rigid = sf_skin_is_rigid(skin, n[0]);
     *out = (touch){.node = p, .facet = f};
-    if (!(area > 0) || sf_dot3(&s->self_normal[3 * p], own) >= OPPOSED * area)
+    for (int r = 0; r < 3; r++)
+        facing[r] = own[r] / area;
+    if (!(area > 0) || !normal_against(skin, s, p, facing, against))
         return false;
     weigh_point(s, n, x, own, out->weight);
     for (int k = 0; k < 3; k++)
@@ -168,9 +228,9 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
             return false;
     for (int r = 0; r < 3; r++) {
         arm[r] = x[r] - a[r];
-        out->normal[r] = rigid ? 0 : -s->self_normal[3 * p + r];
+        out->normal[r] = rigid ? 0 : -against[r];
         for (int k = 0; k < 3; k++)
-            out->normal[r] += out->weight[k] * s->self_normal[3 * (int64_t)n[k] + r];
+            out->normal[r] += out->weight[k] * side_normal(skin, s, f, k)[r];
     }
     for (int r = 0; r < 3; r++)
         out->normal[r] *= !((skin->held[p] >> r) & 1);
@@ -185,15 +245,16 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
     if (skin->half[f])
         take_both_diagonals(skin, s, out);
     drop_traces(out->weight);
-    return true;
+    list_parts(skin, out);
+    return p < skin->nodes || !matches(skin, out);
 }
 
-/* Displacement of the node relative to its partner, of a field over the skin's nodes. */
-static void relative(const sf_skin *skin, const touch *q, const double *field, double out[3]) {
-    memcpy(out, &field[3 * q->node], 3 * sizeof *out);
-    for (int k = 0; k < sf_skin_corners(skin, q->facet); k++)
+/* Displacement of the point relative to its partner, of a field over the skin. */
+static void relative(const touch *q, const double *field, double out[3]) {
+    memset(out, 0, 3 * sizeof *out);
+    for (int k = 0; k < q->parts; k++)
         for (int r = 0; r < 3; r++)
-            out[r] -= q->weight[k] * field[3 * sf_skin_corner(skin, q->facet, k) + r];
+            out[r] += q->share[k] * field[3 * (int64_t)q->part[k] + r];
 }
 
 /* True if facet f is the last partner or meets it: the same contact goes on. */
@@ -226,7 +287,7 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touc
             *passed = q;
         if (q.gap < -deepest * spacing)
             continue;
-        relative(skin, &q, s->self_step, ahead);
+        relative(&q, s->self_step, ahead);
         if ((acts(skin, p, own[k]) ? fmax(q.gap, back) : q.gap) + sf_dot3(ahead, q.normal) >= 0)
             continue;
         best = fabs(q.gap);
@@ -241,6 +302,7 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touc
             continue;
         *out = (touch){.node = p, .facet = FIRST_PLANE - k, .gap = height};
         out->normal[plane->axis] = plane->side;
+        list_parts(skin, out);
         best = fabs(height);
     }
     if (best < INFINITY)
@@ -253,12 +315,11 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touc
 /* Adds the row of the pair over the coefficients, times `q`, to `out`; `accelerate`: over the masses. */
 static void scatter(const sf_model *m, const sf_skin *skin, const touch *pair, const double q[3],
                     bool accelerate, double *out) {
-    for (int k = -1; k < sf_skin_corners(skin, pair->facet); k++) {
-        int64_t p = k < 0 ? pair->node : sf_skin_corner(skin, pair->facet, k);
-        double weight = k < 0 ? 1 : -pair->weight[k];
-        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1] && weight != 0; e++) {
+    for (int k = 0; k < pair->parts; k++) {
+        int64_t p = pair->part[k];
+        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1]; e++) {
             int64_t i = skin->rows.node[e];
-            double phi = weight * skin->rows.value[e] / (accelerate ? m->mass[i] : 1);
+            double phi = pair->share[k] * skin->rows.value[e] / (accelerate ? m->mass[i] : 1);
             for (int r = 0; r < 3; r++)
                 out[3 * i + r] += phi * q[r];
         }
@@ -268,12 +329,11 @@ static void scatter(const sf_model *m, const sf_skin *skin, const touch *pair, c
 /* The row of the pair times a field over the coefficients. */
 static void gather(const sf_skin *skin, const touch *pair, const double *field, double out[3]) {
     memset(out, 0, 3 * sizeof *out);
-    for (int k = -1; k < sf_skin_corners(skin, pair->facet); k++) {
-        int64_t p = k < 0 ? pair->node : sf_skin_corner(skin, pair->facet, k);
-        double weight = k < 0 ? 1 : -pair->weight[k];
-        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1] && weight != 0; e++)
+    for (int k = 0; k < pair->parts; k++) {
+        int64_t p = pair->part[k];
+        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1]; e++)
             for (int r = 0; r < 3; r++)
-                out[r] += weight * skin->rows.value[e] * field[3 * (int64_t)skin->rows.node[e] + r];
+                out[r] += pair->share[k] * skin->rows.value[e] * field[3 * (int64_t)skin->rows.node[e] + r];
     }
 }
 
@@ -293,6 +353,8 @@ typedef struct solve {
     touch *pair;
     double *mobility;  /* kg-1 */
     double (*step)[3]; /* m */
+    int sweeps;        /* at most */
+    double relaxation; /* -, of the normal forces */
     double shift;      /* s2, dt times the distance of the half steps */
     touch passed;      /* a pair whose node has passed through the facet; node -1: there is none */
 } solve;
@@ -306,7 +368,7 @@ static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, co
     for (int r = 0; r < 3; r++)
         moved[r] = w->step[a][r] + w->shift * moved[r];
     double across = sf_dot3(moved, pair->normal), old = sf_dot3(q, pair->normal),
-           p = fmax(0, old - (pair->gap + across) / mobility), size = 0;
+           p = fmax(0, old - w->relaxation * (pair->gap + across) / mobility), size = 0;
     for (int r = 0; r < 3; r++) {
         next[r] = friction > 0 && p > 0
                       ? q[r] - old * pair->normal[r] - (moved[r] - across * pair->normal[r]) / mobility
@@ -327,7 +389,7 @@ static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, co
 
 static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w) {
     double change = 0, largest = 0;
-    for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
+    for (int sweep = 0; sweep < w->sweeps; sweep++) {
         change = largest = 0;
         for (int64_t a = 0; a < w->count; a++) {
             int64_t k = sweep % 2 ? w->count - 1 - a : a;
@@ -342,9 +404,9 @@ static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const sol
 
 /* Half of the work of the force on a pair in the last step: each step's force works over the steps before and
  * after it. */
-static void book(const sf_skin *skin, sf_state *s, const touch *pair, const double force[3]) {
+static void book(sf_state *s, const touch *pair, const double force[3]) {
     double motion[3];
-    relative(skin, pair, s->self_motion, motion);
+    relative(pair, s->self_motion, motion);
     double lost = -0.5 * sf_dot3(force, motion),
            normal = pair->friction > 0 ? -0.5 * sf_dot3(force, pair->normal) * sf_dot3(motion, pair->normal)
                                        : lost;
@@ -363,7 +425,8 @@ static double friction_of(const sf_model *m, const sf_skin *skin, int64_t p, int
         return m->support_friction[support];
     for (int64_t k = 0; k < m->pair_count && f >= 0; k++) {
         const uint8_t *layer = &m->pair_layer[2 * k];
-        int own = m->node_material[skin->node[p]], other = m->node_material[skin->node[skin->facet[3 * f]]];
+        int own = m->node_material[skin->node[sf_skin_member(skin, p, 0)]],
+            other = m->node_material[skin->node[skin->facet[3 * f]]];
         if ((own < other ? own : other) == layer[0] && (own < other ? other : own) == layer[1])
             return m->pair_friction[k];
     }
@@ -375,6 +438,7 @@ static touch last_pair(const sf_model *m, const sf_skin *skin, const sf_state *s
     touch q = {.node = p, .facet = (int64_t)s->self_partner[p]};
     q.friction = friction_of(m, skin, p, q.facet);
     memcpy(q.weight, &s->self_weight[4 * p], sizeof q.weight);
+    list_parts(skin, &q);
     if (q.facet < 0) {
         q.normal[skin->plane[FIRST_PLANE - q.facet].axis] = 1;
     } else {
@@ -394,7 +458,7 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         double *q = &s->self_force[3 * p];
         if (s->self_partner[p] != NOTHING) {
             const touch last = last_pair(m, skin, s, p);
-            book(skin, s, &last, q);
+            book(s, &last, q);
         }
         touch *found = &w->pair[w->count];
         double old = sqrt(sf_dot3(q, q));
@@ -418,7 +482,11 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         s->self_penetration = fmax(s->self_penetration, -found->gap);
         found->gap = fmax(found->gap, -RETURN * s->dt);
         w->mobility[w->count] = mobility_of(m, skin, found, s->self_push);
-        relative(skin, found, s->self_step, w->step[w->count]);
+        relative(found, s->self_step, w->step[w->count]);
+        if (p >= skin->nodes) {
+            w->sweeps = MORE_SWEEPS;
+            w->relaxation = OVER;
+        }
         w->count++;
     }
 }
@@ -476,6 +544,8 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
                .pair = sf_alloc(err, most, sizeof *w.pair, "pairs in contact"),
                .mobility = sf_alloc(err, most, sizeof *w.mobility, "pairs in contact"),
                .step = sf_alloc(err, most, sizeof *w.step, "pairs in contact"),
+               .sweeps = MAX_SWEEPS,
+               .relaxation = 1,
                .passed.node = -1};
     if (err->status == SF_OK)
         find_pairs(m, skin, s, &w);
@@ -490,11 +560,9 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
     for (int64_t a = 0; a < w.count; a++) {
         const double *q = &s->self_force[3 * w.pair[a].node];
         scatter(m, skin, &w.pair[a], q, false, s->force);
-        book(skin, s, &w.pair[a], q);
+        book(s, &w.pair[a], q);
     }
-    free(w.pair);
-    free(w.mobility);
-    free(w.step);
+    SF_FREE(w.pair, w.mobility, w.step);
     return err->status;
 }
 

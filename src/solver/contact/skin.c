@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mat3.h"
+#include "base/sets.h"
 
 static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     unsigned long nodes = (unsigned long)(m->node_count + m->support_node_count);
@@ -24,16 +25,19 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
         skin->facet[k] = place[m->skin_triangle[k]];
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->support_triangle_count; k++)
         skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
-    skin->count = skin->moving + m->support_node_count;
+    skin->nodes = skin->moving + m->support_node_count;
+    skin->count = skin->nodes + sf_model_skin_centroids(m);
+    skin->own =
+        sf_alloc(err, (unsigned long)(skin->count - skin->nodes), sizeof *skin->own, "skin of the pad");
     skin->half = sf_alloc(err, (unsigned long)skin->facet_count, 1, "skin of the pad");
-    /* A half whose other one cannot touch is a triangle. */
-    for (int64_t k = 1; err->status == SF_OK && k < m->skin_count; k++) {
-        const int32_t *one = &skin->facet[3 * (k - 1)], *two = &skin->facet[3 * k];
-        if (m->skin_half[k - 1] == 1 && m->skin_half[k] == 2 && one[0] == two[0] && one[2] == two[1]) {
+    for (int64_t k = 1; err->status == SF_OK && k < m->skin_count; k++)
+        if (sf_model_skin_is_quadrangle(m, k)) {
             skin->half[k - 1] = 1;
             skin->half[k] = 2;
         }
-    }
+    for (int64_t k = 0, used = 0; err->status == SF_OK && used < skin->count - skin->nodes; k++)
+        if (!skin->half[k])
+            skin->own[used++] = (int32_t)k;
     return err->status;
 }
 
@@ -45,25 +49,35 @@ static sf_status place_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
         skin->size[p] = m->spacing[skin->node[p]];
         skin->spacing = fmin(skin->spacing, skin->size[p]);
     }
-    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->count; p++) {
+    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->nodes; p++) {
         memcpy(&skin->rest[3 * p], &m->support_position[3 * (p - skin->moving)], 3 * sizeof *skin->rest);
         skin->size[p] = skin->spacing;
     }
+    for (int64_t p = skin->nodes; err->status == SF_OK && p < skin->count; p++)
+        for (int k = 0; k < 3; k++) {
+            int64_t node = sf_skin_member(skin, p, k);
+            skin->size[p] = k == 0 ? skin->size[node] : fmin(skin->size[p], skin->size[node]);
+            for (int r = 0; r < 3; r++)
+                skin->rest[3 * p + r] += skin->rest[3 * node + r] / 3;
+        }
     return err->status;
 }
 
 static sf_status list_rings(sf_skin *skin, sf_error *err) {
     int64_t corners = 3 * skin->facet_count;
+    unsigned long all = (unsigned long)(corners + skin->count - skin->nodes);
     skin->ring_ptr = sf_alloc(err, (unsigned long)skin->count + 2, sizeof *skin->ring_ptr, "skin of the pad");
-    skin->ring = sf_alloc(err, (unsigned long)corners, sizeof *skin->ring, "skin of the pad");
+    skin->ring = sf_alloc(err, all, sizeof *skin->ring, "skin of the pad");
     if (err->status != SF_OK)
         return err->status;
     for (int64_t k = 0; k < corners; k++)
         skin->ring_ptr[skin->facet[k] + 2]++;
     for (int64_t p = 0; p < skin->count; p++)
-        skin->ring_ptr[p + 2] += skin->ring_ptr[p + 1];
+        skin->ring_ptr[p + 2] += (p >= skin->nodes) + skin->ring_ptr[p + 1];
     for (int64_t k = 0; k < corners; k++)
         skin->ring[skin->ring_ptr[skin->facet[k] + 1]++] = (int32_t)(k / 3);
+    for (int64_t p = skin->nodes; p < skin->count; p++)
+        skin->ring[skin->ring_ptr[p + 1]++] = skin->own[p - skin->nodes];
     return SF_OK;
 }
 
@@ -83,9 +97,61 @@ static sf_status find_normals(sf_skin *skin, sf_error *err) {
                 skin->normal[3 * (int64_t)skin->facet[3 * f + k] + r] += normal[r];
         sf_unit3(normal);
     }
+    for (int64_t p = skin->nodes; err->status == SF_OK && p < skin->count; p++)
+        memcpy(&skin->normal[3 * p], &skin->facet_normal[3 * (int64_t)skin->own[p - skin->nodes]],
+               3 * sizeof *skin->normal);
     for (int64_t p = 0; err->status == SF_OK && p < skin->count; p++)
         sf_unit3(&skin->normal[3 * p]);
     return err->status;
+}
+
+static int64_t corner_at(const sf_skin *skin, int64_t facet, int64_t node) {
+    int64_t corner = 3 * facet;
+    while (skin->facet[corner] != node)
+        corner++;
+    return corner;
+}
+
+/* True if two facets at one node share an edge that is not sharp. */
+static bool go_on_smoothly(const sf_skin *skin, int64_t f, int64_t g) {
+    static const double SHARP = 0.64; /* cosine of the angle between the normals */
+    int shared = 0;
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            shared += skin->facet[3 * f + a] == skin->facet[3 * g + b];
+    return shared > 1 && sf_dot3(&skin->facet_normal[3 * f], &skin->facet_normal[3 * g]) > SHARP;
+}
+
+/* Parts the corners of the pad's facets at each node into sides. */
+static sf_status part_sides(sf_skin *skin, sf_error *err) {
+    int64_t corners = 3 * skin->facet_count, sides = skin->count;
+    SF_OWNED int64_t *parent = sf_sets_alone(corners, "skin of the pad", err);
+    skin->side = sf_alloc(err, (unsigned long)corners, sizeof *skin->side, "skin of the pad");
+    skin->next_side =
+        sf_alloc(err, (unsigned long)(corners + sides), sizeof *skin->next_side, "skin of the pad");
+    SF_TRY(err->status);
+    memset(skin->next_side, -1, (size_t)(corners + sides) * sizeof *skin->next_side);
+    memcpy(skin->side, skin->facet, (size_t)corners * sizeof *skin->side);
+    for (int64_t p = 0; p < skin->moving; p++) {
+        int64_t last = -1, end = skin->ring_ptr[p + 1];
+        for (int64_t e = skin->ring_ptr[p]; e < end; e++)
+            for (int64_t other = e + 1; other < end; other++)
+                if (go_on_smoothly(skin, skin->ring[e], skin->ring[other]))
+                    sf_sets_join(parent, corner_at(skin, skin->ring[e], p),
+                                 corner_at(skin, skin->ring[other], p));
+        for (int64_t e = skin->ring_ptr[p]; e < end; e++) {
+            int64_t corner = corner_at(skin, skin->ring[e], p), first = sf_sets_find(parent, corner);
+            if (first != corner) {
+                skin->side[corner] = skin->side[first];
+                continue;
+            }
+            skin->side[corner] = (int32_t)(last < 0 ? p : sides++);
+            if (last >= 0)
+                skin->next_side[last] = skin->side[corner];
+            last = skin->side[corner];
+        }
+    }
+    return SF_OK;
 }
 
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
@@ -101,7 +167,7 @@ static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
         skin->held[p] = mark[skin->node[p]] & 7;
         skin->rests[p] = mark[skin->node[p]] >> 3;
     }
-    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->count; p++)
+    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->nodes; p++)
         for (int axis = 0; axis < 2; axis++) {
             double place;
             if (sf_symmetry_plane(m, axis, &place) &&
@@ -151,11 +217,11 @@ static bool is_narrow(const sf_skin *skin, int64_t p) {
 static sf_status mark_passive(sf_skin *skin, sf_error *err) {
     skin->passive = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
     for (int64_t p = skin->moving; err->status == SF_OK && p < skin->count; p++)
-        skin->passive[p] = skin->held[p] != 0 || !is_narrow(skin, p);
+        skin->passive[p] = p >= skin->nodes || skin->held[p] != 0 || !is_narrow(skin, p);
     return err->status;
 }
 
-/* The rows of the pad's nodes; those of the support are empty. */
+/* The rows of the pad's nodes; those of the support and of the centroids are empty. */
 static sf_status build_rows(const sf_model *m, sf_skin *skin, sf_error *err) {
     SF_TRY(sf_contact_rows_of_nodes(m, skin->moving, skin->node, &skin->rows, err));
     int64_t *ptr = realloc(skin->rows.ptr, ((size_t)skin->count + 1) * sizeof *ptr);
@@ -179,8 +245,8 @@ sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
         return SF_OK;
     if (number_nodes(m, skin, err) != SF_OK || place_nodes(m, skin, err) != SF_OK ||
         list_rings(skin, err) != SF_OK || find_normals(skin, err) != SF_OK ||
-        mark_held(m, skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
-        build_rows(m, skin, err) != SF_OK)
+        part_sides(skin, err) != SF_OK || mark_held(m, skin, err) != SF_OK ||
+        mark_passive(skin, err) != SF_OK || build_rows(m, skin, err) != SF_OK)
         sf_skin_free(skin);
     else if (!skin->alone)
         find_planes(m, skin);
@@ -188,7 +254,7 @@ sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 void sf_skin_free(sf_skin *skin) {
-    free(skin->node);
+    SF_FREE(skin->node, skin->own, skin->side, skin->next_side);
     free(skin->rest);
     free(skin->size);
     free(skin->passive);

@@ -13,21 +13,28 @@ typedef struct sf_skin_plane {
     double side;  /* 1 or -1: the pad lies above or below it on that axis; 0: there is no plane */
 } sf_skin_plane;
 
-/* Constants of the skin. Its nodes are numbered from 0: first those of the pad, ascending in the model, then
- * those of the support, which do not move. */
+/* Constants of the skin. Its points are numbered from 0: first the nodes of the pad, ascending in the model,
+ * then those of the support, which do not move, then the centroids of the pad's triangles, which are the mean
+ * of three nodes. */
 typedef struct sf_skin {
-    int64_t count;  /* nodes; 0: nothing touches */
+    int64_t count;  /* points; 0: nothing touches */
     int64_t moving; /* nodes of the pad */
+    int64_t nodes;  /* of pad and support */
     int32_t *node;  /* [moving] of the model */
+    int32_t *own;   /* [count - nodes] facet of each centroid */
     double *rest;   /* [count][3] m, position at rest */
     double *size;   /* [count] m, spacing; of a support's node the least of the pad */
     int64_t facet_count;
     int32_t *facet;    /* [facet_count][3] nodes of the skin, turned outwards */
     uint8_t *half;     /* [facet_count] as of sf_model.skin_half */
     int64_t *ring_ptr; /* [count + 1] */
-    int32_t *ring;     /* [..] facets at each node */
+    int32_t *ring;     /* [..] facets at each node; of a centroid its own */
+    /* The parts into which sharp edges cut the surface round a node, its sides, have a normal each. The first
+     * side of a point has its number. */
+    int32_t *side;      /* [facet_count][3] of the facet's nodes that the facet belongs to */
+    int32_t *next_side; /* [..] next side of the same node; -1: none */
     uint8_t *held;     /* [count] SF_FIX_* bits; of a support's node those of the symmetry planes it is on */
-    uint8_t *passive;  /* [count] 1: the node is only touched: it is on a flat part of the support */
+    uint8_t *passive;  /* [count] 1: touches no support: on a flat part of one, or a centroid */
     uint8_t *rests;    /* [count] 1: the anvil presses the node in the missile's solve (contact.h) */
     double *normal;    /* [count][3] outward at rest, unit */
     double *facet_normal; /* [facet_count][3] likewise */
@@ -43,12 +50,20 @@ sf_status sf_skin_build(const sf_model *model, sf_skin *skin, sf_error *err);
 void sf_skin_free(sf_skin *skin);
 
 static inline bool sf_skin_is_rigid(const sf_skin *skin, int64_t node) {
-    return node >= skin->moving;
+    return node >= skin->moving && node < skin->nodes;
+}
+
+/* The nodes whose mean a point is, 1 or 3, and number k of them. */
+static inline int sf_skin_members(const sf_skin *skin, int64_t point) {
+    return point < skin->nodes ? 1 : 3;
+}
+static inline int64_t sf_skin_member(const sf_skin *skin, int64_t point, int k) {
+    return point < skin->nodes ? point : skin->facet[3 * (int64_t)skin->own[point - skin->nodes] + k];
 }
 
 /* True if plane k may stop the node: not if it is held there, or rests on the anvil already. */
 static inline bool sf_skin_is_stopped(const sf_skin *skin, int64_t node, int k) {
-    return skin->plane[k].side != 0 && !sf_skin_is_rigid(skin, node) &&
+    return skin->plane[k].side != 0 && node < skin->moving &&
            !((skin->held[node] >> skin->plane[k].axis) & 1) && !(k == SF_SKIN_ANVIL && skin->rests[node]);
 }
 
