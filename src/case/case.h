@@ -91,6 +91,7 @@ typedef struct sf_case {
     bool temperature_acts;                 /* a material depends on the pad's temperature */
     int self_contact;                      /* SF_SELF_CONTACT_* */
     int64_t separate;                      /* 1: the pad may be of several bodies */
+    int64_t triangle_centroids;            /* 1: points of contact at them, too (solver/contact/skin.h) */
     bool stabilised;                       /* kernel.stabilisation is given */
     double self_friction;                  /* -, Coulomb coefficient of the pad against itself */
     double mesh_error_limit;               /* -, expected error of a_max above which the case is refused */

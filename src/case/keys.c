@@ -63,6 +63,8 @@ static const sf_key keys[] = {
      .words = "auto|on|off"},
     {"pad", "self_friction", SF_KEY_NUMBER, "0.0", AT(self_friction),
      "Coulomb coefficient of that contact", .high = 10.0},
+    {"pad", "triangle_centroids", SF_KEY_BOOL, "false", AT(triangle_centroids),
+     "points of that contact also at the centroids of triangles: a uniform pressure passes between faces of prisms or tetrahedra that do not match, for several times the time"},
     {"pad", "mesh_error_limit", SF_KEY_NUMBER, "0.1", AT(mesh_error_limit),
      "expected relative error of a_max from the spacing above which the case is refused; a larger value allows a coarser mesh",
      .high = 1e6},

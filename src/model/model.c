@@ -77,6 +77,8 @@ static const sf_model_field fields[] = {
      "their nodes, outwards", true, false},
     LATER_SCALAR(skin_friction, F64, "/skin/friction", "1", "Coulomb coefficient between them"),
     LATER_SCALAR(skin_alone, I64, "/skin/alone", "1", "1: they touch the supports only"),
+    LATER_SCALAR(skin_centroids, I64, "/skin/centroids", "1",
+                 "1: their centroids are points of contact, too, unless they are halves"),
     LATER_SCALAR(skin_watched, I64, "/skin/watched", "1",
                  "1: they pass through each other, which ends the run"),
     LATER_SCALAR(support_count, I64, "/support/count", "1", "rigid supports"),
@@ -371,9 +373,13 @@ bool sf_model_skin_is_quadrangle(const sf_model *m, int64_t k) {
     return m->skin_half[k - 1] == 1 && m->skin_half[k] == 2 && one[0] == two[0] && one[2] == two[1];
 }
 
-int64_t sf_model_skin_centroids(const sf_model *m) {
-    int64_t count = m->skin_alone ? 0 : m->skin_count;
-    for (int64_t k = 1; k < m->skin_count && !m->skin_alone; k++)
+int64_t sf_model_skin_triangles(const sf_model *m) {
+    int64_t count = m->skin_count;
+    for (int64_t k = 1; k < m->skin_count; k++)
         count -= 2 * sf_model_skin_is_quadrangle(m, k);
     return count;
+}
+
+int64_t sf_model_skin_centroids(const sf_model *m) {
+    return m->skin_centroids && !m->skin_alone ? sf_model_skin_triangles(m) : 0;
 }

@@ -164,6 +164,7 @@ typedef struct sf_model {
     uint8_t *pair_layer;  /* [pair_count][2] numbers of the materials, ascending */
     double *pair_friction; /* [pair_count] - */
     int64_t skin_alone;    /* 1: they touch the supports only */
+    int64_t skin_centroids; /* 1: those of its triangles that are no halves are points of contact, too */
     int64_t skin_watched;  /* 1: they pass through each other, which ends the run */
 
     /* Rigid fixed bodies that the skin may touch; triangles turned outwards, of one support after the other.
@@ -322,8 +323,9 @@ bool sf_symmetry_plane(const sf_model *model, int axis, double *place);
  * is a triangle. k > 0. */
 bool sf_model_skin_is_quadrangle(const sf_model *model, int64_t k);
 
-/* The skin's triangles that are no halves, whose centroids may touch the pad; none where it touches the
- * supports only. */
+/* The skin's triangles that are no halves; those of them whose centroids may touch the pad, none without
+ * skin_centroids or where the skin touches the supports only. */
+int64_t sf_model_skin_triangles(const sf_model *model);
 int64_t sf_model_skin_centroids(const sf_model *model);
 
 /* The prescribed motion of a missile driven by a machine (model->motion_*): displacement along its direction,

@@ -143,6 +143,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"anvil depth (m)", m->anvil.depth, 0, 1e3},
         {"skin friction", m->skin_friction, 0, 10},
         {"skin alone", (double)m->skin_alone, 0, 1},
+        {"skin centroids", (double)m->skin_centroids, 0, 1},
         {"skin watched", (double)m->skin_watched, 0, (double)m->skin_alone},
         {"membrane modulus (Pa)", m->membrane.modulus, m->membrane_count > 0 ? 1e-9 : 0, 1e12},
         {"membrane Poisson's ratio", m->membrane.poisson, 0, 0.5},

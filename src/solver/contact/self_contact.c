@@ -141,7 +141,7 @@ static void weigh_point(const sf_state *s, const int32_t n[3], const double poin
 
 /* Weights that are rounding cost as much as others: they become zero, and the sum stays one. */
 static void drop_traces(double weight[4]) {
-    static const double TRACE = 1e-9;
+    static const double TRACE = 1e-12;
     int largest = weight[1] > weight[0] ? 1 : 0;
     double rest = 1;
     for (int k = 2; k < 4; k++)
