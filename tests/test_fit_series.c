@@ -261,10 +261,13 @@ static void wrong_series_get_one_sentence(void **state) {
     static const struct {
         const char *drop, *more, *sentence;
     } bad[] = {
-        {"case = \"case.cfg\"; ", "", "series.drops = 3: say which of them was measured by its number"},
+        {"case = \"case.cfg\"; ", "", "series.drops = 3: say which of them it is by its number"},
         {"case = \"case.cfg\"; drop = 4; ", "",
          "series.drops = 3: its key drop, the number in the series, is larger"},
-        {"case = \"one.cfg\"; drop = 2; ", "", "series.drops = 1: its key drop"},
+        {"case = \"one.cfg\"; drop = 2; ", "", "the case has no series: leave out its key drop"},
+        {"case = \"one.cfg\"; drop = 1; ", "", "the case has no series: leave out its key drop"},
+        {"case = \"first.cfg\"; drop = 1; ", "",
+         "takes a series whose drops have one missile, speed and place"},
         {"case = \"case.cfg\"; drop = 0; ", "", "drop is 0, outside 1 to 20"},
         {"case = \"case.cfg\"; drop = 1.5; ", "", "it must be a whole number"},
         {"case = \"case.cfg\"; drop = \"second\"; ", "", "drop must be a"},
@@ -275,11 +278,15 @@ static void wrong_series_get_one_sentence(void **state) {
         {"case = \"case.cfg\"; drop = 2; ", "unknown = ( { name = \"drift\"; } );",
          "drift is 0 in the start material"},
         {"case = \"case.cfg\"; drop = 2; ", "start: { reload = 1.5; };", "reload is 1.5, outside"},
+        {"case = \"one.cfg\"; ", "material = \"plain.cfg\"; start: { drift = 0.3; };",
+         "drift is the fall of reload"},
     };
     const program_place *place = *state;
     program_shell(
-        place, "sed 's/^series.*//' case.cfg > one.cfg; sed 's/5 s\";/&velocity = \"3 m\\/s\";/' case.cfg > "
-               "list.cfg");
+        place,
+        "sed 's/^series.*//' case.cfg > one.cfg; sed 's/5 s\";/&velocity = \"3 m\\/s\";/' case.cfg > "
+        "list.cfg; sed 's/^series.*/series: { drops = ( { velocity = \"3 m\\/s\"; }, { interval = \"5 s\"; } "
+        "); };/' case.cfg > first.cfg");
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         char text[512];
         snprintf(text, sizeof text, "%s %s drops = ( { name = \"a\"; %s a_max_g = 60.0; } );\n",

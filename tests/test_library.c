@@ -301,7 +301,7 @@ static void the_next_drop_is_that_of_a_series(void **state) {
     if (softfall_drop_next(p->drop, 90, &next, &error) != SOFTFALL_OK)
         fail_msg("%s", error.text);
     assert_int_equal(softfall_drop_next(next, 90, &none, &error), SOFTFALL_INPUT);
-    assert_true(!none && strstr(error.text, "the drop has ended"));
+    assert_true(!none && strstr(error.text, "the drop before has not ended"));
     assert_int_equal(softfall_drop_run(next, NULL, NULL, &ending, &error), SOFTFALL_OK);
     assert_int_equal(ending, SOFTFALL_REBOUND);
     program_succeed(&p->folder, "solve",

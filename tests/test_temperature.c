@@ -238,7 +238,7 @@ static void put_test(const program_place *p, const char *name, double factor) {
     "{ temperature = \"" temperature "\"; file = \"" name "\"; rate = \"" rate " 1/s\"; }"
 #define FIT(tests) "density = \"35 kg/m3\"; tests = ( " tests " );\n"
 #define THREE                                                                                                \
-    AT("49 degC", "at49.csv", "0.1")                                                                         \
+    AT("49 degC", "at49.csv", "0.1003")                                                                      \
     ", " AT("-4 degC", "at-4.csv", "0.1") ", " AT("23 degC", "at23.csv", "0.1")
 
 /* One fit of three temperatures: one unloading and densification, a curve for each, which a case reads. */
@@ -294,6 +294,7 @@ static void tests_at_temperatures_are_all_alike(void **state) {
         {FIT(THREE) "rate_model = \"log\";\n", "rate_model is for tests at several rates"},
         {FIT(THREE) "curve_form = \"gas\";\n", "unknown key \"temperature\""},
         {FIT(AT("23 kg", "at23.csv", "0.1")), "temperature: "},
+        {FIT(AT("23 degC", "at23.csv", "0.1") ", " AT("5000 K", "at49.csv", "0.1")), "outside 100 to 600 K"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         program_write_text(p, "bad.cfg", bad[k][0]);

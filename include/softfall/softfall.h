@@ -141,7 +141,8 @@ SOFTFALL_API softfall_status softfall_drop_create(const softfall_model *model,
                                                   softfall_error *error);
 /* The next drop of the same missile on the pad as `before` has left it, after a rest of `pause` (s): the bits
  * are those of a series of softfall-solve. `before` must have ended with the missile away from the pad; it
- * does not change, and may be freed. */
+ * does not change, and may be freed, but its model must outlive the new drop. Threads and end time are those
+ * of `before`. Later drops of a foam without memory are too soft. */
 SOFTFALL_API softfall_status softfall_drop_next(const softfall_drop *before, double pause,
                                                 softfall_drop **out, softfall_error *error);
 SOFTFALL_API void softfall_drop_free(softfall_drop *drop);

@@ -109,8 +109,7 @@ softfall_status softfall_drop_next(const softfall_drop *before, double pause, so
         SF_FAIL(&err, SF_ERR_INPUT, "pause: %g s is not above 0", pause);
     else if (before->ending == SOFTFALL_RUNNING || before->failure.status != SF_OK ||
              before->state.contact_count > 0)
-        SF_FAIL(&err, SF_ERR_INPUT,
-                "a pad goes on only after the missile has left it, and the drop has ended");
+        SF_FAIL(&err, SF_ERR_INPUT, "the drop before has not ended, or its missile still touches the pad");
     else
         create(&before->model, before->threads, before, pause, out, &err);
     return softfall_return(&err, error);

@@ -569,6 +569,8 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
                        .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
                        .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value};
     card->informed_strain = fit->data.end;
+    for (int k = 0; k < c->test_count && c->thermal; k++) /* a drop has the curve of one or two of them */
+        card->informed_strain = fmin(card->informed_strain, c->test[k].largest_strain);
     int count = fit->table_count;
     SF_TRY(sf_form_curves_alloc(fit->rate_count, (int64_t)fit->rate_count * count, &card->curves, err));
     for (int r = 0; r < fit->rate_count; r++) {

@@ -139,11 +139,13 @@ static void describe(FILE *out, const void *place, bool comments) {
             if (fit->side[k].points > 0)
                 fprintf(out, "  %s: %s\n", k ? "unloading, given the loading" : "loading",
                         sf_table_misfit(&fit->side[k], misfit));
-        for (int k = 0; k < r->test_count && thermal; k++)
-            fprintf(out,
-                    "  %.4g degC (%s): deviation %.3g %% of the stress in loading, %.3g %% in unloading\n",
-                    r->test[k].test.temperature - SF_CELSIUS, r->test[k].name, r->test[k].percent[0],
-                    r->test[k].percent[1]);
+        for (int k = 0; k < r->test_count && thermal; k++) {
+            fprintf(out, "  %.4g degC (%s): deviation %.3g %% of the stress in loading",
+                    r->test[k].test.temperature - SF_CELSIUS, r->test[k].name, r->test[k].percent[0]);
+            if (isfinite(r->test[k].percent[1]))
+                fprintf(out, ", %.3g %% in unloading", r->test[k].percent[1]);
+            fputc('\n', out);
+        }
         fprintf(out, "  card in the solver's law against the fit: largest difference %.2g %%\n",
                 r->card_percent);
         return;
@@ -404,7 +406,8 @@ static void json_candidate(sf_json *json, const char *name, const sf_candidate *
 
 static void json_choice(sf_json *json, const sf_compression_fit *fit) {
     static const char *const rules[SF_RULES] = {"H1_automatic", "H1_free", "H2"};
-    sf_json_text(json, "rate_model", sf_rate_model_names[fit->model.form.rate]);
+    sf_json_text(json, "rate_model",
+                 fit->data.config->thermal ? "none" : sf_rate_model_names[fit->model.form.rate]);
     sf_json_open(json, "rate_models_tried", '{');
     for (int k = 0; k < SF_RATE_MODELS; k++)
         json_candidate(json, sf_rate_model_names[k], &fit->rate[k]);

@@ -92,13 +92,15 @@ static sf_status take_material(sf_material *material, bool first, sf_fit_input *
 /* Which drop of the case's series it is. The columns of a later one are those of the drops before it, and
  * have their speed. */
 static sf_status take_series(const sf_case *c, sf_fit_drop *drop, sf_error *err) {
-    const char *wrong = drop->number > c->drops ? "its key drop, the number in the series, is larger"
+    const char *wrong = drop->number > 0 && c->drops == 1 ? "the case has no series: leave out its key drop"
+                        : drop->number > c->drops ? "its key drop, the number in the series, is larger"
                         : c->drops > 1 && drop->number == 0
-                            ? "say which of them was measured by its number, such as drop = 2"
+                            ? "say which of them it is by its number, such as drop = 2"
                         : c->drops > 1 && drop->speed_sd > 0 ? "speed_sd is for single drops only"
                                                              : NULL;
-    for (int k = 1; k < drop->number && !wrong; k++) {
-        drop->pause[k - 1] = c->drop[k].interval;
+    for (int k = 0; k < drop->number && !wrong; k++) {
+        if (k > 0)
+            drop->pause[k - 1] = c->drop[k].interval;
         if (c->drop[k].own)
             wrong = "softfall-fit drop takes a series whose drops have one missile, speed and place";
     }
@@ -115,6 +117,11 @@ static sf_status read_case(sf_fit_drop *drop, const char *material, bool first, 
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
     SF_TRY(sf_case_read(drop->case_path, 1, &material, &sink, &c, err));
     SF_TRY(take_series(&c, drop, err));
+    if (c.temperature_acts)
+        return SF_REFUSE(err,
+                         "the drop \"%s\": %s: softfall-fit drop fits a foam at one temperature: give its "
+                         "material the curve of that temperature as `curve`, and leave out pad.temperature",
+                         drop->name, drop->case_path);
     return take_material(&c.material, first, in, err);
 }
 
@@ -392,6 +399,10 @@ static sf_status check_memory(const sf_config *config, sf_config_item *model, co
                 "the drop \"%s\" is of a series, but the foam of %s remembers nothing: give "
                 "it material.memory, or start: { reload = 0.4; }",
                 in->drop[k].name, in->material_path);
+    if (in->start[SF_PARAMETER_DRIFT] > 0 && !(in->start[SF_PARAMETER_RELOAD] > 0))
+        return sf_config_refuse(config, model, err,
+                                "drift is the fall of reload from loading to loading: give start: { reload = "
+                                "0.4; }, or leave out drift");
     return SF_OK;
 }
 
