@@ -192,6 +192,9 @@ static void bodies_with_other_meshes_pass_on_the_stress(void **state) {
     assert_true(r.code == 2 && strstr(r.err, "pad.separate: bodies touch each other by pad.self_contact"));
     r = program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.separate=true");
     assert_null(strstr(r.err, "out of reach"));
+    r = program_succeed(p, "pre",
+                        "case.cfg -o m.h5 --force --set pad.separate=true --set pad.triangle_centroids=true");
+    assert_non_null(strstr(r.err, "pad.triangle_centroids has no effect"));
     r = program_succeed(
         p, "pre",
         "case.cfg -o m.h5 --force --set pad.separate=true --set geometry.parameters='{ far = 1; }'");

@@ -77,8 +77,6 @@ static const sf_model_field fields[] = {
      "their nodes, outwards", true, false},
     LATER_SCALAR(skin_friction, F64, "/skin/friction", "1", "Coulomb coefficient between them"),
     LATER_SCALAR(skin_alone, I64, "/skin/alone", "1", "1: they touch the supports only"),
-    LATER_SCALAR(skin_centroids, I64, "/skin/centroids", "1",
-                 "1: their centroids are points of contact, too, unless they are halves"),
     LATER_SCALAR(skin_watched, I64, "/skin/watched", "1",
                  "1: they pass through each other, which ends the run"),
     LATER_SCALAR(support_count, I64, "/support/count", "1", "rigid supports"),
@@ -204,6 +202,9 @@ static const sf_model_field fields[] = {
                    "Coulomb coefficient between them"),
     OPTIONAL_ARRAY(skin_half, U8, skin_count, "/skin/half", "1",
                    "1, 2: halves of a quadrangle, its nodes 0, 1, 2 and 0, 2, 3; 0: a triangle"),
+    /* New fields stand at the end: their number is part of the hash of a model. */
+    LATER_SCALAR(skin_centroids, I64, "/skin/centroids", "1",
+                 "1: their centroids are points of contact, too, unless they are halves"),
 };
 
 const sf_model_field *sf_model_fields(size_t *count) {

@@ -182,7 +182,9 @@ static sf_status check_content_hash(const sf_h5 *h5, const sf_model *model, sf_e
     SF_TRY(sf_h5_get_attribute(h5, "/", "content_hash", stored, sizeof stored, err));
     sf_model_hash(model, hash);
     if (strcmp(stored, hash) != 0)
-        return SF_FAIL(err, SF_ERR_MODEL, "is damaged or was changed: the hash of its content is %s, not %s",
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "is damaged or was changed, or an older version made it (then make it anew with "
+                       "softfall-pre): the hash of its content is %s, not %s",
                        hash, stored);
     return SF_OK;
 }

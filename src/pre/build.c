@@ -538,8 +538,11 @@ static sf_status find_skin(const sf_case *c, sf_model *m, sf_build_report *repor
     return SF_OK;
 }
 
-/* Faces of a pad without contact with itself pass through each other. */
-static void tell_slits(const sf_model *m, const sf_build_report *r, const sf_sink *sink) {
+/* Faces of a pad without contact with itself pass through each other; and a key may have no effect. */
+static void tell_contact(const sf_case *c, const sf_model *m, const sf_build_report *r, const sf_sink *sink) {
+    if (c->triangle_centroids && sf_model_skin_centroids(m) == 0)
+        sf_sink_tell(sink, SF_WARNING,
+                     "pad.triangle_centroids has no effect: no triangles of the pad may touch each other");
     if (r->domains.hidden_count > 0 && (m->skin_count == 0 || m->skin_alone))
         sf_sink_tell(
             sink, SF_WARNING,
@@ -582,7 +585,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
             check_first_step(m, report->first_step, critical, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
             sf_hold_warn(&report->hold, m, sink);
-            tell_slits(m, report, sink);
+            tell_contact(c, m, report, sink);
             if (c->separate)
                 sf_hold_warn_apart(m, sink, err);
         }

@@ -204,7 +204,7 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
 /* The friction of loose layers that is not that of all faces. */
 static sf_status take_pairs(const sf_case *c, sf_model *m, sf_error *err) {
     m->skin_friction = c->self_friction;
-    m->skin_centroids = c->triangle_centroids;
+    m->skin_centroids = c->triangle_centroids && !m->skin_alone && sf_model_skin_triangles(m) > 0;
     m->pair_layer = sf_alloc(err, 2 * SF_CASE_MAX_INTERFACES, 1, "friction of layers");
     m->pair_friction = sf_alloc(err, SF_CASE_MAX_INTERFACES, sizeof *m->pair_friction, "friction of layers");
     for (int k = 0; err->status == SF_OK && k < c->interface_count; k++) {

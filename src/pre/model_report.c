@@ -243,8 +243,8 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
                     : m->skin_alone                ? "the support"
                                                    : ", and the support");
     if (m->skin_count > 0 && !m->skin_alone && !m->skin_centroids && sf_model_skin_triangles(m) > 0)
-        add(out, "triangles_touch", "triangles that touch",
-            "a pressure between bodies whose triangles do not match is off by up to 16 %% at a node: "
+        add(out, "triangles_touch", "triangles that may touch",
+            "where they lie on faces that do not match, the stress may be off (16 %% at a node of a test): "
             "pad.triangle_centroids, or hexahedra");
     add_interfaces(out, m, &r->interfaces);
     add_masses(out, m, r);

@@ -148,7 +148,7 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
         s->f[9 * i] = s->f[9 * i + 4] = s->f[9 * i + 8] = 1;
         s->pair_stiffness[i] = sf_material_rest_modulus(sf_model_material(model, i));
     }
-    for (int64_t p = 0; p < sf_state_rows(model, 's'); p++)
+    for (int64_t p = sf_state_rows(model, 's') - 1; p >= 0; p--)
         s->self_partner[p] = -1;
     for (int64_t c = 0; c < sf_model_points(model); c++)
         memcpy(&s->contact_position[3 * c], &model->position[3 * sf_model_point_node(model, c)],

@@ -149,7 +149,7 @@ static void choose_candidates(const sf_skin *skin, sf_state *s, int64_t p, doubl
     enum { MOST = 256, OF_PAD = CANDIDATES / 2 };
     int32_t *own = &s->self_candidate[CANDIDATES * p], near[MOST];
     bool across = skin->moving < skin->nodes, rigid = sf_skin_is_rigid(skin, p), stopped = false;
-    int count = 0, most = across ? OF_PAD : CANDIDATES;
+    int count = 0, most = across && p < skin->nodes ? OF_PAD : CANDIDATES;
     int64_t found = (skin->alone && !skin->watched) || rigid
                         ? 0
                         : sf_grid_query(&f->pad, &s->self_position[3 * p], reach, MOST, near);

@@ -124,6 +124,7 @@ static bool go_on_smoothly(const sf_skin *skin, int64_t f, int64_t g) {
 
 /* Parts the corners of the pad's facets at each node into sides. */
 static sf_status part_sides(sf_skin *skin, sf_error *err) {
+    enum { MOST_FACETS = 1000 };
     int64_t corners = 3 * skin->facet_count, sides = skin->count;
     SF_OWNED int64_t *parent = sf_sets_alone(corners, "skin of the pad", err);
     skin->side = sf_alloc(err, (unsigned long)corners, sizeof *skin->side, "skin of the pad");
@@ -134,6 +135,9 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
     memcpy(skin->side, skin->facet, (size_t)corners * sizeof *skin->side);
     for (int64_t p = 0; p < skin->moving; p++) {
         int64_t last = -1, end = skin->ring_ptr[p + 1];
+        if (end - skin->ring_ptr[p] > MOST_FACETS)
+            return SF_FAIL(err, SF_ERR_MODEL, "%lld triangles of the pad's skin share a node, more than %d",
+                           (long long)(end - skin->ring_ptr[p]), MOST_FACETS);
         for (int64_t e = skin->ring_ptr[p]; e < end; e++)
             for (int64_t other = e + 1; other < end; other++)
                 if (go_on_smoothly(skin, skin->ring[e], skin->ring[other]))
