@@ -183,7 +183,8 @@ sf_status sf_paraview_film(const sf_staging *output, const char *film, sf_error 
     SF_OWNED char *log = sf_staging_path(output, LOG, err);
     char reason[256];
     int code = 0;
-    SF_TRY(err->status);
+    if (!log)
+        return err->status;
     snprintf(display, sizeof display, "%d", 1000 + (int)(getpid() % 30000));
     const sf_process process = {.arguments = uses_display() ? words + OF_XVFB : words,
                                 .folder = output->aside,
