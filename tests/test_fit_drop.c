@@ -95,7 +95,7 @@ static void bad_input_gets_one_sentence(void **state) {
         {MATERIAL DROPS("a_max_g = 60.0; v_rebound_sd = 0.1;"),
          "v_rebound_sd is given, but no v_rebound_m_s"},
         {MATERIAL DROPS("contact_time_ms = \"20 ms\";"), "contact_time_ms must be a number"},
-        {MATERIAL DROPS("amax = 60.0;"), "unknown key \"amax\"; the keys here are name, case, a_max_g"},
+        {MATERIAL DROPS("amax = 60.0;"), "unknown key \"amax\"; the keys here are name, case, drop, a_max_g"},
         {MATERIAL DROPS("curve = \"none.csv\";"), "none.csv cannot be read"},
         {MATERIAL DROPS("curve = \"start.csv\";"), "start.csv"},
         {MATERIAL "drops = ( { name = \"a b\"; case = \"case.cfg\"; HIC = 3.0; } );\n", "begins file names"},

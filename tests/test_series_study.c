@@ -230,7 +230,7 @@ static void what_a_study_cannot_judge_is_refused(void **state) {
         "series.cfg",
         fixture_source("examples/materials/eva35.cfg"), fixture_source("examples/materials/eva35.csv"),
         fixture_source("geo"), fixture_source(EXAMPLE));
-    expect(program_run(p, "fit", "drop fit.cfg -o none"), "say which of them was measured by its number");
+    expect(program_run(p, "fit", "drop fit.cfg -o none"), "say which of them it is by its number");
     assert_int_equal(program_shell(p, "test -e none").code, 1);
 }
 
