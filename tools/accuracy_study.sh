@@ -67,6 +67,8 @@ for folder in sys.argv[1:]:
             value = float(drop[figure])
             errors.append(float(row[figure]) / value - 1)
             held += float(row[low]) <= value <= float(row[figure + "_high"])
+        if not errors:
+            sys.exit(f"{folder}: no predicted row was simulated: give more time (SF_TIME)")
         rms = math.sqrt(sum(e * e for e in errors) / len(errors))
         note = f" ({wrong} have none that may be used)" if wrong else ""
         print(f"| {plan} | {len(rows)} | {simulated} ({100 * simulated / len(rows):.1f} %) | {left} | {figure} "
