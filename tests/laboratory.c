@@ -183,31 +183,30 @@ void laboratory_measure(laboratory *lab, gsl_rng *random) {
 
 /* ---- identification by one model ---- */
 
-typedef struct bench {
-    laboratory *lab;
-    sf_drop_fit *fit;
-} bench;
-
-static sf_status drop(const bench *b, const sf_columns *columns, int last, const double *u, double *y,
-                      sf_error *err) {
-    sf_drop_fit other = *b->fit;
+sf_status laboratory_respond(const sf_drop_fit *fit, const sf_columns *columns, int count, int last,
+                             const double *u, double *y, sf_error *err) {
+    sf_drop_fit other = *fit;
     sf_foam_card card;
-    memcpy(other.columns, columns, LAB_DROPS * sizeof *columns);
-    if (sf_drop_fit_card(other.input, u, &card, err) != SF_OK)
-        return err->status;
+    memcpy(other.columns, columns, (size_t)count * sizeof *columns);
+    SF_TRY(sf_drop_fit_card(other.input, u, &card, err));
     sf_drop_fit_respond(&other, 0, last, &card, NULL, y, err);
     sf_foam_card_free(&card);
     return err->status;
 }
 
+typedef struct bench {
+    laboratory *lab;
+    sf_drop_fit *fit;
+} bench;
+
 static sf_status surrogate(void *context, const double *u, double *y, sf_error *err) {
     const bench *b = context;
-    return drop(b, b->lab->surrogate, LAB_MEASURED, u, y, err);
+    return laboratory_respond(b->fit, b->lab->surrogate, LAB_DROPS, LAB_MEASURED, u, y, err);
 }
 
 static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
     const bench *b = context;
-    return drop(b, b->lab->real, LAB_MEASURED, u, y, err);
+    return laboratory_respond(b->fit, b->lab->real, LAB_DROPS, LAB_MEASURED, u, y, err);
 }
 
 static void begin_fit(laboratory *lab, int m, sf_drop_fit *fit, double *measured, double *sd, double *y) {
@@ -251,7 +250,7 @@ static sf_status fit_model(laboratory *lab, sf_drop_fit *fit, sf_error *err) {
                                   .tolerance = 0.2};
     if (sf_mapping_solve(&p, &fit->result, err) != SF_OK)
         return err->status;
-    return drop(&b, lab->real, LAB_DROPS, fit->result.u, fit->y, err);
+    return laboratory_respond(fit, lab->real, LAB_DROPS, LAB_DROPS, fit->result.u, fit->y, err);
 }
 
 /* ---- the tally ---- */

@@ -24,6 +24,10 @@ void laboratory_init(laboratory *lab);
 /* Draws a foam and measures its drops. Draws again where a foam cannot be computed. */
 void laboratory_measure(laboratory *lab, gsl_rng *random);
 
+/* What a fit computes at the unknowns `u` of its drops 0 to `last` - 1 with other columns [count]. */
+sf_status laboratory_respond(const sf_drop_fit *fit, const sf_columns *columns, int count, int last,
+                             const double *u, double *y, sf_error *err);
+
 /* Of the held-out drops: is the truth between the quantiles low and high of the average? */
 typedef struct laboratory_tally {
     int foams, failed, reached;

@@ -3,6 +3,7 @@
  * program; predictions of them; refusals. */
 #include "extreme.h"
 #include "fit_fixture.h"
+#include "laboratory.h"
 #include "post_check.h"
 #include "study/fit/drop/inference.h"
 
@@ -50,26 +51,14 @@ static sf_columns hemisphere(const sf_fit_drop *drop, double area, double thinne
     return c;
 }
 
-static sf_status respond(const bench *b, const sf_columns *columns, int last, const double *u, double *y,
-                         sf_error *err) {
-    sf_drop_fit other = b->fit;
-    sf_foam_card card;
-    memcpy(other.columns, columns, sizeof other.columns[0] * DROPS);
-    if (sf_drop_fit_card(&b->in, u, &card, err) != SF_OK)
-        return err->status;
-    sf_drop_fit_respond(&other, 0, last, &card, NULL, y, err);
-    sf_foam_card_free(&card);
-    return err->status;
-}
-
 static sf_status surrogate(void *context, const double *u, double *y, sf_error *err) {
     const bench *b = context;
-    return respond(b, b->fit.columns, b->fit.measured_drops, u, y, err);
+    return laboratory_respond(&b->fit, b->fit.columns, DROPS, b->fit.measured_drops, u, y, err);
 }
 
 static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
     const bench *b = context;
-    return respond(b, b->real, b->fit.measured_drops, u, y, err);
+    return laboratory_respond(&b->fit, b->real, DROPS, b->fit.measured_drops, u, y, err);
 }
 
 /* The first `measured` drops are data. */
@@ -110,7 +99,7 @@ static void measure_and_map(bench *b, gsl_rng *random) {
         u[k] = log(truth[k]);
         prior[k] = log(b->in.prior[k]);
     }
-    assert_int_equal(respond(b, b->real, DROPS, u, y, &err), SF_OK);
+    assert_int_equal(laboratory_respond(&b->fit, b->real, DROPS, DROPS, u, y, &err), SF_OK);
     for (int k = 0; k < ROWS; k++)
         b->sd[k] = INFINITY;
     for (int d = 0; d < DROPS; d++)
@@ -133,7 +122,7 @@ static void measure_and_map(bench *b, gsl_rng *random) {
                                   .max_iterations = 12,
                                   .tolerance = 0.1};
     if (sf_mapping_solve(&p, &b->fit.result, &err) != SF_OK ||
-        respond(b, b->real, DROPS, b->fit.result.u, b->y, &err) != SF_OK)
+        laboratory_respond(&b->fit, b->real, DROPS, DROPS, b->fit.result.u, b->y, &err) != SF_OK)
         fail_msg("%s", err.text);
 }
 
@@ -156,7 +145,7 @@ static bool predicts_third(const bench *b, double *width) {
     if (sf_drop_infer(&b->fit, &o, &inference, &err) != SF_OK ||
         sf_drop_average_build(1, &list, 1, &average, &err) != SF_OK ||
         sf_drop_average_quantiles(&average, -1, 0, 2, ends, value, &err) != SF_OK ||
-        respond(b, b->real, DROPS, u, y, &err) != SF_OK)
+        laboratory_respond(&b->fit, b->real, DROPS, DROPS, u, y, &err) != SF_OK)
         fail_msg("%s", err.text);
     assert_true(inference.quantity[0].drop == 2 && inference.quantity[0].kind == SF_FIT_A_MAX);
     double held = exp(y[b->fit.row[2]]);

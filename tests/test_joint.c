@@ -6,6 +6,7 @@
 #include "study/fit/drop/inference.h"
 #include "study/fit/drop/drop_fit.h"
 #include "material/laws.h"
+#include "laboratory.h"
 #include "program_fixture.h"
 #include "material/low_density_foam.h"
 #include "study/column.h"
@@ -180,26 +181,14 @@ static sf_columns hemisphere(int d, double area, double thinner) {
     return c;
 }
 
-static sf_status respond(const bench *b, const sf_columns *columns, int last, const double *u, double *y,
-                         sf_error *err) {
-    sf_drop_fit other = b->fit;
-    sf_foam_card card;
-    memcpy(other.columns, columns, sizeof other.columns[0] * DROPS);
-    if (sf_drop_fit_card(&b->in, u, &card, err) != SF_OK)
-        return err->status;
-    sf_drop_fit_respond(&other, 0, last, &card, NULL, y, err);
-    sf_foam_card_free(&card);
-    return err->status;
-}
-
 static sf_status surrogate(void *context, const double *u, double *y, sf_error *err) {
     const bench *b = context;
-    return respond(b, b->fit.columns, MEASURED, u, y, err);
+    return laboratory_respond(&b->fit, b->fit.columns, DROPS, MEASURED, u, y, err);
 }
 
 static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
     const bench *b = context;
-    return respond(b, b->real, MEASURED, u, y, err);
+    return laboratory_respond(&b->fit, b->real, DROPS, MEASURED, u, y, err);
 }
 
 /* What the true foam gives, with errors of the stated size. */
@@ -209,7 +198,7 @@ static void measure(bench *b, gsl_rng *random) {
     sf_error err = SF_ERROR_INIT;
     for (int k = 0; k < UNKNOWNS; k++)
         u[k] = log(truth[k]);
-    assert_int_equal(respond(b, b->real, DROPS, u, y, &err), SF_OK);
+    assert_int_equal(laboratory_respond(&b->fit, b->real, DROPS, DROPS, u, y, &err), SF_OK);
     const double *at = y;
     for (int t = 0; t < joint->test_count; at += joint->test[t++].count) {
         sf_joint_test *test = &joint->test[t];
@@ -287,7 +276,7 @@ static void map(bench *b) {
                                   .max_iterations = 8,
                                   .tolerance = 0.1};
     if (sf_mapping_solve(&p, &b->fit.result, &err) != SF_OK ||
-        respond(b, b->real, DROPS, b->fit.result.u, b->y, &err) != SF_OK)
+        laboratory_respond(&b->fit, b->real, DROPS, DROPS, b->fit.result.u, b->y, &err) != SF_OK)
         fail_msg("%s", err.text);
 }
 
@@ -345,7 +334,7 @@ static void sample(const program_place *place, bench *b, finding *out) {
         out->chain_inside += value[0] < u[k] && u[k] < value[1]; /* logarithms, as the chains have them */
         out->chain[k] = value[1] - value[0];
     }
-    assert_int_equal(respond(b, b->real, DROPS, u, y, &err), SF_OK);
+    assert_int_equal(laboratory_respond(&b->fit, b->real, DROPS, DROPS, u, y, &err), SF_OK);
     assert_int_equal(sf_drop_average_build(1, &list, 1, &average, &err), SF_OK);
     assert_int_equal(inference.quantity[0].kind, SF_FIT_A_MAX);
     assert_int_equal(sf_drop_average_quantiles(&average, -1, 0, 2, ends, value, &err), SF_OK);
@@ -427,7 +416,8 @@ static void thin_to_the_limit(bench *b) {
     for (int k = 0; k < 40; k++) {
         sf_error err = SF_ERROR_INIT;
         columns->thickness = 0.5 * (low + high);
-        assert_int_equal(respond(b, b->fit.columns, DROPS, b->fit.result.u, y, &err), SF_OK);
+        assert_int_equal(laboratory_respond(&b->fit, b->fit.columns, DROPS, DROPS, b->fit.result.u, y, &err),
+                         SF_OK);
         *(isfinite(y[b->fit.row[MEASURED]]) ? &high : &low) = columns->thickness;
     }
     columns->thickness = high;
@@ -586,7 +576,7 @@ static void a_model_has_the_filter_of_the_measured_curve(void **state) {
     for (int c = 0; c < 3; c++) {
         sf_error err = SF_ERROR_INIT;
         drop->sample_class = classes[c];
-        assert_int_equal(respond(&b, b.real, 1, u, y[c], &err), SF_OK);
+        assert_int_equal(laboratory_respond(&b.fit, b.real, DROPS, 1, u, y[c], &err), SF_OK);
         for (int k = 0; k < SAMPLES; k++) {
             double value = y[c][SF_FIT_SAMPLES + k];
             peak[c] = value > peak[c] ? value : peak[c];
