@@ -90,7 +90,7 @@ def test_a_least_window_of_hic_has_its_closed_form():
 # ---- protocols ----
 
 def test_every_protocol_reads_and_names_what_is_unconfirmed():
-    assert {"f1292", "en1177", "en913", "goalpost", "d1596", "fmvss201u", "en1621", "f355", "rugby", "own"} <= set(protocol.names())
+    assert {"f1292", "en1177", "en913", "en12503", "goalpost", "d1596", "fmvss201u", "en1621", "f355", "rugby", "own"} <= set(protocol.names())
     for name in protocol.names():
         p = protocol.read(name)
         assert p.clauses and all(clause.source for clause in p.clauses)
