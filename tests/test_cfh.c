@@ -168,7 +168,8 @@ static void add_round(const pad *p, const sf_cfh_plan *plan, const sf_cfh_round 
             point.value[SF_CFH_A_MAX] *= 1 + pow(height / p->lock, 50);
         point.on_anvil = p->anvil > 0 && height >= p->anvil;
         point.failed = point.failed || point.on_anvil;
-        assert_true(points->count < plan->max_drops || plan->list_count > 0);
+        assert_true(points->count < (round->divides ? SF_CFH_MAX_POINTS : plan->max_drops) ||
+                    plan->list_count > 0);
         assert_true(height > 0 && height <= plan->max_height);
         sf_cfh_points_add(points, &point);
     }
@@ -233,7 +234,6 @@ static void a_foam_that_locks_up_is_bracketed(void **state) {
             sf_cfh_points points;
             sf_cfh_result result;
             double low = 0.1, high = 2.5;
-            plan.max_drops = 16;
             search(&p, &plan, &points);
             sf_cfh_evaluate(&points, plan.limit, &result);
             for (int k = 0; k < 60; k++) {

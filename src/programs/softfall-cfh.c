@@ -309,7 +309,7 @@ static sf_status simulate(sf_study *study, const setting *s, sf_cfh_report *repo
     const sf_cfh_series series = {report->plan, report->rig, &base, report->foams,
                                   o->posterior ? &pad : NULL};
     printf("%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
-           o->list_count ? o->list_count : MAX_DROPS, study->runs,
+           o->list_count ? o->list_count : SF_CFH_MAX_POINTS, study->runs,
            report->rig->pairs ? "on the rig" : "of free fall");
     fflush(stdout);
     SF_TRY(sf_cfh_simulate(&series, &study->runner, points, &report->ending, err));

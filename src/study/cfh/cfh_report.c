@@ -119,7 +119,11 @@ static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
     sf_text_add(text, size,
                 " of free fall%s%s%s: ", v->verdict == SF_CFH_FOUND && r->spread ? " as simulated" : "",
                 *r->counted ? ", by " : "", r->counted);
-    if (v->verdict == SF_CFH_FOUND)
+    const sf_cfh_crossing *crossing = &v->crossing[v->deciding];
+    if (v->verdict == SF_CFH_FOUND && crossing->bracketed)
+        sf_text_add(text, size, "%s reaches %g%s first, between drops at %.3f and %.3f m.", name, limit, unit,
+                    crossing->low, crossing->high);
+    else if (v->verdict == SF_CFH_FOUND)
         sf_text_add(text, size, "%s reaches %g%s first.", name, limit, unit);
     else if (v->verdict == SF_CFH_ABOVE)
         sf_text_add(text, size, "neither a_max %g g nor HIC %g is reached", r->plan->limit[SF_CFH_A_MAX],

@@ -496,6 +496,7 @@ static sf_cfh_step go_near(const sf_cfh_plan *plan, const sf_cfh_points *points,
         return SF_CFH_ENOUGH;
     if (found && now.crossing[now.deciding].bracketed) {
         divide_bracket(plan, b, round);
+        round->divides = true;
         return round->count > 0 ? SF_CFH_SIMULATE : SF_CFH_ENOUGH;
     }
     add_free(plan, points, exp(centre), 1, &below, round);
@@ -522,7 +523,7 @@ sf_cfh_step sf_cfh_next(const sf_cfh_plan *plan, const sf_cfh_points *points, sf
                        : !b.above         ? go_up(plan, points, &b, round)
                        : !b.below         ? go_down(plan, points, &b, round)
                                           : go_near(plan, points, &b, round);
-    int left = plan->max_drops - points->count;
+    int left = (round->divides ? SF_CFH_MAX_POINTS : plan->max_drops) - points->count;
     round->count = step != SF_CFH_SIMULATE ? 0 : round->count < left ? round->count : left;
     return step == SF_CFH_SIMULATE && left <= 0 ? SF_CFH_AT_CAP : step;
 }

@@ -151,7 +151,7 @@ typedef struct sf_cfh_plan {
     double limit[SF_CFH_CRITERIA]; /* g, - */
     double first;                  /* m, height of the first drop */
     double max_height;             /* m */
-    int max_drops;
+    int max_drops; /* of a search, but for those that divide a bracket: SF_CFH_MAX_POINTS in all */
     int list_count;                 /* a list instead of a search, 0: none */
     double list[SF_CFH_MAX_POINTS]; /* m, ascending */
     double unit; /* m of free fall for 1 m on the user's scale; heights are rounded there */
@@ -159,7 +159,8 @@ typedef struct sf_cfh_plan {
 
 /* Heights that are simulated before the next are chosen. */
 typedef struct sf_cfh_round {
-    int count; /* 1 or 2 of a search; of a list all of it */
+    int count;    /* 1 or 2 of a search; of a list all of it */
+    bool divides; /* they divide the bracket of a limit, which a quadratic misses: the cap does not hold */
     double height[SF_CFH_MAX_POINTS];
 } sf_cfh_round;
 
