@@ -374,10 +374,36 @@ static void what_no_foam_has_does_not_converge(void **state) {
                        "drops = ( { name = \"a\"; case = \"case.cfg\"; a_max_g = 15.0; } );\n");
     program_result fit = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
     assert_int_equal(fit.code, 5);
-    assert_non_null(strstr(fit.err, "the simulations confirm no step that the columns propose"));
+    assert_non_null(strstr(fit.err, "no step that the columns propose lowers the objective"));
     assert_non_null(strstr(fit.err, "1 of 1 fits did not converge: the files are written"));
     program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
     assert_non_null(strstr(json.data, "\"converged\": false"));
+    free(json.data);
+    program_bytes material = program_read_file(program_path(&place, "out/material.cfg"));
+    assert_non_null(strstr(material.data, "NOT CONVERGED: no step that the columns propose"));
+    free(material.data);
+    program_tear_down(&place);
+}
+
+/* The cushion curve of examples/foams/pe.cfg by the form avalle: avalle_n cannot be below 1, where the misfit
+ * would be least. The minimum within the bounds is found, and said to be there. */
+static void a_fit_ends_at_the_bound_of_a_parameter(void **state) {
+    (void)state;
+    program_place place;
+    program_set_up(&place);
+    program_shell(
+        &place,
+        "cp \"$SF_SOURCE_DIR\"/examples/foams/pe_start.cfg \"$SF_SOURCE_DIR\"/examples/foams/foam_start.csv .");
+    program_write_text(
+        &place, "fit.cfg",
+        "name = \"pe\"; material = \"pe_start.cfg\"; curve_form = \"avalle\"; posterior = false;\n"
+        "cushions = ( { name = \"PE\"; stress_energy: { A = \"68.04 kPa\"; B = 0.015664; from = "
+        "\"10 kPa\"; to = \"150 kPa\"; }; thickness = \"50 mm\"; drop_height = \"0.6 m\"; } );\n");
+    program_result fit = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
+    assert_int_equal(fit.code, 0);
+    assert_non_null(strstr(fit.out, "avalle_n stands at its bound"));
+    program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
+    assert_true(number_after(json.data, "\"misfit\": ") < 4);
     free(json.data);
     program_tear_down(&place);
 }
@@ -596,6 +622,7 @@ int main(void) {
         cmocka_unit_test(medians_follow_the_modulus_of_the_start),
         cmocka_unit_test(no_foam_is_one_that_a_case_refuses),
         cmocka_unit_test(what_no_foam_has_does_not_converge),
+        cmocka_unit_test(a_fit_ends_at_the_bound_of_a_parameter),
         cmocka_unit_test(hidden_foam_is_found),
         cmocka_unit_test(a_predicted_drop_scatters),
         cmocka_unit_test(the_mount_of_the_accelerometer_is_found),

@@ -28,15 +28,27 @@ static const double NOISE = 0.002, CURVATURE = 0.05, SLOPE = 0.3;
 enum { MOST_IDLE = 5 };                  /* steps in a row that gain nothing: the search ends */
 static const double LEAST_RADIUS = 0.02; /* of the trust region: shorter steps only tell the noise */
 
+/* A minimisation leaves a bound by no more than a part of the first; a parameter that leaves its bound again
+ * begins the second away from it. */
+static const double BOUND = 1e-3, RELEASE = 0.05;
+enum { BOUND_ROUNDS = 8 };
+
 /* One minimisation. */
 typedef struct minimisation {
     anchor anchor;
     const double *sd;    /* [responses] */
     const double *about; /* [parameters] point that holds the step back */
     double radius;       /* its standard deviation; INFINITY: free */
+    bool held[SF_MAPPING_MAX_PARAMETERS]; /* at its bound in `bound` */
+    double bound[SF_MAPPING_MAX_PARAMETERS];
     double *y;           /* [responses] scratch */
     sf_error err;        /* of the surrogate, inside GSL */
 } minimisation;
+
+/* The value of a parameter within its bounds. */
+static double inside(const sf_mapping_problem *p, int j, double u) {
+    return p->low ? fmin(fmax(u, p->low[j]), p->high[j]) : u;
+}
 
 static sf_status evaluate(const anchor *a, const double *u, double *y, sf_error *err) {
     const sf_mapping_problem *p = a->problem;
@@ -57,12 +69,15 @@ static double residual(const sf_mapping_problem *p, const double *sd, const doub
     return isinf(sd[i]) ? 0 : over / sd[i];
 }
 
-/* Residuals: data, prior, and what holds the step back. */
+/* Residuals: data, prior, and what holds the step back and within the bounds. */
 static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
     minimisation *m = data;
     const sf_mapping_problem *p = m->anchor.problem;
+    double u[SF_MAPPING_MAX_PARAMETERS];
     sf_error err = SF_ERROR_INIT;
-    if (evaluate(&m->anchor, x->data, m->y, &err) != SF_OK) {
+    for (int j = 0; j < p->parameters; j++)
+        u[j] = m->held[j] ? m->bound[j] : inside(p, j, gsl_vector_get(x, (size_t)j));
+    if (evaluate(&m->anchor, u, m->y, &err) != SF_OK) {
         m->err = err;
         for (size_t k = 0; k < f->size; k++)
             gsl_vector_set(f, k, 1e6);
@@ -72,10 +87,11 @@ static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
     for (int i = 0; i < p->responses; i++)
         gsl_vector_set(f, row++, residual(p, m->sd, m->y, i));
     for (int j = 0; j < p->parameters; j++)
-        gsl_vector_set(f, row++, (gsl_vector_get(x, (size_t)j) - p->prior[j]) / p->prior_sd[j]);
+        gsl_vector_set(f, row++, (u[j] - p->prior[j]) / p->prior_sd[j]);
     for (int j = 0; j < p->parameters; j++)
         gsl_vector_set(f, row++,
-                       isinf(m->radius) ? 0 : (gsl_vector_get(x, (size_t)j) - m->about[j]) / m->radius);
+                       (isinf(m->radius) ? 0 : (u[j] - m->about[j]) / m->radius) +
+                           (gsl_vector_get(x, (size_t)j) - u[j]) / BOUND);
     return GSL_SUCCESS;
 }
 
@@ -97,8 +113,8 @@ static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobi
     return err.status == SF_OK ? GSL_SUCCESS : GSL_ENOMEM;
 }
 
-/* Minimises from `u`, which gets the minimum. */
-static sf_status minimise(minimisation *m, double *u, sf_error *err) {
+/* Minimises from `u`, which gets the minimum; what is held stays. */
+static sf_status descend(minimisation *m, double *u, sf_error *err) {
     const sf_mapping_problem *p = m->anchor.problem;
     size_t n = (size_t)p->responses + 2 * (size_t)p->parameters;
     gsl_multifit_nlinear_parameters options = gsl_multifit_nlinear_default_parameters();
@@ -106,7 +122,6 @@ static sf_status minimise(minimisation *m, double *u, sf_error *err) {
         .f = residuals, .df = residual_jacobian, .n = n, .p = (size_t)p->parameters, .params = m};
     gsl_multifit_nlinear_workspace *w =
         gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &options, n, (size_t)p->parameters);
-    m->y = sf_alloc(err, (unsigned long)p->responses, sizeof *m->y, "responses");
     if (!w)
         SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a least-squares problem of %zu residuals", n);
     if (err->status == SF_OK) {
@@ -114,12 +129,52 @@ static sf_status minimise(minimisation *m, double *u, sf_error *err) {
         gsl_vector_const_view start = gsl_vector_const_view_array(u, (size_t)p->parameters);
         gsl_multifit_nlinear_init(&start.vector, &fdf, w);
         gsl_multifit_nlinear_driver(FIT_STEPS, 1e-7, 1e-10, 1e-10, NULL, NULL, &info, w);
-        memcpy(u, w->x->data, (size_t)p->parameters * sizeof *u);
+        for (int j = 0; j < p->parameters; j++)
+            u[j] = m->held[j] ? m->bound[j] : inside(p, j, gsl_vector_get(w->x, (size_t)j));
         if (evaluate(&m->anchor, u, m->y, err) != SF_OK && m->err.status != SF_OK)
             *err = m->err;
     }
     gsl_multifit_nlinear_free(w);
-    free(m->y);
+    return err->status;
+}
+
+/* Sum of the squared residuals. */
+static double cost(minimisation *m, const double *u, gsl_vector *f) {
+    double square;
+    gsl_vector_const_view x = gsl_vector_const_view_array(u, (size_t)m->anchor.problem->parameters);
+    residuals(&x.vector, m, f);
+    gsl_blas_ddot(f, f, &square);
+    return square;
+}
+
+/* Holds the parameters that have reached a bound, and lets those go that fall from it. Returns if any did. */
+static bool change_held(minimisation *m, double *u, gsl_vector *f) {
+    const sf_mapping_problem *p = m->anchor.problem;
+    bool changed = false;
+    for (int j = 0; j < p->parameters; j++) {
+        bool low = u[j] <= p->low[j], high = u[j] >= p->high[j], held = m->held[j];
+        double least = cost(m, u, f), at = u[j];
+        if (!low && !high)
+            continue;
+        m->held[j] = false;
+        u[j] += low ? DIFFERENCE : -DIFFERENCE;
+        m->held[j] = !(cost(m, u, f) < least);
+        m->bound[j] = at;
+        u[j] = m->held[j] ? at : at + (low ? RELEASE : -RELEASE);
+        changed |= m->held[j] != held;
+    }
+    return changed;
+}
+
+/* Minimises from `u`, which gets the minimum within the bounds. */
+static sf_status minimise(minimisation *m, double *u, sf_error *err) {
+    const sf_mapping_problem *p = m->anchor.problem;
+    SF_VECTOR *f = sf_vector((size_t)p->responses + 2 * (size_t)p->parameters, err);
+    SF_OWNED double *y = sf_alloc(err, (unsigned long)p->responses, sizeof *y, "responses");
+    m->y = y;
+    for (int round = 0; round < BOUND_ROUNDS && err->status == SF_OK; round++)
+        if (descend(m, u, err) == SF_OK && (!p->low || !change_held(m, u, f)))
+            break;
     return err->status;
 }
 
@@ -357,7 +412,7 @@ static sf_status propose_widely(search *s, sf_error *err) {
         for (int l = 0; k > 0 && l < PLACES; l++) {
             gsl_qrng_get(places, place);
             for (int j = 0; j < p->parameters; j++)
-                s->trial.u[j] = p->prior[j] + p->prior_sd[j] * gsl_cdf_ugaussian_Pinv(place[j]);
+                s->trial.u[j] = inside(p, j, p->prior[j] + p->prior_sd[j] * gsl_cdf_ugaussian_Pinv(place[j]));
             double objective = expect(s, err);
             if (objective < least) {
                 least = objective;
@@ -456,7 +511,7 @@ static sf_status iterate(search *s, sf_error *err) {
         bool settled = is_settled(p, step, r->gain, idle);
         r->reason = settled && !is_bound(p, s->best.y) ? NULL
                     : settled                          ? "a drop stands at the bound of what can be used"
-                    : idle >= MOST_IDLE ? "the simulations confirm no step that the columns propose"
+                    : idle >= MOST_IDLE ? "no step that the columns propose lowers the objective"
                                         : "the limit of simulations came first";
         r->converged = !r->reason;
         if (settled || idle >= MOST_IDLE || r->iterations == p->max_iterations)

@@ -20,6 +20,8 @@ typedef struct sf_mapping_problem {
     const double *start;    /* [parameters] */
     const double *prior;    /* [parameters] mean */
     const double *prior_sd; /* [parameters] > 0 */
+    const double *low, *high; /* [parameters] bounds that no point exceeds; INFINITY: none of that parameter;
+                                 NULL: none at all */
     const double *measured; /* [responses] */
     const double *sd;       /* [responses] > 0; INFINITY: predicted only, no datum */
     const double *bound_sd; /* [responses] INFINITY: none; else no datum: what exceeds `measured` counts over

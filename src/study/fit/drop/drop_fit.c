@@ -185,21 +185,16 @@ static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char
     return err->status;
 }
 
+void sf_drop_fit_bounds(const sf_fit_input *in, int k, double *low, double *high) {
+    static const double ROOM = 2e-3; /* for differences */
+    const sf_parameter_info *about = k < in->unknown_count ? sf_parameter_get(in->unknown[k]) : NULL;
+    *low = about ? log(about->low) + ROOM : -INFINITY;
+    *high = about && in->unknown[k] != SF_PARAMETER_HU ? log(about->high) - ROOM : INFINITY;
+}
+
 /* Checks the card as a case would: a step that leads to a refused material is too long. */
-static sf_status check_card(const sf_fit_input *in, const double *u, const sf_foam_card *card,
-                            sf_error *err) {
-    static const double ROUNDING = 1e-12;
+static sf_status check_card(const sf_foam_card *card, sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
-    double value[SF_PARAMETER_COUNT];
-    sf_drop_fit_values(in, u, value);
-    value[SF_PARAMETER_HU] = card->hysteresis_hu; /* no more than 1 in the card */
-    for (int k = 0; k < in->unknown_count; k++) {
-        const sf_parameter_info *about = sf_parameter_get(in->unknown[k]);
-        double v = value[in->unknown[k]];
-        if (!(v >= about->low * (1 - ROUNDING) && v <= about->high * (1 + ROUNDING)))
-            return SF_FAIL(err, SF_ERR_NUMERIC, "%s is %g, outside %g to %g", about->name, v, about->low,
-                           about->high);
-    }
     if (sf_foam_check_shared(card, &inner) != SF_OK)
         return SF_FAIL(err, SF_ERR_NUMERIC, "%s", inner.text);
     return SF_OK;
@@ -216,7 +211,7 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     fit->chain_now = sf_drop_fit_chain(fit, u);
     card.informed_strain = 0; /* that of the start says nothing about an iterate */
     const sf_material material = sf_foam_material(&card);
-    SF_TRY(check_card(fit->input, u, &card, err));
+    SF_TRY(check_card(&card, err));
     SF_TRY(sf_material_write(fit->folder, name, &material, &text, err));
     if (last > first)
         SF_TRY((fit->input->drop[first].predicted ? predict_with : simulate_with)(fit, first, last, path, y,
@@ -415,10 +410,13 @@ static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_
 
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
-    double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS];
+    double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS],
+           low[SF_MAPPING_MAX_PARAMETERS], high[SF_MAPPING_MAX_PARAMETERS];
     SF_TRY(sf_drop_fit_list(fit, err));
     if (fit->earlier)
         memcpy(fit->columns, fit->earlier->columns, sizeof fit->columns);
+    for (int k = 0; k < fit->parameters; k++)
+        sf_drop_fit_bounds(in, k, &low[k], &high[k]);
     for (int k = 0; k < in->unknown_count; k++) {
         start[k] = log(in->prior[k]);
         prior_sd[k] = in->prior_sd[k];
@@ -436,6 +434,8 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
                                   .start = start,
                                   .prior = start,
                                   .prior_sd = prior_sd,
+                                  .low = low,
+                                  .high = high,
                                   .first_offset = fit->earlier ? fit->earlier->result.offset : NULL,
                                   .measured = fit->measured,
                                   .sd = fit->sd,

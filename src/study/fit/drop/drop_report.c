@@ -41,18 +41,24 @@ static bool is_below_reference(const sf_drop_fit *fit, const sf_joint_test *test
 /* Why the fit has not converged. The marginal standard deviations of the last step can hide a fall of the
  * objective along correlated parameters: what is left of it is said. */
 static void describe_end(const sf_drop_fit *fit, char *text, size_t size) {
-    static const double LEAST = 0.1;
+    static const double LEAST = 0.1, ROUNDING = 1e-6;
     const sf_mapping_result *r = &fit->result;
-    int used = snprintf(text, size, "%s%s", r->reason ? "; " : "", r->reason ? r->reason : "");
+    snprintf(text, size, "%s%s", r->reason ? "; " : "", r->reason ? r->reason : "");
     if (r->gain > LEAST)
-        snprintf(&text[used], size - (size_t)used,
-                 "; the corrected columns expect the objective to fall by %.2g more", r->gain);
+        sf_text_add(text, size, "; the corrected columns expect the objective to fall by %.2g more", r->gain);
+    for (int k = 0; k < fit->input->unknown_count; k++) {
+        double low, high;
+        sf_drop_fit_bounds(fit->input, k, &low, &high);
+        if (r->u[k] - low < ROUNDING || high - r->u[k] < ROUNDING)
+            sf_text_add(text, size, "; %s stands at its bound, where its interval means nothing",
+                        sf_parameter_get(fit->input->unknown[k])->name);
+    }
 }
 
 static void put_banner(FILE *f, const sf_drop_fit *fit) {
     double low, high;
     bool misses = fit->result.scale > 1;
-    char coarse[64] = "", end[192];
+    char coarse[64] = "", end[512];
     describe_end(fit, end, sizeof end);
     if (fit->coarse_iterations > 0)
         snprintf(coarse, sizeof coarse, " and %d with the coarse mesh of coarse_set", fit->coarse_iterations);
@@ -497,7 +503,7 @@ static void print_joint(FILE *f, const sf_drop_fit *fit) {
 
 void sf_drop_report_print(const sf_drop_fit *fit, FILE *f) {
     double low, high;
-    char end[192];
+    char end[512];
     sf_drop_informed_strains(fit, &low, &high);
     describe_end(fit, end, sizeof end);
     fprintf(f, "\n%s after %d iterations", fit->result.converged ? "Converged" : "NOT converged",

@@ -226,6 +226,9 @@ static void put_failures(FILE *f, const sf_drop_average *a) {
                        a->failure[m].sentence);
     for (int m = 0; m < a->models; m++) {
         const sf_drop_fit *fit = a->model[m]->fit;
+        if (!fit->result.converged)
+            sf_html_banner(f, "bad", "a model did not converge", "%s: %s. Its values are no minimum.",
+                           label_of(a, m), fit->result.reason);
         for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
             if (*fit->simulated[d].failure)
                 sf_html_banner(
@@ -296,6 +299,8 @@ static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_erro
                     {"log_evidence_sd", in->evidence.error},
                     {"log_evidence_effective_draws", in->evidence.effective},
                     {"misfit", in->fit->result.misfit});
+    sf_json_bool(j, "converged", in->fit->result.converged);
+    sf_json_text(j, "reason", in->fit->result.reason);
     sf_json_bool(j, "chains_reached", in->chains.converged);
     SF_JSON_NUMBERS(j, {"largest_rhat", rhat}, {"least_effective_sample_size", effective});
     sf_json_integer(j, "evaluations", in->chains.evaluations);
