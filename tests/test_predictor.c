@@ -335,7 +335,7 @@ static void an_interrupted_prediction_goes_on(void **state) {
     sf_plan_free(&plan);
 }
 
-/* A prediction whose interval holds the limit is neither below nor above. */
+/* A prediction whose interval holds the limit is neither below nor above, nor is a row that is left open. */
 static void a_prediction_that_may_exceed_the_limit_is_unknown(void **state) {
     const program_place *p = *state;
     sf_plan plan;
@@ -343,16 +343,64 @@ static void a_prediction_that_may_exceed_the_limit_is_unknown(void **state) {
     sf_error err = SF_ERROR_INIT;
     sf_probabilities q;
     const double value[2] = {199, 500}, half[2] = {0.01, 0.01};
-    sweep_read_plan(p, "{ key = \"a.x\"; uncertain = true; values = (1, 2); }", &plan);
+    sweep_read_plan(p, "{ key = \"a.x\"; uncertain = true; values = (1, 2, 3, 4); }", &plan);
     plan.figure[0].accuracy = plan.figure[1].accuracy = 0.01;
     assert_int_equal(sf_runs_create(&plan, &runs, &err), SF_OK);
     for (int64_t row = 0; row < 2; row++)
         sf_runs_predicted(&runs, row, value, half);
+    assert_int_equal(sf_runs_leave(&runs, 2, "not simulated: it is expected to have no figures", &err),
+                     SF_OK);
     assert_int_equal(sf_probabilities_count(&runs, &q, &err), SF_OK);
-    assert_int_equal(q.cell[0].unknown, 2);
+    assert_int_equal(q.cell[0].unknown, 3);
     assert_int_equal(q.cell[1].below, 2);
+    assert_int_equal(q.cell[1].unknown, 1);
+    assert_int_equal(q.open, 1);
+    assert_true(fabs(q.cell[1].share - 2. / 3) < 1e-12);
     sf_probabilities_free(&q);
     sf_runs_free(&runs);
+    sf_plan_free(&plan);
+}
+
+/* Indices of a plan of which most rows are predicted are those of all its drops. */
+static void indices_of_predicted_rows_are_those_of_the_drops(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs, all;
+    sf_error err = SF_ERROR_INIT;
+    sf_analysis of_predicted, of_drops;
+    formula f = {0};
+    int fresh;
+    sweep_read_plan(
+        p,
+        "{ sample = \"saltelli\"; count = 128; of = ("
+        "{ key = \"a.speed\"; low = 3.0; high = 4.0; }, { key = \"a.mass\"; low = 3.0; high = 5.0; }, "
+        "{ key = \"a.thickness\"; low = 50.0; high = 80.0; } ); }",
+        &plan);
+    plan.figure[0].accuracy = 0.01;
+    plan.figure[1].accuracy = 0.02;
+    program_shell(p, "rm -f runs.csv sweep.key");
+    if (run(p, &plan, &f, &runs, &err) != SF_OK || sf_analysis_make(&runs, &of_predicted, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    assert_true(f.calls < runs.count / 6);
+    assert_int_equal(sf_runs_create(&plan, &all, &err), SF_OK);
+    for (int64_t row = 0; row < all.count; row++)
+        assert_int_equal(evaluate(&(formula){0}, &all, 1, &row, &fresh, &err), SF_OK);
+    assert_int_equal(sf_analysis_make(&all, &of_drops, &err), SF_OK);
+    for (int figure = 0; figure < 2; figure++)
+        for (int factor = 0; factor < 3; factor++) {
+            const sf_index *i = &of_predicted.index[figure][factor], *j = &of_drops.index[figure][factor];
+            assert_true(j->total > 0.02);
+            assert_true(fabs(i->first - j->first) < 0.01 && fabs(i->total - j->total) < 0.01);
+        }
+    printf(
+        "%lld of %lld rows simulated; total indices of a_max %.4f %.4f %.4f, of all drops %.4f %.4f %.4f\n",
+        (long long)f.calls, (long long)runs.count, of_predicted.index[0][0].total,
+        of_predicted.index[0][1].total, of_predicted.index[0][2].total, of_drops.index[0][0].total,
+        of_drops.index[0][1].total, of_drops.index[0][2].total);
+    sf_analysis_free(&of_predicted);
+    sf_analysis_free(&of_drops);
+    sf_runs_free(&runs);
+    sf_runs_free(&all);
     sf_plan_free(&plan);
 }
 
@@ -384,6 +432,7 @@ int main(void) {
         cmocka_unit_test(what_a_drop_would_not_define_is_not_predicted),
         cmocka_unit_test(an_interrupted_prediction_goes_on),
         cmocka_unit_test(a_prediction_that_may_exceed_the_limit_is_unknown),
+        cmocka_unit_test(indices_of_predicted_rows_are_those_of_the_drops),
         cmocka_unit_test(wishes_are_for_all_figures_or_none),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

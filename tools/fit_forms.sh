@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Fits each model of examples/fit/eva35_lock_70.cfg alone, without chains: to the five drops of eva35_five_drops.inc, to them with a lock-up
-# of its own, and to the three drops on the 70 mm pad with one, on meshes of SPACING under the missile. Prints the table of
-# docs/identification.md, "Fits that converge": simulations, misfit, and whether the fit converged. Resumes.
+# of its own, also with the accelerometer's mount as an unknown, and to the three drops on the 70 mm pad with a lock-up, on meshes of SPACING
+# under the missile. Prints the table of docs/identification.md, "Fits that converge": simulations, misfit, the largest differences of a_max,
+# HIC and its window to the measured ones over the drops of the fit, and whether the fit converged. Resumes.
 #
 #     tools/fit_forms.sh [SPACING_MM=10 [OUT=out/fit_forms [REGEX]]]     REGEX: only the fits whose name it finds
 #
@@ -43,11 +44,20 @@ for drop in ("eva70-v4.5", "eva70-v5.2", "eva70-v6.2", "eva50-v4.5", "eva50-v5.2
 source = read("examples/fit/eva35_lock_70.cfg")
 models = re.findall(r'\{ curve = "(\w+)"; rate = "(\w+)";(.*)\}', source)
 three = source[source.index("drops = ("):source.index("predict = (")]
-sets = {"five drops": ('@include "eva35_five_drops.inc"\n', ""),
-        "five drops, lock-up": ('@include "eva35_five_drops.inc"\n', '{ name = "locked_fraction"; }, '),
-        "three drops, lock-up": (three, '{ name = "locked_fraction"; }, ')}
-print("| drops | model | simulations of each drop | misfit | objective | status |")
-print("|---|---|---:|---:|---:|---|")
+five, lock = '@include "eva35_five_drops.inc"\n', '{ name = "locked_fraction"; }, '
+mount = 'mount = "f = 420 Hz, damping = 0.05"; mount_frequency_sd = 0.2; mount_damping_sd = 0.5;\n'
+sets = {"five drops": (five, ""), "five drops, lock-up": (five, lock), "five drops, lock-up, mount": (mount + five, lock),
+        "three drops, lock-up": (three, lock)}
+
+
+def largest(result, name, suffix=""):
+    """The difference of the simulated to the measured value, in percent, that is the largest of all drops of the fit."""
+    differences = [100 * (drop[name + suffix] / drop[f"{name}_measured{suffix}"] - 1) for drop in result["drops"] if drop["used"]]
+    return f"{max(differences, key=abs):+.1f} %"
+
+
+print("| drops | model | simulations of each drop | misfit | objective | a_max | HIC | window | status |")
+print("|---|---|---:|---:|---:|---:|---:|---:|---|")
 for name, (drops, lock) in sets.items():
     for curve, rate, rest in models:
         label = f"{name}, {curve}, {rate}".replace(", ", "-").replace(" ", "_")
@@ -66,10 +76,11 @@ posterior = false;
                 subprocess.run([program, "drop", fit, "-o", folder, "--force"], stdout=log, stderr=subprocess.STDOUT)
         log = read(f"{folder}.log")
         if not os.path.exists(f"{folder}/fit.json"):
-            print(f"| {name} | {curve}, {rate} | - | - | - | failed: {log.strip().splitlines()[-1]} |", flush=True)
+            print(f"| {name} | {curve}, {rate} | - | - | - | - | - | - | failed: {log.strip().splitlines()[-1]} |", flush=True)
             continue
         result = json.loads(read(f"{folder}/fit.json"))
         objective = min(float(x) for x in re.findall(r"objective (\S+);", log))
         status = "converged" if result["converged"] else f"{result.get('reason', 'not converged')}, expected gain {result['expected_gain']:.2g}"
-        print(f"| {name} | {curve}, {rate} | {result['iterations']} | {result['misfit']:.3g} | {objective:.4g} | {status} |", flush=True)
+        print(f"| {name} | {curve}, {rate} | {result['iterations']} | {result['misfit']:.3g} | {objective:.4g} | {largest(result, 'a_max', '_g')} | {largest(result, 'HIC')} | "
+              f"{largest(result, 'HIC_window', '_ms')} | {status} |", flush=True)
 PYTHON

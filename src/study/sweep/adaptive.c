@@ -10,14 +10,14 @@
 
 enum {
     CHECKED_PART = 40, /* one row of so many is a check, within bounds */
-    LEAST_CHECKS = 10,
+    LEAST_CHECKS = 20, /* with fewer than 19 the largest residual is no bound of 95 % */
     MOST_CHECKS = 50,
     DESIGN_PER_INPUT = 8, /* further rows of the first round */
     LEAST_DESIGN = 12,
     MOST_DESIGN = 96,
     SAMPLE = 2000, /* open rows that a round looks at */
     DESIGN_SAMPLE = 20000,
-    ROUND_PART = 6,    /* a round simulates one row for so many that are there */
+    ROUND_PART = 6,     /* a round simulates one row for so many that are there */
     MOST_POINTS = 3000, /* of a process: 72 MB and 10 s a fit */
     MANY_ROWS = 10000   /* whose columns take half a minute */
 };
@@ -291,11 +291,14 @@ static sf_status fit_target(sf_sweep_adaptive *a, const sf_runs *runs, int targe
 }
 
 static sf_status fit_models(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err) {
+    bool before = a->all;
     free_models(a);
     a->all = a->inputs == 0;
     a->targets = a->plan->figure_count + WATCHED;
     for (int t = 0; t < a->targets && !a->all && err->status == SF_OK; t++)
         fit_target(a, runs, t, err);
+    if (a->all && !before && a->log)
+        fputs("  every row is simulated: too few of the drops have all figures to predict from\n", a->log);
     return err->status;
 }
 

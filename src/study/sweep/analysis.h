@@ -79,9 +79,9 @@ void sf_effect_of_surface(const sf_quadratic *surface, int i, int64_t n, double 
 enum { SF_PROBABILITY_CELLS = 4096 };
 
 /* The probability of one combination and one figure. A run that ended because the missile reached the
- * anvil is above every limit. Runs that failed otherwise or are not to be used are unknown: mostly the
- * hardest drops, so that a share of the others alone would be too kind. The share and the low end of the
- * interval count them as above, its high end as below. */
+ * anvil is above every limit. Runs that failed otherwise, are not to be used or are left open as they are
+ * expected to be so are unknown: mostly the hardest drops, so that a share of the others alone would be too
+ * kind. The share and the low end of the interval count them as above, its high end as below. */
 typedef struct sf_probability {
     long long below, above, unknown;
     long long within;   /* of a_max_g and hic: runs whose limit lies within the 95 % scatter of drops about them */
@@ -91,7 +91,7 @@ typedef struct sf_probability {
 
 typedef struct sf_probabilities {
     int64_t cells;        /* 0: nothing is uncertain, or there are too many combinations */
-    int64_t open;         /* runs that are not done yet: not counted */
+    int64_t open;         /* runs that are still to be made: not counted */
     sf_probability *cell; /* [figures of the plan][cells]; owned */
     int64_t *row;         /* [cells] a row of that combination; owned */
 } sf_probabilities;

@@ -409,7 +409,8 @@ static double scatter_of(const sf_runs *r, int64_t row, const char *figure) {
     return isnan(sd) ? 0 : gsl_cdf_ugaussian_Pinv(1 - TAIL) * sd;
 }
 
-/* A prediction whose interval holds the limit is unknown. */
+/* A prediction whose interval holds the limit is unknown, and so is a row that is left open because it is
+ * expected to have no figures. */
 static void count(const sf_runs *r, int64_t row, int figure, sf_probability *p) {
     const sf_sweep_limit *limit = &r->plan->figure[figure];
     double value = sf_runs_value(r, row, figure);
@@ -434,8 +435,9 @@ sf_status sf_probabilities_count(const sf_runs *r, sf_probabilities *p, sf_error
     for (int64_t row = r->count - 1; row >= 0 && err->status == SF_OK; row--) {
         int64_t cell = cell_of(plan, row);
         p->row[cell] = row;
-        p->open += r->state[row] == SF_SWEEP_OPEN;
-        for (int k = 0; k < plan->figure_count && r->state[row] != SF_SWEEP_OPEN; k++)
+        bool unheard = r->state[row] == SF_SWEEP_OPEN && !r->message[row];
+        p->open += unheard;
+        for (int k = 0; k < plan->figure_count && !unheard; k++)
             count(r, row, k, &p->cell[k * p->cells + cell]);
     }
     for (int64_t k = 0; k < plan->figure_count * p->cells && err->status == SF_OK; k++)

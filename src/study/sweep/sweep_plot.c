@@ -14,7 +14,8 @@ enum { COLUMNS = 4, SERIES = 8, POINTS = 3000, CURVES = 200, CURVE_POINTS = 300,
 
 static const sf_sweep_picture pictures[] = {
     {"factors",
-     "Each figure against the factors that are numbers (the first four of them): a point is a run, lines join the means"},
+     "Each figure against the factors that are numbers (the first four of them): a point is a run, "
+     "simulated or predicted, lines join the means"},
     {"curves",
      "Deceleration over time of the runs (of more than 200 runs 200, drawn at random; of a series the last drop)"},
     {"effects",
@@ -22,8 +23,8 @@ static const sf_sweep_picture pictures[] = {
     {"indices", "Sobol' indices, first order and total, with 95 % intervals"},
     {"surface", "Response surface: each run as the surface without the runs of its place predicts it"},
     {"probability",
-     "Probability of staying below the limit; where a \"?\" stands, unknown runs (failed, or not to be "
-     "used) are taken as above"},
+     "Probability of staying below the limit; where a \"?\" stands, unknown runs (failed, not to be "
+     "used, or left open as they are expected to be so) are taken as above"},
     {NULL, NULL}};
 
 static const char *const colours[SERIES] = {"#08519c", "#cb181d", "#238b45", "#6a51a3",

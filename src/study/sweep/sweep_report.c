@@ -328,11 +328,11 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
     sf_html_note(
         page,
         "Over the uncertain factors of the plan, all draws equally probable; the interval (Clopper and Pearson) "
-        "is that of the number of runs. Unknown ones (failed, or not to be used) are taken as above, and as "
-        "below for the high end of the interval alone. A run that reached the anvil counts as above. Within scatter: runs "
+        "is that of the number of runs. Unknown ones (failed, not to be used, or left open as they are "
+        "expected to be so) are taken as above, and as below for the high end of the interval alone. A run that reached the anvil counts as above. Within scatter: runs "
         "whose limit another pad or drop may find on the other side, by the scatter of speed and thickness (95 %%). The "
         "interval holds neither that nor the error of the model nor what the plan does not vary.%s%s",
-        q->open > 0 ? " Open runs are not counted." : "",
+        q->open > 0 ? " Runs that are still to be made are not counted." : "",
         q->cells > CELLS_LISTED ? " sweep.json has the other combinations." : "");
 }
 
