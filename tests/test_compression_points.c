@@ -184,6 +184,18 @@ static void ends_of_branches_are_read_as_they_come(void **state) {
     assert_non_null(strstr(err.text, "is negative, beyond the scatter about zero"));
 }
 
+/* LEAP's confined third cycle would have an ALPHA below 0.1, which no material has: the fit ends at that
+ * bound, and writes its material. */
+static void an_unloading_at_the_bound_of_ALPHA_is_fitted(void **state) {
+    const program_place *p = *state;
+    program_shell(p, "cp \"$SF_SOURCE_DIR\"/examples/data/leap_confined_cycle3.csv .");
+    program_write_text(p, "fit.cfg",
+                       "name = \"foam\"; density = \"105 kg/m3\"; E_range = 0.1;\n"
+                       "tests = ( { file = \"leap_confined_cycle3.csv\"; rate = \"0.01 1/s\"; } );\n");
+    program_succeed(p, "fit", "compression fit.cfg -o out");
+    assert_true(program_file_number(p, "out/fit.json", "unloading_rms_of_largest") < 0.015);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_cycle_is_taken),
@@ -191,6 +203,7 @@ int main(void) {
         cmocka_unit_test(preload_is_told_and_taken_away),
         cmocka_unit_test(crosshead_counts_from_a_contact_force),
         cmocka_unit_test(ends_of_branches_are_read_as_they_come),
+        cmocka_unit_test(an_unloading_at_the_bound_of_ALPHA_is_fitted),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

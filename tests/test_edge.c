@@ -46,9 +46,50 @@ static double change(const program_place *p, const char *key, bool speed, double
     return log(value[1] / value[0]) / 2;
 }
 
+/* Change of a figure for 1 % of the foam's stress: its curve, E and ED. */
+static double change_by_stress(const program_place *p, const char *key) {
+    double value[2];
+    for (int side = 0; side < 2; side++) {
+        double by = side ? 1.01 : 0.99;
+        program_shell(
+            p,
+            "awk -F, -v s=%g '/^[0-9]/ { print $1 \",\" s * $2; next } { print }' materials/eva35.csv > "
+            "materials/other.csv",
+            by);
+        program_succeed(p, "pre",
+                        "good.cfg -o m.h5 --force %s --set material.curve='\"materials/other.csv\"' --set "
+                        "material.E='\"%.9g MPa\"' --set material.ED='\"%.9g MPa\"'",
+                        program_coarse(20), by * 0.4136, by * 1.69746336215);
+        program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
+        program_succeed(p, "post", "r.h5 -o out --force");
+        value[side] = figure(p, key);
+    }
+    return log(value[1] / value[0]) / 2;
+}
+
+/* The changes are small beside those by the speed: within 0.25 % of the figure. */
+static void the_change_by_stress_agrees_with_simulations(void **state) {
+    const program_place *p = *state;
+    static const char *const figures[2][2] = {{"a_max_g", "a_max_change_by_stress"},
+                                              {"hic", "hic_change_by_stress"}};
+    double estimate[2];
+    program_succeed(p, "pre", "good.cfg -o m.h5 --force %s", program_coarse(20));
+    program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
+    program_succeed(p, "post", "r.h5 -o out --force");
+    for (int k = 0; k < 2; k++)
+        estimate[k] = figure(p, figures[k][1]);
+    for (int k = 0; k < 2; k++) {
+        double true_change = change_by_stress(p, figures[k][0]);
+        print_message("%s: %.4f, estimated %.4f\n", figures[k][1], true_change, estimate[k]);
+        assert_true(fabs(true_change) > 0.001 && fabs(estimate[k] - true_change) < 0.0025);
+    }
+}
+
 static void estimates_agree_with_simulations(void **state) {
     const program_place *p = *state;
-    static const struct { double speed, thickness; } cases[] = {{4.5, 50}, {6.2, 70}};
+    static const struct {
+        double speed, thickness;
+    } cases[] = {{4.5, 50}, {5.2, 50}, {5.2, 60}, {4.5, 70}, {5.2, 70}, {6.2, 70}};
     static const struct {
         const char *key, *estimate;
         bool speed;
@@ -112,6 +153,7 @@ static void a_later_lock_up_is_estimated(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(estimates_agree_with_simulations),
+        cmocka_unit_test(the_change_by_stress_agrees_with_simulations),
         cmocka_unit_test(an_edge_is_not_overlooked),
         cmocka_unit_test(a_later_lock_up_is_estimated),
     };

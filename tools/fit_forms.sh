@@ -81,6 +81,6 @@ posterior = false;
         result = json.loads(read(f"{folder}/fit.json"))
         objective = min(float(x) for x in re.findall(r"objective (\S+);", log))
         status = "converged" if result["converged"] else f"{result.get('reason', 'not converged')}, expected gain {result['expected_gain']:.2g}"
-        print(f"| {name} | {curve}, {rate} | {result['iterations']} | {result['misfit']:.3g} | {objective:.4g} | {largest(result, 'a_max', '_g')} | {largest(result, 'HIC')} | "
-              f"{largest(result, 'HIC_window', '_ms')} | {status} |", flush=True)
+        print(f"| {name} | {curve}, {rate} | {result['iterations']} | {result['misfit']:.3g} | {objective:.4g} | {largest(result, 'a_max', '_g')} | {largest(result, 'hic')} | "
+              f"{largest(result, 'hic_window', '_ms')} | {status} |", flush=True)
 PYTHON

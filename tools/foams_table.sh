@@ -59,13 +59,14 @@ FORMS = {
 
 
 def fit(tests, form, keys="", predict=()):
-    """fit.json and fit.csv of a fit, or the sentence of its refusal."""
+    """fit.json and fit.csv of a fit, or the sentence of its refusal; without a form that of the free curve."""
     number = fit.count = getattr(fit, "count", 0) + 1
     folder = "%s/%03d" % (OUT, number)
     entries = lambda files: ", ".join('{ file = "%s/%s.csv"; rate = "%g 1/s"; }' % (DATA, f, r) for f, r in files)
     os.makedirs(OUT, exist_ok=True)
+    curve = 'curve_form = "%s";' % form if form else "E_range = 0.1;"
     with open(folder + ".cfg", "w") as stream:
-        stream.write('name = "foam"; density = "105 kg/m3"; curve_form = "%s"; %s\ntests = ( %s );\n' % (form, keys, entries(tests)))
+        stream.write('name = "foam"; density = "105 kg/m3"; %s %s\ntests = ( %s );\n' % (curve, keys, entries(tests)))
         if predict:
             stream.write("predict = ( %s );\n" % entries(predict))
     done = subprocess.run([PROGRAM, "compression", folder + ".cfg", "-o", folder, "--force"], capture_output=True, text=True)
@@ -163,6 +164,13 @@ def loops():
     head = ["rms of unloading", "% of the largest stress, ALPHA = 1", "ALPHA free", "of f, ALPHA = 1", "of f, ALPHA free", "HU", "SHAPE",
             "ALPHA", "energy returned (%)", "by the law (%)"]
     return table_of(head, rows)
+
+
+def free_curve():
+    loops = [foam for foam in FOAMS if "Zorbium" not in foam]
+    found = [fit(FOAMS[foam], None)[0] for foam in loops]
+    rows = [[part] + [percent(f and f[part + "_rms_of_largest"]) for f in found] for part in ("loading", "unloading")]
+    return table_of(["free curve, rms over the largest stress (%)"] + loops, rows)
 
 
 def predicted():
@@ -296,7 +304,7 @@ if sys.argv[2] == "--materials":
     sys.exit()
 first, refused = loading()
 last, refused_rates = rates()
-for table in (compared(), first, gas_of_leap(), loops(), predicted(), last):
+for table in (compared(), first, gas_of_leap(), loops(), free_curve(), predicted(), last):
     print("\n".join(table) + "\n")
     if sys.argv[2] == "--docs":
         replace_table(DOCUMENT, table)

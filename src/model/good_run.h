@@ -22,6 +22,9 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "the peak or a part of the HIC window may lie after the end")                                                    \
     X(energy_error, 0.01, 0.05, SF_AS_PERCENT, "energy error", "`energy_error`",                                       \
       "energy that appears or disappears falsifies the deceleration")                                                  \
+    X(edge, 0.1, 0.5, SF_AS_PERCENT, "edge: change of a_max for 1 % of speed or thickness",                            \
+      "the larger of `a_max_change_by_speed` and `a_max_change_by_thickness`, magnitudes",                             \
+      "the foam is about to lock up: what no laboratory can set as closely decides the peak")                          \
     X(stabilisation, 0.01, 0.05, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
       "the stabilisation stiffens the pad, or bears what a foam that locks up should")                                 \
     X(contact, 0.01, 0.05, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
@@ -44,9 +47,6 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "`/model/slit_fraction` of results.h5", "the faces of the slit pass through each other where it closes")          \
     X(informed, 0.01, 0.5, SF_AS_PERCENT, "energy of the foam beyond the strains that its data inform",                \
       "`energy_beyond_data`", "there the material's curve is extrapolated, and with it the peak")                       \
-    X(edge, 0.1, 0.5, SF_AS_PERCENT, "edge: change of a_max for 1 % of speed or thickness",                            \
-      "the larger of `a_max_change_by_speed` and `a_max_change_by_thickness`, magnitudes",                             \
-      "the foam is about to lock up: what no laboratory can set as closely decides the peak")                          \
     X(anvil, 0.9, 0.95, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \
       "the missile reaches the anvil; its stiffness is not in the model")                                              \
     X(below_anvil, 0.01, 0.2, SF_AS_PERCENT, "foam below the anvil", "`below_anvil_mm` / `thickness_mm`", \

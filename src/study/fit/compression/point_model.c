@@ -424,7 +424,7 @@ static void set_ranges(sf_compression_model *model) {
     const sf_number_range range[SF_NUMBERS] = {
         [SF_NUMBER_HU] = {hysteresis, false, 1e-4, 1, 1},
         [SF_NUMBER_SHAPE] = {hysteresis, true, 0.05, 50, 1},
-        [SF_NUMBER_ALPHA] = {hysteresis && model->form.alpha, true, 0.05, 20, 1},
+        [SF_NUMBER_ALPHA] = {hysteresis && model->form.alpha, true, 0.1, 10, 1},
         [SF_NUMBER_LOG_RATE] = {model->form.rate == SF_RATE_LOG, false, 0, INFINITY, 0},
         [SF_NUMBER_ED] = {maxwell, true, 1e-5 * size, 1e3 * size, 0},
         [SF_NUMBER_BETA1] = {maxwell, true, 0.01 / longest, 100 / shortest, 5000},
