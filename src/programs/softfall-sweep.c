@@ -100,8 +100,11 @@ static sf_status estimate(const sf_study *study, job *j, sf_error *err) {
         int64_t first = sf_sweep_adaptive_design(&j->plan);
         printf(
             "  (at most: %lld rows are simulated first, then those without which the others are not predicted as "
-            "accurately as the plan asks)\n",
-            (long long)first);
+            "accurately as the plan asks%s)\n",
+            (long long)first,
+            sf_sweep_is_beyond_columns(&j->plan)
+                ? "; no columns stand for this pad, so that more of them are needed"
+                : "");
         cost.open = first < cost.open ? first : cost.open; /* for which the disk must have room */
     }
     fflush(stdout);

@@ -49,6 +49,9 @@ typedef struct sf_sweep_trend {
     const char *problem;                    /* why there is no trend; NULL: there is one; static */
 } sf_sweep_trend;
 
+/* True if the first row is no drop of a missile on a pad of one material: then there is no trend. */
+bool sf_sweep_is_beyond_columns(const sf_plan *plan);
+
 /* Learns the missile's profile and the pad's thickness from the finished drops in the folder `drops`. No
  * trend, with its `problem`, if these are not known of rows that were not simulated: drops differ in more of
  * the geometry than in a thickness that is linear in the factors, or the pad has layers. */

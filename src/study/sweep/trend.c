@@ -115,8 +115,7 @@ static const char *find_problem(const sf_sweep_trend *t, const drop *list, int c
     return NULL;
 }
 
-/* True if the first row is no drop of a missile on a pad of one material. */
-static bool is_beyond_columns(const sf_plan *plan) {
+bool sf_sweep_is_beyond_columns(const sf_plan *plan) {
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
     sf_error refused = SF_ERROR_INIT;
     return sf_sweep_read_case(plan, 0, &c, &refused) != SF_OK || c.layer_count > 0 || c.motion_count > 0;
@@ -125,7 +124,7 @@ static bool is_beyond_columns(const sf_plan *plan) {
 sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep_trend *t, sf_error *err) {
     int count = 0;
     *t = (sf_sweep_trend){.plan = runs->plan, .problem = "no finished drop has columns"};
-    if (is_beyond_columns(runs->plan)) {
+    if (sf_sweep_is_beyond_columns(runs->plan)) {
         t->problem = "columns have one material and a missile that falls";
         return SF_OK;
     }
