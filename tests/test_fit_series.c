@@ -267,6 +267,8 @@ static void wrong_series_get_one_sentence(void **state) {
         {"case = \"case.cfg\"; drop = 2; ", "unknown = ( { name = \"drift\"; } );",
          "drift is 0 in the start material"},
         {"case = \"case.cfg\"; drop = 2; ", "start: { reload = 1.5; };", "reload is 1.5, outside"},
+        {"case = \"case.cfg\"; drop = 2; ", "start: { HU = 1.0; };",
+         "HU is 1, but a foam without hysteresis"},
         {"case = \"one.cfg\"; ", "material = \"plain.cfg\"; start: { drift = 0.3; };",
          "drift is the fall of reload"},
     };

@@ -19,12 +19,14 @@ double sf_drop_half_width(const sf_drop_fit *fit) {
 sf_estimate_shown sf_drop_estimate(const sf_drop_fit *fit, int k) {
     const sf_mapping_result *r = &fit->result;
     const sf_parameter_info *about = sf_parameter_get(fit->input->unknown[k]);
-    double sd = sqrt(r->covariance[k][k]), width = sf_drop_half_width(fit) * sd, s = about->per_unit;
+    double sd = sqrt(r->covariance[k][k]), width = sf_drop_half_width(fit) * sd, s = about->per_unit, low,
+           high;
+    sf_drop_fit_bounds(fit->input, k, &low, &high);
     return (sf_estimate_shown){.about = about,
                                .blank = *about->unit ? " " : "",
                                .value = exp(r->u[k]) / s,
-                               .low = exp(r->u[k] - width) / s,
-                               .high = exp(r->u[k] + width) / s,
+                               .low = exp(fmax(r->u[k] - width, low)) / s,
+                               .high = exp(fmin(r->u[k] + width, high)) / s,
                                .per_unit = s,
                                .shrinkage = sd / fit->input->prior_sd[k]};
 }

@@ -399,6 +399,12 @@ static sf_status check_memory(const sf_config *config, sf_config_item *model, co
                 "the drop \"%s\" is of a series, but the foam of %s remembers nothing: give "
                 "it material.memory, or start: { reload = 0.4; }",
                 in->drop[k].name, in->material_path);
+    if (in->start[SF_PARAMETER_HU] == 1 &&
+        (in->start[SF_PARAMETER_RELOAD] > 0 || in->start[SF_PARAMETER_RECOVERY] > 0))
+        return sf_config_refuse(
+            config, model, err,
+            "HU is 1, but a foam without hysteresis has nothing to remember: give it HU, SHAPE "
+            "and ALPHA of the unloading, or leave out reload and recovery");
     if (in->start[SF_PARAMETER_DRIFT] > 0 && !(in->start[SF_PARAMETER_RELOAD] > 0))
         return sf_config_refuse(config, model, err,
                                 "drift is the fall of reload from loading to loading: give start: { reload = "
