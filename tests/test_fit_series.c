@@ -261,6 +261,7 @@ static void wrong_series_get_one_sentence(void **state) {
         {"case = \"case.cfg\"; drop = 1.5; ", "", "it must be a whole number"},
         {"case = \"case.cfg\"; drop = \"second\"; ", "", "drop must be a"},
         {"case = \"case.cfg\"; drop = 2; speed_sd = 0.01; ", "", "speed_sd is for single drops only"},
+        {"case = \"case.cfg\"; drop = 2; ", "material = \"kept.cfg\";", "the columns know no permanent set"},
         {"case = \"list.cfg\"; drop = 2; ", "",
          "takes a series whose drops have one missile, speed and place"},
         {"case = \"case.cfg\"; drop = 2; ", "material = \"plain.cfg\";", "is of a series, but the foam of"},
@@ -275,7 +276,7 @@ static void wrong_series_get_one_sentence(void **state) {
     const program_place *place = *state;
     program_shell(
         place,
-        "sed 's/^series.*//' case.cfg > one.cfg; sed 's/5 s\";/&velocity = \"3 m\\/s\";/' case.cfg > "
+        "sed 's/^series.*//' case.cfg > one.cfg; sed 's/reload = /set = 0.05; &/' start.cfg > kept.cfg; sed 's/5 s\";/&velocity = \"3 m\\/s\";/' case.cfg > "
         "list.cfg; sed 's/^series.*/series: { drops = ( { velocity = \"3 m\\/s\"; }, { interval = \"5 s\"; } "
         "); };/' case.cfg > first.cfg");
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {

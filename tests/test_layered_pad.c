@@ -204,6 +204,7 @@ static void layers_that_cannot_be_meant_are_refused(void **state) {
         {"--set pad.sliding_interfaces='[\"cover/floor\"]'", "\"cover/floor\" does not name two layers"},
         {"--set pad.sliding_interfaces='[\"cover\"]'", "does not name two layers"},
         {"--set materials.lower.E='1 m'", "materials.lower.E"},
+        {"--set materials.lower.memory.set=0.05", "needs foams with the same set"},
         {"--set materials.lower.speed=3", "unknown key \"speed\" in group materials.lower"},
         {"--set materials.lower.law=steel", "materials.lower.law: \"steel\" is none of"},
         {"--set materials.lower.densification.limit=0.3", "materials.lower.densification"},

@@ -283,7 +283,7 @@ static sf_error refusal_of(const fixture_block *block, layering layer, const cha
     layers_join(&c, 1, 0, SF_INTERFACE_SLIDING, 0);
     fixture_plate(1, 0, 0, &surface);
     if (sf_model_build(&c, &mesh, &surface, &m, &report, NULL, &err) == SF_OK)
-        sf_hold_check(&report.hold, &m, &err);
+        sf_hold_check(&report.hold, false, &m, &err);
     sf_model_free(&m);
     sf_surface_free(&surface);
     sf_mesh_free(&mesh);

@@ -23,6 +23,7 @@ static const char *const coarse[] = {"geometry.parameters.fine_spacing=20.0",
                                      "kernel.support_ratio=2.0",
                                      "material.HU=0.05",
                                      "material.memory.reload=0.4",
+                                     "material.memory.set=0.05",
                                      "output.frame_interval=\"30 ms\""};
 enum { COARSE = sizeof coarse / sizeof coarse[0] };
 

@@ -8,7 +8,7 @@
 #include "post/figures/figures.h"
 #include "solver/operators.h"
 #include "solver/run/run.h"
-#include "solver/state.h"
+#include "solver/set.h"
 #include "solver/step.h"
 
 #include <math.h>
@@ -19,7 +19,8 @@
 /* A drop behind its handle. */
 
 struct softfall_drop {
-    sf_model model; /* arrays borrowed from the caller's model */
+    sf_model model;      /* arrays borrowed from the caller's model, but for the reference of a set */
+    sf_model undeformed; /* borrowed altogether */
     sf_operators operators;
     sf_state state;
     sf_recorder recorder;
@@ -61,12 +62,28 @@ static sf_status check_options(const softfall_drop_options *o, sf_error *err) {
     return SF_OK;
 }
 
+/* The permanent set of the drop before; the reference becomes the drop's own. */
+static sf_status take_set(softfall_drop *d, const sf_state *before, double pause, sf_error *err) {
+    sf_model *m = &d->model;
+    double **own[] = {&m->position, &m->volume, &m->domain_b};
+    const int64_t count[] = {3 * m->node_count, m->node_count, 3 * m->domain_nnz};
+    if (!before || !(sf_model_set(m) > 0))
+        return SF_OK;
+    for (int k = 0; k < 3; k++) {
+        const double *from = *own[k];
+        if ((*own[k] = sf_alloc(err, (unsigned long)count[k], sizeof *from, "the reference of a drop")))
+            memcpy(*own[k], from, (size_t)count[k] * sizeof *from);
+    }
+    SF_TRY(err->status);
+    return sf_set_move(m, before->set, before->set_peak, pause, err);
+}
+
 /* The drop of a model; `before` and `pause`: as of sf_series_continue, NULL: on a new pad. */
 static sf_status create(const sf_model *model, int threads, const softfall_drop *before, double pause,
                         softfall_drop **out, sf_error *err) {
     softfall_drop *d = softfall_new(err, sizeof *d, "a drop");
     SF_TRY(err->status);
-    d->model = *model;
+    d->model = d->undeformed = *model;
     d->threads = threads;
     sf_recorder_begin(&d->recorder);
     list_quantities(d);
@@ -78,6 +95,7 @@ static sf_status create(const sf_model *model, int threads, const softfall_drop 
             "case with series.drops = 1, and its later drops with softfall_drop_next",
             (long long)d->model.series_count);
     if (err->status == SF_OK && sf_model_check(&d->model, err) == SF_OK &&
+        take_set(d, before ? &before->state : NULL, pause, err) == SF_OK &&
         sf_operators_build(&d->model, &d->operators, err) == SF_OK)
         sf_series_continue(before ? &before->state : NULL, pause, &d->model, &d->operators, &d->state, err);
     omp_set_num_threads(usual);
@@ -111,7 +129,7 @@ softfall_status softfall_drop_next(const softfall_drop *before, double pause, so
              before->state.contact_count > 0)
         SF_FAIL(&err, SF_ERR_INPUT, "the drop before has not ended, or its missile still touches the pad");
     else
-        create(&before->model, before->threads, before, pause, out, &err);
+        create(&before->undeformed, before->threads, before, pause, out, &err);
     return softfall_return(&err, error);
 }
 
@@ -121,7 +139,9 @@ void softfall_drop_free(softfall_drop *d) {
     sf_recorder_free(&d->recorder);
     sf_state_free(&d->state);
     sf_operators_free(&d->operators);
-    free(d);
+    if (d->model.position != d->undeformed.position)
+        SF_FREE(d->model.position, d->model.volume, d->model.domain_b);
+    SF_FREE(d->model.set, d);
 }
 
 static void step(softfall_drop *d) {
@@ -328,7 +348,7 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
 
 /* The drop as its results file would show it; the arrays stay the drop's. */
 static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
-    const sf_model *m = &d->model;
+    const sf_model *m = &d->undeformed;
     double lock_begin, lock_up = sf_model_lock_up(m, &lock_begin);
     *r = (sf_results){.node_count = m->node_count,
                       .position = m->position,

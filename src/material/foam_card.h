@@ -55,6 +55,11 @@ typedef struct sf_foam_card {
     };
 } sf_foam_card;
 
+/* The memory of a foam law, as all laws are. */
+static inline const sf_memory *sf_foam_memory(const sf_material *material) {
+    return &((const sf_foam_shared *)material->card)->memory;
+}
+
 /* The card of a material that is a low-density foam. */
 static inline sf_foam_card *sf_foam_card_of(const sf_material *material) {
     return material->card;
@@ -74,7 +79,9 @@ static inline sf_foam_card *sf_foam_card_of(const sf_material *material) {
     X(arrhenius, shift_energy > 0)                                                                           \
     X(shift, shift_reference > 0)                                                                            \
     X(memory, memory.reload + foam->memory.recovery > 0)                                                     \
-    X(recovery, memory.recovery > 0)
+    X(recovery, memory.recovery > 0)                                                                         \
+    X(rest, memory.recovery + foam->memory.set * foam->memory.set_recovery > 0)                              \
+    X(set, memory.set > 0)
 #define SF_FOAM_HAS(name, condition) bool sf_foam_has_##name(const void *card);
 SF_FOAM_ACTS(SF_FOAM_HAS)
 #undef SF_FOAM_HAS
@@ -131,9 +138,14 @@ double sf_foam_shift(void *card, sf_law_curves *curves, double temperature);
      "part of the softening that each decade of time at rest takes back, between drops", 1.0, sf_foam_has_recovery), \
     {"material.memory", "recovery_start", SF_PARAMETER_QUANTITY, "\"1 s\"", SF_FOAM_AT(memory.start), \
      "time at rest from which its decades count: log10(1 + t / recovery_start)", .quantity = SF_TIME, .low = 1e-3, \
-     .high = 1e6, SF_FOAM_IN("s", 1), .acts = sf_foam_has_recovery}, \
-    SF_FOAM_MEMORY_NUMBER("permanent", "0.0", permanent, "part of the softening that never recovers", 1.0, \
-     sf_foam_has_recovery)
+     .high = 1e6, SF_FOAM_IN("s", 1), .acts = sf_foam_has_rest}, \
+    SF_FOAM_MEMORY_NUMBER("permanent", "0.0", permanent, "part of the softening, and of the set, that never recovers", 1.0, \
+     sf_foam_has_rest), \
+    SF_FOAM_MEMORY_NUMBER("set", "0.0", set, \
+     "part of the largest displacement of a drop that is left when the load is gone, for the drops after it; 0 = none", \
+     0.49, sf_foam_has_set), \
+    SF_FOAM_MEMORY_NUMBER("set_recovery", "0.0", set_recovery, \
+     "part of the set that each decade of time at rest takes back, between drops", 1.0, sf_foam_has_set)
 #define SF_FOAM_RATE_FACTOR(reference) \
     {"material", "rate_factor", SF_PARAMETER_NUMBER, "0.0", SF_FOAM_AT(rate_factor), \
      "part by which the stress of loading grows with each decade of the strain rate above `rate_reference`", \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "material/card.h"
+#include "material/foam_card.h"
 #include "model/columns.h"
 
 /* sf_model: everything about a drop that does not change while it is solved. softfall-pre builds it, model.h5
@@ -217,7 +217,21 @@ typedef struct sf_model {
     sf_missile_card missile;
     sf_anvil_card anvil;
     sf_run_options run;
+
+    /* The permanent set of earlier drops (solver/set.h), not in model.h5; NULL: none. `position`, `volume`
+     * and `domain_b` are then those of the pad with it. */
+    double *set; /* [node_count][3] m, coefficients of its field; then [node_count] -, parts that rests have
+                    taken back; then [node_count][3] m, coefficients of the field of places; owned */
 } sf_model;
+
+/* Part of a drop's largest displacement that is left as permanent set; 0: none. */
+static inline double sf_model_set(const sf_model *model) {
+    return model->material_count > 0 ? sf_foam_memory(model->material)->set : 0;
+}
+/* Coefficients of the field of places [node_count][3], m: without a set the places themselves. */
+static inline const double *sf_model_coefficients(const sf_model *model) {
+    return model->set ? model->set + 4 * model->node_count : model->position;
+}
 
 /* The results file, or the model of its own, of a drop of a series, from 1: that of the first is `first`, the
  * second of "a.h5" is "a-2.h5". */

@@ -332,8 +332,28 @@ sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
     return err->status;
 }
 
-sf_status sf_hold_check(const sf_hold *hold, const sf_model *m, sf_error *err) {
-    if (!hold->lifts || m->support_triangle_count > 0)
+/* A permanent set: motion as a whole in a drop would count as one. */
+static sf_status check_set(const sf_hold *hold, const sf_model *m, sf_error *err) {
+    bool moves = hold->lifts || hold->slides[0] || hold->slides[1] || hold->turns || m->rest_count > 0,
+         set = false;
+    const char *wrong =
+        moves
+            ? "a pad whose layers its base holds: none rests, stands on supports or smoothly, is loose or slides"
+            : NULL;
+    for (int64_t k = 0; k < m->material_count; k++) {
+        const sf_memory *own = sf_foam_memory(&m->material[k]), *one = sf_foam_memory(m->material);
+        set = set || own->set > 0;
+        if (own->set != one->set || own->set_recovery != one->set_recovery || own->start != one->start ||
+            own->permanent != one->permanent)
+            wrong =
+                "foams with the same set, set_recovery, recovery_start and permanent: it is one displacement field";
+    }
+    return set && wrong ? SF_REFUSE(err, "material.memory.set: a permanent set needs %s", wrong) : SF_OK;
+}
+
+sf_status sf_hold_check(const sf_hold *hold, bool separate, const sf_model *m, sf_error *err) {
+    SF_TRY(check_set(hold, m, err));
+    if (!hold->lifts || m->support_triangle_count > 0 || (separate && hold->rows[2] > 0))
         return SF_OK;
     const double *x = hold->lifted_middle;
     if (m->material_count > 1 && hold->rows[2] > 0 && !hold->lifted_whole)

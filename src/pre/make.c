@@ -87,9 +87,7 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
     memset(model, 0, sizeof *model);
     if (read_geometry(c, &mesh, &surface, support, libraries, sink, err) == SF_OK &&
         sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
-        bool held =
-            c->separate && report->hold.rows[2] > 0; /* bodies lie where they are until they are hit */
-        if ((held || sf_hold_check(&report->hold, model, err) == SF_OK) && report->contact_held)
+        if (sf_hold_check(&report->hold, c->separate, model, err) == SF_OK && report->contact_held)
             SF_REFUSE(
                 err,
                 "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or pad.sliding",

@@ -34,8 +34,9 @@ typedef struct sf_hold {
 sf_status sf_hold_find(const sf_model *model, sf_hold *hold, sf_error *err);
 
 /* SF_ERR_INPUT if the pad or a layer can be moved vertically or tilted without being deformed; a pad on a
- * rigid support may. */
-sf_status sf_hold_check(const sf_hold *hold, const sf_model *model, sf_error *err);
+ * rigid support may, and so may `separate` bodies, which lie where they are until they are hit. Also of foam
+ * with a permanent set that may move at all without being deformed, and of several sets. */
+sf_status sf_hold_check(const sf_hold *hold, bool separate, const sf_model *model, sf_error *err);
 /* Tells `sink` of a mostly free underside, and of a missile that pushes the pad along a free motion. */
 void sf_hold_warn(const sf_hold *hold, const sf_model *model, const sf_sink *sink);
 /* Tells `sink` of bodies of a pad that neither the missile on its way nor a body that it may move comes near.

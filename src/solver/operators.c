@@ -2,7 +2,7 @@
 #include "solver/operators.h"
 
 #include "model/stability.h"
-#include "solver/missile.h"
+#include "solver/set.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,7 +32,8 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
         sf_anvil_build(m, &op->rows, &op->anvil, err) != SF_OK || sf_skin_build(m, &op->skin, err) != SF_OK ||
         sf_membrane_build(m, &op->membrane, err) != SF_OK)
         return err->status;
-    return sf_missile_surface_build(m, sf_missile_direction(m), &op->surface, err);
+    SF_TRY(sf_missile_surface_build(m, sf_missile_direction(m), &op->surface, err));
+    return m->set ? sf_set_check_missile(m, &op->surface, err) : SF_OK;
 }
 
 sf_status sf_operators_build(const sf_model *m, sf_operators *op, sf_error *err) {

@@ -30,6 +30,8 @@ static const sf_state_array arrays[] = {
     KEPT(viscous_work, 'n', 1),
     KEPT(compressed, 'l', 1),
     KEPT(lost_before, 'l', 1),
+    KEPT(set, 'u', 4),
+    KEPT(set_peak, 'u', 3),
     KEPT(mode, 'n', 1),
     SCRATCH(directional, 'n', 6 * sizeof(float)),
     KEPT(contact_position, 'c', 3),
@@ -83,6 +85,8 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
         return model->node_count;
     case 'l':
         return model->material_count > 1 ? model->node_count : 0;
+    case 'u':
+        return sf_model_set(model) > 0 ? model->node_count : 0;
     case 's': /* at most all of them */
         return model->skin_count > 0
                    ? model->node_count + model->support_node_count + sf_model_skin_centroids(model)
@@ -155,6 +159,8 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
                3 * sizeof(double));
     for (int64_t k = 0; k < model->rest_count; k++) /* settled */
         s->contact_force[3 * (model->contact_count + k) + 2] = model->rest_load[k];
+    if (model->set)
+        memcpy(s->set, model->set, 4 * (size_t)model->node_count * sizeof *s->set);
     s->tightness = 1;
     s->drop = 1;
     sf_missile_begin(model, &s->missile);

@@ -96,6 +96,7 @@ typedef struct sf_partial {
 #define SF_STATE_NUMBERS(X)                                                                                            \
     X(int64_t, drop, , "1", "number of the drop on this pad, from 1")                                                  \
     X(double, pause, , "s", "rest of the pad before it; 0: it is new")                                                 \
+    X(double, deepest, , "m", "largest indentation so far, that of `set_peak`")                                        \
     X(int64_t, step, , "1", "number of the step")                                                                      \
     X(double, time, , "s", "now")                                                                                      \
     X(double, dt, , "s", "from time to the next")                                                                      \
@@ -160,6 +161,9 @@ typedef struct sf_state {
 
     double *lost_before; /* [n] J m-3, by the unloading rule in earlier drops; likewise */
 
+    double *set;      /* [n][4], as in the model; only foam with a permanent set (set.h) has it */
+    double *set_peak; /* [n][3] m, d at the largest indentation so far; likewise */
+
     /* Power iteration (time_step.h). */
     double *mode;       /* [n] its vector */
     float *directional; /* [n][6] Pa, tangent by direction (law.h), when sf_time_step_due */
@@ -210,9 +214,9 @@ typedef struct sf_state {
 typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
-    char rows; /* n nodes, l nodes of a pad of layers, h rows of history of all blocks of lanes, c contact
-                  points, s points and f sides of the skin, m and t nodes and triangles of the membrane, k
-                  chunks */
+    char rows; /* n nodes, l nodes of a pad of layers, u nodes of foam with a set, h rows of history of all
+                  blocks of lanes, c contact points, s points and f sides of the skin, m and t nodes and
+                  triangles of the membrane, k chunks */
     int bytes; /* of a row; doubles if it has a name */
 } sf_state_array;
 

@@ -5,6 +5,7 @@
 #include "solver/contact/contact.h"
 #include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
+#include "solver/set.h"
 #include "solver/time_step.h"
 #include <math.h>
 #include <string.h>
@@ -111,7 +112,7 @@ static sf_status check_passed(const sf_model *m, const sf_state *s, sf_error *er
     sf_box3(m->node_count, m->position, low, high);
     for (int axis = 0; axis < 2; axis++)
         plane[axis] = sf_symmetry_plane(m, axis, &plane[axis]) ? plane[axis] : NAN;
-    plane[2] = m->anvil.depth > 0 ? high[2] - m->anvil.depth : NAN;
+    plane[2] = !(m->anvil.depth > 0) ? NAN : m->set ? low[2] : high[2] - m->anvil.depth;
     for (int64_t i = 0; i < m->node_count; i++) {
         const char *through = find_passed(m, s, plane, i);
         const double *x = &m->position[3 * i], *d = &s->d[3 * i];
@@ -175,7 +176,7 @@ static void add_moments(const sf_model *m, const sf_state *s, int64_t i, double 
                         double moment[3]) {
     double x[3], of_v[3], of_reaction[3];
     for (int c = 0; c < 3; c++)
-        x[c] = m->position[3 * i + c] + s->d[3 * i + c];
+        x[c] = sf_model_coefficients(m)[3 * i + c] + s->d[3 * i + c];
     sf_cross3(x, &s->v[3 * i], of_v);
     sf_cross3(x, &s->reaction[3 * i], of_reaction);
     for (int c = 0; c < 3; c++) {
@@ -275,6 +276,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     add_anvil(m, op, s, &outside);
     sf_self_contact_outside(&op->skin, s, true, &outside);
     sf_ledger_close(m, s, &outside, dt_v);
+    sf_set_watch(m, s);
     sf_lap(s->watch, SF_PHASE_MOTION);
     if (check_finite(m, s, err) != SF_OK || check_step(m, s, err) != SF_OK)
         return err->status;

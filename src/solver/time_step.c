@@ -83,9 +83,10 @@ static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, const 
 /* Contributions of one pair for a scalar field: force on i, the opposite on j; the same couple on both. */
 static inline double pull_pair(const sf_model *m, const sf_state *s, const float *gradient, int64_t i,
                                int64_t j, double weight, double couple[3]) {
+    const double *at = sf_model_coefficients(m);
     double half[3], explained = 0;
     for (int c = 0; c < 3; c++) {
-        half[c] = 0.5 * (m->position[3 * j + c] - m->position[3 * i + c]);
+        half[c] = 0.5 * (at[3 * j + c] - at[3 * i + c]);
         explained += (gradient[3 * i + c] + gradient[3 * j + c]) * half[c];
     }
     double force = weight * (s->stiffness[i] + s->stiffness[j]) * (s->mode[j] - s->mode[i] - explained);

@@ -123,6 +123,7 @@
     X(FACT, contact_time, "contact_time_ms", 1e3, "first contact") \
     X(NUMBER, end_time, "end_time_ms", 1e3, "time of the last row of the history") \
     X(FACT, thickness, "thickness_mm", 1e3, "of the foam under the contact, along the missile's path, its vertical part") \
+    X(FACT, set, "set_mm", 1e3, "permanent set of the pad before this drop: depth at the impact point; undefined without one") \
     X(FACT, impact_x, "impact_x_mm", 1e3, "x of the impact point: where the missile's lowest point arrives at the pad's top") \
     X(FACT, impact_y, "impact_y_mm", 1e3, "its y") \
     X(NUMBER, missile_mass, "missile_mass_kg", 1, "of the whole missile") \

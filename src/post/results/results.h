@@ -97,6 +97,7 @@ typedef struct sf_results {
     double contact_time; /* s, NaN if the bodies never touched */
     double wall_time;    /* s */
     double given_back;   /* J, see /summary/given_back; NaN: not stored */
+    double set, set_largest; /* m, see /summary/set and set_largest; NaN: the pad has none */
     int64_t steps;
     int64_t threads;
     int64_t interactions;

@@ -215,6 +215,10 @@ static void put_pad(const page *p) {
     const sf_results *r = p->results;
     SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     sf_html_fact(&table, "thickness", "%.4g mm", r->thickness * 1e3);
+    if (isfinite(r->set_largest))
+        sf_html_fact(&table, "permanent set",
+                     "%.3g mm deep at the impact point before this drop, at most %.3g mm", 1e3 * r->set,
+                     1e3 * r->set_largest);
     sf_html_fact(&table, "mean cross-section", "%.4g cm²: volume of the whole pad over its extent along z",
                  p->figures->area * 1e4);
     sf_html_fact(&table, "density", "%.4g kg/m³, undeformed%s", r->density,

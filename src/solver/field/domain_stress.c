@@ -252,8 +252,9 @@ void sf_domain_law(const sf_model *m, const sf_operators *op, const sf_state *s,
                 &s->history[block * s->history_rows * SF_LANES], NULL, 0, b);
 }
 
-double sf_domain_rest(const sf_model *m, const sf_operators *op, sf_state *s, double pause) {
-    double lost = 0;
+void sf_domain_rest(const sf_model *m, const sf_operators *op, sf_state *s, double pause) {
+    s->pause = pause;
+    s->ledger.before = 0;
     for (int64_t block = 0; block * SF_LANES < m->node_count; block++) {
         int64_t left = m->node_count - block * SF_LANES;
         double *history = &s->history[block * s->history_rows * SF_LANES];
@@ -266,12 +267,11 @@ double sf_domain_rest(const sf_model *m, const sf_operators *op, sf_state *s, do
         }
         update_laws(m, op, 0, block, left < SF_LANES ? (int)left : SF_LANES, history, history, pause, &b);
         for (int l = 0; l < SF_LANES && l < left; l++) {
-            lost += m->volume[block * SF_LANES + l] * b.lost[l];
+            s->ledger.before += m->volume[block * SF_LANES + l] * b.lost[l];
             if (m->material_count > 1)
                 s->lost_before[block * SF_LANES + l] = b.lost[l];
         }
     }
-    return lost;
 }
 
 void sf_domain_stress(const sf_model *m, const sf_operators *op, sf_state *s) {

@@ -97,8 +97,9 @@ void sf_halo_free(sf_halo *h) {
 static double weigh(const sf_model *m, int64_t i, int64_t j) {
     double square = 0, share = m->volume[i] / (double)(m->edge_ptr[i + 1] - m->edge_ptr[i]) +
                                m->volume[j] / (double)(m->edge_ptr[j + 1] - m->edge_ptr[j]);
+    const double *at = sf_model_coefficients(m);
     for (int c = 0; c < 3; c++) {
-        double x = m->position[3 * j + c] - m->position[3 * i + c];
+        double x = at[3 * j + c] - at[3 * i + c];
         square += x * x;
     }
     return m->run.stabilisation * 0.5 * share / square;

@@ -11,7 +11,7 @@ typedef struct pair_node {
 static inline void load_node(const sf_model *m, const double *d, const double *f, const double *stiffness,
                              int64_t i, pair_node *node) {
     node->stiffness = stiffness[i];
-    node->x = sf_vec_load(&m->position[3 * i]);
+    node->x = sf_vec_load(&sf_model_coefficients(m)[3 * i]);
     node->d = sf_vec_load(&d[3 * i]);
     sf_vec_columns(&f[9 * i], node->f);
 }

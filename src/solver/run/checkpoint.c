@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "solver/field/domain_stress.h"
+#include "solver/set.h"
 
 static const sf_member members[] = {
 #define NUMBER(type, name, size, units, meaning) SF_MEMBER(sf_state, name, type, units, meaning),
@@ -197,33 +198,55 @@ static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const 
     return err->status;
 }
 
-static sf_status take(const sf_earlier *e, const sf_model *m, const sf_operators *op, sf_state *s,
-                      sf_error *err) {
+/* The checkpoint of the earlier run. */
+static sf_status open_earlier(const sf_earlier *e, sf_checkpoint *c, sf_error *err) {
     char path[SF_PATH_SIZE];
-    SF_OWNED_BY(sf_checkpoint_close) sf_checkpoint c = {0};
-    sf_h5 *results = NULL;
     snprintf(path, sizeof path, "%.4000s.restart", e->results);
     if (access(path, F_OK) != 0)
         return SF_FAIL(err, SF_ERR_INPUT,
                        "%s is not there: it holds the state of the pad of %s, which must run without "
                        "--no-checkpoint",
                        path, e->results);
-    if (sf_checkpoint_open(path, &c, err) == SF_OK && sf_h5_open(e->results, &results, err) == SF_OK &&
+    return sf_checkpoint_open(path, c, err);
+}
+
+/* Moves the reference to where it is in the run that the checkpoint holds, or in the drop after a `pause`. */
+static sf_status take_set(const sf_checkpoint *c, double pause, sf_model *m, sf_error *err) {
+    bool there = sf_h5_exists(c->file, "/state/set"), wanted = sf_model_set(m) > 0;
+    int64_t of_set[2] = {m->node_count, 4}, of_peak[2] = {m->node_count, 3};
+    SF_OWNED double *set = NULL, *peak = NULL;
+    if (there != wanted)
+        return SF_REFUSE(
+            err, "the foam of %s has %s permanent set: material.memory.set must be there in both or in none",
+            c->path, there ? "a" : "no");
+    if (there && sf_h5_read(c->file, "/state/set", SF_H5_F64, 2, of_set, (void **)&set, err) == SF_OK &&
+        sf_h5_read(c->file, "/state/set_peak", SF_H5_F64, 2, of_peak, (void **)&peak, err) == SF_OK)
+        sf_set_move(m, set, pause > 0 ? peak : NULL, pause, err);
+    return err->status;
+}
+
+sf_status sf_series_shape(const sf_earlier *e, const sf_checkpoint *from, sf_model *m, sf_error *err) {
+    SF_OWNED_BY(sf_checkpoint_close) sf_checkpoint c = {0};
+    SF_OWNED_BY(sf_h5_drop) sf_h5 *results = NULL;
+    if (from->file || !e->results)
+        return from->file ? take_set(from, 0, m, err) : SF_OK;
+    SF_TRY(open_earlier(e, &c, err));
+    if (sf_h5_open(e->results, &results, err) == SF_OK &&
         sf_provenance_check(results, e->results, "softfall-results", err) == SF_OK &&
         check_ending(results, c.file, e->results, err) == SF_OK &&
-        check_pad(results, m, e->results, err) == SF_OK &&
-        take_history(c.file, m, e->results, s, err) == SF_OK) {
-        s->ledger.before = sf_domain_rest(m, op, s, e->pause);
-        s->pause = e->pause;
-    }
-    sf_h5_close(&results, err);
+        check_pad(results, m, e->results, err) == SF_OK)
+        take_set(&c, e->pause, m, err);
     return err->status;
 }
 
 sf_status sf_series_begin(const sf_earlier *e, const sf_model *m, const sf_operators *op, sf_state *s,
                           sf_error *err) {
-    SF_TRY(sf_state_create(m, s, err));
-    if (e->results && take(e, m, op, s, err) != SF_OK)
+    SF_OWNED_BY(sf_checkpoint_close) sf_checkpoint c = {0};
+    if (sf_state_create(m, s, err) != SF_OK || !e->results)
+        return err->status;
+    if (open_earlier(e, &c, err) == SF_OK && take_history(c.file, m, e->results, s, err) == SF_OK)
+        sf_domain_rest(m, op, s, e->pause);
+    else
         sf_state_free(s);
     return err->status;
 }
@@ -235,7 +258,6 @@ sf_status sf_series_continue(const sf_state *before, double pause, const sf_mode
         return SF_OK;
     memcpy(s->history, before->history, (size_t)sf_state_rows(m, 'h') * SF_LANES * sizeof *s->history);
     s->drop = before->drop + 1;
-    s->ledger.before = sf_domain_rest(m, op, s, pause);
-    s->pause = pause;
+    sf_domain_rest(m, op, s, pause);
     return SF_OK;
 }

@@ -40,12 +40,14 @@ static void sort_stretches(const sf_law_batch *b, int lane, double out[3]) {
     out[2] = fmax(x, fmax(y, z));
 }
 
-/* The approximation of a coefficient field at node i. */
-static void take_value(const sf_model *m, const double *coefficient, int64_t i, double out[3]) {
+/* The approximation of a coefficient field at node i, with a second one if it is not NULL. */
+static void take_value(const sf_model *m, const double *coefficient, const double *added, int64_t i,
+                       double out[3]) {
     double sum[3] = {0};
     for (int64_t k = m->phi_ptr[i]; k < m->phi_ptr[i + 1]; k++)
         for (int c = 0; c < 3; c++)
-            sum[c] += m->phi_value[k] * coefficient[3 * (int64_t)m->phi_node[k] + c];
+            sum[c] += m->phi_value[k] * (coefficient[3 * (int64_t)m->phi_node[k] + c] +
+                                         (added ? added[3 * (int64_t)m->phi_node[k] + c] : 0));
     memcpy(out, sum, sizeof sum);
 }
 
@@ -120,7 +122,8 @@ static void take_field(const sf_model *m, const sf_operators *op, const sf_state
         case SF_FRAME_DISPLACEMENT:
         case SF_FRAME_VELOCITY:
             for (int64_t i = first; i < end; i++)
-                take_value(m, kind == SF_FRAME_DISPLACEMENT ? s->d : s->v, i, &rows[3 * (i - first)]);
+                take_value(m, kind == SF_FRAME_DISPLACEMENT ? s->d : s->v,
+                           kind == SF_FRAME_DISPLACEMENT ? m->set : NULL, i, &rows[3 * (i - first)]);
             break;
         case SF_FRAME_CAUCHY_STRESS:
         case SF_FRAME_VON_MISES:

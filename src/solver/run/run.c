@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "material/low_density_foam.h"
+#include "solver/set.h"
 #include "solver/step.h"
 
 static const double REBOUND_WAIT = 1e-3; /* s, without contact before the run may end */
@@ -286,6 +287,9 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
     const sf_model *m = d->m;
     const sf_state *s = d->s;
     const bool later = s->drop > 1;
+    double set[2];
+    if (m->set)
+        sf_set_measure(m, set);
     const double given_back = sf_model_whole(m) * s->given_back;
     const struct {
         bool told;
@@ -302,6 +306,8 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         {m->series_count > 1, {"/summary/drops", "1", "drops of the series"}, &m->series_count, SF_H5_I64},
         {later, {"/summary/drop", "1", "number of the drop on this pad, from 1"}, &s->drop, SF_H5_I64},
         {later, {"/summary/pause", "s", "rest of the pad before it"}, &s->pause, SF_H5_F64},
+        {later && m->set, {"/summary/set", "m", "permanent set of the pad before it: depth at the impact point"}, &set[0], SF_H5_F64},
+        {later && m->set, {"/summary/set_largest", "m", "its largest depth"}, &set[1], SF_H5_F64},
         {true, {"/summary/restarts", "1", "times that the run went on from a checkpoint"}, &d->r.restarts, SF_H5_I64},
         {true, {"/summary/wall_time", "s", "time of the run"}, &d->run->wall_time, SF_H5_F64},
         {true, {"/summary/given_back", "J", "most that dissipation of single nodes had given back at one time, summed over the nodes"}, &given_back, SF_H5_F64},

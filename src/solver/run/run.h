@@ -184,9 +184,8 @@ void sf_checkpoint_close(sf_checkpoint *checkpoint);
 sf_status sf_checkpoint_read(const sf_checkpoint *checkpoint, const sf_model *model, const sf_output *output,
                              sf_state *state, sf_recorder *recorder, sf_error *err);
 
-/* A drop on a pad that has been hit before: its foam's history goes on from the end of an earlier run. The
- * laws have no permanent set, so that the pad at rest is the undeformed one, exactly: the history is unloaded
- * to it and rests, and nothing else of the earlier run remains. */
+/* A drop on a pad that has been hit before: its foam's history goes on from the end of an earlier run,
+ * unloaded to rest, and its permanent set (solver/set.h) is the reference. Nothing else of it remains. */
 
 /* The pad from which a run begins. */
 typedef struct sf_earlier {
@@ -195,12 +194,17 @@ typedef struct sf_earlier {
     double pause; /* s, of the pad between them */
 } sf_earlier;
 
-/* A new state (sf_state_create) on that pad. SF_ERR_INPUT if the earlier run has not ended with the missile
- * away from the pad, or if its pad is another one: nodes, volumes, layers or what the laws remember. */
+/* Before the operators are built: gives the model of the file the reference of the drop; if the checkpoint
+ * `from` is open, that of the run that is resumed. SF_ERR_INPUT if the earlier run has not ended with the
+ * missile away from the pad, or if its pad is another one: nodes, volumes, layers or a set. */
+sf_status sf_series_shape(const sf_earlier *earlier, const sf_checkpoint *from, sf_model *model,
+                          sf_error *err);
+
+/* A new state (sf_state_create) on that pad. SF_ERR_INPUT if its foam remembers other things. */
 sf_status sf_series_begin(const sf_earlier *earlier, const sf_model *model, const sf_operators *operators,
                           sf_state *state, sf_error *err);
 
-/* The same, but by the last state of the earlier drop, of the same model; NULL: the pad is new. */
+/* The same, but by the last state of the earlier drop, on the same pad; NULL: the pad is new. */
 sf_status sf_series_continue(const sf_state *before, double pause, const sf_model *model,
                              const sf_operators *operators, sf_state *state, sf_error *err);
 

@@ -195,7 +195,7 @@ static void put_hysteresis(const double own[HYSTERESIS + MEMORY], sf_foam_card *
     card->hysteresis_hu = own[0];
     card->hysteresis_shape = own[1];
     card->hysteresis_alpha = own[2];
-    card->memory = (sf_memory){own[3], own[4], own[5], 1, 0};
+    card->memory = (sf_memory){.reload = own[3], .drift = own[4], .recovery = own[5], .start = 1};
 }
 
 /* Stress (Pa) of the card along the record up to point `end`. */

@@ -96,6 +96,8 @@ static sf_status take_series(const sf_case *c, sf_fit_drop *drop, sf_error *err)
                         : drop->number > c->drops ? "its key drop, the number in the series, is larger"
                         : c->drops > 1 && drop->number == 0
                             ? "say which of them it is by its number, such as drop = 2"
+                        : c->drops > 1 && sf_foam_memory(&c->material)->set > 0
+                            ? "the columns know no permanent set: leave out memory.set"
                         : c->drops > 1 && drop->speed_sd > 0 ? "speed_sd is for single drops only"
                                                              : NULL;
     for (int k = 0; k < drop->number && !wrong; k++) {
