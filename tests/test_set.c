@@ -116,6 +116,38 @@ static void any_set_is_consistent(void **state) {
     fixture_free(&f);
 }
 
+/* Displacements that the base does not allow, as where the sets of several places meet, are taken out: held
+ * nodes stay where they are, to the bit, and their displacement is 0. */
+static void held_nodes_stay(void **state) {
+    const sf_memory memory = {.start = 1, .set = 0.1};
+    uint64_t seed = 3;
+    fixture f, plain;
+    double worst = 0;
+    (void)state;
+    make_block(&memory, &f);
+    make_block(&memory, &plain);
+    int64_t n = f.model.node_count;
+    double *set = calloc((size_t)(7 * n), sizeof *set), *peak = &set[4 * n];
+    for (int64_t k = 0; k < 3 * n; k++)
+        peak[k] = 0.3 * BLOCK.spacing * fixture_random(&seed);
+    assert_int_equal(move(&f, set, peak, 9), SF_OK);
+    const sf_model *m = &f.model;
+    for (int64_t k = 0; k < m->fixed_count; k++)
+        for (int r = 0; r < 3; r++) {
+            int64_t i = m->fixed_node[k];
+            double way = 0;
+            for (int64_t e = m->phi_ptr[i]; e < m->phi_ptr[i + 1]; e++)
+                way += m->phi_value[e] * m->set[3 * (int64_t)m->phi_node[e] + r];
+            worst = larger(worst, fabs(way));
+            assert_memory_equal(&m->position[3 * i], &plain.model.position[3 * i], 3 * sizeof(double));
+        }
+    print_message("held nodes move by %.2g m of %.2g m\n", worst, largest_of(m->set, 3 * n));
+    assert_true(m->fixed_count > 0 && worst < 1e-16);
+    free(set);
+    fixture_free(&f);
+    fixture_free(&plain);
+}
+
 /* Foam that a set moves into the missile, and foam that it crushes, are refused. */
 static void impossible_sets_are_refused(void **state) {
     const sf_memory memory = {.start = 1, .set = 0.1};
@@ -344,6 +376,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_even_set_is_a_thinner_block),
         cmocka_unit_test(any_set_is_consistent),
+        cmocka_unit_test(held_nodes_stay),
         cmocka_unit_test(impossible_sets_are_refused),
         cmocka_unit_test(rests_recover_in_closed_form),
         cmocka_unit_test(bits_are_those_of_single_runs),

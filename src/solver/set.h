@@ -13,7 +13,7 @@ void sf_set_watch(const sf_model *model, sf_state *state);
  * displacement; held and tied components are projected. SF_ERR_INPUT where det(F_s) is below 0.3. */
 sf_status sf_set_move(sf_model *model, const double *set, const double *peak, double pause, sf_error *err);
 
-/* SF_ERR_INPUT if the set has moved foam into the missile at t = 0. */
+/* SF_ERR_INPUT if the set has moved foam into the missile at t = 0 by more than SF_CONTACT_ENTRY. */
 sf_status sf_set_check_missile(const sf_model *model, const sf_missile_surface *surface, sf_error *err);
 
 /* Depth (m) of the set at the contact node next to the impact point, and the largest. */
