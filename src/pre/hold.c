@@ -334,19 +334,17 @@ sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
 
 /* A permanent set: motion as a whole in a drop would count as one. */
 static sf_status check_set(const sf_hold *hold, const sf_model *m, sf_error *err) {
-    bool moves = hold->lifts || hold->slides[0] || hold->slides[1] || hold->turns || m->rest_count > 0,
-         set = false;
     const char *wrong =
-        moves
+        hold->lifts || hold->slides[0] || hold->slides[1] || hold->turns || m->rest_count > 0
             ? "a pad whose layers its base holds: none rests, stands on supports or smoothly, is loose or slides"
             : NULL;
+    bool set = false;
     for (int64_t k = 0; k < m->material_count; k++) {
         const sf_memory *own = sf_foam_memory(&m->material[k]), *one = sf_foam_memory(m->material);
         set = set || own->set > 0;
         if (own->set != one->set || own->set_recovery != one->set_recovery || own->start != one->start ||
             own->permanent != one->permanent)
-            wrong =
-                "foams with the same set, set_recovery, recovery_start and permanent: it is one displacement field";
+            wrong = "foams with the same set, set_recovery, recovery_start and permanent";
     }
     return set && wrong ? SF_REFUSE(err, "material.memory.set: a permanent set needs %s", wrong) : SF_OK;
 }
@@ -356,19 +354,15 @@ sf_status sf_hold_check(const sf_hold *hold, bool separate, const sf_model *m, s
     if (!hold->lifts || m->support_triangle_count > 0 || (separate && hold->rows[2] > 0))
         return SF_OK;
     const double *x = hold->lifted_middle;
-    if (m->material_count > 1 && hold->rows[2] > 0 && !hold->lifted_whole)
-        return SF_REFUSE(
-            err,
-            "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the part of the layer \"%s\" about "
-            "(%.4g, %.4g, %.4g) mm from being lifted or tilted: what holds it along z lies at a point or on a "
-            "line, or is nothing",
-            m->material[hold->lifted].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+    char about[96] = "";
+    if (!hold->lifted_whole)
+        snprintf(about, sizeof about, " about (%.4g, %.4g, %.4g) mm", 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     if (m->material_count > 1 && hold->rows[2] > 0)
         return SF_REFUSE(
             err,
-            "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the layer \"%s\" from being lifted or "
+            "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the %slayer \"%s\"%s from being lifted or "
             "tilted: what holds it along z lies at a point or on a line, or is nothing",
-            m->material[hold->lifted].name);
+            *about ? "part of the " : "", m->material[hold->lifted].name, about);
     if (hold->rows[2] == 0)
         return SF_REFUSE(
             err,

@@ -100,17 +100,15 @@ sf_status sf_set_move(sf_model *m, const double *set, const double *peak, double
 }
 
 sf_status sf_set_check_missile(const sf_model *m, const sf_missile_surface *surface, sf_error *err) {
-    for (int64_t c = 0; c < m->contact_count; c++) {
-        int32_t node = m->contact_node[c];
-        double gap, normal[3];
-        if (sf_missile_surface_gap(surface, &m->position[3 * (int64_t)node], &gap, normal) &&
-            -gap > SF_CONTACT_ENTRY * m->spacing[node])
+    double gap, normal[3];
+    for (const int32_t *i = m->contact_node; i < m->contact_node + m->contact_count; i++)
+        if (sf_missile_surface_gap(surface, &m->position[3 * (int64_t)*i], &gap, normal) &&
+            -gap > SF_CONTACT_ENTRY * m->spacing[*i])
             return SF_REFUSE(
                 err,
                 "the permanent set of earlier drops has moved foam %.3g mm into the missile at its start: give this "
                 "drop a larger missile.gap, which is %.4g mm",
                 -1e3 * gap, 1e3 * m->missile.gap);
-    }
     return SF_OK;
 }
 

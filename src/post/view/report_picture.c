@@ -138,8 +138,7 @@ char *sf_report_picture_before(const sf_results *r, char *text, size_t size, sf_
             "The pad before the drop: the energy by which loading, up to the largest so far, takes up less "
             "than that of new foam.");
         if (isfinite(r->set))
-            snprintf(strchr(text, '\0'), size - strlen(text),
-                     " Its permanent set is %.3g mm deep at the impact point.", 1e3 * r->set);
+            sf_text_add(text, size, " Its permanent set is %.3g mm deep at the impact point.", 1e3 * r->set);
         svg = sf_picture_draw(&cut, &picture, 1, &style, err);
     }
     sf_cut_free(&cut);

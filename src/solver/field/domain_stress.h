@@ -15,8 +15,7 @@ void sf_domain_stress(const sf_model *model, const sf_operators *operators, sf_s
 void sf_domain_law(const sf_model *model, const sf_operators *operators, const sf_state *state, int64_t block,
                    sf_law_batch *batch);
 
-/* The history of the pad unloaded to rest, and after a `pause` (s) there, with what hysteresis has cost until
- * then. */
+/* The history of the pad unloaded to rest, and after a `pause` (s) there, with the ledger's `before`. */
 void sf_domain_rest(const sf_model *model, const sf_operators *operators, sf_state *state, double pause);
 
 /* Internal forces f_I = - sum_L (V P)_L B_I^L, scattered by groups of domains (halo.h), then summed by node

@@ -216,9 +216,9 @@ static sf_status take_set(const sf_checkpoint *c, double pause, sf_model *m, sf_
     int64_t of_set[2] = {m->node_count, 4}, of_peak[2] = {m->node_count, 3};
     SF_OWNED double *set = NULL, *peak = NULL;
     if (there != wanted)
-        return SF_REFUSE(
-            err, "the foam of %s has %s permanent set: material.memory.set must be there in both or in none",
-            c->path, there ? "a" : "no");
+        return SF_REFUSE(err,
+                         "the foam of %s has %s permanent set: material.memory.set is in both or in none",
+                         c->path, there ? "a" : "no");
     if (there && sf_h5_read(c->file, "/state/set", SF_H5_F64, 2, of_set, (void **)&set, err) == SF_OK &&
         sf_h5_read(c->file, "/state/set_peak", SF_H5_F64, 2, of_peak, (void **)&peak, err) == SF_OK)
         sf_set_move(m, set, pause > 0 ? peak : NULL, pause, err);
