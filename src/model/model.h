@@ -228,7 +228,7 @@ typedef struct sf_model {
 static inline double sf_model_set(const sf_model *model) {
     return model->material_count > 0 ? sf_foam_memory(model->material)->set : 0;
 }
-/* Coefficients of the field of places [node_count][3], m: without a set the places themselves. */
+/* Coefficients of the field of places [node_count][3], m. */
 static inline const double *sf_model_coefficients(const sf_model *model) {
     return model->set ? model->set + 4 * model->node_count : model->position;
 }

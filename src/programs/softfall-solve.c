@@ -283,26 +283,18 @@ static sf_status check_series(const options *o, const series *all, sf_error *err
     return SF_OK;
 }
 
-/* Builds operators and state, and writes the base of the results first: so the mesh is released before the
- * operators are built, and the model's file is closed. */
-static sf_status build(sf_model *model, sf_h5 **model_file, const sf_provenance *provenance,
-                       const sf_output *output, const sf_earlier *earlier, const sf_checkpoint *from,
-                       sf_operators *operators, sf_state *state, sf_error *err) {
-    SF_TRY(sf_output_base(output, model, *model_file, provenance, err));
-    SF_TRY(sf_h5_close(model_file, err));
-    sf_model_drop_mesh(model);
-    SF_TRY(sf_series_shape(earlier, from, model, err));
-    SF_TRY(sf_operators_take(model, operators, err));
-    malloc_trim(0); /* return the freed work memory of the build */
-    return sf_series_begin(earlier, model, operators, state, err);
-}
-
-/* Opens the output, builds what the run needs and removes what killed runs left. */
+/* Opens the output, writes the base of the results, so that the mesh is released and the model's file closed
+ * before operators and state are built, and removes what killed runs left. */
 static sf_status start(const options *o, const sf_checkpoint *from, const sf_provenance *provenance,
                        sf_output *output, sf_model *model, sf_h5 **model_file, sf_operators *operators,
                        sf_state *state, sf_error *err) {
     if (sf_output_open(output, err) != SF_OK ||
-        build(model, model_file, provenance, output, &o->earlier, from, operators, state, err) != SF_OK ||
+        sf_output_base(output, model, *model_file, provenance, err) != SF_OK ||
+        sf_h5_close(model_file, err) != SF_OK ||
+        (sf_model_drop_mesh(model), sf_series_shape(&o->earlier, from, model, err)) != SF_OK ||
+        sf_operators_take(model, operators, err) != SF_OK ||
+        (malloc_trim(0), /* return the freed work memory of the build */
+         sf_series_begin(&o->earlier, model, operators, state, err)) != SF_OK ||
         sf_output_start(output, o->restart != NULL, err) != SF_OK) {
         sf_output_abandon(output);
         return err->status;

@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "solver/constraint/constraint.h"
-#include <stdlib.h>
 #include <string.h>
 
 void sf_set_watch(const sf_model *m, sf_state *s) {
@@ -13,8 +12,7 @@ void sf_set_watch(const sf_model *m, sf_state *s) {
     s->deepest = fmax(s->deepest, depth);
 }
 
-/* The set of a node, and what rests have taken back of it, from those in the drop and its peak to after the
- * rest. */
+/* Takes the set of a node, and its recovered part, from those in a drop to those after it and a rest. */
 static void leave(const sf_memory *m, const double peak[3], double pause, double set[3], double *recovered) {
     double left = 1 - *recovered, old[3], fresh[3];
     for (int r = 0; r < 3; r++) {
@@ -85,8 +83,7 @@ sf_status sf_set_move(sf_model *m, const double *set, const double *peak, double
         if (!(jacobian >= 0.3))
             return SF_REFUSE(
                 err,
-                "the permanent set would leave %.3g of the foam's volume at (%.4g, %.4g, %.4g) mm, less than "
-                "0.3: material.memory.set = %g is too large after this drop",
+                "the permanent set would leave %.3g of the foam's volume at (%.4g, %.4g, %.4g) mm, less than 0.3: make material.memory.set, %g, smaller",
                 jacobian, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], sf_model_set(m));
         while (held < m->fixed_count && m->fixed_node[held] < i)
             held++;
@@ -106,8 +103,7 @@ sf_status sf_set_check_missile(const sf_model *m, const sf_missile_surface *surf
             -gap > SF_CONTACT_ENTRY * m->spacing[*i])
             return SF_REFUSE(
                 err,
-                "the permanent set of earlier drops has moved foam %.3g mm into the missile at its start: give this "
-                "drop a larger missile.gap, which is %.4g mm",
+                "the permanent set has moved foam %.3g mm into the missile at its start: give a larger missile.gap than %.4g mm",
                 -1e3 * gap, 1e3 * m->missile.gap);
     return SF_OK;
 }

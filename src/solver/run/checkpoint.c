@@ -198,7 +198,6 @@ static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const 
     return err->status;
 }
 
-/* The checkpoint of the earlier run. */
 static sf_status open_earlier(const sf_earlier *e, sf_checkpoint *c, sf_error *err) {
     char path[SF_PATH_SIZE];
     snprintf(path, sizeof path, "%.4000s.restart", e->results);

@@ -41,13 +41,12 @@ static void sort_stretches(const sf_law_batch *b, int lane, double out[3]) {
 }
 
 /* The approximation of a coefficient field at node i, with a second one if it is not NULL. */
-static void take_value(const sf_model *m, const double *coefficient, const double *added, int64_t i,
-                       double out[3]) {
+static void take_value(const sf_model *m, const double *one, const double *two, int64_t i, double out[3]) {
     double sum[3] = {0};
     for (int64_t k = m->phi_ptr[i]; k < m->phi_ptr[i + 1]; k++)
         for (int c = 0; c < 3; c++)
-            sum[c] += m->phi_value[k] * (coefficient[3 * (int64_t)m->phi_node[k] + c] +
-                                         (added ? added[3 * (int64_t)m->phi_node[k] + c] : 0));
+            sum[c] += m->phi_value[k] * (one[3 * (int64_t)m->phi_node[k] + c] +
+                                         (two ? two[3 * (int64_t)m->phi_node[k] + c] : 0));
     memcpy(out, sum, sizeof sum);
 }
 
