@@ -259,19 +259,6 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
     return SF_OK;
 }
 
-/* Nodes of several layers at one place that are tied altogether move together: the heaviest of them
- * stands for all as the contact point (solver/contact/contact_rows.h). */
-static int32_t contact_point(const sf_layers *layers, const sf_model *m, int32_t node) {
-    int32_t origin = layers->origin[node], best = node;
-    for (int64_t k = layers->copy_ptr[origin]; k < layers->copy_ptr[origin + 1]; k++) {
-        int32_t other = layers->copy[k];
-        if (layers->together[other] == layers->together[node] &&
-            (m->mass[other] > m->mass[best] || (m->mass[other] == m->mass[best] && other < best)))
-            best = other;
-    }
-    return best;
-}
-
 /* The points of the contact set: [*count] ascending nodes, owned by the caller. `area` [node_count] of the
  * nodes becomes that of the points. */
 static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const sf_node_set *set,
@@ -280,7 +267,7 @@ static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const
     int32_t *list = sf_alloc(err, (unsigned long)set->count, sizeof *list, "contact points");
     *count = 0;
     for (int64_t k = 0; point && k < set->count; k++) {
-        int32_t node = set->node[k], best = contact_point(layers, m, node);
+        int32_t node = set->node[k], best = sf_layers_heaviest(layers, m, node);
         point[best] = 1;
         area[best] += best == node ? 0 : area[node];
     }
@@ -298,7 +285,7 @@ static sf_status gather_rest(const sf_layers *layers, const sf_model *m, uint8_t
     SF_OWNED uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "resting nodes");
     for (int32_t i = 0; point && i < (int32_t)m->node_count; i++)
         if (rest[i])
-            point[contact_point(layers, m, i)] = 1;
+            point[sf_layers_heaviest(layers, m, i)] = 1;
     if (point)
         memcpy(rest, point, (size_t)m->node_count);
     return err->status;
@@ -581,6 +568,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
             m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
         }
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
+            (report->contact_held || sf_contact_add_free(&layers, m, err) == SF_OK) &&
             sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);

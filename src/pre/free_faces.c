@@ -42,15 +42,16 @@ sf_status sf_skin_triangles(const sf_model *m, int64_t *triangles, int32_t **out
 static const double ALONG = 0.99; /* least cosine of a face that is held along its normal */
 
 typedef struct shape {
-    double centroid[3], normal[3], radius; /* m, -, m */
+    double centroid[3], normal[3], radius, area; /* m, -, m, m2 */
 } shape;
 
 static shape shape_of(const sf_model *m, const int32_t node[3]) {
-    shape s = {{0}, {0}, 0};
+    shape s = {{0}, {0}, 0, 0};
     const double *x[3];
     for (int k = 0; k < 3; k++)
         x[k] = &m->position[3 * (int64_t)node[k]];
     sf_triangle_normal(x[0], x[1], x[2], s.normal);
+    s.area = 0.5 * sqrt(sf_dot3(s.normal, s.normal));
     sf_unit3(s.normal);
     for (int r = 0; r < 3; r++)
         s.centroid[r] = x[0][r] + ((x[1][r] - x[0][r]) + (x[2][r] - x[0][r])) / 3;
@@ -246,4 +247,52 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
         take_pairs(c, m, err);
     }
     return err->status;
+}
+
+/* ---- faces that the missile may touch ---- */
+
+/* Sets the list of contact points to the nodes with a mark of 1, ascending. */
+static sf_status take_points(sf_model *m, const uint8_t *mark, const double *area, sf_error *err) {
+    int64_t count = 0;
+    for (int64_t i = 0; i < m->node_count; i++)
+        count += mark[i] == 1;
+    int32_t *node = realloc(m->contact_node, (size_t)count * sizeof *node);
+    m->contact_node = node ? node : m->contact_node;
+    double *own = realloc(m->contact_area, (size_t)count * sizeof *own);
+    m->contact_area = own ? own : m->contact_area;
+    if (!node || !own)
+        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for contact points");
+    m->contact_count = 0;
+    for (int32_t i = 0; i < (int32_t)m->node_count; i++)
+        if (mark[i] == 1) {
+            own[m->contact_count] = area[i];
+            node[m->contact_count++] = i;
+        }
+    return SF_OK;
+}
+
+sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_error *err) {
+    enum { FREE, POINT, LEFT_OUT };
+    SF_OWNED_BY(faces_free) faces f = {0};
+    SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
+    SF_OWNED double *area = sf_alloc(err, (unsigned long)m->node_count, sizeof *area, "contact points");
+    SF_TRY(err->status);
+    SF_TRY(faces_find(m, &f, err));
+    for (int64_t k = 0; k < m->fixed_count; k++)
+        if (m->fixed_base[k] || m->fixed_mask[k] == (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
+            mark[m->fixed_node[k]] = LEFT_OUT;
+    for (int64_t k = 0; k < m->rest_count; k++)
+        mark[m->rest_node[k]] = LEFT_OUT;
+    for (int64_t k = 0; k < m->contact_count; k++)
+        mark[m->contact_node[k]] = LEFT_OUT;
+    for (int64_t k = 0; k < 3 * f.count; k++) {
+        int32_t point = sf_layers_heaviest(layers, m, f.node[k]);
+        mark[point] = mark[point] == FREE ? POINT : mark[point];
+        area[point] += mark[point] == POINT ? f.shape[k / 3].area / 3 : 0;
+    }
+    for (int64_t k = 0; k < m->contact_count; k++) {
+        mark[m->contact_node[k]] = POINT;
+        area[m->contact_node[k]] = m->contact_area[k];
+    }
+    return take_points(m, mark, area, err);
 }

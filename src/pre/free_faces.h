@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The surface of the pad, and the part of it that may touch the pad itself or the anvil. */
 #pragma once
-#include "base/error.h"
-#include "case/case.h"
-#include "model/model.h"
+#include "pre/cloud/layers.h"
 
 /* The free faces of the model's cells as triangles, turned outwards: *node [*count][3], and, unless `half` is
  * NULL, *half [*count] as of sf_model.skin_half; owned by the caller. Faces between layers are among them,
@@ -18,3 +16,9 @@ sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **nod
  * touches that only. `unheld` (m): the middle of such a face of a pad without skin; NaN: there is none. Needs
  * cells, constraints, ties, thickness and the anvil's depth. */
 sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_error *err);
+
+/* Adds to the contact points the nodes of the free faces outside pad.contact, with their areas, that are
+ * neither held altogether nor part of the base: the missile may reach them too. What places the missile and
+ * measures the pad goes by the points of pad.contact and comes before. Needs cells, constraints, ties and
+ * masses. */
+sf_status sf_contact_add_free(const sf_layers *layers, sf_model *model, sf_error *err);

@@ -225,6 +225,17 @@ sf_status sf_layers_part(const sf_mesh *mesh, const sf_layers *l, int layer, sf_
     return err->status;
 }
 
+int32_t sf_layers_heaviest(const sf_layers *layers, const sf_model *m, int32_t node) {
+    int32_t origin = layers->origin[node], best = node;
+    for (int64_t k = layers->copy_ptr[origin]; k < layers->copy_ptr[origin + 1]; k++) {
+        int32_t other = layers->copy[k];
+        if (layers->together[other] == layers->together[node] &&
+            (m->mass[other] > m->mass[best] || (m->mass[other] == m->mass[best] && other < best)))
+            best = other;
+    }
+    return best;
+}
+
 sf_status sf_layers_area(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l, const sf_node_set *set,
                          double *area, sf_error *err) {
     SF_OWNED double *own = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *own, "areas");
