@@ -246,6 +246,72 @@ static void a_block_slides_on_a_block(void **state) {
     slide_on_a_block(1.37);
 }
 
+/* Removes the cells of a void of 1 x 3 x 2 cells from a block. */
+static void open_void(const fixture_block *block, sf_mesh *mesh) {
+    int64_t cells = 0, used = 0;
+    for (int64_t k = 0; k < mesh->cell_count; k++) {
+        int64_t first = mesh->cell_ptr[k], last = mesh->cell_ptr[k + 1];
+        double x[3] = {0};
+        for (int64_t v = first; v < last; v++)
+            for (int r = 0; r < 3; r++)
+                x[r] += mesh->position[3 * (int64_t)mesh->cell_node[v] + r] / (double)(last - first);
+        if (fabs(x[0] / block->spacing - 2.5) < 0.5 && fabs(x[1] / block->spacing - 2.5) < 1.5 &&
+            fabs(x[2] / block->spacing - 2) < 1)
+            continue;
+        mesh->cell_type[cells] = mesh->cell_type[k];
+        mesh->cell_ptr[cells] = used;
+        for (int64_t v = first; v < last; v++)
+            mesh->cell_node[used++] = mesh->cell_node[v];
+        mesh->cell_ptr[++cells] = used;
+    }
+    assert_int_equal(mesh->cell_count - cells, 6);
+    mesh->cell_count = cells;
+}
+
+/* Each node of a wall of a narrow void has the opposite face of the wall beyond among its candidates, also in
+ * the corners, where floor and end wall join the two. */
+static void a_corner_of_a_slit_sees_the_wall_beyond(void **state) {
+    const fixture_block block = {.cells = {5, 5, 4}, .spacing = 0.01};
+    sf_case c;
+    sf_mesh mesh;
+    sf_surface missile;
+    fixture f;
+    int walls = 0;
+    (void)state;
+    loose_case(&c, 1, 0);
+    fixture_block_mesh(&block, &mesh);
+    open_void(&block, &mesh);
+    layers_assign(&block, by_height, &mesh);
+    memset(mesh.cell_layer, 0, (size_t)mesh.cell_count);
+    fixture_plate(1, 0, 0, &missile);
+    fixture_build(&c, &mesh, &missile, &f);
+    fixture_start(&f);
+    fixture_advance(&f);
+    const sf_skin *skin = &f.operators.skin;
+    for (int64_t p = 0; p < skin->moving; p++) {
+        const double *x = &skin->rest[3 * p];
+        bool sees = false;
+        if (fabs(x[0] / block.spacing - 2) > 0.1 || x[1] < 0.9 * block.spacing ||
+            x[1] > 4.1 * block.spacing || x[2] < 0.9 * block.spacing || x[2] > 3.1 * block.spacing)
+            continue;
+        walls++;
+        for (int k = 0; k < SF_SELF_CANDIDATES; k++) {
+            int32_t facet = f.state.self_candidate[SF_SELF_CANDIDATES * p + k];
+            for (int a = 0; facet >= 0 && a < 3; a++) {
+                const double *y = &skin->rest[3 * (int64_t)skin->facet[3 * facet + a]];
+                sees =
+                    sees || (skin->facet_normal[3 * facet] < -0.99 && hypot(y[1] - x[1], y[2] - x[2]) < 1e-6);
+            }
+            if (facet < 0)
+                break;
+        }
+        if (!sees)
+            fail_msg("(%g, %g, %g) mm does not see the wall", 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+    }
+    assert_int_equal(walls, 12);
+    fixture_free(&f);
+}
+
 /* A damaged model: its numbers of halves are refused. */
 static void a_skin_with_a_third_half_is_refused(void **state) {
     fixture f;
@@ -422,6 +488,7 @@ int main(void) {
         cmocka_unit_test(a_block_passes_through_a_support),
         cmocka_unit_test(a_loose_stack_falls_apart_when_it_is_lifted),
         cmocka_unit_test(a_block_slides_on_a_block),
+        cmocka_unit_test(a_corner_of_a_slit_sees_the_wall_beyond),
         cmocka_unit_test(a_skin_with_a_third_half_is_refused),
         cmocka_unit_test(each_interface_has_its_own_friction),
         cmocka_unit_test(a_dome_on_a_slab_and_two_domes_obey_hertz),

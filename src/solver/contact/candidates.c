@@ -41,13 +41,23 @@ static void find_neighbourhood(const sf_skin *skin, int64_t p, neighbourhood *n)
     }
 }
 
+/* True if one of the sides of node p looks at the facet from rest on: at a corner of a slit the mean of their
+ * normals looks past the wall beyond. */
+static bool looks_at(const sf_skin *skin, int64_t p, int64_t f) {
+    const double *facing = &skin->facet_normal[3 * f];
+    bool looks = skin->next_side[p] < 0 && sf_dot3(&skin->normal[3 * p], facing) < FACING;
+    for (int64_t e = skin->ring_ptr[p]; e < skin->ring_ptr[p + 1] && skin->next_side[p] >= 0; e++)
+        looks = looks || sf_dot3(&skin->facet_normal[3 * (int64_t)skin->ring[e]], facing) < FACING;
+    return looks;
+}
+
 static bool is_candidate(const sf_skin *skin, const neighbourhood *n, int64_t p, int64_t f) {
     const int32_t *facet = &skin->facet[3 * f];
     if (facet[0] == p || facet[1] == p || facet[2] == p)
         return false;
     if (!n->is_near[facet[0]] && !n->is_near[facet[1]] && !n->is_near[facet[2]])
         return true;
-    return p < skin->nodes && sf_dot3(&skin->normal[3 * p], &skin->facet_normal[3 * f]) < FACING;
+    return p < skin->nodes && looks_at(skin, p, f);
 }
 
 /* The facets of pad and support as they lie now, each with its grid. */

@@ -120,9 +120,7 @@ typedef struct touch {
     double friction;     /* -, Coulomb coefficient */
 } touch;
 
-/* The weights of a triangle's nodes `n` at a point of its plane, `normal` (twice its area long) being its
- * own.
- */
+/* The weights of a triangle's nodes `n` at a point of its plane, with its own `normal` of twice its area. */
 static void weigh_point(const sf_state *s, const int32_t n[3], const double point[3], const double normal[3],
                         double weight[3]) {
     double square = sf_dot3(normal, normal);
@@ -209,14 +207,15 @@ static bool matches(const sf_skin *skin, const touch *q) {
 /* The pair of node and facet, if the node lies before or behind the facet and its own surface looks against
  * it. The normal is the mean of both surfaces: smooth over the facets, and the same seen from either side,
  * where facets that are tilted against each other would interlock; of a rigid facet it is that of the
- * support. The gap is along it, so that the forces on node and facet lie on one line. */
+ * support, and for a node of an edge, which has no normal of its own, that of the facet. The gap is along it,
+ * so that the forces on node and facet lie on one line. */
 static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, touch *out) {
     const int32_t *n = &skin->facet[3 * f];
     const double *x = &s->self_position[3 * p], *a = &s->self_position[3 * (int64_t)n[0]];
     double own[3], facing[3], against[3], arm[3], point[3];
     facet_normal(skin, s, f, own);
     double area = sqrt(sf_dot3(own, own));
-    bool rigid = sf_skin_is_rigid(skin, n[0]);
+    bool alone = skin->next_side[p] >= 0 || sf_skin_is_rigid(skin, p) || sf_skin_is_rigid(skin, n[0]);
     *out = (touch){.node = p, .facet = f};
     for (int r = 0; r < 3; r++)
         facing[r] = own[r] / area;
@@ -228,7 +227,7 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
             return false;
     for (int r = 0; r < 3; r++) {
         arm[r] = x[r] - a[r];
-        out->normal[r] = rigid ? 0 : -against[r];
+        out->normal[r] = alone ? 0 : -against[r];
         for (int k = 0; k < 3; k++)
             out->normal[r] += out->weight[k] * side_normal(skin, s, f, k)[r];
     }
