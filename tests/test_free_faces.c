@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The missile meets every free face of the pad, whether pad.contact names it or not: a pad whose group is a
  * part of its top against one whose group is the whole top, and a blow near an edge, where the side folds up
- * into the missile. By whole programs. */
+ * into the missile; and two edges that cross carry each other. By whole programs. */
 #include "program_fixture.h"
 
 #include <math.h>
@@ -82,9 +82,73 @@ static void the_missile_touches_faces_that_are_not_named(void **state) {
     drop(p, "--set geometry.parameters.whole=1 --set missile.position='[\"58 mm\",\"0 mm\"]'");
 }
 
+/* Two bars with the section of a house, crosswise, ridge on ridge; cells of 5 mm along the ridges, 9 of them,
+ * so that no node is near the crossing. */
+static const char ROOFS[] =
+    "DefineConstant[ n = 9 ];\n"
+    "For k In {0:1}\n"
+    "  p = 100*k; s = 1 - 2*k; z = k*40.01; a = 22.5;\n"
+    "  u[] = {-20,20,20,0,-20,0}; h[] = {0,0,10,20,10,0};\n"
+    "  For i In {0:5}\n"
+    "    Point(p+i+1) = {k ? -a : u[i], k ? u[i] : -a, z + s*h[i]};\n"
+    "  EndFor\n"
+    "  Line(p+1) = {p+1,p+6}; Line(p+2) = {p+6,p+2}; Line(p+3) = {p+2,p+3}; Line(p+4) = {p+3,p+4};\n"
+    "  Line(p+5) = {p+4,p+5}; Line(p+6) = {p+5,p+1}; Line(p+7) = {p+6,p+4};\n"
+    "  Curve Loop(p+1) = {p+1,p+7,p+5,p+6}; Curve Loop(p+2) = {p+2,p+3,p+4,-(p+7)};\n"
+    "  Plane Surface(p+1) = {p+1}; Plane Surface(p+2) = {p+2};\n"
+    "  Transfinite Curve {p+1,p+2,p+4,p+5} = 5; Transfinite Curve {p+3,p+6,p+7} = 4;\n"
+    "  Transfinite Surface {p+1,p+2}; Recombine Surface {p+1,p+2};\n"
+    "  Extrude {k ? 2*a : 0, k ? 0 : 2*a, 0} { Surface{p+1,p+2}; Layers{n}; Recombine; }\n"
+    "EndFor\n"
+    "Physical Volume(\"pad\") = Volume{:};\n"
+    "Physical Surface(\"base\") = Surface In BoundingBox{-100,-100,-0.1,100,100,0.1};\n"
+    "Physical Surface(\"top\") = Surface In BoundingBox{-100,-100,z-0.1,100,100,z+0.1};\n";
+
+static const char ROOFS_CASE[] =
+    "geometry: { file = \"roofs.geo\"; missile_file = \"geo/platen.geo\"; length_unit = \"mm\";\n"
+    "  parameters = { n = 9; }; missile_parameters = { side = 200.0; }; };\n"
+    "pad: { mesh_error_limit = 10.0; separate = true; };\n"
+    "material: {\n@include \"materials/eva35.cfg\"\n};\n"
+    "missile: { motion = \"motion.csv\"; shape = \"surface\"; friction = 1.0; };\n"
+    "solver: { end_time = \"8 ms\"; };\n";
+
+/* Largest magnitude of a column of the history, up to a displacement of `most` mm. */
+static double largest(const program_place *p, const char *column, double most) {
+    program_result r = program_shell(
+        p,
+        "awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) { if ($k == \"%s\") c = k; if ($k == \"displacement_mm\") d = k } "
+        "next } $d < %g { v = $c < 0 ? -$c : $c; if (v > m) m = v } END { print m + 0 }' out/history.csv",
+        column, most);
+    assert_int_equal(r.code, 0);
+    return strtod(r.out, NULL);
+}
+
+static void edges_that_cross_carry_each_other(void **state) {
+    const program_place *p = *state;
+    program_write_text(p, "roofs.geo", ROOFS);
+    program_write_text(p, "case.cfg", ROOFS_CASE);
+    program_write_text(p, "motion.csv", "time_ms,displacement_mm\n0,0\n4,0.5\n8,1.5\n");
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force");
+    program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
+    program_succeed(p, "solve", "m.h5 -o two.h5 --force -t 2 --end-time '5 ms'");
+    program_succeed(p, "solve", "m.h5 --restart two.h5 -t 2 --end-time '8 ms'");
+    program_succeed(p, "post", "two.h5 -o two --force");
+    program_succeed(p, "post", "r.h5 -o out --force");
+    double half = largest(p, "base_reaction_N", 0.5), all = largest(p, "base_reaction_N", 1.5),
+           deep = largest(p, "penetration_mm", 1.5);
+    print_message("force %.3f N at 0.5 mm, %.3f N at 1.5 mm; penetration %.2g mm; energy error %.1e\n", half,
+                  all, deep, largest(p, "energy_error_1", 1.5));
+    assert_true(half > 0.4 && all > 2 * half && deep < 0.01 * 5);
+    assert_true(largest(p, "energy_error_1", 1.5) < 1e-3);
+    assert_true(largest(p, "momentum_error_space_1", 1.5) < 1e-12 &&
+                largest(p, "angular_momentum_error_1", 1.5) < 1e-12);
+    assert_int_equal(program_shell(p, "cmp two/history.csv out/history.csv").code, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_missile_touches_faces_that_are_not_named),
+        cmocka_unit_test(edges_that_cross_carry_each_other),
     };
     return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
 }

@@ -249,33 +249,12 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
     return err->status;
 }
 
-/* ---- faces that the missile may touch ---- */
-
-/* Sets the list of contact points to the nodes with a mark of 1, ascending. */
-static sf_status take_points(sf_model *m, const uint8_t *mark, const double *area, sf_error *err) {
-    int64_t count = 0;
-    for (int64_t i = 0; i < m->node_count; i++)
-        count += mark[i] == 1;
-    int32_t *node = realloc(m->contact_node, (size_t)count * sizeof *node);
-    m->contact_node = node ? node : m->contact_node;
-    double *own = realloc(m->contact_area, (size_t)count * sizeof *own);
-    m->contact_area = own ? own : m->contact_area;
-    if (!node || !own)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for contact points");
-    m->contact_count = 0;
-    for (int32_t i = 0; i < (int32_t)m->node_count; i++)
-        if (mark[i] == 1) {
-            own[m->contact_count] = area[i];
-            node[m->contact_count++] = i;
-        }
-    return SF_OK;
-}
-
 sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_error *err) {
-    enum { FREE, POINT, LEFT_OUT };
+    enum { FREE, ADDED, LEFT_OUT, NAMED };
     SF_OWNED_BY(faces_free) faces f = {0};
     SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
     SF_OWNED double *area = sf_alloc(err, (unsigned long)m->node_count, sizeof *area, "contact points");
+    SF_OWNED int32_t *node = sf_alloc(err, (unsigned long)m->node_count, sizeof *node, "contact points");
     SF_TRY(err->status);
     SF_TRY(faces_find(m, &f, err));
     for (int64_t k = 0; k < m->fixed_count; k++)
@@ -283,16 +262,25 @@ sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_error *er
             mark[m->fixed_node[k]] = LEFT_OUT;
     for (int64_t k = 0; k < m->rest_count; k++)
         mark[m->rest_node[k]] = LEFT_OUT;
-    for (int64_t k = 0; k < m->contact_count; k++)
-        mark[m->contact_node[k]] = LEFT_OUT;
-    for (int64_t k = 0; k < 3 * f.count; k++) {
-        int32_t point = sf_layers_heaviest(layers, m, f.node[k]);
-        mark[point] = mark[point] == FREE ? POINT : mark[point];
-        area[point] += mark[point] == POINT ? f.shape[k / 3].area / 3 : 0;
-    }
     for (int64_t k = 0; k < m->contact_count; k++) {
-        mark[m->contact_node[k]] = POINT;
+        mark[m->contact_node[k]] = NAMED;
         area[m->contact_node[k]] = m->contact_area[k];
     }
-    return take_points(m, mark, area, err);
+    for (int64_t k = 0; k < 3 * f.count; k++) {
+        int32_t point = sf_layers_heaviest(layers, m, f.node[k]);
+        mark[point] = mark[point] == FREE ? ADDED : mark[point];
+        area[point] += mark[point] == ADDED ? f.shape[k / 3].area / 3 : 0;
+    }
+    m->contact_count = 0;
+    for (int32_t i = 0; i < (int32_t)m->node_count; i++)
+        if (mark[i] == ADDED || mark[i] == NAMED) {
+            area[m->contact_count] = area[i];
+            node[m->contact_count++] = i;
+        }
+    SF_FREE(m->contact_node, m->contact_area);
+    m->contact_node = node;
+    m->contact_area = area;
+    node = NULL;
+    area = NULL;
+    return SF_OK;
 }

@@ -17,8 +17,7 @@ sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **nod
  * cells, constraints, ties, thickness and the anvil's depth. */
 sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_error *err);
 
-/* Adds to the contact points the nodes of the free faces outside pad.contact, with their areas, that are
- * neither held altogether nor part of the base: the missile may reach them too. What places the missile and
- * measures the pad goes by the points of pad.contact and comes before. Needs cells, constraints, ties and
- * masses. */
+/* Adds the nodes of the other free faces that are neither held altogether nor part of the base to the contact
+ * points, with their areas. What places the missile and measures the pad goes by those of pad.contact and
+ * comes before. Needs cells, constraints, ties and masses. */
 sf_status sf_contact_add_free(const sf_layers *layers, sf_model *model, sf_error *err);

@@ -8,6 +8,7 @@
 #include "base/mat3.h"
 #include "base/lanes.h"
 #include "solver/contact/candidates.h"
+#include "solver/contact/touch.h"
 
 /* Partners of a node: a facet, or one of these. */
 enum { NOTHING = SF_NO_CANDIDATE, FIRST_PLANE = -2 }; /* plane k: FIRST_PLANE - k */
@@ -108,18 +109,6 @@ static bool normal_against(const sf_skin *skin, const sf_state *s, int64_t p, co
     return sf_dot3(out, out) > 0;
 }
 
-/* A point of the skin and what it touches. */
-typedef struct touch {
-    int64_t node, facet; /* facet: FIRST_PLANE - k for plane k */
-    double weight[4];    /* of the facet's nodes, sf_skin_corner; zeros for a plane */
-    int parts;           /* the nodes of both, with their shares of the force */
-    int32_t part[7];
-    double share[7];
-    double normal[3];    /* outward from the facet */
-    double gap;          /* m, now; of a depth the part that the step takes back */
-    double friction;     /* -, Coulomb coefficient */
-} touch;
-
 /* The weights of a triangle's nodes `n` at a point of its plane, with its own `normal` of twice its area. */
 static void weigh_point(const sf_state *s, const int32_t n[3], const double point[3], const double normal[3],
                         double weight[3]) {
@@ -137,24 +126,9 @@ static void weigh_point(const sf_state *s, const int32_t n[3], const double poin
     }
 }
 
-/* Weights that are rounding cost as much as others: they become zero, and the sum stays one. */
-static void drop_traces(double weight[4]) {
-    static const double TRACE = 1e-12;
-    int largest = weight[1] > weight[0] ? 1 : 0;
-    double rest = 1;
-    for (int k = 2; k < 4; k++)
-        largest = weight[k] > weight[largest] ? k : largest;
-    for (int k = 1; k < 4; k++) {
-        double *own = &weight[(largest + k) % 4];
-        *own = fabs(*own) < TRACE ? 0 : *own;
-        rest -= *own;
-    }
-    weight[largest] = rest;
-}
-
 /* Takes the mean of both ways to cut a quadrangle into halves, of gap and weights. One way alone passes no
  * uniform pressure on between faces that do not match: no forces that press are in equilibrium with it. */
-static void take_both_diagonals(const sf_skin *skin, const sf_state *s, touch *q) {
+static void take_both_diagonals(const sf_skin *skin, const sf_state *s, sf_touch *q) {
     int tip = skin->half[q->facet], next = (tip + 1) % 3, last = (tip + 2) % 3;
     const int32_t *n = &skin->facet[3 * q->facet];
     const double *x = &s->self_position[3 * q->node], *a = &s->self_position[3 * (int64_t)n[tip]];
@@ -185,7 +159,7 @@ static void take_both_diagonals(const sf_skin *skin, const sf_state *s, touch *q
 }
 
 /* Lists the nodes of a pair and their shares. */
-static void list_parts(const sf_skin *skin, touch *q) {
+static void list_parts(const sf_skin *skin, sf_touch *q) {
     int members = sf_skin_members(skin, q->node), corners = sf_skin_corners(skin, q->facet);
     q->parts = 0;
     for (int k = 0; k < members + corners; k++) {
@@ -198,7 +172,7 @@ static void list_parts(const sf_skin *skin, touch *q) {
 }
 
 /* True if a centroid lies on that of a triangle: the nodes of the two carry its part. */
-static bool matches(const sf_skin *skin, const touch *q) {
+static bool matches(const sf_skin *skin, const sf_touch *q) {
     static const double SLIGHTLY = 0.01;
     double off = fmax(fabs(q->weight[0] - 1.0 / 3), fabs(q->weight[1] - 1.0 / 3));
     return !skin->half[q->facet] && off < SLIGHTLY;
@@ -209,14 +183,14 @@ static bool matches(const sf_skin *skin, const touch *q) {
  * where facets that are tilted against each other would interlock; of a rigid facet it is that of the
  * support, and for a node of an edge, which has no normal of its own, that of the facet. The gap is along it,
  * so that the forces on node and facet lie on one line. */
-static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, touch *out) {
+static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, sf_touch *out) {
     const int32_t *n = &skin->facet[3 * f];
     const double *x = &s->self_position[3 * p], *a = &s->self_position[3 * (int64_t)n[0]];
     double own[3], facing[3], against[3], arm[3], point[3];
     facet_normal(skin, s, f, own);
     double area = sqrt(sf_dot3(own, own));
     bool alone = skin->next_side[p] >= 0 || sf_skin_is_rigid(skin, p) || sf_skin_is_rigid(skin, n[0]);
-    *out = (touch){.node = p, .facet = f};
+    *out = (sf_touch){.node = p, .facet = f};
     for (int r = 0; r < 3; r++)
         facing[r] = own[r] / area;
     if (!(area > 0) || !normal_against(skin, s, p, facing, against))
@@ -243,17 +217,9 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
     weigh_point(s, n, point, own, out->weight);
     if (skin->half[f])
         take_both_diagonals(skin, s, out);
-    drop_traces(out->weight);
+    sf_touch_drop_traces(out->weight);
     list_parts(skin, out);
     return p < skin->nodes || !matches(skin, out);
-}
-
-/* Displacement of the point relative to its partner, of a field over the skin. */
-static void relative(const touch *q, const double *field, double out[3]) {
-    memset(out, 0, 3 * sizeof *out);
-    for (int k = 0; k < q->parts; k++)
-        for (int r = 0; r < 3; r++)
-            out[r] += q->share[k] * field[3 * (int64_t)q->part[k] + r];
 }
 
 /* True if facet f is the last partner or meets it: the same contact goes on. */
@@ -273,11 +239,11 @@ static bool acts(const sf_skin *skin, int64_t p, int64_t f) {
 /* The partner that node p touches at the end of the step: of those that it may touch, the nearest. Without
  * one, `passed`: the pair that the node was in, if it has become deeper than DEEPEST; its node is -1
  * otherwise. */
-static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touch *out, touch *passed) {
+static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, sf_touch *out, sf_touch *passed) {
     const int32_t *own = &s->self_candidate[CANDIDATES * p];
     double spacing = skin->size[p], best = INFINITY, back = -RETURN * s->dt, ahead[3];
     for (int k = 0; k < CANDIDATES && own[k] != NOTHING; k++) {
-        touch q;
+        sf_touch q;
         bool on = goes_on(skin, (int64_t)s->self_partner[p], own[k]);
         double deepest = on ? DEEPEST : SF_CONTACT_ENTRY;
         if (!meet_facet(skin, s, p, own[k], &q) || fabs(q.gap) >= best)
@@ -286,7 +252,7 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touc
             *passed = q;
         if (q.gap < -deepest * spacing)
             continue;
-        relative(&q, s->self_step, ahead);
+        sf_touch_relative(&q, s->self_step, ahead);
         if ((acts(skin, p, own[k]) ? fmax(q.gap, back) : q.gap) + sf_dot3(ahead, q.normal) >= 0)
             continue;
         best = fabs(q.gap);
@@ -299,7 +265,7 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touc
         double height = sf_skin_height(skin, &s->self_position[3 * p], k);
         if (height + plane->side * s->self_step[3 * p + plane->axis] >= 0 || fabs(height) >= best)
             continue;
-        *out = (touch){.node = p, .facet = FIRST_PLANE - k, .gap = height};
+        *out = (sf_touch){.node = p, .facet = FIRST_PLANE - k, .gap = height};
         out->normal[plane->axis] = plane->side;
         list_parts(skin, out);
         best = fabs(height);
@@ -312,7 +278,7 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, touc
 /* ---- forces ---- */
 
 /* Adds the row of the pair over the coefficients, times `q`, to `out`; `accelerate`: over the masses. */
-static void scatter(const sf_model *m, const sf_skin *skin, const touch *pair, const double q[3],
+static void scatter(const sf_model *m, const sf_skin *skin, const sf_touch *pair, const double q[3],
                     bool accelerate, double *out) {
     for (int k = 0; k < pair->parts; k++) {
         int64_t p = pair->part[k];
@@ -326,7 +292,7 @@ static void scatter(const sf_model *m, const sf_skin *skin, const touch *pair, c
 }
 
 /* The row of the pair times a field over the coefficients. */
-static void gather(const sf_skin *skin, const touch *pair, const double *field, double out[3]) {
+static void gather(const sf_skin *skin, const sf_touch *pair, const double *field, double out[3]) {
     memset(out, 0, 3 * sizeof *out);
     for (int k = 0; k < pair->parts; k++) {
         int64_t p = pair->part[k];
@@ -337,7 +303,7 @@ static void gather(const sf_skin *skin, const touch *pair, const double *field, 
 }
 
 /* Acceleration of the pair's node relative to its partner by a unit force; `push` is zero, and left so. */
-static double mobility_of(const sf_model *m, const sf_skin *skin, const touch *pair, double *push) {
+static double mobility_of(const sf_model *m, const sf_skin *skin, const sf_touch *pair, double *push) {
     static const double unit[3] = {1, 0, 0}, back[3] = {-1, 0, 0};
     double out[3];
     scatter(m, skin, pair, unit, true, push);
@@ -349,19 +315,20 @@ static double mobility_of(const sf_model *m, const sf_skin *skin, const touch *p
 /* The pairs of a step, their mobilities and motions without forces. */
 typedef struct solve {
     int64_t count;
-    touch *pair;
+    sf_touch *pair;
     double *mobility;  /* kg-1 */
     double (*step)[3]; /* m */
+    double (*edge_force)[3]; /* N */
     int sweeps;        /* at most */
     double relaxation; /* -, of the normal forces */
     double shift;      /* s2, dt times the distance of the half steps */
-    touch passed;      /* a pair whose node has passed through the facet; node -1: there is none */
+    sf_touch passed;   /* a pair whose node has passed through the facet; node -1: there is none */
 } solve;
 
 /* One Gauss-Seidel update of the force on a pair's node; returns the size of its change. */
 static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w, int64_t a) {
-    const touch *pair = &w->pair[a];
-    double *q = &s->self_force[3 * pair->node], moved[3], next[3], change[3], largest = 0;
+    const sf_touch *pair = &w->pair[a];
+    double *q = pair->force, moved[3], next[3], change[3], largest = 0;
     double mobility = w->shift * w->mobility[a], friction = pair->friction;
     gather(skin, pair, s->self_push, moved);
     for (int r = 0; r < 3; r++)
@@ -393,7 +360,7 @@ static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const sol
         for (int64_t a = 0; a < w->count; a++) {
             int64_t k = sweep % 2 ? w->count - 1 - a : a;
             change = fmax(change, relax_pair(m, skin, s, w, k));
-            largest = fmax(largest, sf_dot3(&s->self_force[3 * w->pair[k].node], w->pair[k].normal));
+            largest = fmax(largest, sf_dot3(w->pair[k].force, w->pair[k].normal));
         }
         if (change <= SWEEP_TOLERANCE * largest)
             return;
@@ -401,11 +368,9 @@ static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const sol
     s->contact_unsettled += change > UNSETTLED * largest;
 }
 
-/* Half of the work of the force on a pair in the last step: each step's force works over the steps before and
- * after it. */
-static void book(sf_state *s, const touch *pair, const double force[3]) {
-    double motion[3];
-    relative(pair, s->self_motion, motion);
+/* Half of the work of the force on a pair over `motion` (m), that of the last or of the next step. */
+static void book(sf_state *s, const sf_touch *pair, const double motion[3]) {
+    const double *force = pair->force;
     double lost = -0.5 * sf_dot3(force, motion),
            normal = pair->friction > 0 ? -0.5 * sf_dot3(force, pair->normal) * sf_dot3(motion, pair->normal)
                                        : lost;
@@ -433,8 +398,8 @@ static double friction_of(const sf_model *m, const sf_skin *skin, int64_t p, int
 }
 
 /* The pair of node p in the last step; its normal is that of the present. */
-static touch last_pair(const sf_model *m, const sf_skin *skin, const sf_state *s, int64_t p) {
-    touch q = {.node = p, .facet = (int64_t)s->self_partner[p]};
+static sf_touch last_pair(const sf_model *m, const sf_skin *skin, sf_state *s, int64_t p) {
+    sf_touch q = {.node = p, .facet = (int64_t)s->self_partner[p], .force = &s->self_force[3 * p]};
     q.friction = friction_of(m, skin, p, q.facet);
     memcpy(q.weight, &s->self_weight[4 * p], sizeof q.weight);
     list_parts(skin, &q);
@@ -454,14 +419,15 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
     s->self_penetration = 0;
     for (int64_t k = 0; k < s->self_close_count; k++) {
         int64_t p = s->self_close[k];
-        double *q = &s->self_force[3 * p];
+        double *q = &s->self_force[3 * p], motion[3];
         if (s->self_partner[p] != NOTHING) {
-            const touch last = last_pair(m, skin, s, p);
-            book(s, &last, q);
+            const sf_touch last = last_pair(m, skin, s, p);
+            sf_touch_relative(&last, s->self_motion, motion);
+            book(s, &last, motion);
         }
-        touch *found = &w->pair[w->count];
+        sf_touch *found = &w->pair[w->count];
         double old = sqrt(sf_dot3(q, q));
-        touch passed = {.node = -1};
+        sf_touch passed = {.node = -1};
         bool touches = find_partner(skin, s, p, found, &passed);
         if (passed.node >= 0)
             w->passed = passed;
@@ -471,6 +437,7 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
             continue;
         }
         found->friction = friction_of(m, skin, p, found->facet);
+        found->force = q;
         if (s->self_partner[p] != (double)found->facet && found->friction == 0)
             for (int r = 0; r < 3; r++)
                 q[r] = old * found->normal[r];
@@ -481,12 +448,27 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         s->self_penetration = fmax(s->self_penetration, -found->gap);
         found->gap = fmax(found->gap, -RETURN * s->dt);
         w->mobility[w->count] = mobility_of(m, skin, found, s->self_push);
-        relative(found, s->self_step, w->step[w->count]);
+        sf_touch_relative(found, s->self_step, w->step[w->count]);
         if (p >= skin->nodes) {
             w->sweeps = MORE_SWEEPS;
             w->relaxation = OVER;
         }
         w->count++;
+    }
+}
+
+/* Adds the pairs of edges. */
+static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
+    int64_t first = w->count;
+    w->count += sf_touch_edges(skin, s, RETURN * s->dt, &w->pair[first]);
+    for (int64_t a = first; a < w->count; a++) {
+        sf_touch *q = &w->pair[a];
+        s->self_penetration = fmax(s->self_penetration, -q->gap);
+        q->gap = fmax(q->gap, -RETURN * s->dt);
+        q->friction = friction_of(m, skin, q->node, q->facet);
+        q->force = w->edge_force[a - first];
+        w->mobility[a] = mobility_of(m, skin, q, s->self_push);
+        sf_touch_relative(q, s->self_step, w->step[a]);
     }
 }
 
@@ -504,7 +486,7 @@ static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf
     }
 }
 
-static sf_status fail_passed(const sf_model *m, const sf_skin *skin, const sf_state *s, const touch *pair,
+static sf_status fail_passed(const sf_model *m, const sf_skin *skin, const sf_state *s, const sf_touch *pair,
                              sf_error *err) {
     int support = sf_skin_support(m, skin, pair->node, pair->facet);
     const double *x = &s->self_position[3 * pair->node], *rest = &skin->rest[3 * pair->node];
@@ -538,11 +520,12 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
     }
     memset(s->self_push, 0, bytes);
     find_normals(skin, s);
-    unsigned long most = (unsigned long)s->self_close_count;
+    unsigned long edges = (unsigned long)skin->edge_count, most = (unsigned long)s->self_close_count + edges;
     solve w = {.shift = s->dt * dt_v,
                .pair = sf_alloc(err, most, sizeof *w.pair, "pairs in contact"),
                .mobility = sf_alloc(err, most, sizeof *w.mobility, "pairs in contact"),
                .step = sf_alloc(err, most, sizeof *w.step, "pairs in contact"),
+               .edge_force = sf_alloc(err, edges, sizeof *w.edge_force, "pairs in contact"),
                .sweeps = MAX_SWEEPS,
                .relaxation = 1,
                .passed.node = -1};
@@ -550,18 +533,25 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
         find_pairs(m, skin, s, &w);
     if (w.passed.node >= 0)
         fail_passed(m, skin, s, &w.passed, err);
-    if (w.count > 0) {
-        for (int64_t a = 0; a < w.count; a++)
-            scatter(m, skin, &w.pair[a], &s->self_force[3 * w.pair[a].node], true, s->self_push);
-        relax(m, skin, s, &w);
-        memset(s->self_push, 0, bytes);
-    }
+    int64_t nodes = w.count;
+    if (err->status == SF_OK)
+        find_edges(m, skin, s, &w);
+    for (int64_t a = 0; a < w.count; a++)
+        scatter(m, skin, &w.pair[a], w.pair[a].force, true, s->self_push);
+    relax(m, skin, s, &w);
     for (int64_t a = 0; a < w.count; a++) {
-        const double *q = &s->self_force[3 * w.pair[a].node];
-        scatter(m, skin, &w.pair[a], q, false, s->force);
-        book(s, &w.pair[a], q);
+        double motion[3];
+        scatter(m, skin, &w.pair[a], w.pair[a].force, false, s->force);
+        sf_touch_relative(&w.pair[a], s->self_motion, motion);
+        book(s, &w.pair[a], motion);
+        gather(skin, &w.pair[a], s->self_push, motion);
+        for (int r = 0; r < 3; r++)
+            motion[r] = w.step[a][r] + w.shift * motion[r];
+        if (a >= nodes) /* no later step knows a pair of edges */
+            book(s, &w.pair[a], motion);
     }
-    SF_FREE(w.pair, w.mobility, w.step);
+    memset(s->self_push, 0, bytes);
+    SF_FREE(w.pair, w.mobility, w.step, w.edge_force);
     return err->status;
 }
 

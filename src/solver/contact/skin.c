@@ -112,9 +112,10 @@ static int64_t corner_at(const sf_skin *skin, int64_t facet, int64_t node) {
     return corner;
 }
 
+static const double SHARP = 0.64; /* cosine of the angle between the normals */
+
 /* True if two facets at one node share an edge that is not sharp. */
 static bool go_on_smoothly(const sf_skin *skin, int64_t f, int64_t g) {
-    static const double SHARP = 0.64; /* cosine of the angle between the normals */
     int shared = 0;
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
@@ -154,6 +155,30 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
                 skin->next_side[last] = skin->side[corner];
             last = skin->side[corner];
         }
+    }
+    return SF_OK;
+}
+
+/* Lists the sharp edges of the pad's facets, `count` of them, that are convex. */
+static sf_status list_edges(int64_t count, sf_skin *skin, sf_error *err) {
+    SF_OWNED sf_half_edge *half = sf_half_edges(count, skin->facet, err);
+    skin->edge = sf_alloc(err, 12 * (unsigned long)count, sizeof *skin->edge, "skin of the pad");
+    skin->edge_of =
+        sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof *skin->edge_of, "skin of the pad");
+    SF_TRY(err->status);
+    memset(skin->edge_of, -1, 3 * (size_t)skin->facet_count * sizeof *skin->edge_of);
+    for (int64_t k = 0; k + 1 < 3 * count && !skin->watched; k++) {
+        int64_t one = half[k].slot, other = half[k + 1].slot;
+        int32_t *edge = &skin->edge[4 * skin->edge_count];
+        edge[0] = half[k].low;
+        edge[1] = half[k].high;
+        edge[2] = skin->facet[one - one % 3 + (one + 2) % 3];
+        edge[3] = skin->facet[other - other % 3 + (other + 2) % 3];
+        const double *normal = &skin->facet_normal[3 * (one / 3)], *first = &skin->rest[3 * (int64_t)edge[0]],
+                     *third = &skin->rest[3 * (int64_t)edge[3]];
+        if (sf_half_edges_end(half, k, k + 2) == k + 2 && sf_dot3(normal, third) < sf_dot3(normal, first) &&
+            sf_dot3(normal, &skin->facet_normal[3 * (other / 3)]) <= SHARP)
+            skin->edge_of[one] = (int32_t)skin->edge_count++;
     }
     return SF_OK;
 }
@@ -249,8 +274,9 @@ sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
         return SF_OK;
     if (number_nodes(m, skin, err) != SF_OK || place_nodes(m, skin, err) != SF_OK ||
         list_rings(skin, err) != SF_OK || find_normals(skin, err) != SF_OK ||
-        part_sides(skin, err) != SF_OK || mark_held(m, skin, err) != SF_OK ||
-        mark_passive(skin, err) != SF_OK || build_rows(m, skin, err) != SF_OK)
+        part_sides(skin, err) != SF_OK || list_edges(m->skin_count, skin, err) != SF_OK ||
+        mark_held(m, skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
+        build_rows(m, skin, err) != SF_OK)
         sf_skin_free(skin);
     else if (!skin->alone)
         find_planes(m, skin);
@@ -258,7 +284,7 @@ sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 void sf_skin_free(sf_skin *skin) {
-    SF_FREE(skin->node, skin->own, skin->side, skin->next_side);
+    SF_FREE(skin->node, skin->own, skin->side, skin->next_side, skin->edge, skin->edge_of);
     free(skin->rest);
     free(skin->size);
     free(skin->passive);

@@ -33,6 +33,10 @@ typedef struct sf_skin {
      * side of a point has its number. */
     int32_t *side;      /* [facet_count][3] of the facet's nodes that the facet belongs to */
     int32_t *next_side; /* [..] next side of the same node; -1: none */
+    /* The sharp convex edges of a pad that touches itself: two nodes, and the third nodes of both facets. */
+    int64_t edge_count;
+    int32_t *edge;     /* [edge_count][4] */
+    int32_t *edge_of;  /* [facet_count][3] from a facet's node to its next, at one facet; -1: none */
     uint8_t *held;     /* [count] SF_FIX_* bits; of a support's node those of the symmetry planes it is on */
     uint8_t *passive;  /* [count] 1: touches no support: on a flat part of one, or a centroid */
     uint8_t *rests;    /* [count] 1: the anvil presses the node in the missile's solve (contact.h) */

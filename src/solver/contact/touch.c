@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "solver/contact/touch.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mat3.h"
+
+static const double DEEPEST = 0.1;  /* of the spacing: deeper edges lie on the far sides of a thin part */
+static const double CROSSING = 0.2; /* least sine of the angle between two edges */
+static const double SLOPE = 0.01; /* least sine by which the faces at an edge fall away from the other edge */
+
+void sf_touch_relative(const sf_touch *q, const double *field, double out[3]) {
+    memset(out, 0, 3 * sizeof *out);
+    for (int k = 0; k < q->parts; k++)
+        for (int r = 0; r < 3; r++)
+            out[r] += q->share[k] * field[3 * (int64_t)q->part[k] + r];
+}
+
+void sf_touch_drop_traces(double weight[4]) {
+    static const double TRACE = 1e-12;
+    int largest = weight[1] > weight[0] ? 1 : 0;
+    double rest = 1;
+    for (int k = 2; k < 4; k++)
+        largest = weight[k] > weight[largest] ? k : largest;
+    for (int k = 1; k < 4; k++) {
+        double *own = &weight[(largest + k) % 4];
+        *own = fabs(*own) < TRACE ? 0 : *own;
+        rest -= *own;
+    }
+    weight[largest] = rest;
+}
+
+static void subtract(const sf_state *s, int32_t a, int32_t b, double out[3]) {
+    for (int r = 0; r < 3; r++)
+        out[r] = s->self_position[3 * (int64_t)a + r] - s->self_position[3 * (int64_t)b + r];
+}
+
+/* 1 or -1 if both faces at an edge fall away from the plane through it, against n or -n; 0 otherwise. */
+static int falls_away(const sf_state *s, const int32_t edge[4], const double n[3]) {
+    int side = 0;
+    for (int k = 2; k < 4; k++) {
+        double arm[3];
+        subtract(s, edge[k], edge[0], arm);
+        double slope = sf_dot3(arm, n), least = SLOPE * sqrt(sf_dot3(arm, arm));
+        side += slope < -least ? 1 : slope > least ? -1 : 0;
+    }
+    return side / 2;
+}
+
+/* The pair of two edges that cross, seen along the common perpendicular of their lines, n. */
+static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64_t other, sf_touch *out) {
+    const int32_t *a = &skin->edge[4 * one], *c = &skin->edge[4 * other];
+    double u[3], v[3], between[3], n[3], moment[3];
+    subtract(s, a[1], a[0], u);
+    subtract(s, c[1], c[0], v);
+    subtract(s, c[0], a[0], between);
+    sf_cross3(u, v, n);
+    double square = sf_dot3(n, n);
+    if (!(square > CROSSING * CROSSING * sf_dot3(u, u) * sf_dot3(v, v)))
+        return false;
+    sf_cross3(between, v, moment);
+    double at = sf_dot3(moment, n) / square;
+    sf_cross3(between, u, moment);
+    double there = sf_dot3(moment, n) / square;
+    sf_unit3(n);
+    int side = falls_away(s, c, n);
+    if (at < 0 || at > 1 || there < 0 || there > 1 || side == 0 || falls_away(s, a, n) != -side)
+        return false;
+    *out = (sf_touch){.node = a[at > 0.5],
+                      .facet = skin->ring[skin->ring_ptr[c[0]]],
+                      .gap = -side * sf_dot3(between, n),
+                      .parts = 4,
+                      .part = {a[0], a[1], c[0], c[1]},
+                      .share = {1 - at, at, there - 1, -there},
+                      .normal = {side * n[0], side * n[1], side * n[2]}};
+    return true;
+}
+
+int64_t sf_touch_edges(const sf_skin *skin, const sf_state *s, double back, sf_touch *pair) {
+    int64_t count = 0;
+    for (int64_t e = 0; e < 2 * skin->edge_count; e++) {
+        int64_t node = skin->edge[4 * (e / 2) + e % 2];
+        const int32_t *near = &s->self_candidate[SF_SELF_CANDIDATES * node];
+        for (int k = 0; k < 3 * SF_SELF_CANDIDATES && near[k / 3] >= 0 && count < skin->edge_count; k++) {
+            sf_touch q;
+            double ahead[3];
+            int64_t other = skin->edge_of[3 * (int64_t)near[k / 3] + k % 3];
+            if (other <= e / 2 || !meet_edge(skin, s, e / 2, other, &q) || q.node != node ||
+                q.gap < -DEEPEST * skin->size[node])
+                continue;
+            sf_touch_relative(&q, s->self_step, ahead);
+            if (fmax(q.gap, -back) + sf_dot3(ahead, q.normal) < 0)
+                pair[count++] = q;
+        }
+    }
+    return count;
+}
