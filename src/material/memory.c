@@ -123,7 +123,8 @@ double sf_memory_factor(const sf_memory *m, const sf_memory_point *p) {
 
 void sf_memory_rest(const sf_memory *m, double pause, sf_memory_point *p) {
     double most = 1 - m->permanent;
-    if (!(m->recovery > 0) || p->recovered >= most)
+    static const double MOST_DECADES = 300; /* of an earlier rest, beside which every pause is nothing */
+    if (!(m->recovery > 0) || p->recovered >= most || p->recovered > MOST_DECADES * m->recovery)
         return;
     double before = pow(10, p->recovered / m->recovery), after = log10(before + pause / m->start);
     p->recovered = fmin(most, m->recovery * after);

@@ -221,12 +221,17 @@ typedef struct sf_model {
     /* The permanent set of earlier drops (solver/set.h), not in model.h5; NULL: none. `position`, `volume`
      * and `domain_b` are then those of the pad with it. */
     double *set; /* [node_count][3] m, coefficients of its field; then [node_count] -, parts that rests have
-                    taken back; then [node_count][3] m, coefficients of the field of places; owned */
+                    taken back; then [node_count][3] m, coefficients of the field of places; then m, z of the
+                    anvil's plane below the undeformed pad; owned */
 } sf_model;
 
 /* Part of a drop's largest displacement that is left as permanent set; 0: none. */
 static inline double sf_model_set(const sf_model *model) {
     return model->material_count > 0 ? sf_foam_memory(model->material)->set : 0;
+}
+/* z of the anvil's plane (m), with the highest place of the pad's nodes. */
+static inline double sf_model_anvil_plane(const sf_model *model, double top) {
+    return model->set ? model->set[7 * model->node_count] : top - model->anvil.depth;
 }
 /* Coefficients of the field of places [node_count][3], m. */
 static inline const double *sf_model_coefficients(const sf_model *model) {

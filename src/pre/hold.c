@@ -342,9 +342,10 @@ static sf_status check_set(const sf_hold *hold, const sf_model *m, sf_error *err
     for (int64_t k = 0; k < m->material_count; k++) {
         const sf_memory *own = sf_foam_memory(&m->material[k]), *one = sf_foam_memory(m->material);
         set = set || own->set > 0;
-        if (own->set != one->set || own->set_recovery != one->set_recovery || own->start != one->start ||
-            own->permanent != one->permanent)
-            wrong = "foams with the same set, set_recovery, recovery_start and permanent";
+        if (own->set != one->set || own->set_recovery != one->set_recovery ||
+            (one->set_recovery > 0 && (own->start != one->start || own->permanent != one->permanent)))
+            wrong =
+                "foams with the same set and set_recovery, and where it recovers recovery_start and permanent";
     }
     return set && wrong ? SF_REFUSE(err, "material.memory.set: a permanent set needs %s", wrong) : SF_OK;
 }

@@ -73,9 +73,12 @@ static void displace(const sf_model *m, int64_t i, uint8_t mask, double out[3]) 
 
 sf_status sf_set_move(sf_model *m, const double *set, const double *peak, double pause, sf_error *err) {
     size_t n = (size_t)m->node_count;
-    m->set = sf_alloc(err, 7 * n, sizeof *set, "permanent set");
+    double low[3], high[3];
+    m->set = sf_alloc(err, 7 * n + 1, sizeof *set, "permanent set");
     SF_TRY(err->status);
     memcpy(m->set, set, 4 * n * sizeof *set);
+    sf_box3(m->node_count, m->position, low, high);
+    m->set[7 * n] = high[2] - m->anvil.depth;
     if (peak)
         SF_TRY(leave_all(m, peak, pause, err));
     for (int64_t i = 0, held = 0; i < m->node_count; i++) {
@@ -98,8 +101,10 @@ sf_status sf_set_move(sf_model *m, const double *set, const double *peak, double
 
 sf_status sf_set_check_missile(const sf_model *m, const sf_missile_surface *surface, sf_error *err) {
     double gap, normal[3];
+    sf_missile missile;
+    sf_missile_begin(m, &missile);
     for (const int32_t *i = m->contact_node; i < m->contact_node + m->contact_count; i++)
-        if (sf_missile_surface_gap(surface, &m->position[3 * (int64_t)*i], &gap, normal) &&
+        if (sf_missile_gap(m, &missile, surface, &m->position[3 * (int64_t)*i], &gap, normal) &&
             -gap > SF_CONTACT_ENTRY * m->spacing[*i])
             return SF_REFUSE(
                 err,
@@ -109,14 +114,18 @@ sf_status sf_set_check_missile(const sf_model *m, const sf_missile_surface *surf
 }
 
 void sf_set_measure(const sf_model *m, double set[2]) {
-    double nearest = INFINITY, way[3];
+    double nearest = INFINITY, height = -INFINITY, way[3];
     set[0] = set[1] = 0;
     for (int64_t c = 0; c < m->contact_count; c++) {
         const double *x = &m->position[3 * (int64_t)m->contact_node[c]];
         displace(m, m->contact_node[c], 0, way);
         double distance = hypot(x[0] - way[0] - m->missile.impact[0], x[1] - way[1] - m->missile.impact[1]);
-        set[0] = distance < nearest ? -way[2] : set[0];
+        bool same = fabs(distance - nearest)<1e-9 * m->thickness, above = x[2]> height;
+        if (same ? above : distance < nearest) {
+            set[0] = -way[2];
+            nearest = distance;
+            height = x[2];
+        }
         set[1] = fmax(set[1], -way[2]);
-        nearest = fmin(nearest, distance);
     }
 }

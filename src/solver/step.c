@@ -112,7 +112,7 @@ static sf_status check_passed(const sf_model *m, const sf_state *s, sf_error *er
     sf_box3(m->node_count, m->position, low, high);
     for (int axis = 0; axis < 2; axis++)
         plane[axis] = sf_symmetry_plane(m, axis, &plane[axis]) ? plane[axis] : NAN;
-    plane[2] = !(m->anvil.depth > 0) ? NAN : m->set ? low[2] : high[2] - m->anvil.depth;
+    plane[2] = m->anvil.depth > 0 ? sf_model_anvil_plane(m, high[2]) : NAN;
     for (int64_t i = 0; i < m->node_count; i++) {
         const char *through = find_passed(m, s, plane, i);
         const double *x = &m->position[3 * i], *d = &s->d[3 * i];

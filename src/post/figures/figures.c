@@ -273,7 +273,10 @@ static void compute_extremes(const sf_results *r, sf_figures *f) {
     f->max_mean_strain = fmax(0, f->max_indentation - (r->air > 0 ? r->air : 0)) / r->thickness;
     f->max_local_strain = h->largest_compression[strained];
     f->max_local_strain_time = h->time[strained];
-    f->local_strain_excess = f->max_local_strain - f->max_mean_strain;
+    double set = isfinite(r->set) ? r->set : 0; /* local strains count from it */
+    f->local_strain_excess =
+        f->max_local_strain -
+        fmax(0, f->max_indentation - (r->air > 0 ? r->air : 0) - set) / (r->thickness - set);
     f->max_penetration = sf_history_largest(h, h->penetration);
     f->smallest_jacobian = h->smallest_jacobian[0];
     for (int64_t i = 1; i < h->rows; i++)

@@ -210,7 +210,7 @@ static void find_planes(const sf_model *m, sf_skin *skin) {
     double low[3], high[3], place;
     sf_box3(m->node_count, m->position, low, high);
     if (m->anvil.depth > 0)
-        skin->plane[SF_SKIN_ANVIL] = (sf_skin_plane){2, m->set ? low[2] : high[2] - m->anvil.depth, 1};
+        skin->plane[SF_SKIN_ANVIL] = (sf_skin_plane){2, sf_model_anvil_plane(m, high[2]), 1};
     for (int axis = 0; axis < 2; axis++)
         if (sf_symmetry_plane(m, axis, &place))
             skin->plane[SF_SKIN_SYMMETRY_X + axis] =

@@ -211,7 +211,7 @@ static sf_status open_earlier(const sf_earlier *e, sf_checkpoint *c, sf_error *e
 
 /* Moves the reference to where it is in the run that the checkpoint holds, or in the drop after a `pause`. */
 static sf_status take_set(const sf_checkpoint *c, double pause, sf_model *m, sf_error *err) {
-    bool there = sf_h5_exists(c->file, "/state/set"), wanted = sf_model_set(m) > 0;
+    bool moved = pause > 0, there = sf_h5_exists(c->file, "/state/set"), wanted = sf_model_set(m) > 0;
     int64_t of_set[2] = {m->node_count, 4}, of_peak[2] = {m->node_count, 3};
     SF_OWNED double *set = NULL, *peak = NULL;
     if (there != wanted)
@@ -219,8 +219,12 @@ static sf_status take_set(const sf_checkpoint *c, double pause, sf_model *m, sf_
                          "the foam of %s has %s permanent set: material.memory.set is in both or in none",
                          c->path, there ? "a" : "no");
     if (there && sf_h5_read(c->file, "/state/set", SF_H5_F64, 2, of_set, (void **)&set, err) == SF_OK &&
-        sf_h5_read(c->file, "/state/set_peak", SF_H5_F64, 2, of_peak, (void **)&peak, err) == SF_OK)
-        sf_set_move(m, set, pause > 0 ? peak : NULL, pause, err);
+        sf_h5_read(c->file, "/state/set_peak", SF_H5_F64, 2, of_peak, (void **)&peak, err) == SF_OK) {
+        for (int64_t k = 0; k < 4 * m->node_count; k++)
+            moved |= set[k] != 0;
+        if (moved) /* else it is a first drop that goes on */
+            sf_set_move(m, set, pause > 0 ? peak : NULL, pause, err);
+    }
     return err->status;
 }
 

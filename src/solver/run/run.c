@@ -276,9 +276,10 @@ static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
         sf_sink_tell(
             &sink, SF_WARNING, "drop %lld on this pad, %g s after the one before: the foam is not new%s",
             (long long)d->s->drop, d->s->pause,
-            has_memory(d->m) ? ""
-                             : ", and a material without `memory` loads along its unloading path up to "
-                               "the largest energy so far: too soft");
+            has_memory(d->m)
+                ? ""
+                : ", and a material without `reload` in its `memory` loads along its unloading path up to "
+                  "the largest energy so far: too soft");
     sf_run_tell(d->m, d->s, &extremes, &sink);
     return sf_h5_write_text(file, &info, list.text, err);
 }
