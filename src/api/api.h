@@ -3,9 +3,7 @@
 #pragma once
 #include "softfall/softfall.h"
 
-#include "base/error.h"
 #include "model/model.h"
-#include <stdio.h>
 
 _Static_assert((int)SOFTFALL_INPUT == SF_ERR_INPUT && (int)SOFTFALL_FILE == SF_ERR_IO &&
                    (int)SOFTFALL_MODEL == SF_ERR_MODEL && (int)SOFTFALL_NUMERIC == SF_ERR_NUMERIC &&

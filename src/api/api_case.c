@@ -2,10 +2,8 @@
 /* libsoftfall-build: cases, and models made of them. */
 #include "api/api.h"
 
-#include "case/case.h"
 #include "pre/build.h"
 #include <stdlib.h>
-#include <string.h>
 
 struct softfall_case {
     sf_case data;

@@ -2,19 +2,15 @@
 /* libsoftfall: drops, their results and figures, models in files. */
 #include "api/api.h"
 #include "build_info.h"
-#include "model/columns.h"
 #include "model/flight.h"
 #include "model/model_io.h"
 #include "post/figures/figures.h"
-#include "solver/operators.h"
 #include "solver/run/run.h"
 #include "solver/set.h"
 #include "solver/step.h"
 
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* A drop behind its handle. */
 

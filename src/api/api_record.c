@@ -4,7 +4,6 @@
 
 #include "post/figures/compare.h"
 #include <stdlib.h>
-#include <string.h>
 
 struct softfall_record {
     sf_reference reference;

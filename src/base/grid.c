@@ -3,7 +3,6 @@
 #include "base/sets.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static int64_t bin_of(const sf_grid *grid, int axis, double x) {
     double b = floor((x - grid->origin[axis]) / grid->width);

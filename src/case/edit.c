@@ -3,9 +3,7 @@
 
 #include "case/keys.h"
 #include "io/plain_file.h"
-#include <libconfig.h>
 #include <stdlib.h>
-#include <string.h>
 
 static sf_status no_memory(sf_error *err) {
     return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of a case");

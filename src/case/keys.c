@@ -2,7 +2,6 @@
 #include "case/keys.h"
 
 #include <assert.h>
-#include <string.h>
 
 #define AT(member) .offset = offsetof(sf_case, member)
 #define OF_SUPPORT(member) .list = SF_LIST_SUPPORTS, .offset = offsetof(sf_case_support, member)

@@ -8,9 +8,7 @@
 #include "base/mat3.h"
 #include "base/text.h"
 #include "material/laws.h"
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { NAMED_UNKNOWN = 10 };
 

@@ -3,7 +3,6 @@
 
 #include <stdarg.h>
 #include <stdlib.h>
-#include <string.h>
 
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out) {
     const sf_case_origin *origin = setting ? config_setting_get_hook(setting) : NULL;

@@ -2,9 +2,7 @@
 
 #include <ctype.h>
 #include <gsl/gsl_sort.h>
-#include <math.h>
 #include <stdarg.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "case/curves.h"

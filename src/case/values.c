@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/keys.h"
 
-#include <string.h>
-
 #include "material/laws.h"
 
 static void print_text(FILE *file, const char *text) {

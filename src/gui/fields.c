@@ -2,10 +2,7 @@
 #include "gui/session.h"
 
 #include <ctype.h>
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "case/keys.h"

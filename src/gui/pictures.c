@@ -6,10 +6,7 @@
 #include "model/model_io.h"
 #include "pre/build.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- shape of a drop ---- */
 

@@ -5,7 +5,6 @@
 #include "io/plain_file.h"
 #include "io/replace.h"
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder",

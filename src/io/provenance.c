@@ -3,7 +3,6 @@
 
 #include "build_info.h"
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 

@@ -6,9 +6,7 @@
 #include "model/stability.h"
 #include "pre/rigid_support.h"
 #include "pre/mesh/missile_shape.h"
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const double CLEAR =
     0.05; /* of the anvil's depth: way from the first touch to the anvil that is a drop */

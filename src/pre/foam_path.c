@@ -5,9 +5,7 @@
 #include "pre/mesh/missile_shape.h"
 #include "pre/free_faces.h"
 #include "pre/rigid_support.h"
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST_RAYS = 200, MOST_HITS = 256 };
 static const double FACING = 0.1; /* least cosine between the missile's direction and a face it touches */

@@ -2,9 +2,6 @@
 #include "pre/steps.h"
 
 #include <gsl/gsl_eigen.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/mat3.h"
 #include "base/sets.h"

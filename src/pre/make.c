@@ -5,9 +5,7 @@
 #include "io/h5.h"
 #include "pre/mesh/gmsh_session.h"
 #include "pre/rigid_support.h"
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The pad of the open geometry. */
 static sf_status read_pad(sf_gmsh *session, const sf_case *c, sf_mesh *mesh, sf_error *err) {

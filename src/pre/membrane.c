@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/steps.h"
 
-#include <math.h>
-
 #include "base/mat3.h"
 
 /* Adds the triangles of a boundary face: of a quadrangle those on both diagonals. */

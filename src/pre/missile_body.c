@@ -2,8 +2,6 @@
 #include "pre/steps.h"
 
 #include <gsl/gsl_sort.h>
-#include <math.h>
-#include <string.h>
 
 #include "base/mat3.h"
 #include "base/sets.h"

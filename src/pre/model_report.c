@@ -5,9 +5,7 @@
 #include "base/mat3.h"
 #include "model/flight.h"
 #include "base/text.h"
-#include <math.h>
 #include <stdarg.h>
-#include <string.h>
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
  * that rebounds half-way to the end time, over those that the guaranteed steps would need to the end. */

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/rigid_support.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/mat3.h"
 #include "base/sets.h"
 #include "pre/free_faces.h"

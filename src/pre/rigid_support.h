@@ -2,9 +2,7 @@
 /* The supports: rigid fixed bodies of any shape that the pad may touch (theory, section "Contact of the pad
  * with itself"). */
 #pragma once
-#include "base/error.h"
 #include "case/case.h"
-#include "model/model.h"
 #include "pre/mesh/mesh.h"
 
 /* The surface of a support that is a plane: two triangles, far wider than the pad. */

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/steps.h"
 
-#include <math.h>
-#include <stdio.h>
-
 #include "base/mat3.h"
 
 const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {

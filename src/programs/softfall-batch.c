@@ -6,9 +6,7 @@
 #include "io/replace.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 typedef struct options {

@@ -5,9 +5,7 @@
 #include "study/setup.h"
 
 #include <gsl/gsl_sort.h>
-#include <math.h>
 #include <omp.h>
-#include <string.h>
 
 /* ---- options ---- */
 

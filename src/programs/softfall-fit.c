@@ -7,8 +7,6 @@
 #include "study/fit/drop/drop_report.h"
 
 #include <argp.h>
-#include <stdio.h>
-#include <string.h>
 
 static const struct {
     const char *word;

@@ -4,10 +4,7 @@
 #include "gui/session.h"
 #include "io/plain_file.h"
 
-#include <signal.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- scripts ---- */
 

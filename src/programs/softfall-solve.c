@@ -2,11 +2,8 @@
 /* softfall-solve: model.h5 -> results.h5. */
 #include <limits.h>
 #include <malloc.h>
-#include <math.h>
 #include <omp.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 

@@ -7,9 +7,7 @@
 #include "base/hash.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define CASE_NAME "case.cfg"
 #define README_NAME "README.md"

@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/column.h"
 
-#include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include "base/units.h"
-#include "material/laws.h"
 
 /* ---- columns below the missile ---- */
 

@@ -5,8 +5,6 @@
 #include "case/case.h"
 #include "io/replace.h"
 #include <limits.h>
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { PATH_SIZE = PATH_MAX };

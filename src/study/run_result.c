@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/runner.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *out) {
     sf_verdict verdict;

@@ -4,10 +4,7 @@
 #include "base/hash.h"
 #include "io/folder.h"
 #include "io/process.h"
-#include <limits.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 enum { MATERIAL_SIZE = PATH_MAX + 64 };

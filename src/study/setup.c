@@ -8,7 +8,6 @@
 #include <gsl/gsl_errno.h>
 #include <omp.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { LAST_GROUP = 9 };
 

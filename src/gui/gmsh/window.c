@@ -7,8 +7,6 @@
 
 #include <dlfcn.h>
 #include <gmshc.h>
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

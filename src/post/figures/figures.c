@@ -2,9 +2,7 @@
 #include "post/figures/figures.h"
 
 #include "base/units.h"
-#include <stdio.h>
 #include <stdlib.h>
-#include <math.h>
 #include <string.h>
 
 static const double FREE_FLIGHT = 5e-3; /* s, at least, before the first contact */

@@ -2,7 +2,6 @@
 #include "post/figures/signal.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Intervals of the search grid, pairs of the first coarse scan per side, relative gap that ends the search.
  */

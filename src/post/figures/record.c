@@ -2,9 +2,6 @@
 #include "post/figures/compare.h"
 
 #include <gsl/gsl_sort.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { LEAST_BASE = 5, LEAST_PULSE = 8, LEAST_NOISE = 10 }; /* samples that tell something */

@@ -2,8 +2,6 @@
 #include "post/figures/signal.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/units.h"

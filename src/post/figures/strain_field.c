@@ -2,8 +2,6 @@
 #include "post/figures/strain_field.h"
 
 #include <gsl/gsl_sort.h>
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- strain over the pad ---- */

@@ -2,7 +2,6 @@
 #include "post/figures/verdict.h"
 
 #include "base/text.h"
-#include <stdio.h>
 #include <string.h>
 
 const char *sf_verdict_phrase(sf_grade grade) {

@@ -3,7 +3,6 @@
 
 #include "base/text.h"
 #include "io/provenance.h"
-#include <stdio.h>
 #include <string.h>
 
 char *sf_origin_text(const sf_results *results, const char *path) {

@@ -7,11 +7,8 @@
 #include "model/cells.h"
 #include "model/model.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- checks ---- */
 

@@ -2,8 +2,6 @@
 #include "post/view/report.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 #include "build_info.h"
 #include "model/model.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/report.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "post/view/cut.h"

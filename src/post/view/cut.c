@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/cut.h"
 
-#include <math.h>
 #include "base/text.h"
 #include <string.h>
-
-#include <stdio.h>
 
 /* A point closer to an end than this part of the thickness is at the end. */
 static const double AT_END = 1e-6;

@@ -9,9 +9,7 @@
 #include "post/view/cut.h"
 #include <argp.h>
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 enum { MOST_RUNS = 12, CURVE_POINTS = 2000 };

@@ -3,7 +3,6 @@
 
 #include "base/text.h"
 #include "report/chart.h"
-#include <math.h>
 
 enum { WIDTH = 1600, HEIGHT = 830 };
 static const double SEEN = 0.01; /* of the largest value: a curve this far from another is seen beside it */

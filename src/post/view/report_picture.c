@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "report/chart.h"
 #include "post/view/cut.h"
-#include <math.h>
 #include <string.h>
 
 /* An instant: a third of the way to the peak, the peak, half its force after it. */

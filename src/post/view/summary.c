@@ -3,7 +3,6 @@
 
 #include "build_info.h"
 #include <assert.h>
-#include <math.h>
 
 static const char caution[] = "indicative, not a certification";
 

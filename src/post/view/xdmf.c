@@ -3,8 +3,6 @@
 
 #include <dirent.h>
 #include <float.h>
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 

@@ -6,10 +6,6 @@
 #include "base/sets.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct keyed_node {
     uint64_t key;

@@ -3,10 +3,6 @@
 #include "base/sets.h"
 #include "pre/cloud/cloud.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/mat3.h"
 
 #define ADVICE                                                                                                 \

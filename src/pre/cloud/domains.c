@@ -5,9 +5,6 @@
 #include "base/mat3.h"
 
 #include "pre/cloud/mls.h"
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { MAX_ENLARGEMENTS = 12 };
 static const double ENLARGEMENT = 1.15;

@@ -3,9 +3,6 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
 

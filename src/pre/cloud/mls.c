@@ -3,7 +3,6 @@
 #include "pre/cloud/mls.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A path may lead as far away as this times the distance of its ends: around the tip of a slit, not around

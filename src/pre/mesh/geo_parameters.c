@@ -2,7 +2,6 @@
 #include "pre/mesh/geo_parameters.h"
 
 #include <ctype.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "io/plain_file.h"

@@ -4,10 +4,7 @@
 #include "pre/mesh/mesh_raw.h"
 #include "pre/mesh/mesher_protocol.h"
 
-#include <limits.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 /* Memory of softfall-pre at its peak, per node of the mesh: measured on the example pad

@@ -4,9 +4,6 @@
 #include "base/sets.h"
 #include "pre/mesh/mesher_protocol.h"
 #include <assert.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The unread rest. `bad` once something was missing or out of range; then all reads give zero. */
 typedef struct reader {

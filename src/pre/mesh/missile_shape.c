@@ -3,8 +3,6 @@
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/mat3.h"
 #include "base/sets.h"

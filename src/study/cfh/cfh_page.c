@@ -7,9 +7,7 @@
 #include "post/view/report.h"
 #include "report/chart.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- the picture ---- */
 

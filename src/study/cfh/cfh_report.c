@@ -4,8 +4,6 @@
 #include "base/text.h"
 #include "build_info.h"
 
-#include <math.h>
-
 /* ---- texts ---- */
 
 const char *sf_cfh_interval_text(const sf_cfh_interval *i, char *text, size_t size) {

@@ -4,10 +4,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "study/material_file.h"
-#include <limits.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 static const double STRAIN_MARGIN = 0.02; /* beyond the end of its data: worth a warning */

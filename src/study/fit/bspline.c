@@ -4,10 +4,8 @@
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
-#include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multimin.h>
 #include <gsl/gsl_statistics_double.h>
-#include <math.h>
 
 static const double STRENGTH = 0.85; /* width at the ends over width in the middle: (1 - .) / (1 + .) */
 static const double FOOT = 0.02;     /* strain over which a foam leaves its linear range */

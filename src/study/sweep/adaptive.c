@@ -5,7 +5,6 @@
 #include "study/predictor.h"
 #include "study/sweep/analysis.h"
 #include <gsl/gsl_sort.h>
-#include <math.h>
 #include <stdlib.h>
 
 enum {

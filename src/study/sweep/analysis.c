@@ -2,10 +2,8 @@
 #include "study/sweep/analysis.h"
 
 #include "study/fit/posterior/mixture.h"
-#include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>
-#include <math.h>
 #include <stdlib.h>
 
 /* ---- Sobol' indices ---- */

@@ -7,10 +7,7 @@
 #include "pre/build.h"
 
 #include <gsl/gsl_sort.h>
-#include <limits.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 

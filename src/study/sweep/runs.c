@@ -5,9 +5,7 @@
 #include "base/text.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const char *const states[] = {[SF_SWEEP_OPEN] = "open",
                                      [SF_SWEEP_DONE] = "done",

@@ -4,10 +4,7 @@
 #include "base/text.h"
 #include "io/plain_file.h"
 #include "report/chart.h"
-#include <limits.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { COLUMNS = 4, SERIES = 8, POINTS = 3000, CURVES = 200, CURVE_POINTS = 300, BARS = SF_SWEEP_FACTORS };

@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "build_info.h"
 #include "report/chart.h"
-#include <math.h>
 
 enum { LISTED = 50, CELLS_LISTED = 200 };
 

@@ -3,9 +3,6 @@
 
 #include "model/flight.h"
 #include <gsl/gsl_multifit.h>
-#include <limits.h>
-#include <math.h>
-#include <string.h>
 
 enum { MOST_DROPS = 64, LEVELS = 8 };
 static const double SAME_PROFILE = 0.02, SAME_THICKNESS = 0.01; /* relative */

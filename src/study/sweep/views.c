@@ -6,9 +6,7 @@
 #include "io/replace.h"
 #include "study/sweep/campaign.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- which ---- */
 

@@ -4,8 +4,6 @@
 #include "study/material_file.h"
 #include "study/setup.h"
 
-#include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 static const sf_option options[] = {

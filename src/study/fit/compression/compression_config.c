@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/compression_config.h"
 
-#include <math.h>
-#include <string.h>
-
 const char *const sf_rate_model_names[] = {"none", "log", "maxwell", "curves", "auto"};
 /* In the order of sf_rate_model and sf_rule_choice. */
 static const char RATE_WORDS[] = "none|log|maxwell|curves|auto", RULE_WORDS[] = "auto|H1|H1_automatic|H2";

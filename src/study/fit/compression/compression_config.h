@@ -2,7 +2,6 @@
 /* The input of `softfall-fit compression`: a libconfig file that names the tests (docs/identification.md). */
 #pragma once
 #include "study/fit/form/form.h"
-#include "study/config.h"
 #include "study/fit/compression/compression_test.h"
 
 /* The keys of the file of `softfall-fit compression` that belong to one law: those of a form of the loading

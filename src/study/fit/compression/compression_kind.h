@@ -2,7 +2,6 @@
 /* The models that `softfall-fit compression` fits: one entry for each. compression_command.c has the only
  * pipeline: configuration, fit, files, summary, warnings. */
 #pragma once
-#include "io/staging.h"
 #include "material/hyperfoam.h"
 #include "report/row.h"
 #include "study/fit/compression/compression_config.h"

@@ -4,10 +4,7 @@
 #include "base/text.h"
 #include "case/curves.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const double STRAIN_ZERO = 2e-3; /* strains from minus this on are zero with scatter */
 static const double STRESS_ZERO = 0.01; /* stresses likewise, as a part of the largest */

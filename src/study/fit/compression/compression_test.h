@@ -15,7 +15,6 @@
  * as much about the law, and the fit stays quick. The turn is kept as it is. */
 #pragma once
 #include "base/error.h"
-#include <stdbool.h>
 
 enum { SF_COMPRESSION_LOADING_POINTS = 20, SF_COMPRESSION_UNLOADING_POINTS = 8 }; /* the least of them */
 enum { SF_COMPRESSION_BRANCH_POINTS = 500 };

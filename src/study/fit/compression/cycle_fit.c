@@ -2,14 +2,10 @@
 #include "study/fit/compression/form_fit.h"
 
 #include <gsl/gsl_errno.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "case/curves.h"
-#include "io/table_csv.h"
 #include "material/low_density_foam.h"
-#include "material/laws.h"
 
 /* ---- the record ---- */
 

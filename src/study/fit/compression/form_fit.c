@@ -3,11 +3,8 @@
 
 #include "material/curve.h"
 #include "study/fit/compression/point_model.h"
-#include "material/memory.h"
 #include <gsl/gsl_errno.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { RISES = 400 };                  /* strains at which the curve must rise */
 static const double RISE_END = 0.97;   /* of the pole */

@@ -3,9 +3,7 @@
 #include "study/fit/compression/compression_kind.h"
 
 #include "material/low_density_foam.h"
-#include "report/row.h"
 #include "study/fit/compression/form_fit.h"
-#include <math.h>
 
 static const char *const outputs[] = {"fit.csv", "fit.json", "material.csv", "material.cfg", NULL};
 static const char AT_BOUND[] = " (at its bound)", UNDETERMINED[] = " (these tests do not determine it)",

@@ -7,11 +7,8 @@
 
 #include "base/text.h"
 #include "io/table_csv.h"
-#include "material/memory.h"
-#include "report/row.h"
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_errno.h>
-#include <math.h>
 #include <stdlib.h>
 
 enum { STARTS = 6, MISFIT_SIZE = 256 };

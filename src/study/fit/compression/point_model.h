@@ -12,7 +12,6 @@
 #include "study/fit/bspline.h"
 #include "study/fit/compression/compression_config.h"
 #include <gsl/gsl_matrix.h>
-#include <stdbool.h>
 
 /* The points of all tests in one list, with the scatter of each: the input of the joint fit. */
 typedef struct sf_compression_data {

@@ -4,8 +4,6 @@
  * choice of rate dependence and densification by BIC, and the 95 % interval of every number. */
 #pragma once
 #include "study/fit/compression/compression_kind.h"
-#include "report/row.h"
-#include "material/foam_card.h"
 #include "study/fit/compression/point_model.h"
 #include <gsl/gsl_vector.h>
 

@@ -7,15 +7,10 @@
 #include "io/plain_file.h"
 #include "material/low_density_foam.h"
 #include "io/replace.h"
-#include "material/laws.h"
-#include "post/results/results.h"
 #include "study/material_file.h"
 #include "study/runner.h"
 #include <errno.h>
-#include <limits.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const double CARD_STEP = 5e-4; /* strain, of the check by the solver's law */
 

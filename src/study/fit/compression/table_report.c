@@ -5,7 +5,6 @@
 
 #include "build_info.h"
 #include "report/chart.h"
-#include <math.h>
 
 static const char *const rates[SF_RATE_MODELS] = {
     "none: one curve for all rates",

@@ -4,9 +4,7 @@
 #include "study/material_file.h"
 #include "material/low_density_foam.h"
 #include <gsl/gsl_sort.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { FIRST_SEED = 5000 }; /* of the draws: the number of its stream is this and its own */
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/program.h"
 #include "io/folder.h"
 #include "study/fit/drop/drop_report.h"
 #include "study/setup.h"

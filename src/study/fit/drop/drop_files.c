@@ -3,8 +3,6 @@
 #include "study/fit/drop/drop_report.h"
 
 #include <gsl/gsl_cdf.h>
-#include <math.h>
-#include <string.h>
 
 #include "build_info.h"
 #include "material/low_density_foam.h"

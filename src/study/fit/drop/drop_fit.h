@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "material/laws.h"
-#include "model/good_run.h"
 #include "post/figures/compare.h"
-#include "study/batch.h"
 #include "study/column.h"
-#include "study/config.h"
 #include "study/fit/form/form.h"
 #include "study/fit/space_mapping.h"
 #include "study/runner.h"

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/drop/drop_fit.h"
 
-#include <limits.h>
-#include <math.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "io/plain_file.h"

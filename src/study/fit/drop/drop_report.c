@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/drop/drop_report.h"
 
-#include <math.h>
-
 #include "base/text.h"
 #include "build_info.h"
 #include "report/chart.h"
-#include "report/row.h"
 
 static const double SIDES = 1.959963984540054; /* standard deviations on each side of a 95 % interval */
 

@@ -2,8 +2,6 @@
 /* The output of `softfall-fit drop`: report.html, fit.json, fit.png with its data, and the material file. */
 #pragma once
 #include "study/fit/drop/inference.h"
-#include "study/fit/drop/drop_fit.h"
-#include "io/staging.h"
 
 /* Writes everything into the staging directory; `fit` is that of the material, `average` the posterior of all
  * models (NULL: none); `command`: the words of the command; `warning` (size bytes) says why there is no

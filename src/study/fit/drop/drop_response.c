@@ -8,10 +8,7 @@
 #include "io/process.h"
 #include "io/replace.h"
 #include "material/low_density_foam.h"
-#include <limits.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/file.h>
 #include <unistd.h>
 

@@ -3,11 +3,8 @@
 #include "study/fit/drop/drop_fit.h"
 
 #include "io/plain_file.h"
-#include "case/case.h"
 #include "material/low_density_foam.h"
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- drops ---- */
 

@@ -2,14 +2,10 @@
 #include "study/fit/drop/inference.h"
 
 #include "study/fit/least_squares.h"
-#include "study/run_folder.h"
 #include "io/process.h"
-#include "material/foam_card.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { PLACES = SF_DISCREPANCY_PLACES };
 static const double PLACE_WIDTH = 0.05; /* of strain */

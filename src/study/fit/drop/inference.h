@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "io/staging.h"
-#include "report/row.h"
 #include "study/fit/drop/drop_fit.h"
 #include "study/fit/posterior/posterior.h"
 

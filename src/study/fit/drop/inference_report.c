@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/drop/inference.h"
 
-#include "report/html.h"
-#include <math.h>
-
 static const double THREE[] = {0.025, 0.5, 0.975};
 
 static const char *label_of(const sf_drop_average *a, int m) {

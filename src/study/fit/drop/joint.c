@@ -2,12 +2,9 @@
 #include "study/fit/drop/drop_fit.h"
 
 #include "base/hash.h"
-#include "base/units.h"
 #include "io/plain_file.h"
 #include "io/table_csv.h"
 #include "study/fit/compression/compression_config.h"
-#include <math.h>
-#include <string.h>
 
 static const double LEAST_STRESS = 0.02; /* of the largest, in the scatter */
 static const double STRAIN_STEP = 0.01;  /* of a test at the material point */

@@ -3,8 +3,6 @@
 #include "material/curve.h"
 #include "study/fit/form/form.h"
 
-#include <math.h>
-
 static const double ATMOSPHERE = 101325; /* Pa */
 static const double DENSE = 1.4;         /* e_D = 1 - DENSE Phi (Gibson and Ashby) */
 static const double MOST_SOLID = 0.6;    /* Phi, with which e_D is 0.16 */

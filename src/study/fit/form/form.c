@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/form/form.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "material/curve.h"
 
 static const sf_parameter_info info[SF_PARAMETER_COUNT] = {

@@ -4,7 +4,6 @@
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_sort.h>
-#include <math.h>
 
 /* ---- importance sampling ---- */
 
