@@ -223,9 +223,9 @@ static void write_phases(const record *r, const bench_traffic *t, double product
         sf_json_number(json, "quiet_seconds", quiet);
         sf_json_number(json, "bytes_per_second", (steps * t->bytes[p] + extra * t->product_bytes) / quiet);
         sf_json_number(json, "flops_per_second", (steps * t->flops[p] + extra * t->product_flops) / quiet);
-        sf_json_close(json, '}');
+        sf_json_close(json);
     }
-    sf_json_close(json, '}');
+    sf_json_close(json);
 }
 
 static void write_run(const sf_model *m, const sf_operators *op, const record *r, double bandwidth,
@@ -289,7 +289,7 @@ static sf_status run_one(const sf_model *m, const sf_operators *op, const option
         sf_json_open(json, NULL, '{');
         sf_json_integer(json, "threads", threads);
         write_run(m, op, &r, bandwidth, bench_peak_flops(), held, json);
-        sf_json_close(json, '}');
+        sf_json_close(json);
     }
     free_record(&r);
     return err->status;
@@ -317,10 +317,10 @@ static sf_status run_model(const options *o, sf_model *model, double spacing, co
         sf_json_open(json, "runs", '[');
         for (int k = 0; k < o->threads && err->status == SF_OK; k++)
             run_one(model, &operators, o, o->thread[k], held, json, err);
-        sf_json_close(json, ']');
+        sf_json_close(json);
         getrusage(RUSAGE_SELF, &usage); /* so far, with the meshing, the building and the triad */
         sf_json_number(json, "peak_memory_of_the_program_bytes", 1024.0 * (double)usage.ru_maxrss);
-        sf_json_close(json, '}');
+        sf_json_close(json);
     }
     sf_operators_free(&operators);
     sf_model_free(model);
@@ -351,8 +351,8 @@ static sf_status run_all(const options *o, sf_error *err) {
     sf_json_number(&json, "end_time_ms", o->end_time);
     sf_json_open(&json, "models", '[');
     run_models(o, &json, err);
-    sf_json_close(&json, ']');
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
+    sf_json_close(&json);
     fputc('\n', file);
     if (o->output && fclose(file) != 0)
         return SF_FAIL(err, SF_ERR_IO, "%s cannot be written", o->output);

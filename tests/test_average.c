@@ -130,7 +130,7 @@ static sf_status write_json(FILE *file, const sf_drop_average *average, sf_error
     sf_json json = {.file = file, .empty = true};
     sf_json_open(&json, NULL, '{');
     sf_inference_json(&json, average, err);
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     return err->status;
 }
 

@@ -431,7 +431,7 @@ static void assert_bound(const sf_cfh_spread *s, const char *words, const char *
     assert_string_equal(sf_cfh_interval_text(whole, text, sizeof text), words);
     sf_json_open(&json, NULL, '{');
     sf_cfh_put_interval_json(&json, "height", whole);
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     fclose(file);
     assert_string_equal(written, json_words);
     free(written);

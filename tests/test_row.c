@@ -68,7 +68,7 @@ static void json_has_every_key_and_null_where_undefined(void **state) {
     const drop both[] = {defined, undefined};
     sf_json_open(&json, NULL, '{');
     sf_rows_json_array(&json, "drops", SF_ROWS(declared), (sf_records){both, sizeof both[0], 2});
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     assert_page(&p, "{\n  \"drops\": [\n    {\n      \"peak_g\": 123.45,\n      \"fraction\": 0.25,\n"
                     "      \"rows\": 7,\n      \"layers\": 2,\n      \"free\": true,\n"
                     "      \"status\": \"a,\\\"b\\\"\",\n      \"file\": \"x.csv\",\n"

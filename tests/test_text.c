@@ -94,7 +94,7 @@ static void json_keeps_every_character(void **state) {
     sf_json_open(&json, NULL, '{');
     sf_json_text(&json, text, text);
     sf_json_number(&json, "nan", NAN);
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     assert_int_equal(fclose(file), 0);
     program_result r =
         program_shell(p, "python3 -c 'import json; d = json.load(open(\"text.json\", encoding=\"utf-8\"))\n"

@@ -113,12 +113,19 @@ void sf_html_tile(FILE *page, const char *kind, const char *title, const char *v
     put_between(page, "", remark, "</span></div>\n");
 }
 
-void sf_html_division(FILE *page, const char *kind) {
+FILE *sf_html_division(FILE *page, const char *kind) {
     fprintf(page, "<div class=\"%s\">\n", kind);
+    return page;
 }
 
-void sf_html_division_end(FILE *page) {
-    fputs("</div>\n", page);
+FILE *sf_html_block(FILE *page, const char *heading) {
+    sf_html_division(page, "block");
+    sf_html_heading(page, heading);
+    return page;
+}
+
+void sf_html_division_end(FILE **page) {
+    fputs("</div>\n", *page);
 }
 
 void sf_html_figure(FILE *page, const char *svg, const char *format, ...) {

@@ -25,17 +25,16 @@ void sf_html_prose(FILE *page, const char *text);
 void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* A <div> of this class: what stands in it follows until the end. "tiles": a few figures in large type;
- * "columns", "columns narrow", "columns wide": parts side by side of equal widths, or the first is; "block":
- * a part that is not broken between pages. */
-void sf_html_division(FILE *page, const char *kind);
-void sf_html_division_end(FILE *page);
-#define sf_html_tiles_begin(page) sf_html_division(page, "tiles")
-#define sf_html_tiles_end(page) sf_html_division_end(page)
-#define sf_html_columns_begin(page, kind) sf_html_division(page, "columns " kind)
-#define sf_html_columns_end(page) sf_html_division_end(page)
-#define sf_html_block_begin(page) sf_html_division(page, "block")
-#define sf_html_block_end(page) sf_html_division_end(page)
+/* A <div> of this class, which ends with the block of the statement. "tiles": a few figures in large type;
+ * "columns ", "columns narrow", "columns wide": parts side by side of equal widths, or the first is; "block":
+ * a part that is not broken between pages, which SF_HTML_BLOCK begins with a heading. */
+#define SF_HTML_DIVISION(page, kind) SF_HTML_SCOPE(sf_html_division(page, kind), __LINE__)
+#define SF_HTML_BLOCK(page, heading) SF_HTML_SCOPE(sf_html_block(page, heading), __LINE__)
+#define SF_HTML_SCOPE(page, line) SF_HTML_SCOPE_OF(page, line)
+#define SF_HTML_SCOPE_OF(page, line) SF_OWNED_BY(sf_html_division_end) FILE *sf_scope_##line = page
+FILE *sf_html_division(FILE *page, const char *kind);
+FILE *sf_html_block(FILE *page, const char *heading);
+void sf_html_division_end(FILE **page);
 
 /* A figure in large type, one of the tiles. `kind` as above; `remark` below the value. */
 void sf_html_tile(FILE *page, const char *kind, const char *title, const char *value, const char *remark);

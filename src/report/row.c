@@ -37,21 +37,28 @@ static void begin(sf_json *json, const char *key) {
     }
 }
 
-void sf_json_open(sf_json *json, const char *key, char bracket) {
+sf_json *sf_json_open(sf_json *json, const char *key, char bracket) {
     begin(json, key);
     fputc(bracket, json->file);
     json->depth++;
+    json->arrays = json->arrays << 1 | (bracket == '[');
     json->empty = true;
+    return json;
 }
 
-void sf_json_close(sf_json *json, char bracket) {
+void sf_json_close(sf_json *json) {
     json->depth--;
     if (!json->empty)
         fprintf(json->file, "\n%*s", 2 * json->depth, "");
-    fputc(bracket, json->file);
+    fputc(json->arrays & 1 ? ']' : '}', json->file);
     if (json->depth == 0)
         fputc('\n', json->file);
+    json->arrays >>= 1;
     json->empty = false;
+}
+
+void sf_json_end(sf_json **json) {
+    sf_json_close(*json);
 }
 
 void sf_json_number(sf_json *json, const char *key, double value) {
@@ -191,13 +198,11 @@ static const void *record_at(sf_records records, int64_t k) {
 }
 
 void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records records) {
-    sf_json_open(json, key, '[');
+    SF_JSON_ARRAY(json, key);
     for (int64_t k = 0; k < records.count; k++) {
-        sf_json_open(json, NULL, '{');
+        SF_JSON_OBJECT(json, NULL);
         sf_rows_json(json, rows, record_at(records, k));
-        sf_json_close(json, '}');
     }
-    sf_json_close(json, ']');
 }
 
 /* ---- HTML ---- */

@@ -14,11 +14,20 @@
 typedef struct sf_json {
     FILE *file;
     int depth;
-    bool empty; /* nothing yet in the innermost object or array */
+    uint64_t arrays; /* a bit for each of what is open, the innermost last: it is an array */
+    bool empty;      /* nothing yet in the innermost object or array */
 } sf_json;
 
-void sf_json_open(sf_json *json, const char *key, char bracket); /* bracket: '{' or '[' */
-void sf_json_close(sf_json *json, char bracket);                 /* '}' or ']' */
+/* Opens an object ('{') or an array ('['), and closes the innermost one. */
+sf_json *sf_json_open(sf_json *json, const char *key, char bracket);
+void sf_json_close(sf_json *json);
+/* The same, closed at the end of the block: SF_JSON_OBJECT(json, "fit"); */
+#define SF_JSON_OBJECT(json, key) SF_JSON_SCOPE(json, key, '{', __LINE__)
+#define SF_JSON_ARRAY(json, key) SF_JSON_SCOPE(json, key, '[', __LINE__)
+#define SF_JSON_SCOPE(json, key, bracket, line) SF_JSON_SCOPE_OF(json, key, bracket, line)
+#define SF_JSON_SCOPE_OF(json, key, bracket, line)                                                           \
+    SF_OWNED_BY(sf_json_end) sf_json *sf_scope_##line = sf_json_open(json, key, bracket)
+void sf_json_end(sf_json **json);
 void sf_json_number(sf_json *json, const char *key, double value);
 /* Several numbers of the open object: SF_JSON_NUMBERS(json, {"low", low}, {"high", high}). Counts below 10^9,
  * too. */

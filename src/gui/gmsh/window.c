@@ -292,7 +292,7 @@ static void put_words(sf_json *json, const char *words, bool labels) {
 static void put_number(sf_json *json, const sf_entry *e) {
     sf_json_open(json, "values", '[');
     sf_json_number(json, NULL, e->number);
-    sf_json_close(json, ']');
+    sf_json_close(json);
     if (e->kind == SF_ENTRY_NUMBER && e->high > e->low) {
         sf_json_number(json, "min", e->low);
         sf_json_number(json, "max", e->high);
@@ -302,16 +302,15 @@ static void put_number(sf_json *json, const sf_entry *e) {
         return;
     sf_json_open(json, "choices", '[');
     put_words(json, e->kind == SF_ENTRY_WORD ? e->words : "0|1", false);
-    sf_json_close(json, ']');
+    sf_json_close(json);
     if (e->kind == SF_ENTRY_WORD) {
-        sf_json_open(json, "valueLabels", '{');
+        SF_JSON_OBJECT(json, "valueLabels");
         put_words(json, e->words, true);
-        sf_json_close(json, '}');
     }
 }
 
 static void put_attributes(sf_json *json, const sf_entry *e) {
-    sf_json_open(json, "attributes", '{');
+    SF_JSON_OBJECT(json, "attributes");
     if (e->colour)
         sf_json_text(json, "Highlight", e->colour);
     if (e->closed)
@@ -320,7 +319,6 @@ static void put_attributes(sf_json *json, const sf_entry *e) {
         sf_json_text(json, "Macro", "Action");
         sf_json_text(json, "Aspect", e->aspect ? e->aspect : "MiddleButton");
     }
-    sf_json_close(json, '}');
 }
 
 static void send(const char *json) {
@@ -345,12 +343,11 @@ void sf_window_put(const sf_entry *e) {
     if (number) {
         put_number(&json, e);
     } else {
-        sf_json_open(&json, "values", '[');
+        SF_JSON_ARRAY(&json, "values");
         sf_json_text(&json, NULL, e->text ? e->text : "");
-        sf_json_close(&json, ']');
     }
     put_attributes(&json, e);
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     fclose(json.file);
     send(text);
 }

@@ -104,10 +104,9 @@ static void encode(unsigned char *to, uint32_t value, int bytes) {
 
 /* Writes every `step`-th of the numbers as an array. */
 static void put_numbers(page *p, const char *key, const double *value, int64_t count, int64_t step) {
-    sf_json_open(&p->json, key, '[');
+    SF_JSON_ARRAY(&p->json, key);
     for (int64_t i = 0; i < count; i += step)
         sf_json_number(&p->json, NULL, value[i]);
-    sf_json_close(&p->json, ']');
 }
 
 /* Writes value[count][components] with the least value and the step of each component. */
@@ -128,11 +127,10 @@ static void put_quantised(page *p, const char *key, const double *value, int64_t
         double code = step[c] > 0 ? rint((value[i] - low[c]) / step[c]) : 0;
         encode(&p->coded[2 * i], (uint32_t)fmin(code, HIGHEST_CODE), 2);
     }
-    sf_json_open(&p->json, key, '{');
+    SF_JSON_OBJECT(&p->json, key);
     put_numbers(p, "low", low, components, 1);
     put_numbers(p, "step", step, components, 1);
     sf_json_base64(&p->json, "data", p->coded, 2 * (size_t)(count * components));
-    sf_json_close(&p->json, '}');
 }
 
 /* Writes indices; -1 becomes the largest number. */
@@ -176,13 +174,12 @@ static void put_notes(page *p, bool planes_known) {
                   "The frames hold no displacement: the pad is shown undeformed."},
                  {!planes_known,
                   "Only the modelled part is shown: results.h5 does not say where the symmetry planes lie."}};
-    sf_json_open(&p->json, "notes", '[');
+    SF_JSON_ARRAY(&p->json, "notes");
     for (size_t k = 0; k < sizeof notes / sizeof notes[0]; k++)
         if (notes[k].holds)
             sf_json_text(&p->json, NULL, notes[k].text);
     for (int k = 0; k < r->note_count; k++)
         sf_json_text(&p->json, NULL, r->notes[k]);
-    sf_json_close(&p->json, ']');
 }
 
 static void put_scale(page *p) {
@@ -191,18 +188,16 @@ static void put_scale(page *p) {
         colours[k] = sf_picture_colours[k / 3][k % 3];
     put_numbers(p, "colours", colours, 3 * SF_PICTURE_COLOURS, 1);
     sf_json_number(&p->json, "decades", sf_picture_decades);
-    sf_json_open(&p->json, "fields", '[');
+    SF_JSON_ARRAY(&p->json, "fields");
     for (int k = 0; k < COLOURINGS; k++) {
         if (!(p->made->fields >> colourings[k].field & 1))
             continue;
-        sf_json_open(&p->json, NULL, '{');
+        SF_JSON_OBJECT(&p->json, NULL);
         sf_json_text(&p->json, "name", colourings[k].name);
         sf_json_text(&p->json, "unit", colourings[k].unit);
         sf_json_number(&p->json, "factor", colourings[k].factor);
         sf_json_bool(&p->json, "logarithmic", colourings[k].logarithmic);
-        sf_json_close(&p->json, '}');
     }
-    sf_json_close(&p->json, ']');
 }
 
 /* Faces in the numbers of the shown nodes; of the skin alone also its nodes in those of the model. */
@@ -226,19 +221,17 @@ static void put_cells(page *p) {
     sf_json_open(&p->json, "cells", '{');
     sf_json_base64(&p->json, "type", r->cell_type, (size_t)r->cell_count);
     put_indices(p, "node", r->cell_node, r->cell_nnz);
-    sf_json_close(&p->json, '}');
-    sf_json_open(&p->json, "tetrahedra", '{');
+    sf_json_close(&p->json);
+    SF_JSON_OBJECT(&p->json, "tetrahedra");
     for (int type = SF_CELL_TETRAHEDRON; type <= SF_CELL_HEXAHEDRON; type++) {
         char key[8];
         const int(*part)[4];
         snprintf(key, sizeof key, "%d", type);
-        sf_json_open(&p->json, key, '[');
+        SF_JSON_ARRAY(&p->json, key);
         int count = sf_cell_tetrahedra(type, &part);
         for (int k = 0; k < 4 * count; k++)
             sf_json_integer(&p->json, NULL, part[k / 4][k % 4]);
-        sf_json_close(&p->json, ']');
     }
-    sf_json_close(&p->json, '}');
 }
 
 /* Writes a surface of triangles, and the exact sphere of the missile if it has one; nothing without
@@ -249,12 +242,11 @@ static void put_surface(page *p, const char *key, int64_t nodes, const double *p
     const double *c = p->results->sphere_centre, sphere[4] = {c[0], c[1], c[2], radius};
     if (triangles == 0)
         return;
-    sf_json_open(&p->json, key, '{');
+    SF_JSON_OBJECT(&p->json, key);
     put_quantised(p, "position", position, nodes, 3);
     put_indices(p, "triangle", triangle, 3 * triangles);
     if (radius > 0)
         put_numbers(p, "sphere", sphere, 4, 1);
-    sf_json_close(&p->json, '}');
 }
 
 /* The curve that the time runs along, with few enough of its points. */
@@ -269,11 +261,10 @@ static void put_curve(page *p) {
         snprintf(label, sizeof label, "contact force (N)");
     else
         snprintf(label, sizeof label, "%s (g), CFC %.0f%s", f->acceleration, f->cfc, f->passed);
-    sf_json_open(&p->json, "curve", '{');
+    SF_JSON_OBJECT(&p->json, "curve");
     sf_json_text(&p->json, "label", label);
     put_numbers(p, "time", x, count, step);
     put_numbers(p, "value", y, count, step);
-    sf_json_close(&p->json, '}');
 }
 
 /* ---- frames ---- */
@@ -293,7 +284,7 @@ static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
     for (int k = 0; k < COLOURINGS; k++)
         fields |= p->made->fields & 1 << colourings[k].field;
     SF_TRY(sf_frame_read_fields(r, head, fields, &frame, err));
-    sf_json_open(&p->json, NULL, '{');
+    SF_JSON_OBJECT(&p->json, NULL);
     sf_json_number(&p->json, "time", head->time);
     put_motion(p, head);
     const double *moved = frame.field[SF_FRAME_DISPLACEMENT];
@@ -302,7 +293,7 @@ static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
         p->value[i] = r->position[from] + (moved ? moved[from] : 0);
     }
     put_quantised(p, "position", p->value, p->node_count, 3);
-    sf_json_open(&p->json, "fields", '[');
+    SF_JSON_ARRAY(&p->json, "fields");
     for (int k = 0; k < COLOURINGS; k++) {
         const double *field = frame.field[colourings[k].field];
         for (int64_t i = 0; field && i < p->node_count; i++)
@@ -310,8 +301,6 @@ static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
         if (field)
             put_quantised(p, NULL, p->value, p->node_count, 1);
     }
-    sf_json_close(&p->json, ']');
-    sf_json_close(&p->json, '}');
     return SF_OK;
 }
 
@@ -324,7 +313,7 @@ static sf_status put_frames(page *p, sf_error *err) {
         if (is_peak)
             shown_peak = k;
     }
-    sf_json_close(&p->json, ']');
+    sf_json_close(&p->json);
     sf_json_integer(&p->json, "peak", shown_peak);
     return err->status;
 }
@@ -342,7 +331,7 @@ static sf_status write_facts(page *p, sf_error *err) {
     p->coded = sf_alloc(err, (unsigned long)numbers, 4, "view.html");
     SF_TRY(err->status);
     sf_axis_find(r, axis);
-    sf_json_open(&p->json, NULL, '{');
+    SF_JSON_OBJECT(&p->json, NULL);
     put_texts(p);
     put_notes(p, known);
     put_scale(p);
@@ -356,7 +345,6 @@ static sf_status write_facts(page *p, sf_error *err) {
                 r->support_triangle, 0);
     put_curve(p);
     put_frames(p, err);
-    sf_json_close(&p->json, '}');
     return err->status;
 }
 

@@ -30,20 +30,16 @@ void sf_origin_put_key(sf_html_table *table, const char *parameters, const char 
 
 /* The keys of the material that the case gives, and whether it says what its data inform. `group`: with its
  * point at the end. */
-static void put_given(sf_html_table *table, const char *parameters, const char *group) {
+static void put_given(FILE *page, const char *parameters, const char *group) {
     sf_origin_key key;
+    SF_HTML_TABLE table = sf_html_table_begin(page, "dense", NULL);
     char informed[SF_ORIGIN_NAME_SIZE + 32];
     snprintf(informed, sizeof informed, "%sinformed_strain", group);
     if (sf_origin_find(parameters, informed, &key) && !key.given)
-        sf_html_fact(table, "informed_strain", "not given: the end of the curve is taken for it");
+        sf_html_fact(&table, "informed_strain", "not given: the end of the curve is taken for it");
     while (sf_origin_next(&parameters, &key))
         if (key.given && strncmp(key.name, group, strlen(group)) == 0)
-            sf_html_fact(table, key.name + strlen(group), "%s", key.value);
-}
-
-static void begin_block(FILE *page, const char *heading) {
-    sf_html_block_begin(page);
-    sf_html_heading(page, heading);
+            sf_html_fact(&table, key.name + strlen(group), "%s", key.value);
 }
 
 /* `layer` NULL: of a pad of one material. */
@@ -52,19 +48,14 @@ static void put_material(FILE *page, const char *case_text, const char *paramete
     char heading[SF_ORIGIN_NAME_SIZE + 32], group[SF_ORIGIN_NAME_SIZE + 16];
     snprintf(heading, sizeof heading, "Material%s%s", layer ? " of the layer " : "", layer ? layer : "");
     snprintf(group, sizeof group, "material%s%s.", layer ? "s." : "", layer ? layer : "");
-    begin_block(page, heading);
-    sf_html_columns_begin(page, "narrow");
-    sf_html_table table = sf_html_table_begin(page, "dense", NULL);
-    put_given(&table, parameters, group);
-    sf_html_table_end(&table);
-    sf_html_block_begin(page);
+    SF_HTML_BLOCK(page, heading);
+    SF_HTML_DIVISION(page, "columns narrow");
+    put_given(page, parameters, group);
+    SF_HTML_DIVISION(page, "block");
     sf_html_note(
         page, "Origin, and the range that its data inform, as its file says. Keys not listed have defaults.");
     sf_html_prose(page,
                   origin && *origin ? origin : "The case says nothing about the origin of the material.");
-    sf_html_block_end(page);
-    sf_html_columns_end(page);
-    sf_html_block_end(page);
 }
 
 void sf_origin_put_material(FILE *page, const char *case_text, const char *parameters) {
@@ -147,7 +138,7 @@ static void put_tile(const page *p, const char *title, double value, int digits,
 
 static void put_tiles(const page *p) {
     const sf_figures *f = p->figures;
-    sf_html_tiles_begin(p->file);
+    SF_HTML_DIVISION(p->file, "tiles");
     for (int k = 0; k < p->verdict->limit_count; k++)
         put_limit_tile(p, &p->verdict->limits[k]);
     if (f->driven) {
@@ -162,7 +153,6 @@ static void put_tiles(const page *p) {
     else
         put_tile(p, "rebound", f->v_rebound, 2, "m/s", "%.0f %% of the energy absorbed",
                  100 * f->absorbed_energy_fraction);
-    sf_html_tiles_end(p->file);
 }
 
 /* ---- what was dropped on what ---- */
@@ -173,6 +163,7 @@ static void put_parameter(const page *p, sf_html_table *table, const char *name,
 
 static void put_missile(const page *p) {
     const sf_results *r = p->results;
+    SF_HTML_BLOCK(p->file, "Missile");
     SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     if (r->driven) {
         put_parameter(p, &table, "missile.motion", "prescribed motion");
@@ -210,6 +201,7 @@ static void put_interfaces(const page *p, sf_html_table *table) {
 
 static void put_pad(const page *p) {
     const sf_results *r = p->results;
+    SF_HTML_BLOCK(p->file, "Pad");
     SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     sf_html_fact(&table, "thickness", "%.4g mm", r->thickness * 1e3);
     if (isfinite(r->set_largest))
@@ -250,14 +242,9 @@ static void put_test(const page *p) {
 }
 
 static void put_bodies(const page *p) {
-    sf_html_columns_begin(p->file, "");
-    begin_block(p->file, "Missile");
+    SF_HTML_DIVISION(p->file, "columns ");
     put_missile(p);
-    sf_html_block_end(p->file);
-    begin_block(p->file, "Pad");
     put_pad(p);
-    sf_html_block_end(p->file);
-    sf_html_columns_end(p->file);
 }
 
 /* ---- pictures ---- */
@@ -295,28 +282,28 @@ static void put_link(const page *p, const sf_staging *output) {
             p->file);
 }
 
-static void put_pictures(const page *p, const sf_staging *output) {
-    const sf_report_pictures *q = p->pictures;
-    if (q->before) {
-        begin_block(p->file, "The pad before the drop");
-        sf_html_figure(p->file, q->before, "%s", q->before_text);
-        sf_html_block_end(p->file);
-    }
-    begin_block(p->file, "The pad at the peak");
-    sf_html_figure(p->file, q->pad, "%s", q->pad_text);
+/* A block with a picture of the drop, and with what came with the film if `output` is given. */
+static void put_picture(const page *p, const char *heading, const char *svg, const char *caption,
+                        const sf_staging *output) {
+    SF_HTML_BLOCK(p->file, heading);
+    sf_html_figure(p->file, svg, "%s", caption);
+    if (!output)
+        return;
     put_scene(p, output);
     put_link(p, output);
-    sf_html_block_end(p->file);
-    begin_block(p->file, "Mid-section");
-    sf_html_figure(p->file, q->instants, "%s", q->instants_text);
-    sf_html_block_end(p->file);
-    begin_block(p->file,
-                p->figures->driven ? "Stress and strain" : "Acceleration, and stress through the thickness");
-    sf_html_columns_begin(p->file, "wide");
+}
+
+static void put_pictures(const page *p, const sf_staging *output) {
+    const sf_report_pictures *q = p->pictures;
+    if (q->before)
+        put_picture(p, "The pad before the drop", q->before, q->before_text, NULL);
+    put_picture(p, "The pad at the peak", q->pad, q->pad_text, output);
+    put_picture(p, "Mid-section", q->instants, q->instants_text, NULL);
+    SF_HTML_BLOCK(p->file, p->figures->driven ? "Stress and strain"
+                                              : "Acceleration, and stress through the thickness");
+    SF_HTML_DIVISION(p->file, "columns wide");
     put_curve(p, output);
     sf_html_figure(p->file, q->profile, "%s", q->profile_text);
-    sf_html_columns_end(p->file);
-    sf_html_block_end(p->file);
 }
 
 /* ---- tables ---- */
@@ -345,7 +332,7 @@ static void put_check(sf_html_table *table, const sf_check *c) {
 }
 
 static void put_checks(const page *p) {
-    sf_html_heading(p->file, "Checks of the run");
+    SF_HTML_BLOCK(p->file, "Checks of the run");
     sf_html_table table =
         sf_html_table_begin(p->file, "dense", "check|>value|>good up to|>usable up to|finding");
     for (int k = 0; k < p->verdict->count; k++)
@@ -357,14 +344,9 @@ static void put_checks(const page *p) {
 
 /* The checks, and the force beside them. */
 static void put_verdict(const page *p) {
-    sf_html_columns_begin(p->file, "wide");
-    sf_html_block_begin(p->file);
+    SF_HTML_DIVISION(p->file, "columns wide");
     put_checks(p);
-    sf_html_block_end(p->file);
-    begin_block(p->file, "Force and indentation");
-    sf_html_figure(p->file, p->pictures->force, "%s", p->pictures->force_text);
-    sf_html_block_end(p->file);
-    sf_html_columns_end(p->file);
+    put_picture(p, "Force and indentation", p->pictures->force, p->pictures->force_text, NULL);
 }
 
 static bool is_defined(const page *p, const sf_figure *figure) {
@@ -385,36 +367,38 @@ static void put_figure(const page *p, sf_html_table *table, const sf_figure *fig
 }
 
 /* Puts the figures that the run defines, down each of three columns. */
-static void put_figures(const page *p) {
+static void put_columns(const page *p, const sf_figure *figure, size_t count, size_t defined) {
     enum { COLUMNS = 3 };
-    size_t count, defined = 0, next = 0;
-    const sf_figure *figure = sf_figure_list(&count);
-    for (size_t k = 0; k < count; k++)
-        defined += is_defined(p, &figure[k]) ? 1 : 0;
-    begin_block(p->file, "Figures");
-    sf_html_columns_begin(p->file, "");
+    size_t next = 0;
+    SF_HTML_DIVISION(p->file, "columns ");
     for (size_t c = 0; c < COLUMNS; c++) {
-        sf_html_table table = sf_html_table_begin(p->file, "dense", "figure|>value");
+        SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", "figure|>value");
         for (size_t put = 0; next < count && put < (defined + COLUMNS - 1) / COLUMNS; next++)
             if (is_defined(p, &figure[next])) {
                 put_figure(p, &table, &figure[next]);
                 put++;
             }
-        sf_html_table_end(&table);
     }
-    sf_html_columns_end(p->file);
+}
+
+static void put_figures(const page *p) {
+    size_t count, defined = 0;
+    const sf_figure *figure = sf_figure_list(&count);
+    for (size_t k = 0; k < count; k++)
+        defined += is_defined(p, &figure[k]) ? 1 : 0;
+    SF_HTML_BLOCK(p->file, "Figures");
+    put_columns(p, figure, count, defined);
     sf_html_note(
         p->file,
         "Values of summary.json, units at the end of the names (docs/formats.md). Not defined by this run: %zu.",
         count - defined);
-    sf_html_block_end(p->file);
 }
 
 static void put_comparison(const page *p) {
     const sf_comparison *c = p->report->summary->comparison;
     if (!c)
         return;
-    begin_block(p->file, "Comparison with a measured curve");
+    SF_HTML_BLOCK(p->file, "Comparison with a measured curve");
     sf_html_paragraph(
         p->file, "%s: a_max %.1f g (model %+.1f %%), HIC %.1f. Model time = measured time %+.3f ms (%s).",
         p->report->summary->reference_path, c->injury.a_max_g, 100 * c->peak_error, c->injury.hic.value,
@@ -424,7 +408,6 @@ static void put_comparison(const page *p) {
     sf_html_banner(p->file, sf_report_kind(c->record.grade),
                    c->record.grade == SF_GRADE_DO_NOT_USE ? "comparison not usable" : "record", "%s.", line);
     sf_rows_html_table(p->file, "dense", sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
-    sf_html_block_end(p->file);
 }
 
 /* "864 hexahedra, 744 pyramids" */
@@ -486,30 +469,27 @@ static void put_command(const page *p) {
     if (pre && solve &&
         asprintf(&all, "%s\n%s\n%s", *pre ? pre : "(softfall-pre: not recorded)",
                  *solve ? solve : "(softfall-solve: not recorded)", p->report->command_line) >= 0) {
-        sf_html_block_begin(p->file);
-        sf_html_heading(p->file, "The commands that repeat this report, in the folder of the original run");
+        SF_HTML_BLOCK(p->file, "The commands that repeat this report, in the folder of the original run");
         sf_html_pre(p->file, all);
-        sf_html_block_end(p->file);
     }
 }
 
-/* Mesh and versions, and the energies beside them. */
-static void put_provenance(const page *p) {
-    sf_html_columns_begin(p->file, "");
-    begin_block(p->file, "Mesh and versions");
-    sf_html_table table = sf_html_table_begin(p->file, "dense", NULL);
+static void put_versions(const page *p) {
+    SF_HTML_BLOCK(p->file, "Mesh and versions");
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
     put_mesh(p, &table);
     put_version(p, &table, "softfall-pre", "/provenance/model");
     put_version(p, &table, "softfall-solve", "/provenance");
     sf_html_fact(&table, "softfall-post", "%s (%s)", SF_VERSION, SF_GIT_REVISION);
     put_text_fact(p, &table, "compiler", "/provenance/compiler");
     put_text_fact(p, &table, "libraries", "/provenance/libraries");
-    sf_html_table_end(&table);
-    sf_html_block_end(p->file);
-    begin_block(p->file, "Energies");
-    sf_html_figure(p->file, p->pictures->energies, "%s", p->pictures->energies_text);
-    sf_html_block_end(p->file);
-    sf_html_columns_end(p->file);
+}
+
+/* Mesh and versions, and the energies beside them. */
+static void put_provenance(const page *p) {
+    SF_HTML_DIVISION(p->file, "columns ");
+    put_versions(p);
+    put_picture(p, "Energies", p->pictures->energies, p->pictures->energies_text, NULL);
 }
 
 /* A pad of several materials, layer by layer. */
@@ -517,13 +497,12 @@ static void put_layers(const page *p) {
     const sf_layer_figures *layers = p->figures->layers;
     if (!layers)
         return;
-    begin_block(p->file, "Layers");
+    SF_HTML_BLOCK(p->file, "Layers");
     sf_rows_html_table(p->file, "dense", sf_layer_figure_rows(),
                        (sf_records){layers, sizeof *layers, p->results->layer_count});
     sf_html_note(p->file,
                  "Absorbed: stored, lost and viscous energy in the last frame. Beyond its data: in nodes "
                  "compressed beyond the strain up to which the data of the layer's material inform it.");
-    sf_html_block_end(p->file);
 }
 
 /* ---- the page ---- */

@@ -73,10 +73,9 @@ static void put_figures(sf_json *json, const sf_summary *s) {
     const sf_figure *figure = sf_figure_list(&count);
     for (size_t k = 0; k < count; k++)
         sf_row_json(json, &figure[k].row, sf_figure_record(&figure[k], s->results, s->figures));
-    sf_json_open(json, "notes", '[');
+    SF_JSON_ARRAY(json, "notes");
     for (int k = 0; k < s->results->note_count; k++)
         sf_json_text(json, NULL, s->results->notes[k]);
-    sf_json_close(json, ']');
 }
 
 static sf_records layers_of(const sf_summary *s) {
@@ -84,13 +83,12 @@ static sf_records layers_of(const sf_summary *s) {
 }
 
 static void put_verdict(sf_json *json, const sf_verdict *v) {
-    sf_json_open(json, "verdict", '{');
+    SF_JSON_OBJECT(json, "verdict");
     sf_json_text(json, "grade", sf_verdict_phrase(v->grade));
     sf_rows_json_array(json, "checks", SF_ROWS(check_rows),
                        (sf_records){v->rows, sizeof v->rows[0], v->count});
     sf_rows_json_array(json, "limits", SF_ROWS(limit_rows),
                        (sf_records){v->limits, sizeof v->limits[0], v->limit_count});
-    sf_json_close(json, '}');
 }
 
 /* Words of the case about the test; null: not given. */
@@ -105,16 +103,15 @@ static void put_test(sf_json *json, const sf_results *r) {
 }
 
 static void put_comparison(sf_json *json, const char *path, const sf_comparison *c) {
-    sf_json_open(json, "reference", '{');
+    SF_JSON_OBJECT(json, "reference");
     sf_json_text(json, "file", path);
     sf_rows_json(json, SF_ROWS(comparison_rows), c);
     sf_json_open(json, "record", '{');
     sf_json_text(json, "grade", sf_verdict_phrase(c->record.grade));
     sf_rows_json_array(json, "checks", SF_ROWS(check_rows),
                        (sf_records){c->record.rows, sizeof c->record.rows[0], SF_RECORD_CHECKS});
-    sf_json_close(json, '}');
+    sf_json_close(json);
     sf_rows_json_array(json, "fits", sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
-    sf_json_close(json, '}');
 }
 
 sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_error *err) {
@@ -135,7 +132,7 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
         sf_rows_json_array(&json, "layers", sf_layer_figure_rows(), layers_of(s));
     if (s->comparison)
         put_comparison(&json, s->reference_path, s->comparison);
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     return sf_staging_close(file, "summary.json", err);
 }
 

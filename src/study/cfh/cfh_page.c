@@ -296,7 +296,7 @@ static void tile_remark(const sf_cfh_report *r, const sf_cfh_interval *interval,
 
 static void put_tiles(FILE *page, const sf_cfh_report *r) {
     char value[48], remark[160];
-    sf_html_tiles_begin(page);
+    SF_HTML_DIVISION(page, "tiles");
     height_text(r, 1, value, sizeof value);
     tile_remark(r, r->spread ? sf_cfh_spread_whole(r->spread, SF_CFH_FIRST) : NULL, remark, sizeof remark);
     sf_html_tile(page, banner_kind(r), "critical fall height, free fall", value, remark);
@@ -309,12 +309,11 @@ static void put_tiles(FILE *page, const sf_cfh_report *r) {
     }
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
         put_limit_tile(page, r, c);
-    sf_html_tiles_end(page);
 }
 
 static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
     bool rig = r->rig->pairs > 0;
-    sf_html_table table = sf_html_table_begin(page, "dense",
+    SF_HTML_TABLE table = sf_html_table_begin(page, "dense",
                                               rig ? "limit|state|>height (m)|>95 % interval|>on the rig (m)"
                                                   : "limit|state|>height (m)|>95 % interval");
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
@@ -330,7 +329,6 @@ static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
         if (rig)
             sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, crossing->height));
     }
-    sf_html_table_end(&table);
 }
 
 /* The residuals say how well the quadratics fit, not how well the heights are known. */
@@ -379,8 +377,8 @@ static void put_notes(FILE *page, const sf_cfh_report *r) {
 }
 
 static void put_bodies(FILE *page, const sf_cfh_report *r) {
-    sf_html_heading(page, "What falls on what");
-    sf_html_table table = sf_html_table_begin(page, "dense", NULL);
+    SF_HTML_BLOCK(page, "What falls on what");
+    SF_HTML_TABLE table = sf_html_table_begin(page, "dense", NULL);
     sf_html_fact(&table, "case", "%s", r->case_path);
     sf_html_fact(&table, "material", "%s", r->material ? r->material : "of the case");
     sf_html_fact(&table, "missile", "%g kg", r->mass);
@@ -394,7 +392,6 @@ static void put_bodies(FILE *page, const sf_cfh_report *r) {
         sf_html_fact(&table, "draws of the foam", "%s", r->posterior);
     if (r->rig_path)
         sf_html_fact(&table, "rig", "%s, %d pairs", r->rig_path, r->rig->pairs);
-    sf_html_table_end(&table);
 }
 
 /* Writes the end of the data of each foam. */
@@ -429,6 +426,17 @@ static void put_drops(FILE *page, const sf_cfh_report *r) {
     put_fit_table(page, r);
 }
 
+/* The picture, and what falls beside it. */
+static void put_top(FILE *page, const sf_staging *output, const sf_cfh_report *r) {
+    SF_HTML_DIVISION(page, "columns wide");
+    sf_chart_figure(page, output, "cfh", "softfall-cfh",
+                    r->spread
+                        ? "a_max and HIC over the drop height; bands: 95 % of the draws of the foam, and "
+                          "the intervals of the crossings"
+                        : "a_max and HIC over the drop height");
+    put_bodies(page, r);
+}
+
 sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
     char verdict[SF_CFH_VERDICT_SIZE], rig[400], *title = sf_origin_title(r->case_text);
     FILE *page = sf_html_begin(output, "Critical fall height", title && *title ? title : NULL, err);
@@ -440,16 +448,7 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
                    r->result->verdict == SF_CFH_UNKNOWN ? "not determined" : "indicative", "%s%s%s %s",
                    verdict, rig[0] ? " " : "", rig, sf_cfh_caution);
     put_tiles(page, r);
-    sf_html_columns_begin(page, "wide");
-    sf_chart_figure(page, output, "cfh", "softfall-cfh",
-                    r->spread
-                        ? "a_max and HIC over the drop height; bands: 95 % of the draws of the foam, and "
-                          "the intervals of the crossings"
-                        : "a_max and HIC over the drop height");
-    sf_html_block_begin(page);
-    put_bodies(page, r);
-    sf_html_block_end(page);
-    sf_html_columns_end(page);
+    put_top(page, output, r);
     put_drops(page, r);
     sf_origin_put_material(page, r->case_text, r->parameters);
     sf_html_heading(page, "The command that repeats this report");

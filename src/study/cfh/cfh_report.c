@@ -292,12 +292,12 @@ static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     sf_json_open(json, "shares", '{');
     for (int part = 0; part < SF_CFH_PARTS; part++)
         sf_json_number(json, shares[part], sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
-    sf_json_close(json, '}');
+    sf_json_close(json);
     sf_json_open(json, "columns_error", '{');
     SF_JSON_NUMBERS(json, {"degrees_of_freedom", s->freedom},
                     {"a_max", sf_cfh_columns_error(s, SF_CFH_A_MAX)},
                     {"hic", sf_cfh_columns_error(s, SF_CFH_HIC)});
-    sf_json_close(json, '}');
+    sf_json_close(json);
     sf_rows_json_array(json, "checks", sf_cfh_check_rows(),
                        (sf_records){s->check, sizeof s->check[0], s->checks});
 }
@@ -318,7 +318,7 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
                                         "not determined"};
     const sf_cfh_result *v = r->result;
     bool found = v->verdict == SF_CFH_FOUND, decided = found || v->verdict == SF_CFH_BELOW;
-    sf_json_open(json, "critical_fall_height", '{');
+    SF_JSON_OBJECT(json, "critical_fall_height");
     sf_json_text(json, "verdict", words[v->verdict]);
     sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
     sf_json_text(json, "deciding", !decided ? NULL : isnan(v->lowest) ? "anvil" : sf_cfh_name(v->deciding));
@@ -328,7 +328,6 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
                     {"lowest_simulated_m", v->lowest}, {"highest_simulated_m", v->highest},
                     {"reaches_anvil_m", v->anvil});
     sf_json_text(json, "search_ended", sf_cfh_step_text(r->ending));
-    sf_json_close(json, '}');
 }
 
 /* The interval of the fit says how well a quadratic fits, not how well the height is known. */
@@ -336,7 +335,7 @@ static void put_fit(sf_json *json, const sf_cfh_report *r, const sf_cfh_crossing
     const sf_cfh_fit *fit = &crossing->fit;
     double margin = sf_cfh_rig_margin(r->rig, crossing->margin), none = fit->count ? 0 : NAN,
            on_rig = sf_cfh_rig_height(r->rig, crossing->height);
-    sf_json_open(json, "fit", '{');
+    SF_JSON_OBJECT(json, "fit");
     sf_json_text(json, "form", "ln(value) = c0 + c1 d + c2 d^2, d = ln(height_m) - centre");
     SF_JSON_NUMBERS(json, {"centre", fit->centre + none}, {"c0", fit->c[0] + none}, {"c1", fit->c[1] + none},
                     {"c2", fit->c[2] + none}, {"points", fit->count}, {"rms_residual", fit->rms + none});
@@ -345,31 +344,27 @@ static void put_fit(sf_json *json, const sf_cfh_report *r, const sf_cfh_crossing
     if (r->rig->pairs > 0)
         SF_JSON_NUMBERS(json, {"fit_rig_low_m", on_rig * exp(-margin)},
                         {"fit_rig_high_m", on_rig * exp(margin)});
-    sf_json_close(json, '}');
 }
 
 static void put_criteria(sf_json *json, const sf_cfh_report *r) {
-    sf_json_open(json, "criteria", '[');
+    SF_JSON_ARRAY(json, "criteria");
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_crossing *crossing = &r->result->crossing[c];
-        sf_json_open(json, NULL, '{');
+        SF_JSON_OBJECT(json, NULL);
         sf_json_text(json, "criterion", sf_cfh_name(c));
         sf_json_number(json, c == SF_CFH_A_MAX ? "limit_g" : "limit", r->plan->limit[c]);
         sf_json_text(json, "state", sf_cfh_side_word(crossing));
         put_heights(json, r, crossing->height, (int)c);
         put_fit(json, r, crossing);
-        sf_json_close(json, '}');
     }
-    sf_json_close(json, ']');
 }
 
 static void put_posterior(sf_json *json, const sf_cfh_report *r) {
-    sf_json_open(json, "posterior", '{');
+    SF_JSON_OBJECT(json, "posterior");
     sf_json_text(json, "folder", r->posterior);
     sf_json_text(json, "no_interval", r->no_interval[0] ? r->no_interval : NULL);
     if (r->spread)
         put_spread_json(json, r->spread);
-    sf_json_close(json, '}');
 }
 
 static double least_end(const sf_cfh_foams *foams) {
@@ -399,11 +394,11 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
     sf_json_integer(&json, "pairs", r->rig->pairs);
     sf_json_number(&json, "g_eff_m_s2", r->rig->gravity);
     sf_json_number(&json, "standard_error_m_s2", r->rig->pairs ? r->rig->standard_error : NAN);
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     put_posterior(&json, r);
     put_criteria(&json, r);
     sf_rows_json_array(&json, "points", sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     return sf_staging_close(file, "cfh.json", err);
 }
 

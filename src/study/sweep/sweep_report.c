@@ -68,34 +68,30 @@ void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
 
 static void json_factors(sf_json *j, const sf_plan *p) {
     char text[512];
-    sf_json_open(j, "factors", '[');
+    SF_JSON_ARRAY(j, "factors");
     for (int f = 0; f < p->factor_count; f++) {
         factor_text(p, f, text, sizeof text);
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "key", p->factor[f].key);
         sf_json_text(j, "name", p->factor[f].name);
         sf_json_text(j, "unit", *p->factor[f].unit ? p->factor[f].unit : NULL);
         sf_json_text(j, "values", text);
         sf_json_bool(j, "uncertain", p->factor[f].uncertain);
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
 }
 
 static void json_effects(sf_json *j, const sf_sweep_report *r, int figure) {
-    sf_json_open(j, "main_effects", '[');
+    SF_JSON_ARRAY(j, "main_effects");
     for (int f = 0; f < r->plan->factor_count; f++) {
         const sf_effect *e = &r->analysis->effect[figure][f];
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "factor", r->plan->factor[f].name);
         SF_JSON_NUMBERS(j, {"low", e->low}, {"high", e->high}, {"at_least_value", e->first},
                         {"at_greatest_value", e->last});
         sf_json_bool(j, "by_response_surface", sf_effect_is_by_surface(r->plan, f));
         sf_json_integer(j, "combinations", e->used);
         sf_json_integer(j, "all_combinations", e->of);
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
 }
 
 static void json_indices(sf_json *j, const sf_sweep_report *r, int figure) {
@@ -103,23 +99,21 @@ static void json_indices(sf_json *j, const sf_sweep_report *r, int figure) {
     if (!a->with_indices)
         return;
     sf_json_integer(j, "sobol_samples", a->index_samples[figure]);
-    sf_json_open(j, "sobol_indices", '[');
+    SF_JSON_ARRAY(j, "sobol_indices");
     for (int f = 0; f < r->plan->factor_count; f++) {
         const sf_index *i = &a->index[figure][f];
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "factor", r->plan->factor[f].name);
         SF_JSON_NUMBERS(j, {"first", i->first}, {"first_low", i->first_low}, {"first_high", i->first_high},
                         {"total", i->total}, {"total_low", i->total_low}, {"total_high", i->total_high});
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
 }
 
 static void json_surface(sf_json *j, const sf_sweep_report *r, int figure) {
     const sf_sweep_surface *s = &r->analysis->surface[figure];
     const sf_quadratic *fit = &s->fit;
     char text[512];
-    sf_json_open(j, "response_surface", '{');
+    SF_JSON_OBJECT(j, "response_surface");
     sf_json_text(j, "problem", *fit->problem ? fit->problem : NULL);
     SF_JSON_NUMBERS(j, {"rows", (double)s->rows}, {"rms", fit->rms}, {"left_out_rms", fit->left_out_rms},
                     {"q2", fit->q2});
@@ -127,22 +121,18 @@ static void json_surface(sf_json *j, const sf_sweep_report *r, int figure) {
     int list[SF_SWEEP_FACTORS];
     sf_analysis_numbers(r->plan, list);
     for (int i = 0; i < fit->d && fit->terms > 0; i++) {
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "factor", r->plan->factor[list[i]].name);
         SF_JSON_NUMBERS(j, {"centre", fit->centre[i]}, {"half_range", fit->half[i]});
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
-    sf_json_open(j, "terms", '[');
+    sf_json_close(j);
+    SF_JSON_ARRAY(j, "terms");
     for (int t = 0; t < fit->terms; t++) {
         sf_analysis_term(r->analysis, fit, t, text, sizeof text);
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "term", text);
         sf_json_number(j, "coefficient", fit->c[t]);
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
-    sf_json_close(j, '}');
 }
 
 static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
@@ -150,10 +140,10 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
     char text[SF_SWEEP_OVERRIDE_SIZE];
     if (isnan(r->plan->figure[figure].limit) || q->cells == 0)
         return;
-    sf_json_open(j, "probability_below_limit", '[');
+    SF_JSON_ARRAY(j, "probability_below_limit");
     for (int64_t k = 0; k < q->cells; k++) {
         const sf_probability *c = &q->cell[figure * q->cells + k];
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         for (int f = 0; f < r->plan->factor_count; f++) {
             if (!sf_block_is_chosen(r->plan, r->plan->block_of[f]))
                 continue;
@@ -163,9 +153,7 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
         SF_JSON_NUMBERS(j, {"probability", c->share}, {"low", c->low}, {"high", c->high},
                         {"below", (double)c->below}, {"above", (double)c->above},
                         {"unknown", (double)c->unknown}, {"within_scatter", (double)c->within});
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
 }
 
 sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
@@ -183,7 +171,7 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     sf_sweep_views_json(&j, r->views);
     sf_json_open(&j, "figures", '[');
     for (int k = 0; k < r->plan->figure_count; k++) {
-        sf_json_open(&j, NULL, '{');
+        SF_JSON_OBJECT(&j, NULL);
         sf_json_text(&j, "figure", r->plan->figure[k].figure);
         sf_json_number(&j, "limit", r->plan->figure[k].limit);
         if (sf_plan_is_adaptive(r->plan))
@@ -194,10 +182,9 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
         json_effects(&j, r, k);
         json_indices(&j, r, k);
         json_surface(&j, r, k);
-        sf_json_close(&j, '}');
     }
-    sf_json_close(&j, ']');
-    sf_json_close(&j, '}');
+    sf_json_close(&j);
+    sf_json_close(&j);
     return sf_staging_close(file, "sweep.json", err);
 }
 
@@ -206,7 +193,7 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
 static void put_tiles(FILE *page, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
     char value[64], remark[96];
-    sf_html_tiles_begin(page);
+    SF_HTML_DIVISION(page, "tiles");
     snprintf(value, sizeof value, "%lld of %lld", a->done, r->plan->rows);
     snprintf(remark, sizeof remark, "%lld predicted, %lld failed, %lld open", a->predicted, a->failed,
              a->open);
@@ -228,7 +215,6 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
                      c->high, c->unknown);
         sf_html_tile(page, "plain", title, value, remark);
     }
-    sf_html_tiles_end(page);
 }
 
 static void put_factors(FILE *page, const sf_plan *p, const char *series) {

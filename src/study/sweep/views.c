@@ -164,14 +164,12 @@ void sf_sweep_views_put(FILE *page, const sf_runs *r, const sf_sweep_views *v) {
 }
 
 void sf_sweep_views_json(sf_json *j, const sf_sweep_views *v) {
-    sf_json_open(j, "views", '[');
+    SF_JSON_ARRAY(j, "views");
     for (int k = 0; k < v->count; k++) {
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_integer(j, "id", v->view[k].row + 1);
         sf_json_text(j, "reason", v->view[k].reason);
         sf_json_text(j, "folder", *v->view[k].folder ? v->view[k].folder : NULL);
         sf_json_text(j, "problem", *v->view[k].problem ? v->view[k].problem : NULL);
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
 }

@@ -74,7 +74,7 @@ static sf_status write_all(const sf_compression_job *job, const sf_compression_k
     SF_TRY(err->status);
     sf_json_open(&json, NULL, '{');
     kind->json(&json, fit, job->path);
-    sf_json_close(&json, '}');
+    sf_json_close(&json);
     SF_TRY(sf_staging_close(json.file, "fit.json", err));
     SF_TRY(write_material(output, kind, fit, config->name, config->thermal, err));
     return sf_staging_commit(output, err);

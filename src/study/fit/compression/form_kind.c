@@ -177,68 +177,61 @@ static void put_points(FILE *file, const void *place) {
 
 static void json_record(sf_json *json, const sf_cycle_record *r, const sf_cycle_result *c) {
     static const char *const branch[] = {"loading_rms", "unloading_rms"};
-    sf_json_open(json, NULL, '{');
+    SF_JSON_OBJECT(json, NULL);
     sf_json_text(json, "file", r->path);
     SF_JSON_NUMBERS(json, {"cycles", r->cycles}, {"fitted", r->fitted}, {"pauses", r->pauses});
     for (int b = 0; b < 2; b++) {
-        sf_json_open(json, branch[b], '[');
+        SF_JSON_ARRAY(json, branch[b]);
         for (int k = 0; k < r->cycles; k++)
             sf_json_number(json, NULL, c->rms[b][k]);
-        sf_json_close(json, ']');
     }
-    sf_json_close(json, '}');
 }
 
 static void json_cycles(sf_json *json, const sf_form_fit *fit) {
-    sf_json_open(json, "memory", '{');
+    SF_JSON_OBJECT(json, "memory");
     for (int k = 0; k < SF_CYCLE_MEMORY; k++) {
         char key[64];
         sf_json_number(json, sf_cycle_parameter(k)->name, fit->value[SF_PARAMETER_RELOAD + k]);
         snprintf(key, sizeof key, "%s_half_width", sf_cycle_parameter(k)->name);
         sf_json_number(json, key, fit->memory_width[k]);
     }
-    sf_json_open(json, "records", '[');
+    SF_JSON_ARRAY(json, "records");
     for (int k = 0; k < fit->config->record_count; k++)
         json_record(json, &fit->config->cycles[k], &fit->cycles[k]);
-    sf_json_close(json, ']');
-    sf_json_close(json, '}');
 }
 
 static void json_unknowns(sf_json *json, const sf_form_fit *fit) {
     const sf_form_request *r = &fit->config->form;
-    sf_json_open(json, "parameters", '[');
+    SF_JSON_ARRAY(json, "parameters");
     for (int k = 0; k < r->unknown_count; k++) {
         const sf_parameter_info *about = sf_parameter_get(r->unknown[k]);
-        sf_json_open(json, NULL, '{');
+        SF_JSON_OBJECT(json, NULL);
         sf_json_text(json, "name", about->name);
         sf_json_text(json, "unit", about->unit);
         SF_JSON_NUMBERS(json, {"value", fit->value[r->unknown[k]] / about->per_unit},
                         {"relative_error", fit->error[k]});
         sf_json_bool(json, "at_bound", fit->at_bound[k]);
         sf_json_bool(json, "determined", sf_form_fit_determines(fit, k));
-        sf_json_close(json, '}');
     }
-    sf_json_close(json, ']');
 }
 
 static void json_unloading(sf_json *json, const char *key, const sf_form_unloading *u) {
-    sf_json_open(json, key, '{');
+    SF_JSON_OBJECT(json, key);
     for (int k = 0; k < 3; k++)
         sf_json_number(json, unloading_names[k], u->fit.value[k]);
     sf_json_open(json, "at_bound", '[');
     for (int k = 0; k < 3; k++)
         if (u->fit.at_bound[k])
             sf_json_text(json, NULL, unloading_names[k]);
-    sf_json_close(json, ']');
+    sf_json_close(json);
     SF_JSON_NUMBERS(json, {"rms", u->fit.rms}, {"factor_rms", u->factor_rms});
-    sf_json_close(json, '}');
 }
 
 static void json_tests(sf_json *json, const sf_form_fit *fit, const char *key, int count,
                        const sf_compression_test *tests, const sf_form_test *fits) {
-    sf_json_open(json, key, '[');
+    SF_JSON_ARRAY(json, key);
     for (int k = 0; k < count; k++) {
-        sf_json_open(json, NULL, '{');
+        SF_JSON_OBJECT(json, NULL);
         sf_json_text(json, "file", tests[k].path);
         sf_json_number(json, "rate_1_s", tests[k].rate);
         sf_json_bool(json, "below_rate_reference", sf_form_fit_is_below_reference(fit, &tests[k]));
@@ -247,9 +240,7 @@ static void json_tests(sf_json *json, const sf_form_fit *fit, const char *key, i
                         {"unloading_rms", fits[k].unloading_rms},
                         {"returned_energy_measured", fits[k].returned_measured},
                         {"returned_energy_fitted", fits[k].returned_fitted});
-        sf_json_close(json, '}');
     }
-    sf_json_close(json, ']');
 }
 
 static void put_json(sf_json *json, const void *place, const char *path) {

@@ -484,14 +484,13 @@ static void put_json(sf_json *json, const void *place, const char *path) {
     sf_json_open(json, "terms", '[');
     for (int k = 0; k < f->request->terms; k++) {
         const sf_hyperfoam_term *t = &f->card.term[k];
-        sf_json_open(json, NULL, '{');
+        SF_JSON_OBJECT(json, NULL);
         SF_JSON_NUMBERS(json, {"mu_Pa", t->mu}, {"mu_relative_error", f->error[k][0]}, {"alpha", t->alpha},
                         {"alpha_error", f->error[k][1]}, {"nu", t->nu}, {"nu_error", f->error[k][2]});
         sf_json_bool(json, "alpha_at_bound", f->at_bound[k][1]);
         sf_json_bool(json, "nu_at_bound", f->at_bound[k][2]);
-        sf_json_close(json, '}');
     }
-    sf_json_close(json, ']');
+    sf_json_close(json);
     SF_JSON_NUMBERS(json, {"poisson_at_1_percent", f->poisson[0]},
                     {"poisson_at_largest_strain", f->poisson[1]}, {"stress_rms", f->stress_rms},
                     {"lateral_rms", f->lateral_rms});

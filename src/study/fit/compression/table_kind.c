@@ -394,9 +394,8 @@ static sf_status write_more(const sf_compression_job *job, const sf_staging *out
 static void json_candidate(sf_json *json, const char *name, const sf_candidate *c) {
     if (!c->tried)
         return;
-    sf_json_open(json, name, '{');
+    SF_JSON_OBJECT(json, name);
     SF_JSON_NUMBERS(json, {"parameters", c->parameters}, {"chi2", c->chi2}, {"bic", c->bic});
-    sf_json_close(json, '}');
 }
 
 static void json_choice(sf_json *json, const sf_compression_fit *fit) {
@@ -406,27 +405,25 @@ static void json_choice(sf_json *json, const sf_compression_fit *fit) {
     sf_json_open(json, "rate_models_tried", '{');
     for (int k = 0; k < SF_RATE_MODELS; k++)
         json_candidate(json, sf_rate_model_names[k], &fit->rate[k]);
-    sf_json_close(json, '}');
+    sf_json_close(json);
     sf_json_text(json, "densification", rules[fit->model.form.rule]);
     sf_json_open(json, "densifications_tried", '{');
     for (int k = 0; k < SF_RULES; k++)
         json_candidate(json, rules[k], &fit->rule[k]);
-    sf_json_close(json, '}');
+    sf_json_close(json);
     sf_json_number(json, "densification_start", fit->data.start);
 }
 
 static void json_estimates(sf_json *json, const sf_compression_fit *fit) {
-    sf_json_open(json, "parameters", '{');
+    SF_JSON_OBJECT(json, "parameters");
     for (const sf_estimate *e = fit->estimate; e < fit->estimate + SF_ESTIMATES; e++) {
         if (!e->present)
             continue;
-        sf_json_open(json, e->key, '{');
+        SF_JSON_OBJECT(json, e->key);
         SF_JSON_NUMBERS(json, {"value", e->value}, {"standard_error", e->error}, {"low", e->low},
                         {"high", e->high});
         sf_json_text(json, "note", *e->note ? e->note : NULL);
-        sf_json_close(json, '}');
     }
-    sf_json_close(json, '}');
 }
 
 static void put_json(sf_json *json, const void *place, const char *path) {

@@ -214,8 +214,7 @@ static void put_parameters(FILE *out, const sf_compression_fit *fit) {
     char columns[96];
     snprintf(columns, sizeof columns, "parameter|value|standard error|%g %% interval|note",
              100 * fit->data.config->confidence);
-    sf_html_block_begin(out);
-    sf_html_heading(out, "Parameters");
+    SF_HTML_BLOCK(out, "Parameters");
     sf_html_table table = sf_html_table_begin(out, "dense", columns);
     for (const sf_estimate *e = fit->estimate; e < fit->estimate + SF_ESTIMATES; e++) {
         sf_table_estimate shown = sf_table_estimate_of(e);
@@ -229,7 +228,6 @@ static void put_parameters(FILE *out, const sf_compression_fit *fit) {
         "where the curve bends within that range the slope at rest is steeper. The loading curve with its "
         "interval is in loading_curve.csv.",
         fit->data.config->modulus_range);
-    sf_html_block_end(out);
 }
 
 /* A table of the forms that were tried; false: none was. */
@@ -240,20 +238,18 @@ static bool put_candidates(FILE *out, const sf_candidate *c, int count, int chos
         lowest = c[k].tried ? fmin(lowest, c[k].bic) : lowest;
     if (isinf(lowest))
         return false;
-    sf_html_table table =
+    SF_HTML_TABLE table =
         sf_html_table_begin(out, "dense", "form|>parameters|>chi2|>BIC above the lowest|choice");
     for (int k = 0; k < count; k++)
         if (c[k].tried)
             sf_html_line(&table, phrase[k], "%d|%.6g|%.1f|%s", c[k].parameters, c[k].chi2, c[k].bic - lowest,
                          k == chosen ? "chosen" : "");
-    sf_html_table_end(&table);
     return true;
 }
 
 static void put_choice(FILE *out, const sf_compression_fit *fit) {
     int rate = (int)fit->model.form.rate, rule = (int)fit->model.form.rule;
-    sf_html_block_begin(out);
-    sf_html_heading(out, "Choice of the law");
+    SF_HTML_BLOCK(out, "Choice of the law");
     sf_html_paragraph(out, "Rate dependence: %s.", sf_table_rate_words(fit));
     if (!put_candidates(out, fit->rate, SF_RATE_MODELS, rate, rates) && !fit->data.config->thermal)
         sf_html_paragraph(out, fit->data.config->test_count > 1 ? "It was prescribed."
@@ -265,15 +261,13 @@ static void put_choice(FILE *out, const sf_compression_fit *fit) {
     sf_html_note(
         out, "BIC = n ln(chi2/n) + p ln n; a form that is 10 above the lowest has the data clearly against "
              "it, one within 2 is as good.");
-    sf_html_block_end(out);
 }
 
 static void put_quality(FILE *out, const sf_table_result *r) {
     const sf_compression_fit *fit = &r->fit;
     char misfit[160];
-    sf_html_block_begin(out);
-    sf_html_heading(out, "How good it is");
-    sf_html_table table = sf_html_table_begin(out, "dense", NULL);
+    SF_HTML_BLOCK(out, "How good it is");
+    SF_HTML_TABLE table = sf_html_table_begin(out, "dense", NULL);
     sf_html_fact(&table, "scatter",
                  "%.3g kPa and %.3g %% of the stress, of the data about a free smooth curve",
                  1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative);
@@ -287,15 +281,12 @@ static void put_quality(FILE *out, const sf_table_result *r) {
         fit->side[0].correlation, fit->side[0].serial);
     sf_html_fact(&table, "written card", "in the solver's own law it differs from the fit by at most %.2g %%",
                  r->card_percent);
-    sf_html_table_end(&table);
-    sf_html_block_end(out);
 }
 
 static void put_simulation(FILE *out, const sf_table_result *r) {
     if (!r->simulated)
         return;
-    sf_html_block_begin(out);
-    sf_html_heading(out, "The simulated test");
+    SF_HTML_BLOCK(out, "The simulated test");
     sf_rows_html_table(out, "dense", sf_table_simulation_rows,
                        (sf_records){r->test, sizeof r->test[0], r->test_count});
     sf_html_note(
@@ -304,15 +295,13 @@ static void put_simulation(FILE *out, const sf_table_result *r) {
         "everything that depends on the rate, against the material point of the fit; means over blocks "
         "of time. Differences in percent of the stress, counted as a hundredth of the largest at least. "
         "simulation.csv holds the curves.");
-    sf_html_block_end(out);
 }
 
 static void put_limits(FILE *out, const sf_compression_fit *fit) {
     const sf_compression_config *c = fit->data.config;
     const sf_estimate *e = fit->estimate;
     double fastest = c->test[c->test_count - 1].rate;
-    sf_html_block_begin(out);
-    sf_html_heading(out, "Extrapolation");
+    SF_HTML_BLOCK(out, "Extrapolation");
     sf_html_paragraph(
         out,
         "Strains beyond %.4g: the densification law extrapolates the last part of the data. Compare "
@@ -343,7 +332,6 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
     if (!isfinite(e[SF_ESTIMATE_HU].error))
         sf_html_paragraph(out, "HU = %.4g and SHAPE = %.4g: %s.", e[SF_ESTIMATE_HU].value,
                           e[SF_ESTIMATE_SHAPE].value, e[SF_ESTIMATE_HU].note);
-    sf_html_block_end(out);
 }
 
 sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging *output,

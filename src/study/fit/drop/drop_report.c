@@ -352,11 +352,11 @@ static void json_kind(sf_json *j, const sf_drop_fit *fit, int d, int kind) {
 }
 
 static void json_drops(sf_json *j, const sf_drop_fit *fit) {
-    sf_json_open(j, "drops", '[');
+    SF_JSON_ARRAY(j, "drops");
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
         const sf_fit_simulated *simulated = &fit->simulated[d];
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "name", drop->name);
         sf_json_bool(j, "used", !drop->predicted);
         if (drop->number > 0)
@@ -370,9 +370,7 @@ static void json_drops(sf_json *j, const sf_drop_fit *fit) {
         sf_json_text(j, "verdict", simulated->verdict);
         if (*simulated->failure)
             sf_json_text(j, "failure", simulated->failure);
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
 }
 
 static void json_joint(sf_json *j, const sf_drop_fit *fit) {
@@ -381,26 +379,23 @@ static void json_joint(sf_json *j, const sf_drop_fit *fit) {
     sf_json_open(j, "compressions", '[');
     for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
         const sf_joint_test *test = &joint->test[t];
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "name", test->name);
         sf_json_text(j, "understood", test->interpretation);
         sf_json_number(j, "rate_1_s", test->rate);
         sf_json_bool(j, "below_rate_reference", is_below_reference(fit, test));
         SF_JSON_NUMBERS(j, {"points", test->count}, {"loading_rms", sf_joint_rms(test, false, y)},
                         {"unloading_rms", sf_joint_rms(test, true, y)});
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
-    sf_json_open(j, "cushions", '[');
+    sf_json_close(j);
+    SF_JSON_ARRAY(j, "cushions");
     for (int c = 0; c < joint->cushion_count; c++)
         for (int k = 0; k < joint->cushion[c].count; k++) {
-            sf_json_open(j, NULL, '{');
+            SF_JSON_OBJECT(j, NULL);
             sf_json_text(j, "name", joint->cushion[c].name);
             SF_JSON_NUMBERS(j, {"static_stress_Pa", joint->cushion[c].static_stress[k]},
                             {"peak_measured_g", joint->cushion[c].peak_g[k]}, {"peak_g", exp(*y++)});
-            sf_json_close(j, '}');
         }
-    sf_json_close(j, ']');
 }
 
 static void json_parameters(sf_json *j, const sf_drop_fit *fit) {
@@ -408,23 +403,20 @@ static void json_parameters(sf_json *j, const sf_drop_fit *fit) {
     sf_json_open(j, "parameters", '[');
     for (int k = 0; k < in->unknown_count; k++) {
         sf_estimate_shown e = sf_drop_estimate(fit, k);
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "name", e.about->name);
         SF_JSON_NUMBERS(j, {"value_SI", e.value * e.per_unit}, {"low95_SI", e.low * e.per_unit},
                         {"high95_SI", e.high * e.per_unit}, {"prior_SI", in->prior[k]},
                         {"prior_sd_of_logarithm", in->prior_sd[k]},
                         {"sd_of_logarithm", sqrt(fit->result.covariance[k][k])});
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
-    sf_json_open(j, "covariance_of_logarithms", '[');
+    sf_json_close(j);
+    SF_JSON_ARRAY(j, "covariance_of_logarithms");
     for (int k = 0; k < in->unknown_count; k++) {
-        sf_json_open(j, NULL, '[');
+        SF_JSON_ARRAY(j, NULL);
         for (int i = 0; i < in->unknown_count; i++)
             sf_json_number(j, NULL, fit->result.covariance[k][i]);
-        sf_json_close(j, ']');
     }
-    sf_json_close(j, ']');
 }
 
 static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
@@ -447,7 +439,7 @@ static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *avera
     json_drops(&j, fit);
     if (average)
         sf_inference_json(&j, average, err);
-    sf_json_close(&j, '}');
+    sf_json_close(&j);
     fputc('\n', f);
     return sf_staging_close(f, "fit.json", err);
 }

@@ -257,39 +257,35 @@ static void json_quantiles(sf_json *j, const double *value) {
 }
 
 static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_error *err) {
-    sf_json_open(j, "parameters", '[');
+    SF_JSON_ARRAY(j, "parameters");
     for (int k = 0; k < in->parameters; k++) {
         double value[3];
         SF_TRY(find_parameter(in, k, value, err));
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "name", sf_drop_inference_name(in, k));
         sf_json_text(j, "unit", "SI");
         json_quantiles(j, value);
         SF_JSON_NUMBERS(j, {"rhat", in->chains.rhat[k]}, {"effective_sample_size", in->chains.effective[k]});
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
     return SF_OK;
 }
 
 /* Predicted drops without a figure of a simulation, with the reason. */
 static void json_failed_drops(sf_json *j, const sf_drop_fit *fit) {
-    sf_json_open(j, "failed_predictions", '[');
+    SF_JSON_ARRAY(j, "failed_predictions");
     for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
         if (*fit->simulated[d].failure) {
-            sf_json_open(j, NULL, '{');
+            SF_JSON_OBJECT(j, NULL);
             sf_json_text(j, "drop", fit->input->drop[d].name);
             sf_json_text(j, "failure", fit->simulated[d].failure);
-            sf_json_close(j, '}');
         }
-    sf_json_close(j, ']');
 }
 
 static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_error *err) {
     const sf_drop_inference *in = a->model[m];
     double rhat, effective;
     find_worst(&in->chains, &rhat, &effective);
-    sf_json_open(j, NULL, '{');
+    SF_JSON_OBJECT(j, NULL);
     sf_json_text(j, "model", label_of(a, m));
     SF_JSON_NUMBERS(j, {"weight", a->weight[m]}, {"weight_by_evidence", a->evidence_weight[m]},
                     {"log_predictive_density", a->predictive[m]}, {"log_evidence", in->evidence.log_value},
@@ -303,19 +299,17 @@ static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_erro
     sf_json_integer(j, "evaluations", in->chains.evaluations);
     sf_json_open(j, "left_out", '[');
     for (int d = 0; d < in->fit->measured_drops && !a->by_evidence; d++) {
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "drop", in->fit->input->drop[d].name);
         SF_JSON_NUMBERS(j, {"log_density", in->left_out[d].log_density},
                         {"pareto_k", in->left_out[d].pareto_k});
         sf_json_bool(j, "by_chains", in->left_out[d].sampled);
         sf_json_bool(j, "by_draws", in->left_out[d].drawn);
         sf_json_bool(j, "reached", in->left_out[d].converged);
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
+    sf_json_close(j);
     json_failed_drops(j, in->fit);
     json_parameters(j, in, err);
-    sf_json_close(j, '}');
     return err->status;
 }
 
@@ -324,18 +318,17 @@ static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf
     const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
     double value[3];
     SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err));
-    sf_json_open(j, NULL, '{');
+    SF_JSON_OBJECT(j, NULL);
     sf_json_text(j, "drop", drop_of(in, q));
     sf_json_text(j, "quantity", about->key);
     json_quantiles(j, value);
     sf_json_text(j, "open", isnan(value[1]) ? NULL : isinf(value[2]) ? "above" : "no");
     sf_json_number(j, "share_of_draws_without_value", sf_drop_average_missing(a, q));
-    sf_json_close(j, '}');
     return SF_OK;
 }
 
 sf_status sf_inference_json(sf_json *j, const sf_drop_average *a, sf_error *err) {
-    sf_json_open(j, "inference", '{');
+    SF_JSON_OBJECT(j, "inference");
     sf_json_integer(j, "seed", (int64_t)a->seed);
     sf_json_bool(j, "criteria_reached", sf_drop_average_reached(a));
     sf_json_text(j, "weights_by", a->by_evidence ? "evidence" : "leave-one-out predictive density");
@@ -343,18 +336,15 @@ sf_status sf_inference_json(sf_json *j, const sf_drop_average *a, sf_error *err)
     for (int m = 0; m < a->models && err->status == SF_OK; m++)
         json_model(j, a, m, err);
     for (int m = 0; m < a->failed; m++) {
-        sf_json_open(j, NULL, '{');
+        SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "model", a->failure[m].label);
         sf_json_number(j, "weight", 0);
         sf_json_text(j, "failure", a->failure[m].sentence);
-        sf_json_close(j, '}');
     }
-    sf_json_close(j, ']');
-    sf_json_open(j, "predictions", '[');
+    sf_json_close(j);
+    SF_JSON_ARRAY(j, "predictions");
     for (int q = 0; q < a->model[0]->quantities && err->status == SF_OK; q++)
         json_prediction(j, a, q, err);
-    sf_json_close(j, ']');
-    sf_json_close(j, '}');
     return err->status;
 }
 
