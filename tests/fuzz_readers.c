@@ -13,7 +13,7 @@
 #include "post/figures/figures.h"
 #include "post/results/results.h"
 #include "case/case.h"
-#include "case/curves.h"
+#include "case/reader.h"
 #include "pre/mesh/geo_parameters.h"
 #include "pre/mesh/gmsh_session.h"
 #include "pre/mesh/mesher.h"

@@ -4,7 +4,7 @@
 #include "case_fixture.h"
 #include "material/foam_card.h"
 
-#include "case/curves.h"
+#include "case/reader.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

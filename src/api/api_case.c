@@ -51,7 +51,7 @@ static void keep_texts(softfall_case *c, const sf_build_report *report, softfall
     m->mesh_hash = strdup(report->mesh_hash);
     m->geometry_files = strdup(c->data.geometry_files);
     if (!m->case_text || !m->parameters || !m->mesh_hash || !m->geometry_files)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the texts of the case");
+        SF_NO_MEMORY(err, "the texts of the case");
 }
 
 softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink, softfall_model **out,
@@ -62,7 +62,7 @@ softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink
     const sf_sink inner = listen(sink, &copy);
     *out = NULL;
     if (c->used_up) {
-        SF_FAIL(&err, SF_ERR_INPUT, "the case %s has been built already: read it again", c->data.path);
+        SF_REFUSE(&err, "the case %s has been built already: read it again", c->data.path);
         return softfall_return(&err, error);
     }
     softfall_model *m = softfall_new(&err, sizeof *m, "a model");

@@ -85,8 +85,8 @@ static sf_status create(const sf_model *model, int threads, const softfall_drop 
     list_quantities(d);
     int usual = enter(d);
     if (d->model.series_count > 1)
-        SF_FAIL(
-            err, SF_ERR_INPUT,
+        SF_REFUSE(
+            err,
             "the model is a series of %lld drops; the library solves one after another: make the model of the "
             "case with series.drops = 1, and its later drops with softfall_drop_next",
             (long long)d->model.series_count);
@@ -120,10 +120,10 @@ softfall_status softfall_drop_next(const softfall_drop *before, double pause, so
     sf_error err = SF_ERROR_INIT;
     *out = NULL;
     if (!(pause > 0) || !isfinite(pause))
-        SF_FAIL(&err, SF_ERR_INPUT, "pause: %g s is not above 0", pause);
+        SF_REFUSE(&err, "pause: %g s is not above 0", pause);
     else if (before->ending == SOFTFALL_RUNNING || before->failure.status != SF_OK ||
              before->state.contact_count > 0)
-        SF_FAIL(&err, SF_ERR_INPUT, "the drop before has not ended, or its missile still touches the pad");
+        SF_REFUSE(&err, "the drop before has not ended, or its missile still touches the pad");
     else
         create(&before->undeformed, before->threads, before, pause, out, &err);
     return softfall_return(&err, error);
@@ -322,11 +322,7 @@ static sf_status check_filter(double filter, sf_error *err) {
     return SF_REFUSE(err, "filter: %g; the channel frequency classes are 60, 180, 600 and 1000", filter);
 }
 
-/* True if the library offers the figure: a number of sf_figures. */
-static bool is_offered(const sf_figure *figure) {
-    return !figure->fact && figure->row.type != SF_ROW_TEXT;
-}
-
+/* The library offers the figures that are numbers of sf_figures. */
 static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
     size_t count;
     const sf_figure *list = sf_figure_list(&count);
@@ -335,7 +331,7 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
     SF_TRY(sf_figures_compute(results, filter, &f, err));
     softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
     for (size_t k = 0; made && k < count; k++)
-        if (is_offered(&list[k])) {
+        if (!list[k].fact && list[k].row.type != SF_ROW_TEXT) {
             made->figure[made->count] = (softfall_quantity){list[k].row.key, "", list[k].row.meaning, 1};
             made->value[made->count++] = sf_row_number(&list[k].row, &f);
         }
@@ -414,8 +410,7 @@ softfall_status softfall_figure(const softfall_figures *figures, const char *key
     if (k < figures->count)
         *value = figures->value[k];
     else
-        SF_FAIL(&err, SF_ERR_INPUT, "there is no figure \"%.80s\"; softfall_figures_list has their keys",
-                key);
+        SF_REFUSE(&err, "there is no figure \"%.80s\"; softfall_figures_list has their keys", key);
     return softfall_return(&err, error);
 }
 
@@ -431,7 +426,7 @@ softfall_status softfall_hic(const double *time, const double *deceleration, int
     const sf_series curve = borrow(time, deceleration, count);
     sf_hic found = {0};
     if (!(window > 0))
-        SF_FAIL(&err, SF_ERR_INPUT, "window: %g s is not above 0", window);
+        SF_REFUSE(&err, "window: %g s is not above 0", window);
     else if (sf_series_check(&curve, "the deceleration", &err) == SF_OK)
         sf_hic_evaluate(&curve, window, &found, &err);
     *hic = err.status == SF_OK ? found.value : NAN;

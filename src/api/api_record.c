@@ -78,7 +78,7 @@ static sf_status take_options(settings *s, const char *const *options, int count
             return SF_REFUSE(err, "a record has at most %d options", s->count);
         char *text = s->texts[s->count++] = strdup(options[k]), *value = text ? strchr(text, '=') : NULL;
         if (!text)
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the options of a record");
+            return SF_NO_MEMORY(err, "the options of a record");
         if (value)
             *value++ = '\0';
         take_option(&s->options, text, value ? value : "", err);
@@ -148,6 +148,6 @@ softfall_status softfall_record_figure(const softfall_record *r, const char *key
             *value = figures[k].factor * *(const double *)((const char *)&r->injury + figures[k].place);
             return softfall_return(&err, error);
         }
-    SF_FAIL(&err, SF_ERR_INPUT, "a record has no figure \"%.80s\"", key);
+    SF_REFUSE(&err, "a record has no figure \"%.80s\"", key);
     return softfall_return(&err, error);
 }

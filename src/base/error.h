@@ -38,6 +38,9 @@ typedef struct sf_error {
 /* Refuses what the user gave. */
 #define SF_REFUSE(err, ...) SF_FAIL(err, SF_ERR_INPUT, __VA_ARGS__)
 
+/* Records that there is no memory for what the format names: SF_NO_MEMORY(err, "the path %s", path). */
+#define SF_NO_MEMORY(err, ...) SF_FAIL(err, SF_ERR_MEMORY, "out of memory for " __VA_ARGS__)
+
 /* Leaves the function with the status of `call` unless that is SF_OK. Where something must be released, let
  * its variable be SF_OWNED, chain the calls in one condition, or use `goto done`. */
 #define SF_TRY(call)                                                                                         \

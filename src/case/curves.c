@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/curves.h"
+#include "case/reader.h"
 
 #include <gsl/gsl_sort.h>
 #include <stdlib.h>
@@ -112,7 +112,7 @@ static sf_status add_curve(sf_law_curves *card, double rate, const sf_case_curve
         }
     }
     if (!room)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the curves of a material");
+        return SF_NO_MEMORY(err, "the curves of a material");
     card->curve_rate[k] = rate;
     card->curve_ptr[0] = 0;
     card->curve_ptr[++card->curve_count] = card->curve_points;
@@ -277,11 +277,6 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
     return err->status;
 }
 
-static void describe(const sf_law_curves *card, char *detail, size_t size) {
-    snprintf(detail, size, "%lld point%s, strain to %g", (long long)card->curve_points,
-             card->curve_points == 1 ? "" : "s", card->curve_strain[card->curve_points - 1]);
-}
-
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err) {
     if (sf_material_curves(reader->material)->curve_count > 0)
@@ -309,7 +304,9 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
         if (thermal)
             SF_TRY(take_temperature(reader, setting, err));
     }
-    describe(sf_material_curves(reader->material), detail, size);
+    const sf_law_curves *card = sf_material_curves(reader->material);
+    snprintf(detail, size, "%lld point%s, strain to %g", (long long)card->curve_points,
+             card->curve_points == 1 ? "" : "s", card->curve_strain[card->curve_points - 1]);
     return SF_OK;
 }
 

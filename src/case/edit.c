@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 static sf_status no_memory(sf_error *err) {
-    return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of a case");
+    return SF_NO_MEMORY(err, "the text of a case");
 }
 
 /* ---- settings ---- */

@@ -154,19 +154,6 @@ static void pass_comment(cursor *c) {
 
 /* ---- a line ---- */
 
-static sf_status count_word(cursor *c) {
-    if (++c->scan->words > MOST_WORDS)
-        return REFUSE(c, "more than %d names and values: nobody writes such a file", MOST_WORDS);
-    return SF_OK;
-}
-
-static sf_status read_bracket(cursor *c) {
-    c->scan->depth += strchr("{([", *c->at++) ? 1 : -1;
-    if (c->scan->depth > DEEPEST)
-        return REFUSE(c, "brackets are nested more than %d deep", DEEPEST);
-    return SF_OK;
-}
-
 static sf_status read_item(cursor *c) {
     if (begins(c, "#") || begins(c, "//")) {
         c->scan->comments++;
@@ -178,10 +165,13 @@ static sf_status read_item(cursor *c) {
         c->at += 2;
         pass_comment(c);
     } else if (*c->at == '"' || is_word(*c->at)) {
-        SF_TRY(count_word(c));
+        if (++c->scan->words > MOST_WORDS)
+            return REFUSE(c, "more than %d names and values: nobody writes such a file", MOST_WORDS);
         return *c->at == '"' ? read_string(c) : read_word(c);
     } else if (strchr("{([])}", *c->at)) {
-        return read_bracket(c);
+        c->scan->depth += strchr("{([", *c->at++) ? 1 : -1;
+        if (c->scan->depth > DEEPEST)
+            return REFUSE(c, "brackets are nested more than %d deep", DEEPEST);
     } else if (*c->at == '@') {
         return REFUSE(c, "%s", "what begins with @ is not @include \"FILE\" at the beginning of a line");
     } else {
@@ -259,7 +249,7 @@ char *sf_case_folder_of(const char *path, sf_error *err) {
     const char *slash = strrchr(path, '/');
     char *folder = !slash ? strdup(".") : slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
     if (!folder)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+        SF_NO_MEMORY(err, "the path %s", path);
     return folder;
 }
 
@@ -300,7 +290,7 @@ typedef struct walk {
 } walk;
 
 static sf_status no_memory(const char *path, sf_error *err) {
-    return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case file %s", path);
+    return SF_NO_MEMORY(err, "the case file %s", path);
 }
 
 /* The next line of the text is line `line` of the file. */

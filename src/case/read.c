@@ -450,7 +450,7 @@ static sf_status begin_reading(sf_case_reader *reader, int count, const char *co
     reader->listing = open_memstream(&c->parameters, &reader->listing_size);
     c->path = strdup(reader->path);
     if (!reader->listing || !c->path || asprintf(&material, "material=@%s", reader->path) < 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the case %s", reader->path);
+        return SF_NO_MEMORY(err, "the case %s", reader->path);
     if (sf_units_open(&reader->units, err) == SF_OK && reader->material_only) {
         if (sf_case_override(&reader->config, material, err) == SF_OK && choose_law(reader, err) == SF_OK)
             check_names(reader, config_root_setting(&reader->config), "", err);

@@ -33,7 +33,7 @@ char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *sett
     if (folder && asprintf(&out, "%s%s%s", below ? folder : "", below ? "/" : "", path) < 0)
         out = NULL;
     if (!out)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+        SF_NO_MEMORY(err, "the path %s", path);
     return out;
 }
 
@@ -256,7 +256,7 @@ sf_status sf_case_take_drop(sf_case_reader *reader, int drop, sf_error *err) {
             continue;
         config_setting_remove(missile, name);
         if (!copy_setting(own, missile, name, &source))
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the drops of a series");
+            return SF_NO_MEMORY(err, "the drops of a series");
     }
     return SF_OK;
 }

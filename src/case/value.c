@@ -5,7 +5,7 @@
 #include <stdarg.h>
 
 #include "base/text.h"
-#include "case/curves.h"
+#include "case/reader.h"
 #include "io/plain_file.h"
 
 /* Reads one value of each kind of sf_key_kind into the case. */

@@ -162,18 +162,14 @@ sf_status sf_programs_post(sf_child *child, const sf_run_folder *at, FILE *log, 
 
 static sf_status find(char *path, size_t size, sf_error *err) {
     const char *given = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-    int length = 0;
-    if (given && *given == '/')
-        length = snprintf(path, size, "%s", given);
-    else if (home && *home == '/')
-        length = snprintf(path, size, "%s/.cache", home);
-    else
+    bool cache = given && *given == '/';
+    if (!cache && !(home && *home == '/'))
         return SF_FAIL(err, SF_ERR_IO,
                        "there is no place for runs: neither XDG_CACHE_HOME nor HOME names a folder");
+    SF_TRY(sf_path_print(path, size, err, cache ? "%s" : "%s/.cache", cache ? given : home));
     mkdir(path, 0700); /* a folder of the user's programs, not of softfall alone: without its mark */
-    if (length >= (int)size ||
-        (size_t)snprintf(path + length, size - (size_t)length, "/softfall") >= size - (size_t)length)
-        return SF_FAIL(err, SF_ERR_IO, "the name of the folder for runs is too long: %.100s...", path);
+    SF_TRY(
+        sf_path_print(path, size, err, cache ? "%s/softfall" : "%s/.cache/softfall", cache ? given : home));
     return sf_folder_own(path, err);
 }
 

@@ -303,8 +303,8 @@ static sf_status check_names(const sf_fields *fields, sf_error *err) {
             const sf_field *f = &fields->field[k], *g = &fields->field[j];
             bool same = f->in_case && g->in_case && strcmp(f->given, g->given) == 0;
             if (g->of_geometry && !same && strcmp(f->name, g->name) == 0 && !is_same_group(f, g))
-                return SF_FAIL(
-                    err, SF_ERR_INPUT,
+                return SF_REFUSE(
+                    err,
                     "%s and %s have one Name, \"%s\": the window cannot tell them apart; give them "
                     "different ones in the geometry files, or one value in the case",
                     g->key, f->key, f->name);
@@ -320,12 +320,11 @@ sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_err
         if (strcmp(f->now, f->given) == 0)
             continue;
         if (out->count == SF_FIELD_OVERRIDES)
-            return SF_FAIL(err, SF_ERR_INPUT,
-                           "more than %d values differ from the case: save it, and go on from there",
-                           SF_FIELD_OVERRIDES);
+            return SF_REFUSE(err, "more than %d values differ from the case: save it, and go on from there",
+                             SF_FIELD_OVERRIDES);
         if (asprintf(&out->text[out->count], "%s=%s%s", f->key, strcmp(f->key, "material") == 0 ? "@" : "",
                      f->now) < 0)
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the values of the window");
+            return SF_NO_MEMORY(err, "the values of the window");
         out->count++;
     }
     return SF_OK;

@@ -15,7 +15,7 @@ static sf_status wrap(hid_t id, const char *path, bool alone, sf_h5 **file, sf_e
     if (!made || !(made->path = strdup(path))) {
         free(made);
         H5Fclose(id);
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory opening %s", path);
+        return SF_NO_MEMORY(err, "%s", path);
     }
     made->id = id;
     made->alone = alone;

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <linux/magic.h>
 #include <pthread.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -41,7 +42,7 @@ static sf_status enter(const char *path, const struct stat *info, const uint64_t
     pthread_mutex_lock(&list.lock);
     bool done = append(record);
     pthread_mutex_unlock(&list.lock);
-    return done ? SF_OK : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+    return done ? SF_OK : SF_NO_MEMORY(err, "the path %s", path);
 }
 
 size_t sf_plain_count(void) {
@@ -192,7 +193,7 @@ static sf_status refuse_size(const reading *r, sf_error *err) {
 static sf_status make_room(reading *r, size_t room, sf_error *err) {
     char *grown = realloc(r->text, room + 1);
     if (!grown)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for " NAMED, NAME(r->what, r->path));
+        return SF_NO_MEMORY(err, "" NAMED, NAME(r->what, r->path));
     r->text = grown;
     r->room = room;
     return SF_OK;
@@ -331,7 +332,7 @@ sf_status sf_plain_hash_kept(const char *path, uint64_t *hash, sf_error *err) {
 }
 
 static char *no_memory(const char *path, sf_error *err) {
-    SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %.200s", path);
+    SF_NO_MEMORY(err, "the path %.200s", path);
     return NULL;
 }
 
@@ -344,6 +345,14 @@ const char *sf_path_split(const char *path, char folder[PATH_MAX]) {
     const char *slash = strrchr(path, '/');
     snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
     return slash ? slash + 1 : path;
+}
+
+sf_status sf_path_print(char *path, size_t size, sf_error *err, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    bool fits = (size_t)vsnprintf(path, size, format, arguments) < size;
+    va_end(arguments);
+    return fits ? SF_OK : SF_REFUSE(err, "the path %.200s... is longer than %zu bytes", path, size - 1);
 }
 
 const char *sf_path_name(const char *path) {

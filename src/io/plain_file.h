@@ -64,6 +64,10 @@ void sf_plain_clear(void);
 
 /* Paths as texts: nothing is looked up but the working directory, and links are not followed. */
 
+/* Writes a path into a buffer of `size` bytes; refuses one that has no room there. */
+sf_status sf_path_print(char *path, size_t size, sf_error *err, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
 /* Returns the absolute path without ".", ".." and double slashes; a relative path begins at `folder`
  * (NULL: the working directory). From malloc, NULL on failure. */
 char *sf_path_whole(const char *folder, const char *path, sf_error *err);

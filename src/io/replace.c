@@ -285,7 +285,7 @@ sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err)
     FILE *file = fdopen(handle, "rb");
     if (!file) {
         close(handle);
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory to read %s", path);
+        return SF_NO_MEMORY(err, "%s", path);
     }
     errno = 0;
     *state = examine(file);

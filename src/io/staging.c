@@ -2,12 +2,12 @@
 #include "io/staging.h"
 
 #include "io/folder.h"
+#include "io/plain_file.h"
 #include "io/replace.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +22,7 @@
 static char *join(const char *directory, const char *name, sf_error *err) {
     char *path = NULL;
     if (asprintf(&path, "%s/%s", directory, name) < 0) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path of %s", name);
+        SF_NO_MEMORY(err, "the path of %s", name);
         return NULL;
     }
     return path;
@@ -47,7 +47,7 @@ sf_status sf_staging_check(const char *directory, const char *const *names, bool
         return S_ISDIR(info.st_mode) ? check_files(directory, names, force, err)
                                      : SF_REFUSE(err, "%s exists and is not a directory", directory);
     if (errno != ENOENT || lstat(directory, &info) == 0)
-        return SF_REFUSE(err, "the directory %s cannot be made: %s", directory, strerror(errno));
+        return SF_REFUSE(err, "the folder %s cannot be made: %s", directory, strerror(errno));
     return sf_replace_check_folder(directory, err);
 }
 
@@ -97,7 +97,7 @@ sf_status sf_staging_begin(const char *directory, const char *const *names, bool
     *output = (sf_staging){.names = names};
     output->directory = strdup(directory);
     if (!output->directory)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", directory);
+        return SF_NO_MEMORY(err, "the path %s", directory);
     if (make_directory(output, force, err) == SF_OK) {
         remove_stale(directory);
         snprintf(name, sizeof name, STAGING "%d-XXXXXX", (int)getpid());
@@ -215,7 +215,7 @@ sf_status sf_tree_begin(const char *path, sf_tree *tree, sf_error *err) {
     if (!tree->path ||
         asprintf(&tree->aside, "%s%s.partial-XXXXXX", tree->path, tree->there ? "/" : "") < 0) {
         tree->aside = NULL;
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+        return SF_NO_MEMORY(err, "the path %s", path);
     }
     if (!mkdtemp(tree->aside)) {
         SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", path, strerror(errno));
@@ -228,9 +228,7 @@ sf_status sf_tree_begin(const char *path, sf_tree *tree, sf_error *err) {
 }
 
 static sf_status path_in(const char *folder, const char *name, char path[PATH_MAX], sf_error *err) {
-    if (snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX)
-        return SF_OK;
-    return SF_REFUSE(err, "the path of %.200s is longer than %d characters", name, PATH_MAX - 1);
+    return sf_path_print(path, PATH_MAX, err, "%s/%s", folder, name);
 }
 
 static bool is_made(const sf_tree *tree, const char *name) {
@@ -244,7 +242,7 @@ static bool is_made(const sf_tree *tree, const char *name) {
 static sf_status note(sf_tree *tree, const char *name, size_t length, sf_error *err) {
     char *copy = sf_grow(&tree->made, (size_t)tree->count, sizeof *tree->made) ? strndup(name, length) : NULL;
     if (!copy)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of %s", tree->path);
+        return SF_NO_MEMORY(err, "the files of %s", tree->path);
     tree->made[tree->count++] = copy;
     return SF_OK;
 }

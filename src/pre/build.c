@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/build.h"
-#include "pre/free_faces.h"
 
 #include "base/mat3.h"
 #include "model/stability.h"
-#include "pre/rigid_support.h"
-#include "pre/mesh/missile_shape.h"
 #include <stdlib.h>
 
 static const double CLEAR =
@@ -55,7 +52,7 @@ static void append(void *array, int64_t used, void **more, int64_t count, size_t
     memcpy(&old, array, sizeof old);
     void *all = old ? realloc(old, (size_t)(used + count) * size) : *more;
     if (!all) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a layer of %lld items", (long long)count);
+        SF_NO_MEMORY(err, "a layer of %lld items", (long long)count);
         return;
     }
     memcpy(array, &all, sizeof all);

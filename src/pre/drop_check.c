@@ -4,7 +4,6 @@
 #include "base/mat3.h"
 #include "base/sets.h"
 #include "model/flight.h"
-#include "pre/mesh/missile_shape.h"
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
 static const double EARLY = 0.1; /* steps of depth before that */

@@ -2,9 +2,6 @@
 #include "pre/steps.h"
 
 #include "base/mat3.h"
-#include "pre/mesh/missile_shape.h"
-#include "pre/free_faces.h"
-#include "pre/rigid_support.h"
 #include <stdlib.h>
 
 enum { MOST_RAYS = 200, MOST_HITS = 256 };

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/free_faces.h"
+#include "pre/steps.h"
 
 #include <stdlib.h>
 
 #include "base/grid.h"
 #include "base/mat3.h"
 #include "model/cells.h"
-#include "pre/mesh/missile_shape.h"
 
 /* ---- the pad's surface ---- */
 

@@ -294,7 +294,7 @@ static sf_status find_motions(holder *h, sf_hold *hold, sf_error *err) {
     gsl_vector *value = gsl_vector_alloc(size);
     gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(size);
     if (!h->sum || !h->row_count || !vector || !value || !work) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the rigid motions of the pad");
+        SF_NO_MEMORY(err, "the rigid motions of the pad");
     } else {
         find_box(h->model, h->middle, &h->size);
         add_rows(h, hold);

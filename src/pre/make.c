@@ -4,7 +4,6 @@
 #include "base/mat3.h"
 #include "io/h5.h"
 #include "pre/mesh/gmsh_session.h"
-#include "pre/rigid_support.h"
 #include <stdlib.h>
 
 /* The pad of the open geometry. */
@@ -71,7 +70,7 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
     free(c->geometry_files);
     c->geometry_files = NULL;
     if (err->status == SF_OK && !(c->geometry_files = strdup(session->files)))
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
+        SF_NO_MEMORY(err, "the files of a geometry");
     if (session)
         snprintf(libraries, SF_LIBRARIES_SIZE, "gmsh %s, HDF5 %s", session->version, sf_h5_version());
     sf_gmsh_end(&session);

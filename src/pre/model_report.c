@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/build.h"
-#include "pre/mesh/missile_shape.h"
 
 #include "base/mat3.h"
 #include "model/flight.h"
@@ -263,7 +262,7 @@ char *sf_model_report_text(const sf_model_report *report, sf_error *err) {
     for (int k = 0; out && k < report->count; k++)
         fprintf(out, "%s\t%s\t%s\n", report->line[k].key, report->line[k].name, report->line[k].value);
     if (!sf_text_close(out, &text))
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the report of the model");
+        SF_NO_MEMORY(err, "the report of the model");
     return text;
 }
 

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/rigid_support.h"
+#include "pre/steps.h"
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "pre/free_faces.h"
-#include "pre/mesh/missile_shape.h"
 
 static const double SHARP =
     0.77; /* cosine of the normals of two faces, 40 degrees: their edge is no facet edge */

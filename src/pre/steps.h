@@ -3,6 +3,7 @@
 #pragma once
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/layers.h"
+#include "pre/mesh/missile_shape.h"
 
 /* Covers without cells: the membrane on faces of the pad (theory, section "Membranes"). */
 
@@ -162,3 +163,42 @@ void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, cons
  * to the anvil, which the foam must cross before it is pressed altogether. `between` fails if a part of the
  * missile passes between the contact nodes. Needs cells, constraints and the placed missile. */
 sf_status sf_foam_path_measure(sf_model *model, sf_error *between, sf_error *err);
+
+/* The surface of the pad, and the part of it that may touch the pad itself or the anvil. */
+
+/* The free faces of the model's cells as triangles, turned outwards: *node [*count][3], and, unless `half` is
+ * NULL, *half [*count] as of sf_model.skin_half; owned by the caller. Faces between layers are among them,
+ * once for each layer. */
+sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **node, uint8_t **half,
+                            sf_error *err);
+
+/* Sets the model's skin by pad.self_contact: "off" none; "on" the surface but for faces that are tied to
+ * another layer or held along their normal; "auto" the same if the foam can touch itself or the anvil, that
+ * is, if a ray from a face outwards meets another face of it, its mirror image, or the anvil, within the
+ * pad's thickness, or layers are loose. With a rigid support it is there in any case, `skin_alone` if it
+ * touches that only. `unheld` (m): the middle of such a face of a pad without skin; NaN: there is none. Needs
+ * cells, constraints, ties, thickness and the anvil's depth. */
+sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_error *err);
+
+/* Adds the nodes of the other free faces that are neither held altogether nor part of the base to the contact
+ * points, with their areas. What places the missile and measures the pad goes by those of pad.contact and
+ * comes before. Needs cells, constraints, ties and masses. */
+sf_status sf_contact_add_free(const sf_layers *layers, sf_model *model, sf_error *err);
+
+/* The supports: rigid fixed bodies of any shape that the pad may touch (theory, section "Contact of the pad
+ * with itself"). */
+
+/* The surface of a support that is a plane: two triangles, far wider than the pad. */
+sf_status sf_support_plane(const sf_case_support *plane, const sf_mesh *mesh, sf_surface *out, sf_error *err);
+
+/* Takes the surfaces of the mesh into the model: turned outwards (open parts of files against the missile's
+ * direction), with the nodes of sharp edges once for each side. Needs the pad's cells. SF_ERR_INPUT: a part
+ * lies inside the pad at the start, or no face of it has a support before it within the pad's thickness. */
+sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *model, sf_error *err);
+
+/* Sets the missile's way to the supports; the missile is in its place. SF_ERR_INPUT: it meets one
+ * before the pad. */
+sf_status sf_support_find_travel(sf_model *model, sf_error *err);
+
+/* Distance (m) from x along the unit vector `direction` to the supports; infinity: none is there. */
+double sf_support_distance(const sf_model *model, const double x[3], const double direction[3]);

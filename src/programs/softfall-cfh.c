@@ -83,7 +83,7 @@ static sf_status read_heights(const char *option, const char *text, void *values
     SF_OWNED char *copy = strdup(text);
     o->list_count = 0;
     if (!copy)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %s", option);
+        SF_NO_MEMORY(err, "%s", option);
     else if (sf_units_open(&units, err) == SF_OK)
         parse_list(units, option, copy, o, err);
     sf_units_close(&units);
@@ -200,7 +200,7 @@ static sf_status read_setting(const sf_study *study, setting *out, sf_error *err
     int count = 0;
     if (o->material) {
         if (asprintf(&material, "material=@%s", o->material) < 0)
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", o->material);
+            return SF_NO_MEMORY(err, "the path %s", o->material);
         list[count++] = material;
     }
     for (int k = 0; k < o->override_count; k++)

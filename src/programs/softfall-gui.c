@@ -20,14 +20,6 @@ typedef struct script_state {
     bool ended; /* by `quit`, or by an error */
 } script_state;
 
-/* SF_ERR_INPUT: the file cannot be read. Release with close_script. */
-static sf_status open_script(const char *path, script_state *s, sf_error *err) {
-    *s = (script_state){0};
-    sf_plain_read(path, "script", SF_PLAIN_TEXT, &s->text, NULL, err);
-    s->rest = s->text;
-    return err->status;
-}
-
 static void close_script(script_state *s) {
     free(s->text);
     *s = (script_state){0};
@@ -156,7 +148,8 @@ static sf_status run(const options *o, sf_error *err) {
     SF_OWNED sf_session *session = sf_alloc(err, 1, sizeof *session, "the window");
     SF_TRY(err->status);
     if (o->script)
-        SF_TRY(open_script(o->script, &script, err));
+        SF_TRY(sf_plain_read(o->script, "script", SF_PLAIN_TEXT, &script.text, NULL, err));
+    script.rest = script.text;
     session->case_path = o->case_path ? o->case_path : "case.cfg";
     session->threads = o->threads;
     if (sf_window_start(err) == SF_OK) {

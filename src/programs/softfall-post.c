@@ -312,7 +312,7 @@ static void print_files(const job *j) {
 
 static sf_status run(const options *o, job *j, sf_error *err) {
     if (!j->command_line)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the command line");
+        return SF_NO_MEMORY(err, "the command line");
     static const char *const known[] = {"pad.xdmf", "history.csv", "report.html", "summary.json", NULL};
     if (sf_staging_check(o->directory, known, o->force, err) != SF_OK || /* the rest when it is known */
         sf_results_open(o->results_path, &j->results, err) != SF_OK ||

@@ -25,7 +25,7 @@
  * which stands in chart->err. */
 static bool grow(sf_chart *chart, void *array, size_t count, size_t size) {
     if (chart->err->status == SF_OK && !sf_grow(array, count, size))
-        SF_FAIL(chart->err, SF_ERR_MEMORY, "out of memory for the picture %s", chart->name);
+        SF_NO_MEMORY(chart->err, "the picture %s", chart->name);
     return chart->err->status == SF_OK;
 }
 

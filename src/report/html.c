@@ -75,7 +75,11 @@ FILE *sf_html_begin(const sf_staging *output, const char *title, const char *sub
     return page;
 }
 
-sf_status sf_html_end(FILE *page, const char *foot, sf_error *err) {
+sf_status sf_html_end(FILE *page, const char *command, const char *foot, sf_error *err) {
+    if (command) {
+        sf_html_heading(page, "The command that repeats this report");
+        sf_html_pre(page, command);
+    }
     put_between(page, "<footer>", foot, "</footer>\n</main></body>\n</html>\n");
     return sf_staging_close(page, "report.html", err);
 }

@@ -8,8 +8,8 @@
 /* Opens report.html in the staging directory: head, style, title and the line below it (NULL: none). NULL on
  * failure. */
 FILE *sf_html_begin(const sf_staging *output, const char *title, const char *subtitle, sf_error *err);
-/* The line at the foot, the end, and sf_staging_close. */
-sf_status sf_html_end(FILE *page, const char *foot, sf_error *err);
+/* The command that repeats the report (NULL: it was told), the line at the foot, and sf_staging_close. */
+sf_status sf_html_end(FILE *page, const char *command, const char *foot, sf_error *err);
 
 /* Escaped text, without an element around it. */
 void sf_html_text(FILE *page, const char *text);

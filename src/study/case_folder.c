@@ -58,7 +58,7 @@ static sf_status add_file(folder *f, const char *name, const char *path, char *t
         return SF_OK;
     }
     SF_FREE(file.name, file.path, text);
-    return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of %s", f->request->folder);
+    return SF_NO_MEMORY(err, "the files of %s", f->request->folder);
 }
 
 /* Adds the file at `path` as `name`; `hash`: of what was read of it, NULL: anything. */
@@ -219,7 +219,7 @@ static const char *write_include(const part *p, const char *at, FILE *out, sf_er
                            *own = strndup(text, (size_t)(behind - text)),
                            *path = asked && own ? sf_path_whole(p->f->case_folder, asked, err) : NULL;
     if (!asked || !own)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of a case");
+        SF_NO_MEMORY(err, "the text of a case");
     if (path && find_place(p->f, CASE_NAME, asked, path, "materials", own, place, err) == SF_OK) {
         fprintf(out, "%.*s@include \"%s%.*s", (int)strspn(at, " \t"), at, place, (int)(text - end), end);
         const part inner = {p->f, path, place};
@@ -245,7 +245,7 @@ static void write_part(const part *p, const char *at, sf_error *err) {
         at = open ? write_include(p, mark + 1, out, err) : end;
     }
     if (!out || fclose(out) != 0)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the text of %s", p->path);
+        SF_NO_MEMORY(err, "the text of %s", p->path);
     if (err->status == SF_OK)
         sf_tree_put(&p->f->tree, p->name, text, size, err);
 }
@@ -260,7 +260,7 @@ static sf_status write_readme(folder *f, sf_error *err) {
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the README of %s", q->folder);
+        return SF_NO_MEMORY(err, "the README of %s", q->folder);
     if (length > 0)
         fprintf(out, "%.*s\n\n", length, title);
     else

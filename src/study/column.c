@@ -67,7 +67,7 @@ sf_status sf_columns_build(const sf_results *r, sf_columns *out, sf_error *err) 
         out->area[out->count++] = out->area[k];
     }
     if (out->count == 0)
-        return SF_FAIL(err, SF_ERR_INPUT, "no part of the missile's surface faces the pad");
+        return SF_REFUSE(err, "no part of the missile's surface faces the pad");
     return SF_OK;
 }
 

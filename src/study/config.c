@@ -190,7 +190,7 @@ sf_status sf_config_file(const sf_config *config, const config_setting_t *group,
         return sf_config_refuse(config, config_setting_get_member(group, name), err, "%s: %s", name,
                                 inner.text);
     *out = strdup(path);
-    return *out ? SF_OK : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", text);
+    return *out ? SF_OK : SF_NO_MEMORY(err, "the path %s", text);
 }
 
 sf_status sf_config_list(const sf_config *config, const config_setting_t *group, const char *name,
@@ -230,7 +230,7 @@ sf_status sf_config_overrides(const sf_config *config, const char *name, int mos
                                     name);
         text[*count] = strdup(entry);
         if (!text[(*count)++])
-            return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %s", config->path);
+            return SF_NO_MEMORY(err, "%s", config->path);
     }
     return SF_OK;
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/material_file.h"
 
+#include "io/plain_file.h"
 #include "base/text.h"
 #include "case/case.h"
 #include "io/replace.h"
-#include <limits.h>
 #include <unistd.h>
 
 enum { PATH_SIZE = PATH_MAX };
@@ -27,10 +27,9 @@ static void curve_name(const char *name, const sf_law_curves *curves, int64_t in
 
 static FILE *open_file(const char *folder, const char *name, sf_replacement *out, sf_error *err) {
     char path[PATH_SIZE];
-    if (snprintf(path, PATH_SIZE, "%s/%s", folder, name) < PATH_SIZE)
-        return sf_replace_open(path, out, err);
-    SF_FAIL(err, SF_ERR_INPUT, "the path of %s is longer than %d characters", name, PATH_SIZE - 1);
-    return NULL;
+    return sf_path_print(path, PATH_SIZE, err, "%s/%s", folder, name) == SF_OK
+               ? sf_replace_open(path, out, err)
+               : NULL;
 }
 
 static sf_status write_curve(const char *folder, const char *name, const sf_law_curves *curves, int64_t index,

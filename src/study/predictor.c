@@ -167,7 +167,7 @@ static sf_status find_lengths(likelihood *l, sf_error *err) {
                 break;
         take_logarithms(m->x, l->p);
     } else {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a predictor");
+        SF_NO_MEMORY(err, "a predictor");
     }
     if (m)
         gsl_multimin_fdfminimizer_free(m);

@@ -203,9 +203,7 @@ enum { MAX_ARGUMENTS = 64 };
 static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err) {
     size_t length = path ? sf_path_folder_length(path) : 0;
     const char *folder = length > 0 ? path : path ? "." : "";
-    if (snprintf(out, PATH_MAX, "%.*s", length > 0 ? (int)length : 1, folder) >= PATH_MAX)
-        return SF_FAIL(err, SF_ERR_INPUT, "the name of the geometry is too long: %.100s...", path);
-    return SF_OK;
+    return sf_path_print(out, PATH_MAX, err, "%.*s", length > 0 ? (int)length : 1, folder);
 }
 
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *at) {

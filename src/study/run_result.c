@@ -36,7 +36,7 @@ static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runne
 static sf_status finish_result(const char *path, sf_runner_result *out, sf_error *err) {
     out->path = strdup(path);
     if (!out->path)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", path);
+        SF_NO_MEMORY(err, "the path %s", path);
     if (err->status != SF_OK)
         sf_runner_result_free(out);
     return err->status;
@@ -59,7 +59,7 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     SF_TRY(sf_results_open(path, &r, err));
     if (sf_figures_compute(&r, 1000, &f, err) == SF_OK && !f.touched)
-        SF_FAIL(err, SF_ERR_INPUT, "the missile of %s never touched the pad", path);
+        SF_REFUSE(err, "the missile of %s never touched the pad", path);
     SF_TRY(err->status);
     *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
                               .hic = f.injury.hic.value,

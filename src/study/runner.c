@@ -165,8 +165,8 @@ static int compare(const void *p, const void *q, void *context) {
  * be two geometries, and both would have one folder of results. */
 static void refuse_double(const batch *b, int one, int other, sf_error *failure) {
     if (b->request[one].geometry != b->request[other].geometry && failure->status == SF_OK)
-        SF_FAIL(failure, SF_ERR_INPUT, "the drops %s and %s read geometry files of " SF_CAMPAIGN_SAME_TEXT,
-                b->drop[one].label, b->drop[other].label);
+        SF_REFUSE(failure, "the drops %s and %s read geometry files of " SF_CAMPAIGN_SAME_TEXT,
+                  b->drop[one].label, b->drop[other].label);
 }
 
 /* The drops that are not there, each once, in the order of the batch. */

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "io/folder.h"
+#include "io/plain_file.h"
 #include "io/process.h"
 #include "io/provenance.h"
 #include <gsl/gsl_errno.h>
@@ -86,7 +87,7 @@ int sf_study_main(int argc, char **argv, const sf_study_program *program, void *
     sf_process_handle_signals();
     if (!words || asprintf(&study.command, "%s%s%s", program->word ? program->name : "",
                            program->word ? " " : "", words) < 0)
-        SF_FAIL(&err, SF_ERR_MEMORY, "out of memory for the command line");
+        SF_NO_MEMORY(&err, "the command line");
     else if (!program->word)
         sf_program_begin(argv, &err);
     if (program->word) {
@@ -102,8 +103,7 @@ int sf_study_main(int argc, char **argv, const sf_study_program *program, void *
 
 sf_status sf_study_check(sf_study *s, const char *const *names, sf_error *err) {
     SF_TRY(sf_engine_check(&s->engine, err));
-    if ((size_t)snprintf(s->runs, sizeof s->runs, "%s/runs", s->directory) >= sizeof s->runs - 64)
-        return SF_REFUSE(err, "the path of the output directory is too long");
+    SF_TRY(sf_path_print(s->runs, sizeof s->runs - 64, err, "%s/runs", s->directory));
     return sf_staging_check(s->directory, names, s->force, err);
 }
 

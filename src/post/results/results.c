@@ -241,14 +241,6 @@ static sf_status read_numbers(const sf_results *r, const char *path, int64_t cou
     return SF_OK;
 }
 
-/* NaN: the law of the mesh error does not apply. */
-static sf_status read_mesh_error(sf_results *r, sf_error *err) {
-    double value = 0;
-    sf_h5_read_scalar(r->file, "/model/expected_mesh_error", &value, err);
-    r->expected_mesh_error = value > 0 ? value : NAN;
-    return err->status;
-}
-
 static sf_status read_flag(const sf_results *r, const char *path, bool *flag, sf_error *err) {
     int64_t value = 0;
     read_integer(r, path, &value, err);
@@ -379,7 +371,9 @@ static sf_status read_model(sf_results *r, sf_error *err) {
     SF_TRY(read_flag(r, "/model/missile_driven", &r->driven, err));
     SF_TRY(read_flag(r, "/model/missile_free", &r->turns, err));
     SF_TRY(read_numbers(r, "/model/missile_centre", 3, r->missile_centre, err));
-    SF_TRY(read_mesh_error(r, err));
+    SF_TRY(sf_h5_read_scalar(r->file, "/model/expected_mesh_error", &r->expected_mesh_error, err));
+    if (!(r->expected_mesh_error > 0))
+        r->expected_mesh_error = NAN; /* the law of the mesh error does not apply */
     SF_TRY(read_optional(r, "/model/informed_strain", &r->informed_strain, err));
     SF_TRY(read_optional(r, "/model/impact_x", &r->impact_x, err));
     SF_TRY(read_optional(r, "/model/impact_y", &r->impact_y, err));

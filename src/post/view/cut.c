@@ -50,7 +50,7 @@ void sf_axis_find(const sf_results *r, double axis[2]) {
 }
 
 static char *no_memory(sf_error *err) {
-    SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the pictures of the report");
+    SF_NO_MEMORY(err, "the pictures of the report");
     return NULL;
 }
 

@@ -4,11 +4,11 @@
 #include "build_info.h"
 #include "base/program.h"
 #include "model/model.h"
+#include "io/plain_file.h"
 #include "report/chart.h"
 #include "io/provenance.h"
 #include "post/view/cut.h"
 #include <argp.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
@@ -81,10 +81,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static sf_status name_results(overlay_run *r, sf_error *err) {
     struct stat info;
     bool folder = stat(r->name, &info) == 0 && S_ISDIR(info.st_mode);
-    if ((size_t)snprintf(r->path, sizeof r->path, "%s%s", r->name, folder ? "/results.h5" : "") >=
-        sizeof r->path)
-        return SF_REFUSE(err, "the name %.100s... is too long", r->name);
-    return SF_OK;
+    return sf_path_print(r->path, sizeof r->path, err, "%s%s", r->name, folder ? "/results.h5" : "");
 }
 
 static sf_status read_run(overlay_run *r, sf_error *err) {
@@ -368,9 +365,7 @@ static sf_status write_page(const overlay *o, sf_error *err) {
     put_table(page, o);
     sf_html_note(page, "compare.csv has every figure of summary.json.");
     put_remarks(page, o);
-    sf_html_heading(page, "The command that repeats this report");
-    sf_html_pre(page, o->command);
-    return sf_html_end(page, "softfall-post " SF_VERSION " (" SF_GIT_REVISION ")", err);
+    return sf_html_end(page, o->command, "softfall-post " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }
 
 static sf_status run(overlay *o, sf_error *err) {
@@ -426,9 +421,9 @@ int sf_overlay_main(int argc, char **argv) {
         o->series = strcmp(argv[1], "series") == 0;
         argv[1] = o->series ? name_of_series : name;
         if (argp_parse(&parser, argc - 1, argv + 1, 0, NULL, o) != 0)
-            SF_FAIL(&err, SF_ERR_INPUT, "the command line cannot be read");
+            SF_REFUSE(&err, "the command line cannot be read");
         else if (!o->command)
-            SF_FAIL(&err, SF_ERR_MEMORY, "out of memory for the command line");
+            SF_NO_MEMORY(&err, "the command line");
         else
             run(o, &err);
     }

@@ -104,12 +104,6 @@ const char *sf_report_findings(const sf_verdict *verdict, char *line, size_t siz
     return findings ? findings + 2 : "Every check of the run is within its bounds";
 }
 
-static void put_verdict_line(const page *p) {
-    char line[SF_VERDICT_LINE_SIZE];
-    sf_html_banner(p->file, sf_report_kind(p->verdict->grade), sf_verdict_phrase(p->verdict->grade), "%s. %s",
-                   sf_report_findings(p->verdict, line, sizeof line), caution);
-}
-
 static void put_limit_tile(const page *p, const sf_limit *limit) {
     char value[48], remark[96];
     const char *unit = strcmp(limit->unit, "1") == 0 ? "" : limit->unit, *blank = *unit ? " " : "";
@@ -524,9 +518,10 @@ static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
 }
 
 static sf_status write_page(page *p, const sf_staging *output, sf_error *err) {
-    char foot[512];
+    char foot[512], line[SF_VERDICT_LINE_SIZE];
     SF_TRY(begin_page(p, output, err));
-    put_verdict_line(p);
+    sf_html_banner(p->file, sf_report_kind(p->verdict->grade), sf_verdict_phrase(p->verdict->grade), "%s. %s",
+                   sf_report_findings(p->verdict, line, sizeof line), caution);
     put_tiles(p);
     put_test(p);
     put_bodies(p);
@@ -540,7 +535,7 @@ static sf_status write_page(page *p, const sf_staging *output, sf_error *err) {
     put_command(p);
     snprintf(foot, sizeof foot, "softfall-post %s (%s), from %.300s", SF_VERSION, SF_GIT_REVISION,
              p->report->summary->results_path);
-    return sf_html_end(p->file, foot, err);
+    return sf_html_end(p->file, NULL, foot, err);
 }
 
 sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_error *err) {
@@ -554,7 +549,7 @@ sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_
               .case_text = sf_origin_text(s->results, "/provenance/model/case_text"),
               .parameters = sf_origin_text(s->results, "/provenance/model/parameters")};
     if (!p.case_text || !p.parameters)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for report.html");
+        SF_NO_MEMORY(err, "report.html");
     else if (sf_report_pictures_make(output, s->results, s->figures, &pictures, err) == SF_OK)
         write_page(&p, output, err);
     sf_report_pictures_free(&pictures);

@@ -199,8 +199,7 @@ static bool integrate_all(builder *b, sf_error *err) {
         free(w);
     }
     if (failed)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the shape functions of %lld edges",
-                (long long)b->dual->edge_count);
+        SF_NO_MEMORY(err, "the shape functions of %lld edges", (long long)b->dual->edge_count);
     for (int64_t i = 0; i < b->mesh->node_count; i++)
         if (b->poor[i])
             return true;
@@ -285,7 +284,7 @@ static sf_status shape_at_nodes(builder *b, sf_error *err) {
     out->phi_node = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_node, "shape functions");
     out->phi_value = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_value, "shape functions");
     if (!w)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the shape functions at the nodes");
+        SF_NO_MEMORY(err, "the shape functions at the nodes");
     for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
         if (!evaluate_node(b, w, i)) /* integrate_all found it good with the same supports */
             SF_FAIL(err, SF_ERR_MODEL, "the shape functions at node %lld cannot be evaluated", (long long)i);

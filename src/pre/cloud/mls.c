@@ -153,7 +153,7 @@ sf_hidden *sf_visibility_build(const sf_mesh *mesh, const sf_dual *dual, const s
     }
     if (!failed)
         return hidden;
-    SF_FAIL(err, SF_ERR_MEMORY, "out of memory for what %lld nodes see", (long long)mesh->node_count);
+    SF_NO_MEMORY(err, "what %lld nodes see", (long long)mesh->node_count);
     sf_visibility_free(hidden, mesh->node_count);
     return NULL;
 }

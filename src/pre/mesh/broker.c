@@ -70,7 +70,7 @@ static sf_status end_last_line(sf_broker_file *f, sf_error *err) {
         return SF_OK;
     char *longer = realloc(f->text, f->size + 2);
     if (!longer)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a geometry");
+        return SF_NO_MEMORY(err, "a geometry");
     f->text = longer;
     memcpy(f->text + f->size++, "\n", 2);
     return SF_OK;

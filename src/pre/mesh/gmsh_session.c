@@ -49,7 +49,7 @@ static char *list_files(const sf_meshed *open, const char *geometry, sf_error *e
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
+        SF_NO_MEMORY(err, "the files of a geometry");
         return NULL;
     }
     fprintf(out, SF_GMSH_FILES_OF "\n");
@@ -65,7 +65,7 @@ static char *list_files(const sf_meshed *open, const char *geometry, sf_error *e
 static sf_status add_files(sf_gmsh *session, const char *files, sf_error *err) {
     char *all = NULL;
     if (asprintf(&all, "%s%s", session->files ? session->files : "", files) < 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the files of a geometry");
+        return SF_NO_MEMORY(err, "the files of a geometry");
     free(session->files);
     session->files = all;
     return SF_OK;
@@ -364,7 +364,7 @@ static sf_status read_faces(const sf_gmsh *session, const sf_geo_group *g, sf_ra
     const destination to = {.raw = raw, .group = (int32_t)raw->group_count};
     if (!sf_grow(&raw->group_name, (size_t)raw->group_count, sizeof *raw->group_name) ||
         !(raw->group_name[raw->group_count] = strdup(g->name)))
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the group \"%s\"", g->name);
+        return SF_NO_MEMORY(err, "the group \"%s\"", g->name);
     raw->group_count++;
     size_t before = raw->face_count;
     for (size_t i = 0; i < g->count && err->status == SF_OK; i++) {

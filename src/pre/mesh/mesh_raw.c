@@ -20,7 +20,7 @@ sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, int chosen, const siz
     if (!sf_grow(&raw->cell_type, raw->cell_count, sizeof *raw->cell_type) ||
         !sf_grow(&raw->cell_chosen, raw->cell_count, sizeof *raw->cell_chosen) ||
         !sf_grow(&raw->cell_node, raw->cell_count, SF_RAW_CELL * sizeof *raw->cell_node))
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu mesh cells", raw->cell_count);
+        return SF_NO_MEMORY(err, "%zu mesh cells", raw->cell_count);
     size_t k = raw->cell_count++;
     raw->cell_type[k] = (uint8_t)type;
     raw->cell_chosen[k] = (uint8_t)chosen;
@@ -34,7 +34,7 @@ sf_status sf_raw_mesh_add_face(sf_raw_mesh *raw, int32_t group, int32_t part, co
     if (!sf_grow(&raw->face_group, raw->face_count, sizeof *raw->face_group) ||
         !sf_grow(&raw->face_part, raw->face_count, sizeof *raw->face_part) ||
         !sf_grow(&raw->face_node, raw->face_count, SF_RAW_FACE * sizeof *raw->face_node))
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu mesh faces", raw->face_count);
+        return SF_NO_MEMORY(err, "%zu mesh faces", raw->face_count);
     size_t k = raw->face_count++;
     raw->face_group[k] = group;
     raw->face_part[k] = part;
@@ -204,7 +204,7 @@ static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, c
         set->name = strdup(raw->group_name[g]);
         set->node = sf_alloc(err, (size_t)count, sizeof *set->node, "node set");
         if (!set->name)
-            SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the node set %s", raw->group_name[g]);
+            SF_NO_MEMORY(err, "the node set %s", raw->group_name[g]);
         for (int32_t n = 0; set->node && n < mesh->node_count; n++)
             if (mark[n])
                 set->node[set->count++] = n;

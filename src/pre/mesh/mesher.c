@@ -481,9 +481,8 @@ static void send_request(const conversation *c, sf_error *err) {
                                  .confined = c->confined,
                                  .bytes = c->bytes < 1e15 ? (uint64_t)c->bytes : 0,
                                  .seconds = (uint64_t)ceil(c->seconds)};
-    if (snprintf(request.path, sizeof request.path, "%s", c->source->path) >= (int)sizeof request.path)
-        SF_REFUSE(err, "the name of the geometry is too long: %.100s...", c->source->path);
-    else if (send(c->child.control, &request, sizeof request, MSG_NOSIGNAL) != (ssize_t)sizeof request)
+    if (sf_path_print(request.path, sizeof request.path, err, "%s", c->source->path) == SF_OK &&
+        send(c->child.control, &request, sizeof request, MSG_NOSIGNAL) != (ssize_t)sizeof request)
         SF_FAIL(err, SF_ERR_IO, "softfall-mesh does not listen: %s", strerror(errno));
 }
 
@@ -524,7 +523,7 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
     char *parameters = parameter_text(source);
     memset(out, 0, sizeof *out);
     if (!parameters)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the parameters of %s", source->path);
+        SF_NO_MEMORY(err, "the parameters of %s", source->path);
     c.broker.parameters = parameters;
     c.broker.most = c.bytes < 0x1p34 ? (uint64_t)(c.bytes / 4) : (uint64_t)1 << 32;
     if (err->status == SF_OK && sf_plain_check(source->path, "geometry", err) == SF_OK &&

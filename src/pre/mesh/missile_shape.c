@@ -321,7 +321,7 @@ sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], dou
     gsl_vector *rhs = gsl_vector_alloc((size_t)n), *x = gsl_vector_alloc(4);
     gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc((size_t)n, 4);
     if (!a || !covariance || !rhs || !x || !work) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory fitting a sphere to %lld nodes", (long long)n);
+        SF_NO_MEMORY(err, "the sphere of %lld nodes", (long long)n);
         goto done;
     }
     for (int64_t i = 0; i < n; i++) {

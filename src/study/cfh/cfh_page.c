@@ -163,9 +163,8 @@ static void put_part(sf_html_table *table, const sf_cfh_interval *i, const sf_cf
     char text[64];
     sf_html_row(table);
     sf_html_cell(table, "%s%s", words, more);
-    sf_html_number(table, 3, i->median);
-    sf_html_cell(table, "%s", sf_cfh_interval_text(i, text, sizeof text));
-    sf_html_number(table, 0, 100 * share);
+    sf_html_line(table, NULL, "%.3f|%s|%.0f", i->median, sf_cfh_interval_text(i, text, sizeof text),
+                 100 * share);
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         sf_html_cell(table, "%s", each ? sf_cfh_interval_text(&each[c], text, sizeof text) : "–");
 }
@@ -321,11 +320,9 @@ static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
         char text[64] = "not known";
         sf_html_row(&table);
         sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-        sf_html_cell(&table, "%s", sf_cfh_side_word(crossing));
-        sf_html_number(&table, 3, crossing->height);
         if (r->spread)
             sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, (int)c), text, sizeof text);
-        sf_html_cell(&table, "%s", text);
+        sf_html_line(&table, NULL, "%s|%.3f|%s", sf_cfh_side_word(crossing), crossing->height, text);
         if (rig)
             sf_html_number(&table, 3, sf_cfh_rig_height(r->rig, crossing->height));
     }
@@ -345,13 +342,11 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
         double height = sf_cfh_rig_height(r->rig, crossing->height);
         sf_html_row(&table);
         sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-        sf_html_cell(&table, "%d", crossing->fit.count);
-        sf_html_number(&table, 2, crossing->fit.count ? 100 * crossing->fit.rms : NAN);
-        sf_html_cell(&table, isfinite(crossing->low) ? "%.3f to %.3f%s" : "–", crossing->low, crossing->high,
+        sf_html_line(&table, NULL, "%d|%.2f|%.3f to %.3f%s", crossing->fit.count,
+                     crossing->fit.count ? 100 * crossing->fit.rms : NAN, crossing->low, crossing->high,
                      crossing->bracketed ? ", the drops on both sides" : "");
         if (rig)
-            sf_html_cell(&table, isfinite(margin) ? "%.3f to %.3f" : "–", height * exp(-margin),
-                         height * exp(margin));
+            sf_html_line(&table, NULL, "%.3f to %.3f", height * exp(-margin), height * exp(margin));
     }
     sf_html_table_end(&table);
     sf_html_note(
@@ -451,7 +446,5 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
     put_top(page, output, r);
     put_drops(page, r);
     sf_origin_put_material(page, r->case_text, r->parameters);
-    sf_html_heading(page, "The command that repeats this report");
-    sf_html_pre(page, r->command_line);
-    return sf_html_end(page, "softfall-cfh " SF_VERSION " (" SF_GIT_REVISION ")", err);
+    return sf_html_end(page, r->command_line, "softfall-cfh " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }

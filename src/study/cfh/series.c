@@ -143,13 +143,6 @@ sf_status sf_cfh_simulate(const sf_cfh_series *s, sf_runner *runner, sf_cfh_poin
     return SF_OK;
 }
 
-static void take_check(const sf_cfh_point *point, sf_cfh_check *check) {
-    check->failed = point->failed;
-    memcpy(check->note, point->note, sizeof check->note);
-    if (!check->failed)
-        sf_cfh_check_take(point->value, check);
-}
-
 sf_status sf_cfh_simulate_checks(const sf_cfh_series *s, const sf_cfh_draws *draws, sf_runner *runner,
                                  sf_cfh_spread *spread, sf_error *err) {
     drops d = {0};
@@ -161,8 +154,13 @@ sf_status sf_cfh_simulate_checks(const sf_cfh_series *s, const sf_cfh_draws *dra
     }
     if (d.count > 0 && run_drops(s, runner, &d, err) != SF_OK)
         return err->status;
-    for (int k = 0; k < d.count; k++)
-        take_check(&d.point[k], &spread->check[k]);
+    for (int k = 0; k < d.count; k++) {
+        sf_cfh_check *check = &spread->check[k];
+        check->failed = d.point[k].failed;
+        memcpy(check->note, d.point[k].note, sizeof check->note);
+        if (!check->failed)
+            sf_cfh_check_take(d.point[k].value, check);
+    }
     return SF_OK;
 }
 

@@ -449,7 +449,7 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
                                               sf_cfh_rig_height(rig, 1))
                             : (sf_cfh_interval){NAN, NAN, NAN, {NAN, NAN}};
     } else if (err->status == SF_OK) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for random numbers");
+        SF_NO_MEMORY(err, "random numbers");
     }
     gsl_rng_free(random);
     gsl_rng_free(of_draw);

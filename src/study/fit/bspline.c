@@ -71,7 +71,7 @@ sf_status sf_spline_init(sf_spline *spline, int break_count, const double *break
     spline->slope = gsl_matrix_alloc(n, 2);
     if (!spline->base || !spline->primary || !spline->higher || !spline->slope) {
         sf_spline_free(spline);
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a spline of %d coefficients", spline->count);
+        return SF_NO_MEMORY(err, "a spline of %d coefficients", spline->count);
     }
     gsl_vector_const_view places = gsl_vector_const_view_array(breaks, b);
     gsl_bspline_knots(&places.vector, spline->base);
@@ -241,7 +241,7 @@ static sf_status minimise(likelihood *l, double size, sf_scatter *scatter, sf_er
     gsl_vector_view start = gsl_vector_view_array(from, 2), step = gsl_vector_view_array(by, 2);
     gsl_multimin_fminimizer *m = gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, 2);
     if (!m) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the scatter");
+        SF_NO_MEMORY(err, "the scatter");
     } else {
         gsl_multimin_fminimizer_set(m, &f, &start.vector, &step.vector);
         for (int k = 0; k < 200 && gsl_multimin_fminimizer_size(m) > 1e-3; k++)

@@ -11,14 +11,14 @@ enum { TURNS = 200 };
 gsl_vector *sf_vector(size_t size, sf_error *err) {
     gsl_vector *vector = gsl_vector_calloc(size);
     if (!vector)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for %zu numbers", size);
+        SF_NO_MEMORY(err, "%zu numbers", size);
     return vector;
 }
 
 gsl_matrix *sf_matrix(size_t rows, size_t columns, sf_error *err) {
     gsl_matrix *matrix = gsl_matrix_calloc(rows, columns);
     if (!matrix)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a matrix of %zu by %zu", rows, columns);
+        SF_NO_MEMORY(err, "a matrix of %zu by %zu", rows, columns);
     return matrix;
 }
 

@@ -122,7 +122,7 @@ static sf_status descend(minimisation *m, double *u, sf_error *err) {
     gsl_multifit_nlinear_workspace *w =
         gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &options, n, (size_t)p->parameters);
     if (!w)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a least-squares problem of %zu residuals", n);
+        SF_NO_MEMORY(err, "a least-squares problem of %zu residuals", n);
     if (err->status == SF_OK) {
         int info = 0;
         gsl_vector_const_view start = gsl_vector_const_view_array(u, (size_t)p->parameters);
@@ -403,7 +403,7 @@ static sf_status propose_widely(search *s, sf_error *err) {
     double lowest = INFINITY;
     gsl_qrng *places = gsl_qrng_alloc(gsl_qrng_halton, (unsigned)p->parameters);
     if (!places)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the starts of a search");
+        SF_NO_MEMORY(err, "the starts of a search");
     memcpy(next, s->best.u, sizeof next);
     memcpy(from, s->best.u, sizeof from);
     for (int k = 0; k <= ROUNDS && err->status == SF_OK; k++) {

@@ -374,7 +374,7 @@ static sf_status judge_rows(const sf_sweep_adaptive *a, int64_t count, const int
     }
     if (sf_process_stopped())
         return SF_FAIL(err, SF_INTERRUPTED, "interrupted");
-    return failed ? SF_FAIL(err, SF_ERR_MEMORY, "out of memory for predictions") : SF_OK;
+    return failed ? SF_NO_MEMORY(err, "predictions") : SF_OK;
 }
 
 /* ---- a further round ---- */
@@ -416,7 +416,7 @@ static int choose_needed(const sf_sweep_adaptive *a, int64_t count, const int64_
         }
     int n = sf_predictor_choose(&a->model[target], candidates, x, wish, most, chosen);
     if (n < 0)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for predictions");
+        SF_NO_MEMORY(err, "predictions");
     for (int k = 0; k < n; k++)
         next[k] = of[chosen[k]];
     return n > 0 ? n : 0;

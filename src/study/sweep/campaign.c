@@ -43,7 +43,7 @@ static sf_status read_keys(const sf_sweep_campaign *c, keys *k, sf_error *err) {
             2)
         *k = (keys){true, table, inputs, runs};
     else if (err->status == SF_OK)
-        SF_FAIL(err, SF_ERR_INPUT, "%s is not a file of softfall-sweep: give another directory", p.text);
+        SF_REFUSE(err, "%s is not a file of softfall-sweep: give another directory", p.text);
     return err->status;
 }
 
@@ -83,8 +83,8 @@ static sf_status check_keys(const sf_sweep_campaign *c, keys *k, bool *known, sf
     SF_TRY(read_keys(c, k, err));
     *known = k->there && k->table == sf_plan_hash(c->plan);
     if (k->there && !*known && !c->force)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
+        return SF_REFUSE(
+            err,
             "%s holds the runs of another plan: give another directory, or --force to replace its table "
             "(finished drops of the same inputs are used again)",
             c->folder);
@@ -114,10 +114,11 @@ static sf_status open_missing(const sf_sweep_campaign *c, sf_runs *runs, sf_erro
             sf_runs_open(runs, row);
     }
     if (gone > 0 && there == 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "runs.csv has runs that are done, but the folder %s has the results of none of them: "
-                       "put them back, or remove runs.csv to begin anew",
-                       c->drops);
+        return SF_REFUSE(
+            err,
+            "runs.csv has runs that are done, but the folder %s has the results of none of them: "
+            "put them back, or remove runs.csv to begin anew",
+            c->drops);
     return SF_OK;
 }
 

@@ -26,7 +26,7 @@ static sf_status take_overrides(const sf_plan *plan, int64_t row, sf_runner_drop
     for (int i = 0; i < count && err->status == SF_OK; i++) {
         d->overrides[i] = strdup(text[i]);
         if (!d->overrides[i])
-            SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the drops");
+            SF_NO_MEMORY(err, "the drops");
         d->override_count = i + 1;
     }
     return err->status;
@@ -303,9 +303,9 @@ sf_status sf_sweep_cost_check_disk(const sf_sweep_cost *c, const char *folder, i
     double need = c->bytes * (double)c->open + c->work_bytes * jobs, there = free_bytes(folder);
     if (need <= there)
         return SF_OK;
-    return SF_FAIL(err, SF_ERR_INPUT,
-                   "the runs need about %.3g GB and the disk of %s has %.3g GB: give another directory",
-                   need / 1e9, folder, there / 1e9);
+    return SF_REFUSE(err,
+                     "the runs need about %.3g GB and the disk of %s has %.3g GB: give another directory",
+                     need / 1e9, folder, there / 1e9);
 }
 
 void sf_sweep_cost_print(FILE *out, const sf_sweep_cost *c, int jobs) {

@@ -167,7 +167,7 @@ sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const
     if (f.terms && f.covariance && f.y && f.weight && f.c && work && scratch && order)
         solve(s, &f, n, x, y, order, left_out, scratch, work);
     else if (err->status == SF_OK)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the response surface");
+        SF_NO_MEMORY(err, "the response surface");
     gsl_matrix_free(f.terms);
     gsl_matrix_free(f.covariance);
     gsl_vector_free(f.y);

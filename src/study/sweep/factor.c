@@ -126,8 +126,7 @@ static sf_status make_levels(sf_factor *f, int64_t count, bool words, sf_error *
 static sf_status set_word(sf_factor *f, int64_t k, char *text, const char *label, sf_error *err) {
     f->text[k] = text;
     f->label[k] = strdup(label);
-    return text && f->label[k] ? SF_OK
-                               : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", f->key);
+    return text && f->label[k] ? SF_OK : SF_NO_MEMORY(err, "the levels of %s", f->key);
 }
 
 /* All with a point, as an array of libconfig has whole or fractional numbers, not both. */
@@ -158,7 +157,7 @@ static sf_status take_word(reading *r, const config_setting_t *s, int64_t k, sf_
     SF_OWNED char *label = print_word(s, true);
     const char *own = config_setting_get_string(s);
     if (!label)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the levels of %s", r->factor->key);
+        return SF_NO_MEMORY(err, "the levels of %s", r->factor->key);
     set_word(r->factor, k, print_word(s, false), own ? own : label, err);
     return err->status;
 }

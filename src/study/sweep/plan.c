@@ -31,11 +31,11 @@ static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) 
 static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
     double shift[SF_SOBOL_DIMENSIONS] = {0};
     if (d > SF_SOBOL_DIMENSIONS)
-        return SF_FAIL(err, SF_ERR_INPUT, "the Sobol' sequence has at most %d coordinates, not %d",
-                       SF_SOBOL_DIMENSIONS, d);
+        return SF_REFUSE(err, "the Sobol' sequence has at most %d coordinates, not %d", SF_SOBOL_DIMENSIONS,
+                         d);
     gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
     if (!q)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the Sobol' sequence");
+        return SF_NO_MEMORY(err, "the Sobol' sequence");
     if (seed != 1)
         draw_shift(d, seed, shift, err);
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
@@ -62,11 +62,6 @@ static sf_status latin(gsl_rng *rng, int d, int64_t count, double *u, sf_error *
     return err->status;
 }
 
-static void independent(gsl_rng *rng, int d, int64_t count, double *u) {
-    for (int64_t k = 0; k < count * d; k++)
-        u[k] = gsl_rng_uniform_pos(rng);
-}
-
 static sf_status saltelli(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
     SF_OWNED double *both =
         sf_alloc(err, (unsigned long)count, 2 * (unsigned long)d * sizeof *both, "samples");
@@ -89,8 +84,8 @@ sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, dou
     gsl_rng *rng = sf_random(seed, err);
     if (rng && method == SF_SAMPLING_LATIN)
         latin(rng, d, count, u, err);
-    else if (rng)
-        independent(rng, d, count, u);
+    for (int64_t k = 0; rng && method != SF_SAMPLING_LATIN && k < count * d; k++)
+        u[k] = gsl_rng_uniform_pos(rng);
     gsl_rng_free(rng);
     return err->status;
 }
@@ -383,7 +378,7 @@ static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_er
     p->title = title ? strdup(title) : NULL;
     p->folder = strdup(config->folder);
     if (!p->folder)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the plan %s", p->path);
+        return SF_NO_MEMORY(err, "the plan %s", p->path);
     return read_figures(config, p, err);
 }
 
@@ -539,8 +534,8 @@ static bool is_same_folder(const char *a, const char *b) {
 static sf_status refuse_double(const sf_factor *f, const uint64_t *key, int64_t k, sf_error *err) {
     for (int64_t i = 0; i < k && strncmp(f->key, "geometry.", 9) == 0; i++)
         if (key[i] == key[k] && !is_same_folder(f->text[i], f->text[k]))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %.300s and %.300s have " SF_CAMPAIGN_SAME_TEXT, f->where,
-                           f->label[i], f->label[k]);
+            return SF_REFUSE(err, "%s: %.300s and %.300s have " SF_CAMPAIGN_SAME_TEXT, f->where, f->label[i],
+                             f->label[k]);
     return SF_OK;
 }
 

@@ -82,7 +82,7 @@ static double to_nine_digits(double value) {
 static sf_status keep_text(char **place, const char *text, sf_error *err) {
     free(*place);
     *place = text && *text ? strdup(text) : NULL;
-    return !text || !*text || *place ? SF_OK : SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the runs");
+    return !text || !*text || *place ? SF_OK : SF_NO_MEMORY(err, "the runs");
 }
 
 sf_status sf_runs_done(sf_runs *r, int64_t row, sf_grade grade, const char *folder, const char *message,
@@ -311,7 +311,7 @@ sf_status sf_runs_read(sf_runs *r, const char *path, uint64_t hash, sf_error *er
     SF_OWNED char *text = NULL, *heading = own_heading(r);
     size_t size = 0;
     if (!heading)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the runs");
+        SF_NO_MEMORY(err, "the runs");
     else if (sf_plain_read(path, "table of the runs", SF_PLAIN_ANY, &text, &size, err) == SF_OK &&
              sf_hash_bytes(SF_HASH_START, text, size) == hash &&
              strncmp(text, heading, strlen(heading)) == 0) {

@@ -89,10 +89,6 @@ static sf_status choose_series(const sf_plan *p, int other, series *s, sf_error 
     return SF_OK;
 }
 
-static int series_count(const series *s) {
-    return s->factor < 0 ? 1 : (int)s->groups.count;
-}
-
 static int series_of(const sf_plan *p, const series *s, int64_t row) {
     if (s->factor < 0)
         return 0;
@@ -173,7 +169,7 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
     panel->padded = true;
     if (!isnan(limit->limit))
         sf_chart_level(chart, limit->limit, "#cb181d", NULL);
-    for (int k = 0; k < series_count(s) && err->status == SF_OK; k++) {
+    for (int k = 0; k < (s->factor < 0 ? 1 : (int)s->groups.count) && err->status == SF_OK; k++) {
         sf_series_data *points = sf_chart_series(chart, coloured(run_points, k), NULL),
                        *means = level_series(chart, mean_line, p, s, k);
         memset(sum, 0, (size_t)groups.count * sizeof *sum);

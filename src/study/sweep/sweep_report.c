@@ -282,8 +282,8 @@ static void put_probability_row(sf_html_table *t, const sf_sweep_report *r, int6
         const sf_probability *c = &q->cell[k * q->cells + cell];
         if (isnan(r->plan->figure[k].limit))
             continue;
-        sf_html_cell(t, isnan(c->share) ? "–" : "%.3f (%.3f to %.3f)", c->share, c->low, c->high);
-        sf_html_cell(t, "%lld / %lld / %lld / %lld", c->below, c->above, c->unknown, c->within);
+        sf_html_line(t, NULL, "%.3f (%.3f to %.3f)|%lld / %lld / %lld / %lld", c->share, c->low, c->high,
+                     c->below, c->above, c->unknown, c->within);
     }
 }
 
@@ -390,11 +390,9 @@ static void put_indices(FILE *page, const sf_sweep_report *r) {
             sf_html_row(&t);
             sf_html_cell(&t, "%s", r->plan->figure[k].figure);
             sf_html_cell(&t, "%s", r->plan->factor[f].name);
-            sf_html_number(&t, 3, i->first);
-            sf_html_cell(&t, isnan(i->first_low) ? "–" : "%.3f to %.3f", i->first_low, i->first_high);
-            sf_html_number(&t, 3, i->total);
-            sf_html_cell(&t, isnan(i->total_low) ? "–" : "%.3f to %.3f", i->total_low, i->total_high);
-            sf_html_cell(&t, "%lld of %lld", a->index_samples[k], sf_plan_saltelli(r->plan)->samples);
+            sf_html_line(&t, NULL, "%.3f|%.3f to %.3f|%.3f|%.3f to %.3f|%lld of %lld", i->first, i->first_low,
+                         i->first_high, i->total, i->total_low, i->total_high, a->index_samples[k],
+                         sf_plan_saltelli(r->plan)->samples);
         }
     sf_html_table_end(&t);
     sf_html_note(
@@ -412,10 +410,8 @@ static void put_surfaces(FILE *page, const sf_sweep_report *r) {
         page, "dense", "figure|>runs|>terms|>rms of the residuals|>rms error at runs left out|>Q²|remark");
     for (int k = 0; k < r->plan->figure_count; k++) {
         const sf_sweep_surface *s = &r->analysis->surface[k];
-        sf_html_row(&t);
-        sf_html_cell(&t, "%s", r->plan->figure[k].figure);
-        SF_HTML_NUMBERS(&t, 0, (double)s->rows, s->fit.terms);
-        SF_HTML_NUMBERS(&t, 3, s->fit.rms, s->fit.left_out_rms, s->fit.q2);
+        sf_html_line(&t, r->plan->figure[k].figure, "%lld|%d|%.3f|%.3f|%.3f", (long long)s->rows,
+                     s->fit.terms, s->fit.rms, s->fit.left_out_rms, s->fit.q2);
         sf_html_cell(&t, "%s%s%s", s->fit.problem, *s->fit.problem && s->rows < s->of ? "; " : "",
                      s->rows < s->of ? "a part of the runs, drawn at random" : "");
     }
@@ -476,9 +472,7 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
     put_surfaces(page, r);
     put_failures(page, r);
     sf_sweep_views_put(page, r->runs, r->views);
-    sf_html_heading(page, "The command that repeats this report");
-    sf_html_pre(page, r->command_line);
-    return sf_html_end(page, "softfall-sweep " SF_VERSION " (" SF_GIT_REVISION ")", err);
+    return sf_html_end(page, r->command_line, "softfall-sweep " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }
 
 /* ---- terminal ---- */

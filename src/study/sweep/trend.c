@@ -94,7 +94,7 @@ static sf_status fit_thickness(sf_sweep_trend *t, const drop *list, int count, s
     gsl_vector_view y = gsl_vector_view_array(thickness, n), c = gsl_vector_view_array(t->thickness, terms);
     gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, terms);
     if (!work)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the thickness of the pads");
+        return SF_NO_MEMORY(err, "the thickness of the pads");
     gsl_multifit_linear_tsvd(&x.matrix, &y.vector, 1e-10, &c.vector, &covariance.matrix, &squares, &rank,
                              work);
     gsl_multifit_linear_free(work);

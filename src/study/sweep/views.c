@@ -116,8 +116,7 @@ static sf_status make_view(const sf_plan *p, const char *parent, int threads, sf
 sf_status sf_sweep_views_make(const sf_plan *plan, const char *directory, int threads, sf_sweep_views *views,
                               sf_error *err) {
     char parent[PATH_MAX];
-    if (snprintf(parent, sizeof parent, "%s/views", directory) >= (int)sizeof parent)
-        return SF_REFUSE(err, "the name of the directory is too long: %.100s...", directory);
+    SF_TRY(sf_path_print(parent, sizeof parent, err, "%s/views", directory));
     SF_TRY(sf_folder_own(parent, err));
     for (int k = 0; k < views->count && err->status == SF_OK; k++)
         make_view(plan, parent, threads, &views->view[k], err);

@@ -21,14 +21,14 @@ static sf_status check_job(const sf_compression_job *job, sf_study *study, const
                            const sf_compression_config *config, sf_error *err) {
     uint64_t ignored; /* the case can be read */
     if (kind->label && job->case_path)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       kind == &sf_compression_form_kind
-                           ? "--simulate does not work with curve_form = \"%s\" in %s"
-                           : "--simulate does not work with law = \"%s\" in %s",
-                       config->form.form.curve ? config->form.form.curve->name : kind->label, job->path);
+        return SF_REFUSE(err,
+                         kind == &sf_compression_form_kind
+                             ? "--simulate does not work with curve_form = \"%s\" in %s"
+                             : "--simulate does not work with law = \"%s\" in %s",
+                         config->form.form.curve ? config->form.form.curve->name : kind->label, job->path);
     if (config->thermal && job->case_path)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "--simulate does not work with tests at several temperatures, in %s", job->path);
+        return SF_REFUSE(err, "--simulate does not work with tests at several temperatures, in %s",
+                         job->path);
     SF_TRY(sf_study_check(study, kind->outputs, err));
     return job->case_path ? sf_plain_hash(job->case_path, "case file", SF_PLAIN_TEXT, &ignored, err) : SF_OK;
 }
@@ -53,7 +53,7 @@ static sf_status write_material(const sf_staging *output, const sf_compression_k
         kind->describe(out, fit, true);
     }
     if (!out || fclose(out) != 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the comments of the material file");
+        return SF_NO_MEMORY(err, "the comments of the material file");
     const sf_material_text comments = {.title = title, .provenance = text, .temperatures = thermal};
     const sf_material material = kind->material(fit);
     return sf_material_write_checked(output->aside, "material", &material, &comments, err);
@@ -99,7 +99,7 @@ static sf_status run(sf_study *study, void *own, sf_error *err) {
     job->directory = study->directory;
     job->command = study->command;
     if (job->friction && !job->case_path)
-        return SF_FAIL(err, SF_ERR_INPUT, "--friction needs --simulate");
+        return SF_REFUSE(err, "--friction needs --simulate");
     SF_TRY(sf_compression_config_read(job->path, &config, err));
     const sf_compression_kind *kind = config.hyperfoam.terms > 0 ? &sf_compression_hyperfoam
                                       : config.form.form.curve   ? &sf_compression_form_kind

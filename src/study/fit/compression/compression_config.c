@@ -17,7 +17,8 @@ enum { SLOPE_POINTS = 4 }; /* of the slope that E begins with */
 static const double FILTER_TIME = 1e-4, FACTOR_FILTER_TIME = 5e-4; /* s */
 static const double FACTOR_DAMP = 0.05;
 
-sf_status sf_form_request_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err) {
+/* True if the file names a form other than "free". */
+static sf_status is_form_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err) {
     const char *name = FREE_FORM;
     SF_TRY(sf_config_text(file, root, "curve_form", false, &name, err));
     const sf_curve_form *form = sf_curve_form_find(name);
@@ -184,8 +185,10 @@ static sf_status read_form_rate(const sf_config *file, sf_config_item *root, sf_
     return SF_OK;
 }
 
-sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, sf_compression_config *c,
-                               sf_error *err) {
+/* Reads the keys of a form; the tests and the numbers of all laws are there. E begins as the slope of the
+ * slowest test's first points, up to modulus_range. */
+static sf_status read_form(const sf_config *file, sf_config_item *root, sf_compression_config *c,
+                           sf_error *err) {
     sf_form_request *r = &c->form;
     const char *name = NULL;
     SF_TRY(sf_config_text(file, root, "curve_form", true, &name, err));
@@ -415,14 +418,15 @@ static sf_status take_temperatures(const sf_config *file, sf_config_item *root, 
 static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
     sf_config_item *root = config_root_setting(&file->config);
     int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
-    bool form, hyperfoam;
+    bool form = false, hyperfoam;
     SF_TRY(sf_hyperfoam_request_asked(file, root, &hyperfoam, err));
     if (!hyperfoam)
-        SF_TRY(sf_form_request_asked(file, root, &form, err));
+        SF_TRY(is_form_asked(file, root, &form, err));
     SF_TRY(sf_config_names(
         file, root,
         hyperfoam ? SF_HYPERFOAM_REQUEST_KEYS
-        : form    ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|cycles|" SF_FORM_REQUEST_KEYS
+        : form    ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|cycles|curve_form|"
+                    "solid_density|start|unknown|rate_model|rate_reference|predict"
                   : "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
                     "confidence|specimen|toe_correction|curve_form",
         err));
@@ -451,7 +455,7 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
         return take_temperatures(file, root, c, err);
     SF_TRY(read_tests(file, root, "predict", true, c, err));
     SF_TRY(sf_cycle_records_read(file, root, c, err));
-    return sf_form_request_read(file, root, c, err);
+    return read_form(file, root, c, err);
 }
 
 /* ---- requirements on all tests together ---- */

@@ -8,9 +8,6 @@
  * curve (fit/form), which are its start values, its unknown parameters and the rate dependence, and those of
  * the hyperfoam, which are its terms and the lateral strain of its test. */
 
-/* Keys of the file that belong to forms, and rate_model. */
-#define SF_FORM_REQUEST_KEYS "curve_form|solid_density|start|unknown|rate_model|rate_reference|predict"
-
 enum { SF_FORM_UNKNOWNS = 16 };
 
 /* Bits: the law has a factor on the curve, a Maxwell branch. */
@@ -31,10 +28,6 @@ typedef struct sf_form_request {
 
 /* Names of sf_form_rate. */
 extern const char *const sf_form_rate_names[];
-
-/* True if the file names a form other than "free". SF_ERR_INPUT: it names one that does not exist, or
- * "table". */
-sf_status sf_form_request_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err);
 
 /* Keys of a file with law = "hyperfoam". */
 #define SF_HYPERFOAM_REQUEST_KEYS "law|name|density|tests|DAMP|terms|nu"
@@ -119,13 +112,6 @@ typedef struct sf_compression_config {
     sf_compression_test predicted[SF_COMPRESSION_TESTS]; /* owned */
 } sf_compression_config;
 
-/* Reads the keys of a form into c->form; the tests and the numbers of all laws are there. E begins as the
- * slope of the slowest test's first points, up to modulus_range. SF_ERR_INPUT also where the data cannot
- * decide: a start value of a rate that the model does not have, a reference rate at or above the fastest
- * test, two solid fractions, a test at the curve's pole or beyond, nothing unknown. */
-sf_status sf_form_request_read(const sf_config *file, sf_config_item *root, sf_compression_config *c,
-                               sf_error *err);
-
 /* Names of sf_rate_model. */
 extern const char *const sf_rate_model_names[];
 
@@ -151,6 +137,3 @@ sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entr
 sf_status sf_cycle_records_read(const sf_config *file, sf_config_item *root, sf_compression_config *c,
                                 sf_error *err);
 void sf_cycle_record_free(sf_cycle_record *record);
-
-/* The pause (s) before point i; 0: none. */
-double sf_cycle_record_pause(const sf_cycle_record *record, int i);

@@ -2,7 +2,7 @@
 #include "study/fit/compression/compression_test.h"
 
 #include "base/text.h"
-#include "case/curves.h"
+#include "case/reader.h"
 
 #include <stdlib.h>
 
@@ -15,10 +15,7 @@ static const double ABOVE = 0.05;       /* part by which unloading may lie above
 static const double TENSION = 0.05;     /* part of the largest stress that unloading may end below zero */
 
 void sf_compression_test_free(sf_compression_test *test) {
-    free(test->path);
-    free(test->strain);
-    free(test->stress);
-    free(test->line);
+    SF_FREE(test->path, test->strain, test->stress, test->line);
     memset(test, 0, sizeof *test);
 }
 
@@ -32,8 +29,6 @@ static const double TOE_WIDTH = 0.01;  /* strain of that part, with TOE_POINTS p
 static const double TOE_LARGEST = 0.1; /* strain that it may take away */
 static const double EQUAL = 1e-6;      /* relative difference of slopes that counts as none */
 enum { TOE_POINTS = 5 };
-
-/* ---- cycles ---- */
 
 enum { MOST_CYCLES = 10000 };
 
@@ -285,7 +280,6 @@ static sf_status take_terms(const sf_compression_source *source, bool machine, c
 /* Checks of a single row. */
 static sf_status check_row(const sf_compression_test *t, int i, const table_terms *terms, sf_error *err) {
     double strain = t->strain[i], written = strain / terms->scale[0];
-    const char *name = terms->name[0];
     if (strain >= 1 && terms->scale[0] == 1)
         return SF_REFUSE(
             err, "%s:%d: strain %g is not below 1; if it is in percent, name the column strain_percent",
@@ -294,13 +288,13 @@ static sf_status check_row(const sf_compression_test *t, int i, const table_term
         return SF_REFUSE(err,
                          "%s:%d: %s %g means a strain of %g %%, which is not below 100 %% (contact_force = "
                          "\"2 N\" sets the zero of a crosshead's position)",
-                         t->path, t->line[i], name, written, 100 * strain);
+                         t->path, t->line[i], terms->name[0], written, 100 * strain);
     if (strain < -STRAIN_ZERO)
         return SF_REFUSE(
             err,
             "%s:%d: %s %g is negative; compression must be positive (invert = \"...\" in the file that "
             "names the test changes the sign)",
-            t->path, t->line[i], name, written);
+            t->path, t->line[i], terms->name[0], written);
     return SF_OK;
 }
 
@@ -544,40 +538,35 @@ static void condense(sf_compression_test *t) {
     t->loading = loading;
 }
 
+#define ADD(...) sf_text_add(t->interpretation, sizeof t->interpretation, __VA_ARGS__)
 static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
                      sf_compression_test *t) {
     static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};
-    sf_text_add(t->interpretation, sizeof t->interpretation, "%.383s", table->interpretation);
+    ADD("%.383s", table->interpretation);
     if (machine)
-        sf_text_add(t->interpretation, sizeof t->interpretation, ", over %.5g mm2 and %.5g mm",
-                    1e6 * source->area, 1e3 * source->thickness);
-    sf_text_add(t->interpretation, sizeof t->interpretation, ", %d points of loading and %d of unloading%s",
-                t->loading, t->count - t->loading, inverted[source->invert]);
+        ADD(", over %.5g mm2 and %.5g mm", 1e6 * source->area, 1e3 * source->thickness);
+    ADD(", %d points of loading and %d of unloading%s", t->loading, t->count - t->loading,
+        inverted[source->invert]);
     if (t->cycles > 1)
-        sf_text_add(t->interpretation, sizeof t->interpretation, ", cycle %d of %d", t->cycle, t->cycles);
+        ADD(", cycle %d of %d", t->cycle, t->cycles);
     if (source->contact_force > 0)
-        sf_text_add(t->interpretation, sizeof t->interpretation, ", zero at a force of %.4g N",
-                    source->contact_force);
+        ADD(", zero at a force of %.4g N", source->contact_force);
     if (t->dwell > 0)
-        sf_text_add(t->interpretation, sizeof t->interpretation,
-                    ", without %d points of a rest under strain, during which the stress relaxed", t->dwell);
+        ADD(", without %d points of a rest under strain, during which the stress relaxed", t->dwell);
     if (t->tension > 0)
-        sf_text_add(t->interpretation, sizeof t->interpretation,
-                    ", %d points in tension at the end set to zero", t->tension);
+        ADD(", %d points in tension at the end set to zero", t->tension);
     if (t->preload > 0)
-        sf_text_add(
-            t->interpretation, sizeof t->interpretation,
-            ", begins under a load that stands for a strain of %.3g %% (preload or zero of the load cell: "
+        ADD(", begins under a load that stands for a strain of %.3g %% (preload or zero of the load cell: "
             "toe_correction takes it away)",
             100 * t->preload);
     if (t->sorted > 0)
-        sf_text_add(t->interpretation, sizeof t->interpretation, ", jitter of %d points sorted", t->sorted);
+        ADD(", jitter of %d points sorted", t->sorted);
     if (source->toe)
-        sf_text_add(t->interpretation, sizeof t->interpretation,
-                    t->toe < 0 ? ", %.3g %% added that a preload had hidden" : ", toe of %.3g %% taken away",
-                    100 * fabs(t->toe));
-    sf_text_add(t->interpretation, sizeof t->interpretation, ", %.4g 1/s", t->rate);
+        ADD(t->toe < 0 ? ", %.3g %% added that a preload had hidden" : ", toe of %.3g %% taken away",
+            100 * fabs(t->toe));
+    ADD(", %.4g 1/s", t->rate);
 }
+#undef ADD
 
 sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,
                                    sf_error *err) {
@@ -587,7 +576,7 @@ sf_status sf_compression_test_read(const sf_compression_source *source, sf_compr
     table_terms terms;
     int which;
     if (!test->path)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the path %s", source->path);
+        return SF_NO_MEMORY(err, "the path %s", source->path);
     for (int k = 0; k < 2; k++) {
         layouts[k].part[SF_TABLE_SPECIMEN] = source->specimen;
         layouts[k].part[SF_TABLE_CYCLE] = source->cycle;

@@ -4,7 +4,7 @@
 #include <gsl/gsl_errno.h>
 #include <stdlib.h>
 
-#include "case/curves.h"
+#include "case/reader.h"
 #include "material/low_density_foam.h"
 
 /* ---- the record ---- */
@@ -27,7 +27,8 @@ static sf_table_layout time_layout(void) {
                              .name_count = sizeof names / sizeof *names};
 }
 
-double sf_cycle_record_pause(const sf_cycle_record *r, int i) {
+/* The pause (s) before point i; 0: none. */
+static double pause_before(const sf_cycle_record *r, int i) {
     double mean = (r->time[r->count - 1] - r->time[0]) / (r->count - 1), largest = r->strain[r->turn[1]];
     if (i == 0 || r->strain[i - 1] > UNLOADED * largest || r->strain[i] > UNLOADED * largest)
         return 0;
@@ -105,7 +106,7 @@ static sf_status read_record(const sf_config *file, sf_config_item *group, sf_cy
         return sf_config_refuse(file, group, err, "%s", inner.text);
     r->fitted = fitted < r->cycles ? (int)fitted : r->cycles;
     for (int i = 1; i < r->turn[2 * r->fitted]; i++)
-        r->pauses += sf_cycle_record_pause(r, i) > 0;
+        r->pauses += pause_before(r, i) > 0;
     return SF_OK;
 }
 
@@ -131,10 +132,7 @@ sf_status sf_cycle_records_read(const sf_config *file, sf_config_item *root, sf_
 }
 
 void sf_cycle_record_free(sf_cycle_record *r) {
-    free(r->path);
-    free(r->time);
-    free(r->strain);
-    free(r->stress);
+    SF_FREE(r->path, r->time, r->strain, r->stress);
     *r = (sf_cycle_record){0};
 }
 
@@ -202,7 +200,7 @@ static sf_status follow(const sf_cycle_record *r, const sf_foam_card *card, int 
     sf_uniaxial point = {0};
     SF_TRY(sf_material_law_build(&material, &law, err));
     for (int i = 0; i < end; i++) {
-        double pause = sf_cycle_record_pause(r, i);
+        double pause = pause_before(r, i);
         if (pause > 0)
             sf_material_point_rest(&law, pause, &point);
         double step = i > 0 ? r->time[i] - r->time[i - 1] : 1;

@@ -364,8 +364,7 @@ sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit,
 
 void sf_form_fit_free(sf_form_fit *fit) {
     for (int k = 0; k < SF_COMPRESSION_TESTS; k++) {
-        free(fit->test[k].stress);
-        free(fit->predicted[k].stress);
+        SF_FREE(fit->test[k].stress, fit->predicted[k].stress);
     }
     for (int k = 0; k < SF_CYCLE_RECORDS; k++)
         free(fit->cycles[k].stress);

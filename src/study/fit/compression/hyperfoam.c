@@ -49,10 +49,10 @@ sf_status sf_hyperfoam_request_asked(const sf_config *file, sf_config_item *root
 
 static sf_status check_lateral(const sf_table_point *p, sf_error *err) {
     if (p->value[0] >= 1 || p->value[1] <= -1 || p->value[1] >= 1)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s:%d: strain %s and lateral strain %s: both must be between -1 and 1; columns in "
-                       "percent are named strain_percent and lateral_strain_percent",
-                       p->path, p->line, p->text[0], p->text[1]);
+        return SF_REFUSE(err,
+                         "%s:%d: strain %s and lateral strain %s: both must be between -1 and 1; columns in "
+                         "percent are named strain_percent and lateral_strain_percent",
+                         p->path, p->line, p->text[0], p->text[1]);
     return SF_OK;
 }
 
@@ -93,8 +93,8 @@ static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_e
             data->lateral[k - 1] = side;
         }
     if (data->lateral_count < LEAST_LATERAL)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %d points of lateral strain while loading; %d are needed",
-                       path, data->lateral_count, LEAST_LATERAL);
+        return SF_REFUSE(err, "%s: %d points of lateral strain while loading; %d are needed", path,
+                         data->lateral_count, LEAST_LATERAL);
     return SF_OK;
 }
 
@@ -144,8 +144,7 @@ sf_status sf_hyperfoam_request_read(const sf_config *file, sf_config_item *root,
 }
 
 void sf_hyperfoam_request_free(sf_hyperfoam_request *r) {
-    free(r->lateral_at);
-    free(r->lateral);
+    SF_FREE(r->lateral_at, r->lateral);
     *r = (sf_hyperfoam_request){0};
 }
 

@@ -85,8 +85,7 @@ sf_status sf_compression_data_init(const sf_compression_config *config, sf_compr
 }
 
 void sf_compression_data_free(sf_compression_data *data) {
-    free(data->test);
-    free(data->unloading);
+    SF_FREE(data->test, data->unloading);
     free(data->strain); /* and all behind it */
     *data = (sf_compression_data){0};
 }
@@ -493,8 +492,7 @@ sf_status sf_compression_model_init(const sf_compression_data *data, sf_compress
 
 void sf_compression_model_free(sf_compression_model *model) {
     sf_spline_free(&model->spline);
-    free(model->value_row);
-    free(model->area_row);
+    SF_FREE(model->value_row, model->area_row);
     *model = (sf_compression_model){0};
 }
 

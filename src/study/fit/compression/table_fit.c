@@ -94,7 +94,7 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
     double chi2 = INFINITY;
     int info;
     if (n > p && !w)
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a fit of %zu parameters to %zu points", p, n);
+        SF_NO_MEMORY(err, "a fit of %zu parameters to %zu points", p, n);
     if (w && err->status == SF_OK) {
         gsl_vector_view own = gsl_vector_subvector(x, first_of(model, unloading), p);
         gsl_vector_memcpy(start, &own.vector);

@@ -248,10 +248,10 @@ static sf_status check_specimen(const sf_compression_config *c, sf_error *err) {
         !(c->specimen.width > 0) || fabs(c->specimen.width - c->specimen.side) <= 1e-9 * c->specimen.side;
     if (!(square && c->specimen.side > 0 &&
           fabs(c->specimen.side - c->specimen.thickness) <= 1e-9 * c->specimen.side))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "the simulated specimen is a cube: give specimen = { side = \"50 mm\"; thickness = "
-                       "\"50 mm\"; } with equal lengths (they are %g mm and %g mm)",
-                       1e3 * c->specimen.side, 1e3 * c->specimen.thickness);
+        return SF_REFUSE(err,
+                         "the simulated specimen is a cube: give specimen = { side = \"50 mm\"; thickness = "
+                         "\"50 mm\"; } with equal lengths (they are %g mm and %g mm)",
+                         1e3 * c->specimen.side, 1e3 * c->specimen.thickness);
     return SF_OK;
 }
 

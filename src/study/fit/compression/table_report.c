@@ -351,7 +351,6 @@ sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging 
     put_choice(out, fit);
     put_simulation(out, r);
     put_limits(out, fit);
-    sf_html_heading(out, "The command that repeats this report");
-    sf_html_pre(out, job->command);
-    return sf_html_end(out, "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")", err);
+    return sf_html_end(out, job->command, "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")",
+                       err);
 }

@@ -288,7 +288,7 @@ static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *a
     if (f)
         put_provenance(f, fit, average, input_path);
     if (!f || fclose(f) != 0)
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the material's comments");
+        return SF_NO_MEMORY(err, "the material's comments");
     const sf_material_text text = {.title = fit->input->title, .provenance = provenance};
     SF_TRY(sf_drop_fit_card(fit->input, fit->result.u, &card, err));
     sf_drop_informed_strains(fit, &low, &card.informed_strain);

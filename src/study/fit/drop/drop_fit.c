@@ -35,8 +35,8 @@ static sf_status check_coarse(const sf_fit_drop *drop, const sf_columns *a, cons
     if (fabs(a->thickness / b->thickness - 1) < SLACK && fabs(a->mass / b->mass - 1) < SLACK &&
         fabs(a->speed / b->speed - 1) < SLACK)
         return SF_OK;
-    return SF_FAIL(
-        err, SF_ERR_INPUT,
+    return SF_REFUSE(
+        err,
         "coarse_set makes another drop of %s: %.4g mm thick, %.4g kg and %.4g m/s, in place of %.4g "
         "mm, %.4g kg and %.4g m/s; it is for a coarser mesh of the same drop",
         drop->name, 1e3 * a->thickness, a->mass, a->speed, 1e3 * b->thickness, b->mass, b->speed);

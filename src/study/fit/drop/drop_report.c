@@ -324,9 +324,7 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
     put_parameters(f, fit);
     put_sensitivities(f, fit);
     put_curve(f, fit);
-    sf_html_heading(f, "The command that repeats this report");
-    sf_html_pre(f, command);
-    return sf_html_end(f, "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")", err);
+    return sf_html_end(f, command, "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }
 
 /* ---- fit.json ---- */

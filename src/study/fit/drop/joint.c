@@ -214,12 +214,12 @@ static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *e
     SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count > SF_JOINT_POINTS)
-        SF_FAIL(err, SF_ERR_INPUT, "%s: %lld points; at most %d are taken", path, (long long)table.count,
-                SF_JOINT_POINTS);
+        SF_REFUSE(err, "%s: %lld points; at most %d are taken", path, (long long)table.count,
+                  SF_JOINT_POINTS);
     for (int64_t k = 0; k < table.count && err->status == SF_OK; k++) {
         if (!(table.value[0][k] > 0 && table.value[1][k] > 1))
-            SF_FAIL(
-                err, SF_ERR_INPUT,
+            SF_REFUSE(
+                err,
                 "%s:%d: a static stress of %g Pa and a peak of %g g: the stress must be above 0, the peak "
                 "above 1 g",
                 path, table.line[k], table.value[0][k], table.value[1][k]);

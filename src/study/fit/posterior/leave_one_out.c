@@ -284,8 +284,8 @@ sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const s
     int count = chains->chains * chains->kept;
     SF_OWNED_BY(free_wide) wide w = {0};
     if (g->groups > MOST_GROUPS)
-        return SF_FAIL(err, SF_ERR_INPUT, "%d groups of data: at most %d are left out one by one", g->groups,
-                       MOST_GROUPS);
+        return SF_REFUSE(err, "%d groups of data: at most %d are left out one by one", g->groups,
+                         MOST_GROUPS);
     SF_OWNED double *all = split_all(g, chains->sample, count, err),
                     *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");
     for (int k = 0; k < g->groups && err->status == SF_OK; k++) {

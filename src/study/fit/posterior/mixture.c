@@ -18,7 +18,7 @@ gsl_rng *sf_random(uint64_t seed, sf_error *err) {
     if (random)
         gsl_rng_set(random, (unsigned long)seed & 0xffffffffu);
     else
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for a random generator");
+        SF_NO_MEMORY(err, "a random generator");
     return random;
 }
 
@@ -96,7 +96,7 @@ static sf_status set_scale(const sf_mixture *m, const double *scale, sf_mixture_
 sf_status sf_mixture_single(int n, const double *centre, const double *scale, double freedom, sf_mixture *m,
                             sf_error *err) {
     if (n < 1 || n > N)
-        return SF_FAIL(err, SF_ERR_INPUT, "%d parameters: 1 to %d are expected", n, N);
+        return SF_REFUSE(err, "%d parameters: 1 to %d are expected", n, N);
     *m = (sf_mixture){.parameters = n, .parts = 1, .freedom = freedom};
     m->part[0].weight = 1;
     memcpy(m->part[0].centre, centre, (size_t)n * sizeof *centre);
