@@ -51,60 +51,15 @@ static char *next_line(csv *file) {
     return line;
 }
 
-static bool is_empty(const char *line) {
-    const char *text = line + strspn(line, " \t");
-    return *text == '\0' || *text == '#';
-}
-
 /* The next line that is neither empty nor a comment. */
 static char *next_content(csv *file) {
     char *line;
-    while ((line = next_line(file)) && is_empty(line))
+    while ((line = next_line(file)) && sf_table_line_is_empty(line))
         ;
     return line;
 }
 
-/* A copy of the line at *rest, which is moved behind it; NULL at the end. The text stays as it is. */
-static char *copy_line(const char **rest) {
-    const char *line = *rest;
-    if (!line || !*line)
-        return NULL;
-    size_t length = strcspn(line, "\r\n");
-    *rest = line + length + (line[length] == '\r' && line[length + 1] == '\n' ? 2 : line[length] != '\0');
-    return strndup(line, length);
-}
-
-/* The same of the next line that is neither empty nor a comment. */
-static char *copy_content(const char *rest) {
-    char *copy;
-    while ((copy = copy_line(&rest)) && is_empty(copy))
-        free(copy);
-    return copy;
-}
-
 /* ---- heading ---- */
-
-static bool is_utf8(const char *text) {
-    for (int length = 1; *text && length > 0; text += length)
-        if ((length = sf_utf8_length((const unsigned char *)text)) == 0)
-            return false;
-    return true;
-}
-
-/* A copy in UTF-8: what is not is taken for Latin-1. NULL of NULL, and without memory. */
-static char *copy_utf8(const char *text) {
-    if (!text || is_utf8(text))
-        return text ? strdup(text) : NULL;
-    char *copy = malloc(2 * strlen(text) + 1), *to = copy;
-    for (const unsigned char *c = (const unsigned char *)text; copy && *c; c++) {
-        if (*c >= 0x80)
-            *to++ = (char)(0xC0 | *c >> 6);
-        *to++ = (char)(*c < 0x80 ? *c : 0x80 | (*c & 0x3F));
-    }
-    if (copy)
-        *to = '\0';
-    return copy;
-}
 
 /* The separator by which numbers begin the line, one where samples are counted and two elsewhere; 0: it is no
  * line of data. */
@@ -130,10 +85,10 @@ static char data_separator(const csv *file, const char *line) {
 static sf_status try_heading(csv *file, const char *line, const char *below, char separator,
                              const sf_table_layout *layout, sf_table_heading *heading, sf_error *err) {
     sf_table_cells cells, below_cells = {0};
-    SF_OWNED char *text = copy_utf8(line), *under = copy_utf8(below);
+    SF_OWNED char *text = sf_table_utf8_copy(line), *under = sf_table_utf8_copy(below);
     *heading = (sf_table_heading){.place = {-1, -1}, .part = {-1, -1}};
     if (!text || (below && !under)) {
-        SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
+        SF_NO_MEMORY(err, "the %s %s", file->layout->what, file->path);
     } else {
         sf_table_split(text, separator, true, &cells);
         if (under)
@@ -154,7 +109,7 @@ static bool is_good(const sf_table_heading *heading) {
 /* The best heading that the line can be, of any layout and separator; `rest` is the text below it. */
 static sf_status try_line(csv *file, const char *line, const char *rest, const sf_table_layout *layouts,
                           int count, int *which, sf_table_heading *best, char *separator, sf_error *err) {
-    SF_OWNED char *below = copy_content(rest);
+    SF_OWNED char *below = sf_table_content_copy(rest);
     *best = (sf_table_heading){.found = -1};
     for (const char *s = SEPARATORS; *s && err->status == SF_OK; s++)
         for (int k = 0; k < count && err->status == SF_OK; k++) {
@@ -246,10 +201,10 @@ static sf_status take_heading(csv *file, const sf_table_layout *layouts, int cou
         sf_table_cells cells;
         char separator = 0;
         int other;
-        if (!(copy = copy_line(&at)))
+        if (!(copy = sf_table_line_copy(&at)))
             break;
-        file->separator = is_empty(copy) ? 0 : data_separator(file, copy);
-        if (!file->separator && !is_empty(copy))
+        file->separator = sf_table_line_is_empty(copy) ? 0 : data_separator(file, copy);
+        if (!file->separator && !sf_table_line_is_empty(copy))
             try_line(file, copy, at, layouts, count, &other, &own, &separator, err);
         if (file->separator)
             sf_table_split(copy, file->separator, false, &cells);
@@ -290,13 +245,14 @@ static sf_status choose_table(csv *file, const sf_table_layout *layouts, int cou
     bool data = false;
     const char *start = file->next;
     char *copy;
-    for (const char *rest = file->next, *line = rest; (copy = copy_line(&rest)); line = rest) {
+    for (const char *rest = file->next, *line = rest; (copy = sf_table_line_copy(&rest)); line = rest) {
         sf_table_heading heading = {.found = -1};
         char separator;
         line_number++;
         if (data && begins_with_letter(copy))
             try_line(file, copy, rest, layouts, count, &found, &heading, &separator, err);
-        data = data || (!is_empty(copy) && !begins_with_letter(copy) && data_separator(file, copy));
+        data = data ||
+               (!sf_table_line_is_empty(copy) && !begins_with_letter(copy) && data_separator(file, copy));
         free(copy);
         SF_TRY(err->status);
         if (!is_good(&heading))
@@ -348,12 +304,13 @@ static int list_parts(const csv *file, int k, char list[MOST_PARTS][PART_TEXT]) 
     int listed = 0, rows = 0, other = !k, place = file->heading.part[k];
     const char *chosen = file->layout->part[other];
     char *copy;
-    for (const char *rest = file->next; (!file->end || rest < file->end) && (copy = copy_line(&rest));) {
+    for (const char *rest = file->next;
+         (!file->end || rest < file->end) && (copy = sf_table_line_copy(&rest));) {
         sf_table_cells cells;
         double number = 0;
         bool known = false;
         sf_table_split(copy, file->separator, false, &cells);
-        bool use = !is_empty(copy) && cells.count <= SF_TABLE_COLUMNS && cells.count > place &&
+        bool use = !sf_table_line_is_empty(copy) && cells.count <= SF_TABLE_COLUMNS && cells.count > place &&
                    cells.cell[place][0] && holds_number(file, &cells, 0) && holds_number(file, &cells, 1) &&
                    (!chosen || file->heading.part[other] < 0 || cells.count <= file->heading.part[other] ||
                     is_part(cells.cell[file->heading.part[other]], chosen));
@@ -441,33 +398,9 @@ static sf_status check_mark(csv *file, const char *name, const char *text, sf_er
     return SF_OK;
 }
 
-/* "1,017.76" or "1.017,76": groups of three digits and another decimal mark. In a file with decimal points
- * whose commas separate columns, a quoted "1,017" is of thousands too. Writes it without the groups. */
-static bool has_thousands(const csv *file, const char *text, char *plain, size_t size) {
-    const char *digits = text + strspn(text, "+-"), *mark = strpbrk(digits, ",.");
-    size_t used = (size_t)(digits - text);
-    if (!mark || *digits == '0' || mark - digits < 1 || mark - digits > 3 || strlen(text) >= size)
-        return false;
-    char group = *mark, decimal = group == ',' ? '.' : ',';
-    memcpy(plain, text, (size_t)(mark - text));
-    used = (size_t)(mark - text);
-    while (*mark == group) {
-        if (strspn(mark + 1, "0123456789") != 3)
-            return false;
-        memcpy(plain + used, mark + 1, 3);
-        used += 3;
-        mark += 4;
-    }
-    bool known = *mark == decimal || (*mark == '\0' && group == ',' && file->separator == ',' && file->point);
-    if (!known || (*mark && mark[1 + strspn(mark + 1, "0123456789")] != '\0'))
-        return false;
-    snprintf(plain + used, size - used, "%s", mark);
-    return true;
-}
-
 static sf_status read_number(csv *file, const char *name, const char *text, double *value, sf_error *err) {
     char plain[64];
-    if (has_thousands(file, text, plain, sizeof plain))
+    if (sf_table_has_thousands(text, file->separator == ',' && file->point, plain, sizeof plain))
         text = plain;
     if (!sf_table_number(text, value))
         return SF_REFUSE(err, "%s:%d: %s \"%s\" is not a number%s", file->path, file->line, name, text,
@@ -483,7 +416,7 @@ static sf_status append(csv *file, const double value[2], sf_error *err) {
     if (!sf_grow(&table->value[0], (size_t)table->count, sizeof *value) ||
         !sf_grow(&table->value[1], (size_t)table->count, sizeof *value) ||
         !sf_grow(&table->line, (size_t)table->count, sizeof *table->line))
-        return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the %s %s", file->layout->what, file->path);
+        return SF_NO_MEMORY(err, "the %s %s", file->layout->what, file->path);
     for (int c = 0; c < 2; c++)
         table->value[c][table->count] = value[c];
     table->line[table->count] = file->line;
@@ -572,8 +505,8 @@ static bool ends_table(const csv *file, const char *line) {
     sf_table_split(copy, file->separator, false, &cells);
     bool text = cells.count > 0 && begins_with_letter(line) && !holds_number(file, &cells, c);
     free(copy);
-    for (const char *rest = file->next; text && (!file->end || rest < file->end) && (copy = copy_line(&rest));
-         free(copy))
+    for (const char *rest = file->next;
+         text && (!file->end || rest < file->end) && (copy = sf_table_line_copy(&rest)); free(copy))
         text = !holds_point(file, copy);
     return text;
 }

@@ -96,7 +96,7 @@ sf_status sf_table_read_any(const char *path, const sf_table_layout *layouts, in
 void sf_table_free(sf_table *table);
 
 /* Headings of CSV tables: which cells are the two columns of a layout, and in which units. Only
- * table_csv.c and table_heading.c use this part. */
+ * table_csv.c, table_heading.c and table_text.c use this part. */
 
 enum { SF_TABLE_COLUMNS = 256, SF_TABLE_TITLE = 96, SF_TABLE_UNIT = 32 };
 enum { SF_TABLE_ROW = -2 }; /* place of a first column that is the number of the row */
@@ -138,3 +138,17 @@ sf_status sf_table_heading_read(const sf_table_layout *layout, const sf_table_ce
  * mark becomes UTF-8, a channel in ISO-MME a table of two columns whose lines are those of the file. `what`:
  * the file in messages. */
 sf_status sf_table_text_read(const char *path, const char *what, char **text, sf_error *err);
+
+/* True if the line is empty or a comment. */
+bool sf_table_line_is_empty(const char *line);
+/* A copy of the line at *rest, which is moved behind it, or of the next line from `rest` on that is neither
+ * empty nor a comment; from malloc, NULL at the end. The text stays as it is. */
+char *sf_table_line_copy(const char **rest);
+char *sf_table_content_copy(const char *rest);
+/* A copy in UTF-8, from malloc: what is not is taken for Latin-1. NULL of NULL, and without memory. */
+char *sf_table_utf8_copy(const char *text);
+
+/* "1,017.76" or "1.017,76": groups of three digits and another decimal mark; `quoted`: "1,017" is of
+ * thousands too, as in a file with decimal points whose commas separate columns. Writes it without the
+ * groups. */
+bool sf_table_has_thousands(const char *text, bool quoted, char *plain, size_t size);
