@@ -70,11 +70,24 @@ static void a_material_comes_before_its_keys_and_ranges_hold_both_ends(void **st
     sf_plan_free(&plan);
 }
 
+typedef struct refusal {
+    const char *factors, *part; /* of the plan, and of the sentence */
+} refusal;
+
 /* A sentence each, with the line of the plan. */
+static void assert_refusals(const program_place *place, const refusal *cases, size_t count) {
+    for (size_t k = 0; k < count; k++) {
+        sf_plan plan;
+        sf_error err;
+        sweep_try_plan(place, cases[k].factors, false, &plan, &err);
+        if (err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].part) || !strstr(err.text, "plan.cfg:"))
+            fail_msg("%zu: \"%s\" expected in: %s", k, cases[k].part, err.text);
+        sf_plan_free(&plan);
+    }
+}
+
 static void plans_that_cannot_be_meant_are_refused(void **state) {
-    static const struct {
-        const char *factors, *part;
-    } cases[] = {
+    static const refusal cases[] = {
         {"{ key = \"missile.velocity\"; values = []; }", "is empty: there is no run"},
         {"{ key = \"missile.velocity\"; values = [\"4 m/s\"]; }, { key = \"missile.velocity\"; values = [\"5 m/s\"]; }",
          "missile.velocity is a factor already, at "},
@@ -100,7 +113,6 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
         {"{ key = \"material\"; posterior = \"none\"; }", "there is no draw-001.cfg"},
         {"{ key = \"material\"; files = [\"none.cfg\"]; }", "none.cfg"},
         {"{ key = \"a.b\"; values = [1]; name = \"hic\"; }", "\"hic\" is a column of runs.csv"},
-        {"{ key = \"material\"; values = [\"@foam.cfg\"]; }", "material is given by a file: give files"},
         {"{ sample = \"saltelli\"; count = 7; of = ( { key = \"a.b\"; low = 0.0; high = 1.0; } ); }",
          "Sobol' indices need 8 samples"},
         {"{ key = \"output.frame_interval\"; values = [\"1 ms\", \"2 ms\"]; }",
@@ -108,6 +120,13 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
         {"{ key = \"a.b\"; values = [1]; } ); set = ( \"output.fields = [\\\"strain\\\"]\"",
          "set: output.fields has no effect in a campaign"},
         {"{ key = \"a.b\"; values = [1]; } ); set = ( \" a.b =2\"", "set: a.b is a factor, at "},
+    };
+    assert_refusals(*state, cases, sizeof cases / sizeof cases[0]);
+}
+
+static void keys_of_other_kinds_of_factor_are_refused(void **state) {
+    static const refusal cases[] = {
+        {"{ key = \"material\"; values = [\"@foam.cfg\"]; }", "material is given by a file: give files"},
         {"{ key = \"a.b\"; value = [1]; }", "unknown key \"value\""},
         {"{ key = \"a.b\"; values = [1]; from = 1; }", "exclude each other"},
         {"{ key = \"a.b\"; low = 1.0; high = 2.0; }", "unknown key \"low\""},
@@ -138,14 +157,7 @@ static void plans_that_cannot_be_meant_are_refused(void **state) {
          "material.curve is given by a file"},
         {"", "factors must be a list"},
     };
-    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-        sf_plan plan;
-        sf_error err;
-        sweep_try_plan(*state, cases[k].factors, false, &plan, &err);
-        if (err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].part) || !strstr(err.text, "plan.cfg:"))
-            fail_msg("%zu: \"%s\" expected in: %s", k, cases[k].part, err.text);
-        sf_plan_free(&plan);
-    }
+    assert_refusals(*state, cases, sizeof cases / sizeof cases[0]);
 }
 
 /* With the line of the factor and what the case says. */
@@ -432,6 +444,7 @@ int main(void) {
         cmocka_unit_test(the_last_block_is_the_fastest_and_zipped_lists_go_together),
         cmocka_unit_test(a_material_comes_before_its_keys_and_ranges_hold_both_ends),
         cmocka_unit_test(plans_that_cannot_be_meant_are_refused),
+        cmocka_unit_test(keys_of_other_kinds_of_factor_are_refused),
         cmocka_unit_test(keys_and_units_that_a_case_does_not_take_are_refused),
         cmocka_unit_test(what_set_does_wrong_is_told_of_set),
         cmocka_unit_test(values_that_are_zipped_are_checked_together),

@@ -18,50 +18,20 @@ typedef struct body_list {
     int32_t *first; /* [count] owned; the first node of each, ascending */
 } body_list;
 
-typedef struct cell_face {
-    int32_t key[4]; /* ascending; the first is -1 for a triangle */
-    int32_t cell;
-} cell_face;
-
-static int by_key(const void *a, const void *b) {
-    const cell_face *x = a, *y = b;
-    int keys = sf_face_compare(x->key, y->key);
-    return keys ? keys : (x->cell > y->cell) - (x->cell < y->cell);
-}
-
-static int64_t count_faces(const sf_model *m) {
-    int64_t count = 0;
-    for (int64_t c = 0; c < m->cell_count; c++)
-        count += sf_cell_topology_of(m->cell_type[c])->faces;
-    return count;
-}
-
-/* Faces of all cells; `place` [node_count]: the same for nodes that are tied altogether. */
-static void list_faces(const sf_model *m, int64_t *place, cell_face *face) {
-    for (int32_t c = 0; c < (int32_t)m->cell_count; c++) {
-        const sf_cell_topology *topology = sf_cell_topology_of(m->cell_type[c]);
-        const int32_t *v = &m->cell_node[m->cell_ptr[c]];
-        for (int f = 0; f < topology->faces; f++, face++) {
-            *face = (cell_face){{-1, -1, -1, -1}, c};
-            for (int p = 0; p < topology->face_size[f]; p++)
-                face->key[p] = (int32_t)sf_sets_find(place, v[topology->face[f][p]]);
-            sf_face_sort(face->key);
-        }
-    }
-}
-
 /* [cell_count] the lowest cell of each one's body; owned by the caller. */
 static int64_t *join_cells(const sf_model *m, sf_error *err) {
-    int64_t count = count_faces(m);
+    const sf_mesh cells = {.cell_count = m->cell_count,
+                           .cell_type = m->cell_type,
+                           .cell_ptr = m->cell_ptr,
+                           .cell_node = m->cell_node};
+    int64_t count = 0;
+    SF_OWNED sf_cell_face *face = NULL;
     SF_OWNED int64_t *place = sf_sets_alone(m->node_count, "parts of the pad", err);
     int64_t *parent = sf_sets_alone(m->cell_count, "parts of the pad", err);
-    SF_OWNED cell_face *face = sf_alloc(err, (unsigned long)count, sizeof *face, "faces of the cells");
-    if (err->status == SF_OK) {
-        for (int64_t k = 0; k < m->tie_count; k++)
-            if (m->tie_mask[k] == ALL)
-                sf_sets_join(place, m->tie_node[k], m->tie_other[k]);
-        list_faces(m, place, face);
-        qsort(face, (size_t)count, sizeof *face, by_key);
+    for (int64_t k = 0; place && k < m->tie_count; k++)
+        if (m->tie_mask[k] == ALL)
+            sf_sets_join(place, m->tie_node[k], m->tie_other[k]);
+    if (place && parent && (face = sf_mesh_faces(&cells, place, &count, err))) {
         for (int64_t k = 1; k < count; k++)
             if (memcmp(face[k].key, face[k - 1].key, sizeof face[k].key) == 0)
                 sf_sets_join(parent, face[k].cell, face[k - 1].cell);

@@ -11,12 +11,6 @@ typedef struct raw_edge {
     sf_edge_use use;
 } raw_edge;
 
-typedef struct raw_face {
-    int32_t key[4]; /* sorted vertices, -1 fills */
-    int32_t cell;
-    int8_t local;
-} raw_face;
-
 static int by_edge(const void *a, const void *b) {
     const raw_edge *x = a, *y = b;
     if (x->low != y->low)
@@ -26,23 +20,10 @@ static int by_edge(const void *a, const void *b) {
     return (x->use.cell > y->use.cell) - (x->use.cell < y->use.cell);
 }
 
-static int by_face(const void *a, const void *b) {
-    const raw_face *x = a, *y = b;
-    int keys = sf_face_compare(x->key, y->key);
-    return keys ? keys : (x->cell > y->cell) - (x->cell < y->cell);
-}
-
-static int64_t count_parts(const sf_mesh *mesh, bool edges) {
-    int64_t count = 0;
-    for (int64_t c = 0; c < mesh->cell_count; c++) {
-        const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
-        count += edges ? topology->edges : topology->faces;
-    }
-    return count;
-}
-
 static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
-    int64_t count = count_parts(mesh, true), k = 0;
+    int64_t count = 0, k = 0;
+    for (int64_t c = 0; c < mesh->cell_count; c++)
+        count += sf_cell_topology_of(mesh->cell_type[c])->edges;
     SF_OWNED raw_edge *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell edges");
     SF_TRY(err->status);
     for (int64_t c = 0; c < mesh->cell_count; c++) {
@@ -76,7 +57,7 @@ static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
 
 /* True if both cells see the face with its vertices in the same sense: they then lie on the same side of
  * it. */
-static bool is_same_side(const sf_mesh *mesh, const raw_face *a, const raw_face *b) {
+static bool is_same_side(const sf_mesh *mesh, const sf_cell_face *a, const sf_cell_face *b) {
     const sf_cell_topology *first = sf_cell_topology_of(mesh->cell_type[a->cell]),
                            *second = sf_cell_topology_of(mesh->cell_type[b->cell]);
     const int32_t *v = &mesh->cell_node[mesh->cell_ptr[a->cell]],
@@ -88,7 +69,7 @@ static bool is_same_side(const sf_mesh *mesh, const raw_face *a, const raw_face 
     return w[q[(k + 1) % size]] == v[p[1]];
 }
 
-static void add_boundary(const sf_mesh *mesh, const raw_face *raw, sf_dual *dual) {
+static void add_boundary(const sf_mesh *mesh, const sf_cell_face *raw, sf_dual *dual) {
     sf_boundary_face *face = &dual->face[dual->face_count++];
     const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[raw->cell]);
     *face =
@@ -97,7 +78,7 @@ static void add_boundary(const sf_mesh *mesh, const raw_face *raw, sf_dual *dual
         face->node[p] = mesh->cell_node[mesh->cell_ptr[face->cell] + topology->face[face->local][p]];
 }
 
-static sf_status add_inner(const sf_mesh *mesh, const raw_face *raw, sf_dual *dual, sf_error *err) {
+static sf_status add_inner(const sf_mesh *mesh, const sf_cell_face *raw, sf_dual *dual, sf_error *err) {
     sf_inner_face *face = &dual->inner[dual->inner_count++];
     *face = (sf_inner_face){{raw[0].cell, raw[1].cell}, {raw->key[0], raw->key[1], raw->key[2], raw->key[3]}};
     if (!is_same_side(mesh, &raw[0], &raw[1]))
@@ -111,22 +92,11 @@ static sf_status add_inner(const sf_mesh *mesh, const raw_face *raw, sf_dual *du
 
 /* Faces sorted by their vertices: alone = boundary, pairs = interior. */
 static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
-    int64_t count = count_parts(mesh, false), k = 0;
-    SF_OWNED raw_face *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell faces");
+    int64_t count, k;
+    SF_OWNED sf_cell_face *raw = sf_mesh_faces(mesh, NULL, &count, err);
     dual->face = sf_alloc(err, (unsigned long)count, sizeof *dual->face, "boundary faces");
     dual->inner = sf_alloc(err, (unsigned long)count / 2, sizeof *dual->inner, "inner faces");
     SF_TRY(err->status);
-    for (int64_t c = 0; c < mesh->cell_count; c++) {
-        const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
-        const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
-        for (int f = 0; f < topology->faces; f++, k++) {
-            raw[k] = (raw_face){{-1, -1, -1, -1}, (int32_t)c, (int8_t)f};
-            for (int p = 0; p < topology->face_size[f]; p++)
-                raw[k].key[p] = v[topology->face[f][p]];
-            sf_face_sort(raw[k].key);
-        }
-    }
-    qsort(raw, (size_t)count, sizeof *raw, by_face);
     for (k = 0; k < count && err->status == SF_OK;) {
         int64_t end = k + 1;
         while (end < count && memcmp(raw[end].key, raw[k].key, sizeof raw[k].key) == 0)

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/mesh.h"
 
-#include <stdlib.h>
-
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "model/model.h"
 
 enum { MAX_VERTICES = 8 };
@@ -75,6 +74,34 @@ int sf_face_compare(const int32_t a[4], const int32_t b[4]) {
         if (a[k] != b[k])
             return a[k] < b[k] ? -1 : 1;
     return 0;
+}
+
+static int compare_faces(const void *a, const void *b) {
+    const sf_cell_face *x = a, *y = b;
+    int keys = sf_face_compare(x->key, y->key);
+    return keys ? keys : (x->cell > y->cell) - (x->cell < y->cell);
+}
+
+sf_cell_face *sf_mesh_faces(const sf_mesh *mesh, int64_t *place, int64_t *count, sf_error *err) {
+    *count = 0;
+    for (int64_t c = 0; c < mesh->cell_count; c++)
+        *count += sf_cell_topology_of(mesh->cell_type[c])->faces;
+    sf_cell_face *list = sf_alloc(err, (unsigned long)*count, sizeof *list, "cell faces"), *face = list;
+    for (int64_t c = 0; list && c < mesh->cell_count; c++) {
+        const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
+        const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
+        for (int f = 0; f < topology->faces; f++, face++) {
+            *face = (sf_cell_face){{-1, -1, -1, -1}, (int32_t)c, (int8_t)f};
+            for (int p = 0; p < topology->face_size[f]; p++) {
+                int32_t node = v[topology->face[f][p]];
+                face->key[p] = place ? (int32_t)sf_sets_find(place, node) : node;
+            }
+            sf_face_sort(face->key);
+        }
+    }
+    if (list)
+        qsort(list, (size_t)*count, sizeof *list, compare_faces);
+    return list;
 }
 
 void sf_mesh_free(sf_mesh *mesh) {

@@ -68,6 +68,17 @@ typedef struct sf_mesh {
 } sf_mesh;
 
 void sf_mesh_free(sf_mesh *mesh);
+
+/* A face of a cell. */
+typedef struct sf_cell_face {
+    int32_t key[4]; /* its nodes, ascending; the first is -1 for a triangle */
+    int32_t cell;
+    int8_t local; /* its place among the faces of the cell */
+} sf_cell_face;
+
+/* The `*count` faces of all cells, by their keys and then their cells. `place` (base/sets.h): nodes of one
+ * set count as one; NULL: each is alone. Owned by the caller; NULL: out of memory. */
+sf_cell_face *sf_mesh_faces(const sf_mesh *mesh, int64_t *place, int64_t *count, sf_error *err);
 void sf_surface_free(sf_surface *surface);
 
 /* Finds a set by name; NULL if there is none. */

@@ -404,11 +404,10 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
 
 /* ---- cfh.csv ---- */
 
-static void put_cell(FILE *file, double value) {
-    if (isfinite(value))
-        fprintf(file, ",%.9g", value);
-    else
-        fputc(',', file);
+/* Cells, each behind a comma; empty where a value is not finite. */
+static void put_cells(FILE *file, int count, const double *value) {
+    for (int k = 0; k < count; k++)
+        fprintf(file, isfinite(value[k]) ? ",%.9g" : ",", value[k]);
 }
 
 sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
@@ -421,16 +420,13 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
     for (int k = 0; k < r->points->count; k++) {
         const sf_cfh_point *p = &r->points->point[k];
         fprintf(file, "%.9g,%.9g", p->height, p->speed);
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, p->value[c]);
-        for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, fitted(r, c, p));
-        const double more[] = {p->v_rebound, p->max_indentation * 1e3, p->max_local_strain, p->energy_error};
-        for (int c = 0; c < 4; c++)
-            put_cell(file, more[c]);
+        put_cells(file, SF_CFH_CRITERIA, p->value);
+        put_cells(file, 6,
+                  (const double[]){fitted(r, SF_CFH_A_MAX, p), fitted(r, SF_CFH_HIC, p), p->v_rebound,
+                                   p->max_indentation * 1e3, p->max_local_strain, p->energy_error});
         fprintf(file, ",%d", p->failed);
         if (r->rig->pairs > 0)
-            put_cell(file, sf_cfh_rig_height(r->rig, p->height));
+            put_cells(file, 1, (const double[]){sf_cfh_rig_height(r->rig, p->height)});
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh.csv", err);
@@ -445,13 +441,10 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
         file);
     for (int k = 0; k < s->grid; k++) {
         fprintf(file, "%.9g", s->height[k]);
-        for (int c = 0; c < SF_CFH_CRITERIA; c++) {
-            put_cell(file, s->band[c][k].low);
-            put_cell(file, s->band[c][k].median);
-            put_cell(file, s->band[c][k].high);
-        }
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, s->scatter[c][k]);
+            put_cells(file, 3, (const double[]){s->band[c][k].low, s->band[c][k].median, s->band[c][k].high});
+        for (int c = 0; c < SF_CFH_CRITERIA; c++)
+            put_cells(file, 1, &s->scatter[c][k]);
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh_band.csv", err);
@@ -468,14 +461,12 @@ static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *
         fprintf(file, "%d", d + 1);
         for (int k = 0; k <= SF_CFH_FIRST; k++) { /* the first of them in front */
             double height = draw->crossing[k == 0 ? SF_CFH_FIRST : k - 1];
-            put_cell(file, height > 0 ? height : NAN);
+            put_cells(file, 1, (const double[]){height > 0 ? height : NAN});
         }
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, s->with_response ? draw->shared[c] : NAN);
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, s->with_response ? draw->own_sd[c] : NAN);
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cell(file, s->freedom > 0 ? draw->columns_sd[c] : NAN);
+        static const double none[SF_CFH_CRITERIA] = {NAN, NAN};
+        put_cells(file, SF_CFH_CRITERIA, s->with_response ? draw->shared : none);
+        put_cells(file, SF_CFH_CRITERIA, s->with_response ? draw->own_sd : none);
+        put_cells(file, SF_CFH_CRITERIA, s->freedom > 0 ? draw->columns_sd : none);
         fputc('\n', file);
     }
     return sf_staging_close(file, "cfh_draws.csv", err);
