@@ -31,7 +31,7 @@ static const sf_key keys[] = {
      "processor time that gmsh may take for each geometry", .quantity = SF_TIME, .low = 1.0, .high = 1e7, .idle = true},
     /* pad */
     {"pad", "group", SF_KEY_NAME, "\"pad\"", AT(pad_group), "physical volume of a pad of one material"},
-    {"pad", "contact", SF_KEY_NAME, "\"top\"", AT(contact_group), "physical surface that the missile may touch"},
+    {"pad", "contact", SF_KEY_NAME, "\"top\"", AT(contact_group), "physical surface that the missile meets first, which places it and measures the pad; it may touch every free face"},
     {"pad", "up", SF_KEY_VECTOR, "[0.0, 0.0, 1.0]", AT(up),
      "out of the pad's face, in the geometry's axes: of a pad that stands upright or hangs; the model turns it along z (docs/missiles.md)"},
     {"pad", "fixed", SF_KEY_NAMES, "[\"base\"]", AT(fixed_group),

@@ -564,7 +564,8 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
         }
         if (sf_drop_check(c, mesh, m, &report->zone, err) == SF_OK && check_between(report, err) == SF_OK &&
             (report->contact_held || sf_contact_add_free(&layers, m, err) == SF_OK) &&
-            sf_model_check(m, err) == SF_OK && measure_step(m, &critical, report, err) == SF_OK &&
+            sf_drop_check_contact(m, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
+            measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {
             sf_drop_warn(c, mesh, m, &report->zone, sink);
             sf_hold_warn(&report->hold, m, sink);

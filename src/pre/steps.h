@@ -142,11 +142,14 @@ double sf_mesh_error_expect(const sf_model *model, const sf_contact_zone *zone);
  * geometry, which sf_model_check does not have. */
 
 /* SF_ERR_INPUT, naming the key, the value and the bound: the pad's thickness is not one of a pad; the
- * missile's share in the model is lighter than a node; the missile starts inside the pad; it is not symmetric
+ * missile starts inside the pad; it is not symmetric
  * to a symmetry plane, or cut open where there is none; the mesh is too coarse for pad.mesh_error_limit. The
  * model has its nodes, its sets and its missile; the mesh still has its sets. */
 sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                         sf_error *err);
+/* The same, of all that the missile may touch: its share in the model is lighter than a node; it turns into
+ * the pad before it arrives. */
+sf_status sf_drop_check_contact(const sf_model *m, sf_error *err);
 
 /* Warns of a symmetry group of the geometry that the case does not hold, of a material where the solver is
  * known to be weak (sf_law.caution), and of a coarse mesh. */

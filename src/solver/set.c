@@ -114,17 +114,16 @@ sf_status sf_set_check_missile(const sf_model *m, const sf_missile_surface *surf
 }
 
 void sf_set_measure(const sf_model *m, double set[2]) {
-    double nearest = INFINITY, height = -INFINITY, way[3];
+    double best = -INFINITY, way[3];
     set[0] = set[1] = 0;
     for (int64_t c = 0; c < m->contact_count; c++) {
         const double *x = &m->position[3 * (int64_t)m->contact_node[c]];
         displace(m, m->contact_node[c], 0, way);
-        double distance = hypot(x[0] - way[0] - m->missile.impact[0], x[1] - way[1] - m->missile.impact[1]);
-        bool same = fabs(distance - nearest)<1e-9 * m->thickness, above = x[2]> height;
-        if (same ? above : distance < nearest) {
+        double score =
+            x[2] - way[2] - hypot(x[0] - way[0] - m->missile.impact[0], x[1] - way[1] - m->missile.impact[1]);
+        if (score > best) { /* near, and not down a hole */
+            best = score;
             set[0] = -way[2];
-            nearest = distance;
-            height = x[2];
         }
         set[1] = fmax(set[1], -way[2]);
     }
