@@ -341,9 +341,13 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
 /* The drop as its results file would show it; the arrays stay the drop's. */
 static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
     const sf_model *m = &d->undeformed;
-    double lock_begin, lock_up = sf_model_lock_up(m, &lock_begin);
+    double lock_begin, lock_up = sf_model_lock_up(m, &lock_begin), set[2] = {NAN, NAN};
+    if (d->model.set)
+        sf_set_measure(&d->model, set);
     *r = (sf_results){.node_count = m->node_count,
                       .position = m->position,
+                      .set = set[0],
+                      .set_largest = set[1],
                       .volume = m->volume,
                       .symmetry_factor = m->symmetry_factor,
                       .thickness = m->thickness,
