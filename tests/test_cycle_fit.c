@@ -3,6 +3,7 @@
 #include "model_fixture.h"
 #include "point_fixture.h"
 #include "program_fixture.h"
+#include "extreme.h"
 
 #include "material/low_density_foam.h"
 #include <math.h>
@@ -30,8 +31,9 @@ static void make_foam(point_card *card) {
     card->card.memory = (sf_memory){.reload = 0.35, .drift = 0.25, .recovery = 0.12, .start = 1};
 }
 
-/* Five cycles to 60 %, with pauses of 100 s and 3000 s before the fourth and the fifth, if `pauses`. */
-static void write_record(const program_place *p, const char *name, int cycles, bool pauses) {
+/* Cycles to 60 %, with pauses of 100 s and 3000 s before the fourth and the fifth, if `pauses`. Those after
+ * the first begin with a `set`, a part of the largest strain that takes up no stress. */
+static void write_record_with(const program_place *p, const char *name, int cycles, bool pauses, double set) {
     point_card card;
     sf_error err = SF_ERROR_INIT;
     sf_material_law law;
@@ -43,7 +45,8 @@ static void write_record(const program_place *p, const char *name, int cycles, b
     assert_int_equal(sf_material_law_build(&material, &law, &err), SF_OK);
     fputs("time_s,strain,stress_kPa\n", out);
     for (int i = 0; i <= 100 * cycles; i++, time += 0.05) {
-        double x = 0.01 * (i % 100), strain = 0.6 * (x < 0.5 ? 2 * x : 2 - 2 * x);
+        double x = 0.01 * (i % 100), strain = 0.6 * (x < 0.5 ? 2 * x : 2 - 2 * x),
+               own = i < 100 ? strain : larger(0, (strain - 0.6 * set) / (1 - set));
         double pause = pauses && i == 301 ? 100 : pauses && i == 401 ? 3000 : 0;
         for (int k = 0; pause > 0 && k < SF_LAW_HISTORY; k++)
             rows[k][0] = point.history[k];
@@ -53,10 +56,14 @@ static void write_record(const program_place *p, const char *name, int cycles, b
             point.history[k] = rows[k][0];
         time += pause;
         fprintf(out, "%.6f,%.8f,%.8f\n", time, strain,
-                1e-3 * law.law->uniaxial(law.numbers, 0.05, strain, &point));
+                1e-3 * law.law->uniaxial(law.numbers, 0.05, own, &point));
     }
     fclose(out);
     sf_material_law_free(&law);
+}
+
+static void write_record(const program_place *p, const char *name, int cycles, bool pauses) {
+    write_record_with(p, name, cycles, pauses, 0);
 }
 
 /* `cycles`: the value of that key; the tests are the first cycles of one file or two (NULL: one). */
@@ -100,6 +107,25 @@ static void a_known_memory_is_found(void **state) {
     assert_true(program_file_number(p, "known/fit.json", "reload_half_width") < 0.05);
     program_bytes material = program_read_file(program_path(p, "known/material.cfg"));
     assert_non_null(strstr(material.data, "memory"));
+    free(material.data);
+}
+
+/* The set is told by the reloads, and not written into the material. */
+static void a_set_is_measured(void **state) {
+    const program_place *p = *state;
+    for (int k = 0; k < 2; k++) {
+        double set = 0.04 * k;
+        write_record_with(p, "set.csv", 4, false, set);
+        program_result r = fit(p, "known", "set.csv", "");
+        if (r.code != 0)
+            fail_msg("%s", r.err);
+        double found = program_file_number(p, "known/fit.json", "set");
+        print_message("set %g: %.4f\n", set, found);
+        assert_true(fabs(found - set) < 0.012);
+        assert_non_null(strstr(r.out, "set, not written: reloads take up stress"));
+    }
+    program_bytes material = program_read_file(program_path(p, "known/material.cfg"));
+    assert_null(strstr(material.data, "set ="));
     free(material.data);
 }
 
@@ -197,9 +223,8 @@ static void leap_is_described(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_known_memory_is_found),
-        cmocka_unit_test(little_is_told_by_little),
-        cmocka_unit_test(specimens_are_fitted_together),
+        cmocka_unit_test(a_known_memory_is_found),  cmocka_unit_test(a_set_is_measured),
+        cmocka_unit_test(little_is_told_by_little), cmocka_unit_test(specimens_are_fitted_together),
         cmocka_unit_test(leap_is_described),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/form_fit.h"
 
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_statistics_double.h>
 #include <stdlib.h>
 
 #include "case/reader.h"
@@ -276,6 +278,39 @@ static sf_status follow_record(const sf_cycle_record *r, const sf_foam_card *car
     return SF_OK;
 }
 
+/* The strain at which a stress reaches 1 % of the record's largest, from point `first` on and before `end`.
+ */
+static double taken_up(const sf_cycle_record *r, const double *stress, int first, int end) {
+    const double least = 0.01 * r->largest_stress, *strain = r->strain;
+    int i = first;
+    while (i < end && stress[i] < least)
+        i++;
+    return i == first ? strain[i]
+                      : strain[i - 1] + (least - stress[i - 1]) / (stress[i] - stress[i - 1]) *
+                                            (strain[i] - strain[i - 1]);
+}
+
+static void measure_set(sf_form_fit *fit) {
+    double part[SF_CYCLE_RECORDS * SF_CYCLES], time = 0;
+    size_t n = 0;
+    for (int k = 0; k < fit->config->record_count; k++) {
+        const sf_cycle_record *r = &fit->config->cycles[k];
+        for (int c = 1; c < r->cycles; c++) {
+            int begin = r->turn[2 * c], end = r->turn[2 * c + 1], top = r->turn[2 * c - 1], left = begin;
+            while (left > top && r->stress[left] < 0.01 * r->largest_stress)
+                left--;
+            part[n++] =
+                (taken_up(r, r->stress, begin, end) - taken_up(r, fit->cycles[k].stress, begin, end)) /
+                r->strain[top];
+            time += r->time[begin] - r->time[left];
+        }
+    }
+    fit->set = n > 1 ? gsl_stats_mean(part, 1, n) : NAN;
+    fit->set_width =
+        n > 1 ? gsl_cdf_tdist_Pinv(0.975, (double)n - 1) * gsl_stats_sd(part, 1, n) / sqrt((double)n) : NAN;
+    fit->set_time = n > 1 ? time / (double)n : NAN;
+}
+
 static sf_status conclude(const double *value, const double own[HYSTERESIS + MEMORY], sf_form_fit *fit,
                           sf_error *err) {
     double informed = fit->card.informed_strain, squares[2] = {0, 0};
@@ -295,6 +330,7 @@ static sf_status conclude(const double *value, const double own[HYSTERESIS + MEM
         for (int branch = 0; branch < 2; branch++)
             squares[branch] += fit->cycles[k].rms[branch][0] * fit->cycles[k].rms[branch][0];
     }
+    measure_set(fit);
     fit->loading_rms = sqrt(squares[0] / records);
     fit->unloading.fit.rms = sqrt(squares[1] / records);
     fit->unloading.factor_rms = NAN; /* of the first cycles alone */

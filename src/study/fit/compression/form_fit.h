@@ -40,6 +40,7 @@ typedef struct sf_form_fit {
     sf_form_test test[SF_COMPRESSION_TESTS], predicted[SF_COMPRESSION_TESTS];
     double memory_width[SF_CYCLE_MEMORY]; /* by the records, half widths; see sf_cycle_parameter */
     sf_cycle_result cycles[SF_CYCLE_RECORDS];
+    double set, set_width, set_time; /* -, -, s: see sf_cycle_fit_run; NaN: too few reloads */
     sf_foam_card card; /* the material; curves owned */
 } sf_form_fit;
 
@@ -76,7 +77,9 @@ static inline const sf_parameter_info *sf_cycle_parameter(int number) {
 }
 
 /* Refines `fit`, whose values are the start, by the records of its configuration; fills memory_width and
- * cycles. */
+ * cycles. `set` is the strain by which reloads take up 1 % of the largest stress later than the law, which
+ * has no set in a test, over the largest strain before: the mean over all cycles but the first, with the half
+ * width of its 95 % interval, and the mean time without load before. It is not written into the material. */
 sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err);
 
 /* Largest rms, over the largest stress, of loading (0) or unloading (1) of the cycles first .. last - 1. */

@@ -72,6 +72,11 @@ static void put_cycles(FILE *out, const sf_form_fit *fit) {
         else
             fprintf(out, "%s %s %.3g (at its bound, or no record tells it)", k ? "," : "",
                     sf_cycle_parameter(k)->name, fit->value[SF_PARAMETER_RELOAD + k]);
+    if (isfinite(fit->set))
+        fprintf(
+            out,
+            "\n  set, not written: reloads take up stress %.2g +- %.1g of the largest strain late, after %.3g s without load",
+            fit->set, fit->set_width, fit->set_time);
     for (int n = 0; n < fit->config->record_count; n++) {
         const sf_cycle_record *r = &fit->config->cycles[n];
         const sf_cycle_result *c = &fit->cycles[n];
@@ -85,7 +90,7 @@ static void put_cycles(FILE *out, const sf_form_fit *fit) {
                     r->cycles, 100 * sf_cycle_fit_worst(c, 0, r->fitted, r->cycles),
                     100 * sf_cycle_fit_worst(c, 1, r->fitted, r->cycles));
     }
-    fputs("\n  Not in the law: permanent set, and the fall of the stress at the largest strain.\n", out);
+    fputs("\n  Not in the law: permanent set within a test, and the fall of the stress at the largest strain.\n", out);
 }
 
 static void describe(FILE *out, const void *place, bool comments) {
@@ -195,6 +200,8 @@ static void json_cycles(sf_json *json, const sf_form_fit *fit) {
         snprintf(key, sizeof key, "%s_half_width", sf_cycle_parameter(k)->name);
         sf_json_number(json, key, fit->memory_width[k]);
     }
+    SF_JSON_NUMBERS(json, {"set", fit->set}, {"set_half_width", fit->set_width},
+                    {"set_time_s", fit->set_time});
     SF_JSON_ARRAY(json, "records");
     for (int k = 0; k < fit->config->record_count; k++)
         json_record(json, &fit->config->cycles[k], &fit->cycles[k]);
