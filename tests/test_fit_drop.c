@@ -267,7 +267,7 @@ static void drops_that_end_too_early_are_refused(void **state) {
         char command[128];
         snprintf(command, sizeof command,
                  "sed 's/end_time = \"[^\"]*\"/end_time = \"%s\"/' case.cfg > early.cfg", cases[k].end);
-        program_shell(&place, command);
+        program_shell(&place, "%s", command);
         program_result r = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
         assert_int_equal(r.code, SF_ERR_NUMERIC);
         assert_non_null(strstr(r.err, cases[k].sentence));

@@ -31,7 +31,8 @@ void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char
 #define SF_HTML_DIVISION(page, kind) SF_HTML_SCOPE(sf_html_division(page, kind), __LINE__)
 #define SF_HTML_BLOCK(page, heading) SF_HTML_SCOPE(sf_html_block(page, heading), __LINE__)
 #define SF_HTML_SCOPE(page, line) SF_HTML_SCOPE_OF(page, line)
-#define SF_HTML_SCOPE_OF(page, line) SF_OWNED_BY(sf_html_division_end) FILE *sf_scope_##line = page
+#define SF_HTML_SCOPE_OF(page, line)                                                                         \
+    __attribute__((unused)) SF_OWNED_BY(sf_html_division_end) FILE *sf_scope_##line = page
 FILE *sf_html_division(FILE *page, const char *kind);
 FILE *sf_html_block(FILE *page, const char *heading);
 void sf_html_division_end(FILE **page);

@@ -26,7 +26,8 @@ void sf_json_close(sf_json *json);
 #define SF_JSON_ARRAY(json, key) SF_JSON_SCOPE(json, key, '[', __LINE__)
 #define SF_JSON_SCOPE(json, key, bracket, line) SF_JSON_SCOPE_OF(json, key, bracket, line)
 #define SF_JSON_SCOPE_OF(json, key, bracket, line)                                                           \
-    SF_OWNED_BY(sf_json_end) sf_json *sf_scope_##line = sf_json_open(json, key, bracket)
+    __attribute__((unused)) SF_OWNED_BY(sf_json_end) sf_json *sf_scope_##line =                              \
+        sf_json_open(json, key, bracket)
 void sf_json_end(sf_json **json);
 void sf_json_number(sf_json *json, const char *key, double value);
 /* Several numbers of the open object: SF_JSON_NUMBERS(json, {"low", low}, {"high", high}). Counts below 10^9,
