@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/foam_card.h"
 
-#include <math.h>
-
 #define HAS(name, condition)                                                                                 \
     bool sf_foam_has_##name(const void *card) {                                                              \
         const sf_foam_shared *foam = card;                                                                   \

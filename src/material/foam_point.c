@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/foam_point.h"
 
-#include <string.h>
-
 enum { XX, YY, ZZ, XY, YZ, XZ };
 static const int SYM[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
 

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/hyperfoam.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The entry of the hyperfoam in the table of laws: its parameters and rules. The update of a batch is in
  * hyperfoam_point.c. */

@@ -2,7 +2,6 @@
 #include "material/laws.h"
 
 #include <math.h>
-#include <string.h>
 
 #define SF_LAW(name) extern const sf_law name;
 #include "material/laws.def"

@@ -2,8 +2,6 @@
 #include "model/cells.h"
 
 #include "base/sets.h"
-#include <stdlib.h>
-#include <string.h>
 
 #include "model/model.h"
 

@@ -2,7 +2,6 @@
 #include "model/columns.h"
 
 #include "model/good_run.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

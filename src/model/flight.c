@@ -2,7 +2,6 @@
 #include "model/flight.h"
 
 #include "base/mat3.h"
-#include <math.h>
 
 static const double LARGEST_TURN =
     2e-3; /* rad, of one step of the rotation: its error is below 1e-6 rad a turn */

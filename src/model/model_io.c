@@ -3,8 +3,6 @@
 
 #include "io/replace.h"
 #include "material/laws.h"
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 static sf_h5_type h5_type(sf_model_type type) {

@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "material/laws.h"
-#include <string.h>
 
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err) {
     SF_OWNED double *share =

@@ -8,7 +8,6 @@
  * step from c_L (a_L dt^2 + 2 eta_L dt) <= 4. */
 #pragma once
 #include "model/model.h"
-#include <math.h>
 
 /* Fills c [node_count], m kg-1, with shares theta_IL proportional to V_L |B_I^L|. */
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err);

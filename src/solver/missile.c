@@ -3,7 +3,6 @@
 
 #include "model/flight.h"
 #include "base/mat3.h"
-#include <string.h>
 
 double sf_missile_free_fall(const sf_model *m) {
     return sf_flight_pull(&m->missile);

@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "solver/constraint/constraint.h"
-#include <string.h>
 
 void sf_set_watch(const sf_model *m, sf_state *s) {
     double depth = sf_missile_depth(m, &s->missile);

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/state.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "model/flight.h"
 

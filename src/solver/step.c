@@ -7,8 +7,6 @@
 #include "solver/field/domain_stress.h"
 #include "solver/set.h"
 #include "solver/time_step.h"
-#include <math.h>
-#include <string.h>
 
 /* Steps between measurements of |G v|, and between looks for foam that passed through something. */
 enum { RESIDUAL_INTERVAL = 16, PASSAGE_INTERVAL = 16 };

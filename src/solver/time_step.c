@@ -3,9 +3,6 @@
 
 #include "model/stability.h"
 
-#include <math.h>
-#include <string.h>
-
 enum {
     POWER_INTERVAL = 40, /* steps between measurements at most */
     POWER_PAUSE = 5,     /* and at least, when the bound moves */

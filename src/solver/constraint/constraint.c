@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint/constraint.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { ALL = 7, BATCH = 64 }; /* mask of x, y and z; rows or nodes of one call of a kernel */
 

@@ -3,7 +3,6 @@
 
 #include <cholmod.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Smallest reciprocal condition, as CHOLMOD estimates it from D. */
 static const double SINGULAR = 1e-13;

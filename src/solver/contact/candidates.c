@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/candidates.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/grid.h"
 #include "base/mat3.h"

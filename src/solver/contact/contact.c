@@ -2,8 +2,6 @@
 #include "solver/contact/contact.h"
 
 #include "base/mat3.h"
-#include "base/lanes.h"
-#include <string.h>
 
 enum { MAX_SWEEPS = 500 };
 static const double ENTRY_DEPTH =

@@ -2,10 +2,6 @@
 #include "solver/contact/contact_rows.h"
 #include "base/sets.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { COMPONENTS = 3 };
 
 /* Sets of nodes with the same component of u_h, as trees; NULL if nothing is tied. */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
 #include "model/model.h"
 
 /* The rows Phi_c over the nodes, by which coefficients move the contact points and forces there act on the

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/rigid_surface.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/mat3.h"
 #include "base/sets.h"
 

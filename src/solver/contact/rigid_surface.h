@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/error.h"
-#include "model/model.h"
 #include "solver/contact/contact_rows.h"
 
 /* The surface of the rigid missile for contact: gap and outward normal at a point, for an exact sphere cap or

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/self_contact.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/mat3.h"
-#include "base/lanes.h"
 #include "solver/contact/candidates.h"
 #include "solver/contact/touch.h"
 

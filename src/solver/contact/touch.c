@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/touch.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/mat3.h"
 
 static const double DEEPEST = 0.1;  /* of the spacing: deeper edges lie on the far sides of a thin part */

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/field/domain_stress.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "model/stability.h"
 #include "solver/time_step.h"
 

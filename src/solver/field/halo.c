@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/field/halo.h"
 
-#include <string.h>
-
 /* Lists the nodes of other groups that group g sees, marked in `seen` (zero on entry and exit), into `list`
  * if that is not NULL, and returns how many. */
 static int64_t list_others(const sf_model *m, int64_t g, uint8_t *seen, int32_t *list) {

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/field/membrane.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/mat3.h"
 #include "model/stability.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/field/domain_stress.h"
-#include <string.h>
 
 /* The data of a node that its pairs need. */
 typedef struct pair_node {

@@ -2,9 +2,7 @@
 #include "solver/run/run.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "solver/field/domain_stress.h"

@@ -3,8 +3,6 @@
 
 #include "base/mat3.h"
 #include "solver/field/domain_stress.h"
-#include <math.h>
-#include <string.h>
 
 enum { SLAB = 64 * SF_LANES }; /* nodes: more would be felt in the memory of a run */
 

@@ -2,8 +2,6 @@
 #include "solver/run/run.h"
 
 #include <errno.h>
-#include <math.h>
-#include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/run.h"
 
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/text.h"

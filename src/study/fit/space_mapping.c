@@ -6,7 +6,6 @@
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multifit_nlinear.h>
 #include <gsl/gsl_qrng.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { FIT_STEPS = 60 };
