@@ -52,12 +52,10 @@ static void put_frame_fields(FILE *f) {
 }
 
 static void put_figures(FILE *f) {
-    size_t count;
-    const sf_figure *figure = sf_figure_list(&count);
     fputs("| key | meaning |\n|---|---|\n", f);
-    for (size_t k = 0; k < count; k++) {
-        fprintf(f, "| `%s` | ", figure[k].row.key);
-        put_meaning(f, figure[k].row.meaning, "");
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++) {
+        fprintf(f, "| `%s` | ", sf_figure_at[k].row.key);
+        put_meaning(f, sf_figure_at[k].row.meaning, "");
     }
 }
 

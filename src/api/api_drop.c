@@ -324,16 +324,15 @@ static sf_status check_filter(double filter, sf_error *err) {
 
 /* The library offers the figures that are numbers of sf_figures. */
 static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     SF_TRY(check_filter(filter, err));
     SF_TRY(sf_figures_compute(results, filter, &f, err));
     softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
-    for (size_t k = 0; made && k < count; k++)
-        if (!list[k].fact && list[k].row.type != SF_ROW_TEXT) {
-            made->figure[made->count] = (softfall_quantity){list[k].row.key, "", list[k].row.meaning, 1};
-            made->value[made->count++] = sf_row_number(&list[k].row, &f);
+    for (size_t k = 0; made && k < SF_FIGURE_TOTAL; k++)
+        if (!sf_figure_at[k].fact && sf_figure_at[k].row.type != SF_ROW_TEXT) {
+            made->figure[made->count] =
+                (softfall_quantity){sf_figure_at[k].row.key, "", sf_figure_at[k].row.meaning, 1};
+            made->value[made->count++] = sf_row_number(&sf_figure_at[k].row, &f);
         }
     return err->status;
 }

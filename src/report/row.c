@@ -4,6 +4,7 @@
 #include "base/text.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 /* ---- JSON ---- */
@@ -100,6 +101,68 @@ void sf_json_text(sf_json *json, const char *key, const char *text) {
         put_text(json->file, text);
     else
         fputs("null", json->file);
+}
+
+/* ---- CSV ---- */
+
+sf_status sf_csv_open(sf_csv *csv, const sf_staging *output, const char *name, sf_error *err) {
+    *csv = (sf_csv){.file = sf_staging_open(output, name, err), .name = name};
+    return err->status;
+}
+
+sf_status sf_csv_close(sf_csv *csv, sf_error *err) {
+    return sf_staging_close(csv->file, csv->name, err);
+}
+
+/* Puts the comma in front of the next cell. */
+static FILE *next_cell(sf_csv *csv) {
+    if (csv->begun)
+        fputc(',', csv->file);
+    csv->begun = true;
+    return csv->file;
+}
+
+void sf_csv_print(sf_csv *csv, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(next_cell(csv), format, arguments);
+    va_end(arguments);
+}
+
+bool sf_csv_is_formula(const char *text) {
+    double number;
+    return *text && strchr("=+-@\t", *text) && !sf_decimal_is(text, &number);
+}
+
+void sf_csv_quoted(sf_csv *csv, const char *text) {
+    FILE *file = next_cell(csv);
+    fputs(sf_csv_is_formula(text) ? "\"'" : "\"", file);
+    for (; *text; text++) {
+        if (*text == '"')
+            fputc('"', file);
+        fputc(*text == '\n' || *text == '\r' ? ' ' : *text, file);
+    }
+    fputc('"', file);
+}
+
+void sf_csv_text(sf_csv *csv, const char *text) {
+    if (text && (sf_csv_is_formula(text) || strpbrk(text, ",\"\r\n")))
+        sf_csv_quoted(csv, text);
+    else
+        fputs(text ? text : "", next_cell(csv));
+}
+
+void sf_csv_numbers(sf_csv *csv, int count, const double *value) {
+    for (int k = 0; k < count; k++)
+        if (isfinite(value[k]))
+            sf_csv_print(csv, "%.9g", value[k]);
+        else
+            next_cell(csv);
+}
+
+void sf_csv_end(sf_csv *csv) {
+    fputc('\n', csv->file);
+    csv->begun = false;
 }
 
 /* ---- rows ---- */
@@ -202,6 +265,23 @@ void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records
     for (int64_t k = 0; k < records.count; k++) {
         SF_JSON_OBJECT(json, NULL);
         sf_rows_json(json, rows, record_at(records, k));
+    }
+}
+
+void sf_rows_csv(sf_csv *csv, sf_rows rows, sf_records records) {
+    for (size_t c = 0; c < rows.count; c++)
+        sf_csv_text(csv, rows.row[c].key);
+    sf_csv_end(csv);
+    for (int64_t k = 0; k < records.count; k++) {
+        for (size_t c = 0; c < rows.count; c++) {
+            const sf_row *row = &rows.row[c];
+            sf_value value = sf_row_value(row, record_at(records, k));
+            if (value.kind == SF_VALUE_TEXT)
+                sf_csv_text(csv, value.text);
+            else
+                SF_CSV_NUMBERS(csv, sf_row_number(row, record_at(records, k)));
+        }
+        sf_csv_end(csv);
     }
 }
 

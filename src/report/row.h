@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a report. A declaration states once how a value is called, its unit, its format and its meaning;
- * one writer each makes JSON, HTML and text of it. A record is any struct of the program; a declaration
+ * one writer each makes JSON, CSV, HTML and text of it. A record is any struct of the program; a declaration
  * points to a member of it, or has a function that computes the value. A value that a run does not define (a
  * number that is not finite, a negative count, an empty text) becomes null in JSON and a dash for
  * readers. */
 #pragma once
+#include "io/staging.h"
 #include "report/html.h"
 #include <stdint.h>
 
@@ -43,6 +44,32 @@ void sf_json_integer(sf_json *json, const char *key, int64_t value);
 void sf_json_bool(sf_json *json, const char *key, bool value);
 void sf_json_text(sf_json *json, const char *key, const char *text); /* NULL: null */
 void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size);
+
+/* Writes a CSV file, cell after cell. A number has nine digits; the cell of a number that is not finite stays
+ * empty. */
+typedef struct sf_csv {
+    FILE *file;
+    const char *name; /* borrowed */
+    bool begun;       /* the line has a cell already */
+} sf_csv;
+
+/* Opens a file of the staging directory. sf_csv_close reports writes that failed. */
+sf_status sf_csv_open(sf_csv *csv, const sf_staging *output, const char *name, sf_error *err);
+sf_status sf_csv_close(sf_csv *csv, sf_error *err);
+/* One cell, or several with commas between them, as they are; SF_CSV_PRINT_LINE also ends the line. */
+void sf_csv_print(sf_csv *csv, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* A text, in quotes where it needs them, or always; NULL: an empty cell. What a spreadsheet would compute, as
+ * "=1+2", gets an apostrophe in front. Line ends become blanks. */
+void sf_csv_text(sf_csv *csv, const char *text);
+void sf_csv_quoted(sf_csv *csv, const char *text);
+bool sf_csv_is_formula(const char *text);
+/* Several cells: SF_CSV_NUMBERS(&csv, low, high); the same and the end of the line. */
+void sf_csv_numbers(sf_csv *csv, int count, const double *value);
+#define SF_CSV_NUMBERS(csv, ...)                                                                             \
+    sf_csv_numbers(csv, sizeof((const double[]){__VA_ARGS__}) / sizeof(double), (const double[]){__VA_ARGS__})
+#define SF_CSV_LINE(csv, ...) (SF_CSV_NUMBERS(csv, __VA_ARGS__), sf_csv_end(csv))
+#define SF_CSV_PRINT_LINE(csv, ...) (sf_csv_print(csv, __VA_ARGS__), sf_csv_end(csv))
+void sf_csv_end(sf_csv *csv); /* of the line */
 
 typedef enum sf_row_type {
     SF_ROW_NUMBER,  /* double */
@@ -109,6 +136,9 @@ const char *sf_row_shown(const sf_row *row, const void *record, const char *dash
 void sf_row_json(sf_json *json, const sf_row *row, const void *record);
 void sf_rows_json(sf_json *json, sf_rows rows, const void *record);
 void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records records);
+
+/* CSV: a line of the keys and a line for each record. */
+void sf_rows_csv(sf_csv *csv, sf_rows rows, sf_records records);
 
 /* HTML: a table with a column for each declaration that has a name, and a row for each record. `kind` as for
  * sf_html_table_begin. */

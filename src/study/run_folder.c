@@ -38,11 +38,9 @@ static bool describe_results(const char *results, char text[80]) {
 }
 
 static void put_figures(FILE *out, const sf_results *r, const sf_figures *f) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
-    for (size_t k = 0; k < count; k++)
-        if (list[k].row.type != SF_ROW_TEXT)
-            fprintf(out, "%s %a\n", list[k].row.key, sf_figure_number(&list[k], r, f));
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        if (sf_figure_at[k].row.type != SF_ROW_TEXT)
+            fprintf(out, "%s %a\n", sf_figure_at[k].row.key, sf_figure_number(&sf_figure_at[k], r, f));
 }
 
 /* Not synchronised with the disk: the end says whether it is whole. */
@@ -87,14 +85,13 @@ static bool is_whole(char *text, size_t length) {
 }
 
 static bool take_figures(char **rest, sf_run_record *out) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
     sf_error none = SF_ERROR_INIT;
-    out->figure = sf_alloc(&none, count, sizeof *out->figure, "figures");
-    for (size_t k = 0; out->figure && k < count; k++) {
+    out->figure = sf_alloc(&none, SF_FIGURE_TOTAL, sizeof *out->figure, "figures");
+    for (size_t k = 0; out->figure && k < SF_FIGURE_TOTAL; k++) {
         char *end = NULL;
-        const char *value = list[k].row.type == SF_ROW_TEXT ? NULL : sf_line_take(rest, list[k].row.key, ' ');
-        if (list[k].row.type != SF_ROW_TEXT && !value)
+        const char *value =
+            sf_figure_at[k].row.type == SF_ROW_TEXT ? NULL : sf_line_take(rest, sf_figure_at[k].row.key, ' ');
+        if (sf_figure_at[k].row.type != SF_ROW_TEXT && !value)
             return false;
         out->figure[k] = value ? strtod(value, &end) : NAN;
         if (value && (end == value || *end))

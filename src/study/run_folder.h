@@ -13,7 +13,7 @@ typedef struct sf_run_record {
     const char *verdict;  /* sf_verdict_line */
     const char *status;   /* /summary/status */
     const char *geometry; /* the list of what the geometries read (pre/mesh/mesher.h) */
-    double *figure;       /* [of sf_figure_list] sf_figure_number; owned */
+    double *figure;       /* [of sf_figure_at] sf_figure_number; owned */
     char *text;           /* that the strings are parts of; owned */
 } sf_run_record;
 

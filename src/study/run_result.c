@@ -23,11 +23,9 @@ static sf_status take_layers(const sf_results *r, const sf_figures *f, sf_runner
 
 static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runner_result *out,
                               sf_error *err) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
-    out->figure = sf_alloc(err, count, sizeof *out->figure, "figures");
-    for (size_t k = 0; out->figure && k < count; k++)
-        out->figure[k] = sf_figure_number(&list[k], r, f);
+    out->figure = sf_alloc(err, SF_FIGURE_TOTAL, sizeof *out->figure, "figures");
+    for (size_t k = 0; out->figure && k < SF_FIGURE_TOTAL; k++)
+        out->figure[k] = sf_figure_number(&sf_figure_at[k], r, f);
     snprintf(out->status, sizeof out->status, "%.*s", (int)sizeof out->status - 1, r->status);
     return err->status;
 }
@@ -82,8 +80,7 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
 }
 
 static double figure_of(const double *figure, const char *key) {
-    size_t count;
-    return figure ? figure[sf_figure_find(key) - sf_figure_list(&count)] : NAN;
+    return figure ? figure[sf_figure_find(key) - sf_figure_at] : NAN;
 }
 
 double sf_runner_figure(const sf_runner_result *result, const char *key) {
@@ -122,11 +119,10 @@ static sf_status read_drop(const sf_run_folder *at, bool figures_only, sf_runner
 
 /* Adds the figures of a drop of a series, from 1, to those of the drops before it. */
 static void add_figures(const sf_run_folder *at, int drop, const double *figure, double *sum) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
     int counted = __builtin_popcountll((unsigned long long)at->counted);
-    for (size_t k = 0; k < count; k++) {
-        bool whole = strcmp(list[k].row.key, "steps") == 0 || strcmp(list[k].row.key, "wall_s") == 0;
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++) {
+        bool whole =
+            strcmp(sf_figure_at[k].row.key, "steps") == 0 || strcmp(sf_figure_at[k].row.key, "wall_s") == 0;
         sum[k] += whole || at->counted >> (drop - 1) & 1 ? figure[k] : 0;
         sum[k] /= drop == at->drops && !whole ? counted : 1;
     }
@@ -155,12 +151,10 @@ static void add_drop(int drop, sf_runner_result *one, sf_runner_result *all) {
 }
 
 sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err) {
-    size_t count;
     sf_runner_result all = {0};
     if (at->drops == 1)
         return read_drop(at, figures_only, out, err);
-    sf_figure_list(&count);
-    double *sum = sf_alloc(err, count, sizeof *sum, "figures");
+    double *sum = sf_alloc(err, SF_FIGURE_TOTAL, sizeof *sum, "figures");
     for (int k = 1; k <= at->drops && err->status == SF_OK; k++) {
         const sf_run_folder drop = sf_run_folder_of_drop(at, k);
         SF_OWNED_BY(sf_runner_result_free) sf_runner_result one = {0};

@@ -7,7 +7,6 @@
 
 static const double FREE_FLIGHT = 5e-3; /* s, at least, before the first contact */
 
-const sf_figure *sf_figure_list(size_t *count) {
 #define PLACE_NUMBER(member) false, SF_ROW_OF(NUMBER, sf_figures, member)
 #define PLACE_INNER(member) false, SF_ROW_OF(NUMBER, sf_figures, member)
 #define PLACE_COUNT(member) false, SF_ROW_OF(COUNT, sf_figures, member)
@@ -19,9 +18,11 @@ const sf_figure *sf_figure_list(size_t *count) {
     {{.key = row_key, place_type, place_offset, .factor = row_factor, .meaning = __VA_ARGS__}, is_fact},
 #define EXPAND(...) ROW(__VA_ARGS__)
 #define FIGURE(kind, member, key, factor, ...) EXPAND(PLACE_##kind(member), key, factor, __VA_ARGS__)
-    static const sf_figure list[] = {SF_FIGURES(FIGURE)};
-    *count = sizeof list / sizeof list[0];
-    return list;
+const sf_figure sf_figure_at[] = {SF_FIGURES(FIGURE)};
+
+void sf_figure_csv_keys(sf_csv *csv) {
+    for (int k = 0; k < SF_FIGURE_TOTAL; k++)
+        sf_csv_print(csv, "%s", sf_figure_at[k].row.key);
 }
 
 const void *sf_figure_record(const sf_figure *figure, const sf_results *results, const sf_figures *figures) {
@@ -33,11 +34,9 @@ double sf_figure_number(const sf_figure *figure, const sf_results *results, cons
 }
 
 const sf_figure *sf_figure_find(const char *key) {
-    size_t count;
-    const sf_figure *figure = sf_figure_list(&count);
-    for (size_t k = 0; k < count; k++)
-        if (strcmp(figure[k].row.key, key) == 0)
-            return &figure[k];
+    for (int k = 0; k < SF_FIGURE_TOTAL; k++)
+        if (strcmp(sf_figure_at[k].row.key, key) == 0)
+            return &sf_figure_at[k];
     return NULL;
 }
 
@@ -353,11 +352,9 @@ static void compute_compression(const sf_results *r, sf_figures *f) {
 
 /* Every figure that is not computed is undefined. */
 static void set_undefined(sf_figures *f) {
-    size_t count;
-    const sf_figure *figure = sf_figure_list(&count);
-    for (size_t k = 0; k < count; k++)
-        if (!figure[k].fact && figure[k].row.type == SF_ROW_NUMBER)
-            *(double *)((char *)f + figure[k].row.offset) = NAN;
+    for (const sf_figure *figure = sf_figure_at; figure < sf_figure_at + SF_FIGURE_TOTAL; figure++)
+        if (!figure->fact && figure->row.type == SF_ROW_NUMBER)
+            *(double *)((char *)f + figure->row.offset) = NAN;
 }
 
 /* Figures of every run, free or driven. */

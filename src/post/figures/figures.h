@@ -169,8 +169,12 @@ typedef struct sf_figure {
 /* g: the acceleration that a_max and HIC are of, not filtered, in a row of the history. */
 double sf_figures_reading(const sf_results *results, int64_t row);
 
-/* The list; static storage. */
-const sf_figure *sf_figure_list(size_t *count);
+#define SF_FIGURE_ONE(...) +1
+enum { SF_FIGURE_TOTAL = 0 SF_FIGURES(SF_FIGURE_ONE) };
+#undef SF_FIGURE_ONE
+extern const sf_figure sf_figure_at[SF_FIGURE_TOTAL];
+/* Writes the keys of all figures as cells. */
+void sf_figure_csv_keys(sf_csv *csv);
 /* The line of that key; NULL if there is none. */
 const sf_figure *sf_figure_find(const char *key);
 

@@ -7,71 +7,69 @@
 
 sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err) {
-    FILE *file = sf_staging_open(output, "history.csv", err);
-    SF_TRY(err->status);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "history.csv", err));
     const sf_history *h = &results->history;
     for (int c = 0; c < SF_HISTORY_COUNT; c++) {
         const sf_history_column *column = sf_history_column_get(c);
-        fputs(c > 0 ? "," : "", file);
         if (column->csv)
-            fputs(column->csv, file);
+            sf_csv_print(&csv, "%s", column->csv);
         else
-            fprintf(file, "acceleration_raw_g,acceleration_cfc%.0f_g", figures->cfc);
+            sf_csv_print(&csv, "acceleration_raw_g,acceleration_cfc%.0f_g", figures->cfc);
     }
-    fputc('\n', file);
+    sf_csv_end(&csv);
     for (int64_t i = 0; i < h->rows; i++) {
         for (int c = 0; c < SF_HISTORY_COUNT; c++) {
             const sf_history_column *column = sf_history_column_get(c);
-            fputs(c > 0 ? "," : "", file);
             if (column->csv)
-                fprintf(file, "%.9g", h->column[c][i] * column->factor);
+                SF_CSV_NUMBERS(&csv, h->column[c][i] * column->factor);
             else
-                fprintf(file, "%.9g,%.9g", figures->raw.value[i],
-                        sf_series_at(&figures->filtered, h->time[i]));
+                SF_CSV_NUMBERS(&csv, figures->raw.value[i], sf_series_at(&figures->filtered, h->time[i]));
         }
-        fputc('\n', file);
+        sf_csv_end(&csv);
     }
-    return sf_staging_close(file, "history.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 sf_status sf_csv_write_acceleration(const sf_staging *output, const sf_figures *figures, sf_error *err) {
     const sf_series *curve = &figures->filtered;
-    FILE *file = sf_staging_open(output, "acceleration.csv", err);
-    SF_TRY(err->status);
-    fprintf(file, "time_ms,acceleration_cfc%.0f_g\n", figures->cfc);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "acceleration.csv", err));
+    SF_CSV_PRINT_LINE(&csv, "time_ms,acceleration_cfc%.0f_g", figures->cfc);
     for (int64_t i = 0; i < curve->count; i++)
-        fprintf(file, "%.9g,%.9g\n", curve->time[i] * 1e3, curve->value[i]);
-    return sf_staging_close(file, "acceleration.csv", err);
+        SF_CSV_LINE(&csv, curve->time[i] * 1e3, curve->value[i]);
+    return sf_csv_close(&csv, err);
 }
 
 sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *results,
                                    const sf_figures *figures, sf_error *err) {
-    FILE *file = sf_staging_open(output, "compression.csv", err);
-    SF_TRY(err->status);
-    fputs("time_ms,strain_1,stress_kPa,force_N\n", file);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "compression.csv", err));
+    SF_CSV_PRINT_LINE(&csv, "time_ms,strain_1,stress_kPa,force_N");
     for (int64_t i = 0; i < results->history.rows; i++) {
         double force = results->history.contact_force[i];
-        fprintf(file, "%.9g,%.9g,%.9g,%.9g\n", results->history.time[i] * 1e3,
-                results->history.indentation[i] / results->thickness, force / figures->area * 1e-3, force);
+        SF_CSV_LINE(&csv, results->history.time[i] * 1e3,
+                    results->history.indentation[i] / results->thickness, force / figures->area * 1e-3,
+                    force);
     }
-    return sf_staging_close(file, "compression.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *comparison,
                                  const sf_figures *figures, sf_error *err) {
     const sf_series *raw = &comparison->raw, *model = &figures->filtered;
-    FILE *file = sf_staging_open(output, "reference.csv", err);
-    SF_TRY(err->status);
-    fprintf(file, "time_ms,acceleration_measured_g,acceleration_cfc%.0f_g,acceleration_measured_raw_g\n",
-            figures->cfc);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "reference.csv", err));
+    SF_CSV_PRINT_LINE(&csv,
+                      "time_ms,acceleration_measured_g,acceleration_cfc%.0f_g,acceleration_measured_raw_g",
+                      figures->cfc);
     for (int64_t i = 0; i < raw->count; i++) {
         double time = raw->time[i] + comparison->shift;
-        fprintf(file, "%.9g,%.9g,", time * 1e3, sf_series_at(&comparison->measured, raw->time[i]));
-        if (time >= model->time[0] && time <= model->time[model->count - 1])
-            fprintf(file, "%.9g", sf_series_at(model, time));
-        fprintf(file, ",%.9g\n", raw->value[i]);
+        bool covered = time >= model->time[0] && time <= model->time[model->count - 1];
+        SF_CSV_LINE(&csv, time * 1e3, sf_series_at(&comparison->measured, raw->time[i]),
+                    covered ? sf_series_at(model, time) : NAN, raw->value[i]);
     }
-    return sf_staging_close(file, "reference.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 /* Barycentric weights of `x` in the tetrahedron; false if that is flat. */
@@ -165,23 +163,22 @@ double sf_section_mean(const double *field, int components, int component, const
     return sum;
 }
 
-static void write_point(FILE *file, const sf_results *r, const sf_frame *frame, double top,
-                        const sf_section_point *p) {
-    for (int k = 0; k < 3; k++)
-        fprintf(file, ",%.9g", 1e3 * sf_section_mean(r->position, 3, k, p));
-    fprintf(file, ",%.9g", 1e3 * (top - sf_section_mean(r->position, 3, 2, p)));
-    for (int k = 0; k < 3; k++) {
-        fputc(',', file);
-        if (frame->field[SF_FRAME_DISPLACEMENT])
-            fprintf(file, "%.9g", 1e3 * sf_section_mean(frame->field[SF_FRAME_DISPLACEMENT], 3, k, p));
-    }
-    fprintf(file, ",%.9g,", 1e-3 * sf_section_mean(frame->field[SF_FRAME_VON_MISES], 1, 0, p));
-    if (frame->field[SF_FRAME_CAUCHY_STRESS])
-        fprintf(file, "%.9g", 1e-3 * sf_section_mean(frame->field[SF_FRAME_CAUCHY_STRESS], 9, 8, p));
-    fputc(',', file);
-    if (frame->field[SF_FRAME_LARGEST_COMPRESSION])
-        fprintf(file, "%.9g", sf_section_mean(frame->field[SF_FRAME_LARGEST_COMPRESSION], 1, 0, p));
-    fputc('\n', file);
+/* Means of `count` components from `first` on; empty cells if there is no such field. */
+static void put_means(sf_csv *csv, double factor, const double *field, int components, int first, int count,
+                      const sf_section_point *p) {
+    for (int k = first; k < first + count; k++)
+        SF_CSV_NUMBERS(csv, field ? factor * sf_section_mean(field, components, k, p) : NAN);
+}
+
+static void put_point(sf_csv *csv, const sf_results *r, const sf_frame *frame, double top,
+                      const sf_section_point *p) {
+    put_means(csv, 1e3, r->position, 3, 0, 3, p);
+    SF_CSV_NUMBERS(csv, 1e3 * (top - sf_section_mean(r->position, 3, 2, p)));
+    put_means(csv, 1e3, frame->field[SF_FRAME_DISPLACEMENT], 3, 0, 3, p);
+    put_means(csv, 1e-3, frame->field[SF_FRAME_VON_MISES], 1, 0, 1, p);
+    put_means(csv, 1e-3, frame->field[SF_FRAME_CAUCHY_STRESS], 9, 8, 1, p);
+    put_means(csv, 1, frame->field[SF_FRAME_LARGEST_COMPRESSION], 1, 0, 1, p);
+    sf_csv_end(csv);
 }
 
 /* Top to bottom, then along x. */
@@ -193,7 +190,7 @@ static int by_depth(const void *a, const void *b, void *positions) {
     return (x[0] > y[0]) - (x[0] < y[0]);
 }
 
-static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *frame, sf_error *err) {
+static sf_status write_rows(sf_csv *csv, const sf_results *r, const sf_frame *frame, sf_error *err) {
     double axis[2], top;
     sf_section_point station[SF_SECTION_STATIONS];
     SF_OWNED int32_t *nodes =
@@ -209,14 +206,14 @@ static sf_status write_rows(FILE *file, const sf_results *r, const sf_frame *fra
     qsort_r(nodes, count, sizeof *nodes, by_depth, r->position);
     for (size_t i = 0; i < count; i++) {
         sf_section_point point = {.node = {nodes[i]}, .weight = {1}};
-        fprintf(file, "section,%d", nodes[i]);
-        write_point(file, r, frame, top, &point);
+        sf_csv_print(csv, "section,%d", nodes[i]);
+        put_point(csv, r, frame, top, &point);
     }
     for (int s = 0; s < SF_SECTION_STATIONS; s++) {
         if (!sf_section_inside(&station[s]))
             continue;
-        fputs("axis,", file);
-        write_point(file, r, frame, top, &station[s]);
+        sf_csv_print(csv, "axis,");
+        put_point(csv, r, frame, top, &station[s]);
     }
     return SF_OK;
 }
@@ -241,13 +238,12 @@ sf_status sf_section_write(const sf_staging *output, const sf_results *results, 
         return SF_OK;
     if (sf_frame_read(results, head, &frame, err) != SF_OK || !frame.field[SF_FRAME_VON_MISES])
         return err->status;
-    FILE *file = sf_staging_open(output, "section.csv", err);
-    SF_TRY(err->status);
-    fputs("set,node,x_mm,y_mm,z_mm,depth_mm,displacement_x_mm,displacement_y_mm,displacement_z_mm,von_mises_"
-          "kPa,stress_zz_kPa,largest_compression_1\n",
-          file);
-    write_rows(file, results, &frame, err);
-    if (sf_staging_close(file, "section.csv", err) == SF_OK)
-        *written = true;
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "section.csv", err));
+    SF_CSV_PRINT_LINE(
+        &csv, "set,node,x_mm,y_mm,z_mm,depth_mm,displacement_x_mm,displacement_y_mm,displacement_z_mm,"
+              "von_mises_kPa,stress_zz_kPa,largest_compression_1");
+    write_rows(&csv, results, &frame, err);
+    *written = sf_csv_close(&csv, err) == SF_OK;
     return err->status;
 }

@@ -169,29 +169,29 @@ static double series_mean(const overlay *o, int figure) {
 
 /* A row for each drop and one of the mean; growth is that over the first drop. */
 static sf_status write_series(const overlay *o, sf_error *err) {
-    FILE *csv = sf_staging_open(&o->output, "series.csv", err);
-    SF_TRY(err->status);
-    fputs("drop,pause_s", csv);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, &o->output, "series.csv", err));
+    sf_csv_print(&csv, "drop,pause_s");
     for (int f = 0; f < OF_SERIES; f++)
-        fprintf(csv, ",%s,%s_growth", of_series[f], of_series[f]);
-    fputs(",grade,v0_m_s,x_mm,y_mm\n", csv);
+        sf_csv_print(&csv, "%s,%s_growth", of_series[f], of_series[f]);
+    SF_CSV_PRINT_LINE(&csv, "grade,v0_m_s,x_mm,y_mm");
     for (int k = 0; k <= o->count; k++) {
         bool mean = k == o->count;
         if (mean)
-            fprintf(csv, "mean %d-%d,", o->mean[0], o->mean[1]);
+            sf_csv_print(&csv, "mean %d-%d,", o->mean[0], o->mean[1]);
         else
-            fprintf(csv, "%d,%.9g", k + 1, o->run[k].pause);
+            sf_csv_print(&csv, "%d,%.9g", k + 1, o->run[k].pause);
         for (int f = 0; f < OF_SERIES; f++) {
             double value = mean ? series_mean(o, f) : series_number(o, k, f);
-            fprintf(csv, ",%.9g,%.6g", value, value / series_number(o, 0, f) - 1);
+            sf_csv_print(&csv, "%.9g,%.6g", value, value / series_number(o, 0, f) - 1);
         }
         if (mean)
-            fputs(",,,,\n", csv);
+            SF_CSV_PRINT_LINE(&csv, ",,,");
         else
-            fprintf(csv, ",%s,%.9g,%.9g,%.9g\n", sf_verdict_phrase(o->run[k].verdict.grade),
-                    o->run[k].figures.v0, 1e3 * o->run[k].place[0], 1e3 * o->run[k].place[1]);
+            SF_CSV_PRINT_LINE(&csv, "%s,%.9g,%.9g,%.9g", sf_verdict_phrase(o->run[k].verdict.grade),
+                              o->run[k].figures.v0, 1e3 * o->run[k].place[0], 1e3 * o->run[k].place[1]);
     }
-    return sf_staging_close(csv, "series.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 /* The pad before each later drop. */
@@ -249,49 +249,34 @@ static void print_series(const overlay *o) {
 
 /* ---- output ---- */
 
-static void put_quoted(FILE *out, const char *text) {
-    fputc('"', out);
-    for (; *text; text++) {
-        if (*text == '"')
-            fputc('"', out);
-        fputc(*text == '\n' ? ' ' : *text, out);
-    }
-    fputc('"', out);
-}
-
-static void put_csv_row(FILE *csv, const overlay *o, const sf_figure *figure) {
-    fprintf(csv, "%s", figure->row.key);
+static void put_csv_row(sf_csv *csv, const overlay *o, const sf_figure *figure) {
+    sf_csv_print(csv, "%s", figure->row.key);
     for (int k = 0; k < o->count; k++) {
         const overlay_run *r = &o->run[k];
-        double value = sf_figure_number(figure, &r->results, &r->figures);
-        fputc(',', csv);
         if (figure->row.type == SF_ROW_TEXT)
-            put_quoted(csv,
-                       sf_row_value(&figure->row, sf_figure_record(figure, &r->results, &r->figures)).text);
-        else if (!isnan(value))
-            fprintf(csv, "%.9g", value);
+            sf_csv_quoted(
+                csv, sf_row_value(&figure->row, sf_figure_record(figure, &r->results, &r->figures)).text);
+        else
+            SF_CSV_NUMBERS(csv, sf_figure_number(figure, &r->results, &r->figures));
     }
-    fputc('\n', csv);
+    sf_csv_end(csv);
 }
 
 /* A row for each figure, a column for each run. */
 static sf_status write_csv(const overlay *o, sf_error *err) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
-    FILE *csv = sf_staging_open(&o->output, "compare.csv", err);
-    SF_TRY(err->status);
-    fputs("figure", csv);
-    for (int k = 0; k < o->count; k++) {
-        fputc(',', csv);
-        put_quoted(csv, o->run[k].name);
-    }
-    fputs("\ngrade", csv);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, &o->output, "compare.csv", err));
+    sf_csv_print(&csv, "figure");
     for (int k = 0; k < o->count; k++)
-        fprintf(csv, ",%s", sf_verdict_phrase(o->run[k].verdict.grade));
-    fputc('\n', csv);
-    for (size_t k = 0; k < count; k++)
-        put_csv_row(csv, o, &list[k]);
-    return sf_staging_close(csv, "compare.csv", err);
+        sf_csv_quoted(&csv, o->run[k].name);
+    sf_csv_end(&csv);
+    sf_csv_print(&csv, "grade");
+    for (int k = 0; k < o->count; k++)
+        sf_csv_print(&csv, "%s", sf_verdict_phrase(o->run[k].verdict.grade));
+    sf_csv_end(&csv);
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        put_csv_row(&csv, o, &sf_figure_at[k]);
+    return sf_csv_close(&csv, err);
 }
 
 /* The filtered curves, their time from first contact. */

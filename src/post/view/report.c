@@ -376,16 +376,15 @@ static void put_columns(const page *p, const sf_figure *figure, size_t count, si
 }
 
 static void put_figures(const page *p) {
-    size_t count, defined = 0;
-    const sf_figure *figure = sf_figure_list(&count);
-    for (size_t k = 0; k < count; k++)
-        defined += is_defined(p, &figure[k]) ? 1 : 0;
+    size_t defined = 0;
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        defined += is_defined(p, &sf_figure_at[k]) ? 1 : 0;
     SF_HTML_BLOCK(p->file, "Figures");
-    put_columns(p, figure, count, defined);
+    put_columns(p, sf_figure_at, SF_FIGURE_TOTAL, defined);
     sf_html_note(
         p->file,
         "Values of summary.json, units at the end of the names (docs/formats.md). Not defined by this run: %zu.",
-        count - defined);
+        SF_FIGURE_TOTAL - defined);
 }
 
 static void put_comparison(const page *p) {

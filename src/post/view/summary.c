@@ -69,10 +69,8 @@ static const sf_row comparison_rows[] = {
 /* ---- summary.json ---- */
 
 static void put_figures(sf_json *json, const sf_summary *s) {
-    size_t count;
-    const sf_figure *figure = sf_figure_list(&count);
-    for (size_t k = 0; k < count; k++)
-        sf_row_json(json, &figure[k].row, sf_figure_record(&figure[k], s->results, s->figures));
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        sf_row_json(json, &sf_figure_at[k].row, sf_figure_record(&sf_figure_at[k], s->results, s->figures));
     SF_JSON_ARRAY(json, "notes");
     for (int k = 0; k < s->results->note_count; k++)
         sf_json_text(json, NULL, s->results->notes[k]);

@@ -212,8 +212,10 @@ sf_records sf_cfh_point_records(const sf_cfh_report *r, sf_cfh_point_row list[SF
                                      .rig_height = sf_cfh_rig_height(r->rig, p->height),
                                      .grade = grade,
                                      .verdict = p->failed ? "failed" : grade};
-        for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++)
-            list[k].residual[c] = log(p->value[c] / fitted(r, c, p));
+        for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
+            list[k].fit[c] = fitted(r, c, p);
+            list[k].residual[c] = log(p->value[c] / list[k].fit[c]);
+        }
     }
     return (sf_records){list, sizeof list[0], r->points->count};
 }
@@ -404,87 +406,85 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
 
 /* ---- cfh.csv ---- */
 
-/* Cells, each behind a comma; empty where a value is not finite. */
-static void put_cells(FILE *file, int count, const double *value) {
-    for (int k = 0; k < count; k++)
-        fprintf(file, isfinite(value[k]) ? ",%.9g" : ",", value[k]);
-}
+#define AT(member) SF_ROW_OF(NUMBER, sf_cfh_point_row, member)
 
 sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
-    FILE *file = sf_staging_open(output, "cfh.csv", err);
-    SF_TRY(err->status);
-    fputs("height_m,speed_m_s,a_max_g,hic_1,a_max_fit_g,hic_fit_1,v_rebound_m_s,max_indentation_mm,max_local_"
-          "strain_1,energy_error_1,failed_1",
-          file);
-    fputs(r->rig->pairs > 0 ? ",rig_height_m\n" : "\n", file);
-    for (int k = 0; k < r->points->count; k++) {
-        const sf_cfh_point *p = &r->points->point[k];
-        fprintf(file, "%.9g,%.9g", p->height, p->speed);
-        put_cells(file, SF_CFH_CRITERIA, p->value);
-        put_cells(file, 6,
-                  (const double[]){fitted(r, SF_CFH_A_MAX, p), fitted(r, SF_CFH_HIC, p), p->v_rebound,
-                                   p->max_indentation * 1e3, p->max_local_strain, p->energy_error});
-        fprintf(file, ",%d", p->failed);
-        if (r->rig->pairs > 0)
-            put_cells(file, 1, (const double[]){sf_cfh_rig_height(r->rig, p->height)});
-        fputc('\n', file);
-    }
-    return sf_staging_close(file, "cfh.csv", err);
+    static const sf_row rows[] = {
+        {"height_m", AT(p.height)},
+        {"speed_m_s", AT(p.speed)},
+        {"a_max_g", AT(p.value[SF_CFH_A_MAX])},
+        {"hic_1", AT(p.value[SF_CFH_HIC])},
+        {"a_max_fit_g", AT(fit[SF_CFH_A_MAX])},
+        {"hic_fit_1", AT(fit[SF_CFH_HIC])},
+        {"v_rebound_m_s", AT(p.v_rebound)},
+        {"max_indentation_mm", .factor = 1e3, AT(p.max_indentation)},
+        {"max_local_strain_1", AT(p.max_local_strain)},
+        {"energy_error_1", AT(p.energy_error)},
+        {"failed_1", SF_ROW_OF(FLAG, sf_cfh_point_row, p.failed)},
+        {"rig_height_m", AT(rig_height)}, /* with a rig */
+    };
+    sf_cfh_point_row points[SF_CFH_MAX_POINTS];
+    sf_rows list = SF_ROWS(rows);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "cfh.csv", err));
+    list.count -= r->rig->pairs == 0;
+    sf_rows_csv(&csv, list, sf_cfh_point_records(r, points));
+    return sf_csv_close(&csv, err);
 }
 
+#undef AT
+
 static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
-    FILE *file = sf_staging_open(output, "cfh_band.csv", err);
-    SF_TRY(err->status);
-    fputs(
-        "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,a_max_scatter_1,"
-        "hic_scatter_1\n",
-        file);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "cfh_band.csv", err));
+    SF_CSV_PRINT_LINE(&csv,
+                      "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,"
+                      "a_max_scatter_1,hic_scatter_1");
     for (int k = 0; k < s->grid; k++) {
-        fprintf(file, "%.9g", s->height[k]);
+        SF_CSV_NUMBERS(&csv, s->height[k]);
         for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cells(file, 3, (const double[]){s->band[c][k].low, s->band[c][k].median, s->band[c][k].high});
-        for (int c = 0; c < SF_CFH_CRITERIA; c++)
-            put_cells(file, 1, &s->scatter[c][k]);
-        fputc('\n', file);
+            SF_CSV_NUMBERS(&csv, s->band[c][k].low, s->band[c][k].median, s->band[c][k].high);
+        SF_CSV_LINE(&csv, s->scatter[SF_CFH_A_MAX][k], s->scatter[SF_CFH_HIC][k]);
     }
-    return sf_staging_close(file, "cfh_band.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
-    FILE *file = sf_staging_open(output, "cfh_draws.csv", err);
-    SF_TRY(err->status);
-    fputs("draw_1,height_m,a_max_height_m,hic_height_m,a_max_shared_1,hic_shared_1,a_max_sd_1,hic_sd_1,"
-          "a_max_columns_sd_1,hic_columns_sd_1\n",
-          file);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "cfh_draws.csv", err));
+    SF_CSV_PRINT_LINE(&csv,
+                      "draw_1,height_m,a_max_height_m,hic_height_m,a_max_shared_1,hic_shared_1,a_max_sd_1,"
+                      "hic_sd_1,a_max_columns_sd_1,hic_columns_sd_1");
     for (int d = 0; d < s->draws; d++) {
         const sf_cfh_curve *draw = &s->draw[d];
-        fprintf(file, "%d", d + 1);
+        sf_csv_print(&csv, "%d", d + 1);
         for (int k = 0; k <= SF_CFH_FIRST; k++) { /* the first of them in front */
             double height = draw->crossing[k == 0 ? SF_CFH_FIRST : k - 1];
-            put_cells(file, 1, (const double[]){height > 0 ? height : NAN});
+            SF_CSV_NUMBERS(&csv, height > 0 ? height : NAN);
         }
         static const double none[SF_CFH_CRITERIA] = {NAN, NAN};
-        put_cells(file, SF_CFH_CRITERIA, s->with_response ? draw->shared : none);
-        put_cells(file, SF_CFH_CRITERIA, s->with_response ? draw->own_sd : none);
-        put_cells(file, SF_CFH_CRITERIA, s->freedom > 0 ? draw->columns_sd : none);
-        fputc('\n', file);
+        sf_csv_numbers(&csv, SF_CFH_CRITERIA, s->with_response ? draw->shared : none);
+        sf_csv_numbers(&csv, SF_CFH_CRITERIA, s->with_response ? draw->own_sd : none);
+        sf_csv_numbers(&csv, SF_CFH_CRITERIA, s->freedom > 0 ? draw->columns_sd : none);
+        sf_csv_end(&csv);
     }
-    return sf_staging_close(file, "cfh_draws.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 /* The corrected columns of each draw over the height, as far as they do not collapse. */
 static sf_status write_curves(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
-    FILE *file = sf_staging_open(output, "cfh_curves.csv", err);
-    SF_TRY(err->status);
-    fputs("draw_1,height_m,a_max_g,hic_1,a_max_columns_g,hic_columns_1\n", file);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "cfh_curves.csv", err));
+    SF_CSV_PRINT_LINE(&csv, "draw_1,height_m,a_max_g,hic_1,a_max_columns_g,hic_columns_1");
     for (int d = 0; d < s->draws; d++)
         for (int k = 0; k < s->draw[d].reach; k++) {
             const sf_cfh_curve *draw = &s->draw[d];
-            fprintf(file, "%d,%.9g,%.9g,%.9g,%.9g,%.9g\n", d + 1, s->height[k],
-                    exp(draw->value[SF_CFH_A_MAX][k]), exp(draw->value[SF_CFH_HIC][k]),
-                    exp(draw->column[SF_CFH_A_MAX][k]), exp(draw->column[SF_CFH_HIC][k]));
+            sf_csv_print(&csv, "%d", d + 1);
+            SF_CSV_LINE(&csv, s->height[k], exp(draw->value[SF_CFH_A_MAX][k]),
+                        exp(draw->value[SF_CFH_HIC][k]), exp(draw->column[SF_CFH_A_MAX][k]),
+                        exp(draw->column[SF_CFH_HIC][k]));
         }
-    return sf_staging_close(file, "cfh_curves.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {

@@ -51,6 +51,7 @@ const char *sf_cfh_bound(const sf_cfh_report *report, double *height);
 typedef struct sf_cfh_point_row {
     sf_cfh_point p;
     double residual[SF_CFH_CRITERIA]; /* ln(value / fit); NaN: not in the fit */
+    double fit[SF_CFH_CRITERIA];      /* g, 1; NaN: not in the fit */
     double rig_height;                /* m */
     const char *grade, *verdict;      /* that of the run; and "failed" */
 } sf_cfh_point_row;

@@ -146,33 +146,26 @@ bool sf_sweep_series_text(const sf_plan *plan, char *text, size_t size) {
 }
 
 /* A line of drops.csv; without a record of its figures their cells are empty. */
-static void put_drop(FILE *file, int64_t row, int drop, const sf_run_folder *at) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
+static void put_drop(sf_csv *csv, int64_t row, int drop, const sf_run_folder *at) {
     SF_OWNED_BY(sf_run_record_free) sf_run_record r = {0};
     bool there = sf_run_record_read(at->figures, at->results, &r);
-    fprintf(file, "%lld,%d,%s,%s", (long long)row + 1, drop, at->counted >> (drop - 1) & 1 ? "yes" : "no",
-            there ? sf_verdict_phrase(r.grade) : "");
-    for (size_t k = 0; k < count; k++)
-        if (list[k].row.type == SF_ROW_TEXT)
-            fprintf(file, ",%s", there ? r.status : "");
-        else if (there && !isnan(r.figure[k]))
-            fprintf(file, ",%.9g", r.figure[k]);
+    sf_csv_print(csv, "%lld,%d,%s,%s", (long long)row + 1, drop, at->counted >> (drop - 1) & 1 ? "yes" : "no",
+                 there ? sf_verdict_phrase(r.grade) : "");
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        if (there && sf_figure_at[k].row.type == SF_ROW_TEXT)
+            sf_csv_print(csv, "%s", r.status);
         else
-            fputc(',', file);
-    fputc('\n', file);
+            SF_CSV_NUMBERS(csv, there ? r.figure[k] : NAN);
+    sf_csv_end(csv);
 }
 
 sf_status sf_sweep_write_drops(const sf_staging *output, const sf_runs *r, const char *folder,
                                sf_error *err) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
-    FILE *file = sf_staging_open(output, "drops.csv", err);
-    SF_TRY(err->status);
-    fputs("id,drop,counted,grade", file);
-    for (size_t k = 0; k < count; k++)
-        fprintf(file, ",%s", list[k].row.key);
-    fputc('\n', file);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "drops.csv", err));
+    sf_csv_print(&csv, "id,drop,counted,grade");
+    sf_figure_csv_keys(&csv);
+    sf_csv_end(&csv);
     for (int64_t row = 0; row < r->count && err->status == SF_OK; row++) {
         SF_OWNED_BY(sf_case_free) sf_case c = {0};
         sf_run_folder at;
@@ -185,10 +178,10 @@ sf_status sf_sweep_write_drops(const sf_staging *output, const sf_runs *r, const
         at.counted = c.counted;
         for (int k = 1; k <= (int)c.drops; k++) {
             const sf_run_folder drop = sf_run_folder_of_drop(&at, k);
-            put_drop(file, row, k, &drop);
+            put_drop(&csv, row, k, &drop);
         }
     }
-    return sf_staging_close(file, "drops.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 /* ---- cost ---- */

@@ -494,18 +494,17 @@ void sf_factor_override(const sf_factor *f, double value, char *text, size_t siz
         snprintf(text, size, "%s=%.12g", f->key, value);
 }
 
-void sf_factor_text(const sf_factor *f, double value, char *text, size_t size) {
+const char *sf_factor_text(const sf_factor *f, double value, char *text, size_t size) {
     if (f->words)
         snprintf(text, size, "%s", f->label[(int64_t)value]);
     else
         snprintf(text, size, "%.12g", value);
+    return text;
 }
 
-void sf_factor_heading(const sf_factor *f, char *text, size_t size) {
-    if (*f->unit)
-        snprintf(text, size, "%s (%s)", f->name, f->unit);
-    else
-        snprintf(text, size, "%s", f->name);
+const char *sf_factor_heading(const sf_factor *f, char *text, size_t size) {
+    snprintf(text, size, *f->unit ? "%s (%s)" : "%s", f->name, f->unit);
+    return text;
 }
 
 #pragma GCC diagnostic push

@@ -43,10 +43,10 @@ double sf_factor_quantile(const sf_factor *f, double u);
 
 /* "key=value" as --set takes it. */
 void sf_factor_override(const sf_factor *f, double value, char *text, size_t size);
-/* The value for a table: a number with 12 digits, or the label. */
-void sf_factor_text(const sf_factor *f, double value, char *text, size_t size);
+/* The value for a table: a number with 12 digits, or the label. Returns `text`, as the next one does. */
+const char *sf_factor_text(const sf_factor *f, double value, char *text, size_t size);
 /* "name (unit)". */
-void sf_factor_heading(const sf_factor *f, char *text, size_t size);
+const char *sf_factor_heading(const sf_factor *f, char *text, size_t size);
 /* "normal, mean 5, standard deviation 0.1 m/s", of a factor with a distribution. */
 void sf_factor_distribution_text(const sf_factor *f, char *text, size_t size);
 

@@ -15,17 +15,16 @@ static const char *const states[] = {[SF_SWEEP_OPEN] = "open",
 sf_status sf_runs_create(const sf_plan *plan, sf_runs *r, sf_error *err) {
     unsigned long n = (unsigned long)plan->rows;
     *r = (sf_runs){.plan = plan, .count = plan->rows};
-    sf_figure_list(&r->figures);
     for (int k = 0; k < plan->figure_count; k++)
         r->column[k] = sf_runs_figure(plan->figure[k].figure);
     r->state = sf_alloc(err, n, 1, "the runs");
     r->grade = sf_alloc(err, n, 1, "the runs");
     r->folder = sf_alloc(err, n, sizeof *r->folder, "the runs");
     r->message = sf_alloc(err, n, sizeof *r->message, "the runs");
-    r->value = sf_alloc(err, n, r->figures * sizeof *r->value, "the figures of the runs");
+    r->value = sf_alloc(err, n, SF_FIGURE_TOTAL * sizeof *r->value, "the figures of the runs");
     if (sf_plan_is_adaptive(plan))
         r->half = sf_alloc(err, n, (unsigned long)plan->figure_count * sizeof *r->half, "predictions");
-    for (int64_t k = 0; r->value && k < r->count * (int64_t)r->figures; k++)
+    for (int64_t k = 0; r->value && k < r->count * SF_FIGURE_TOTAL; k++)
         r->value[k] = NAN;
     return err->status;
 }
@@ -42,12 +41,11 @@ void sf_runs_free(sf_runs *r) {
 }
 
 double *sf_runs_place(const sf_runs *r, int64_t row) {
-    return r->value + row * (int64_t)r->figures;
+    return r->value + row * SF_FIGURE_TOTAL;
 }
 
 size_t sf_runs_figure(const char *key) {
-    size_t count;
-    return (size_t)(sf_figure_find(key) - sf_figure_list(&count));
+    return (size_t)(sf_figure_find(key) - sf_figure_at);
 }
 
 /* ---- states ---- */
@@ -64,11 +62,11 @@ static double text_number(sf_runs *r, const char *text) {
 }
 
 void sf_runs_take(sf_runs *r, int64_t row, const double *figure, const char *status) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
     double *place = sf_runs_place(r, row);
-    for (size_t k = 0; k < count; k++)
-        place[k] = list[k].row.type != SF_ROW_TEXT ? figure[k] : *status ? text_number(r, status) : NAN;
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        place[k] = sf_figure_at[k].row.type != SF_ROW_TEXT ? figure[k]
+                   : *status                               ? text_number(r, status)
+                                                           : NAN;
 }
 
 static double to_nine_digits(double value) {
@@ -88,7 +86,7 @@ static sf_status keep_text(char **place, const char *text, sf_error *err) {
 sf_status sf_runs_done(sf_runs *r, int64_t row, sf_grade grade, const char *folder, const char *message,
                        sf_error *err) {
     double *place = sf_runs_place(r, row);
-    for (size_t k = 0; k < r->figures; k++)
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
         place[k] = to_nine_digits(place[k]);
     r->state[row] = SF_SWEEP_DONE;
     r->grade[row] = (unsigned char)grade;
@@ -107,7 +105,7 @@ void sf_runs_open(sf_runs *r, int64_t row) {
     r->state[row] = SF_SWEEP_OPEN;
     SF_FREE(r->message[row], r->folder[row]);
     r->message[row] = r->folder[row] = NULL;
-    for (size_t k = 0; k < r->figures; k++)
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
         place[k] = NAN;
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
         r->half[row * r->plan->figure_count + k] = 0;
@@ -148,93 +146,57 @@ double sf_runs_value(const sf_runs *r, int64_t row, int figure) {
 
 /* ---- runs.csv ---- */
 
-/* A text that a spreadsheet would compute, and no number: "=1+2", "-rm". An apostrophe stands before it. */
-static bool is_formula(const char *text) {
-    double number;
-    return *text && strchr("=+-@\t", *text) && !sf_decimal_is(text, &number);
-}
-
-static void put_cell(FILE *out, const char *text) {
-    bool formula = is_formula(text);
-    if (!formula && !strpbrk(text, ",\"\r\n")) {
-        fputs(text, out);
-        return;
-    }
-    fputs(formula ? "\"'" : "\"", out);
-    for (; *text; text++) {
-        if (*text == '"')
-            fputc('"', out);
-        fputc(*text == '\n' || *text == '\r' ? ' ' : *text, out);
-    }
-    fputc('"', out);
-}
-
-static void put_heading(FILE *out, const sf_runs *r) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
+static void put_heading(sf_csv *csv, const sf_runs *r) {
     char text[SF_FACTOR_KEY_SIZE + SF_FACTOR_UNIT_SIZE + 8];
-    fputs("id", out);
-    for (int f = 0; f < r->plan->factor_count; f++) {
-        fputc(',', out);
-        sf_factor_heading(&r->plan->factor[f], text, sizeof text);
-        put_cell(out, text);
-    }
-    fputs(",run_status,grade,message,folder", out);
-    for (size_t k = 0; k < count; k++)
-        fprintf(out, ",%s", list[k].row.key);
+    sf_csv_print(csv, "id");
+    for (int f = 0; f < r->plan->factor_count; f++)
+        sf_csv_text(csv, sf_factor_heading(&r->plan->factor[f], text, sizeof text));
+    sf_csv_print(csv, "run_status,grade,message,folder");
+    sf_figure_csv_keys(csv);
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
-        fprintf(out, ",%s_low,%s_high", r->plan->figure[k].figure, r->plan->figure[k].figure);
-    fputc('\n', out);
+        sf_csv_print(csv, "%s_low,%s_high", r->plan->figure[k].figure, r->plan->figure[k].figure);
+    sf_csv_end(csv);
 }
 
-static void put_figure(FILE *out, const sf_runs *r, const sf_figure *figure, double value) {
-    fputc(',', out);
-    if (isnan(value))
-        return;
-    if (figure->row.type == SF_ROW_TEXT)
-        put_cell(out, r->text[(int)value]);
+static void put_figure(sf_csv *csv, const sf_runs *r, const sf_figure *figure, double value) {
+    if (figure->row.type == SF_ROW_TEXT && !isnan(value))
+        sf_csv_text(csv, r->text[(int)value]);
     else
-        fprintf(out, "%.9g", value);
+        SF_CSV_NUMBERS(csv, value);
 }
 
 /* The 95 % interval of a figure of a predicted row; of others two empty cells. */
-static void put_interval(FILE *out, const sf_runs *r, int64_t row, int figure) {
-    double value = sf_runs_value(r, row, figure), half = sf_runs_half(r, row, figure);
-    if (r->state[row] == SF_SWEEP_PREDICTED)
-        fprintf(out, ",%.9g,%.9g", value * exp(-half), value * exp(half));
-    else
-        fputs(",,", out);
+static void put_interval(sf_csv *csv, const sf_runs *r, int64_t row, int figure) {
+    double value = r->state[row] == SF_SWEEP_PREDICTED ? sf_runs_value(r, row, figure) : NAN;
+    double half = sf_runs_half(r, row, figure);
+    SF_CSV_NUMBERS(csv, value * exp(-half), value * exp(half));
 }
 
-static void put_row(FILE *out, const sf_runs *r, int64_t row) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
+static void put_row(sf_csv *csv, const sf_runs *r, int64_t row) {
     char text[SF_SWEEP_OVERRIDE_SIZE];
-    fprintf(out, "%lld", (long long)row + 1);
-    for (int f = 0; f < r->plan->factor_count; f++) {
-        fputc(',', out);
-        sf_factor_text(&r->plan->factor[f], sf_plan_value(r->plan, f, row), text, sizeof text);
-        put_cell(out, text);
-    }
+    sf_csv_print(csv, "%lld", (long long)row + 1);
+    for (int f = 0; f < r->plan->factor_count; f++)
+        sf_csv_text(csv,
+                    sf_factor_text(&r->plan->factor[f], sf_plan_value(r->plan, f, row), text, sizeof text));
     bool done = r->state[row] == SF_SWEEP_DONE;
-    fprintf(out, ",%s,%s,", states[r->state[row]], done ? sf_verdict_phrase(r->grade[row]) : "");
-    put_cell(out, r->message[row] ? r->message[row] : "");
-    fputc(',', out);
-    put_cell(out, r->folder[row] ? r->folder[row] : "");
-    for (size_t k = 0; k < count; k++)
-        put_figure(out, r, &list[k], sf_runs_place(r, row)[k]);
+    sf_csv_print(csv, "%s,%s", states[r->state[row]], done ? sf_verdict_phrase(r->grade[row]) : "");
+    sf_csv_text(csv, r->message[row]);
+    sf_csv_text(csv, r->folder[row]);
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        put_figure(csv, r, &sf_figure_at[k], sf_runs_place(r, row)[k]);
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
-        put_interval(out, r, row, k);
-    fputc('\n', out);
+        put_interval(csv, r, row, k);
+    sf_csv_end(csv);
 }
 
 sf_status sf_runs_write(const sf_runs *r, const char *path, uint64_t *hash, sf_error *err) {
     sf_replacement out;
     FILE *file = sf_replace_open(path, &out, err);
     SF_TRY(err->status);
-    put_heading(file, r);
+    sf_csv csv = {.file = file};
+    put_heading(&csv, r);
     for (int64_t row = 0; row < r->count; row++)
-        put_row(file, r, row);
+        put_row(&csv, r, row);
     if (fflush(file) != 0)
         SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", path);
     else /* under the partial name, before another program knows the file */
@@ -259,7 +221,7 @@ static char *next_cell(char **at) {
     }
     *at = *from == ',' ? from + 1 : NULL;
     *to = '\0';
-    return *cell == '\'' && is_formula(cell + 1) ? cell + 1 : cell;
+    return *cell == '\'' && sf_csv_is_formula(cell + 1) ? cell + 1 : cell;
 }
 
 static int find_word(const char *cell, const char *const *words, int count) {
@@ -270,14 +232,12 @@ static int find_word(const char *cell, const char *const *words, int count) {
 }
 
 static void take_figures(sf_runs *r, int64_t row, char *rest) {
-    size_t count;
-    const sf_figure *list = sf_figure_list(&count);
     double *place = sf_runs_place(r, row);
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++) {
         const char *cell = next_cell(&rest);
         if (!cell || !*cell)
             continue;
-        place[k] = list[k].row.type == SF_ROW_TEXT ? text_number(r, cell) : strtod(cell, NULL);
+        place[k] = sf_figure_at[k].row.type == SF_ROW_TEXT ? text_number(r, cell) : strtod(cell, NULL);
     }
 }
 
@@ -303,7 +263,7 @@ static char *own_heading(const sf_runs *r) {
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return NULL;
-    put_heading(out, r);
+    put_heading(&(sf_csv){.file = out}, r);
     return sf_text_close(out, &text);
 }
 

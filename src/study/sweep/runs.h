@@ -15,7 +15,6 @@ enum { SF_RUNS_TEXTS = 64 };
 typedef struct sf_runs {
     const sf_plan *plan; /* borrowed */
     int64_t count;
-    size_t figures;               /* of the list of summary.json, post/figures/figures.h */
     size_t column[SF_SWEEP_FIGURES]; /* of those of the plan among them */
     unsigned char *state, *grade; /* [count] sf_sweep_state, sf_grade */
     double *value;                /* [count][figures] as in summary.json; NaN: none; a text: its number */
@@ -38,7 +37,7 @@ void sf_runs_free(sf_runs *runs);
 double *sf_runs_place(const sf_runs *runs, int64_t row);
 /* The place of a figure among them; the key must be in the list. */
 size_t sf_runs_figure(const char *key);
-/* The figures of a drop, [of sf_figure_list] sf_figure_number, into the place of the row; `status` is the one
+/* The figures of a drop, [of sf_figure_at] sf_figure_number, into the place of the row; `status` is the one
  * that is a text. */
 void sf_runs_take(sf_runs *runs, int64_t row, const double *figure, const char *status);
 

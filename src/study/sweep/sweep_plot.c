@@ -54,8 +54,7 @@ static sf_series_style coloured(sf_series_style style, int level) {
 
 static void label_factor(sf_axis *axis, const sf_factor *f) {
     char text[SF_FACTOR_KEY_SIZE + SF_FACTOR_UNIT_SIZE + 8];
-    sf_factor_heading(f, text, sizeof text);
-    sf_axis_label(axis, "%s", text);
+    sf_axis_label(axis, "%s", sf_factor_heading(f, text, sizeof text));
 }
 
 static void level_text(const sf_factor *f, double value, char *text, size_t size) {

@@ -50,16 +50,12 @@ void sf_sweep_print_table(FILE *out, const sf_plan *p, int rows) {
         fprintf(out, "  %-36s %s\n", p->factor[f].name, text);
     }
     fprintf(out, "%lld runs\n  id", p->rows);
-    for (int f = 0; f < p->factor_count; f++) {
-        sf_factor_heading(&p->factor[f], text, sizeof text);
-        fprintf(out, ", %s", text);
-    }
+    for (int f = 0; f < p->factor_count; f++)
+        fprintf(out, ", %s", sf_factor_heading(&p->factor[f], text, sizeof text));
     for (long long row = 0; row < p->rows && row < rows; row++) {
         fprintf(out, "\n  %lld", row + 1);
-        for (int f = 0; f < p->factor_count; f++) {
-            sf_factor_text(&p->factor[f], sf_plan_value(p, f, row), text, sizeof text);
-            fprintf(out, ", %s", text);
-        }
+        for (int f = 0; f < p->factor_count; f++)
+            fprintf(out, ", %s", sf_factor_text(&p->factor[f], sf_plan_value(p, f, row), text, sizeof text));
     }
     fputs(p->rows > rows ? "\n  ...\n" : "\n", out);
 }

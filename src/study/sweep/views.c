@@ -30,7 +30,7 @@ static int64_t find_row(const sf_runs *r, size_t figure, double limit) {
     int64_t best = -1;
     double most = -INFINITY;
     for (int64_t row = 0; row < r->count; row++) {
-        double value = r->value[row * (int64_t)r->figures + (int64_t)figure];
+        double value = sf_runs_place(r, row)[figure];
         double merit = isnan(limit) ? value : -fabs(value - limit);
         if (sf_runs_usable(r, row) && merit > most) {
             most = merit;
@@ -131,16 +131,14 @@ static void put_view(FILE *page, const sf_runs *r, const sf_sweep_view *v) {
     sf_html_text(page, v->reason);
     fputs("): ", page);
     for (int f = 0; f < p->factor_count; f++) {
-        sf_factor_heading(&p->factor[f], head, sizeof head);
-        sf_factor_text(&p->factor[f], sf_plan_value(p, f, v->row), text, sizeof text);
-        sf_html_text(page, head);
+        sf_html_text(page, sf_factor_heading(&p->factor[f], head, sizeof head));
         fputs(" ", page);
-        sf_html_text(page, text);
+        sf_html_text(page, sf_factor_text(&p->factor[f], sf_plan_value(p, f, v->row), text, sizeof text));
         fputs("; ", page);
     }
     for (int k = 0; k < p->figure_count; k++) {
         size_t figure = sf_runs_figure(p->figure[k].figure);
-        double value = r->value[v->row * (int64_t)r->figures + (int64_t)figure];
+        double value = sf_runs_place(r, v->row)[figure];
         if (isfinite(value))
             fprintf(page, "%s %.4g; ", p->figure[k].figure, value);
     }

@@ -64,10 +64,10 @@ static sf_status write_all(const sf_compression_job *job, const sf_compression_k
                            sf_error *err) {
     sf_staging *output = &study->output;
     SF_TRY(sf_staging_begin(job->directory, kind->outputs, study->force, output, err));
-    FILE *points = sf_staging_open(output, "fit.csv", err);
-    SF_TRY(err->status);
-    kind->points(points, fit);
-    SF_TRY(sf_staging_close(points, "fit.csv", err));
+    sf_csv points;
+    SF_TRY(sf_csv_open(&points, output, "fit.csv", err));
+    kind->points(&points, fit);
+    SF_TRY(sf_csv_close(&points, err));
     if (kind->more)
         SF_TRY(kind->more(job, output, fit, warning, size, err));
     sf_json json = {.file = sf_staging_open(output, "fit.json", err)};

@@ -29,7 +29,7 @@ typedef struct sf_compression_kind {
     /* Writes the summary or, with `comments`, the comments of material.cfg. */
     void (*describe)(FILE *out, const void *fit, bool comments);
     /* The contents of fit.csv, and the members of fit.json. */
-    void (*points)(FILE *file, const void *fit);
+    void (*points)(sf_csv *csv, const void *fit);
     void (*json)(sf_json *json, const void *fit, const char *path);
     /* Further files; NULL: none. `warning` (size bytes): why there is no picture, or "". */
     sf_status (*more)(const sf_compression_job *job, const sf_staging *output, void *fit, char *warning,

@@ -148,36 +148,34 @@ static void warn(const void *place, const sf_sink *sink) {
 
 /* ---- files ---- */
 
-static void put_test_points(FILE *file, int number, const sf_compression_test *t, const double *stress,
+static void put_test_points(sf_csv *csv, int number, const sf_compression_test *t, const double *stress,
                             const char *how) {
     for (int i = 0; i < t->count; i++) {
-        fprintf(file, "%d,%s,%.9g,%s,%.9g,%.9g,", number, how, t->rate,
-                i < t->loading ? "loading" : "unloading", t->strain[i], 1e-3 * t->stress[i]);
-        if (isfinite(stress[i]))
-            fprintf(file, "%.9g", 1e-3 * stress[i]);
-        fputs("\n", file);
+        sf_csv_print(csv, "%d,%s,%.9g,%s", number, how, t->rate, i < t->loading ? "loading" : "unloading");
+        SF_CSV_LINE(csv, t->strain[i], 1e-3 * t->stress[i], 1e-3 * stress[i]);
     }
 }
 
-static void put_cycle_points(FILE *file, const sf_form_fit *fit, int record) {
+static void put_cycle_points(sf_csv *csv, const sf_form_fit *fit, int record) {
     const sf_cycle_record *r = &fit->config->cycles[record];
     for (int k = 0; k < 2 * r->cycles; k++)
-        for (int i = r->turn[k] + (k > 0); i <= r->turn[k + 1]; i++)
-            fprintf(file, "record %d cycle %d,%s,,%s,%.9g,%.9g,%.9g\n", record + 1, k / 2 + 1,
-                    k / 2 < r->fitted ? "fitted" : "predicted", k % 2 ? "unloading" : "loading", r->strain[i],
-                    1e-3 * r->stress[i], 1e-3 * fit->cycles[record].stress[i]);
+        for (int i = r->turn[k] + (k > 0); i <= r->turn[k + 1]; i++) {
+            sf_csv_print(csv, "record %d cycle %d,%s,,%s", record + 1, k / 2 + 1,
+                         k / 2 < r->fitted ? "fitted" : "predicted", k % 2 ? "unloading" : "loading");
+            SF_CSV_LINE(csv, r->strain[i], 1e-3 * r->stress[i], 1e-3 * fit->cycles[record].stress[i]);
+        }
 }
 
-static void put_points(FILE *file, const void *place) {
+static void put_points(sf_csv *csv, const void *place) {
     const sf_form_fit *fit = place;
     const sf_compression_config *c = fit->config;
-    fputs("test,use,rate_1_s,branch,strain,measured_kPa,law_kPa\n", file);
+    SF_CSV_PRINT_LINE(csv, "test,use,rate_1_s,branch,strain,measured_kPa,law_kPa");
     for (int k = 0; k < c->test_count; k++)
-        put_test_points(file, k + 1, &c->test[k], fit->test[k].stress, "fitted");
+        put_test_points(csv, k + 1, &c->test[k], fit->test[k].stress, "fitted");
     for (int k = 0; k < c->predicted_count; k++)
-        put_test_points(file, c->test_count + k + 1, &c->predicted[k], fit->predicted[k].stress, "predicted");
+        put_test_points(csv, c->test_count + k + 1, &c->predicted[k], fit->predicted[k].stress, "predicted");
     for (int k = 0; k < c->record_count; k++)
-        put_cycle_points(file, fit, k);
+        put_cycle_points(csv, fit, k);
 }
 
 static void json_record(sf_json *json, const sf_cycle_record *r, const sf_cycle_result *c) {

@@ -9,7 +9,6 @@
 #include "io/table_csv.h"
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_errno.h>
-#include <stdlib.h>
 
 enum { STARTS = 6, MISFIT_SIZE = 256 };
 static const char AT_BOUND_WORDS[] = " (at its bound)";
@@ -447,14 +446,14 @@ static void warn(const void *place, const sf_sink *sink) {
 
 /* ---- files ---- */
 
-static void put_points(FILE *file, const void *place) {
+static void put_points(sf_csv *csv, const void *place) {
     const fitted *f = place;
     const sf_compression_test *t = f->test;
     const sf_hyperfoam_request *r = f->request;
     const sf_hyperfoam_card *card = &f->card;
     sf_hyperfoam foam = sf_hyperfoam_build(card);
     double side = 0, energy = 0, peak = 0;
-    fputs("quantity,branch,strain,measured,fit\n", file);
+    SF_CSV_PRINT_LINE(csv, "quantity,branch,strain,measured,fit");
     sf_hyperfoam_free_stress(&foam, t->largest_strain, &side, &peak);
     side = 0;
     for (int i = 0; i < t->count; i++) {
@@ -463,13 +462,14 @@ static void put_points(FILE *file, const void *place) {
         if (back)
             stress *= sf_unloading_factor(card->hysteresis_hu, card->hysteresis_shape, card->hysteresis_alpha,
                                           fmin(1, energy / peak));
-        fprintf(file, "stress_kPa,%s,%.9g,%.9g,%.9g\n", back ? "unloading" : "loading", t->strain[i],
-                1e-3 * t->stress[i], 1e-3 * stress);
+        sf_csv_print(csv, "stress_kPa,%s", back ? "unloading" : "loading");
+        SF_CSV_LINE(csv, t->strain[i], 1e-3 * t->stress[i], 1e-3 * stress);
     }
     side = 0;
     for (int i = 0; i < r->lateral_count; i++) {
         sf_hyperfoam_free_stress(&foam, r->lateral_at[i], &side, &energy);
-        fprintf(file, "lateral_strain,loading,%.9g,%.9g,%.9g\n", r->lateral_at[i], r->lateral[i], side);
+        sf_csv_print(csv, "lateral_strain,loading");
+        SF_CSV_LINE(csv, r->lateral_at[i], r->lateral[i], side);
     }
 }
 

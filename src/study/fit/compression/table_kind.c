@@ -173,35 +173,33 @@ static void warn(const void *place, const sf_sink *sink) {
 
 /* ---- files ---- */
 
-static void put_points(FILE *file, const void *place) {
+static void put_points(sf_csv *csv, const void *place) {
     const sf_compression_fit *fit = &((const sf_table_result *)place)->fit;
     const sf_compression_data *d = &fit->data;
-    fputs("test,branch,strain,measured_kPa,fit_kPa,sigma_kPa,deviation_over_sigma\n", file);
-    for (int i = 0; i < d->count; i++)
-        fprintf(file, "%d,%s,%.9g,%.9g,%.9g,%.9g,%.6g\n", d->test[i] + 1,
-                d->unloading[i] ? "unloading" : "loading", d->strain[i], 1e-3 * d->stress[i],
-                1e-3 * fit->stress[i], 1e-3 * d->sigma[i], (d->stress[i] - fit->stress[i]) / d->sigma[i]);
+    SF_CSV_PRINT_LINE(csv, "test,branch,strain,measured_kPa,fit_kPa,sigma_kPa,deviation_over_sigma");
+    for (int i = 0; i < d->count; i++) {
+        sf_csv_print(csv, "%d,%s", d->test[i] + 1, d->unloading[i] ? "unloading" : "loading");
+        SF_CSV_NUMBERS(csv, d->strain[i], 1e-3 * d->stress[i], 1e-3 * fit->stress[i], 1e-3 * d->sigma[i]);
+        SF_CSV_PRINT_LINE(csv, "%.6g", (d->stress[i] - fit->stress[i]) / d->sigma[i]);
+    }
 }
 
 static sf_status write_curves(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
     const sf_compression_test *test = fit->data.config->test;
     bool thermal = fit->data.config->thermal;
-    FILE *file = sf_staging_open(output, "loading_curve.csv", err);
-    SF_TRY(err->status);
-    fprintf(file, "# Loading curves of the fit with their %g %% intervals%s\n",
-            100 * fit->data.config->confidence, thermal ? "" : "; rate 0: one curve for all rates");
-    fprintf(file, "%s,strain,stress_kPa,low_kPa,high_kPa\n", thermal ? "temperature_K" : "rate_1_s");
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "loading_curve.csv", err));
+    SF_CSV_PRINT_LINE(&csv, "# Loading curves of the fit with their %g %% intervals%s",
+                      100 * fit->data.config->confidence, thermal ? "" : "; rate 0: one curve for all rates");
+    SF_CSV_PRINT_LINE(&csv, "%s,strain,stress_kPa,low_kPa,high_kPa", thermal ? "temperature_K" : "rate_1_s");
     for (int r = 0; r < fit->rate_count; r++)
         for (int k = 0; k < fit->table_count; k++) {
             double stress = fit->table_stress[r][k], width = fit->quantile * fit->table_error[r][k];
-            fprintf(file, "%.9g,%.9g,%.9g,%.9g,%.9g\n",
-                    thermal               ? test[r].temperature
-                    : fit->rate_count > 1 ? test[r].rate
-                                          : 0,
-                    fit->table_strain[k], 1e-3 * stress, 1e-3 * fmax(0, stress - width),
-                    1e-3 * (stress + width));
+            double at = thermal ? test[r].temperature : fit->rate_count > 1 ? test[r].rate : 0;
+            SF_CSV_LINE(&csv, at, fit->table_strain[k], 1e-3 * stress, 1e-3 * fmax(0, stress - width),
+                        1e-3 * (stress + width));
         }
-    return sf_staging_close(file, "loading_curve.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 /* ---- the simulated test: a foam cube between platens (softfall-pre, softfall-solve) against the material
@@ -361,14 +359,13 @@ static sf_status write_simulation(const sf_compression_job *job, const sf_stagin
     snprintf(folder, sizeof folder, "%s/simulation", output->directory);
     SF_TRY(sf_folder_own(folder, err));
     SF_TRY(check_specimen(r->fit.data.config, err));
-    FILE *file = sf_staging_open(output, "simulation.csv", err);
-    SF_TRY(err->status);
-    fputs("test,strain,cube_kPa,point_kPa\n", file);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "simulation.csv", err));
+    SF_CSV_PRINT_LINE(&csv, "test,strain,cube_kPa,point_kPa");
     for (int k = 0; k < r->test_count && simulate(r, job, folder, k, &cube, err) == SF_OK; k++) {
         const sf_table_test *test = &r->test[k];
         for (int i = 0; i < cube.count; i++)
-            fprintf(file, "%d,%.9g,%.9g,%.9g\n", k + 1, cube.strain[i], 1e-3 * cube.cube[i],
-                    1e-3 * cube.point[i]);
+            SF_CSV_LINE(&csv, k + 1, cube.strain[i], 1e-3 * cube.cube[i], 1e-3 * cube.point[i]);
         fprintf(
             job->log,
             "simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g %% "
@@ -377,7 +374,7 @@ static sf_status write_simulation(const sf_compression_job *job, const sf_stagin
         fflush(job->log);
     }
     r->simulated = true;
-    sf_staging_close(file, "simulation.csv", err);
+    sf_csv_close(&csv, err);
     return err->status;
 }
 

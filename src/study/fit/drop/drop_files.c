@@ -123,13 +123,13 @@ static sf_status list_strain_bins(const sf_drop_fit *fit, strain_bin bin[SF_FIT_
 }
 
 static sf_status write_curve(const strain_bin *bin, const sf_staging *output, sf_error *err) {
-    FILE *f = sf_staging_open(output, "fit-curve.csv", err);
-    SF_TRY(err->status);
-    fputs("strain,stress_kPa,low95_kPa,high95_kPa,information\n", f);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "fit-curve.csv", err));
+    SF_CSV_PRINT_LINE(&csv, "strain,stress_kPa,low95_kPa,high95_kPa,information");
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
-        fprintf(f, "%.3f,%.6g,%.6g,%.6g,%.6g\n", bin[b].strain, bin[b].stress, bin[b].low, bin[b].high,
-                bin[b].information);
-    return sf_staging_close(f, "fit-curve.csv", err);
+        SF_CSV_PRINT_LINE(&csv, "%.3f,%.6g,%.6g,%.6g,%.6g", bin[b].strain, bin[b].stress, bin[b].low,
+                          bin[b].high, bin[b].information);
+    return sf_csv_close(&csv, err);
 }
 
 static sf_status write_drops(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {

@@ -364,31 +364,21 @@ static bool is_unknown(const sf_drop_average *a, int parameter) {
     return false;
 }
 
-static void put_csv_heading(FILE *f, const sf_drop_average *a) {
-    fprintf(f, "draw,model,tau,kappa");
+static void put_csv_heading(sf_csv *csv, const sf_drop_average *a) {
+    sf_csv_print(csv, "draw,model,tau,kappa");
     for (int p = 0; p < SF_PARAMETER_COUNT; p++) {
         const sf_parameter_info *about = sf_parameter_get((sf_foam_parameter)p);
         if (is_unknown(a, p))
-            fprintf(f, *about->unit ? ",%s (%s)" : ",%s", about->name, about->unit);
+            sf_csv_print(csv, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
     }
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
         const char *name = sf_drop_kind_get(kind)->error_key;
-        fprintf(f, ",%s_error,%s_error_sd", name, name);
+        sf_csv_print(csv, "%s_error,%s_error_sd", name, name);
     }
-    fputc('\n', f);
+    sf_csv_end(csv);
 }
 
-static void put_csv_parameters(FILE *f, const sf_drop_average *a, const sf_fit_input *in, const double *u) {
-    for (int p = 0; p < SF_PARAMETER_COUNT; p++) {
-        int at = find_unknown(in, p);
-        if (at >= 0)
-            fprintf(f, ",%.9g", exp(u[at]) / sf_parameter_get((sf_foam_parameter)p)->per_unit);
-        else if (is_unknown(a, p))
-            fputc(',', f);
-    }
-}
-
-static sf_status put_csv_draw(FILE *f, const sf_drop_average *a, int k, const sf_posterior_draw *draw,
+static sf_status put_csv_draw(sf_csv *csv, const sf_drop_average *a, int k, const sf_posterior_draw *draw,
                               sf_error *err) {
     const sf_drop_inference *in = a->model[draw->model];
     const double *u = &in->chains.sample[draw->state * in->parameters];
@@ -396,23 +386,29 @@ static sf_status put_csv_draw(FILE *f, const sf_drop_average *a, int k, const sf
     sf_response_error error;
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
     SF_TRY(sf_drop_average_discrepancy(a, k, draw, delta, &error, err));
-    fprintf(f, "%d,\"%s\",%.9g,%.9g", k + 1, label_of(a, draw->model), size.tau, size.kappa);
-    put_csv_parameters(f, a, in->fit->input, u);
+    sf_csv_print(csv, "%d", k + 1);
+    sf_csv_quoted(csv, label_of(a, draw->model));
+    SF_CSV_NUMBERS(csv, size.tau, size.kappa);
+    for (int p = 0; p < SF_PARAMETER_COUNT; p++) {
+        int at = find_unknown(in->fit->input, p);
+        if (is_unknown(a, p))
+            SF_CSV_NUMBERS(csv, at < 0 ? NAN : exp(u[at]) / sf_parameter_get((sf_foam_parameter)p)->per_unit);
+    }
     for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
-        fprintf(f, ",%.9g,%.9g", error.shared[kind], error.own_sd[kind]);
-    fputc('\n', f);
+        SF_CSV_NUMBERS(csv, error.shared[kind], error.own_sd[kind]);
+    sf_csv_end(csv);
     return SF_OK;
 }
 
 sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, sf_error *err) {
     sf_posterior_draw draw[SF_POSTERIOR_DRAWS];
-    FILE *f = sf_staging_open(output, "posterior.csv", err);
-    SF_TRY(err->status);
-    put_csv_heading(f, a);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "posterior.csv", err));
+    put_csv_heading(&csv, a);
     sf_drop_average_draw(a, draw);
     for (int k = 0; k < SF_POSTERIOR_DRAWS && err->status == SF_OK; k++)
-        put_csv_draw(f, a, k, &draw[k], err);
-    sf_staging_close(f, "posterior.csv", err);
+        put_csv_draw(&csv, a, k, &draw[k], err);
+    sf_csv_close(&csv, err);
     return err->status;
 }
 
