@@ -106,8 +106,8 @@ static int compare_faces(const void *a, const void *b) {
     return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
 }
 
-static face make_face(const sf_mesh *mesh, int64_t cell, const sf_cell_topology *shape, int f) {
-    face out = {{-1, -1, -1, -1}, {-1, -1, -1, -1}, shape->face_size[f]};
+static face make_face(const sf_mesh *mesh, int64_t cell, const sf_cell_shape *shape, int f) {
+    face out = {{-1, -1, -1, -1}, {-1, -1, -1, -1}, sf_cell_face_size(shape, f)};
     for (int a = 0; a < out.size; a++) {
         out.node[a] = mesh->cell_node[mesh->cell_ptr[cell] + shape->face[f][a]];
         int i = a;
@@ -124,7 +124,7 @@ static face *boundary_faces(const sf_mesh *mesh, size_t *count) {
     assert_non_null(all);
     size_t n = 0;
     for (int64_t k = 0; k < mesh->cell_count; k++) {
-        const sf_cell_topology *shape = sf_cell_topology_of(mesh->cell_type[k]);
+        const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[k]);
         for (int f = 0; f < shape->faces; f++)
             all[n++] = make_face(mesh, k, shape, f);
     }

@@ -1,38 +1,55 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/cells.h"
 
-#include "base/sets.h"
+#include <stdlib.h>
 
 #include "model/model.h"
 
 /* clang-format off */
-static const struct {
-    int vertices, tetrahedra, faces, tetrahedron[6][4], face[6][4];
-} shapes[] = {
-    [SF_CELL_TETRAHEDRON] = {4, 1, 4, {{0, 1, 2, 3}},
-        {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}}},
-    [SF_CELL_PYRAMID] = {5, 2, 5, {{0, 1, 2, 4}, {0, 2, 3, 4}},
-        {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}}},
-    [SF_CELL_PRISM] = {6, 3, 5, {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 4, 3, 5}},
-        {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}},
-    [SF_CELL_HEXAHEDRON] = {8, 6, 6,
+static const sf_cell_shape shapes[] = {
+    [SF_CELL_TETRAHEDRON] = {
+        "tetrahedron", 4, 6, 4, 1, 1,
+        {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
+        {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}},
+        {{1, 0}, {2, 0}, {3, 0}, {3, 1}, {1, 2}, {2, 3}},
+        {{0, 1, 2, 3}},
+        {{0, 1, 2, 3}}, {1, 0, 2, 3}},
+    [SF_CELL_PYRAMID] = {
+        "pyramid", 5, 8, 5, 2, 4,
+        {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}},
+        {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}},
+        {{1, 0}, {2, 0}, {3, 0}, {4, 0}, {4, 1}, {1, 2}, {2, 3}, {3, 4}},
+        {{0, 1, 2, 4}, {0, 2, 3, 4}},
+        {{0, 1, 3, 4}, {1, 2, 0, 4}, {2, 3, 1, 4}, {3, 0, 2, 4}}, {0, 3, 2, 1, 4}},
+    [SF_CELL_PRISM] = {
+        "prism", 6, 9, 5, 3, 6,
+        {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
+        {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}},
+        {{2, 0}, {3, 0}, {4, 0}, {1, 2}, {1, 3}, {1, 4}, {4, 2}, {2, 3}, {3, 4}},
+        {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 4, 3, 5}},
+        {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}}, {3, 4, 5, 0, 1, 2}},
+    [SF_CELL_HEXAHEDRON] = {
+        "hexahedron", 8, 12, 6, 6, 8,
+        {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}},
+        {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
+        {{2, 0}, {3, 0}, {4, 0}, {5, 0}, {1, 2}, {1, 3}, {1, 4}, {1, 5}, {5, 2}, {2, 3}, {3, 4}, {4, 5}},
         {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}},
-        {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}},
+        {{0, 1, 3, 4}, {1, 2, 0, 5}, {2, 3, 1, 6}, {3, 0, 2, 7},
+         {4, 7, 5, 0}, {5, 4, 6, 1}, {6, 5, 7, 2}, {7, 6, 4, 3}}, {4, 5, 6, 7, 0, 1, 2, 3}},
 };
 /* clang-format on */
 
-int sf_cell_vertices(int type) {
-    return type >= SF_CELL_TETRAHEDRON && type <= SF_CELL_HEXAHEDRON ? shapes[type].vertices : 0;
+const sf_cell_shape *sf_cell_shape_of(int type) {
+    return type >= SF_CELL_TETRAHEDRON && type <= SF_CELL_HEXAHEDRON ? &shapes[type] : NULL;
 }
 
-int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]) {
-    *tetrahedra = shapes[type].tetrahedron;
-    return shapes[type].tetrahedra;
-}
-
-int sf_cell_faces(int type, const int (**faces)[4]) {
-    *faces = shapes[type].face;
-    return shapes[type].faces;
+void sf_face_sort(int32_t node[4]) {
+    for (int i = 1; i < 4; i++)
+        for (int j = i; j > 0 && node[j] < node[j - 1]; j--) {
+            int32_t swap = node[j];
+            node[j] = node[j - 1];
+            node[j - 1] = swap;
+        }
 }
 
 /* ---- the skin ---- */
@@ -51,16 +68,15 @@ static int by_nodes(const void *a, const void *b) {
 static int64_t list_faces(const sf_cells *c, face *out) {
     int64_t count = 0;
     for (int64_t k = 0; k < c->cell_count; k++) {
-        const int(*faces)[4];
-        int n = sf_cell_faces(c->type[k], &faces);
-        for (int f = 0; f < n && out; f++) {
+        const sf_cell_shape *shape = &shapes[c->type[k]];
+        for (int f = 0; f < shape->faces && out; f++) {
             face *to = &out[count + f];
             for (int v = 0; v < 4; v++)
-                to->node[v] = faces[f][v] < 0 ? -1 : c->node[c->ptr[k] + faces[f][v]];
+                to->node[v] = shape->face[f][v] < 0 ? -1 : c->node[c->ptr[k] + shape->face[f][v]];
             memcpy(to->sorted, to->node, sizeof to->sorted);
-            qsort(to->sorted, 4, sizeof *to->sorted, sf_by_number);
+            sf_face_sort(to->sorted);
         }
-        count += n;
+        count += shape->faces;
     }
     return count;
 }

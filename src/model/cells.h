@@ -1,18 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cells of the background mesh, as tetrahedra and by their faces; positions in a cell's vertex list. */
+/* The shapes of the cells of the background mesh, as places in a cell's vertex list, and the skin of a mesh.
+ */
 #pragma once
 #include "base/error.h"
 #include <stdint.h>
 
-/* Vertices of a cell of this type; 0: there is no such type. */
-int sf_cell_vertices(int type);
+/* A shape of linear cells, in VTK vertex order. Corners are (corner, three neighbours) whose edges form a
+ * right-handed triad in a good cell. The apex of a pyramid has four edges and is left out: its base corners
+ * see the same volume. */
+typedef struct sf_cell_shape {
+    const char *name;
+    int vertices, edges, faces, tetrahedra, corners;
+    int edge[12][2];
+    int face[6][4];        /* counter-clockwise seen from outside, -1 in the fourth place of a triangle */
+    int edge_face[12][2];  /* the face that runs along edge (a, b) from a to b, and the one from b to a */
+    int tetrahedron[6][4]; /* they fill the cell */
+    int corner[8][4];
+    int mirror[8]; /* the order of the vertices of its mirror image */
+} sf_cell_shape;
 
-/* Tetrahedra that fill a cell of this type (SF_CELL_*), static storage; returns how many. */
-int sf_cell_tetrahedra(int type, const int (**tetrahedra)[4]);
+/* The shape of a cell type (SF_CELL_*); NULL for any other code. Static storage. */
+const sf_cell_shape *sf_cell_shape_of(int type);
 
-/* Faces in order around them, counter-clockwise seen from outside, -1 in the fourth place of a triangle;
- * returns how many. */
-int sf_cell_faces(int type, const int (**faces)[4]);
+/* Vertices of a face: 3 or 4. */
+static inline int sf_cell_face_size(const sf_cell_shape *shape, int face) {
+    return shape->face[face][3] < 0 ? 3 : 4;
+}
+
+/* Sorts the nodes of a face (-1: the fourth of a triangle). */
+void sf_face_sort(int32_t node[4]);
 
 /* A mesh, borrowed. */
 typedef struct sf_cells {

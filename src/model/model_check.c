@@ -224,10 +224,10 @@ static sf_status check_mesh(const sf_model *m, sf_error *err) {
     SF_TRY(check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count,
                      false, err));
     for (int64_t c = 0; c < m->cell_count; c++) {
-        uint8_t type = m->cell_type[c];
-        if (sf_cell_vertices(type) == 0 || m->cell_ptr[c + 1] - m->cell_ptr[c] != sf_cell_vertices(type))
+        const sf_cell_shape *shape = sf_cell_shape_of(m->cell_type[c]);
+        if (!shape || m->cell_ptr[c + 1] - m->cell_ptr[c] != shape->vertices)
             return SF_FAIL(err, SF_ERR_MODEL, "background cell %lld has type %d and %lld vertices",
-                           (long long)c, type, (long long)(m->cell_ptr[c + 1] - m->cell_ptr[c]));
+                           (long long)c, m->cell_type[c], (long long)(m->cell_ptr[c + 1] - m->cell_ptr[c]));
     }
     return check_surface("missile", m->surface_triangle_count, m->surface_triangle, m->surface_node_count,
                          err);

@@ -59,14 +59,15 @@ static sf_status check_cells(const sf_results *r, sf_error *err) {
             err, SF_ERR_IO, "/model/cell_ptr runs from %lld to %lld, /model/cell_node has %lld entries",
             (long long)r->cell_ptr[0], (long long)r->cell_ptr[r->cell_count], (long long)r->cell_nnz);
     for (int64_t c = 0; c < r->cell_count; c++) {
-        int vertices = sf_cell_vertices(r->cell_type[c]);
-        if (vertices == 0)
+        const sf_cell_shape *shape = sf_cell_shape_of(r->cell_type[c]);
+        if (!shape)
             return SF_FAIL(err, SF_ERR_IO, "/model/cell_type: cell %lld has type %d, known are 6, 7, 8 and 9",
                            (long long)c, r->cell_type[c]);
-        if (r->cell_ptr[c + 1] - r->cell_ptr[c] != vertices)
-            return SF_FAIL(
-                err, SF_ERR_IO, "/model/cell_ptr: cell %lld of type %d has %lld vertices, expected %d",
-                (long long)c, r->cell_type[c], (long long)(r->cell_ptr[c + 1] - r->cell_ptr[c]), vertices);
+        if (r->cell_ptr[c + 1] - r->cell_ptr[c] != shape->vertices)
+            return SF_FAIL(err, SF_ERR_IO,
+                           "/model/cell_ptr: cell %lld of type %d has %lld vertices, expected %d",
+                           (long long)c, r->cell_type[c], (long long)(r->cell_ptr[c + 1] - r->cell_ptr[c]),
+                           shape->vertices);
     }
     return check_indices(r->cell_node, r->cell_nnz, r->node_count, "/model/cell_node", err);
 }

@@ -225,12 +225,11 @@ static void put_cells(page *p) {
     SF_JSON_OBJECT(&p->json, "tetrahedra");
     for (int type = SF_CELL_TETRAHEDRON; type <= SF_CELL_HEXAHEDRON; type++) {
         char key[8];
-        const int(*part)[4];
+        const sf_cell_shape *shape = sf_cell_shape_of(type);
         snprintf(key, sizeof key, "%d", type);
         SF_JSON_ARRAY(&p->json, key);
-        int count = sf_cell_tetrahedra(type, &part);
-        for (int k = 0; k < 4 * count; k++)
-            sf_json_integer(&p->json, NULL, part[k / 4][k % 4]);
+        for (int k = 0; k < 4 * shape->tetrahedra; k++)
+            sf_json_integer(&p->json, NULL, shape->tetrahedron[k / 4][k % 4]);
     }
 }
 

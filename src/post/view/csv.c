@@ -128,13 +128,12 @@ static void locate_stations(const sf_results *r, const double axis[2], double bo
         if (axis[0] < low[0] - slack || axis[0] > high[0] + slack || axis[1] < low[1] - slack ||
             axis[1] > high[1] + slack)
             continue;
-        const int(*tetrahedra)[4];
-        int count = sf_cell_tetrahedra(r->cell_type[c], &tetrahedra);
+        const sf_cell_shape *shape = sf_cell_shape_of(r->cell_type[c]);
         for (int s = 0; s < SF_SECTION_STATIONS; s++) {
             double z = top + (bottom - top) * s / (SF_SECTION_STATIONS - 1);
             const double x[3] = {axis[0], axis[1], z};
-            for (int t = 0; t < count && z >= low[2] - slack && z <= high[2] + slack; t++)
-                offer_tetrahedron(r, cell, tetrahedra[t], x, &station[s]);
+            for (int t = 0; t < shape->tetrahedra && z >= low[2] - slack && z <= high[2] + slack; t++)
+                offer_tetrahedron(r, cell, shape->tetrahedron[t], x, &station[s]);
         }
     }
 }

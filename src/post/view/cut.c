@@ -126,18 +126,16 @@ static sf_status cut_cells(sf_cut *cut, sf_error *err) {
     const sf_results *r = cut->results;
     for (int64_t c = 0; c < r->cell_count && err->status == SF_OK; c++) {
         const int32_t *cell = &r->cell_node[r->cell_ptr[c]];
-        const int(*part)[4];
+        const sf_cell_shape *shape = sf_cell_shape_of(r->cell_type[c]);
         int64_t vertices = r->cell_ptr[c + 1] - r->cell_ptr[c], below = 0;
         for (int64_t v = 0; v < vertices; v++)
             below += height_over(cut, &r->position[3 * (int64_t)cell[v]]) < 0;
         if (below == 0 || below == vertices)
             continue;
-        int count = sf_cell_tetrahedra(r->cell_type[c], &part);
-        for (int k = 0; k < count && err->status == SF_OK; k++)
-            cut_tetrahedron(cut, cell, part[k], err);
-        count = sf_cell_faces(r->cell_type[c], &part);
-        for (int k = 0; k < count && err->status == SF_OK; k++)
-            cut_face(cut, cell, part[k], err);
+        for (int k = 0; k < shape->tetrahedra && err->status == SF_OK; k++)
+            cut_tetrahedron(cut, cell, shape->tetrahedron[k], err);
+        for (int k = 0; k < shape->faces && err->status == SF_OK; k++)
+            cut_face(cut, cell, shape->face[k], err);
     }
     return err->status;
 }

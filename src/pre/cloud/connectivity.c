@@ -66,7 +66,7 @@ static bool is_within(const double r[3], const double a[3], const double b[3], c
 
 /* The cell as tetrahedra from its centre to its faces; quadrangles are split at their middles. */
 static bool holds_point(const sf_mesh *mesh, int64_t cell, const double centre[3], const double x[3]) {
-    const sf_cell_topology *shape = sf_cell_topology_of(mesh->cell_type[cell]);
+    const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[cell]);
     const int32_t *node = &mesh->cell_node[mesh->cell_ptr[cell]];
     double r[3], v[8][3], middle[3];
     for (int c = 0; c < 3; c++) {
@@ -76,9 +76,9 @@ static bool holds_point(const sf_mesh *mesh, int64_t cell, const double centre[3
     }
     for (int f = 0; f < shape->faces; f++) {
         const int *p = shape->face[f];
-        if (shape->face_size[f] == 3 && is_within(r, v[p[0]], v[p[1]], v[p[2]]))
+        if (sf_cell_face_size(shape, f) == 3 && is_within(r, v[p[0]], v[p[1]], v[p[2]]))
             return true;
-        if (shape->face_size[f] == 3)
+        if (sf_cell_face_size(shape, f) == 3)
             continue;
         for (int c = 0; c < 3; c++)
             middle[c] = 0.25 * (v[p[0]][c] + v[p[1]][c] + v[p[2]][c] + v[p[3]][c]);

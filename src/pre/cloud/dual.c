@@ -23,14 +23,14 @@ static int by_edge(const void *a, const void *b) {
 static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t count = 0, k = 0;
     for (int64_t c = 0; c < mesh->cell_count; c++)
-        count += sf_cell_topology_of(mesh->cell_type[c])->edges;
+        count += sf_cell_shape_of(mesh->cell_type[c])->edges;
     SF_OWNED raw_edge *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell edges");
     SF_TRY(err->status);
     for (int64_t c = 0; c < mesh->cell_count; c++) {
-        const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
+        const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[c]);
         const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
-        for (int e = 0; e < topology->edges; e++) {
-            int32_t a = v[topology->edge[e][0]], b = v[topology->edge[e][1]];
+        for (int e = 0; e < shape->edges; e++) {
+            int32_t a = v[shape->edge[e][0]], b = v[shape->edge[e][1]];
             raw[k++] = (raw_edge){a < b ? a : b, a < b ? b : a, {(int32_t)c, (int8_t)e, a > b}};
         }
     }
@@ -58,12 +58,12 @@ static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
 /* True if both cells see the face with its vertices in the same sense: they then lie on the same side of
  * it. */
 static bool is_same_side(const sf_mesh *mesh, const sf_cell_face *a, const sf_cell_face *b) {
-    const sf_cell_topology *first = sf_cell_topology_of(mesh->cell_type[a->cell]),
-                           *second = sf_cell_topology_of(mesh->cell_type[b->cell]);
+    const sf_cell_shape *first = sf_cell_shape_of(mesh->cell_type[a->cell]),
+                        *second = sf_cell_shape_of(mesh->cell_type[b->cell]);
     const int32_t *v = &mesh->cell_node[mesh->cell_ptr[a->cell]],
                   *w = &mesh->cell_node[mesh->cell_ptr[b->cell]];
     const int *p = first->face[a->local], *q = second->face[b->local];
-    int size = first->face_size[a->local], k = 0;
+    int size = sf_cell_face_size(first, a->local), k = 0;
     while (k < size - 1 && w[q[k]] != v[p[0]])
         k++;
     return w[q[(k + 1) % size]] == v[p[1]];
@@ -71,11 +71,11 @@ static bool is_same_side(const sf_mesh *mesh, const sf_cell_face *a, const sf_ce
 
 static void add_boundary(const sf_mesh *mesh, const sf_cell_face *raw, sf_dual *dual) {
     sf_boundary_face *face = &dual->face[dual->face_count++];
-    const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[raw->cell]);
-    *face =
-        (sf_boundary_face){raw->cell, raw->local, (int8_t)topology->face_size[raw->local], {-1, -1, -1, -1}};
+    const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[raw->cell]);
+    *face = (sf_boundary_face){
+        raw->cell, raw->local, (int8_t)sf_cell_face_size(shape, raw->local), {-1, -1, -1, -1}};
     for (int p = 0; p < face->size; p++)
-        face->node[p] = mesh->cell_node[mesh->cell_ptr[face->cell] + topology->face[face->local][p]];
+        face->node[p] = mesh->cell_node[mesh->cell_ptr[face->cell] + shape->face[face->local][p]];
 }
 
 static sf_status add_inner(const sf_mesh *mesh, const sf_cell_face *raw, sf_dual *dual, sf_error *err) {
@@ -174,14 +174,14 @@ static void mean_of(const sf_mesh *mesh, int count, const int32_t *cell_node, co
 }
 
 void sf_dual_facet(const sf_mesh *mesh, const sf_edge_use *use, sf_facet_triangle out[2]) {
-    const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[use->cell]);
+    const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[use->cell]);
     const int32_t *v = &mesh->cell_node[mesh->cell_ptr[use->cell]];
-    int along = topology->edge_face[use->local][0], against = topology->edge_face[use->local][1];
+    int along = shape->edge_face[use->local][0], against = shape->edge_face[use->local][1];
     double middle[3], face_along[3], face_against[3], centre[3];
-    mean_of(mesh, 2, v, topology->edge[use->local], middle);
-    mean_of(mesh, topology->face_size[along], v, topology->face[along], face_along);
-    mean_of(mesh, topology->face_size[against], v, topology->face[against], face_against);
-    mean_of(mesh, topology->vertices, v, NULL, centre);
+    mean_of(mesh, 2, v, shape->edge[use->local], middle);
+    mean_of(mesh, sf_cell_face_size(shape, along), v, shape->face[along], face_along);
+    mean_of(mesh, sf_cell_face_size(shape, against), v, shape->face[against], face_against);
+    mean_of(mesh, shape->vertices, v, NULL, centre);
     triangle(middle, face_against, centre, &out[0]);
     triangle(middle, centre, face_along, &out[1]);
     for (int t = 0; t < 2 && use->reversed; t++)

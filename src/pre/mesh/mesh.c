@@ -7,68 +7,6 @@
 
 enum { MAX_VERTICES = 8 };
 
-/* A cell type. Corners are (corner, three neighbours) whose edges form a right-handed triad in a good cell.
- * The apex of a pyramid has four edges and is left out: its base corners see the same volume. */
-typedef struct cell_shape {
-    const char *name;
-    sf_cell_topology topology;
-    int corner_count, corner[MAX_VERTICES][4];
-    int mirror[MAX_VERTICES]; /* the order of the vertices of its mirror image */
-} cell_shape;
-
-/* clang-format off */
-static const cell_shape shapes[] = {
-    [SF_CELL_TETRAHEDRON] = {
-        "tetrahedron",
-        {4, 6, 4,
-         {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
-         {3, 3, 3, 3},
-         {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}},
-         {{1, 0}, {2, 0}, {3, 0}, {3, 1}, {1, 2}, {2, 3}}},
-        1, {{0, 1, 2, 3}}, {1, 0, 2, 3}},
-    [SF_CELL_PYRAMID] = {
-        "pyramid",
-        {5, 8, 5,
-         {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}},
-         {4, 3, 3, 3, 3},
-         {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}},
-         {{1, 0}, {2, 0}, {3, 0}, {4, 0}, {4, 1}, {1, 2}, {2, 3}, {3, 4}}},
-        4, {{0, 1, 3, 4}, {1, 2, 0, 4}, {2, 3, 1, 4}, {3, 0, 2, 4}}, {0, 3, 2, 1, 4}},
-    [SF_CELL_PRISM] = {
-        "prism",
-        {6, 9, 5,
-         {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
-         {3, 3, 4, 4, 4},
-         {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}},
-         {{2, 0}, {3, 0}, {4, 0}, {1, 2}, {1, 3}, {1, 4}, {4, 2}, {2, 3}, {3, 4}}},
-        6, {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}},
-        {3, 4, 5, 0, 1, 2}},
-    [SF_CELL_HEXAHEDRON] = {
-        "hexahedron",
-        {8, 12, 6,
-         {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}},
-         {4, 4, 4, 4, 4, 4},
-         {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
-         {{2, 0}, {3, 0}, {4, 0}, {5, 0}, {1, 2}, {1, 3}, {1, 4}, {1, 5}, {5, 2}, {2, 3}, {3, 4}, {4, 5}}},
-        8, {{0, 1, 3, 4}, {1, 2, 0, 5}, {2, 3, 1, 6}, {3, 0, 2, 7},
-            {4, 7, 5, 0}, {5, 4, 6, 1}, {6, 5, 7, 2}, {7, 6, 4, 3}},
-        {4, 5, 6, 7, 0, 1, 2, 3}},
-};
-/* clang-format on */
-
-const sf_cell_topology *sf_cell_topology_of(int type) {
-    return type >= SF_CELL_TETRAHEDRON && type <= SF_CELL_HEXAHEDRON ? &shapes[type].topology : NULL;
-}
-
-void sf_face_sort(int32_t node[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && node[j] < node[j - 1]; j--) {
-            int32_t swap = node[j];
-            node[j] = node[j - 1];
-            node[j - 1] = swap;
-        }
-}
-
 int sf_face_compare(const int32_t a[4], const int32_t b[4]) {
     for (int k = 0; k < 4; k++)
         if (a[k] != b[k])
@@ -85,15 +23,15 @@ static int compare_faces(const void *a, const void *b) {
 sf_cell_face *sf_mesh_faces(const sf_mesh *mesh, int64_t *place, int64_t *count, sf_error *err) {
     *count = 0;
     for (int64_t c = 0; c < mesh->cell_count; c++)
-        *count += sf_cell_topology_of(mesh->cell_type[c])->faces;
+        *count += sf_cell_shape_of(mesh->cell_type[c])->faces;
     sf_cell_face *list = sf_alloc(err, (unsigned long)*count, sizeof *list, "cell faces"), *face = list;
     for (int64_t c = 0; list && c < mesh->cell_count; c++) {
-        const sf_cell_topology *topology = sf_cell_topology_of(mesh->cell_type[c]);
+        const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[c]);
         const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
-        for (int f = 0; f < topology->faces; f++, face++) {
+        for (int f = 0; f < shape->faces; f++, face++) {
             *face = (sf_cell_face){{-1, -1, -1, -1}, (int32_t)c, (int8_t)f};
-            for (int p = 0; p < topology->face_size[f]; p++) {
-                int32_t node = v[topology->face[f][p]];
+            for (int p = 0; p < sf_cell_face_size(shape, f); p++) {
+                int32_t node = v[shape->face[f][p]];
                 face->key[p] = place ? (int32_t)sf_sets_find(place, node) : node;
             }
             sf_face_sort(face->key);
@@ -146,11 +84,11 @@ static int local_vertices(const sf_mesh *mesh, int64_t cell, double x[MAX_VERTIC
 double sf_mesh_cell_volume(const sf_mesh *mesh, int64_t cell) {
     double x[MAX_VERTICES][3];
     local_vertices(mesh, cell, x);
-    const sf_cell_topology *shape = sf_cell_topology_of(mesh->cell_type[cell]);
+    const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[cell]);
     double six = 0.0;
     for (int f = 0; f < shape->faces; f++) {
         const int *v = shape->face[f];
-        if (shape->face_size[f] == 3) {
+        if (sf_cell_face_size(shape, f) == 3) {
             six += sf_triple3(x[v[0]], x[v[1]], x[v[2]]);
             continue;
         }
@@ -167,10 +105,10 @@ double sf_mesh_cell_volume(const sf_mesh *mesh, int64_t cell) {
 static void corner_range(const sf_mesh *mesh, int64_t cell, double *low, double *high) {
     double x[MAX_VERTICES][3];
     local_vertices(mesh, cell, x);
-    const cell_shape *shape = &shapes[mesh->cell_type[cell]];
+    const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[cell]);
     *low = INFINITY;
     *high = -INFINITY;
-    for (int k = 0; k < shape->corner_count; k++) {
+    for (int k = 0; k < shape->corners; k++) {
         const int *v = shape->corner[k];
         double e[3][3];
         for (int a = 0; a < 3; a++)
@@ -202,7 +140,7 @@ int64_t sf_mesh_orient(sf_mesh *mesh) {
         size_t count = (size_t)(mesh->cell_ptr[k + 1] - mesh->cell_ptr[k]);
         memcpy(old, node, count * sizeof *node);
         for (size_t a = 0; a < count; a++)
-            node[a] = old[shapes[mesh->cell_type[k]].mirror[a]];
+            node[a] = old[sf_cell_shape_of(mesh->cell_type[k])->mirror[a]];
         flipped++;
     }
     return flipped;
@@ -276,7 +214,8 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
             return SF_FAIL(err, SF_ERR_MODEL,
                            "cell %lld (%s) at (%g, %g, %g) m is inverted or flat: its volume is %g m3 and "
                            "its smallest corner Jacobian %g m3; both must be positive",
-                           (long long)k, shapes[mesh->cell_type[k]].name, c[0], c[1], c[2], v, low);
+                           (long long)k, sf_cell_shape_of(mesh->cell_type[k])->name, c[0], c[1], c[2], v,
+                           low);
         }
         if (v < smallest) {
             smallest = v;
@@ -293,8 +232,8 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
         return SF_FAIL(
             err, SF_ERR_MODEL,
             "cell %lld (%s) at (%g, %g, %g) m is tiny: its volume %g m3 is below %g of the mean %g m3",
-            (long long)smallest_cell, shapes[mesh->cell_type[smallest_cell]].name, c[0], c[1], c[2], smallest,
-            TINY_CELL, mean);
+            (long long)smallest_cell, sf_cell_shape_of(mesh->cell_type[smallest_cell])->name, c[0], c[1],
+            c[2], smallest, TINY_CELL, mean);
     }
     *volume = sum;
     return SF_OK;

@@ -1,26 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <stdint.h>
+#include "model/cells.h"
 
-#include "base/error.h"
-
-/* Vertices, edges and outward faces of the linear cells, in VTK vertex order. */
-
-typedef struct sf_cell_topology {
-    int vertices;
-    int edges;
-    int faces;
-    int edge[12][2];
-    int face_size[6];
-    int face[6][4];       /* vertices, counter-clockwise seen from outside */
-    int edge_face[12][2]; /* the face that runs along edge (a, b) from a to b, and the one from b to a */
-} sf_cell_topology;
-
-/* Table of a cell type (SF_CELL_*); NULL for any other code. Static storage. */
-const sf_cell_topology *sf_cell_topology_of(int type);
-
-/* Sorts the nodes of a face (-1: the fourth of a triangle), and compares sorted ones. */
-void sf_face_sort(int32_t node[4]);
+/* Compares sorted faces (sf_face_sort). */
 int sf_face_compare(const int32_t a[4], const int32_t b[4]);
 
 /* The background mesh of the pad and the missile's surface, as read from a geometry: metres, nodes renumbered

@@ -65,7 +65,7 @@ size_t sf_raw_mesh_find(const sf_raw_mesh *raw, const sf_tag_index *index, size_
 }
 
 static int cell_vertices(const sf_raw_mesh *raw, size_t cell) {
-    return sf_cell_topology_of(raw->cell_type[cell])->vertices;
+    return sf_cell_shape_of(raw->cell_type[cell])->vertices;
 }
 
 void sf_raw_face_sort(size_t tag[SF_RAW_FACE]) {
@@ -82,6 +82,13 @@ int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]
         if (a[i] != b[i])
             return a[i] < b[i] ? -1 : 1;
     return 0;
+}
+
+void sf_raw_cell_face(const sf_raw_mesh *raw, size_t cell, int face, size_t tag[SF_RAW_FACE]) {
+    const int *vertex = sf_cell_shape_of(raw->cell_type[cell])->face[face];
+    for (int a = 0; a < SF_RAW_FACE; a++)
+        tag[a] = vertex[a] < 0 ? 0 : raw->cell_node[SF_RAW_CELL * cell + (size_t)vertex[a]];
+    sf_raw_face_sort(tag);
 }
 
 /* 3 or 4. */
@@ -291,13 +298,11 @@ static void average(const surface_builder *b, const size_t *tag, int count, doub
 static sf_status match_cells(surface_builder *b, sf_error *err) {
     const sf_raw_mesh *raw = b->raw;
     for (size_t k = 0; k < raw->cell_count; k++) {
-        const sf_cell_topology *shape = sf_cell_topology_of(raw->cell_type[k]);
+        const sf_cell_shape *shape = sf_cell_shape_of(raw->cell_type[k]);
         const size_t *node = raw->cell_node + SF_RAW_CELL * k;
         for (int f = 0; f < shape->faces; f++) {
             face_key wanted = {0};
-            for (int a = 0; a < shape->face_size[f]; a++)
-                wanted.tag[a] = node[shape->face[f][a]];
-            sf_raw_face_sort(wanted.tag);
+            sf_raw_cell_face(raw, k, f, wanted.tag);
             face_key *found = bsearch(&wanted, b->keys, raw->face_count, sizeof *b->keys, compare_key);
             if (!found)
                 continue;

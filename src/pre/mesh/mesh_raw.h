@@ -40,6 +40,8 @@ typedef struct sf_tag_index {
 sf_tag_index *sf_raw_mesh_index(const sf_raw_mesh *raw, sf_error *err);
 /* Place of a tag in `raw->tag`; SIZE_MAX if there is no such node. */
 size_t sf_raw_mesh_find(const sf_raw_mesh *raw, const sf_tag_index *index, size_t tag);
+/* The ascending tags of a face of a cell, 0 in front of those of a triangle. */
+void sf_raw_cell_face(const sf_raw_mesh *raw, size_t cell, int face, size_t tag[SF_RAW_FACE]);
 /* The tags of a face in ascending order, and the order of two such faces: below, equal to or above 0. */
 void sf_raw_face_sort(size_t tag[SF_RAW_FACE]);
 int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]);

@@ -179,13 +179,11 @@ static sf_status list_faces(hull_builder *b, sf_error *err) {
     b->ours = sf_alloc(err, raw->cell_count, 1, "cells of the missile");
     SF_TRY(err->status);
     for (size_t k = 0; k < raw->cell_count; k++) {
-        const sf_cell_topology *shape = sf_cell_topology_of(raw->cell_type[k]);
+        const sf_cell_shape *shape = sf_cell_shape_of(raw->cell_type[k]);
         for (int f = 0; f < shape->faces; f++) {
             cell_face *face = &b->list[b->count++];
             *face = (cell_face){.cell = k, .face = f};
-            for (int a = 0; a < shape->face_size[f]; a++)
-                face->tag[a] = raw->cell_node[SF_RAW_CELL * k + (size_t)shape->face[f][a]];
-            sf_raw_face_sort(face->tag);
+            sf_raw_cell_face(raw, k, f, face->tag);
         }
     }
     qsort(b->list, b->count, sizeof *b->list, compare_face);
@@ -231,7 +229,7 @@ static const double *place_of(const hull_builder *b, size_t tag) {
 
 /* True if the face, in the order of its topology, faces away from its cell. */
 static bool faces_outwards(const hull_builder *b, const cell_face *f, const size_t *node, int size) {
-    const sf_cell_topology *shape = sf_cell_topology_of(b->raw->cell_type[f->cell]);
+    const sf_cell_shape *shape = sf_cell_shape_of(b->raw->cell_type[f->cell]);
     double out[3] = {0}, u[3], v[3];
     for (int c = 0; c < 3; c++) {
         for (int a = 0; a < size; a++)
@@ -245,8 +243,8 @@ static bool faces_outwards(const hull_builder *b, const cell_face *f, const size
 }
 
 static void add_face(const hull_builder *b, const cell_face *f, int32_t *number, sf_surface *s) {
-    const sf_cell_topology *shape = sf_cell_topology_of(b->raw->cell_type[f->cell]);
-    int size = shape->face_size[f->face];
+    const sf_cell_shape *shape = sf_cell_shape_of(b->raw->cell_type[f->cell]);
+    int size = sf_cell_face_size(shape, f->face);
     size_t node[SF_RAW_FACE] = {0};
     for (int a = 0; a < size; a++)
         node[a] = b->raw->cell_node[SF_RAW_CELL * f->cell + (size_t)shape->face[f->face][a]];
@@ -263,7 +261,7 @@ static void add_face(const hull_builder *b, const cell_face *f, int32_t *number,
 /* All cells of the missile have nodes that exist. */
 static bool has_nodes(const hull_builder *b) {
     for (size_t k = 0; k < b->raw->cell_count; k++)
-        for (int a = 0; a < sf_cell_topology_of(b->raw->cell_type[k])->vertices; a++)
+        for (int a = 0; a < sf_cell_shape_of(b->raw->cell_type[k])->vertices; a++)
             if (!place_of(b, b->raw->cell_node[SF_RAW_CELL * k + (size_t)a]))
                 return false;
     return true;
