@@ -4,10 +4,11 @@
 #include <string.h>
 
 /* The vector wrapper of the kernels: points in batches of SF_LANES, arrays [component][lane], loops over
- * lanes under `#pragma omp simd`. Such a loop may not branch: a choice is a conditional expression whose
- * values are all computed. Sums over the neighbours of a node run over sf_vec instead. */
+ * lanes under `#pragma omp simd` (SF_EACH_LANE). Such a loop may not branch: a choice is a conditional
+ * expression whose values are all computed. Sums over the neighbours of a node run over sf_vec instead. */
 
 enum { SF_LANES = 16 };
+#define SF_EACH_LANE(l) _Pragma("omp simd") for (int l = 0; l < SF_LANES; l++)
 
 /* Below these sizes a loop runs on one thread: waking a thread takes about 50 us on a virtual machine. They
  * apply to loops with little work per node, and to loops over rows or contact points. A build with

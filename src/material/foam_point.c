@@ -27,8 +27,7 @@ static void right_cauchy_green(double f[9][SF_LANES], double c[6][SF_LANES]) {
     static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
     for (int k = 0; k < 6; k++) {
         int i = pair[k][0], j = pair[k][1];
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             c[k][l] = f[i][l] * f[j][l] + f[3 + i][l] * f[3 + j][l] + f[6 + i][l] * f[6 + j][l];
     }
 }
@@ -38,13 +37,11 @@ static void cofactor(sf_law_batch *b, double a[9][SF_LANES]) {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-#pragma omp simd
-            for (int l = 0; l < SF_LANES; l++)
+            SF_EACH_LANE (l)
                 a[3 * i + j][l] =
                     b->f[3 * i1 + j1][l] * b->f[3 * i2 + j2][l] - b->f[3 * i1 + j2][l] * b->f[3 * i2 + j1][l];
         }
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++)
+    SF_EACH_LANE (l)
         b->jacobian[l] = b->f[0][l] * a[0][l] + b->f[1][l] * a[1][l] + b->f[2][l] * a[2][l];
 }
 
@@ -53,8 +50,7 @@ static void compose(const double value[3][SF_LANES], double v[9][SF_LANES], doub
     for (int i = 0; i < 3; i++)
         for (int j = i; j < 3; j++) {
             double *restrict sum = out[SYM[i][j]];
-#pragma omp simd
-            for (int l = 0; l < SF_LANES; l++)
+            SF_EACH_LANE (l)
                 sum[l] = value[0][l] * v[3 * i][l] * v[3 * j][l] +
                          value[1][l] * v[3 * i + 1][l] * v[3 * j + 1][l] +
                          value[2][l] * v[3 * i + 2][l] * v[3 * j + 2][l];
@@ -64,8 +60,7 @@ static void compose(const double value[3][SF_LANES], double v[9][SF_LANES], doub
 /* Viscosity of DAMP (theory eq. 21), Pa s. */
 static void damp_viscosity(const sf_foam_options *foam, const sf_law_batch *b, double eta[SF_LANES]) {
     double damp = foam->damp, density = foam->density;
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++)
+    SF_EACH_LANE (l)
         eta[l] = damp * b->length[l] * sqrt(density * b->stiffness[l]);
 }
 
@@ -75,8 +70,7 @@ static void green_rates(double v[9][SF_LANES], double rate_of_e[6][SF_LANES], do
         for (int p = 0; p < 3; p++)
             for (int q = 0; q < 3; q++) {
                 const double *left = v[3 * p + i], *rate = rate_of_e[SYM[p][q]], *right = v[3 * q + i];
-#pragma omp simd
-                for (int l = 0; l < SF_LANES; l++)
+                SF_EACH_LANE (l)
                     out[i][l] += left[l] * rate[l] * right[l];
             }
 }
@@ -84,8 +78,7 @@ static void green_rates(double v[9][SF_LANES], double rate_of_e[6][SF_LANES], do
 SF_KERNEL void sf_foam_point_filter(const sf_foam_options *foam, double dt, sf_law_batch *b,
                                     const sf_foam_rate *rate) {
     double *restrict filtered = b->history[SF_FOAM_RATE], weight = -expm1(-dt / foam->filter_time);
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         double shortest = b->stretch[0][l], green = rate->green[0][l];
         for (int i = 1; i < 3; i++) {
             bool shorter = b->stretch[i][l] < shortest;
@@ -104,18 +97,15 @@ static SF_KERNEL void rate_factor(const sf_foam_options *foam, bool compression,
     double gain[SF_LANES], sum[SF_LANES] = {0};
     sf_foam_point_filter(foam, dt, b, rate);
     const double *restrict now = b->history[SF_FOAM_RATE];
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++)
+    SF_EACH_LANE (l)
         gain[l] = decade * sf_lane_log(sf_larger(now[l] / reference, 1));
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             double t = law->t[i][l], acting = (compression & (t > 0)) ? 0 : t;
             rate->part[i][l] += gain[l] * acting / b->stretch[i][l];
             sum[l] += acting * acting;
         }
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         double rise = decade / (sf_larger(now[l], reference) * time) * sqrt(sum[l]);
         rate->factor[l] += gain[l];
         rate->extra[l] += gain[l] > 0 ? rise : 0;
@@ -132,14 +122,12 @@ static void rate_stress(const sf_foam_options *foam, const sf_foam_kind *kind, d
     else
         rate_factor(foam, kind->compression, dt, b, law, rate);
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             added[i][l] = rate->part[i][l] - added[i][l];
     compose(added, rate->v, tensor);
     for (int k = 0; k < 6; k++) {
         double *restrict held = b->history[SF_FOAM_OVERSTRESS + k], half = (k < 3 ? 0.5 : 1) * dt;
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             b->work[l] += half * (held[l] + tensor[k][l]) * rate_of_e[k][l];
             held[l] = tensor[k][l];
         }
@@ -172,8 +160,7 @@ static void look_ahead(const sf_foam_kind *kind, double dt, const sf_law_batch *
 static void directional(double dt, double v[9][SF_LANES], sf_law_batch *b) {
     double inverse = dt > 0 ? 2 / dt : 0, effective[3][SF_LANES];
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             effective[i][l] = b->direction_tangent[i][l] + inverse * b->direction_viscosity[i][l];
     compose(effective, v, b->directional);
 }
@@ -189,8 +176,7 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
     memcpy(eigen, c, sizeof eigen);
     sf_foam_eigen(eigen, rate.v);
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             b->stretch[i][l] = sqrt(eigen[i][l]);
     kind->loading(kind->numbers, b->stretch, &law);
     if (kind->ahead && dt > 0)
@@ -203,11 +189,9 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
         sf_unloading_lanes(&foam->unloading, b->energy, b->history[SF_FOAM_PEAK], b->factor, softening,
                            b->stored, b->lost);
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             rate.part[i][l] = b->factor[l] * law.t[i][l] / b->stretch[i][l];
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         b->stiffness[l] =
             sf_larger(law.slope[0][l], sf_larger(law.slope[1][l], sf_larger(law.slope[2][l], rest)));
         b->work[l] = rate.extra[l] = 0;
@@ -223,8 +207,7 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
                             foam->maxwell, b->direction_tangent);
     sf_foam_tangent_viscous(b->stretch, foam->kelvin, eta, b->direction_viscosity);
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             b->direction_tangent[i][l] += rate.extra[l];
     if (b->directions)
         directional(dt, rate.v, b);
@@ -242,8 +225,7 @@ static void viscous_stress(const sf_foam_options *foam, double dt, sf_law_batch 
         double *restrict m = b->history[SF_FOAM_MAXWELL + k], *restrict out = s[k],
                          *restrict rate = rate_of_e[k];
         double twice = k < 3 ? 1 : 2;
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             double old = m[l], kelvin = foam->kelvin * rate[l];
             m[l] = decay * old + gain * rate[l];
             out[l] += m[l] + kelvin;
@@ -251,13 +233,11 @@ static void viscous_stress(const sf_foam_options *foam, double dt, sf_law_batch 
             norm[l] += twice * (m[l] + kelvin) * (m[l] + kelvin);
         }
         if (b->directions) { /* dF S: exactly of the directional kind */
-#pragma omp simd
-            for (int l = 0; l < SF_LANES; l++)
+            SF_EACH_LANE (l)
                 b->directional[k][l] += m[l] + foam->kelvin * rate[l];
         }
     }
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         double geometric = sqrt(norm[l]);
         b->work[l] += work[l];
         b->tangent[l] = b->viscosity[l] = 0;
@@ -273,13 +253,11 @@ static void viscous_stress(const sf_foam_options *foam, double dt, sf_law_batch 
 static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF_LANES], sf_law_batch *b) {
     double inverse = 1 / dt, rate[9][SF_LANES], jd[9][SF_LANES];
     for (int k = 0; k < 9; k++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             rate[k][l] = (b->f[k][l] - b->f_old[k][l]) * inverse;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++)
-#pragma omp simd
-            for (int l = 0; l < SF_LANES; l++) {
+            SF_EACH_LANE (l) {
                 double ij = 0, ji = 0;
                 for (int k = 0; k < 3; k++) {
                     ij += rate[3 * i + k][l] * a[3 * j + k][l];
@@ -289,8 +267,7 @@ static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF
             }
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-#pragma omp simd
-            for (int l = 0; l < SF_LANES; l++) {
+            SF_EACH_LANE (l) {
                 double value = eta[l] * (jd[3 * i][l] * a[j][l] + jd[3 * i + 1][l] * a[3 + j][l] +
                                          jd[3 * i + 2][l] * a[6 + j][l]);
                 b->p[3 * i + j][l] += value;
@@ -307,8 +284,7 @@ SF_KERNEL void sf_foam_point_update(const sf_foam_options *foam, const sf_foam_k
         right_cauchy_green(b->f_old, old);
         double half = 0.5 / dt;
         for (int k = 0; k < 6; k++)
-#pragma omp simd
-            for (int l = 0; l < SF_LANES; l++)
+            SF_EACH_LANE (l)
                 rate_of_e[k][l] = half * (c[k][l] - old[k][l]);
     }
     cofactor(b, a);
@@ -316,8 +292,7 @@ SF_KERNEL void sf_foam_point_update(const sf_foam_options *foam, const sf_foam_k
     viscous_stress(foam, dt, b, rate_of_e, s);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-#pragma omp simd
-            for (int l = 0; l < SF_LANES; l++)
+            SF_EACH_LANE (l)
                 b->p[3 * i + j][l] = b->f[3 * i][l] * s[SYM[0][j]][l] + b->f[3 * i + 1][l] * s[SYM[1][j]][l] +
                                      b->f[3 * i + 2][l] * s[SYM[2][j]][l];
     if (foam->damp > 0 && dt > 0)
@@ -409,13 +384,11 @@ static inline void cover_pair(double *ai, double *aj, double p, double o, double
 SF_KERNEL void sf_foam_tangent_elastic(const sf_foam_principal *law, double maxwell, double a[3][SF_LANES]) {
     double half = 0.5 * maxwell, size[SF_LANES];
     const double *factor = law->factor, *softening = law->softening;
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++)
+    SF_EACH_LANE (l)
         size[l] = fabs(law->stress[0][l]) + fabs(law->stress[1][l]) + fabs(law->stress[2][l]);
     for (int i = 0; i < 3; i++) { /* |T_i| sum |T_j| covers the rank-one term T T^T of unloading */
         const double *t = law->stress[i], *slope = law->slope[i], *stretch = law->stretch[i];
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             a[i][l] = factor[l] * slope[l] + softening[l] * fabs(t[l]) * size[l] +
                       maxwell * stretch[l] * stretch[l];
     }
@@ -424,8 +397,7 @@ SF_KERNEL void sf_foam_tangent_elastic(const sf_foam_principal *law, double maxw
         const double *ti = law->stress[i], *tj = law->stress[j], *xi = law->stretch[i], *xj = law->stretch[j];
         const double *slope_i = law->slope[i], *slope_j = law->slope[j];
         double *restrict ai = a[i], *restrict aj = a[j];
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             double gap = xi[l] - xj[l], secant = (ti[l] - tj[l]) / gap;
             double equal = fabs(gap) > 1e-7 ? secant : sf_larger(slope_i[l], slope_j[l]);
             double opposite = (ti[l] + tj[l]) / (xi[l] + xj[l]);
@@ -464,8 +436,7 @@ SF_KERNEL void sf_foam_tangent_viscous(double stretch[3][SF_LANES], double kelvi
     for (int i = 0; i < 3; i++) { /* DAMP needs no more than its normal parts */
         const double *x = stretch[(i + 1) % 3], *y = stretch[(i + 2) % 3];
         double *restrict out = eta[i];
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             double area = x[l] * y[l];
             out[l] += damp[l] * area * area;
         }

@@ -249,16 +249,14 @@ static inline void add_term(double mu, double alpha, double beta, double logarit
                             sf_foam_loading *law, double coupling[SF_LANES]) {
     double twice = 2 * mu / alpha, energy = twice / alpha, squash = beta != 0 ? energy / beta : 0;
     double volume[SF_LANES];
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         double rest, sum = logarithm[0][l] + logarithm[1][l] + logarithm[2][l];
         volume[l] = sf_lane_expm1(-alpha * beta * sum, &rest);
         law->energy[l] += squash * rest;
         coupling[l] += 2 * mu * beta * (1 + volume[l]);
     }
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             double rest, power = sf_lane_expm1(alpha * logarithm[i][l], &rest);
             law->energy[l] += energy * rest;
             law->t[i][l] += twice * (power - volume[l]);
@@ -272,8 +270,7 @@ static SF_KERNEL void loading(const void *numbers, double stretch[3][SF_LANES], 
     double logarithm[3][SF_LANES], inverse[3][SF_LANES], coupling[SF_LANES] = {0};
     memset(law, 0, sizeof *law);
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             logarithm[i][l] = sf_lane_log(stretch[i][l]);
             inverse[i][l] = 1 / stretch[i][l];
         }
@@ -281,8 +278,7 @@ static SF_KERNEL void loading(const void *numbers, double stretch[3][SF_LANES], 
         add_term(foam->mu[k], foam->alpha[k], foam->beta[k], logarithm, law, coupling);
     for (int i = 0; i < 3; i++) {
         const double *one = inverse[i], *two = inverse[(i + 1) % 3], *three = inverse[(i + 2) % 3];
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             law->t[i][l] *= one[l];
             law->slope[i][l] *= one[l] * one[l];
             law->steepest[i][l] = law->slope[i][l] + fabs(coupling[l]) * one[l] * (two[l] + three[l]);

@@ -47,12 +47,10 @@ static SF_KERNEL void base_law(const void *numbers, double stretch[3][SF_LANES],
         double strain[SF_LANES], stress[SF_LANES], slope[SF_LANES], energy[SF_LANES];
         double *restrict t = law->t[i], *restrict tangent = law->slope[i],
                          *restrict steepest = law->steepest[i];
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++)
+        SF_EACH_LANE (l)
             strain[l] = 1 - stretch[i][l];
         sf_curve_evaluate_lanes(&foam->curve[0], strain, stress, slope, energy);
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             double pull = -strain[l] * modulus, work = 0.5 * strain[l] * strain[l] * modulus;
             bool squeezed = strain[l] > 0, elastic = pull <= cutoff, still = fabs(strain[l]) < REST;
             t[l] = squeezed ? -stress[l] : elastic ? pull : cutoff;
@@ -180,8 +178,7 @@ enum { MAX_SWEEPS = 8 };
 static inline void rotate(double *restrict app, double *restrict aqq, double *restrict apq,
                           double *restrict arp, double *restrict arq, double v[9][SF_LANES], int p, int q) {
     double c[SF_LANES], s[SF_LANES];
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         double d = aqq[l] - app[l], o = 2 * apq[l], oo = o * o;
         double h = sqrt(d * d + oo), u = fabs(d) + h + 1e-150, r = 1 / sqrt(u * u + oo);
         double shift = copysign(0.5 * (h - fabs(d)), d);
@@ -196,8 +193,7 @@ static inline void rotate(double *restrict app, double *restrict aqq, double *re
     }
     for (int row = 0; row < 3; row++) {
         double *restrict vp = v[3 * row + p], *restrict vq = v[3 * row + q];
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             double a = vp[l], b = vq[l];
             vp[l] = c[l] * a - s[l] * b;
             vq[l] = s[l] * a + c[l] * b;

@@ -48,8 +48,7 @@ static inline void straight(const sf_unloading *o, const double energy[SF_LANES]
                             const double power[SF_LANES], double factor[SF_LANES], double softening[SF_LANES],
                             double stored[SF_LANES], double lost[SF_LANES]) {
     double hu = o->hu, shape = o->shape, kept = (1 - hu) / (1 + shape);
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         double w = energy[l], ratio = (1 - hu) * shape * power[l] / w;
         bool unloaded = w < peak[l];
         factor[l] = unloaded ? 1 - (1 - hu) * (1 - power[l]) : 1;
@@ -67,17 +66,14 @@ static inline void curved(const sf_unloading *o, const double energy[SF_LANES], 
     double bent[SF_LANES], low[SF_LANES], high[SF_LANES];
     for (int l = 0; l < SF_LANES; l++)
         bent[l] = power[l] == 1 ? 0 : pow(1 - power[l], alpha);
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++)
+    SF_EACH_LANE (l)
         low[l] = high[l] = 0;
     for (int k = SF_UNLOADING_TERMS - 1; k >= 0; k--)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             low[l] = low[l] * power[l] + o->low[k];
             high[l] = high[l] * (1 - power[l]) + o->high[k];
         }
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         double w = energy[l], top = peak[l], rest = 1 - power[l];
         double below = w * low[l], above = whole - bent[l] * rest * high[l];
         double slope = gap * alpha * shape * bent[l] / rest * power[l] / w, bound = most / top;
@@ -97,8 +93,7 @@ SF_KERNEL void sf_unloading_lanes(const sf_unloading *o, const double energy[SF_
                                   double factor[SF_LANES], double softening[SF_LANES],
                                   double stored[SF_LANES], double lost[SF_LANES]) {
     double power[SF_LANES], shape = o->shape;
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++)
+    SF_EACH_LANE (l)
         power[l] = energy[l] < peak[l] ? energy[l] / peak[l] : 1;
     for (int l = 0; l < SF_LANES && shape != 1; l++)
         if (power[l] != 1)
@@ -154,8 +149,7 @@ SF_KERNEL void sf_memory_lanes(const sf_memory *m, const sf_unloading *u, const 
     for (int l = 0; l < SF_LANES; l++)
         old[l] = peak[l];
     sf_unloading_lanes(u, energy, peak, factor, softening, stored, lost);
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         bool below = energy[l] < old[l];
         double top = share * old[l], gap = 1 - factor[l], z = below ? energy[l] - stored[l] : top;
         double p = step(m, z, top, below ? -1 : share * peak[l], &point[0][l], &point[1][l], &point[2][l],

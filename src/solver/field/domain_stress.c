@@ -120,21 +120,18 @@ static void bound_steps(const lane_weights *w, double tightness, double dt_old, 
     for (int l = 0; l < SF_LANES; l++)
         tangent[l] = 0;
     for (int i = 0; i < 3; i++)
-#pragma omp simd
-        for (int l = 0; l < SF_LANES; l++) {
+        SF_EACH_LANE (l) {
             double a = b->direction_tangent[i][l], eta = b->direction_viscosity[i][l];
             tangent[l] = sf_larger(a + eta * inverse, tangent[l]);
             sum->slowness[l] =
                 sf_larger(sf_stability_slowness(w->stability[l] * tightness, a, eta), sum->slowness[l]);
         }
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++)
+    SF_EACH_LANE (l)
         sum->load[l] = sf_larger(w->stability[l] * tangent[l], sum->load[l]);
 }
 
 static void add_batch(const lane_weights *w, double block, const sf_law_batch *b, lane_sums *sum) {
-#pragma omp simd
-    for (int l = 0; l < SF_LANES; l++) {
+    SF_EACH_LANE (l) {
         double v = w->volume[l], shorter = sf_smaller(b->stretch[0][l], sum->shortest[l]);
         shorter = sf_smaller(b->stretch[1][l], shorter);
         sum->shortest[l] = sf_smaller(b->stretch[2][l], shorter);
