@@ -3,7 +3,6 @@
 #include "api/api.h"
 
 #include "pre/build.h"
-#include <stdlib.h>
 
 struct softfall_case {
     sf_case data;

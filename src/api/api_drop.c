@@ -10,7 +10,6 @@
 #include "solver/step.h"
 
 #include <omp.h>
-#include <stdlib.h>
 
 /* A drop behind its handle. */
 

@@ -3,7 +3,6 @@
 #include "api/api.h"
 
 #include "post/figures/compare.h"
-#include <stdlib.h>
 
 struct softfall_record {
     sf_reference reference;

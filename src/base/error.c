@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/error.h"
 
-#include <stdarg.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 
@@ -20,10 +17,7 @@ sf_status sf_error_set(sf_error *err, sf_status status, const char *where, int l
     err->status = status;
     err->where = where;
     err->line = line;
-    va_list args;
-    va_start(args, format);
-    vsnprintf(err->text, sizeof err->text, format, args);
-    va_end(args);
+    SF_PRINT_INTO(err->text, format);
     sf_error_clean(err->text);
     return status;
 }
@@ -79,12 +73,9 @@ void sf_free_all(size_t count, void *pointers[]) {
 
 void sf_sink_tell(const sf_sink *sink, sf_severity severity, const char *format, ...) {
     char sentence[1024];
-    va_list args;
     if (!sink || !sink->tell)
         return;
-    va_start(args, format);
-    vsnprintf(sentence, sizeof sentence, format, args);
-    va_end(args);
+    SF_PRINT_INTO(sentence, format);
     sf_error_clean(sentence);
     sink->tell(sink->user, severity, sentence);
 }

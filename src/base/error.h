@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 /* Status codes and the error record that every fallible softfall function fills.
  *
@@ -77,6 +80,15 @@ void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const cha
  * pointer that is NULL at first and that only this function changes. False: out of memory, and nothing has
  * changed. */
 bool sf_grow(void *array, size_t count, size_t size);
+
+/* In a function with the parameters `format, ...`: prints them into the array `text`. */
+#define SF_PRINT_INTO(text, format)                                                                          \
+    do {                                                                                                     \
+        va_list sf_arguments;                                                                                \
+        va_start(sf_arguments, format);                                                                      \
+        vsnprintf(text, sizeof(text), format, sf_arguments);                                                 \
+        va_end(sf_arguments);                                                                                \
+    } while (0)
 
 /* A sink receives warnings and notes: a function that may produce some takes a sink from its caller. Only
  * the programs print. */

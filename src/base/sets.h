@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include <stdint.h>
-#include <stdlib.h>
 
 #include "base/error.h"
 
-/* Lists and disjoint sets of numbers, and the edges of triangles.
+/* Ascending lists and disjoint sets of numbers, and the edges of triangles.
  *
  * Disjoint sets of the numbers from 0 on: `parent` leads from each to the lowest of its set. */
 
@@ -34,6 +33,29 @@ static inline void sf_sets_join(int64_t *parent, int64_t a, int64_t b) {
 static inline int sf_by_number(const void *a, const void *b) {
     int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
     return (x > y) - (x < y);
+}
+
+/* Returns the first place from `low` to `high` - 1 of an ascending list whose number is not below `value`;
+ * `high` if there is none. */
+static inline int64_t sf_list_find(const int32_t *list, int64_t low, int64_t high, int64_t value) {
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        if (list[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Returns the last k below `count` - 1 with x[k] <= place, x ascending; 0 if there is none. */
+static inline int64_t sf_interval_find(const double *x, int64_t count, double place) {
+    int64_t low = 0, high = count - 1;
+    while (high - low > 1) {
+        int64_t middle = (low + high) / 2;
+        *(x[middle] <= place ? &low : &high) = middle;
+    }
+    return low;
 }
 
 /* An edge of a triangle. */

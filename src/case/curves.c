@@ -2,7 +2,6 @@
 #include "case/reader.h"
 
 #include <gsl/gsl_sort.h>
-#include <stdlib.h>
 
 sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
     static const sf_table_name names[] = {{"strain", 0, 1.0, "1"},

@@ -3,7 +3,6 @@
 
 #include "case/keys.h"
 #include "io/plain_file.h"
-#include <stdlib.h>
 
 static sf_status no_memory(sf_error *err) {
     return SF_NO_MEMORY(err, "the text of a case");

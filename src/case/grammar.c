@@ -3,8 +3,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -46,10 +44,7 @@ typedef struct cursor {
 __attribute__((format(printf, 5, 6))) static sf_status refuse(const scan_state *scan, int line, sf_error *err,
                                                               int source_line, const char *format, ...) {
     char sentence[400], number[16] = "";
-    va_list args;
-    va_start(args, format);
-    vsnprintf(sentence, sizeof sentence, format, args);
-    va_end(args);
+    SF_PRINT_INTO(sentence, format);
     if (line > 0)
         snprintf(number, sizeof number, ":%d", line);
     return sf_error_set(err, SF_ERR_INPUT, __FILE__, source_line, "%s%s: %s", scan->path, number, sentence);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include "base/error.h"
-#include <stdio.h>
 
 /* Looks at a text in libconfig syntax before libconfig does, and refuses what libconfig would drop or cut
  * without a word: comments and strings that do not end, numbers that are none or do not fit, unknown escapes,

@@ -8,7 +8,6 @@
 #include "base/mat3.h"
 #include "base/text.h"
 #include "material/laws.h"
-#include <stdlib.h>
 
 enum { NAMED_UNKNOWN = 10 };
 

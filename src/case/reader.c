@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/reader.h"
 
-#include <stdarg.h>
-#include <stdlib.h>
-
 const char *sf_case_where(const sf_case_reader *reader, const config_setting_t *setting, char *out) {
     const sf_case_origin *origin = setting ? config_setting_get_hook(setting) : NULL;
     int line = setting ? (int)config_setting_source_line(setting) : 0;
@@ -57,10 +54,7 @@ const config_setting_t *sf_case_setting(const sf_case_reader *reader, const char
 sf_status sf_case_refuse(const sf_case_reader *reader, const config_setting_t *setting, sf_error *err,
                          const char *file, int line, const char *format, ...) {
     char where[SF_CASE_WHERE_SIZE], sentence[sizeof err->text];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(sentence, sizeof sentence, format, args);
-    va_end(args);
+    SF_PRINT_INTO(sentence, format);
     return sf_error_set(err, SF_ERR_INPUT, file, line, "%s: %s", sf_case_where(reader, setting, where),
                         sentence);
 }

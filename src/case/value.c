@@ -2,7 +2,6 @@
 
 #include <ctype.h>
 #include <gsl/gsl_sort.h>
-#include <stdarg.h>
 
 #include "base/text.h"
 #include "case/reader.h"
@@ -30,10 +29,7 @@ typedef struct slot {
 __attribute__((format(printf, 3, 4))) static sf_status refuse(const slot *s, int line, const char *format,
                                                               ...) {
     char sentence[640];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(sentence, sizeof sentence, format, args);
-    va_end(args);
+    SF_PRINT_INTO(sentence, format);
     return sf_case_refuse(s->reader, s->setting, s->err, __FILE__, line, "%s.%s: %s", s->key->group,
                           s->key->name, sentence);
 }

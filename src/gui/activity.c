@@ -7,7 +7,6 @@
 #include "io/replace.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 
 static const struct {

@@ -2,7 +2,6 @@
 #include "gui/session.h"
 
 #include <ctype.h>
-#include <stdlib.h>
 
 #include "base/text.h"
 #include "case/keys.h"

@@ -2,11 +2,8 @@
 #include "gui/session.h"
 
 #include "io/plain_file.h"
-#include "model/cells.h"
 #include "model/model_io.h"
 #include "pre/build.h"
-
-#include <stdlib.h>
 
 /* ---- shape of a drop ---- */
 

@@ -4,7 +4,6 @@
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
-#include <stdlib.h>
 #include <unistd.h>
 
 static const char STATUS[] = "1Drop/81status", FOLDER[] = "1Drop/82run folder",

@@ -5,7 +5,6 @@
 #include "io/plain_file.h"
 #include "io/replace.h"
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -2,8 +2,6 @@
 #include "io/h5.h"
 
 #include "io/h5_file.h"
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536, SF_H5_COPY_SIZE = 1 << 16 };

@@ -2,7 +2,6 @@
 #include "io/provenance.h"
 
 #include "build_info.h"
-#include <stdio.h>
 #include <string.h>
 #include <time.h>
 

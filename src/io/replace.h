@@ -7,7 +7,6 @@
  * followed nor overwritten. */
 #pragma once
 #include "base/error.h"
-#include <stdio.h>
 
 enum { SF_PATH_SIZE = 4096 };
 

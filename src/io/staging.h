@@ -5,7 +5,6 @@
  * directory bears the process's number; that of a run that was killed is removed by the next one. */
 #pragma once
 #include "base/error.h"
-#include <stdio.h>
 
 typedef struct sf_staging {
     const char *const *names; /* every file that the program may write, in the order in which they are moved;

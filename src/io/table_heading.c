@@ -6,7 +6,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 #include <strings.h>
 
@@ -269,12 +268,9 @@ static void take(const reading *r, int c, int i, double scale, const char *unit)
 
 static void complain(const reading *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void complain(const reading *r, const char *format, ...) {
-    va_list args;
     if (r->heading->problem[0])
         return;
-    va_start(args, format);
-    vsnprintf(r->heading->problem, sizeof r->heading->problem, format, args);
-    va_end(args);
+    SF_PRINT_INTO(r->heading->problem, format);
 }
 
 /* The cell `i` fits the column as well as `*count` others do: takes it if it is the only one, or that of the

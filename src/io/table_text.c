@@ -7,7 +7,6 @@
 
 #include <iconv.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 

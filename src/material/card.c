@@ -2,7 +2,6 @@
 #include "material/card.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/hash.h"
 

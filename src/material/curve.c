@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/curve.h"
 
-#include <stdlib.h>
-
 double sf_densification_natural_exponent(double start, double limit, double stress, double slope) {
     return (limit - start) * slope / stress;
 }

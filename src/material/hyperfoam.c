@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/hyperfoam.h"
 
-#include <stdlib.h>
-
 /* The entry of the hyperfoam in the table of laws: its parameters and rules. The update of a batch is in
  * hyperfoam_point.c. */
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/low_density_foam.h"
 
-#include <stdlib.h>
-
 sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) {
     *foam = (sf_foam){
         .options = sf_foam_options_build(&card->shared),

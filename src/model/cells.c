@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/cells.h"
 
-#include <stdlib.h>
-
 #include "model/model.h"
 
 /* clang-format off */

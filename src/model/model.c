@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/model.h"
 
-#include <stdlib.h>
-
+#include "base/sets.h"
 #include "base/mat3.h"
 #include "material/low_density_foam.h"
 
@@ -332,28 +331,18 @@ bool sf_symmetry_plane(const sf_model *m, int axis, double *place) {
     return false;
 }
 
-/* The point at which the piece of `time` begins. */
-static int64_t piece_of(const sf_model *m, double time) {
-    int64_t low = 0, high = m->motion_count - 1;
-    while (high - low > 1) {
-        int64_t middle = (low + high) / 2;
-        *(m->motion_time[middle] <= time ? &low : &high) = middle;
-    }
-    return low;
-}
-
 static double slope(const sf_model *m, int64_t k) {
     return (m->motion_displacement[k + 1] - m->motion_displacement[k]) /
            (m->motion_time[k + 1] - m->motion_time[k]);
 }
 
 double sf_motion_displacement(const sf_model *m, double time) {
-    int64_t k = piece_of(m, time);
+    int64_t k = sf_interval_find(m->motion_time, m->motion_count, time);
     return m->motion_displacement[k] + slope(m, k) * (time - m->motion_time[k]);
 }
 
 double sf_motion_velocity(const sf_model *m, double time) {
-    return slope(m, piece_of(m, time));
+    return slope(m, sf_interval_find(m->motion_time, m->motion_count, time));
 }
 
 sf_motion_range sf_motion_measure(const sf_model *m) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 
 #include "base/hash.h"
+#include "base/sets.h"
 #include "base/mat3.h"
 #include "model/cells.h"
 #include "model/flight.h"
@@ -288,15 +289,8 @@ static sf_status check_nodes(const sf_model *m, sf_error *err) {
 
 /* True if `node` is in row i of the edges, which ascends. */
 static bool has_edge(const sf_model *m, int64_t i, int64_t node) {
-    int64_t low = m->edge_ptr[i], high = m->edge_ptr[i + 1];
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        if (m->edge_node[middle] < node)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < m->edge_ptr[i + 1] && m->edge_node[low] == node;
+    int64_t k = sf_list_find(m->edge_node, m->edge_ptr[i], m->edge_ptr[i + 1], node);
+    return k < m->edge_ptr[i + 1] && m->edge_node[k] == node;
 }
 
 /* Edges join two nodes that are apart, and both know it. */

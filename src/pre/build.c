@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "model/stability.h"
-#include <stdlib.h>
 
 static const double CLEAR =
     0.05; /* of the anvil's depth: way from the first touch to the anvil that is a drop */

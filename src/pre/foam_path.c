@@ -2,7 +2,6 @@
 #include "pre/steps.h"
 
 #include "base/mat3.h"
-#include <stdlib.h>
 
 enum { MOST_RAYS = 200, MOST_HITS = 256 };
 static const double FACING = 0.1; /* least cosine between the missile's direction and a face it touches */

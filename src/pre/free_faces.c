@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/steps.h"
 
-#include <stdlib.h>
-
 #include "base/grid.h"
 #include "base/mat3.h"
-#include "model/cells.h"
 
 /* ---- the pad's surface ---- */
 

@@ -4,7 +4,6 @@
 #include "base/mat3.h"
 #include "io/h5.h"
 #include "pre/mesh/gmsh_session.h"
-#include <stdlib.h>
 
 /* The pad of the open geometry. */
 static sf_status read_pad(sf_gmsh *session, const sf_case *c, sf_mesh *mesh, sf_error *err) {

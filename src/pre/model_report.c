@@ -4,7 +4,6 @@
 #include "base/mat3.h"
 #include "model/flight.h"
 #include "base/text.h"
-#include <stdarg.h>
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
  * that rebounds half-way to the end time, over those that the guaranteed steps would need to the end. */
@@ -13,15 +12,12 @@ static const double RATE = 3.5e6, TYPICAL = 0.32;
 /* Adds a line; what does not fit is cut. */
 static void __attribute__((format(printf, 4, 5)))
 add(sf_model_report *out, const char *key, const char *name, const char *format, ...) {
-    va_list arguments;
     if (out->count == SF_MODEL_REPORT_LINES)
         return;
     sf_report_line *line = &out->line[out->count++];
     line->key = key;
     line->name = name;
-    va_start(arguments, format);
-    vsnprintf(line->value, sizeof line->value, format, arguments);
-    va_end(arguments);
+    SF_PRINT_INTO(line->value, format);
 }
 
 /* Returns the value of the last line, to be continued. */

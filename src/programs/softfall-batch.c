@@ -6,7 +6,6 @@
 #include "io/replace.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 typedef struct options {

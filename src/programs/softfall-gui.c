@@ -4,8 +4,6 @@
 #include "gui/session.h"
 #include "io/plain_file.h"
 
-#include <stdlib.h>
-
 /* ---- scripts ---- */
 
 /* A text that does in the window what a user does, for tests and pictures: docs/window.md lists its words. */

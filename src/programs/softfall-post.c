@@ -6,7 +6,6 @@
 #include "post/view/report.h"
 
 #include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct options {

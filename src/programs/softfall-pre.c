@@ -7,7 +7,6 @@
 #include "pre/build.h"
 
 #include <omp.h>
-#include <stdlib.h>
 
 typedef struct options {
     const char *case_path, *output, *store;

@@ -3,7 +3,6 @@
 #include <limits.h>
 #include <malloc.h>
 #include <omp.h>
-#include <stdlib.h>
 #include <sys/resource.h>
 #include <unistd.h>
 

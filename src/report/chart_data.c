@@ -7,19 +7,9 @@
 #include "report/html.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- panels, series and marks ---- */
-
-#define FORMAT_INTO(text, last)                                                                              \
-    do {                                                                                                     \
-        va_list arguments;                                                                                   \
-        va_start(arguments, last);                                                                           \
-        vsnprintf(text, sizeof(text), last, arguments);                                                      \
-        va_end(arguments);                                                                                   \
-    } while (0)
 
 /* Makes room for one more element behind `array`, the address of a pointer; returns false after a failure,
  * which stands in chart->err. */
@@ -63,7 +53,7 @@ void sf_chart_free(sf_chart *chart) {
 
 void sf_chart_title(sf_chart *chart, const char *format, ...) {
     if (chart)
-        FORMAT_INTO(chart->title, format);
+        SF_PRINT_INTO(chart->title, format);
 }
 
 void sf_chart_columns(sf_chart *chart, int columns) {
@@ -95,7 +85,7 @@ sf_panel *sf_chart_panel_at(sf_chart *chart, const char *x, const char *y, doubl
 }
 
 void sf_axis_label(sf_axis *axis, const char *format, ...) {
-    FORMAT_INTO(axis->label, format);
+    SF_PRINT_INTO(axis->label, format);
 }
 
 void sf_axis_range(sf_axis *axis, double low, double high) {
@@ -124,7 +114,7 @@ sf_series_data *sf_chart_series(sf_chart *chart, sf_series_style style, const ch
         return NULL;
     *series = (sf_series_data){.chart = chart, .style = style};
     if (title)
-        FORMAT_INTO(series->title, title);
+        SF_PRINT_INTO(series->title, title);
     p->series[p->series_count++] = series;
     return series;
 }
@@ -147,7 +137,7 @@ void sf_series_points(sf_series_data *s, int64_t count, const double *x, const d
 
 void sf_series_label(sf_series_data *s, double x, double y, const char *format, ...) {
     char text[SF_CHART_TEXT];
-    FORMAT_INTO(text, format);
+    SF_PRINT_INTO(text, format);
     if (s && grow(s->chart, &s->text, s->count, sizeof *s->text) && (s->text[s->count] = strdup(text)))
         sf_series_point(s, x, y);
 }
@@ -160,7 +150,7 @@ void sf_chart_mark(sf_chart *chart, sf_mark_kind kind, double x, double y, const
     sf_chart_mark_data *m = &p->mark[p->mark_count++];
     *m = (sf_chart_mark_data){.kind = kind, .colour = colour, .x[0] = x, .y[0] = y};
     if (text)
-        FORMAT_INTO(m->text, text);
+        SF_PRINT_INTO(m->text, text);
 }
 
 void sf_chart_band(sf_chart *chart, const double x[2], const double y[2], const char *colour,

@@ -6,7 +6,6 @@
 #include "report_style.h"
 #include <ctype.h>
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 /* The character, or what stands for it in XML. */
@@ -240,10 +239,7 @@ void sf_html_numbers(sf_html_table *table, int digits, const double *value, int 
 
 void sf_html_line(sf_html_table *table, const char *first, const char *format, ...) {
     char text[1024], *rest = text, *cell;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
+    SF_PRINT_INTO(text, format);
     if (first) {
         sf_html_row(table);
         sf_html_cell(table, "%s", first);

@@ -4,7 +4,6 @@
 #include "base/text.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 /* ---- JSON ---- */

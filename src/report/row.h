@@ -5,7 +5,6 @@
  * number that is not finite, a negative count, an empty text) becomes null in JSON and a dash for
  * readers. */
 #pragma once
-#include "io/staging.h"
 #include "report/html.h"
 #include <stdint.h>
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/state.h"
 
-#include <stdlib.h>
-
 #include "model/flight.h"
 
 static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy, see start_driven */

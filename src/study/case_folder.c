@@ -7,7 +7,6 @@
 #include "base/hash.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include <stdlib.h>
 
 #define CASE_NAME "case.cfg"
 #define README_NAME "README.md"

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/column.h"
 
-#include <stdlib.h>
-
 /* ---- columns below the missile ---- */
 
 enum { PARTS = 4 }; /* a triangle is cut into PARTS^2, so that large ones spread over the gaps they have */

@@ -4,17 +4,12 @@
 #include "base/text.h"
 #include "io/plain_file.h"
 #include <math.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
                            const char *format, ...) {
     char sentence[768];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(sentence, sizeof sentence, format, args);
-    va_end(args);
+    SF_PRINT_INTO(sentence, format);
     int line = setting ? (int)config_setting_source_line(setting) : 0;
     if (line == 0)
         return SF_REFUSE(err, "%s: %s", config->path, sentence);

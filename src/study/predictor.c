@@ -7,7 +7,6 @@
 #include <gsl/gsl_multimin.h>
 #include <gsl/gsl_sort.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_FOR_LENGTHS = 250, STEPS = 60, LEAST_FOR_CALIBRATION = 20 };

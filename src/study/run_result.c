@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/runner.h"
 
-#include <stdlib.h>
-
 static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *out) {
     sf_verdict verdict;
     const sf_limits limits = SF_DEFAULT_LIMITS; /* no part of the grade */

@@ -4,7 +4,6 @@
 #include "base/hash.h"
 #include "io/folder.h"
 #include "io/process.h"
-#include <stdlib.h>
 #include <sys/stat.h>
 
 enum { MATERIAL_SIZE = PATH_MAX + 64 };

@@ -8,7 +8,6 @@
 #include "io/provenance.h"
 #include <gsl/gsl_errno.h>
 #include <omp.h>
-#include <stdlib.h>
 
 enum { LAST_GROUP = 9 };
 

@@ -3,8 +3,6 @@
 
 #include <gmshc.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static int unasked; /* gmsh's error code where a failure is ignored */

@@ -7,7 +7,6 @@
 
 #include <dlfcn.h>
 #include <gmshc.h>
-#include <stdlib.h>
 #include <string.h>
 
 static int unasked; /* gmsh's error code where a failure is ignored */

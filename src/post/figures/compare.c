@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/compare.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"

@@ -2,7 +2,6 @@
 #include "post/figures/figures.h"
 
 #include "base/units.h"
-#include <stdlib.h>
 #include <string.h>
 
 static const double FREE_FLIGHT = 5e-3; /* s, at least, before the first contact */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/signal.h"
 
+#include "base/sets.h"
+
 #include <math.h>
 
 /* Intervals of the search grid, pairs of the first coarse scan per side, relative gap that ends the search.
@@ -138,25 +140,13 @@ static void search_pairs(search *s, int l, int64_t p, int64_t q) {
                 search_pairs(s, l - 1, i, j);
 }
 
-static int64_t interval_of(const search *s, double time) {
-    int64_t low = 0, high = s->count - 1;
-    while (high - low > 1) {
-        int64_t middle = (low + high) / 2;
-        if (s->t[middle] <= time)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 static double a_at(const search *s, double time) {
-    int64_t i = interval_of(s, time);
+    int64_t i = sf_interval_find(s->t, s->count, time);
     return s->a[i] + (s->a[i + 1] - s->a[i]) * (time - s->t[i]) / (s->t[i + 1] - s->t[i]);
 }
 
 static double v_at(const search *s, double time) {
-    int64_t i = interval_of(s, time);
+    int64_t i = sf_interval_find(s->t, s->count, time);
     return s->v[i] + (time - s->t[i]) * (s->a[i] + a_at(s, time)) / 2;
 }
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/compare.h"
 
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -354,42 +352,35 @@ static sf_status check_sign(const sf_reference_options *o, const sf_series *curv
 
 /* ---- the whole ---- */
 
-static void add(sf_reference *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void add(sf_reference *r, const char *format, ...) {
-    va_list args;
-    size_t used = strlen(r->interpretation);
-    va_start(args, format);
-    vsnprintf(r->interpretation + used, sizeof r->interpretation - used, format, args);
-    va_end(args);
-}
+#define ADD(r, ...) sf_text_add((r)->interpretation, sizeof(r)->interpretation, __VA_ARGS__)
 
 static void describe(const record *r, sf_reference *reference) {
     const sf_reference_options *o = r->options;
     const sf_series *s = &reference->raw;
     double span = s->time[s->count - 1] - s->time[0], mean = span / (double)(s->count - 1);
-    add(reference, "%s%.383s, %lld samples ", o->heading ? "with a heading that was given for it, " : "",
+    ADD(reference, "%s%.383s, %lld samples ", o->heading ? "with a heading that was given for it, " : "",
         r->interpretation, (long long)s->count);
     if (largest_gap(s) > UNEVEN * mean)
-        add(reference, "unevenly, up to %.4g ms apart", largest_gap(s) * 1e3);
+        ADD(reference, "unevenly, up to %.4g ms apart", largest_gap(s) * 1e3);
     else
-        add(reference, "at %.4g kHz%s", 1e-3 / mean, o->rate > 0 ? " as given" : "");
-    add(reference, ", %.6g to %.6g ms, ", s->time[0] * 1e3, s->time[s->count - 1] * 1e3);
+        ADD(reference, "at %.4g kHz%s", 1e-3 / mean, o->rate > 0 ? " as given" : "");
+    ADD(reference, ", %.6g to %.6g ms, ", s->time[0] * 1e3, s->time[s->count - 1] * 1e3);
     if (o->cfc > 0)
-        add(reference, "filtered with CFC %g", o->cfc);
+        ADD(reference, "filtered with CFC %g", o->cfc);
     else
-        add(reference, "not filtered");
+        ADD(reference, "not filtered");
     if (r->axes > 1)
-        add(reference, ", resultant of the columns %.100s", o->columns);
+        ADD(reference, ", resultant of the columns %.100s", o->columns);
     if (o->sensitivity > 0)
-        add(reference, ", at a sensitivity of %.6g mV/(m/s2) as given", 1e3 * o->sensitivity);
+        ADD(reference, ", at a sensitivity of %.6g mV/(m/s2) as given", 1e3 * o->sensitivity);
     if (o->invert)
-        add(reference, ", inverted as asked for");
+        ADD(reference, ", inverted as asked for");
     if (reference->origin != 0)
-        add(reference, ", its clock begins at %.6f s", reference->origin);
+        ADD(reference, ", its clock begins at %.6f s", reference->origin);
     if (reference->impacts[0])
-        add(reference, ", of the impacts %s", reference->impacts);
+        ADD(reference, ", of the impacts %s", reference->impacts);
     if (o->zero)
-        add(reference, ", less %.4g g before contact", reference->offset);
+        ADD(reference, ", less %.4g g before contact", reference->offset);
 }
 
 static sf_status make(record *r, sf_reference *reference, sf_error *err) {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/sets.h"
 #include "base/units.h"
 
 static const double MOST_SAMPLES = 1e7; /* of a curve: 100 s at 100 kHz */
@@ -45,20 +46,13 @@ int64_t sf_series_peak(const sf_series *series) {
 }
 
 double sf_series_at(const sf_series *series, double time) {
-    int64_t low = 0, high = series->count - 1;
     if (time <= series->time[0])
         return series->value[0];
-    if (time >= series->time[high])
-        return series->value[high];
-    while (high - low > 1) {
-        int64_t middle = (low + high) / 2;
-        if (series->time[middle] <= time)
-            low = middle;
-        else
-            high = middle;
-    }
-    double part = (time - series->time[low]) / (series->time[high] - series->time[low]);
-    return series->value[low] + part * (series->value[high] - series->value[low]);
+    if (time >= series->time[series->count - 1])
+        return series->value[series->count - 1];
+    int64_t k = sf_interval_find(series->time, series->count, time);
+    double part = (time - series->time[k]) / (series->time[k + 1] - series->time[k]);
+    return series->value[k] + part * (series->value[k + 1] - series->value[k]);
 }
 
 double sf_signal_rate(const sf_series *series) {

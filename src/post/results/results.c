@@ -7,9 +7,6 @@
 #include "model/cells.h"
 #include "model/model.h"
 
-#include <stdarg.h>
-#include <stdlib.h>
-
 /* ---- checks ---- */
 
 /* s; a run ends at 1000 s at the latest (sf_model_check), and resampling to 100 kHz must fit into memory. */
@@ -22,10 +19,7 @@ bool sf_results_ended_well(const sf_results *r) {
 void sf_results_note(sf_results *r, const char *format, ...) {
     if (r->note_count == SF_RESULTS_NOTES)
         return;
-    va_list args;
-    va_start(args, format);
-    vsnprintf(r->notes[r->note_count++], sizeof r->notes[0], format, args);
-    va_end(args);
+    SF_PRINT_INTO(r->notes[r->note_count++], format);
 }
 
 /* The same of a sentence that only says how the run ended. */

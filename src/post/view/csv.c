@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/report.h"
 
-#include <stdlib.h>
-
 #include "post/view/cut.h"
 
 sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,

@@ -9,7 +9,6 @@
 #include "io/provenance.h"
 #include "post/view/cut.h"
 #include <argp.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 
 enum { MOST_RUNS = 12, CURVE_POINTS = 2000 };

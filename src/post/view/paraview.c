@@ -4,7 +4,6 @@
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "post/view/cut.h"
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 

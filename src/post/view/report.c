@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/report.h"
 
-#include <stdlib.h>
-
 #include "build_info.h"
 #include "base/text.h"
 #include "model/model.h"

@@ -4,7 +4,6 @@
 #include "pre/mesh/mesh_raw.h"
 #include "pre/mesh/mesher_protocol.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 /* Memory of softfall-pre at its peak, per node of the mesh: measured on the example pad

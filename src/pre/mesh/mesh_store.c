@@ -2,7 +2,6 @@
 #include "pre/mesh/mesher.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "base/hash.h"

@@ -7,7 +7,6 @@
 #include <locale.h>
 #include <poll.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <time.h>

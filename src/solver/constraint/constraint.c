@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint/constraint.h"
 
-#include <stdlib.h>
-
 enum { ALL = 7, BATCH = 64 }; /* mask of x, y and z; rows or nodes of one call of a kernel */
 
 /* True if a node whose components in `mask` are held has a row in the range: 0 for all components in

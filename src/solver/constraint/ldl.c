@@ -2,7 +2,6 @@
 #include "solver/constraint/ldl.h"
 
 #include <cholmod.h>
-#include <stdlib.h>
 
 /* Smallest reciprocal condition, as CHOLMOD estimates it from D. */
 static const double SINGULAR = 1e-13;

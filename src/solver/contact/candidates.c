@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/candidates.h"
 
-#include <stdlib.h>
-
 #include "base/grid.h"
 #include "base/mat3.h"
 

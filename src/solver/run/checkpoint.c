@@ -2,7 +2,6 @@
 #include "solver/run/run.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "solver/field/domain_stress.h"

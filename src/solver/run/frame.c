@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/run.h"
 
+#include "base/sets.h"
 #include "base/mat3.h"
 #include "solver/field/domain_stress.h"
 
@@ -85,22 +86,10 @@ static void take_law_field(const sf_model *m, const sf_operators *op, const sf_s
     }
 }
 
-/* The first contact point whose node is not below i. */
-static int64_t find_point(const sf_model *m, int64_t i) {
-    int64_t low = 0, high = m->contact_count;
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        if (m->contact_node[middle] < i)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 static void take_pressure(const sf_model *m, const sf_state *s, int64_t first, int64_t end, double *out) {
     memset(out, 0, (size_t)(end - first) * sizeof *out);
-    for (int64_t c = find_point(m, first); c < m->contact_count && m->contact_node[c] < end; c++) {
+    for (int64_t c = sf_list_find(m->contact_node, 0, m->contact_count, first);
+         c < m->contact_count && m->contact_node[c] < end; c++) {
         const double *force = &s->contact_force[3 * c];
         if (m->contact_area[c] > 0 && sf_dot3(force, force) > 0) /* a normal without a force may be any */
             out[m->contact_node[c] - first] = sf_dot3(force, &s->contact_normal[3 * c]) / m->contact_area[c];

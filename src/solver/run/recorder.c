@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/run/run.h"
 
-#include <stdlib.h>
-
 #include "base/mat3.h"
 
 static const double PEAK_GROWTH = 1.001; /* of the acceleration from one kept maximum to the next */

@@ -7,8 +7,6 @@
 #include "post/view/report.h"
 #include "report/chart.h"
 
-#include <stdlib.h>
-
 /* ---- the picture ---- */
 
 /* Heights (m) of the picture: the successes, the failures not far above them, and a margin. */

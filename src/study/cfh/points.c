@@ -6,7 +6,6 @@
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_multifit.h>
 #include <gsl/gsl_poly.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- rig, fits and crossings ---- */

@@ -4,7 +4,6 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "study/material_file.h"
-#include <stdlib.h>
 #include <unistd.h>
 
 static const double STRAIN_MARGIN = 0.02; /* beyond the end of its data: worth a warning */

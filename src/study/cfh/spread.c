@@ -7,7 +7,6 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort.h>
-#include <stdlib.h>
 
 static const double STEP = 0.035;        /* of ln(height) on the grid */
 static const double OUTSIDE = 1.5;       /* factor by which it reaches beyond the simulated heights */

@@ -5,7 +5,6 @@
 #include "study/predictor.h"
 #include "study/sweep/analysis.h"
 #include <gsl/gsl_sort.h>
-#include <stdlib.h>
 
 enum {
     CHECKED_PART = 40, /* one row of so many is a check, within bounds */

@@ -4,7 +4,6 @@
 #include "study/fit/posterior/mixture.h"
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>
-#include <stdlib.h>
 
 /* ---- Sobol' indices ---- */
 

@@ -7,7 +7,6 @@
 #include "io/process.h"
 #include "io/replace.h"
 #include <errno.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 static const double WRITE_INTERVAL = 20; /* s between two tables, or this many times what one takes */

@@ -7,7 +7,6 @@
 #include "pre/build.h"
 
 #include <gsl/gsl_sort.h>
-#include <stdlib.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 

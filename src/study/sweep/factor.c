@@ -6,7 +6,6 @@
 #include "io/plain_file.h"
 #include "study/material_file.h"
 #include <gsl/gsl_cdf.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 enum { MOST_LEVELS = 1000000, MOST_DRAWS = 1000, DRAW_PATH = PATH_MAX + 32, NAMES_SIZE = 256 };

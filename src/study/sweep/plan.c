@@ -7,7 +7,6 @@
 #include "study/fit/posterior/mixture.h"
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_randist.h>
-#include <stdlib.h>
 
 enum { MOST_SAMPLES = 100000000 };
 #define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"

@@ -5,7 +5,6 @@
 #include "base/text.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
-#include <stdlib.h>
 
 static const char *const states[] = {[SF_SWEEP_OPEN] = "open",
                                      [SF_SWEEP_DONE] = "done",

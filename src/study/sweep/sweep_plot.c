@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "io/plain_file.h"
 #include "report/chart.h"
-#include <stdlib.h>
 #include <unistd.h>
 
 enum { COLUMNS = 4, SERIES = 8, POINTS = 3000, CURVES = 200, CURVE_POINTS = 300, BARS = SF_SWEEP_FACTORS };

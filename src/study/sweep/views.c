@@ -6,8 +6,6 @@
 #include "io/replace.h"
 #include "study/sweep/campaign.h"
 
-#include <stdlib.h>
-
 /* ---- which ---- */
 
 static sf_status add(sf_sweep_views *v, int64_t row, const char *reason, sf_error *err) {

@@ -4,8 +4,6 @@
 #include "study/material_file.h"
 #include "study/setup.h"
 
-#include <stdlib.h>
-
 static const sf_option options[] = {
     {"simulate", 0, "CASE",
      "press a cube of the fitted material between platens too, as CASE says "

@@ -4,8 +4,6 @@
 #include "base/text.h"
 #include "case/reader.h"
 
-#include <stdlib.h>
-
 static const double STRAIN_ZERO = 2e-3; /* strains from minus this on are zero with scatter */
 static const double STRESS_ZERO = 0.01; /* stresses likewise, as a part of the largest */
 static const double SMALL_STRAIN = 0.1; /* a test must reach it */

@@ -4,7 +4,6 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_statistics_double.h>
-#include <stdlib.h>
 
 #include "case/reader.h"
 #include "material/low_density_foam.h"

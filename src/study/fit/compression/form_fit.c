@@ -4,7 +4,6 @@
 #include "material/curve.h"
 #include "study/fit/compression/point_model.h"
 #include <gsl/gsl_errno.h>
-#include <stdlib.h>
 
 enum { RISES = 400 };                  /* strains at which the curve must rise */
 static const double RISE_END = 0.97;   /* of the pole */

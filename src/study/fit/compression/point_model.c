@@ -2,7 +2,6 @@
 #include "study/fit/compression/point_model.h"
 
 #include "material/low_density_foam.h"
-#include <stdlib.h>
 
 static const double LAST_PART = 0.85; /* densification is fitted from this part of the shortest test on */
 static const double FINER = 1.4; /* than cross-validation: the bend that a smoother curve cuts off stays below

@@ -7,7 +7,6 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_multifit_nlinear.h>
-#include <stdlib.h>
 
 static const char AT_BOUND[] = "at the bound of the search: not identified by these tests";
 enum { ITERATIONS = 150, MAXWELL_STARTS = 4 };

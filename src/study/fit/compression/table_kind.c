@@ -10,7 +10,6 @@
 #include "study/material_file.h"
 #include "study/runner.h"
 #include <errno.h>
-#include <stdlib.h>
 
 static const double CARD_STEP = 5e-4; /* strain, of the check by the solver's law */
 

@@ -4,7 +4,6 @@
 #include "study/material_file.h"
 #include "material/low_density_foam.h"
 #include <gsl/gsl_sort.h>
-#include <stdlib.h>
 
 enum { FIRST_SEED = 5000 }; /* of the draws: the number of its stream is this and its own */
 

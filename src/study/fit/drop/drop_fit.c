@@ -4,7 +4,6 @@
 #include "study/material_file.h"
 #include "io/process.h"
 #include "material/low_density_foam.h"
-#include <stdlib.h>
 
 enum { MAX_ITERATIONS = 30, EXACT_ITERATIONS = 100 /* of a fit without simulations */ };
 static const double TOLERANCE = 0.1; /* of a standard deviation: the last step */

@@ -8,7 +8,6 @@
 #include "io/process.h"
 #include "io/replace.h"
 #include "material/low_density_foam.h"
-#include <stdlib.h>
 #include <sys/file.h>
 #include <unistd.h>
 

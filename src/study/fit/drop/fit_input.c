@@ -4,7 +4,6 @@
 
 #include "io/plain_file.h"
 #include "material/low_density_foam.h"
-#include <stdlib.h>
 
 /* ---- drops ---- */
 

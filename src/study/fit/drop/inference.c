@@ -5,7 +5,6 @@
 #include "io/process.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
-#include <stdlib.h>
 
 enum { PLACES = SF_DISCREPANCY_PLACES };
 static const double PLACE_WIDTH = 0.05; /* of strain */

@@ -3,7 +3,6 @@
 
 #include <gsl/gsl_randist.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { N = SF_POSTERIOR_MOST, START_TRIES = 50, DELAYED_STEPS = 100 };

@@ -6,7 +6,6 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_randist.h>
-#include <stdlib.h>
 #include <string.h>
 
 void sf_kernel_fill(int bins, const double *place, double length, double *kernel) {

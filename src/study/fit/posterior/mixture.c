@@ -7,7 +7,6 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_sf_gamma.h>
 #include <gsl/gsl_sort.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { ROUNDS = 25, N = SF_POSTERIOR_MOST };
