@@ -167,6 +167,48 @@ static void mapping_survives_rejected_and_failed_steps(void **state) {
     sf_mapping_free(&r);
 }
 
+/* The surrogate has an edge, as columns that lock up, which the simulation has not; its slope there is
+ * nothing that a matrix corrects. */
+static sf_status edged_surrogate(void *context, const double *u, double *y, sf_error *err) {
+    (void)context;
+    (void)err;
+    y[0] = u[0] - 0.5 * tanh(50 * (u[0] - 0.7));
+    y[1] = u[1] + 0.2 * u[0];
+    y[2] = 0.5 * u[1];
+    return SF_OK;
+}
+
+static sf_status smooth_simulate(void *context, const double *u, double *y, sf_error *err) {
+    toy *t = context;
+    t->simulations++;
+    (void)err;
+    y[0] = 1.2 * u[0];
+    y[1] = u[1] + 0.2 * u[0];
+    y[2] = 0.5 * u[1];
+    return SF_OK;
+}
+
+static void simulations_replace_a_surrogate_with_an_edge(void **state) {
+    (void)state;
+    toy t = {.linear = false};
+    const double measured[3] = {0.84, 0.44, 0.15}; /* u = 0.7, 0.3 */
+    sf_mapping_problem p = toy_problem(&t, measured);
+    p.surrogate = edged_surrogate;
+    p.simulate = smooth_simulate;
+    p.max_iterations = 40;
+    sf_mapping_result r;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_mapping_solve(&p, &r, &err), SF_OK);
+    assert_true(r.converged);
+    assert_true(fabs(r.u[0] - 0.7) < 3e-3 && fabs(r.u[1] - 0.3) < 3e-3);
+    assert_true(fabs(r.corrected[0] - 1.2) < 0.05); /* the derivative is the simulation's */
+    /* offset and matrix are those of the surrogate again */
+    double y[3], u[2];
+    assert_int_equal(sf_mapping_refit(&p, &r, toy_sd, u, y, &err), SF_OK);
+    assert_true(fabs(y[1] - 0.44) < 0.01);
+    sf_mapping_free(&r);
+}
+
 static sf_status failing_simulate(void *context, const double *u, double *y, sf_error *err) {
     (void)context;
     (void)u;
@@ -193,6 +235,7 @@ int main(void) {
         cmocka_unit_test(mapping_finds_the_minimum_of_the_simulation),
         cmocka_unit_test(a_bound_holds_the_minimum),
         cmocka_unit_test(mapping_survives_rejected_and_failed_steps),
+        cmocka_unit_test(simulations_replace_a_surrogate_with_an_edge),
         cmocka_unit_test(mapping_passes_on_a_failed_simulation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

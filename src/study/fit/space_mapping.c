@@ -11,20 +11,23 @@
 enum { FIT_STEPS = 60 };
 static const double DIFFERENCE = 1e-3; /* of the scaled parameters, for Jacobians */
 
-/* The corrected surrogate, anchored at a simulated point. */
+/* The corrected surrogate, anchored at a simulated point; in the second phase linear, without a surrogate. */
 typedef struct anchor {
     const sf_mapping_problem *problem;
+    bool linear;
     const double *u;      /* [parameters] */
     const double *offset; /* [responses] */
     const double *matrix; /* [responses][parameters] */
 } anchor;
 
 /* The regression of M expects, in logarithms, this: the simulation's own noise, the second derivative of y -
- * s, and the size of M. */
-static const double NOISE = 0.002, CURVATURE = 0.05, SLOPE = 0.3;
+ * s, and the size of M; the latter two without the surrogate ([1]), too. */
+static const double NOISE = 0.002, CURVATURE[2] = {0.05, 1}, SLOPE[2] = {0.3, 3};
 
-enum { MOST_IDLE = 5 };                  /* steps in a row that gain nothing: the search ends */
+enum { MOST_IDLE = 5 };                  /* steps in a row that gain nothing: the phase ends */
 static const double LEAST_RADIUS = 0.02; /* of the trust region: shorter steps only tell the noise */
+/* Between simulations for a derivative; the prior's standard deviation, if that is less. */
+static const double LONGEST_DIFFERENCE = 0.1;
 
 /* A minimisation leaves a bound by no more than a part of the first; a parameter that leaves its bound again
  * begins the second away from it. */
@@ -50,9 +53,10 @@ static double inside(const sf_mapping_problem *p, int j, double u) {
 
 static sf_status evaluate(const anchor *a, const double *u, double *y, sf_error *err) {
     const sf_mapping_problem *p = a->problem;
-    SF_TRY(p->surrogate(p->context, u, y, err));
+    if (!a->linear)
+        SF_TRY(p->surrogate(p->context, u, y, err));
     for (int i = 0; i < p->responses; i++) {
-        y[i] += a->offset[i];
+        y[i] = a->offset[i] + (a->linear ? 0 : y[i]);
         for (int j = 0; j < p->parameters; j++)
             y[i] += a->matrix[i * p->parameters + j] * (u[j] - a->u[j]);
     }
@@ -222,6 +226,11 @@ static int collect_information(const sf_mapping_problem *p, const double *jacobi
     return data;
 }
 
+/* True if the residuals contradict the stated standard deviations (chi-squared, 5 %). */
+static bool contradicts(const sf_mapping_result *r) {
+    return r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
+}
+
 /* Covariance with the stated standard deviations of the data, or with those times the scale that the misfit
  * shows; degrees of freedom: data less trace(J C J^T). */
 static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_result *r, sf_error *err) {
@@ -235,9 +244,7 @@ static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_r
         for (size_t k = 0; k < n; k++)
             effective += gsl_matrix_get(a, j, k) * gsl_matrix_get(c, k, j);
     r->freedom = data - effective;
-    /* the residuals contradict the stated standard deviations (chi-squared, 5 %) */
-    bool misses = r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
-    r->scale = scaled && misses ? sqrt(r->misfit / r->freedom) : 1;
+    r->scale = scaled && contradicts(r) ? sqrt(r->misfit / r->freedom) : 1;
     invert_information(p, a, r->scale, c);
     for (size_t j = 0; j < n; j++)
         for (size_t k = 0; k < n; k++)
@@ -278,25 +285,28 @@ typedef struct search {
     const sf_mapping_problem *problem;
     sf_mapping_result *result; /* its matrix is that at `best` */
     point best, trial;
-    int count;                              /* of simulated points */
+    bool linear; /* the second phase: M alone has the derivatives, and the offsets are those of y */
+    int count;   /* of simulated points */
     double (*u)[SF_MAPPING_MAX_PARAMETERS]; /* [count] of them; owned */
-    double *offset;                         /* [count][responses]; owned */
+    double *y, *offset;                     /* [count][responses]; owned */
 } search;
 
 static anchor anchor_at(const search *s) {
-    return (anchor){s->problem, s->best.u, s->best.offset, s->result->matrix};
+    return (anchor){s->problem, s->linear, s->best.u, s->best.offset, s->result->matrix};
 }
 
 static sf_status simulate(search *s, point *at, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     size_t n = (size_t)p->responses;
     SF_TRY(p->simulate(p->context, at->u, at->y, err));
-    SF_TRY(p->surrogate(p->context, at->u, at->offset, err));
+    if (!s->linear)
+        SF_TRY(p->surrogate(p->context, at->u, at->offset, err));
     for (size_t i = 0; i < n; i++)
-        at->offset[i] = at->y[i] - at->offset[i];
+        at->offset[i] = at->y[i] - (s->linear ? 0 : at->offset[i]);
     at->misfit = misfit_of(p, at->y);
     at->objective = at->misfit + prior_of(p, at->u);
     memcpy(s->u[s->count], at->u, sizeof at->u);
+    memcpy(&s->y[n * (size_t)s->count], at->y, n * sizeof *at->y);
     memcpy(&s->offset[n * (size_t)s->count++], at->offset, n * sizeof *at->offset);
     if (p->progress)
         p->progress(p->context, s->result->iterations, at->u, at->y, at->objective);
@@ -312,7 +322,7 @@ static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
         step[j] = s->u[k][j] - s->best.u[j];
         square += step[j] * step[j];
     }
-    double weight = 1 / (NOISE * NOISE + pow(CURVATURE * square, 2));
+    double weight = 1 / (NOISE * NOISE + pow(CURVATURE[s->linear] * square, 2));
     for (int j = 0; j < n; j++) {
         for (int l = 0; l < n; l++)
             *gsl_matrix_ptr(a, (size_t)j, (size_t)l) += weight * step[j] * step[l];
@@ -324,17 +334,18 @@ static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
     }
 }
 
-/* M by a ridge regression of y - s over all simulated points, about the M that the problem begins with. */
+/* M by a ridge regression of y - s over all simulated points, about the M that the problem begins with; in
+ * the second phase of y, about 0. */
 static sf_status regress_matrix(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     size_t n = (size_t)p->parameters, responses = (size_t)p->responses;
-    const double *first = p->first_matrix;
+    const double *first = s->linear ? NULL : p->first_matrix, slope = SLOPE[s->linear];
     SF_MATRIX *a = sf_matrix(n, n, err), *b = sf_matrix(responses, n, err);
     SF_TRY(err->status);
     for (size_t k = 0; k < responses * n; k++)
-        b->data[k] = first && isfinite(first[k]) ? first[k] / (SLOPE * SLOPE) : 0;
+        b->data[k] = first && isfinite(first[k]) ? first[k] / (slope * slope) : 0;
     for (size_t j = 0; j < n; j++)
-        gsl_matrix_set(a, j, j, 1 / (SLOPE * SLOPE));
+        gsl_matrix_set(a, j, j, 1 / (slope * slope));
     for (int k = 0; k < s->count; k++)
         add_secant(s, k, a, b);
     gsl_linalg_cholesky_decomp1(a);
@@ -442,13 +453,24 @@ static sf_status try_point(search *s, sf_error *err) {
     return err->status;
 }
 
+/* Standard deviation by which the simulation's own noise moves the objective; 0 in the first phase, whose
+ * derivatives are the surrogate's. */
+static double noise_of(const search *s) {
+    const sf_mapping_problem *p = s->problem;
+    double sum = 0;
+    for (int i = 0; i < p->responses && s->linear; i++)
+        if (!isinf(p->sd[i]))
+            sum += pow(2 * residual(p, p->sd, s->best.y, i) * NOISE / p->sd[i], 2);
+    return sqrt(sum);
+}
+
 /* The end: the free step is short, or would gain nothing that counts, or two steps in a row lowered nothing
  * that counts where little is expected. A matrix that began as another problem's can make the step short in
  * every parameter although the objective would fall along correlated ones: the step must then gain little,
  * too. */
-static bool is_settled(const sf_mapping_problem *p, double step, double gain, int idle) {
+static bool is_settled(const sf_mapping_problem *p, double step, double gain, int idle, double noise) {
     bool is_short = step < p->tolerance && (!p->first_matrix || gain < 2 * p->tolerance);
-    return is_short || gain < p->tolerance * p->tolerance || (idle >= 2 && gain < 10 * p->tolerance);
+    return is_short || gain < p->tolerance * p->tolerance || (idle >= 2 && gain < 10 * p->tolerance + noise);
 }
 
 /* The first simulation, at the minimum with the given offset or at the start; there too if it fails. */
@@ -475,25 +497,82 @@ static sf_status begin(search *s, sf_error *err) {
     return simulate(s, best, err);
 }
 
+/* The trial becomes the best point if it is. */
+static void keep_better(search *s) {
+    if (!(s->trial.objective < s->best.objective))
+        return;
+    point before = s->best;
+    s->best = s->trial;
+    s->trial = before;
+}
+
 /* Simulates the trial and keeps the better point. The radius of the trust region follows the ratio of what
  * the objective lost to what it was expected to lose. */
 static sf_status advance(search *s, double expected, double *radius, int *idle, sf_error *err) {
     static const double POOR = 0.25, GOOD = 0.75;
     double length = distance(s);
     SF_TRY(try_point(s, err));
-    double loss = s->best.objective - s->trial.objective, noise = s->problem->tolerance,
+    double loss = s->best.objective - s->trial.objective,
+           noise = fmax(s->problem->tolerance, 0.5 * noise_of(s)),
            ratio = (loss + noise) / (expected + noise);
-    *idle = loss < 2 * s->problem->tolerance ? *idle + 1 : 0;
+    *idle = loss < 2 * noise ? *idle + 1 : 0;
     if (ratio < POOR)
         *radius = fmax(LEAST_RADIUS, fmin(*radius, length) / (ratio < 0 ? 4 : 2));
     else if (ratio > GOOD)
         *radius = fmax(*radius, 2 * length);
-    if (loss > 0) {
-        point before = s->best;
-        s->best = s->trial;
-        s->trial = before;
-    }
+    keep_better(s);
     return regress_matrix(s, err);
+}
+
+/* True if the surrogate is the simulation, as of a fit without drops: nothing is wrong with its derivatives.
+ */
+static bool is_exact(const search *s) {
+    double largest = 0;
+    for (int i = 0; i < s->problem->responses; i++)
+        largest = fmax(largest, fabs(s->best.offset[i]));
+    return largest < 1e-9;
+}
+
+/* Begins the second phase: where the columns lock up and the simulation does not, their derivatives are
+ * nothing that M could correct. One simulation along each parameter, to the side of the last proposal or away
+ * from a bound, tells those of the simulation itself. */
+static sf_status leave_surrogate(search *s, sf_error *err) {
+    const sf_mapping_problem *p = s->problem;
+    double towards[SF_MAPPING_MAX_PARAMETERS];
+    for (int j = 0; j < p->parameters; j++)
+        towards[j] = s->trial.u[j] - s->best.u[j];
+    s->linear = true;
+    memcpy(s->offset, s->y, (size_t)s->count * (size_t)p->responses * sizeof *s->y);
+    memcpy(s->best.offset, s->best.y, (size_t)p->responses * sizeof *s->y);
+    for (int j = 0; j < p->parameters && err->status == SF_OK; j++, s->result->iterations++) {
+        double step = copysign(fmin(LONGEST_DIFFERENCE, p->prior_sd[j]), towards[j]);
+        memcpy(s->trial.u, s->best.u, sizeof s->trial.u);
+        s->trial.u[j] += inside(p, j, s->best.u[j] + step) == s->best.u[j] + step ? step : -step;
+        if (try_point(s, err) == SF_OK)
+            keep_better(s);
+    }
+    SF_TRY(err->status);
+    return regress_matrix(s, err);
+}
+
+/* Ends the second phase: M corrects the surrogate's derivatives to those found. */
+static sf_status return_to_surrogate(search *s, sf_error *err) {
+    const sf_mapping_problem *p = s->problem;
+    int entries = p->responses * p->parameters;
+    sf_mapping_result *r = s->result;
+    s->linear = false;
+    SF_TRY(p->surrogate(p->context, s->best.u, s->best.offset, err));
+    for (int i = 0; i < p->responses; i++)
+        s->best.offset[i] = s->best.y[i] - s->best.offset[i];
+    memcpy(r->corrected, r->matrix, (size_t)entries * sizeof *r->matrix);
+    memset(r->matrix, 0, (size_t)entries * sizeof *r->matrix);
+    SF_OWNED double *slope = sf_alloc(err, (unsigned long)entries, sizeof *slope, "Jacobian");
+    SF_TRY(err->status);
+    const anchor a = anchor_at(s);
+    SF_TRY(differentiate(&a, slope, err));
+    for (int k = 0; k < entries; k++)
+        r->matrix[k] = isfinite(slope[k]) ? r->corrected[k] - slope[k] : 0;
+    return SF_OK;
 }
 
 static sf_status iterate(search *s, sf_error *err) {
@@ -502,24 +581,36 @@ static sf_status iterate(search *s, sf_error *err) {
     double radius = INFINITY, step = 0, expected = 0;
     int idle = 0; /* steps in a row, taken or not, that lowered the objective by nothing that counts */
     SF_TRY(begin(s, err));
-    for (r->iterations = 1;; r->iterations++) {
+    r->iterations = 1;
+    for (;;) {
         bool widely = p->wide && r->iterations == 1 && !p->first_matrix;
         SF_TRY(widely ? propose_widely(s, err) : propose(s, s->best.u, INFINITY, err));
         SF_TRY(measure_step(s, &step, &r->gain, err));
-        bool settled = is_settled(p, step, r->gain, idle);
+        bool settled = is_settled(p, step, r->gain, idle, noise_of(s));
+        bool doubtful = settled ? contradicts(r) && !p->first_matrix : idle >= MOST_IDLE;
+        if (doubtful && !s->linear && !is_exact(s) && r->iterations + p->parameters < p->max_iterations) {
+            SF_TRY(leave_surrogate(s, err));
+            radius = LONGEST_DIFFERENCE;
+            idle = 0;
+            continue;
+        }
         r->reason = settled && !is_bound(p, s->best.y) ? NULL
                     : settled                          ? "a drop stands at the bound of what can be used"
-                    : idle >= MOST_IDLE ? "no step that the columns propose lowers the objective"
-                                        : "the limit of simulations came first";
+                    : idle >= MOST_IDLE                ? "no proposed step lowers the objective"
+                                                       : "the limit of simulations came first";
         r->converged = !r->reason;
         if (settled || idle >= MOST_IDLE || r->iterations == p->max_iterations)
-            return estimate(p, true, r, err);
+            break;
         for (double hold = 2 * radius; err->status == SF_OK && distance(s) > radius; hold /= 2)
             propose(s, s->best.u, hold, err); /* no farther than the radius */
         SF_TRY(err->status);
         SF_TRY(measure_step(s, &step, &expected, err));
         SF_TRY(advance(s, expected, &radius, &idle, err));
+        r->iterations++;
     }
+    if (s->linear)
+        SF_TRY(return_to_surrogate(s, err));
+    return estimate(p, true, r, err);
 }
 
 sf_status sf_mapping_solve(const sf_mapping_problem *p, sf_mapping_result *r, sf_error *err) {
@@ -534,6 +625,7 @@ sf_status sf_mapping_solve(const sf_mapping_problem *p, sf_mapping_result *r, sf
                 .trial = {.y = sf_alloc(err, n, sizeof(double), "responses"),
                           .offset = sf_alloc(err, n, sizeof(double), "responses")},
                 .u = sf_alloc(err, points, sizeof *s.u, "points"),
+                .y = sf_alloc(err, points * n, sizeof(double), "points"),
                 .offset = sf_alloc(err, points * n, sizeof(double), "points")};
     if (err->status == SF_OK && regress_matrix(&s, err) == SF_OK)
         iterate(&s, err);
@@ -542,7 +634,7 @@ sf_status sf_mapping_solve(const sf_mapping_problem *p, sf_mapping_result *r, sf
     r->offset = s.best.offset;
     r->misfit = s.best.misfit;
     r->objective = s.best.objective;
-    SF_FREE(s.trial.y, s.trial.offset, s.u, s.offset);
+    SF_FREE(s.trial.y, s.trial.offset, s.u, s.y, s.offset);
     return err->status;
 }
 
@@ -553,7 +645,7 @@ void sf_mapping_free(sf_mapping_result *r) {
 
 sf_status sf_mapping_refit(const sf_mapping_problem *p, const sf_mapping_result *r, const double *sd,
                            double *u, double *y, sf_error *err) {
-    minimisation m = {.anchor = {p, r->u, r->offset, r->matrix},
+    minimisation m = {.anchor = {p, false, r->u, r->offset, r->matrix},
                       .sd = sd,
                       .about = r->u,
                       .radius = INFINITY,

@@ -9,7 +9,14 @@
  * and the next iterate minimises   sum ((y_c - measured) / sd)^2 + sum ((u - prior) / prior_sd)^2   (GSL's
  * Levenberg-Marquardt) within a trust region: the best point is kept, and the radius follows the ratio of
  * what the objective lost to what y_c expected. Everything is in the caller's scaled variables: logarithms of
- * parameters and of responses. */
+ * parameters and of responses.
+ *
+ * Where these steps lower nothing any more, or end at a misfit that contradicts the standard deviations, a
+ * second phase begins without the surrogate: one simulation along each parameter, then steps by
+ *
+ *     y_c(u) = y(u_k) + M (u - u_k),   M a regression of y over all simulated points.
+ *
+ * A problem that begins with another's M is not checked in this way at its end. */
 #pragma once
 #include "base/error.h"
 

@@ -5,7 +5,8 @@
 #include "io/process.h"
 #include "material/low_density_foam.h"
 
-enum { MAX_ITERATIONS = 30, EXACT_ITERATIONS = 100 /* of a fit without simulations */ };
+enum { SPEED_TEXT = 64 };
+enum { MAX_ITERATIONS = 60, EXACT_ITERATIONS = 100 /* of a fit without simulations */ };
 static const double TOLERANCE = 0.1; /* of a standard deviation: the last step */
 _Static_assert(SF_MAPPING_MAX_PARAMETERS >= SF_FIT_MAX_UNKNOWNS + SF_SIGNAL_CHAIN + SF_FIT_MAX_DROPS,
                "the unknown parameters, the chain and the speed of every drop");
@@ -48,7 +49,10 @@ static sf_status find_own_columns(sf_drop_fit *fit, int d, const char *path, sf_
     if (before.count > 0 && !replaced)
         return SF_OK;
     fit->borrowed[d] = fit->coarse;
-    if (find_columns(path, &fit->input->drop[d], &fit->columns[d], err) == SF_OK && replaced)
+    SF_TRY(find_columns(path, &fit->input->drop[d], &fit->columns[d], err));
+    if (fit->speed_now[d] > 0)
+        fit->columns[d].speed /= fit->speed_now[d];
+    if (replaced)
         check_coarse(&fit->input->drop[d], &before, &fit->columns[d], err);
     return err->status;
 }
@@ -126,9 +130,10 @@ static const char *label_of(const sf_fit_input *in, int d) {
     return in->drop[k].name;
 }
 
-/* Fills the requests of drops; those of measured drops have the coarse keys where the fit is coarse. */
+/* Fills the requests of drops; those of measured drops have the coarse keys where the fit is coarse, and
+ * their speed now. */
 static void fill_requests(const sf_drop_fit *fit, int first, int last, const char *material,
-                          sf_runner_drop *request) {
+                          char speed[][SPEED_TEXT], sf_runner_drop *request) {
     for (int d = first; d < last; d++, request++) {
         const sf_fit_drop *drop = &fit->input->drop[d];
         *request = (sf_runner_drop){.label = label_of(fit->input, d),
@@ -139,6 +144,10 @@ static void fill_requests(const sf_drop_fit *fit, int first, int last, const cha
             request->override_count = fit->input->coarse_count;
             memcpy(request->overrides, fit->input->coarse, sizeof fit->input->coarse);
         }
+        if (fit->speed_now[d] > 0) {
+            snprintf(speed[d], SPEED_TEXT, "missile.velocity=%.17g m/s", drop->speed * fit->speed_now[d]);
+            request->overrides[request->override_count++] = speed[d];
+        }
     }
 }
 
@@ -148,7 +157,7 @@ static sf_status predict_with(sf_drop_fit *fit, int first, int last, const char 
     sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
     sf_runner_result result[SF_FIT_MAX_DROPS];
     sf_error failure[SF_FIT_MAX_DROPS];
-    fill_requests(fit, first, last, material, request);
+    fill_requests(fit, first, last, material, NULL, request);
     sf_runner_run_each(fit->runner, last - first, request, result, failure, err);
     for (int d = first; d < last; d++) {
         sf_error *own = &failure[d - first];
@@ -170,7 +179,8 @@ static sf_status simulate_with(sf_drop_fit *fit, int first, int last, const char
                                sf_error *err) {
     sf_runner_drop request[SF_FIT_MAX_DROPS] = {{0}};
     sf_runner_result result[SF_FIT_MAX_DROPS];
-    fill_requests(fit, first, last, material, request);
+    char speed[SF_FIT_MAX_DROPS][SPEED_TEXT];
+    fill_requests(fit, first, last, material, speed, request);
     sf_runner_run_batch(fit->runner, last - first, request, result, err);
     for (int d = first; d < last; d++) {
         if (err->status == SF_OK)
@@ -216,29 +226,18 @@ static sf_status simulate_drops(sf_drop_fit *fit, int first, int last, const cha
     return sf_drop_fit_columns(fit, 0, 0, SF_FIT_AS_GIVEN, u, y, err); /* the joint data need no simulation */
 }
 
-/* Adds the effect of the speeds in u, by columns. */
-static sf_status add_speeds(const sf_drop_fit *fit, const double *u, double *y, sf_error *err) {
-    double given[SF_MAPPING_MAX_PARAMETERS] = {0};
-    unsigned long n = (unsigned long)fit->row[fit->measured_drops];
-    SF_OWNED double *with = sf_alloc(err, n, sizeof *with, "responses"),
-                    *without = sf_alloc(err, n, sizeof *with, "responses");
-    memcpy(given, u, (size_t)fit->parameters * sizeof *u);
+/* Measured drops with the speeds in u, or as given (NULL). */
+static void set_speeds(sf_drop_fit *fit, const double *u) {
     for (int d = 0; d < fit->measured_drops; d++)
-        if (fit->speed[d] >= 0)
-            given[fit->speed[d]] = 0;
-    if (err->status == SF_OK && surrogate((void *)fit, u, with, err) == SF_OK &&
-        surrogate((void *)fit, given, without, err) == SF_OK)
-        for (unsigned long k = 0; k < n; k++)
-            y[k] += with[k] - without[k];
-    return err->status;
+        fit->speed_now[d] = u && fit->speed[d] >= 0 && u[fit->speed[d]] != 0 ? exp(u[fit->speed[d]]) : 0;
 }
 
 static sf_status simulate(void *context, const double *u, double *y, sf_error *err) {
     sf_drop_fit *fit = context;
     char name[SF_FIT_NAME_SIZE];
     snprintf(name, sizeof name, "%s-%02d", fit->coarse ? "coarse" : "iterate", fit->iteration++);
-    SF_TRY(simulate_drops(fit, 0, fit->measured_drops, name, u, y, err));
-    return add_speeds(fit, u, y, err);
+    set_speeds(fit, u);
+    return simulate_drops(fit, 0, fit->measured_drops, name, u, y, err);
 }
 
 static void report_progress(void *context, int iteration, const double *u, const double *y,
@@ -360,13 +359,26 @@ static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
     return err->status;
 }
 
-/* The measured drops with the best parameters, which the runner still has, and the predicted ones. */
+/* The measured drops with the best parameters, at the speeds as given; where a drop has no result there, at
+ * those of the fit, which the runner still has. */
+static sf_status finish_measured(sf_drop_fit *fit, sf_error *err) {
+    sf_error failure = SF_ERROR_INIT;
+    set_speeds(fit, NULL);
+    simulate_drops(fit, 0, fit->measured_drops, "result", fit->result.u, fit->y, &failure);
+    fit->speeds_fitted = failure.status == SF_ERR_NUMERIC;
+    if (!fit->speeds_fitted)
+        return failure.status == SF_OK ? SF_OK : SF_FAIL(err, failure.status, "%s", failure.text);
+    set_speeds(fit, fit->result.u);
+    return simulate_drops(fit, 0, fit->measured_drops, "result", fit->result.u, fit->y, err);
+}
+
+/* The measured drops and the predicted ones with the result. */
 static sf_status finish(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
     int n = fit->parameters;
     FILE *log = fit->runner->log;
     fit->runner->log = NULL;
-    simulate_drops(fit, 0, fit->measured_drops, "result", fit->result.u, fit->y, err);
+    finish_measured(fit, err);
     fit->runner->log = log;
     SF_TRY(err->status);
     SF_TRY(simulate_drops(fit, fit->measured_drops, in->drop_count, "result", fit->result.u, fit->y, err));

@@ -79,7 +79,8 @@ typedef struct sf_fit_drop {
     double pause[SF_SERIES_MOST]; /* [number - 1] s, after each of the drops before it */
     double value[SF_FIT_SAMPLES]; /* measured, in the unit of its key (kinds.h); NaN: not */
     double sd[SF_FIT_SAMPLES];    /* relative standard deviations */
-    double speed_sd;              /* relative standard deviation of the case's speed; 0: it is known */
+    double speed;                 /* m s-1, of the case; 0: a machine drives the missile */
+    double speed_sd;              /* its relative standard deviation; 0: it is known */
     char *curve_path;             /* of the measured curve; NULL: none; owned */
     char interpretation[SF_REFERENCE_INTERPRETATION]; /* how it was read */
     int samples;                                      /* of it; 0: none */
@@ -200,9 +201,11 @@ typedef struct sf_drop_fit {
     sf_columns columns[SF_FIT_MAX_DROPS];
     bool borrowed[SF_FIT_MAX_DROPS]; /* columns of the coarse drop, until the drop itself was simulated */
     sf_fit_simulated simulated[SF_FIT_MAX_DROPS];
-    bool coarse;               /* now: the drops have the input's coarse_set */
-    sf_signal_chain chain_now; /* through which the simulated drops are read */
-    int coarse_iterations;     /* of the first part; 0: there was none */
+    bool coarse;                        /* now: the drops have the input's coarse_set */
+    sf_signal_chain chain_now;          /* through which the simulated drops are read */
+    double speed_now[SF_FIT_MAX_DROPS]; /* factor on the drop's speed in its simulation; 0: as given */
+    bool speeds_fitted; /* `y` and `simulated` have the speeds of the fit, as the given ones have no result */
+    int coarse_iterations; /* of the first part; 0: there was none */
     int iteration;
     sf_mapping_result result; /* of the measured drops */
     double *y; /* [responses] of the simulations with the result; owned, with all others [responses] behind

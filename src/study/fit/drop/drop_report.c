@@ -184,8 +184,10 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
     if (!any)
         return;
     sf_html_paragraph(
-        f, "The speeds are known with a standard deviation only, and are unknowns of the fit; the table "
-           "above is simulated with the given ones.");
+        f,
+        "The speeds are known with a standard deviation only, and are unknowns of the fit; the table "
+        "above is simulated with %s ones.",
+        fit->speeds_fitted ? "the fitted" : "the given");
     SF_HTML_TABLE table =
         sf_html_table_begin(f, "dense", "drop|>given (m/s)|>standard deviation (%)|>in the fit (%)|>95 %");
     for (int d = 0; d < fit->measured_drops; d++) {

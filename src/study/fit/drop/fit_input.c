@@ -24,8 +24,8 @@ static sf_status read_drops(const sf_config *config, sf_config_item *root, const
 static sf_status read_coarse(const sf_config *config, sf_config_item *root, sf_fit_input *in, sf_error *err) {
     static const char *const groups[] = {"geometry.", "pad.", "solver."};
     sf_config_item *list = config_setting_get_member(root, "coarse_set");
-    SF_TRY(
-        sf_config_overrides(config, "coarse_set", SF_RUNNER_OVERRIDES, in->coarse, &in->coarse_count, err));
+    SF_TRY(sf_config_overrides(config, "coarse_set", SF_RUNNER_OVERRIDES - 1, in->coarse, &in->coarse_count,
+                               err));
     if (in->coarse_count > 0 && in->drop_count == 0)
         return sf_config_refuse(config, list, err, "coarse_set is given, but no measured drop to simulate");
     for (int k = 0; k < in->coarse_count; k++) {
@@ -115,6 +115,7 @@ static sf_status read_case(sf_fit_drop *drop, const char *material, bool first, 
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
     SF_TRY(sf_case_read(drop->case_path, 1, &material, &sink, &c, err));
     SF_TRY(take_series(&c, drop, err));
+    drop->speed = c.missile_card.speed;
     if (c.temperature_acts)
         return SF_REFUSE(err,
                          "the drop \"%s\": %s: softfall-fit drop fits a foam at one temperature: give its "
