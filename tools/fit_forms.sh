@@ -3,7 +3,8 @@
 # Fits each model of examples/fit/eva35_lock_70.cfg alone, without chains: to the five drops of eva35_five_drops.inc, to them with a lock-up
 # of its own, also with the accelerometer's mount as an unknown, and to the three drops on the 70 mm pad with a lock-up, on meshes of SPACING
 # under the missile. Prints the table of docs/identification.md, "Fits that converge": simulations, misfit, the largest differences of a_max,
-# HIC and its window to the measured ones over the drops of the fit, and whether the fit converged. Resumes.
+# HIC and its window to the measured ones over the drops of the fit, and whether the fit converged. Below 10 mm each fit begins with
+# drops on meshes of 10 mm (coarse_set); their simulations stand behind a plus. Resumes.
 #
 #     tools/fit_forms.sh [SPACING_MM=10 [OUT=out/fit_forms [REGEX]]]     REGEX: only the fits whose name it finds
 #
@@ -50,6 +51,10 @@ sets = {"five drops": (five, ""), "five drops, lock-up": (five, lock), "five dro
         "three drops, lock-up": (three, lock)}
 
 
+coarse = ("" if spacing >= 10 else 'coarse_set = ["geometry.parameters.fine_spacing=10.0", "geometry.parameters.outer_spacing=20.0", '
+          '"pad.mesh_error_limit=1.0"];\n')
+
+
 def largest(result, name, suffix=""):
     """The difference of the simulated to the measured value, in percent, that is the largest of all drops of the fit."""
     differences = [100 * (drop[name + suffix] / drop[f"{name}_measured{suffix}"] - 1) for drop in result["drops"] if drop["used"]]
@@ -70,7 +75,7 @@ solid_density = "940 kg/m3";
 unknown = ( {lock}{{ name = "HU"; prior_sd = 0.5; }}, {{ name = "SHAPE"; prior_sd = 0.6; }} );
 forms = ( {{ curve = "{curve}"; rate = "{rate}"; {rest} }} );
 posterior = false;
-{drops}""")
+{coarse}{drops}""")
         if not os.path.exists(f"{folder}/fit.json"):
             with open(f"{folder}.log", "w", encoding="utf-8") as log:
                 subprocess.run([program, "drop", fit, "-o", folder, "--force"], stdout=log, stderr=subprocess.STDOUT)
@@ -81,6 +86,6 @@ posterior = false;
         result = json.loads(read(f"{folder}/fit.json"))
         objective = min(float(x) for x in re.findall(r"objective (\S+);", log))
         status = "converged" if result["converged"] else f"{result.get('reason', 'not converged')}, expected gain {result['expected_gain']:.2g}"
-        print(f"| {name} | {curve}, {rate} | {result['iterations']} | {result['misfit']:.3g} | {objective:.4g} | {largest(result, 'a_max', '_g')} | {largest(result, 'hic')} | "
+        print(f"| {name} | {curve}, {rate} | {result['iterations']}{' + %d' % result['coarse_iterations'] if coarse else ''} | {result['misfit']:.3g} | {objective:.4g} | {largest(result, 'a_max', '_g')} | {largest(result, 'hic')} | "
               f"{largest(result, 'hic_window', '_ms')} | {status} |", flush=True)
 PYTHON
