@@ -75,12 +75,10 @@ static sf_status build_densification(const sf_foam_card *foam, double stress, do
         exponent = sf_densification_natural_exponent(start, limit, stress, slope);
     curve->beyond = sf_densification_join(start, limit, exponent, stress, slope, energy);
     curve->straight = straight_end(&curve->beyond);
-    curve->firm_slope = fmax(curve->largest_slope, slope);
-    if (limit - SF_FIRM_ROOM > start) {
-        double firm, ignored[2];
-        sf_densification_evaluate(&curve->beyond, limit - SF_FIRM_ROOM, &ignored[0], &firm, &ignored[1]);
-        curve->firm_slope = fmax(curve->firm_slope, firm);
-    }
+    double firm, ignored[2], before = limit - SF_FIRM_ROOM;
+    sf_densification_evaluate(&curve->beyond, fmax(start, before), &ignored[0], &firm, &ignored[1]);
+    firm *= limit < 1 && before > start ? SF_FIRM_TIMES : 1;
+    curve->firm_slope = fmax(curve->largest_slope, firm);
     return SF_OK;
 }
 

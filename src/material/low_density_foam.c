@@ -33,9 +33,9 @@ static double rest_stiffness(const sf_foam *foam) {
     return fmax(foam->modulus, foam->curve[0].piece[0].c[1]);
 }
 
-/* `slope`, which stabilisation and DAMP follow, stays that of the firm foam near the pole: their stiffness
- * has no energy of its own, and one that grows a thousandfold and falls back in a few steps would feed the
- * pad. */
+/* `slope`, which stabilisation and DAMP follow, does not exceed that of the firm foam near the pole: their
+ * stiffness has no energy of its own, and one that grows a thousandfold and falls back in a few steps would
+ * feed the pad. */
 static SF_KERNEL void base_law(const void *numbers, double stretch[3][SF_LANES], sf_foam_loading *law) {
     const sf_foam *foam = numbers;
     double modulus = foam->modulus, cutoff = foam->cutoff, yield = cutoff / modulus;
