@@ -191,7 +191,7 @@ def _take_search(p: Protocol, search: Search, made: Outcome) -> tuple[float, boo
     if verdict.startswith("above"):
         return float(found["highest_simulated_m"]), False  # of a drop that can be used
     if verdict.startswith("below"):
-        return -float(found["lowest_simulated_m"] or found["reaches_anvil_m"]), False
+        return -float(found["lowest_simulated_m"] or found["exceeded_at_m"]), False
     made.notes.append(f"{of}: {found.get('problem') or verdict}")
     return math.nan, False
 

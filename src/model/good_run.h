@@ -9,49 +9,49 @@
 
 enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
 
-/* X(name, bound of a remark, bound of use (INFINITY: none), shown as, title, value: as figures of
- * summary.json, why it matters). The magnitude of a value is compared; a value that a run does not define is
- * not judged. */
+/* X(name, bound of a remark, bound of use (INFINITY: none), part of a_max that is sure beyond it (1: a_max
+ * can only be too low, 0: nothing is known), shown as, title, value: as figures of summary.json, why it
+ * matters). The magnitude of a value is compared; a value that a run does not define is not judged. */
 /* clang-format off */
 #define SF_GOOD_RUN(X)                                                                                                 \
-    X(ending, 0, 1, SF_AS_NUMBER, "end of the run",                                                                    \
+    X(ending, 0, 1, 0, SF_AS_NUMBER, "end of the run",                                                                    \
       "`status`, `touched`: 0 `finished` or `rebound`, 1 interrupted or no end, 2 failed or never touched",            \
       "figures of a part of the drop are not those of the drop")                                                       \
-    X(ended_in_contact, 0, 0.4, SF_AS_PERCENT, "deceleration left at the end",                                         \
+    X(ended_in_contact, 0, 0.4, 1, SF_AS_PERCENT, "deceleration left at the end",                                         \
       "deceleration in the last row / `a_max_g`; 0 if `rebounded`",                                                    \
       "the peak or a part of the HIC window may lie after the end")                                                    \
-    X(energy_error, 0.01, 0.05, SF_AS_PERCENT, "energy error", "`energy_error`",                                       \
+    X(energy_error, 0.01, 0.05, 0, SF_AS_PERCENT, "energy error", "`energy_error`",                                       \
       "energy that appears or disappears falsifies the deceleration")                                                  \
-    X(edge, 0.1, 0.5, SF_AS_PERCENT, "edge: change of a_max for 1 % of speed or thickness",                            \
+    X(edge, 0.1, 0.5, 1, SF_AS_PERCENT, "edge: change of a_max for 1 % of speed or thickness",                            \
       "the larger of `a_max_change_by_speed` and `a_max_change_by_thickness`, magnitudes",                             \
       "the foam is about to lock up: what no laboratory can set as closely decides the peak")                          \
-    X(stabilisation, 0.01, 0.05, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
+    X(stabilisation, 0.01, 0.05, 0.7, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
       "the stabilisation stiffens the pad, or bears what a foam that locks up should")                                 \
-    X(contact, 0.01, 0.05, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
+    X(contact, 0.01, 0.05, 0, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
       "contact consumes energy that the foam should take")                                                             \
-    X(dissipation, 1e-3, 0.01, SF_AS_PERCENT, "energy given back by what dissipates", "`negative_dissipation`",         \
+    X(dissipation, 1e-3, 0.01, 0.7, SF_AS_PERCENT, "energy given back by what dissipates", "`negative_dissipation`",         \
       "hysteresis, viscosity, friction or stabilisation creates energy: the foam's curves or the mesh are wrong")      \
-    X(filter, 0.03, 0.25, SF_AS_PERCENT, "raw peak against the filtered one", "`a_max_raw_g` / `a_max_g` - 1; not of a `step_artefact`",                                          \
+    X(filter, 0.03, 0.25, 0, SF_AS_PERCENT, "raw peak against the filtered one", "`a_max_raw_g` / `a_max_g` - 1; not of a `step_artefact`",                                          \
       "the filter makes the peak, or single steps do")                                                                 \
-    X(step_artefact, 0, INFINITY, SF_AS_NUMBER, "raw peak of one or two time steps",                                   \
+    X(step_artefact, 0, INFINITY, 0, SF_AS_NUMBER, "raw peak of one or two time steps",                                   \
       "1 if `a_max_raw_rows` < 3, else 0",                                                                             \
       "the raw peak grows as the time step shrinks and means nothing; the filtered figures do not depend on it")       \
-    X(coarse, 0.01, INFINITY, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
+    X(coarse, 0.01, INFINITY, 0, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
       "-`local_strain_excess`, at least 0",                                                                            \
       "the mesh is too coarse to show the strain below the missile")                                                   \
-    X(local_collapse, 0.1, 0.3, SF_AS_NUMBER, "strain of a node above its neighbours", "`local_collapse`",                \
+    X(local_collapse, 0.1, 0.3, 0, SF_AS_NUMBER, "strain of a node above its neighbours", "`local_collapse`",                \
       "single nodes collapse or carry the missile alone: the foam is unstable or the mesh too coarse")                  \
-    X(mesh, 0.03, 0.25, SF_AS_PERCENT, "expected error of a_max from the mesh",                                          \
+    X(mesh, 0.03, 0.25, 1, SF_AS_PERCENT, "expected error of a_max from the mesh",                                          \
       "`/model/expected_mesh_error` of results.h5", "the spacing under the missile is too coarse for its pad")         \
-    X(slit, 0, INFINITY, SF_AS_PERCENT, "nodes at a slit, hole or gap narrower than their supports",                     \
+    X(slit, 0, INFINITY, 0, SF_AS_PERCENT, "nodes at a slit, hole or gap narrower than their supports",                     \
       "`/model/slit_fraction` of results.h5", "the faces of the slit pass through each other where it closes")          \
-    X(informed, 0.01, 0.5, SF_AS_PERCENT, "energy of the foam beyond the strains that its data inform",                \
+    X(informed, 0.01, 0.5, 0, SF_AS_PERCENT, "energy of the foam beyond the strains that its data inform",                \
       "`energy_beyond_data`", "there the material's curve is extrapolated, and with it the peak")                       \
-    X(anvil, 0.9, 0.95, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \
+    X(anvil, 0.9, 0.95, 1, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \
       "the missile reaches the anvil; its stiffness is not in the model")                                              \
-    X(below_anvil, 0.01, 0.2, SF_AS_PERCENT, "foam below the anvil", "`below_anvil_mm` / `thickness_mm`", \
+    X(below_anvil, 0.01, 0.2, 1, SF_AS_PERCENT, "foam below the anvil", "`below_anvil_mm` / `thickness_mm`", \
       "the anvil acts on the surfaces of `pad.fixed` only: other foam passes through it and is too soft") \
-    X(notes, 0, INFINITY, SF_AS_NUMBER, "notes of the programs", "number of `notes` that do not only repeat `ending`",                                  \
+    X(notes, 0, INFINITY, 0, SF_AS_NUMBER, "notes of the programs", "number of `notes` that do not only repeat `ending`",                                  \
       "a program warned of the run or left something out")
 /* clang-format on */
 
@@ -68,6 +68,7 @@ const sf_good_run *sf_good_run_limits(void);
 typedef struct sf_good_run_rule {
     const char *key, *title;
     double remark, refuse; /* the bounds; refuse INFINITY: none */
+    double sure;           /* -, part of a_max that is sure beyond `refuse` */
     bool percent;
     const char *figures, *why;
 } sf_good_run_rule;

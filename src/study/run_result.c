@@ -6,6 +6,7 @@ static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *ou
     const sf_limits limits = SF_DEFAULT_LIMITS; /* no part of the grade */
     sf_verdict_compute(r, f, &limits, &verdict);
     out->grade = verdict.grade;
+    out->sure = verdict.sure;
     sf_verdict_line(&verdict, out->verdict, sizeof out->verdict);
 }
 
@@ -133,6 +134,7 @@ static void add_drop(int drop, sf_runner_result *one, sf_runner_result *all) {
         snprintf(all->verdict, sizeof all->verdict, "drop %d: %.*s", drop, SF_VERDICT_LINE_SIZE - 20,
                  one->verdict);
     }
+    all->sure = drop == 1 ? one->sure : fmin(all->sure, one->sure);
     all->max_local_strain = fmax(all->max_local_strain, one->max_local_strain);
     for (int k = 0; k < all->layer_count && k < one->layer_count; k++)
         one->layer_strain[k] = fmax(one->layer_strain[k], all->layer_strain[k]);

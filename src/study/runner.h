@@ -37,6 +37,7 @@ typedef struct sf_runner_result {
     double *layer_strain;               /* [layer_count] -, largest, NaN: not known; owned */
     double energy_error;                /* - */
     sf_grade grade;                     /* of the run, as softfall-post gives it */
+    double sure;                        /* sf_verdict.sure; 0: read from a record */
     char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */
     int64_t nodes, steps;
     double *figure;  /* [of sf_figure_at] sf_figure_number; owned */

@@ -359,7 +359,7 @@ def test_a_bound_of_a_search_is_that_of_drops_that_can_be_used(verdict, deciding
     p = protocol.read("en1177")
     lowest = None if deciding == "anvil" else 0.5
     found = {"verdict": verdict, "deciding": deciding, "height_m": None, "height_low_m": None, "height_high_m": None, "lowest_simulated_m": lowest,
-             "highest_simulated_m": 1.2, "reaches_anvil_m": 1.4}
+             "highest_simulated_m": 1.2, "exceeded_at_m": 1.4}
     criteria = [{"criterion": "a_max", "limit_g": 200, "height_m": None, "state": "not reached"}, {"criterion": "HIC", "limit": 1000, "height_m": None, "state": "not reached"}]
     points = [{"height_m": h} for h in (0.4, 0.5, 1.2, 2.0)]
     search = protocol_drops.Search("as it is", "centre", pathlib.Path(), {"critical_fall_height": found, "criteria": criteria, "points": points})

@@ -163,12 +163,14 @@ static sf_limit limit_of(const char *key, const char *title, const char *unit, d
 
 void sf_verdict_compute(const sf_results *results, const sf_figures *figures, const sf_limits *limits,
                         sf_verdict *verdict) {
-    *verdict = (sf_verdict){.count = SF_CHECKS};
+    *verdict = (sf_verdict){.count = SF_CHECKS, .sure = 1};
     for (int k = 0; k < SF_CHECKS; k++) {
         sf_check *row = &verdict->rows[k];
         fill_row(k, results, figures, row);
         if (row->grade > verdict->grade)
             verdict->grade = row->grade;
+        if (row->grade == SF_GRADE_DO_NOT_USE)
+            verdict->sure = fmin(verdict->sure, sf_good_run_rule_get(k)->sure);
     }
     if (figures->driven)
         return;

@@ -44,6 +44,7 @@ enum { SF_LIMITS = 2 }; /* a_max, HIC in this order */
 
 typedef struct sf_verdict {
     sf_grade grade;
+    double sure; /* -, part of a_max that is sure all the same with "do not use"; 0: nothing is known */
     int count;
     sf_check rows[SF_CHECKS];
     int limit_count; /* 0: a prescribed motion has no injury figures */

@@ -267,8 +267,8 @@ static void height_text(const sf_cfh_report *r, double scale, char *text, size_t
     double height;
     if (!sf_cfh_bound(r, &height))
         snprintf(text, size, "–");
-    else if (v->verdict == SF_CFH_ABOVE && !isnan(v->anvil))
-        snprintf(text, size, "%.3f to %.3f m", scale * height, scale * v->anvil);
+    else if (v->verdict == SF_CFH_ABOVE && v->exceeding)
+        snprintf(text, size, "%.3f to %.3f m", scale * height, scale * v->exceeding->height);
     else
         snprintf(text, size, "%s%.3f m", signs[v->verdict], scale * height);
 }

@@ -77,7 +77,7 @@ const char *sf_cfh_bound(const sf_cfh_report *r, double *height) {
     const sf_cfh_result *v = r->result;
     *height = v->verdict == SF_CFH_FOUND   ? v->crossing[v->deciding].height
               : v->verdict == SF_CFH_ABOVE ? v->highest
-              : v->verdict == SF_CFH_BELOW ? (isnan(v->lowest) ? v->anvil : v->lowest)
+              : v->verdict == SF_CFH_BELOW ? (isnan(v->lowest) ? v->exceeding->height : v->lowest)
                                            : NAN;
     return words[v->verdict];
 }
@@ -100,6 +100,18 @@ static void uncertainty_text(const sf_cfh_report *r, char *text, size_t size) {
         snprintf(text, size, " 95 %% interval with the uncertainty of %s: %s.", of, interval);
 }
 
+/* "the missile reaches the anvil", or what is sure of a drop that is not to be used. */
+static void exceeding_text(const sf_cfh_report *r, char *text, size_t size) {
+    const sf_cfh_point *p = r->result->exceeding;
+    sf_cfh_criterion c = p->least[SF_CFH_A_MAX] >= r->plan->limit[SF_CFH_A_MAX] ? SF_CFH_A_MAX : SF_CFH_HIC;
+    if (p->on_anvil)
+        sf_text_add(text, size, "from %.3f m the missile reaches the anvil.", p->height);
+    else
+        sf_text_add(text, size,
+                    "%s is at least %.0f%s at %.3f m, in a drop that is not to be used otherwise.",
+                    sf_cfh_name(c), p->least[c], sf_cfh_unit(c), p->height);
+}
+
 /* The height as simulated; plain text that ends in a full stop. */
 static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
     const sf_cfh_result *v = r->result;
@@ -110,10 +122,10 @@ static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
         snprintf(text, size, "Critical fall height not determined: %s.", v->problem.text);
         return;
     }
-    bool up_to_anvil = v->verdict == SF_CFH_ABOVE && !isnan(v->anvil);
+    bool between = v->verdict == SF_CFH_ABOVE && v->exceeding;
     snprintf(text, size, "Critical fall height %s%.3f m", side, height);
-    if (up_to_anvil)
-        sf_text_add(text, size, " and below %.3f m", v->anvil);
+    if (between)
+        sf_text_add(text, size, " and below %.3f m", v->exceeding->height);
     sf_text_add(text, size,
                 " of free fall%s%s%s: ", v->verdict == SF_CFH_FOUND && r->spread ? " as simulated" : "",
                 *r->counted ? ", by " : "", r->counted);
@@ -127,13 +139,13 @@ static void simulated_text(const sf_cfh_report *r, char *text, size_t size) {
         sf_text_add(text, size, "neither a_max %g g nor HIC %g is reached", r->plan->limit[SF_CFH_A_MAX],
                     r->plan->limit[SF_CFH_HIC]);
     else if (isnan(v->lowest))
-        sf_text_add(text, size, "from there the missile reaches the anvil.");
+        exceeding_text(r, text, size);
     else
         sf_text_add(text, size, "%s exceeds %g%s at the lowest height.", name, limit, unit);
-    if (up_to_anvil)
-        sf_text_add(text, size, ", but from %.3f m the missile reaches the anvil.", v->anvil);
-    else if (v->verdict == SF_CFH_ABOVE)
-        sf_text_add(text, size, ".");
+    if (v->verdict == SF_CFH_ABOVE)
+        sf_text_add(text, size, between ? ", but " : ".");
+    if (between)
+        exceeding_text(r, text, size);
 }
 
 void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
@@ -148,7 +160,7 @@ void sf_cfh_verdict_text(const sf_cfh_report *r, char *text, size_t size) {
 /* The same on the rig; "" without a rig or a height. */
 void sf_cfh_rig_text(const sf_cfh_report *r, char *text, size_t size) {
     double height;
-    char interval[64], uncertainty[160] = "";
+    char interval[64], uncertainty[160] = "", below[32] = "";
     const char *side = sf_cfh_bound(r, &height);
     text[0] = '\0';
     if (r->rig->pairs == 0 || isnan(height))
@@ -157,8 +169,11 @@ void sf_cfh_rig_text(const sf_cfh_report *r, char *text, size_t size) {
         snprintf(uncertainty, sizeof uncertainty,
                  "; with these uncertainties and that of g_eff: 95 %% interval %s",
                  sf_cfh_interval_text(&r->spread->rig, interval, sizeof interval));
-    snprintf(text, size, "On the rig: %s%.3f m%s%s; g_eff = %.3f ± %.3f m/s2 from %d pairs.", side,
-             sf_cfh_rig_height(r->rig, height), r->spread ? " as simulated" : "", uncertainty,
+    if (r->result->verdict == SF_CFH_ABOVE && r->result->exceeding)
+        snprintf(below, sizeof below, " and below %.3f m",
+                 sf_cfh_rig_height(r->rig, r->result->exceeding->height));
+    snprintf(text, size, "On the rig: %s%.3f m%s%s%s; g_eff = %.3f ± %.3f m/s2 from %d pairs.", side,
+             sf_cfh_rig_height(r->rig, height), below, r->spread ? " as simulated" : "", uncertainty,
              r->rig->gravity, r->rig->standard_error, r->rig->pairs);
 }
 
@@ -323,12 +338,16 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     SF_JSON_OBJECT(json, "critical_fall_height");
     sf_json_text(json, "verdict", words[v->verdict]);
     sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
-    sf_json_text(json, "deciding", !decided ? NULL : isnan(v->lowest) ? "anvil" : sf_cfh_name(v->deciding));
+    sf_json_text(json, "deciding",
+                 !decided                                     ? NULL
+                 : isnan(v->lowest) && v->exceeding->on_anvil ? "anvil"
+                                                              : sf_cfh_name(v->deciding));
     double height = found ? v->crossing[v->deciding].height : NAN;
     put_heights(json, r, height, SF_CFH_FIRST);
     SF_JSON_NUMBERS(json, {"speed_m_s", sf_cfh_speed(height)}, {"confidence", 0.95},
                     {"lowest_simulated_m", v->lowest}, {"highest_simulated_m", v->highest},
-                    {"reaches_anvil_m", v->anvil});
+                    {"exceeded_at_m", v->exceeding ? v->exceeding->height : NAN},
+                    {"reaches_anvil_m", v->exceeding && v->exceeding->on_anvil ? v->exceeding->height : NAN});
     sf_json_text(json, "search_ended", sf_cfh_step_text(r->ending));
 }
 

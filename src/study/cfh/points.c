@@ -251,17 +251,25 @@ double sf_cfh_rig_margin(const sf_cfh_rig *rig, double margin) {
     return hypot(margin, rig->margin);
 }
 
-/* The points that succeeded, of one criterion, below a drop that ended on the anvil: its height, or NaN. */
-static int list_points(const sf_cfh_points *points, sf_cfh_criterion criterion, double *height, double *value,
-                       double *anvil) {
+/* The criterion of which a drop that failed exceeds the limit all the same; SF_CFH_CRITERIA: of none. */
+static sf_cfh_criterion exceeded_by(const sf_cfh_point *p, const double *limit) {
+    sf_cfh_criterion c = SF_CFH_A_MAX;
+    while (c < SF_CFH_CRITERIA && !(p->failed && (p->on_anvil || p->least[c] >= limit[c])))
+        c++;
+    return c;
+}
+
+/* The points that succeeded, of one criterion, below one that failed and yet exceeds a limit. */
+static int list_points(const sf_cfh_points *points, sf_cfh_criterion criterion, const double *limit,
+                       double *height, double *value, const sf_cfh_point **exceeding) {
     int count = 0;
-    *anvil = NAN;
-    for (int k = 0; k < points->count && isnan(*anvil); k++) {
+    *exceeding = NULL;
+    for (int k = 0; k < points->count && !*exceeding; k++) {
         const sf_cfh_point *p = &points->point[k];
         height[count] = p->height;
         value[count] = p->value[criterion];
         count += !p->failed;
-        *anvil = p->on_anvil ? p->height : NAN;
+        *exceeding = exceeded_by(p, limit) < SF_CFH_CRITERIA ? p : NULL;
     }
     return count;
 }
@@ -286,7 +294,7 @@ void sf_cfh_evaluate(const sf_cfh_points *points, const double *limit, sf_cfh_re
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         double height[SF_CFH_MAX_POINTS], value[SF_CFH_MAX_POINTS];
         sf_error problem = SF_ERROR_INIT;
-        int count = list_points(points, c, height, value, &result->anvil);
+        int count = list_points(points, c, limit, height, value, &result->exceeding);
         if (count > 0) {
             result->lowest = height[0];
             result->highest = height[count - 1];
@@ -299,8 +307,10 @@ void sf_cfh_evaluate(const sf_cfh_points *points, const double *limit, sf_cfh_re
     bool none = isnan(result->lowest);
     if (none)
         result->problem = (sf_error)SF_ERROR_INIT;
-    if (none && isnan(result->anvil))
+    if (none && !result->exceeding)
         SF_FAIL(&result->problem, SF_ERR_NUMERIC, "no simulation succeeded");
+    else if (none)
+        result->deciding = exceeded_by(result->exceeding, limit);
     result->verdict = none ? SF_CFH_BELOW : SF_CFH_UNKNOWN;
     if (result->problem.status != SF_OK)
         result->verdict = SF_CFH_UNKNOWN;
@@ -318,6 +328,7 @@ static const double LEAST_STEP = 0.1;   /* of ln(height) */
 static const double LARGEST_STEP = 0.8; /* likewise */
 static const double CLOSEST = 0.04;     /* ln(height) between two points of the search */
 static const double COLLAPSE_GAP = 0.1; /* ln(height) between the last success and a failure */
+static const double EXCEEDING_GAP = 0.02; /* likewise, where the failure exceeds a limit all the same */
 static const double GOOD_MARGIN = 0.01; /* of the interval of the crossing */
 static const double NEAR = 0.15;        /* ln(height): a point beside the crossing */
 static const double FIRST_GAP = 0.5;    /* of ln(height) between the first two drops */
@@ -329,6 +340,7 @@ typedef struct bracket {
     const sf_cfh_point *below, *above; /* highest without a limit reached below the lowest with one */
     const sf_cfh_point *beside;        /* the next one on the outer side of the only one of them */
     const sf_cfh_point *failed;        /* the lowest failure above `below` */
+    bool exceeds;                      /* it exceeds a limit all the same */
 } bracket;
 
 /* Returns by how much in ln(a_max) the limits are exceeded; HIC counts half, as it grows about twice as
@@ -344,7 +356,11 @@ static bracket find_bracket(const sf_cfh_plan *plan, const sf_cfh_points *points
     for (int k = 0; k < points->count; k++) {
         const sf_cfh_point *p = &points->point[k];
         if (p->failed) {
+            bool exceeds = !b.above && exceeded_by(p, plan->limit) < SF_CFH_CRITERIA;
+            b.exceeds = exceeds && !b.failed;
             b.failed = b.failed ? b.failed : p;
+            if (exceeds)
+                break;
             continue;
         }
         if (b.above) {
@@ -419,12 +435,14 @@ static sf_cfh_step step_to(const sf_cfh_plan *plan, const sf_cfh_points *points,
     return SF_CFH_SIMULATE;
 }
 
-/* Two thirds of ln(height) on the way to where simulations fail, and one third. */
-static sf_cfh_step divide(const sf_cfh_plan *plan, double bottom, double failed, sf_cfh_round *round) {
-    double gap = log(failed / bottom);
-    for (int k = 1; k <= 2; k++)
-        round->height[round->count++] = rounded(plan, bottom * exp(gap * k / 3));
-    return SF_CFH_SIMULATE;
+/* The heights from `low` to `high` in thirds of ln(height); none if they are too close for that. */
+static void divide(const sf_cfh_plan *plan, double low, double high, sf_cfh_round *round) {
+    double gap = log(high / low);
+    for (int k = 1; k <= 2; k++) {
+        double height = rounded(plan, low * exp(gap * k / 3)), last = round->count ? round->height[0] : low;
+        if (height > last + 0.5 * plan->unit * GRAIN && height < high - 0.5 * plan->unit * GRAIN)
+            round->height[round->count++] = height;
+    }
 }
 
 static sf_cfh_step go_up(const sf_cfh_plan *plan, const sf_cfh_points *points, const bracket *b,
@@ -437,11 +455,14 @@ static sf_cfh_step go_up(const sf_cfh_plan *plan, const sf_cfh_points *points, c
     double bottom = b->below->height;
     if (bottom >= plan->max_height * (1 - 1e-9))
         return SF_CFH_AT_MAX_HEIGHT;
-    if (b->failed && log(b->failed->height / bottom) < COLLAPSE_GAP)
+    if (b->failed && log(b->failed->height / bottom) < (b->exceeds ? EXCEEDING_GAP : COLLAPSE_GAP))
         return SF_CFH_COLLAPSED;
     double length = step_length(plan, b->below, b->beside), height = bottom * exp(length);
-    if (b->failed && height > sqrt(bottom * b->failed->height))
-        return divide(plan, bottom, b->failed->height, round);
+    if (b->failed && height > sqrt(bottom * b->failed->height)) {
+        divide(plan, bottom, b->failed->height, round);
+        round->divides = b->exceeds;
+        return round->count > 0 ? SF_CFH_SIMULATE : SF_CFH_COLLAPSED;
+    }
     return step_to(plan, points, rounded(plan, height), 1, length, round);
 }
 
@@ -469,17 +490,6 @@ static bool is_enough(const sf_cfh_result *now, double centre, const bracket *b)
     return now->verdict == SF_CFH_FOUND && flanked && first->margin <= GOOD_MARGIN;
 }
 
-/* The bracket in thirds, where a quadratic does not describe the points; none if it is too narrow for that.
- */
-static void divide_bracket(const sf_cfh_plan *plan, const bracket *b, sf_cfh_round *round) {
-    double low = b->below->height, high = b->above->height, gap = log(high / low);
-    for (int k = 1; k <= 2; k++) {
-        double height = rounded(plan, low * exp(gap * k / 3)), last = round->count ? round->height[0] : low;
-        if (height > last + 0.5 * plan->unit * GRAIN && height < high - 0.5 * plan->unit * GRAIN)
-            round->height[round->count++] = height;
-    }
-}
-
 /* Two free places around the crossing: one on each side, then from its middle outwards. */
 static sf_cfh_step go_near(const sf_cfh_plan *plan, const sf_cfh_points *points, const bracket *b,
                            sf_cfh_round *round) {
@@ -493,7 +503,7 @@ static sf_cfh_step go_near(const sf_cfh_plan *plan, const sf_cfh_points *points,
     if (is_enough(&now, centre, b))
         return SF_CFH_ENOUGH;
     if (found && now.crossing[now.deciding].bracketed) {
-        divide_bracket(plan, b, round);
+        divide(plan, b->below->height, b->above->height, round);
         round->divides = true;
         return round->count > 0 ? SF_CFH_SIMULATE : SF_CFH_ENOUGH;
     }

@@ -83,6 +83,7 @@ typedef struct sf_cfh_point {
     double speed;   /* m s-1, at contact */
     bool failed;    /* no figures (they are NaN): the simulation failed, or its verdict is "do not use" */
     bool on_anvil;  /* it failed as the missile reached the anvil: worse than every limit */
+    double least[SF_CFH_CRITERIA]; /* g, -: if it failed, what is sure of them all the same; 0: nothing */
     sf_grade grade; /* of the run; "do not use" if it failed */
     double value[SF_CFH_CRITERIA];   /* g, - */
     double scatter[SF_CFH_CRITERIA]; /* -, of single pads and drops (a_max_scatter, hic_scatter); NaN: not
@@ -101,18 +102,20 @@ typedef struct sf_cfh_points {
 
 typedef enum sf_cfh_verdict {
     SF_CFH_FOUND,
-    SF_CFH_ABOVE,   /* no limit was reached: the critical height is above the highest point, and below `anvil`
-                     */
-    SF_CFH_BELOW,   /* a limit was exceeded, or the anvil reached, at the lowest point: it is below that */
-    SF_CFH_UNKNOWN, /* no simulation succeeded or reached the anvil, or no crossing could be read: `problem`
+    SF_CFH_ABOVE,   /* no limit was reached: the critical height is above the highest point, and below
+                       `exceeding` */
+    SF_CFH_BELOW,   /* a limit was exceeded at the lowest point, or no point is below `exceeding`: it is
+                       below that */
+    SF_CFH_UNKNOWN, /* no simulation succeeded or exceeds a limit, or no crossing could be read: `problem`
                        says why */
 } sf_cfh_verdict;
 
 typedef struct sf_cfh_result {
     sf_cfh_verdict verdict;
     sf_cfh_criterion deciding; /* of FOUND and BELOW; unless `lowest` is NaN */
-    double lowest, highest;    /* m, of the simulations that succeeded, below `anvil`; NaN: none */
-    double anvil;              /* m, lowest height from which the missile reached the anvil; NaN: none */
+    double lowest, highest;    /* m, of the simulations that succeeded, below `exceeding`; NaN: none */
+    const sf_cfh_point *exceeding; /* of the points, the lowest that failed and yet exceeds a limit: on the
+                                      anvil, or by `least`; NULL: none */
     sf_cfh_crossing crossing[SF_CFH_CRITERIA];
     sf_error problem; /* of UNKNOWN */
 } sf_cfh_result;

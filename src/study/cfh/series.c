@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 static const double STRAIN_MARGIN = 0.02; /* beyond the end of its data: worth a warning */
+static const double HIC_POWER = 2.5;      /* of the deceleration */
 _Static_assert((int)SF_CFH_CHECKS <= (int)SF_CFH_MAX_POINTS, "the checks are simulated as one batch");
 
 /* Appends a sentence to the note of a point. */
@@ -45,7 +46,12 @@ void sf_cfh_take_result(const sf_runner_result *r, const sf_cfh_foams *foams, sf
     p->grade = r->grade;
     if (r->grade == SF_GRADE_DO_NOT_USE) {
         p->failed = true;
+        p->least[SF_CFH_A_MAX] = r->sure * r->a_max_g;
+        p->least[SF_CFH_HIC] = pow(r->sure, HIC_POWER) * r->hic;
         ADD_NOTE(p, "%s", r->verdict);
+        if (r->sure > 0)
+            ADD_NOTE(p, "yet a_max is at least %.0f g and HIC %.0f", p->least[SF_CFH_A_MAX],
+                     p->least[SF_CFH_HIC]);
         return;
     }
     p->value[SF_CFH_A_MAX] = r->a_max_g;
