@@ -123,6 +123,44 @@ static void a_model_with_fewer_states_keeps_its_weight(void **state) {
     free(few);
 }
 
+/* A single pad and drop has the scatter of thickness and speed beside: of values that are all the same the
+ * interval is that of the scatter alone, and of two models the mean of both. Collapse stays above all. */
+static void a_single_drop_scatters(void **state) {
+    (void)state;
+    static const double probability[] = {0.025, 0.5, 0.975};
+    posterior *p = posterior_new(0), *other = posterior_new(0);
+    double value[3];
+    sf_error err = SF_ERROR_INIT;
+    p->fit.simulated[0].scatter[0] = 0.2;
+    p->fit.simulated[0].scatter[1] = NAN;
+    for (int s = 0; s < STATES * KINDS; s++)
+        p->quantity[s] = other->quantity[s] = log(100);
+    const sf_drop_average *a = &p->average;
+    assert_int_equal(sf_drop_average_quantiles(a, SF_SINGLE_DROP, SF_FIT_A_MAX, 3, probability, value, &err),
+                     SF_OK);
+    assert_true(fabs(log(value[1] / 100)) < 0.02);
+    assert_true(fabs(log(value[2] / value[0]) / (2 * 1.96 * 0.2) - 1) < 0.1); /* 999 draws */
+    sf_drop_average_quantiles(a, SF_ALL_MODELS, SF_FIT_A_MAX, 3, probability, value, &err);
+    assert_true(fabs(value[0] - 100) < 1e-9 && fabs(value[2] - 100) < 1e-9);
+    for (int kind = SF_FIT_HIC; kind < KINDS; kind++) { /* not known */
+        sf_drop_average_quantiles(a, SF_SINGLE_DROP, kind, 3, probability, value, &err);
+        assert_true(isnan(value[0]) && isnan(value[1]) && isnan(value[2]));
+    }
+    p->average.models = 2; /* the other does not scatter: half of the values stay */
+    p->average.model[1] = &other->inference;
+    p->average.weight[0] = p->average.weight[1] = 0.5;
+    sf_drop_average_quantiles(a, SF_SINGLE_DROP, SF_FIT_A_MAX, 3, probability, value, &err);
+    assert_true(fabs(log(value[2] / value[0]) / (2 * 1.645 * 0.2) - 1) < 0.1);
+    for (int s = STATES - 40; s < STATES; s++)
+        p->quantity[s * KINDS] = NAN;
+    p->average.models = 1;
+    sf_drop_average_quantiles(a, SF_SINGLE_DROP, SF_FIT_A_MAX, 3, probability, value, &err);
+    assert_true(isinf(value[2]) && value[0] > 60);
+    assert_int_equal(err.status, SF_OK);
+    free(other);
+    free(p);
+}
+
 /* What a writer writes. */
 typedef sf_status write_part(FILE *file, const sf_drop_average *average, sf_error *err);
 
@@ -156,10 +194,16 @@ static void assert_says(write_part *write, int collapsed, const char *part) {
 
 static void every_output_says_open(void **state) {
     (void)state;
-    assert_says(sf_inference_print, 0, "a_max 500.0 g (95 %: 25.0 to 975.0)\n");
-    assert_says(sf_inference_print, 4, "a_max 500.0 g (95 %: 25.0 to 975.0); the columns of 0.4 % of the");
-    assert_says(sf_inference_print, 40, "HIC 500  (95 %: from 25, open above); the columns of 4 % of the");
-    assert_says(sf_inference_print, 600, "a_max above what the columns reach  (95 %: from 25.0, open above)");
+    assert_says(sf_inference_print, 0,
+                "a_max 500.0 g (95 %: 25.0 to 975.0; of a single pad and drop: 25.0 to 975.0)\n");
+    assert_says(
+        sf_inference_print, 4,
+        "a_max 500.0 g (95 %: 25.0 to 975.0; of a single pad and drop: 25.0 to 975.0); the columns of 0.4 % of the");
+    assert_says(sf_inference_print, 40,
+                "of a single pad and drop: from 25, open above); the columns of 4 % of the");
+    assert_says(sf_inference_print, 600,
+                "a_max above what the columns reach  (95 %: from 25.0, open above; of");
+    assert_says(sf_inference_print, 0, "HIC window 500.00 ms (95 %: 25.00 to 975.00)\n"); /* not known */
     assert_says(sf_inference_html, 4, "held (the columns of 0.4 % of the draws collapse)");
     assert_says(sf_inference_html, 4, "The HIC window has no such order");
     assert_says(sf_inference_html, 40, "from 25.0, open above");
@@ -186,6 +230,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(collapsed_draws_are_above_every_peak),
         cmocka_unit_test(a_model_with_fewer_states_keeps_its_weight),
+        cmocka_unit_test(a_single_drop_scatters),
         cmocka_unit_test(every_output_says_open),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/drop/inference.h"
 
+#include "study/fit/least_squares.h"
 #include "study/material_file.h"
 #include "material/low_density_foam.h"
+#include <gsl/gsl_randist.h>
 #include <gsl/gsl_sort.h>
 
-enum { FIRST_SEED = 5000 }; /* of the draws: the number of its stream is this and its own */
+/* Streams of random numbers: of the draws, of which each has its own from here on; of the scatter. */
+enum { FIRST_SEED = 5000, SCATTER_SEED = 4000 };
 
 static int states_of(const sf_drop_inference *in) {
     return in->chains.chains * in->chains.kept;
@@ -73,15 +76,17 @@ bool sf_drop_average_has_columns(const sf_drop_average *a, int quantity) {
     return true;
 }
 
-/* A state without a value, as its foam collapses, counts as infinite if `above_all`, else not at all. */
+/* A state without a value, as its foam collapses, counts as infinite if `above_all`, else not at all. Each
+ * value is moved by a normal one of this standard deviation. */
 static void add_states(const sf_drop_inference *in, const double *column, int width, double weight,
-                       bool above_all, weighted *w) {
+                       bool above_all, double sd, const gsl_rng *random, weighted *w) {
     int states = states_of(in);
     for (int s = 0; s < states; s++) {
         double value = column[s * width];
         if (!isfinite(value) && !above_all)
             continue;
-        w->value[w->count] = isfinite(value) ? value : INFINITY;
+        double moved = value + (sd > 0 ? sd * gsl_ran_ugaussian(random) : 0);
+        w->value[w->count] = isfinite(value) ? moved : INFINITY;
         w->weight[w->count++] = weight / states;
     }
 }
@@ -120,15 +125,24 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
                                     const double *probability, double *value, sf_error *err) {
     int most = 0;
     const sf_drop_quantity *q = &a->model[0]->quantity[quantity];
-    bool above_all = sf_drop_kind_get(q->kind)->above_all;
+    bool above_all = sf_drop_kind_get(q->kind)->above_all, known = true;
     for (int m = 0; m < a->models; m++)
         most += states_of(a->model[m]);
     SF_OWNED_BY(free_weighted) weighted w = make_weighted(most, err);
+    SF_RANDOM *random = gsl_rng_alloc(gsl_rng_taus2);
+    if (!random)
+        SF_NO_MEMORY(err, "random numbers");
     SF_TRY(err->status);
-    for (int m = 0; m < a->models; m++)
+    gsl_rng_set(random, (unsigned long)sf_seed_of(a->seed, SCATTER_SEED) & 0xffffffffu);
+    for (int m = 0; m < a->models; m++) {
+        const sf_drop_inference *in = a->model[m];
+        double sd = model == SF_SINGLE_DROP ? sf_drop_fit_scatter(in->fit, q->drop, q->kind) : 0;
         if (model < 0 ? a->weight[m] > 0 : m == model)
-            add_states(a->model[m], &a->model[m]->chains.quantity[quantity], a->model[m]->quantities,
-                       model < 0 ? a->weight[m] : 1, above_all && has_columns(a->model[m], q->drop), &w);
+            add_states(in, &in->chains.quantity[quantity], in->quantities, model < 0 ? a->weight[m] : 1,
+                       above_all && has_columns(in, q->drop), sd, random, &w);
+        known = known && !(a->weight[m] > 0 && isnan(sd));
+    }
+    w.count = known ? w.count : 0;
     SF_TRY(take_quantiles(&w, count, probability, value, err));
     for (int k = 0; k < count; k++)
         value[k] = exp(value[k]);
@@ -151,7 +165,7 @@ sf_status sf_drop_parameter_quantiles(const sf_drop_inference *in, int parameter
                                       const double *probability, double *value, sf_error *err) {
     SF_OWNED_BY(free_weighted) weighted w = make_weighted(states_of(in), err);
     SF_TRY(err->status);
-    add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, &w);
+    add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, 0, NULL, &w);
     return take_quantiles(&w, count, probability, value, err);
 }
 

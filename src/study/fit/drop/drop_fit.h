@@ -222,6 +222,10 @@ typedef struct sf_drop_fit {
     double curve_prior_sd[SF_FIT_STRAIN_BINS]; /* the same before the data */
 } sf_drop_fit;
 
+/* Standard deviation of the logarithm of a number from drop to drop (a_max_scatter, hic_scatter of the last
+ * simulation); NaN: not known, as of every other number. */
+double sf_drop_fit_scatter(const sf_drop_fit *fit, int drop, int kind);
+
 /* The accelerometer's chain with its numbers in `u`; NULL: as given. */
 sf_signal_chain sf_drop_fit_chain(const sf_drop_fit *fit, const double *u);
 

@@ -12,13 +12,9 @@ static double response_sd(const sf_drop_fit *fit, int d, int kind) {
     return fit->response_sd[fit->row[d] + kind];
 }
 
-static double scatter(const sf_drop_fit *fit, int d, int kind) {
-    return kind == SF_FIT_A_MAX || kind == SF_FIT_HIC ? fit->simulated[d].scatter[kind == SF_FIT_HIC] : NAN;
-}
-
 /* Half of the linearised 95 % interval of the logarithm of a predicted response: of a single pad and drop. */
 static double half_width(const sf_drop_fit *fit, int d, int kind) {
-    double by_drop = scatter(fit, d, kind);
+    double by_drop = sf_drop_fit_scatter(fit, d, kind);
     return hypot(sf_drop_half_width(fit) * response_sd(fit, d, kind), isnan(by_drop) ? 0 : SIDES * by_drop);
 }
 
@@ -347,7 +343,7 @@ static void json_kind(sf_json *j, const sf_drop_fit *fit, int d, int kind) {
     json_stem(j, stem, "", suffix, sf_drop_response(fit, d, kind));
     json_stem(j, stem, "_sd_by_parameters", "", response_sd(fit, d, kind));
     if (kind == SF_FIT_A_MAX || kind == SF_FIT_HIC)
-        json_stem(j, stem, "_scatter", "", scatter(fit, d, kind));
+        json_stem(j, stem, "_scatter", "", sf_drop_fit_scatter(fit, d, kind));
     json_stem(j, stem, "_from_others", suffix, exp(fit->without[fit->row[d] + kind]));
 }
 

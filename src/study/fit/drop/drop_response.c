@@ -361,3 +361,7 @@ void sf_fit_memory_add(sf_fit_memory *m, uint64_t key, size_t count, const doubl
         m->file = -1;
     }
 }
+
+double sf_drop_fit_scatter(const sf_drop_fit *fit, int d, int kind) {
+    return kind == SF_FIT_A_MAX || kind == SF_FIT_HIC ? fit->simulated[d].scatter[kind == SF_FIT_HIC] : NAN;
+}

@@ -104,10 +104,14 @@ int sf_drop_average_best(const sf_drop_average *average);
  * the left-out drops or, with weights by it, the evidence. */
 bool sf_drop_average_reached(const sf_drop_average *average);
 
-/* Quantiles of a predicted number (index of the inference's quantities), in its unit, over all models by
- * their weights; of one model with `model` >= 0. A draw whose foam collapses counts as above every value of a
+/* In place of a model: all of them by their weights, with the foam as it is known; the same of a single pad
+ * and drop, with the scatter of its thickness and speed (sf_drop_fit_scatter). */
+enum { SF_ALL_MODELS = -1, SF_SINGLE_DROP = -2 };
+
+/* Quantiles of a predicted number (index of the inference's quantities), in its unit, of one model, or of
+ * SF_ALL_MODELS or SF_SINGLE_DROP. A draw whose foam collapses counts as above every value of a
  * number that is `above_all` (drop_kinds.h), and a quantile among these is INFINITY; of the other numbers the
- * quantiles are those of the draws that have a value. NaN if none counts. */
+ * quantiles are those of the draws that have a value. NaN if none counts, or the scatter is not known. */
 sf_status sf_drop_average_quantiles(const sf_drop_average *average, int model, int quantity, int count,
                                     const double *probability, double *value, sf_error *err);
 /* Weight of the draws that have no value of it: the foam of the columns collapses, or there are none. */

@@ -109,9 +109,11 @@ static bool has_missing(const sf_drop_average *a) {
 
 static void put_prediction_notes(FILE *f, const sf_drop_average *a) {
     sf_html_note(
-        f, "Medians and 95 %% intervals of the posterior predictive distribution. They hold the "
-           "uncertainty of the parameters, of the form (by the weights), of a loading curve that "
-           "differs from every form, and of the model's other errors. Not in them: the discretisation.");
+        f,
+        "Medians and 95 %% intervals of the posterior predictive distribution. They hold the "
+        "uncertainty of the parameters, of the form (by the weights), of a loading curve that "
+        "differs from every form, and of the model's other errors. Not in them: the discretisation. A single pad and drop has, of a_max and HIC, the scatter "
+        "of thickness and speed beside (pad.thickness_tolerance, missile.speed_scatter): hold one measured drop against that interval.");
     if (has_missing(a))
         sf_html_note(
             f, "Of draws whose columns collapse (the foam is too soft for the drop), a_max and HIC count as "
@@ -121,24 +123,27 @@ static void put_prediction_notes(FILE *f, const sf_drop_average *a) {
 
 static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
-    char text[64], missing[MISSING], median[SHOWN], shown[SHOWN], alone[SHOWN];
+    char text[64], missing[MISSING], median[SHOWN], shown[SHOWN], single[SHOWN], alone[SHOWN];
     if (in->quantities == 0)
         return SF_OK;
     sf_html_heading(f, "Predictions, averaged over the models");
     put_prediction_notes(f, a);
     SF_HTML_TABLE table = sf_html_table_begin(
-        f, "dense", "drop|quantity|>median|>95 %|>95 % of the model with the largest weight alone");
+        f, "dense",
+        "drop|quantity|>median|>95 %|>95 % of a single pad and drop|>95 % of the model with the largest weight alone");
     for (int q = 0; q < in->quantities; q++) {
         const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
-        double all[3], best[3];
-        SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, all, err));
+        double all[3], one[3], best[3];
+        SF_TRY(sf_drop_average_quantiles(a, SF_ALL_MODELS, q, 3, THREE, all, err));
+        SF_TRY(sf_drop_average_quantiles(a, SF_SINGLE_DROP, q, 3, THREE, one, err));
         SF_TRY(sf_drop_average_quantiles(a, sf_drop_average_best(a), q, 3, THREE, best, err));
         snprintf(text, sizeof text, *about->unit ? "%s (%s)" : "%s", about->name, about->unit);
         sf_html_row(&table);
         missing_text(a, q, "", missing);
         sf_html_cell(&table, *missing ? "%s (%s)" : "%s", drop_of(in, q), missing);
-        sf_html_line(&table, NULL, "%s|%s|%s|%s", text, median_text(about->digits, all, median),
-                     interval_text(about->digits, all, shown), interval_text(about->digits, best, alone));
+        sf_html_line(&table, NULL, "%s|%s|%s|%s|%s", text, median_text(about->digits, all, median),
+                     interval_text(about->digits, all, shown), interval_text(about->digits, one, single),
+                     interval_text(about->digits, best, alone));
     }
     return SF_OK;
 }
@@ -316,13 +321,15 @@ static sf_status json_model(sf_json *j, const sf_drop_average *a, int m, sf_erro
 static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
     const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
-    double value[3];
-    SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err));
+    double value[3], one[3];
+    SF_TRY(sf_drop_average_quantiles(a, SF_ALL_MODELS, q, 3, THREE, value, err));
+    SF_TRY(sf_drop_average_quantiles(a, SF_SINGLE_DROP, q, 3, THREE, one, err));
     SF_JSON_OBJECT(j, NULL);
     sf_json_text(j, "drop", drop_of(in, q));
     sf_json_text(j, "quantity", about->key);
     json_quantiles(j, value);
     sf_json_text(j, "open", isnan(value[1]) ? NULL : isinf(value[2]) ? "above" : "no");
+    SF_JSON_NUMBERS(j, {"single_drop_low95", one[0]}, {"single_drop_high95", one[2]});
     sf_json_number(j, "share_of_draws_without_value", sf_drop_average_missing(a, q));
     return SF_OK;
 }
@@ -439,12 +446,16 @@ void sf_inference_print_chains(FILE *f, const sf_drop_inference *in) {
 static sf_status print_prediction(FILE *f, const sf_drop_average *a, int q, sf_error *err) {
     const sf_drop_inference *in = a->model[0];
     const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
-    double value[3];
-    char median[SHOWN], interval[SHOWN], missing[MISSING];
-    SF_TRY(sf_drop_average_quantiles(a, -1, q, 3, THREE, value, err));
-    fprintf(f, "  %-20s %s %s %s (95 %%: %s)%s\n", drop_of(in, q), about->name,
+    double value[3], one[3];
+    char median[SHOWN], interval[SHOWN], single[SHOWN], missing[MISSING];
+    SF_TRY(sf_drop_average_quantiles(a, SF_ALL_MODELS, q, 3, THREE, value, err));
+    SF_TRY(sf_drop_average_quantiles(a, SF_SINGLE_DROP, q, 3, THREE, one, err));
+    interval_text(about->digits, one, single);
+    fprintf(f, "  %-20s %s %s %s (95 %%: %s%s%s)%s\n", drop_of(in, q), about->name,
             median_text(about->digits, value, median), isfinite(value[1]) ? about->unit : "",
-            interval_text(about->digits, value, interval), missing_text(a, q, "; ", missing));
+            interval_text(about->digits, value, interval),
+            isnan(one[1]) ? "" : "; of a single pad and drop: ", isnan(one[1]) ? "" : single,
+            missing_text(a, q, "; ", missing));
     return SF_OK;
 }
 
