@@ -229,10 +229,12 @@ static void the_missile_turns_in_paraview(void **state) {
     sf_results_close(&r);
     program_result made = program_succeed(p, "post", "full.h5 -o out");
     assert_non_null(strstr(made.out, "free missile: a_max, HIC and all that follows of the resultant"));
+    assert_non_null(strstr(made.out, "edge and scatter: not estimated of a free missile"));
     assert_non_null(strstr(made.out, "angular acceleration"));
     assert_null(strstr(made.err, "gnuplot"));
     program_assert_page(p, "out/report.html", "resultant");
     program_assert_page(p, "out/report.html", peak);
+    program_assert_page(p, "out/report.html", "edge and scatter: not estimated");
 }
 
 int main(void) {

@@ -120,6 +120,9 @@ static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf
                  : !r->has_summary         ? "the run has no end: it still runs or was killed"
                  : c->value > c->use_bound ? "the run failed"
                                            : "the run was interrupted");
+    else if (isnan(c->value) && f->turns && c->key == sf_good_run_rule_get(SF_CHECK_edge)->key)
+        snprintf(c->text, sizeof c->text,
+                 "edge and scatter: not estimated of a free missile, as the estimate knows no rotation");
     else if (isnan(c->value))
         snprintf(c->text, sizeof c->text, "%s: not defined by this run", c->title);
     else if (sf_check_is_flag(c))

@@ -330,6 +330,8 @@ static void put_checks(const page *p) {
     for (int k = 0; k < p->verdict->count; k++)
         put_check(&table, &p->verdict->rows[k]);
     sf_html_table_end(&table);
+    if (p->results->turns)
+        sf_html_note(p->file, "Note: %s", p->verdict->rows[SF_CHECK_edge].text);
     for (int k = 0; k < p->results->note_count; k++)
         sf_html_note(p->file, "Note: %s", p->results->notes[k]);
 }

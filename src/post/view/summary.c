@@ -197,8 +197,10 @@ static void print_drop(FILE *out, const sf_summary *s) {
     if (f->passed[0])
         fprintf(out, "  of the %s%s\n", f->acceleration, f->passed);
     print_figures(out, s, drop_keys);
-    if (f->turns)
-        print_figures(out, s, rotation_keys);
+    if (!f->turns)
+        return;
+    fprintf(out, "  %s\n", s->verdict->rows[SF_CHECK_edge].text);
+    print_figures(out, s, rotation_keys);
 }
 
 static void print_verdict(FILE *out, const sf_verdict *v) {
