@@ -342,6 +342,52 @@ static void the_mount_of_the_accelerometer_is_found(void **state) {
     program_tear_down(&place);
 }
 
+/* Damping and coupling are found as well, alone and all three at once, from priors beside them. */
+static void damping_and_coupling_of_the_accelerometer_are_found(void **state) {
+    (void)state;
+    static const struct {
+        const char *chain, *after[2];
+        double expected[2];
+    } rows[] = {
+        {"mount = \"f = 100 Hz, damping = 0.6\"; mount_damping_sd = 0.5; coupling = \"0.2 s\";\n",
+         {"damping "},
+         {0.4}},
+        {"mount = \"f = 100 Hz, damping = 0.4\"; coupling = \"0.35 s\"; coupling_sd = 0.5;\n",
+         {"time constant "},
+         {0.2}},
+        {"mount = \"f = 110 Hz, damping = 0.6\"; mount_frequency_sd = 0.3; mount_damping_sd = 0.5;\n"
+         "coupling = \"0.3 s\"; coupling_sd = 0.5;\n",
+         {"damping ", "time constant "},
+         {0.4, 0.2}},
+    };
+    program_place place;
+    program_set_up(&place);
+    fit_fixture_put_case(&place);
+    program_succeed(&place, "pre", "case.cfg -o m.h5");
+    program_succeed(&place, "solve", "m.h5 -o r.h5");
+    program_succeed(&place, "post", "r.h5 -o post --mount 'f = 100 Hz, damping = 0.4' --coupling '0.2 s'");
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "material = \"start.cfg\"; curve_form = \"table\"; posterior = false;\n"
+                 "unknown = ( { name = \"stress_scale\"; } );\n%s"
+                 "drops = ( { name = \"a\"; case = \"case.cfg\"; curve = \"post/history.csv\"; "
+                 "curve_column = \"acceleration_cfc1000_g\"; curve_sd = 0.005; } );\n",
+                 rows[k].chain);
+        program_write_text(&place, "fit.cfg", text);
+        program_result r = program_succeed(&place, "fit", "drop fit.cfg -o out%zu -t 1", k);
+        const char *told = strstr(r.out, "\nConverged");
+        assert_non_null(told);
+        for (int n = 0; n < 2 && rows[k].after[n]; n++) {
+            const char *at = strstr(told, rows[k].after[n]);
+            double expected = rows[k].expected[n], low = number_after(at, "linearised: ");
+            assert_relative(number_after(at, rows[k].after[n]), expected, 0.01);
+            assert_true(low < expected && number_after(strstr(at, "linearised: "), " to ") > expected);
+        }
+    }
+    program_tear_down(&place);
+}
+
 static void a_second_fit_in_the_folder_is_refused(void **state) {
     (void)state;
     program_place place;
@@ -372,6 +418,7 @@ int main(void) {
         cmocka_unit_test(drops_that_end_too_early_are_refused),
         cmocka_unit_test(a_predicted_drop_scatters),
         cmocka_unit_test(the_mount_of_the_accelerometer_is_found),
+        cmocka_unit_test(damping_and_coupling_of_the_accelerometer_are_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
