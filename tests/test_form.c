@@ -173,7 +173,7 @@ static void a_lock_up_of_its_own_continues_the_form(void **state) {
     for (int i = 0; i < SF_CURVE_FORMS; i++) {
         const sf_curve_form *form = sf_curve_form_get(i);
         double value[SF_PARAMETER_COUNT], locked[SF_PARAMETER_COUNT];
-        assert_true(sf_curve_form_uses(form, SF_PARAMETER_LOCKED) == (form->stress != NULL));
+        assert_true(sf_curve_form_uses(form, SF_PARAMETER_LOCKED));
         if (!form->stress)
             continue;
         medians(form, value);
@@ -312,6 +312,34 @@ static void a_card_has_the_values(void **state) {
         if (form.curve == &sf_form_table)
             assert_true(card.curve_points == 3 && card.curve_stress[1] == 100e3);
         sf_foam_card_free(&card);
+        if (form.curve != &sf_form_table)
+            continue;
+        for (int k = 0; k < 3; k++) { /* a lock-up: at two strains, and none */
+            static const double locked[] = {0.25, 0.16, 0}, start[] = {0.7125, 0.798, 0},
+                                limit[] = {0.75, 0.84, 1};
+            sf_curve curve, own;
+            double slope[2], at, energy;
+            value[SF_PARAMETER_LOCKED] = locked[k];
+            assert_int_equal(sf_foam_form_card(&form, value, &card, &err), SF_OK);
+            assert_true(fabs(card.densification_start - start[k]) < 1e-12);
+            assert_true(fabs(card.densification_limit - limit[k]) < 1e-8);
+            assert_int_equal(sf_curve_build(&card, 0, &curve, &err), SF_OK);
+            if (k < 2) {
+                sf_curve_evaluate(&curve, start[k] - 1e-9, &at, &slope[0], &energy);
+                sf_curve_evaluate(&curve, start[k] + 1e-9, &at, &slope[1], &energy);
+                assert_true(fabs(slope[1] / slope[0] - 1) < 1e-3);
+                sf_curve_evaluate(&curve, limit[k], &at, &slope[0], &energy);
+                card.densification_start = 0;
+                card.densification_limit = 1;
+                card.densification_exponent = 0;
+                assert_int_equal(sf_curve_build(&card, 0, &own, &err), SF_OK);
+                sf_curve_evaluate(&own, limit[k], &at, &slope[1], &energy);
+                assert_true(slope[0] > 100 * slope[1]);
+                sf_curve_free(&own);
+            }
+            sf_curve_free(&curve);
+            sf_foam_card_free(&card);
+        }
     }
 }
 

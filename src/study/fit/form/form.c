@@ -53,7 +53,7 @@ const sf_form_entry *sf_curve_form_entry(const sf_curve_form *form, sf_foam_para
 bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter) {
     bool of_a_form = false;
     if (parameter == SF_PARAMETER_LOCKED)
-        return form->stress != NULL;
+        return true;
     for (int k = 0; k < SF_CURVE_FORMS; k++)
         of_a_form = of_a_form || sf_curve_form_entry(forms[k], parameter);
     return !of_a_form || sf_curve_form_entry(form, parameter);
@@ -330,6 +330,25 @@ void sf_foam_card_free(sf_foam_card *card) {
     *card = (sf_foam_card){0};
 }
 
+/* A lock-up before the pole of the table: from 0.95 of it, or where the data end, the densification law goes
+ * on to it, with the exponent given or, without one, that of the closed forms. */
+static sf_status lock_table(double pole, sf_foam_card *card, sf_error *err) {
+    double start = TAKES_OVER * pole, own = card->densification_start, stress, slope, energy;
+    sf_curve curve;
+    for (int64_t c = 1; c <= card->curve_count; c++)
+        start = fmin(start, card->curve_strain[card->curve_ptr[c] - 1]);
+    start = own > 0 ? fmin(start, own) : start;
+    SF_TRY(sf_curve_build(card, 0, &curve, err));
+    sf_curve_evaluate(&curve, start, &stress, &slope, &energy);
+    sf_curve_free(&curve);
+    card->densification_rule = SF_DENSIFICATION_H2;
+    card->densification_start = start;
+    card->densification_limit = pole;
+    if (!(card->densification_exponent > 0))
+        card->densification_exponent = sf_densification_steep_exponent(start, pole, stress, slope);
+    return SF_OK;
+}
+
 sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
                             sf_foam_card *card, sf_error *err) {
     SF_TRY(copy_card(&form->base, card, err));
@@ -342,6 +361,9 @@ sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARA
         card->densification_exponent = value[SF_PARAMETER_EXPONENT];
         for (int64_t k = 0; k < card->curve_points; k++)
             card->curve_stress[k] *= value[SF_PARAMETER_STRESS_SCALE];
+        double locked = value[SF_PARAMETER_LOCKED];
+        if (locked > 0 && 1 - locked < card->densification_limit)
+            lock_table(1 - locked, card, err);
     }
     if (err->status != SF_OK)
         sf_foam_card_free(card);

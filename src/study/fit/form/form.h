@@ -129,8 +129,8 @@ bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter);
 
 /* A foam may lock up earlier than the form says: skins, glue layers and folded cell walls take room, too.
  * With locked_fraction above 0 every form has its pole at e_D = 1 - locked_fraction, if that lies below its
- * own. From 0.95 e_D on the densification law with that pole continues its stress and slope. Not for the form
- * `table`. */
+ * own. From 0.95 e_D on the densification law with that pole continues its stress and slope. The form `table`
+ * has it in its card alone. */
 double sf_curve_form_pole(const sf_curve_form *form, const double *value);
 /* Stress (Pa) at `count` strains from 0 on, below the pole; INFINITY from a lock-up on. */
 void sf_curve_form_stresses(const sf_curve_form *form, const double *value, int count, const double *strain,
