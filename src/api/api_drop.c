@@ -84,11 +84,10 @@ static sf_status create(const sf_model *model, int threads, const softfall_drop 
     list_quantities(d);
     int usual = enter(d);
     if (d->model.series_count > 1)
-        SF_REFUSE(
-            err,
-            "the model is a series of %lld drops; the library solves one after another: make the model of the "
-            "case with series.drops = 1, and its later drops with softfall_drop_next",
-            (long long)d->model.series_count);
+        SF_REFUSE(err,
+                  "the model is a series of %lld drops; the library solves one after another: make the model "
+                  "of the case with series.drops = 1, and its later drops with softfall_drop_next",
+                  (long long)d->model.series_count);
     if (err->status == SF_OK && sf_model_check(&d->model, err) == SF_OK &&
         take_set(d, before ? &before->state : NULL, pause, err) == SF_OK &&
         sf_operators_build(&d->model, &d->operators, err) == SF_OK)

@@ -63,11 +63,10 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
     else if (strcmp(name, "zero") == 0)
         o->zero = true;
     else if (err->status == SF_OK)
-        SF_REFUSE(
-            err,
-            "a record has no option \"%.80s\"; there are column, columns, heading, scale, rate, filter, "
-            "impact, invert and zero",
-            name);
+        SF_REFUSE(err,
+                  "a record has no option \"%.80s\"; there are column, columns, heading, scale, rate, "
+                  "filter, impact, invert and zero",
+                  name);
     return err->status;
 }
 

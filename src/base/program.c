@@ -207,11 +207,10 @@ sf_status sf_program_try_threads(int threads, sf_error *err) {
     for (int k = 0; k < count; k++)
         pthread_join(thread[k], NULL);
     if (failed != 0)
-        return SF_FAIL(
-            err, SF_ERR_MEMORY,
-            "%d threads cannot be started, only %d: %s; ask for fewer (--threads, OMP_NUM_THREADS), or "
-            "raise the limit of processes or of memory",
-            threads, count + 1, strerror(failed));
+        return SF_FAIL(err, SF_ERR_MEMORY,
+                       "%d threads cannot be started, only %d: %s; ask for fewer (--threads, "
+                       "OMP_NUM_THREADS), or raise the limit of processes or of memory",
+                       threads, count + 1, strerror(failed));
     return SF_OK;
 }
 

@@ -125,12 +125,11 @@ static sf_status check_slopes(const char *path, const sf_case_curve *curve, sf_e
     for (int64_t k = 1; k < curve->count; k++) {
         double slope = (curve->stress[k] - curve->stress[k - 1]) / (curve->strain[k] - curve->strain[k - 1]);
         if (!(slope <= STEEPEST))
-            return SF_REFUSE(
-                err,
-                "%s: from the strain %g to %g the stress rises from %g to %g Pa, with a modulus of "
-                "%.3g Pa; at most %g Pa are possible",
-                path, curve->strain[k - 1], curve->strain[k], curve->stress[k - 1], curve->stress[k], slope,
-                STEEPEST);
+            return SF_REFUSE(err,
+                             "%s: from the strain %g to %g the stress rises from %g to %g Pa, with a modulus "
+                             "of %.3g Pa; at most %g Pa are possible",
+                             path, curve->strain[k - 1], curve->strain[k], curve->stress[k - 1],
+                             curve->stress[k], slope, STEEPEST);
     }
     return SF_OK;
 }
@@ -256,19 +255,17 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
             reader, setting, err, "%s.curves: curves at temperatures need %s", reader->material_group,
             at == 0 ? "pad.temperature, such as \"23 degC\", in the case" : "two of them or more");
     if (at < t[0] || at > t[last])
-        return SF_REFUSE_AT(
-            reader, setting, err,
-            "%s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: there is no "
-            "extrapolation",
-            reader->material_group, at - SF_CELSIUS, t[0] - SF_CELSIUS, t[last] - SF_CELSIUS);
+        return SF_REFUSE_AT(reader, setting, err,
+                            "%s.curves: pad.temperature is %.6g degC, outside the curves' %.6g to %.6g degC: "
+                            "there is no extrapolation",
+                            reader->material_group, at - SF_CELSIUS, t[0] - SF_CELSIUS, t[last] - SF_CELSIUS);
     while (k < last - 1 && at > t[k + 1])
         k++;
     if (interpolate(card, k, (at - t[k]) / (t[k + 1] - t[k]), &curve, err) == SF_OK) {
-        sf_sink_tell(
-            reader->sink, SF_NOTE,
-            "%s: the curve at %g degC lies between those at %g and %g degC; E, unloading, memory and rate are "
-            "the same at any temperature",
-            reader->material_group, at - SF_CELSIUS, t[k] - SF_CELSIUS, t[k + 1] - SF_CELSIUS);
+        sf_sink_tell(reader->sink, SF_NOTE,
+                     "%s: the curve at %g degC lies between those at %g and %g degC; E, unloading, memory "
+                     "and rate are the same at any temperature",
+                     reader->material_group, at - SF_CELSIUS, t[k] - SF_CELSIUS, t[k + 1] - SF_CELSIUS);
         sf_law_curves_free(card);
         add_curve(card, 0, &curve, err);
         reader->out->temperature_acts = reader->thermal = true;
@@ -286,10 +283,10 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
         SF_TRY(read_file(reader, setting, 0.0, err));
     } else {
         if (!config_setting_is_list(setting) || config_setting_length(setting) == 0)
-            return SF_REFUSE_AT(
-                reader, setting, err,
-                "%s.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } )",
-                reader->material_group);
+            return SF_REFUSE_AT(reader, setting, err,
+                                "%s.curves must be a list: ( { rate = \"0.0017 1/s\"; file = \"name.csv\"; } "
+                                ")",
+                                reader->material_group);
         if (config_setting_length(setting) > MOST_CURVES)
             return SF_REFUSE_AT(reader, setting, err, "%s.curves: %d curves; at most %d are read",
                                 reader->material_group, config_setting_length(setting), MOST_CURVES);

@@ -324,10 +324,9 @@ static sf_status check_support(const sf_case_reader *reader, const config_settin
     const sf_case_support *s = &reader->out->support[reader->item];
     bool plane = sf_dot3(s->normal, s->normal) > 0;
     if (group && plane == (s->source.path != NULL))
-        return SF_REFUSE_AT(
-            reader, group, err,
-            "a support is either the surface of a file, { file = \"post.geo\"; }, or a plane with "
-            "the normal towards the pad, { plane = [0.0, 0.0, 1.0]; }");
+        return SF_REFUSE_AT(reader, group, err,
+                            "a support is either the surface of a file, { file = \"post.geo\"; }, or a plane "
+                            "with the normal towards the pad, { plane = [0.0, 0.0, 1.0]; }");
     const config_setting_t *wrong =
         group ? config_setting_get_member(group, plane ? "parameters" : "place") : NULL;
     if (group && plane && !wrong)

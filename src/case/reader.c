@@ -208,11 +208,10 @@ sf_status sf_case_override(config_t *config, const char *text, sf_error *err) {
         return replace_group(config, name, sf_case_override_file(text), text, err);
     }
     if (!equals || !first_dot || first_dot > equals)
-        return SF_REFUSE(
-            err,
-            "--set %s: expected group.key=value, for example --set missile.velocity=\"5.2 m/s\", "
-            "or group=@file",
-            text);
+        return SF_REFUSE(err,
+                         "--set %s: expected group.key=value, for example --set missile.velocity=\"5.2 "
+                         "m/s\", or group=@file",
+                         text);
     char path[256];
     if ((size_t)(equals - text) >= sizeof path)
         return SF_REFUSE(err, "--set %.40s...: the key is longer than %zu characters", text, sizeof path - 1);

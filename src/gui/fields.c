@@ -302,11 +302,10 @@ static sf_status check_names(const sf_fields *fields, sf_error *err) {
             const sf_field *f = &fields->field[k], *g = &fields->field[j];
             bool same = f->in_case && g->in_case && strcmp(f->given, g->given) == 0;
             if (g->of_geometry && !same && strcmp(f->name, g->name) == 0 && !is_same_group(f, g))
-                return SF_REFUSE(
-                    err,
-                    "%s and %s have one Name, \"%s\": the window cannot tell them apart; give them "
-                    "different ones in the geometry files, or one value in the case",
-                    g->key, f->key, f->name);
+                return SF_REFUSE(err,
+                                 "%s and %s have one Name, \"%s\": the window cannot tell them apart; give "
+                                 "them different ones in the geometry files, or one value in the case",
+                                 g->key, f->key, f->name);
         }
     return SF_OK;
 }

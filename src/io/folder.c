@@ -118,11 +118,10 @@ static sf_status take(int handle, const char *path, sf_error *err) {
     if (sf_folder_is_own(handle))
         return SF_OK;
     if (count_others(handle) != 0 && !sf_folder_is_own(handle)) /* nor by another process meanwhile */
-        return SF_REFUSE(
-            err,
-            "the folder %s holds files and was not made by softfall: move it away, or give another "
-            "output",
-            path);
+        return SF_REFUSE(err,
+                         "the folder %s holds files and was not made by softfall: move it away, or give "
+                         "another output",
+                         path);
     return make_mark(handle, path, err);
 }
 

@@ -141,12 +141,11 @@ static bool is_short(const char *line) {
 
 static sf_status refuse_headless(const csv *file, sf_error *err) {
     const char *option = file->layout->heading_option;
-    return SF_REFUSE(
-        err,
-        "%s:%d: numbers begin here without a heading, which names the columns %s and %s and their "
-        "units: write one above them%s%s",
-        file->path, file->line, file->layout->column[0], file->layout->column[1],
-        option ? ", or give it with " : "", option ? option : "");
+    return SF_REFUSE(err,
+                     "%s:%d: numbers begin here without a heading, which names the columns %s and %s and "
+                     "their units: write one above them%s%s",
+                     file->path, file->line, file->layout->column[0], file->layout->column[1],
+                     option ? ", or give it with " : "", option ? option : "");
 }
 
 /* The first line that is a heading; a table of results may stand above it, with an empty line between. Else
@@ -377,17 +376,15 @@ static sf_status check_mark(csv *file, const char *name, const char *text, sf_er
                                file->path, file->line, name, text, file->comma_line, file->comma_text)
                    : SF_OK;
     if (file->separator == ',')
-        return SF_REFUSE(
-            err,
-            "%s:%d: %s \"%s\" holds a comma, which separates the columns here: write a decimal point, "
-            "or separate by semicolons",
-            file->path, file->line, name, text);
+        return SF_REFUSE(err,
+                         "%s:%d: %s \"%s\" holds a comma, which separates the columns here: write a decimal "
+                         "point, or separate by semicolons",
+                         file->path, file->line, name, text);
     if (file->point)
-        return SF_REFUSE(
-            err,
-            "%s:%d: %s \"%s\" has a comma where the file has decimal points: it could be a decimal "
-            "comma or a mark of thousands",
-            file->path, file->line, name, text);
+        return SF_REFUSE(err,
+                         "%s:%d: %s \"%s\" has a comma where the file has decimal points: it could be a "
+                         "decimal comma or a mark of thousands",
+                         file->path, file->line, name, text);
     if (!file->comma) {
         file->comma_line = file->line;
         snprintf(file->comma_text, sizeof file->comma_text, "%.31s", text);
@@ -550,11 +547,10 @@ static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, 
     }
     int footer = line ? file->line : 0;
     if (file->comma && !file->decimal)
-        return SF_REFUSE(
-            err,
-            "%s:%d: \"%s\" and every other number with a comma could hold a decimal comma or a mark of "
-            "thousands: write decimal points",
-            file->path, file->comma_line, file->comma_text);
+        return SF_REFUSE(err,
+                         "%s:%d: \"%s\" and every other number with a comma could hold a decimal comma or a "
+                         "mark of thousands: write decimal points",
+                         file->path, file->comma_line, file->comma_text);
     const sf_table_heading *h = &file->heading;
     file->table->plain =
         file->separator == ',' && h->exact[0] && h->exact[1] && !file->passed && !h->unit_line;

@@ -97,11 +97,10 @@ static sf_status convert_mme(const char *path, const char *what, char **text, sf
     if (!whole)
         return SF_NO_MEMORY(err, "the %s %s", what, path);
     if (!(step > 0) || !unit[0] || said != (double)samples)
-        return SF_REFUSE(
-            err,
-            "%s: its ISO-MME header gives a sampling interval of %g s, the unit \"%s\" and %g samples; it "
-            "holds %lld samples",
-            path, step, unit, said, (long long)samples);
+        return SF_REFUSE(err,
+                         "%s: its ISO-MME header gives a sampling interval of %g s, the unit \"%s\" and %g "
+                         "samples; it holds %lld samples",
+                         path, step, unit, said, (long long)samples);
     return SF_OK;
 }
 

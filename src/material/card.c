@@ -125,11 +125,11 @@ static sf_status check_curves(const sf_law_curves *c, sf_error *err) {
                                (long long)k, c->curve_strain[i]);
         sf_curve_fall fall;
         if (k > 0 && sf_law_curve_falls(c, k, &fall))
-            return SF_FAIL(
-                err, SF_ERR_MODEL,
-                "compression curve %lld at %g s-1 falls below that at %g s-1: %g Pa after %g Pa at a "
-                "strain of %g; such a foam would create energy",
-                (long long)k, c->curve_rate[k], c->curve_rate[k - 1], fall.fast, fall.slow, fall.strain);
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "compression curve %lld at %g s-1 falls below that at %g s-1: %g Pa after %g Pa "
+                           "at a strain of %g; such a foam would create energy",
+                           (long long)k, c->curve_rate[k], c->curve_rate[k - 1], fall.fast, fall.slow,
+                           fall.strain);
     }
     return SF_OK;
 }

@@ -11,11 +11,10 @@ SF_FOAM_ACTS(HAS)
 sf_status sf_foam_check_shared(const void *card, sf_error *err) {
     const sf_foam_shared *foam = card;
     if (sf_foam_has_memory(card) && foam->hysteresis_hu == 1)
-        return SF_FAIL(
-            err, SF_ERR_MODEL,
-            "memory.reload is %g and memory.recovery %g, but HU is 1: without hysteresis there is no "
-            "softening to remember; give HU, SHAPE and ALPHA of the unloading",
-            foam->memory.reload, foam->memory.recovery);
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "memory.reload is %g and memory.recovery %g, but HU is 1: without hysteresis there is "
+                       "no softening to remember; give HU, SHAPE and ALPHA of the unloading",
+                       foam->memory.reload, foam->memory.recovery);
     if (foam->hysteresis_alpha == 1 || foam->hysteresis_shape >= SF_UNLOADING_LEAST_SHAPE)
         return SF_OK;
     return SF_FAIL(err, SF_ERR_MODEL,
@@ -75,9 +74,8 @@ sf_status sf_foam_check_shared_keys(const sf_foam_shared *foam, bool rates, cons
                        "BETA1 = \"5000 1/s\"");
     *place = "material.rate_reference";
     if (foam->rate_factor > 0 && !given->is(given->reader, "material", "rate_reference"))
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "material.rate_reference is missing: a rate factor needs the rate at which it is 1, for "
-            "example rate_reference = \"0.01 1/s\"");
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "material.rate_reference is missing: a rate factor needs the rate at which it is 1, "
+                       "for example rate_reference = \"0.01 1/s\"");
     return SF_OK;
 }

@@ -141,12 +141,11 @@ static bool caution(const void *card, char *text, size_t size) {
     double ratio = fmax(sf_hyperfoam_poisson(&foam, 0.01), sf_hyperfoam_poisson(&foam, 0.5));
     if (!(ratio > LARGEST_POISSON + 1e-6))
         return false;
-    snprintf(
-        text, size,
-        "hyperfoam: the terms have a Poisson ratio of %.3g; above %g the stabilisation stiffens the pad on "
-        "coarse meshes and may end the run (at a spacing of a fifth of the thickness 0.4 did): halve the spacing "
-        "and compare",
-        ratio, LARGEST_POISSON);
+    snprintf(text, size,
+             "hyperfoam: the terms have a Poisson ratio of %.3g; above %g the stabilisation stiffens the pad "
+             "on coarse meshes and may end the run (at a spacing of a fifth of the thickness 0.4 did): halve "
+             "the spacing and compare",
+             ratio, LARGEST_POISSON);
     return true;
 }
 

@@ -317,10 +317,10 @@ static sf_status check(const void *card, sf_error *err) {
     const sf_foam_card *foam = card;
     SF_TRY(sf_foam_check_shared(card, err));
     if (foam->rate_factor > 0 && foam->curve_count > 1)
-        return SF_FAIL(
-            err, SF_ERR_MODEL,
-            "rate_factor is %g and there are %lld curves at several rates; a foam has one or the other",
-            foam->rate_factor, (long long)foam->curve_count);
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "rate_factor is %g and there are %lld curves at several rates; a foam has one or the "
+                       "other",
+                       foam->rate_factor, (long long)foam->curve_count);
     return SF_OK;
 }
 

@@ -280,10 +280,10 @@ static sf_status check_loads(const sf_model *m, sf_error *err) {
 static sf_status check_nodes(const sf_model *m, sf_error *err) {
     for (int64_t i = 0; i < m->node_count; i++)
         if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0 && m->support[i] > 0))
-            return SF_FAIL(
-                err, SF_ERR_MODEL,
-                "node %lld has volume %g m3, mass %g kg, spacing %g m, support %g m: all must be > 0",
-                (long long)i, m->volume[i], m->mass[i], m->spacing[i], m->support[i]);
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "node %lld has volume %g m3, mass %g kg, spacing %g m, support %g m: all must be "
+                           "> 0",
+                           (long long)i, m->volume[i], m->mass[i], m->spacing[i], m->support[i]);
     return SF_OK;
 }
 

@@ -94,12 +94,11 @@ static sf_status check_facing(const sf_case *c, const sf_mesh *mesh, const sf_du
     sf_surface_sides sides;
     SF_TRY(sf_surface_find_sides(mesh, dual, contact, c->missile_card.direction, &sides, err));
     if (!(sides.facing > LEAST * sides.area))
-        return SF_REFUSE(
-            err,
-            "pad.contact: the surface group \"%s\" does not face the missile, which moves along (%g, "
-            "%g, %g): are pad.contact and pad.fixed exchanged, or is the pad upside down?",
-            contact->name, c->missile_card.direction[0], c->missile_card.direction[1],
-            c->missile_card.direction[2]);
+        return SF_REFUSE(err,
+                         "pad.contact: the surface group \"%s\" does not face the missile, which moves along "
+                         "(%g, %g, %g): are pad.contact and pad.fixed exchanged, or is the pad upside down?",
+                         contact->name, c->missile_card.direction[0], c->missile_card.direction[1],
+                         c->missile_card.direction[2]);
     return SF_OK;
 }
 
@@ -339,11 +338,10 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_laye
 static sf_status check_freedom(const sf_case *c, const sf_model *m, sf_error *err) {
     if (c->freedom == SF_MISSILE_GUIDED || m->symmetry_factor == 1)
         return SF_OK;
-    return SF_REFUSE(
-        err,
-        "missile.freedom: a free missile needs the whole pad and the whole missile; this model is "
-        "1/%lld of them",
-        (long long)m->symmetry_factor);
+    return SF_REFUSE(err,
+                     "missile.freedom: a free missile needs the whole pad and the whole missile; this model "
+                     "is 1/%lld of them",
+                     (long long)m->symmetry_factor);
 }
 
 static double across(const double direction[3], const double a[3], const double b[3]) {
@@ -367,12 +365,11 @@ static sf_status tell_miss(const sf_model *m, const sf_surface *surface, const s
         nearest = fmin(nearest, distance);
     }
     if (miss->status == SF_ERR_MODEL && width < 2 * spacing && nearest < 2 * spacing)
-        return SF_FAIL(
-            err, SF_ERR_MODEL,
-            "the missile is too narrow for the mesh: no part of it is farther than %.3g mm from its "
-            "lowest point, across its direction, and it passes between the contact nodes, which are "
-            "%.3g mm apart there: take a finer mesh",
-            1e3 * width, 1e3 * spacing);
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the missile is too narrow for the mesh: no part of it is farther than %.3g mm from "
+                       "its lowest point, across its direction, and it passes between the contact nodes, "
+                       "which are %.3g mm apart there: take a finer mesh",
+                       1e3 * width, 1e3 * spacing);
     return SF_FAIL(err, miss->status, "%s", miss->text);
 }
 
@@ -445,11 +442,10 @@ static sf_status check_depth(const sf_model *m, sf_error *err) {
         depth < m->thickness * (1 - 1e-9) * limit) /* a difference of coordinates */
         return SF_OK;
     if (depth < m->thickness * (1 - 1e-9))
-        return SF_REFUSE(
-            err,
-            "missile.motion compresses the pad by %.4g mm of %.4g mm, a strain of %.4g: its foam cannot be "
-            "compressed beyond %.4g, the limit of its densification",
-            1e3 * depth, 1e3 * m->thickness, depth / m->thickness, limit);
+        return SF_REFUSE(err,
+                         "missile.motion compresses the pad by %.4g mm of %.4g mm, a strain of %.4g: its "
+                         "foam cannot be compressed beyond %.4g, the limit of its densification",
+                         1e3 * depth, 1e3 * m->thickness, depth / m->thickness, limit);
     return SF_REFUSE(err, "missile.motion presses the missile %.6g mm deep into a pad that is %.6g mm thick",
                      1e3 * depth, 1e3 * m->thickness);
 }
@@ -525,18 +521,17 @@ static void tell_contact(const sf_case *c, const sf_model *m, const sf_build_rep
         sf_sink_tell(sink, SF_WARNING,
                      "pad.triangle_centroids has no effect: no triangles of the pad may touch each other");
     if (r->domains.hidden_count > 0 && (m->skin_count == 0 || m->skin_alone))
-        sf_sink_tell(
-            sink, SF_WARNING,
-            "the pad has a slit, hole or gap narrower than the supports: nodes %.3g mm apart at (%.4g, %.4g, "
-            "%.4g) mm do not act on each other; its faces pass through each other where they meet",
-            1e3 * r->domains.hidden_distance, 1e3 * r->domains.hidden_position[0],
-            1e3 * r->domains.hidden_position[1], 1e3 * r->domains.hidden_position[2]);
+        sf_sink_tell(sink, SF_WARNING,
+                     "the pad has a slit, hole or gap narrower than the supports: nodes %.3g mm apart at "
+                     "(%.4g, %.4g, %.4g) mm do not act on each other; its faces pass through each other "
+                     "where they meet",
+                     1e3 * r->domains.hidden_distance, 1e3 * r->domains.hidden_position[0],
+                     1e3 * r->domains.hidden_position[1], 1e3 * r->domains.hidden_position[2]);
     if (!isnan(r->unheld[0]))
-        sf_sink_tell(
-            sink, SF_WARNING,
-            "pad.self_contact is \"off\", and the face at (%.4g, %.4g, %.4g) mm has another face of the pad, "
-            "or the anvil, before it: it passes through where they meet",
-            1e3 * r->unheld[0], 1e3 * r->unheld[1], 1e3 * r->unheld[2]);
+        sf_sink_tell(sink, SF_WARNING,
+                     "pad.self_contact is \"off\", and the face at (%.4g, %.4g, %.4g) mm has another face of "
+                     "the pad, or the anvil, before it: it passes through where they meet",
+                     1e3 * r->unheld[0], 1e3 * r->unheld[1], 1e3 * r->unheld[2]);
 }
 
 /* After the checks that say more of the missile: a sheet on its edge, for one. */

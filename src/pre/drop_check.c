@@ -144,12 +144,12 @@ static sf_status check_outside(const sf_case *c, const sf_model *m, sf_error *er
             continue;
         double travel = sf_missile_travel(&missile, &m->missile, x);
         if (travel < m->missile.gap - slack)
-            return SF_REFUSE(
-                err,
-                "the missile starts inside the pad: at its gap from the group \"%s\" it has passed the "
-                "pad's node at (%.4g, %.4g, %.4g) mm by %.4g mm: is every surface that it meets in "
-                "pad.contact?",
-                c->contact_group, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], 1e3 * (m->missile.gap - travel));
+            return SF_REFUSE(err,
+                             "the missile starts inside the pad: at its gap from the group \"%s\" it has "
+                             "passed the pad's node at (%.4g, %.4g, %.4g) mm by %.4g mm: is every surface "
+                             "that it meets in pad.contact?",
+                             c->contact_group, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2],
+                             1e3 * (m->missile.gap - travel));
     }
     return SF_OK;
 }
@@ -189,12 +189,11 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
         if (sf_missile_distance(&surface, &card, m->position, m->contact_count, m->contact_node, &distance,
                                 &miss) == SF_OK &&
             distance < -TOUCHING * m->thickness)
-            SF_REFUSE(
-                err,
-                "missile.angular_velocity: the missile turns so fast that another part of it is %.3g mm "
-                "inside the pad %.3g ms before it arrives in the pose of its geometry: draw it as it first "
-                "touches the pad",
-                -1e3 * distance, 1e3 * before);
+            SF_REFUSE(err,
+                      "missile.angular_velocity: the missile turns so fast that another part of it is %.3g "
+                      "mm inside the pad %.3g ms before it arrives in the pose of its geometry: draw it as "
+                      "it first touches the pad",
+                      -1e3 * distance, 1e3 * before);
     }
     free(surface.position);
     return err->status;
@@ -255,12 +254,12 @@ static sf_status check_mirror(const sf_model *m, int axis, double place, double 
                                                       &m->surface_position[3 * (int64_t)n[2]]));
         }
         if (nearest > slack)
-            return SF_REFUSE(
-                err,
-                "the missile is not symmetric about the plane \"%s\" (%c = %g mm), of which the model "
-                "has one side: its point at (%.4g, %.4g, %.4g) mm has its mirror image %.4g mm beside "
-                "the surface; model the whole pad and the whole missile",
-                name, 'x' + axis, 1e3 * place, 1e3 * own[0], 1e3 * own[1], 1e3 * own[2], 1e3 * nearest);
+            return SF_REFUSE(err,
+                             "the missile is not symmetric about the plane \"%s\" (%c = %g mm), of which the "
+                             "model has one side: its point at (%.4g, %.4g, %.4g) mm has its mirror image "
+                             "%.4g mm beside the surface; model the whole pad and the whole missile",
+                             name, 'x' + axis, 1e3 * place, 1e3 * own[0], 1e3 * own[1], 1e3 * own[2],
+                             1e3 * nearest);
     }
     return SF_OK;
 }
@@ -275,22 +274,20 @@ static sf_status check_plane(const sf_model *m, int axis, double place, const ch
         double off = m->missile.sphere_centre[axis] - place;
         if (fabs(off) <= AT_PLANE * m->missile.sphere_radius)
             return SF_OK;
-        return SF_REFUSE(
-            err,
-            "the centre of the missile's sphere lies %g mm off the symmetry plane \"%s\" (%c = %g "
-            "mm): it must lie on it",
-            1e3 * off, name, 'x' + axis, 1e3 * place);
+        return SF_REFUSE(err,
+                         "the centre of the missile's sphere lies %g mm off the symmetry plane \"%s\" (%c = "
+                         "%g mm): it must lie on it",
+                         1e3 * off, name, 'x' + axis, 1e3 * place);
     }
     double before = side_of_pad(m, axis, place) > 0 ? place - low : high - place, behind = extent - before;
     if (fabs(before) <= AT_PLANE * extent)
         return SF_OK;
     if (fabs(before - behind) <= SYMMETRIC * extent)
         return check_mirror(m, axis, place, extent, name, err);
-    return SF_REFUSE(
-        err,
-        "the missile spans %c = %g to %g mm, neither one side of the symmetry plane \"%s\" (%c = "
-        "%g mm) from that plane on nor both sides alike",
-        'x' + axis, 1e3 * low, 1e3 * high, name, 'x' + axis, 1e3 * place);
+    return SF_REFUSE(err,
+                     "the missile spans %c = %g to %g mm, neither one side of the symmetry plane \"%s\" (%c "
+                     "= %g mm) from that plane on nor both sides alike",
+                     'x' + axis, 1e3 * low, 1e3 * high, name, 'x' + axis, 1e3 * place);
 }
 
 /* The edges of one triangle alone, which bound the missile's surface. */
@@ -381,12 +378,12 @@ static sf_status check_blades(const sf_model *m, const rims *r, sf_error *err) {
     for (int64_t k = 0; k < r->count; k++) {
         double middle[3], slope = edge_slope(m, r->list[k].slot / 3, (int)(r->list[k].slot % 3), middle);
         if (!(slope < STEEP) && leads(m, middle)) /* also a triangle without area, of no slope */
-            return SF_REFUSE(
-                err,
-                "missile.group: the surface ends in an edge at (%.4g, %.4g, %.4g) mm that points at the pad, "
-                "in a sheet %.3g degrees steep: the pad would pass beside it; close the missile below, or "
-                "leave that part out of the group",
-                1e3 * middle[0], 1e3 * middle[1], 1e3 * middle[2], asin(fmin(slope, 1)) * 180 / M_PI);
+            return SF_REFUSE(err,
+                             "missile.group: the surface ends in an edge at (%.4g, %.4g, %.4g) mm that "
+                             "points at the pad, in a sheet %.3g degrees steep: the pad would pass beside "
+                             "it; close the missile below, or leave that part out of the group",
+                             1e3 * middle[0], 1e3 * middle[1], 1e3 * middle[2],
+                             asin(fmin(slope, 1)) * 180 / M_PI);
     }
     return SF_OK;
 }
@@ -463,11 +460,10 @@ static void tell_cautions(const sf_model *m, const sf_sink *sink) {
 enum { REASON_SIZE = 256 };
 
 static void describe_spacing(const sf_model *m, const sf_contact_zone *zone, char text[REASON_SIZE]) {
-    snprintf(
-        text, REASON_SIZE,
-        "the nodal spacing under the missile is %.3g mm, in a pad of %.4g mm with a contact zone of %.3g mm "
-        "half width: expected error of a_max about %.2g %%, mostly too low",
-        1e3 * zone->spacing, 1e3 * m->thickness, 1e3 * zone->half_width, 100 * m->expected_mesh_error);
+    snprintf(text, REASON_SIZE,
+             "the nodal spacing under the missile is %.3g mm, in a pad of %.4g mm with a contact zone of "
+             "%.3g mm half width: expected error of a_max about %.2g %%, mostly too low",
+             1e3 * zone->spacing, 1e3 * m->thickness, 1e3 * zone->half_width, 100 * m->expected_mesh_error);
 }
 
 static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_contact_zone *zone,

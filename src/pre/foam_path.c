@@ -196,12 +196,11 @@ static sf_status check_between(const sf_model *m, const surface_of_pad *pad, sf_
         const double *x = &m->surface_position[3 * v];
         double depth = sf_dot3(x, d) + m->missile.gap > start ? depth_inside(m, pad, x) : 0;
         if (depth > 0)
-            return SF_REFUSE(
-                err,
-                "a part of the missile passes between the contact nodes: when the first of them is "
-                "touched, its point at (%.4g, %.4g) mm is %.4g mm inside the foam; take a mesh whose "
-                "spacing there is below the width of that part",
-                1e3 * x[0], 1e3 * x[1], 1e3 * depth);
+            return SF_REFUSE(err,
+                             "a part of the missile passes between the contact nodes: when the first of them "
+                             "is touched, its point at (%.4g, %.4g) mm is %.4g mm inside the foam; take a "
+                             "mesh whose spacing there is below the width of that part",
+                             1e3 * x[0], 1e3 * x[1], 1e3 * depth);
     }
     return SF_OK;
 }

@@ -289,11 +289,10 @@ sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
     SF_TRY(find_bodies(m, &bodies, err));
     holder h = {.model = m, .bodies = &bodies};
     if (bodies.count > MOST_BODIES)
-        SF_REFUSE(
-            err,
-            "the layers fall into %lld parts that are not tied to each other altogether; at most %d are "
-            "supported",
-            (long long)bodies.count, MOST_BODIES);
+        SF_REFUSE(err,
+                  "the layers fall into %lld parts that are not tied to each other altogether; at most %d "
+                  "are supported",
+                  (long long)bodies.count, MOST_BODIES);
     else if (find_motions(&h, hold, err) == SF_OK)
         find_underside(m, hold);
     return err->status;
@@ -326,40 +325,36 @@ sf_status sf_hold_check(const sf_hold *hold, bool separate, const sf_model *m, s
     if (!hold->lifted_whole)
         snprintf(about, sizeof about, " about (%.4g, %.4g, %.4g) mm", 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     if (m->material_count > 1 && hold->rows[2] > 0)
-        return SF_REFUSE(
-            err,
-            "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the %slayer \"%s\"%s from being lifted or "
-            "tilted: what holds it along z lies at a point or on a line, or is nothing",
-            *about ? "part of the " : "", m->material[hold->lifted].name, about);
+        return SF_REFUSE(err,
+                         "pad.fixed, pad.sliding, pad.sliding_interfaces: nothing keeps the %slayer \"%s\"%s "
+                         "from being lifted or tilted: what holds it along z lies at a point or on a line, "
+                         "or is nothing",
+                         *about ? "part of the " : "", m->material[hold->lifted].name, about);
     if (hold->rows[2] == 0)
-        return SF_REFUSE(
-            err,
-            "pad.fixed, pad.sliding: nothing holds the pad along z: the missile would push it away whole; name "
-            "its underside in one of them");
-    return SF_REFUSE(
-        err,
-        "pad.fixed, pad.sliding: the %lld nodes that are held along z lie at a point or on a line: the pad "
-        "can tilt; name its underside in one of them",
-        (long long)hold->rows[2]);
+        return SF_REFUSE(err,
+                         "pad.fixed, pad.sliding: nothing holds the pad along z: the missile would push it "
+                         "away whole; name its underside in one of them");
+    return SF_REFUSE(err,
+                     "pad.fixed, pad.sliding: the %lld nodes that are held along z lie at a point or on a "
+                     "line: the pad can tilt; name its underside in one of them",
+                     (long long)hold->rows[2]);
 }
 
 void sf_hold_warn(const sf_hold *hold, const sf_model *m, const sf_sink *sink) {
     if (hold->underside < SF_HOLD_MOST && m->support_triangle_count == 0)
-        sf_sink_tell(
-            sink, SF_WARNING,
-            "pad.fixed, pad.sliding: %.3g %% of the nodes of the pad's underside (z = %.4g mm) are held along z: "
-            "the rest hangs free",
-            100 * hold->underside, 1e3 * hold->underside_low);
+        sf_sink_tell(sink, SF_WARNING,
+                     "pad.fixed, pad.sliding: %.3g %% of the nodes of the pad's underside (z = %.4g mm) are "
+                     "held along z: the rest hangs free",
+                     100 * hold->underside, 1e3 * hold->underside_low);
     double friction = m->anvil.friction;
     for (int64_t k = 0; k < m->support_count; k++)
         friction = fmax(friction, m->support_friction[k]);
     for (int c = 0; c < 2; c++)
         if (hold->slides[c] && m->missile.direction[c] != 0 && !(friction > 0))
-            sf_sink_tell(
-                sink, SF_WARNING,
-                "nothing holds the pad along %c, where missile.direction has the component %g: it will slide "
-                "away",
-                'x' + c, m->missile.direction[c]);
+            sf_sink_tell(sink, SF_WARNING,
+                         "nothing holds the pad along %c, where missile.direction has the component %g: it "
+                         "will slide away",
+                         'x' + c, m->missile.direction[c]);
 }
 
 /* ---- bodies that nothing reaches ---- */
@@ -417,12 +412,12 @@ sf_status sf_hold_warn_apart(const sf_model *m, const sf_sink *sink, sf_error *e
         }
     const box *own = &body[first];
     if (apart > 0)
-        sf_sink_tell(
-            sink, SF_WARNING,
-            "pad.separate: %lld of %lld bodies are out of reach, the first about (%.4g, %.4g, %.4g) mm: "
-            "neither the missile nor a body that it may move comes nearer than the pad's thickness "
-            "(%.4g mm), and they stay at rest",
-            (long long)apart, (long long)b.count, 500 * (own->low[0] + own->high[0]),
-            500 * (own->low[1] + own->high[1]), 500 * (own->low[2] + own->high[2]), 1e3 * m->thickness);
+        sf_sink_tell(sink, SF_WARNING,
+                     "pad.separate: %lld of %lld bodies are out of reach, the first about (%.4g, %.4g, %.4g) "
+                     "mm: neither the missile nor a body that it may move comes nearer than the pad's "
+                     "thickness (%.4g mm), and they stay at rest",
+                     (long long)apart, (long long)b.count, 500 * (own->low[0] + own->high[0]),
+                     500 * (own->low[1] + own->high[1]), 500 * (own->low[2] + own->high[2]),
+                     1e3 * m->thickness);
     return SF_OK;
 }

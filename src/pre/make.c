@@ -84,10 +84,10 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
     if (read_geometry(c, &mesh, &surface, support, libraries, sink, err) == SF_OK &&
         sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
         if (sf_hold_check(&report->hold, c->separate, model, err) == SF_OK && report->contact_held)
-            SF_REFUSE(
-                err,
-                "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or pad.sliding",
-                c->contact_group);
+            SF_REFUSE(err,
+                      "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or "
+                      "pad.sliding",
+                      c->contact_group);
         if (err->status != SF_OK)
             sf_model_free(model);
     }

@@ -11,14 +11,13 @@ static const int ROW[6] = {0, 1, 2, 0, 1, 0}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
 
 static sf_status refuse_edge(const sf_half_edge *s, int64_t count, const double *position, sf_error *err) {
     const double *a = &position[3 * (int64_t)s->low], *b = &position[3 * (int64_t)s->high];
-    return SF_FAIL(
-        err, SF_ERR_MODEL,
-        "the surface bounds no solid: %s at the edge from (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g) "
-        "mm",
-        count == 1   ? "it ends"
-        : count == 2 ? "one triangle faces outwards and the next inwards"
-                     : "more than two triangles meet",
-        1e3 * a[0], 1e3 * a[1], 1e3 * a[2], 1e3 * b[0], 1e3 * b[1], 1e3 * b[2]);
+    return SF_FAIL(err, SF_ERR_MODEL,
+                   "the surface bounds no solid: %s at the edge from (%.6g, %.6g, %.6g) to (%.6g, %.6g, "
+                   "%.6g) mm",
+                   count == 1   ? "it ends"
+                   : count == 2 ? "one triangle faces outwards and the next inwards"
+                                : "more than two triangles meet",
+                   1e3 * a[0], 1e3 * a[1], 1e3 * a[2], 1e3 * b[0], 1e3 * b[1], 1e3 * b[2]);
 }
 
 static sf_status check_nodes(int64_t node_count, int64_t triangle_count, const int32_t *triangle,
@@ -198,11 +197,10 @@ static sf_status check_inertia(const double inertia[6], sf_error *err) {
     double p[3];
     if (sf_missile_inertia_is_possible(inertia, p))
         return SF_OK;
-    return SF_REFUSE(
-        err,
-        "missile.inertia: no body has the principal moments %.4g, %.4g and %.4g kg m2: they must be "
-        "positive, and none larger than the sum of the others",
-        p[0], p[1], p[2]);
+    return SF_REFUSE(err,
+                     "missile.inertia: no body has the principal moments %.4g, %.4g and %.4g kg m2: they "
+                     "must be positive, and none larger than the sum of the others",
+                     p[0], p[1], p[2]);
 }
 
 sf_status sf_missile_take_body(const sf_case *c, const sf_surface *s, sf_missile_card *card, sf_error *err) {
@@ -213,11 +211,11 @@ sf_status sf_missile_take_body(const sf_case *c, const sf_surface *s, sf_missile
     if (card->freedom == SF_MISSILE_GUIDED)
         return SF_OK;
     if (!(given && placed) && !find_solid(s, card, &solid, &reason))
-        return SF_REFUSE(
-            err,
-            "missile.freedom: the missile's %s is not given, and its geometry is no solid that tells it "
-            "(%.300s): close its surface, mesh its volume, or give missile.inertia and missile.centre",
-            given ? "centre" : "inertia", reason.text);
+        return SF_REFUSE(err,
+                         "missile.freedom: the missile's %s is not given, and its geometry is no solid that "
+                         "tells it (%.300s): close its surface, mesh its volume, or give missile.inertia and "
+                         "missile.centre",
+                         given ? "centre" : "inertia", reason.text);
     memcpy(card->angular_velocity, c->angular_velocity, sizeof card->angular_velocity);
     for (int k = 0; k < 3; k++)
         card->centre[k] = placed ? c->centre[k] + s->position[k] - s->origin[k] : solid.centroid[k];

@@ -208,11 +208,10 @@ static sf_status check_size(const sf_model *m, const triangles *s, const char *l
     double side = sqrt(area / (double)s->count);
     if (side >= LEAST * spacing)
         return SF_OK;
-    return SF_REFUSE(
-        err,
-        "support%s: the triangles of the support are %.3g mm wide, the pad's spacing is %.3g mm: "
-        "mesh the support coarser, with at least %.3g mm",
-        label, 1e3 * side, 1e3 * spacing, 1e3 * LEAST * spacing);
+    return SF_REFUSE(err,
+                     "support%s: the triangles of the support are %.3g mm wide, the pad's spacing is %.3g "
+                     "mm: mesh the support coarser, with at least %.3g mm",
+                     label, 1e3 * side, 1e3 * spacing, 1e3 * LEAST * spacing);
 }
 
 sf_status sf_support_plane(const sf_case_support *plane, const sf_mesh *mesh, sf_surface *out,

@@ -69,12 +69,11 @@ static sf_status mark_resting(const sf_node_set *set, const sf_model *m, const s
     for (int64_t k = 0; k < set->count; k++) {
         const double *x = &m->position[3 * (int64_t)set->node[k]];
         if (x[2] > low + LOWEST * m->thickness)
-            return SF_REFUSE(
-                err,
-                "pad.fixed: the group \"%s\" cannot rest on the anvil (pad.base = \"resting\"): it "
-                "must lie in the plane of the pad's lowest nodes, z = %.6g mm, and has a node at "
-                "(%.4g, %.4g, %.4g) mm",
-                set->name, 1e3 * low, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+            return SF_REFUSE(err,
+                             "pad.fixed: the group \"%s\" cannot rest on the anvil (pad.base = \"resting\"): "
+                             "it must lie in the plane of the pad's lowest nodes, z = %.6g mm, and has a "
+                             "node at (%.4g, %.4g, %.4g) mm",
+                             set->name, 1e3 * low, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
         marks->rest[set->node[k]] = 1;
     }
     return SF_OK;
@@ -91,13 +90,12 @@ static sf_status check_whole_base(const sf_model *m, const sf_base_marks *marks,
         }
     if (count == 0)
         return SF_OK;
-    return SF_REFUSE(
-        err,
-        "pad.fixed: %lld nodes in the plane of the anvil, the first at (%.4g, %.4g, %.4g) mm, are in "
-        "none of its groups: a resting pad (pad.base = \"resting\") would pass through the anvil there; "
-        "name its whole underside",
-        (long long)count, 1e3 * m->position[3 * first], 1e3 * m->position[3 * first + 1],
-        1e3 * m->position[3 * first + 2]);
+    return SF_REFUSE(err,
+                     "pad.fixed: %lld nodes in the plane of the anvil, the first at (%.4g, %.4g, %.4g) mm, "
+                     "are in none of its groups: a resting pad (pad.base = \"resting\") would pass through "
+                     "the anvil there; name its whole underside",
+                     (long long)count, 1e3 * m->position[3 * first], 1e3 * m->position[3 * first + 1],
+                     1e3 * m->position[3 * first + 2]);
 }
 
 /* A resting node is free to rise. */
@@ -198,13 +196,12 @@ static sf_status set_loads(sf_model *m, double gravity, int planes, sf_error *er
                        (1 + slope[0] * (m->position[3 * i] - centre[0]) +
                         slope[1] * (m->position[3 * i + 1] - centre[1]));
         if (share < 0)
-            return SF_REFUSE(
-                err,
-                "pad.base: the pad does not rest on the whole of its base: its centre of mass is "
-                "above (%.4g, %.4g) mm, the middle of the base at (%.4g, %.4g) mm, and it would "
-                "lift off at (%.4g, %.4g) mm",
-                1e3 * (centre[0] + offset[0]), 1e3 * (centre[1] + offset[1]), 1e3 * centre[0],
-                1e3 * centre[1], 1e3 * m->position[3 * i], 1e3 * m->position[3 * i + 1]);
+            return SF_REFUSE(err,
+                             "pad.base: the pad does not rest on the whole of its base: its centre of mass "
+                             "is above (%.4g, %.4g) mm, the middle of the base at (%.4g, %.4g) mm, and it "
+                             "would lift off at (%.4g, %.4g) mm",
+                             1e3 * (centre[0] + offset[0]), 1e3 * (centre[1] + offset[1]), 1e3 * centre[0],
+                             1e3 * centre[1], 1e3 * m->position[3 * i], 1e3 * m->position[3 * i + 1]);
         m->rest_load[k] = isnan(share) ? 0 : gravity * mass.sum * share;
     }
     return SF_OK;

@@ -134,12 +134,11 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
     const sf_good_run *good = sf_good_run_limits();
     if (l->largest_error > good->energy_error || fabs(x->stabilisation_share) > good->stabilisation ||
         fabs(x->contact_share) > good->contact)
-        sf_sink_tell(
-            &sink, SF_WARNING,
-            "energy error %.2f %% (good: %g), stabilisation %.2f %% (%g), contact %.2f %% (%g): beyond "
-            "the limits of a good run, softfall-post gives the verdict",
-            100 * l->largest_error, 100 * good->energy_error, 100 * x->stabilisation_share,
-            100 * good->stabilisation, 100 * x->contact_share, 100 * good->contact);
+        sf_sink_tell(&sink, SF_WARNING,
+                     "energy error %.2f %% (good: %g), stabilisation %.2f %% (%g), contact %.2f %% (%g): "
+                     "beyond the limits of a good run, softfall-post gives the verdict",
+                     100 * l->largest_error, 100 * good->energy_error, 100 * x->stabilisation_share,
+                     100 * good->stabilisation, 100 * x->contact_share, 100 * good->contact);
 }
 
 /* ---- the run, from the model's file to the results ---- */
@@ -261,10 +260,10 @@ static sf_status check_series(const options *o, const series *all, sf_error *err
     if (all->drops == 1)
         return SF_OK;
     if (o->no_checkpoint || (o->restart && o->end_time > 0))
-        return SF_REFUSE(
-            err,
-            "a series of drops is solved without %s: each drop begins with the pad at the end of the one before",
-            o->no_checkpoint ? "--no-checkpoint" : "--restart and --end-time");
+        return SF_REFUSE(err,
+                         "a series of drops is solved without %s: each drop begins with the pad at the end "
+                         "of the one before",
+                         o->no_checkpoint ? "--no-checkpoint" : "--restart and --end-time");
     for (int64_t k = 2; k <= all->drops && !o->restart; k++) {
         char path[SF_PATH_SIZE];
         sf_output output;

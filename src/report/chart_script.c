@@ -47,14 +47,12 @@ static bool has_points(const sf_series_data *s) {
 /* ---- the head of the script ---- */
 
 static void put_head(FILE *g, const sf_chart *c) {
-    fprintf(
-        g,
-        "# gnuplot %s.gp draws %s.png, gnuplot -c %s.gp svg draws %s.svg: from any folder, beside this file.\n"
-        "set encoding utf8\n"
-        "if (exists('ARG0')) {\n    folder = ''\n"
-        "    do for [k = 1:strlen(ARG0)] { if (substr(ARG0, k, k) eq '/') { folder = substr(ARG0, 1, k) } }\n"
-        "    if (folder ne '') { cd folder }\n}\n",
-        c->name, c->name, c->name, c->name);
+    fprintf(g,
+            "# gnuplot %s.gp draws %s.png, gnuplot -c %s.gp svg draws %s.svg: from any folder, beside this "
+            "file.\nset encoding utf8\nif (exists('ARG0')) {\n    folder = ''\n    do for [k = "
+            "1:strlen(ARG0)] { if (substr(ARG0, k, k) eq '/') { folder = substr(ARG0, 1, k) } }\n    if "
+            "(folder ne '') { cd folder }\n}\n",
+            c->name, c->name, c->name, c->name);
     fprintf(g,
             "svg = exists('ARG1') && ARG1 eq 'svg'\ndot = svg ? 0.5 : 1 # size of points\n"
             "if (svg) {\n"
@@ -157,11 +155,10 @@ static void put_key(FILE *g, const sf_chart_panel_data *p) {
     } else if (p->shown.key == SF_KEY_BELOW) {
         if (p->shown.area[1] <= 0)
             fprintf(g, "set bmargin %.1f\n", 3.4 + 1.2 * rows);
-        fprintf(
-            g,
-            "set key at screen 0.5,0.015 center bottom horizontal maxcols %d Left reverse samplen 1.5 width "
-            "(svg ? -4 : 1) spacing 1.1\n",
-            (entries + rows - 1) / rows);
+        fprintf(g,
+                "set key at screen 0.5,0.015 center bottom horizontal maxcols %d Left reverse samplen 1.5 "
+                "width (svg ? -4 : 1) spacing 1.1\n",
+                (entries + rows - 1) / rows);
     } else {
         fprintf(g, "set key default\nset key %s\n", places[p->shown.key]);
     }
@@ -241,10 +238,10 @@ static void put_style(FILE *g, const sf_series_style *s) {
         fprintf(g, "using 1:2:(%g) with boxes fs solid %g noborder lc rgb '%s'", size, opacity, s->colour);
         break;
     case SF_SERIES_SPANS:
-        fprintf(
-            g,
-            "using (0.5*($3+$4)):2:3:4:($2-0.35):($2+0.35) with boxxyerror fs solid %g noborder lc rgb '%s'",
-            opacity, s->colour);
+        fprintf(g,
+                "using (0.5*($3+$4)):2:3:4:($2-0.35):($2+0.35) with boxxyerror fs solid %g noborder lc rgb "
+                "'%s'",
+                opacity, s->colour);
         break;
     case SF_SERIES_ERRORS:
         fprintf(g, "using 1:2:3:4 with yerrorbars pt %d lw %g lc rgb '%s'", shape, width, s->colour);
@@ -285,11 +282,10 @@ static void put_plot(FILE *g, size_t panel, const sf_chart_panel_data *p) {
 
 static void put_margins(FILE *g, const sf_panel *p) {
     if (p->area[1] > 0)
-        fprintf(
-            g,
-            "set lmargin at screen %g\nset rmargin at screen %g\nset bmargin at screen %g\nset tmargin at "
-            "screen %g\n",
-            p->area[0], p->area[1], p->area[2], p->area[3]);
+        fprintf(g,
+                "set lmargin at screen %g\nset rmargin at screen %g\nset bmargin at screen %g\nset tmargin "
+                "at screen %g\n",
+                p->area[0], p->area[1], p->area[2], p->area[3]);
     else if (p->left > 0)
         fprintf(g, "set lmargin %d\n", p->left);
     fputs(p->padded ? "set offsets graph 0.04, graph 0.04, graph 0.05, graph 0.05\n" : "unset offsets\n", g);

@@ -83,10 +83,10 @@ sf_status sf_set_move(sf_model *m, const double *set, const double *peak, double
     for (int64_t i = 0, held = 0; i < m->node_count; i++) {
         double *x = &m->position[3 * i], way[3], jacobian = move_domain(m, i);
         if (!(jacobian >= 0.3))
-            return SF_REFUSE(
-                err,
-                "the permanent set would leave %.3g of the foam's volume at (%.4g, %.4g, %.4g) mm, less than 0.3: make material.memory.set, %g, smaller",
-                jacobian, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], sf_model_set(m));
+            return SF_REFUSE(err,
+                             "the permanent set would leave %.3g of the foam's volume at (%.4g, %.4g, %.4g) "
+                             "mm, less than 0.3: make material.memory.set, %g, smaller",
+                             jacobian, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2], sf_model_set(m));
         while (held < m->fixed_count && m->fixed_node[held] < i)
             held++;
         displace(m, i, held < m->fixed_count && m->fixed_node[held] == i ? m->fixed_mask[held] : 0, way);
@@ -105,10 +105,10 @@ sf_status sf_set_check_missile(const sf_model *m, const sf_missile_surface *surf
     for (const int32_t *i = m->contact_node; i < m->contact_node + m->contact_count; i++)
         if (sf_missile_gap(m, &missile, surface, &m->position[3 * (int64_t)*i], &gap, normal) &&
             -gap > SF_CONTACT_ENTRY * m->spacing[*i])
-            return SF_REFUSE(
-                err,
-                "the permanent set has moved foam %.3g mm into the missile at its start: give a larger missile.gap than %.4g mm",
-                -1e3 * gap, 1e3 * m->missile.gap);
+            return SF_REFUSE(err,
+                             "the permanent set has moved foam %.3g mm into the missile at its start: give a "
+                             "larger missile.gap than %.4g mm",
+                             -1e3 * gap, 1e3 * m->missile.gap);
     return SF_OK;
 }
 

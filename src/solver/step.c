@@ -21,7 +21,8 @@ static sf_status check_domains(const sf_model *m, const sf_state *s, sf_error *e
         bool finite = isfinite(p->jacobian);
         return SF_FAIL(
             err, SF_ERR_NUMERIC,
-            "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, %s: det F = %.3g. %s",
+            "at t = %.6g s (step %lld) the foam at node %lld, X = (%.5g, %.5g, %.5g) m, %s: det F "
+            "= %.3g. %s",
             s->time, (long long)s->step, (long long)p->jacobian_node, x[0], x[1], x[2],
             finite ? "has collapsed" : "holds a NaN or infinity", p->jacobian,
             finite
@@ -37,11 +38,12 @@ static sf_status check_step(const sf_model *m, const sf_state *s, sf_error *err)
     if (s->dt >= floor)
         return SF_OK;
     const double *x = &m->position[3 * s->jacobian_node];
-    return SF_FAIL(
-        err, SF_ERR_NUMERIC,
-        "at t = %.6g s the stable time step fell to %.3g s, below %.3g s; most compressed is node %lld at "
-        "(%.5g, %.5g, %.5g) m, det F = %.3g. The foam has densified beyond what the curve can carry",
-        s->time, s->dt, floor, (long long)s->jacobian_node, x[0], x[1], x[2], s->smallest_jacobian);
+    return SF_FAIL(err, SF_ERR_NUMERIC,
+                   "at t = %.6g s the stable time step fell to %.3g s, below %.3g s; most compressed is node "
+                   "%lld at (%.5g, %.5g, %.5g) m, det F = %.3g. The foam has densified beyond what the curve "
+                   "can carry",
+                   s->time, s->dt, floor, (long long)s->jacobian_node, x[0], x[1], x[2],
+                   s->smallest_jacobian);
 }
 
 /* The first node whose force or velocity holds a NaN or infinity; -1: none. */
@@ -64,11 +66,11 @@ static sf_status check_finite(const sf_model *m, const sf_state *s, sf_error *er
                        "displacement %g m. The contact was unstable; try a smaller solver.step_safety",
                        s->time, (long long)s->step, s->missile.acceleration, s->missile.displacement);
     const double *x = &m->position[3 * node], *f = &s->force[3 * node];
-    return SF_FAIL(
-        err, SF_ERR_NUMERIC,
-        "at t = %.6g s (step %lld) node %lld, X = (%.5g, %.5g, %.5g) m, holds a NaN or infinity: its "
-        "force is (%g, %g, %g) N. The step before was unstable; try a smaller solver.step_safety",
-        s->time, (long long)s->step, (long long)node, x[0], x[1], x[2], f[0], f[1], f[2]);
+    return SF_FAIL(err, SF_ERR_NUMERIC,
+                   "at t = %.6g s (step %lld) node %lld, X = (%.5g, %.5g, %.5g) m, holds a NaN or infinity: "
+                   "its force is (%g, %g, %g) N. The step before was unstable; try a smaller "
+                   "solver.step_safety",
+                   s->time, (long long)s->step, (long long)node, x[0], x[1], x[2], f[0], f[1], f[2]);
 }
 
 static int64_t find_fastest(const sf_model *m, const sf_state *s, double *speed) {
@@ -115,12 +117,11 @@ static sf_status check_passed(const sf_model *m, const sf_state *s, sf_error *er
         const char *through = find_passed(m, s, plane, i);
         const double *x = &m->position[3 * i], *d = &s->d[3 * i];
         if (through)
-            return SF_FAIL(
-                err, SF_ERR_NUMERIC,
-                "at t = %.6g s the foam has passed through %s, at (%.4g, %.4g, %.4g) mm (undeformed "
-                "(%.4g, %.4g, %.4g) mm): pad.self_contact = \"on\" keeps it from them",
-                s->time, through, 1e3 * (x[0] + d[0]), 1e3 * (x[1] + d[1]), 1e3 * (x[2] + d[2]), 1e3 * x[0],
-                1e3 * x[1], 1e3 * x[2]);
+            return SF_FAIL(err, SF_ERR_NUMERIC,
+                           "at t = %.6g s the foam has passed through %s, at (%.4g, %.4g, %.4g) mm "
+                           "(undeformed (%.4g, %.4g, %.4g) mm): pad.self_contact = \"on\" keeps it from them",
+                           s->time, through, 1e3 * (x[0] + d[0]), 1e3 * (x[1] + d[1]), 1e3 * (x[2] + d[2]),
+                           1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     }
     return SF_OK;
 }
@@ -150,15 +151,14 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
     int64_t node = find_fastest(m, s, &speed);
     const double *x = &m->position[3 * node];
     if (fed)
-        return SF_FAIL(
-            err, SF_ERR_NUMERIC,
-            "at t = %.6g s (step %lld) contact or stabilisation has put %.3g J into the pad (contact %.3g J, "
-            "stabilisation %.3g J; limit %.2f %% of the %s); fastest is node %lld at (%.5g, %.5g, %.5g) m, "
-            "%.3g m/s: %s",
-            s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
-            100 * m->run.energy_limit,
-            sf_missile_is_driven(m) ? "largest work of the motion" : "impact energy", (long long)node, x[0],
-            x[1], x[2], speed, cause_of_feeding(m, s));
+        return SF_FAIL(err, SF_ERR_NUMERIC,
+                       "at t = %.6g s (step %lld) contact or stabilisation has put %.3g J into the pad "
+                       "(contact %.3g J, stabilisation %.3g J; limit %.2f %% of the %s); fastest is node "
+                       "%lld at (%.5g, %.5g, %.5g) m, %.3g m/s: %s",
+                       s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
+                       100 * m->run.energy_limit,
+                       sf_missile_is_driven(m) ? "largest work of the motion" : "impact energy",
+                       (long long)node, x[0], x[1], x[2], speed, cause_of_feeding(m, s));
     return SF_FAIL(err, SF_ERR_NUMERIC,
                    "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step "
                    "%.3g s); fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: %s",

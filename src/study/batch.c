@@ -74,11 +74,10 @@ static sf_status check_profile(const char *name, sf_error *err) {
                              "(package slurm-client of Debian)");
     if (is_profile(name) || is_profile_name(name))
         return SF_OK;
-    return SF_REFUSE(
-        err,
-        "--profile %s: there is no such profile of Snakemake: neither this folder nor one of this "
-        "name in ~/.config/snakemake or /etc/xdg/snakemake has a config.yaml",
-        name);
+    return SF_REFUSE(err,
+                     "--profile %s: there is no such profile of Snakemake: neither this folder nor one of "
+                     "this name in ~/.config/snakemake or /etc/xdg/snakemake has a config.yaml",
+                     name);
 }
 
 sf_status sf_engine_check(const sf_runner_engine *engine, sf_error *err) {

@@ -311,11 +311,10 @@ static sf_status check_reading(const folder *f, const sf_broker *read, const cha
     for (size_t k = 0; k < read->count && err->status == SF_OK; k++) {
         char *whole = sf_path_whole(NULL, read->file[k].path, err);
         if (whole && !sf_path_below(root, whole))
-            SF_REFUSE(
-                err,
-                "%s has no folder of its own: its geometry reads %s by a path from /; name it relative to "
-                "the geometry",
-                f->request->case_path, whole);
+            SF_REFUSE(err,
+                      "%s has no folder of its own: its geometry reads %s by a path from /; name it relative "
+                      "to the geometry",
+                      f->request->case_path, whole);
         free(whole);
     }
     return err->status;

@@ -135,11 +135,10 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
     SF_TRY(err->status);
     put_comment(file, text->title);
     put_comment(file, text->provenance);
-    fprintf(
-        file,
-        "# For a case: @include \"%s.cfg\" on a line of its own in the group material, or softfall-pre --set "
-        "material=@%s.cfg\n",
-        name, name);
+    fprintf(file,
+            "# For a case: @include \"%s.cfg\" on a line of its own in the group material, or softfall-pre "
+            "--set material=@%s.cfg\n",
+            name, name);
     put_card(file, name, text->temperatures, material);
     if (text->response_error)
         put_response_error(file, text->response_error);

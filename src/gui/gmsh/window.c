@@ -191,10 +191,9 @@ sf_status sf_window_open(sf_error *err) {
     int ierr = 0;
     const char *display = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
     if ((!display || !*display) && (!wayland || !*wayland))
-        return SF_FAIL(
-            err, SF_ERR_IO,
-            "there is no display to open a window on (DISPLAY is not set); softfall-pre, softfall-solve and "
-            "softfall-post need none");
+        return SF_FAIL(err, SF_ERR_IO,
+                       "there is no display to open a window on (DISPLAY is not set); softfall-pre, "
+                       "softfall-solve and softfall-post need none");
     gmshOnelabSet(
         "[{\"type\":\"string\",\"name\":\"ONELAB/Button\",\"values\":[\"Run\",\"run\"],\"visible\":false},"
         "{\"type\":\"string\",\"name\":\"" ACTION "\",\"values\":[\"\"],\"visible\":false}]",

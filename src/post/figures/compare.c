@@ -104,12 +104,11 @@ static sf_status check_region(const sf_series *measured, const sf_series *model,
             err, "the region %g to %g ms lies outside the model's curve (%g to %g ms of the measured time)",
             region.begin * 1e3, region.end * 1e3, model_begin * 1e3, model_end * 1e3);
     if (!left && region.end > model_end + SLACK)
-        return SF_REFUSE(
-            err,
-            "the region %g to %g ms goes beyond the model's curve, which ends in contact at %g ms of the "
-            "measured time: compare a shorter one (--window), or continue the run (softfall-solve "
-            "--restart --end-time)",
-            region.begin * 1e3, region.end * 1e3, model_end * 1e3);
+        return SF_REFUSE(err,
+                         "the region %g to %g ms goes beyond the model's curve, which ends in contact at %g "
+                         "ms of the measured time: compare a shorter one (--window), or continue the run "
+                         "(softfall-solve --restart --end-time)",
+                         region.begin * 1e3, region.end * 1e3, model_end * 1e3);
     return SF_OK;
 }
 

@@ -270,10 +270,10 @@ static sf_status take_zero_away(record *r, sf_reference *reference, sf_error *er
         double offset = 0;
         SF_TRY(sf_record_offset(&pulse, &r->axis[k], &offset, err));
         if (isnan(offset))
-            return SF_REFUSE(
-                err,
-                "%s: too few samples before contact to take the zero line from: leave --reference-zero out",
-                r->options->path);
+            return SF_REFUSE(err,
+                             "%s: too few samples before contact to take the zero line from: leave "
+                             "--reference-zero out",
+                             r->options->path);
         for (int64_t i = 0; i < pulse.count; i++)
             r->axis[k].value[i] -= offset;
         reference->offset = r->axes == 1 ? offset : hypot(reference->offset, offset);
@@ -303,12 +303,11 @@ static sf_status check_sampling(const record *r, const sf_series *raw, sf_error 
         coarse += gap_before(raw, i) > ROUNDING * most;
     for (int64_t i = 1; (double)coarse > SHARE * (double)raw->count && i < raw->count; i++)
         if (gap_before(raw, i) > ROUNDING * most)
-            return SF_REFUSE(
-                err,
-                "%s:%d: samples %.4g ms apart are too coarse for CFC %g, which needs %.4g ms (%g kHz) or "
-                "less: choose a lower class, or %s if the curve is filtered already",
-                o->path, r->line[i], gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
-                SAMPLES_PER_CLASS * o->cfc * 1e-3, o->unfiltered_option);
+            return SF_REFUSE(err,
+                             "%s:%d: samples %.4g ms apart are too coarse for CFC %g, which needs %.4g ms "
+                             "(%g kHz) or less: choose a lower class, or %s if the curve is filtered already",
+                             o->path, r->line[i], gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
+                             SAMPLES_PER_CLASS * o->cfc * 1e-3, o->unfiltered_option);
     return SF_OK;
 }
 
@@ -338,16 +337,14 @@ static sf_status check_sign(const sf_reference_options *o, const sf_series *curv
     if (high >= -low)
         return SF_OK;
     if (o->invert)
-        return SF_REFUSE(
-            err,
-            "%s: inverted, the channel's largest magnitude is negative (%.4g g, against %.4g g): the "
-            "file has the right sign, leave %s out",
-            o->path, low, high, o->invert_option);
-    return SF_REFUSE(
-        err,
-        "%s: the channel looks inverted: its largest magnitude is negative (%.4g g, against %.4g g), but "
-        "a missile that is slowed down has a positive acceleration; if so, give %s",
-        o->path, low, high, o->invert_option);
+        return SF_REFUSE(err,
+                         "%s: inverted, the channel's largest magnitude is negative (%.4g g, against %.4g "
+                         "g): the file has the right sign, leave %s out",
+                         o->path, low, high, o->invert_option);
+    return SF_REFUSE(err,
+                     "%s: the channel looks inverted: its largest magnitude is negative (%.4g g, against "
+                     "%.4g g), but a missile that is slowed down has a positive acceleration; if so, give %s",
+                     o->path, low, high, o->invert_option);
 }
 
 /* ---- the whole ---- */

@@ -275,10 +275,9 @@ sf_status sf_layers_note_slip(sf_results *r, sf_error *err) {
                       : 0;
     const double *x = &r->position[3 * at];
     if (slip > LARGE_SLIP * r->thickness)
-        sf_results_note(
-            r,
-            "layers slide on each other by up to %.3g mm, at (%.4g, %.4g, %.4g) mm: their ties hold "
-            "along the undeformed normal, which is right for small slips",
-            1e3 * slip, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+        sf_results_note(r,
+                        "layers slide on each other by up to %.3g mm, at (%.4g, %.4g, %.4g) mm: their ties "
+                        "hold along the undeformed normal, which is right for small slips",
+                        1e3 * slip, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
     return err->status;
 }

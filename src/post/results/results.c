@@ -548,11 +548,10 @@ sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *h
             if (sf_h5_exists(results->file, head->group))
                 continue; /* not among output.fields */
             sf_frame_free(frame);
-            return SF_FAIL(
-                err, SF_ERR_IO,
-                "%s is no longer where results.h5 named it: the run has gone on or ended meanwhile; "
-                "read the results again",
-                head->group);
+            return SF_FAIL(err, SF_ERR_IO,
+                           "%s is no longer where results.h5 named it: the run has gone on or ended "
+                           "meanwhile; read the results again",
+                           head->group);
         }
         int64_t rows = results->node_count;
         if (read_array(results, path, SF_H5_F64, &rows, info->components, &frame->field[f], err) != SF_OK ||

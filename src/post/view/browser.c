@@ -375,10 +375,10 @@ sf_status sf_browser_write(const sf_staging *output, const sf_report *report, co
     else if (sf_shown_find(r, &p.shown, err) != SF_OK || sf_skin_faces_find(&cells, &p.skin, err) != SF_OK)
         ; /* err says it */
     else if (!choose(&p))
-        snprintf(
-            warning, size,
-            "there is no %s: the %lld nodes of the pad's surface do not fit into %.3g MB (--view MB allows more)",
-            PAGE, (long long)p.skin.node_count, megabytes);
+        snprintf(warning, size,
+                 "there is no %s: the %lld nodes of the pad's surface do not fit into %.3g MB (--view MB "
+                 "allows more)",
+                 PAGE, (long long)p.skin.node_count, megabytes);
     else
         write_page(&p, output, text, err);
     sf_skin_faces_free(&p.skin);

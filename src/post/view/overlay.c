@@ -112,10 +112,10 @@ static sf_status name_drops(overlay *o, sf_error *err) {
     int64_t drops = 0;
     SF_TRY(read_count(o->run[0].results.file, "/summary/drops", &drops, err));
     if (drops < 2 || drops > MOST_RUNS)
-        return SF_REFUSE(
-            err,
-            "%s is no series of 2 to %d drops (series.drops); name the files of drops that were run one by one",
-            o->run[0].path, MOST_RUNS);
+        return SF_REFUSE(err,
+                         "%s is no series of 2 to %d drops (series.drops); name the files of drops that were "
+                         "run one by one",
+                         o->run[0].path, MOST_RUNS);
     for (o->count = 1; o->count < drops; o->count++) {
         sf_model_series_file(o->run[0].path, o->count + 1, o->files[o->count], PATH_MAX);
         o->run[o->count].name = o->files[o->count];
@@ -230,7 +230,8 @@ static void put_series(FILE *page, const overlay *o) {
     sf_html_table_end(&t);
     sf_html_note(
         page,
-        "series.csv has them too. What a material remembers is as good as its data: see material.memory.%s",
+        "series.csv has them too. What a material remembers is as good as its data: see "
+        "material.memory.%s",
         differ ? " The drops differ in speed, mass or place: what grows over the first is not the foam's "
                  "softening alone."
                : "");

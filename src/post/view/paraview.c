@@ -96,10 +96,10 @@ sf_status sf_paraview_write(const sf_staging *output, const sf_results *r, const
     }
     double place[2];
     if (!sf_axis_planes(r, place))
-        snprintf(
-            warning, size,
-            "%s shows the modelled part of the pad only, as results.h5 does not say where the symmetry planes lie",
-            STATE);
+        snprintf(warning, size,
+                 "%s shows the modelled part of the pad only, as results.h5 does not say where the symmetry "
+                 "planes lie",
+                 STATE);
     FILE *f = sf_staging_open(output, STATE, err);
     if (f) {
         const char *line = strstr(text, FACTS);

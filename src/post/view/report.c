@@ -381,10 +381,10 @@ static void put_figures(const page *p) {
         defined += is_defined(p, &sf_figure_at[k]) ? 1 : 0;
     SF_HTML_BLOCK(p->file, "Figures");
     put_columns(p, sf_figure_at, SF_FIGURE_TOTAL, defined);
-    sf_html_note(
-        p->file,
-        "Values of summary.json, units at the end of the names (docs/formats.md). Not defined by this run: %zu.",
-        SF_FIGURE_TOTAL - defined);
+    sf_html_note(p->file,
+                 "Values of summary.json, units at the end of the names (docs/formats.md). Not defined by "
+                 "this run: %zu.",
+                 SF_FIGURE_TOTAL - defined);
 }
 
 static void put_comparison(const page *p) {

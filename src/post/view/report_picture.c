@@ -97,10 +97,9 @@ static int name_missing(const instant list[SF_INSTANTS], char *text, size_t size
 
 static char *draw_pad(const sf_cut *cut, const instant *peak, char *text, size_t size, sf_error *err) {
     if (!peak->head || cut->polygon_count == 0) {
-        snprintf(
-            text, size,
-            "No picture of the deformed pad: results.h5 holds no displacement and von Mises stress at the "
-            "peak.");
+        snprintf(text, size,
+                 "No picture of the deformed pad: results.h5 holds no displacement and von Mises stress at "
+                 "the peak.");
         return NULL;
     }
     bool strain = peak->frame.field[SF_FRAME_LARGEST_COMPRESSION] != NULL;
@@ -132,10 +131,9 @@ char *sf_report_picture_before(const sf_results *r, char *text, size_t size, sf_
                                         .label = "softening (kJ/m³)",
                                         .half_width = INFINITY};
         const sf_picture picture = {"before the drop", &r->frames[0], &frame};
-        snprintf(
-            text, size,
-            "The pad before the drop: the energy by which loading, up to the largest so far, takes up less "
-            "than that of new foam.");
+        snprintf(text, size,
+                 "The pad before the drop: the energy by which loading, up to the largest so far, takes up "
+                 "less than that of new foam.");
         if (isfinite(r->set))
             sf_text_add(text, size, " Its permanent set is %.3g mm deep at the impact point.", 1e3 * r->set);
         svg = sf_picture_draw(&cut, &picture, 1, &style, err);

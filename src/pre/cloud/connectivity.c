@@ -201,11 +201,10 @@ static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error
         if (root[node] == 0)
             root[node] = sf_sets_find(parent, k) + 1;
         else if (root[node] != sf_sets_find(parent, k) + 1) {
-            SF_REFUSE(
-                err,
-                "two regions of the pad hang together at an edge or a point only, at (%.4g, %.4g, %.4g) mm: let "
-                "them share faces of cells, or part them",
-                1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+            SF_REFUSE(err,
+                      "two regions of the pad hang together at an edge or a point only, at (%.4g, %.4g, "
+                      "%.4g) mm: let them share faces of cells, or part them",
+                      1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
             break;
         }
     }
@@ -278,25 +277,23 @@ static sf_status check_faces(const sf_case *c, const sf_mesh *mesh, const face_l
         }
     }
     if (bare > 0 && !bare_at)
-        return SF_REFUSE(
-            err,
-            "%s: %lld of the %lld faces of the surface group \"%s\" lie on no cell of the volume group "
-            "\"%s\": does it lack a volume, or has the group faces of the missile?",
-            key, (long long)bare, (long long)all, set->name, c->pad_group);
+        return SF_REFUSE(err,
+                         "%s: %lld of the %lld faces of the surface group \"%s\" lie on no cell of the "
+                         "volume group \"%s\": does it lack a volume, or has the group faces of the missile?",
+                         key, (long long)bare, (long long)all, set->name, c->pad_group);
     if (bare > 0)
-        return SF_REFUSE(
-            err,
-            "%s: %lld of the %lld faces of the surface group \"%s\" lie on no cell of the volume group "
-            "\"%s\", one at (%.4g, %.4g, %.4g) mm: cells of the pad are missing there",
-            key, (long long)bare, (long long)all, set->name, c->pad_group, 1e3 * bare_at[0], 1e3 * bare_at[1],
-            1e3 * bare_at[2]);
+        return SF_REFUSE(err,
+                         "%s: %lld of the %lld faces of the surface group \"%s\" lie on no cell of the "
+                         "volume group \"%s\", one at (%.4g, %.4g, %.4g) mm: cells of the pad are missing "
+                         "there",
+                         key, (long long)bare, (long long)all, set->name, c->pad_group, 1e3 * bare_at[0],
+                         1e3 * bare_at[1], 1e3 * bare_at[2]);
     if (within > 0 && !inside)
-        return SF_REFUSE(
-            err,
-            "%s: %lld of the %lld faces of the surface group \"%s\" lie inside the pad, one at (%.4g, %.4g, "
-            "%.4g) mm: it may hold the pad's surface only",
-            key, (long long)within, (long long)all, set->name, 1e3 * within_at[0], 1e3 * within_at[1],
-            1e3 * within_at[2]);
+        return SF_REFUSE(err,
+                         "%s: %lld of the %lld faces of the surface group \"%s\" lie inside the pad, one at "
+                         "(%.4g, %.4g, %.4g) mm: it may hold the pad's surface only",
+                         key, (long long)within, (long long)all, set->name, 1e3 * within_at[0],
+                         1e3 * within_at[1], 1e3 * within_at[2]);
     return SF_OK;
 }
 
@@ -338,11 +335,11 @@ static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dua
         }
         const double *x = &mesh->position[3 * (int64_t)face->node[0]];
         if (in_plane && !in_set)
-            SF_REFUSE(
-                err,
-                "pad.symmetry: the pad's surface at (%.4g, %.4g, %.4g) mm lies in the plane of the group \"%s\" but "
-                "in none of these groups: it would be free (a crack in a symmetry plane cannot be modelled)",
-                1e3 * x[0], 1e3 * x[1], 1e3 * x[2], set->name);
+            SF_REFUSE(err,
+                      "pad.symmetry: the pad's surface at (%.4g, %.4g, %.4g) mm lies in the plane of the "
+                      "group \"%s\" but in none of these groups: it would be free (a crack in a symmetry "
+                      "plane cannot be modelled)",
+                      1e3 * x[0], 1e3 * x[1], 1e3 * x[2], set->name);
     }
     return err->status;
 }

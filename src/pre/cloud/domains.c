@@ -234,11 +234,11 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
         for (int64_t i = 0; i < n; i++) {
             if (b->poor[i] && round == MAX_ENLARGEMENTS) {
                 const double *x = &b->mesh->position[3 * i];
-                SF_FAIL(
-                    err, SF_ERR_MODEL,
-                    "the shape functions near (%.6g, %.6g, %.6g) m stay ill-conditioned (above %.3g) "
-                    "although the support was enlarged %.2f times: the cloud is too flat or too sparse there",
-                    x[0], x[1], x[2], b->condition_limit, support[i] / first[i]);
+                SF_FAIL(err, SF_ERR_MODEL,
+                        "the shape functions near (%.6g, %.6g, %.6g) m stay ill-conditioned (above %.3g) "
+                        "although the support was enlarged %.2f times: the cloud is too flat or too sparse "
+                        "there",
+                        x[0], x[1], x[2], b->condition_limit, support[i] / first[i]);
                 break;
             }
             if (b->poor[i])

@@ -83,10 +83,10 @@ static sf_status add_inner(const sf_mesh *mesh, const sf_cell_face *raw, sf_dual
     if (!is_same_side(mesh, &raw[0], &raw[1]))
         return SF_OK;
     const double *x = &mesh->position[3 * (int64_t)raw->key[3]];
-    return SF_REFUSE(
-        err,
-        "the pad's cells overlap: two that share a face at (%.4g, %.4g, %.4g) mm lie on the same side of it",
-        1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+    return SF_REFUSE(err,
+                     "the pad's cells overlap: two that share a face at (%.4g, %.4g, %.4g) mm lie on the "
+                     "same side of it",
+                     1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
 }
 
 /* Faces sorted by their vertices: alone = boundary, pairs = interior. */
@@ -102,11 +102,10 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
             end++;
         if (end - k > 2) {
             const double *x = &mesh->position[3 * (int64_t)raw[k].key[3]];
-            SF_REFUSE(
-                err,
-                "the pad's cells overlap: %lld of them share one face at (%.4g, %.4g, %.4g) mm; no more than two "
-                "can",
-                (long long)(end - k), 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+            SF_REFUSE(err,
+                      "the pad's cells overlap: %lld of them share one face at (%.4g, %.4g, %.4g) mm; no "
+                      "more than two can",
+                      (long long)(end - k), 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
         } else if (end - k == 2) {
             add_inner(mesh, &raw[k], dual, err);
         } else {

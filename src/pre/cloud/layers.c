@@ -121,11 +121,11 @@ static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_
     uint8_t mask = given && given->kind != SF_INTERFACE_TIED ? normal_component(mesh, face) : ALL;
     if (mask == 0) {
         const double *x = &mesh->position[3 * (int64_t)face->node[3]];
-        return SF_REFUSE(
-            err,
-            "%s: the interface of \"%s\" and \"%s\" at (%.4g, %.4g, %.4g) mm is not normal to x, y or z: one "
-            "that is sliding or loose must be",
-            given->key, c->layer[low].name, c->layer[high].name, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
+        return SF_REFUSE(err,
+                         "%s: the interface of \"%s\" and \"%s\" at (%.4g, %.4g, %.4g) mm is not normal to "
+                         "x, y or z: one that is sliding or loose must be",
+                         given->key, c->layer[low].name, c->layer[high].name, 1e3 * x[0], 1e3 * x[1],
+                         1e3 * x[2]);
     }
     pairs->faces[a][b] = ++pairs->faces[b][a];
     for (int k = face->node[0] < 0; k < 4; k++)

@@ -223,11 +223,10 @@ static sf_status add_elements(const sf_gmsh *session, const destination *to, con
     else
         vertices = block->type == 2 ? 3 : block->type == 3 ? 4 : 0;
     if (vertices == 0)
-        return SF_REFUSE(
-            err,
-            "%s: %s %d has elements of the type \"%s\"; only linear tetrahedra, pyramids, prisms, "
-            "hexahedra, triangles and quadrangles are supported",
-            session->file, kind_of(block->dimension), block->entity, block->type_name);
+        return SF_REFUSE(err,
+                         "%s: %s %d has elements of the type \"%s\"; only linear tetrahedra, pyramids, "
+                         "prisms, hexahedra, triangles and quadrangles are supported",
+                         session->file, kind_of(block->dimension), block->entity, block->type_name);
     if (block->length % (size_t)vertices != 0)
         return SF_REFUSE(err, "%s: %s %d has an element without all of its nodes", session->file,
                          kind_of(block->dimension), block->entity);
@@ -246,11 +245,10 @@ static sf_status read_nodes(const sf_gmsh *session, sf_raw_mesh *raw, sf_error *
     const sf_geo_data *data = &session->open.data;
     double need = BYTES_PER_NODE * (double)data->node_count, available = sf_memory_available();
     if (need > available)
-        return SF_REFUSE(
-            err,
-            "%s: a mesh of %zu nodes needs %.3g GB of memory, of which %.3g GB are available: take a coarser one, or "
-            "set SOFTFALL_MEMORY_MB",
-            session->file, data->node_count, 1e-9 * need, 1e-9 * available);
+        return SF_REFUSE(err,
+                         "%s: a mesh of %zu nodes needs %.3g GB of memory, of which %.3g GB are available: "
+                         "take a coarser one, or set SOFTFALL_MEMORY_MB",
+                         session->file, data->node_count, 1e-9 * need, 1e-9 * available);
     raw->tag = sf_alloc(err, data->node_count, sizeof *raw->tag, "node tags");
     raw->xyz = sf_alloc(err, 3 * data->node_count, sizeof *raw->xyz, "node positions");
     if (err->status == SF_OK && data->node_count > 0) {
@@ -348,12 +346,11 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
             if (data->group[g].dimension == 3 && sf_geo_group_has(&data->group[g], block->entity))
                 name = data->group[g].name;
         if (at)
-            SF_REFUSE(
-                err,
-                "%s: volume %d%s%s%s, at (%.4g, %.4g, %.4g) mm, has no material: the case has no group of "
-                "this name in materials",
-                session->file, block->entity, *name ? " of the group \"" : " (of no named group)", name,
-                *name ? "\"" : "", 1e3 * unit * at[0], 1e3 * unit * at[1], 1e3 * unit * at[2]);
+            SF_REFUSE(err,
+                      "%s: volume %d%s%s%s, at (%.4g, %.4g, %.4g) mm, has no material: the case has no group "
+                      "of this name in materials",
+                      session->file, block->entity, *name ? " of the group \"" : " (of no named group)", name,
+                      *name ? "\"" : "", 1e3 * unit * at[0], 1e3 * unit * at[1], 1e3 * unit * at[2]);
     }
     return err->status;
 }

@@ -192,11 +192,10 @@ static sf_status check_coinciding(const sf_mesh *mesh, sf_error *err) {
             const double *x = mesh->position + 3 * order[a].node, *y = mesh->position + 3 * order[b].node;
             if (hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]) > tolerance)
                 continue;
-            SF_FAIL(
-                err, SF_ERR_MODEL,
-                "nodes %lld and %lld coincide at (%g, %g, %g) m: the parts of the mesh are not joined: fuse "
-                "the volumes (in gmsh BooleanFragments or Coherence)",
-                (long long)order[a].node, (long long)order[b].node, x[0], x[1], x[2]);
+            SF_FAIL(err, SF_ERR_MODEL,
+                    "nodes %lld and %lld coincide at (%g, %g, %g) m: the parts of the mesh are not joined: "
+                    "fuse the volumes (in gmsh BooleanFragments or Coherence)",
+                    (long long)order[a].node, (long long)order[b].node, x[0], x[1], x[2]);
             break;
         }
     }
@@ -229,11 +228,11 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
     double mean = sum / (double)mesh->cell_count;
     if (smallest < TINY_CELL * mean) {
         centroid(mesh, smallest_cell, c);
-        return SF_FAIL(
-            err, SF_ERR_MODEL,
-            "cell %lld (%s) at (%g, %g, %g) m is tiny: its volume %g m3 is below %g of the mean %g m3",
-            (long long)smallest_cell, sf_cell_shape_of(mesh->cell_type[smallest_cell])->name, c[0], c[1],
-            c[2], smallest, TINY_CELL, mean);
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "cell %lld (%s) at (%g, %g, %g) m is tiny: its volume %g m3 is below %g of the mean "
+                       "%g m3",
+                       (long long)smallest_cell, sf_cell_shape_of(mesh->cell_type[smallest_cell])->name, c[0],
+                       c[1], c[2], smallest, TINY_CELL, mean);
     }
     *volume = sum;
     return SF_OK;

@@ -307,11 +307,10 @@ static sf_status match_cells(surface_builder *b, sf_error *err) {
                 continue;
             average(b, node, shape->vertices, found->centre);
             if (++found->behind > 1)
-                return SF_REFUSE(
-                    err,
-                    "the surface of the missile or support has cells on both sides near (%g, %g, %g) in the "
-                    "geometry's unit: it must be an outer surface",
-                    found->centre[0], found->centre[1], found->centre[2]);
+                return SF_REFUSE(err,
+                                 "the surface of the missile or support has cells on both sides near (%g, "
+                                 "%g, %g) in the geometry's unit: it must be an outer surface",
+                                 found->centre[0], found->centre[1], found->centre[2]);
         }
     }
     return SF_OK;

@@ -423,11 +423,10 @@ static sf_status judge_ending(const conversation *c, sf_error *err) {
                        : strncmp(c->last_line, "Info", 4) == 0 ? ""
                                                                : c->last_line;
     if (c->no_filter)
-        return SF_FAIL(
-            err, SF_ERR_IO,
-            "%s: this kernel cannot keep gmsh from harm (seccomp: %s); SOFTFALL_UNCONFINED=1 in the environment runs "
-            "it nevertheless, for geometries that you trust",
-            c->source->path, strerror(c->no_filter));
+        return SF_FAIL(err, SF_ERR_IO,
+                       "%s: this kernel cannot keep gmsh from harm (seccomp: %s); SOFTFALL_UNCONFINED=1 in "
+                       "the environment runs it nevertheless, for geometries that you trust",
+                       c->source->path, strerror(c->no_filter));
     if (c->program || signal_number == SIGSYS) /* where signals are blocked, the trap kills */
         return SF_REFUSE(err, "%s: the geometry tried to start a program, which it may not", c->source->path);
     if (signal_number == SIGHUP || signal_number == SIGINT || signal_number == SIGQUIT ||

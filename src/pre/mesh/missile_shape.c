@@ -61,11 +61,11 @@ static sf_status walk(orienter *o, int64_t seed, int64_t *count, sf_error *err) 
                 continue;
             if (o->part[next]) {
                 const double *x = vertex(o->surface, t, e);
-                return SF_REFUSE(
-                    err,
-                    "the surface of the missile or support is one-sided, like a Moebius strip, near (%.4g, %.4g, "
-                    "%.4g) m of its geometry: it has no outside for the pad to touch",
-                    x[0], x[1], x[2]);
+                return SF_REFUSE(err,
+                                 "the surface of the missile or support is one-sided, like a Moebius strip, "
+                                 "near (%.4g, %.4g, %.4g) m of its geometry: it has no outside for the pad "
+                                 "to touch",
+                                 x[0], x[1], x[2]);
             }
             o->part[next] = 1;
             o->flip[next] = flip;
@@ -120,11 +120,10 @@ static sf_status check_facing(const sf_surface *s, const double direction[3], sf
     }
     if (facing > EDGE_ON * area)
         return SF_OK;
-    return SF_REFUSE(
-        err,
-        "missile.group: no part of the missile's surface faces along its motion (%g, %g, %g): the "
-        "cells lie on the pad's side of it, so the pad can never touch it",
-        direction[0], direction[1], direction[2]);
+    return SF_REFUSE(err,
+                     "missile.group: no part of the missile's surface faces along its motion (%g, %g, %g): "
+                     "the cells lie on the pad's side of it, so the pad can never touch it",
+                     direction[0], direction[1], direction[2]);
 }
 
 sf_status sf_surface_turn(sf_surface *surface, const double direction[3], sf_error *err) {
@@ -395,10 +394,9 @@ sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_c
     }
     if (!covers_pole(surface, centre, radius, card->direction)) {
         if (rule == 1)
-            return SF_FAIL(
-                err, SF_ERR_MODEL,
-                "missile.shape is \"sphere\", but the surface does not cover the point of its sphere that "
-                "leads along missile.direction, or is hollow there");
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "missile.shape is \"sphere\", but the surface does not cover the point of its "
+                           "sphere that leads along missile.direction, or is hollow there");
         return SF_OK;
     }
     card->shape = SF_SHAPE_SPHERE;

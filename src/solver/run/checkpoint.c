@@ -143,10 +143,10 @@ static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, con
         sf_h5_read(checkpoint, "/state/contact_count", SF_H5_I64, 1, &one, (void **)&touching, err) ==
             SF_OK &&
         ((strcmp(status, "rebound") != 0 && strcmp(status, "finished") != 0) || *touching > 0))
-        SF_FAIL(
-            err, SF_ERR_INPUT,
-            "%s ended \"%.80s\" with %lld points in contact: a pad goes on only after the missile has left it",
-            path, status, (long long)*touching);
+        SF_FAIL(err, SF_ERR_INPUT,
+                "%s ended \"%.80s\" with %lld points in contact: a pad goes on only after the missile has "
+                "left it",
+                path, status, (long long)*touching);
     SF_FREE(status, touching);
     return err->status;
 }
@@ -160,11 +160,10 @@ static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type typ
     sf_error inner = SF_ERROR_INIT;
     sf_status status = sf_h5_read(file, name, type, columns > 1 ? 2 : 1, dims, &data, &inner);
     if (status != SF_OK || memcmp(data, mine, bytes) != 0)
-        SF_FAIL(
-            err, SF_ERR_INPUT,
-            "the pad of %s is another one (%s differs): the geometry of the pad, its mesh and its layers must "
-            "be the same, also whole or quarter",
-            path, name);
+        SF_FAIL(err, SF_ERR_INPUT,
+                "the pad of %s is another one (%s differs): the geometry of the pad, its mesh and its layers "
+                "must be the same, also whole or quarter",
+                path, name);
     return err->status;
 }
 
@@ -183,11 +182,10 @@ static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const 
     void *history = NULL;
     sf_error inner = SF_ERROR_INIT;
     if (sf_h5_read(checkpoint, "/state/history", SF_H5_F64, 2, dims, &history, &inner) != SF_OK)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "the foam of %s remembers other things than this one (%.200s): law, memory, ED, rate_factor "
-            "and curves of several rates must be there in both or in none",
-            path, inner.text);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "the foam of %s remembers other things than this one (%.200s): law, memory, ED, "
+                       "rate_factor and curves of several rates must be there in both or in none",
+                       path, inner.text);
     free(s->history);
     s->history = history;
     if (sf_h5_read(checkpoint, "/state/drop", SF_H5_I64, 1, &one, (void **)&number, err) == SF_OK)

@@ -21,11 +21,10 @@ bool sf_ending_on_anvil(const sf_model *m, const sf_state *s) {
 }
 
 sf_status sf_ending_fail_on_anvil(const sf_model *m, const sf_state *s, sf_error *err) {
-    return SF_FAIL(
-        err, SF_ERR_NUMERIC,
-        "the missile reached the anvil%s at t = %.6g ms with %.4g m/s: an impact of rigid bodies has no "
-        "acceleration that could be told, and the run ends there",
-        m->support_travel > 0 ? " or the support" : "", 1e3 * s->time, s->missile.velocity_now);
+    return SF_FAIL(err, SF_ERR_NUMERIC,
+                   "the missile reached the anvil%s at t = %.6g ms with %.4g m/s: an impact of rigid bodies "
+                   "has no acceleration that could be told, and the run ends there",
+                   m->support_travel > 0 ? " or the support" : "", 1e3 * s->time, s->missile.velocity_now);
 }
 
 bool sf_ending_finished(const sf_model *m, const sf_state *s) {
@@ -69,7 +68,8 @@ static void tell_pole(const sf_model *m, const sf_extremes *x, const sf_sink *si
         sf_sink_tell(
             sink, SF_WARNING,
             "the foam was compressed to a strain of %.4g; from %.4g on its curve, near the pole of "
-            "its densification, is a line of the program that keeps the stress finite, and no property of the material: give the curve data to larger strains, or take a stiffer foam",
+            "its densification, is a line of the program that keeps the stress finite, and no "
+            "property of the material: give the curve data to larger strains, or take a stiffer foam",
             x->largest_compression, straight);
 }
 
@@ -85,12 +85,11 @@ static void tell_rates(const sf_model *m, const sf_sink *sink) {
                                              : 0,
                high = curves ? c->curve_rate[c->curve_count - 1] : INFINITY;
         if (rate < low || rate > high)
-            sf_sink_tell(
-                sink, SF_WARNING,
-                "at %g degC the rate of the impact, speed over thickness, is %.3g s-1, %s rate of the "
-                "foam's data there, %.3g s-1: the stress of that rate is taken",
-                m->run.temperature - SF_CELSIUS, rate, rate < low ? "below the lowest" : "above the highest",
-                rate < low ? low : high);
+            sf_sink_tell(sink, SF_WARNING,
+                         "at %g degC the rate of the impact, speed over thickness, is %.3g s-1, %s rate of "
+                         "the foam's data there, %.3g s-1: the stress of that rate is taken",
+                         m->run.temperature - SF_CELSIUS, rate,
+                         rate < low ? "below the lowest" : "above the highest", rate < low ? low : high);
     }
 }
 
@@ -102,12 +101,11 @@ void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, con
         sf_sink_tell(sink, SF_WARNING, "the contact forces of %lld steps did not settle to the last digits",
                      (long long)s->contact_unsettled);
     if (!isnan(s->missile.rim_time))
-        sf_sink_tell(
-            sink, SF_WARNING,
-            "at %.4g ms the missile had turned so far that the rim of its spherical cap was lowest: beyond "
-            "the rim there is no contact; give missile.group its whole surface, and missile.shape = "
-            "\"surface\"",
-            1e3 * s->missile.rim_time);
+        sf_sink_tell(sink, SF_WARNING,
+                     "at %.4g ms the missile had turned so far that the rim of its spherical cap was lowest: "
+                     "beyond the rim there is no contact; give missile.group its whole surface, and "
+                     "missile.shape = \"surface\"",
+                     1e3 * s->missile.rim_time);
     if (isnan(s->missile.contact_time))
         sf_sink_tell(sink, SF_WARNING, "the missile never touched the pad");
 }
@@ -365,11 +363,10 @@ static sf_status begin_again(const drop *d, sf_error *err) {
 static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     const sf_recorder old = d->r;
     if (d->s->drop > 1 && !d->run->earlier.results)
-        return SF_FAIL(
-            err, SF_ERR_INPUT,
-            "frame %lld of the run so far is missing or damaged, and the run began from the pad of an earlier "
-            "one: start it again with --force and --start-from",
-            (long long)frame);
+        return SF_FAIL(err, SF_ERR_INPUT,
+                       "frame %lld of the run so far is missing or damaged, and the run began from the pad "
+                       "of an earlier one: start it again with --force and --start-from",
+                       (long long)frame);
     sf_sink_tell(d->run->sink, SF_WARNING,
                  "frame %lld of the run so far is missing or damaged: the run starts from the beginning",
                  (long long)frame);

@@ -66,10 +66,10 @@ static sf_status read_value(const sf_config *file, sf_config_item *group, sf_con
     sf_foam_parameter p = sf_parameter_find(name);
     if (!is_of_curve(r, p) && p != SF_PARAMETER_RATE_FACTOR && p != SF_PARAMETER_ED &&
         p != SF_PARAMETER_BETA1)
-        return sf_config_refuse(
-            file, item, err,
-            "start: \"%.80s\" is neither E, a parameter of curve_form = \"%s\", nor rate_factor, ED or BETA1",
-            name, r->form.curve->name);
+        return sf_config_refuse(file, item, err,
+                                "start: \"%.80s\" is neither E, a parameter of curve_form = \"%s\", nor "
+                                "rate_factor, ED or BETA1",
+                                name, r->form.curve->name);
     SF_TRY(check_rate_value(file, item, p, r, err));
     return sf_parameter_read(file, group, p, &r->start[p], err);
 }
@@ -253,12 +253,11 @@ static sf_status check_rate(const sf_config *file, sf_config_item *entry, double
                 "one of the tests has a temperature, another has none: give it to all or to none");
         else if (temperature > 0 && (fabs(temperature - c->test[k].temperature) < 0.1 ||
                                      fabs(log(rate / c->test[k].rate)) > 0.01))
-            return sf_config_refuse(
-                file, entry, err,
-                "%.4g degC at %g 1/s beside %.4g degC at %g 1/s (%s): tests at temperatures have "
-                "each its own, and all the same rate",
-                temperature - SF_CELSIUS, rate, c->test[k].temperature - SF_CELSIUS, c->test[k].rate,
-                c->test[k].path);
+            return sf_config_refuse(file, entry, err,
+                                    "%.4g degC at %g 1/s beside %.4g degC at %g 1/s (%s): tests at "
+                                    "temperatures have each its own, and all the same rate",
+                                    temperature - SF_CELSIUS, rate, c->test[k].temperature - SF_CELSIUS,
+                                    c->test[k].rate, c->test[k].path);
         else if (!(temperature > 0) && fabs(log(rate / c->test[k].rate)) < 1e-6)
             return sf_config_refuse(file, config_setting_get_member(entry, "rate"), err,
                                     "the rate %g 1/s is that of %s already; give each rate once (join the "
@@ -305,11 +304,10 @@ static sf_status read_rate(const sf_config *file, sf_config_item *entry, double 
     if (!(speed > 0))
         return sf_config_refuse(file, setting, err, "rate is %s; the speed must be above 0", text);
     if (!(thickness > 0))
-        return sf_config_refuse(
-            file, setting, err,
-            "rate is a speed (%s): give the specimen's thickness, for example specimen = { "
-            "thickness = \"50 mm\"; }",
-            text);
+        return sf_config_refuse(file, setting, err,
+                                "rate is a speed (%s): give the specimen's thickness, for example specimen = "
+                                "{ thickness = \"50 mm\"; }",
+                                text);
     *rate = speed / thickness;
     return SF_OK;
 }
@@ -478,11 +476,11 @@ static sf_status check_order_of_rates(const sf_compression_config *c, sf_error *
         }
         double softer = -expm1(sum / PLACES);
         if (fast->rate > slow->rate && softer > SOFTER)
-            return SF_REFUSE(
-                err,
-                "%s at %g 1/s is softer than %s at %g 1/s, by %.3g %% on the mean over its loading: are "
-                "the rates exchanged? The stress of a foam does not fall with the rate",
-                fast->path, fast->rate, slow->path, slow->rate, 100 * softer);
+            return SF_REFUSE(err,
+                             "%s at %g 1/s is softer than %s at %g 1/s, by %.3g %% on the mean over its "
+                             "loading: are the rates exchanged? The stress of a foam does not fall with the "
+                             "rate",
+                             fast->path, fast->rate, slow->path, slow->rate, 100 * softer);
     }
     return SF_OK;
 }

@@ -202,17 +202,15 @@ static sf_status correct_toe(sf_compression_test *t, sf_error *err) {
     double zero = 0;
     bool at_end = false;
     if (!steepest(t, &first, &last, &zero, &at_end) || at_end)
-        return SF_REFUSE(
-            err,
-            "%s: the toe cannot be corrected: loading has no steepest straight part below a strain of "
-            "%g %% (leave toe_correction out)",
-            t->path, 100 * TOE_RANGE);
+        return SF_REFUSE(err,
+                         "%s: the toe cannot be corrected: loading has no steepest straight part below a "
+                         "strain of %g %% (leave toe_correction out)",
+                         t->path, 100 * TOE_RANGE);
     if (zero > TOE_LARGEST)
-        return SF_REFUSE(
-            err,
-            "%s: the toe correction would be a strain of %.3g %%, more than %g %%: cut the approach off "
-            "the file",
-            t->path, 100 * zero, 100 * TOE_LARGEST);
+        return SF_REFUSE(err,
+                         "%s: the toe correction would be a strain of %.3g %%, more than %g %%: cut the "
+                         "approach off the file",
+                         t->path, 100 * zero, 100 * TOE_LARGEST);
     double preload = preload_of(t);
     if (preload > 0)
         shift_zero(t, 0, -preload);
@@ -265,11 +263,10 @@ static sf_status take_terms(const sf_compression_source *source, bool machine, c
     if (!machine)
         return SF_OK;
     if (!(source->area > 0) || !(source->thickness > 0))
-        return SF_REFUSE(
-            err,
-            "%s holds displacement and force: give the specimen, for example specimen = { side = \"50 "
-            "mm\"; thickness = \"50 mm\"; } (or diameter, or area)",
-            source->path);
+        return SF_REFUSE(err,
+                         "%s holds displacement and force: give the specimen, for example specimen = { side "
+                         "= \"50 mm\"; thickness = \"50 mm\"; } (or diameter, or area)",
+                         source->path);
     *t = (table_terms){{"displacement", "force"},
                        {table->scale[0] / source->thickness, table->scale[1] / source->area}};
     return SF_OK;
@@ -288,11 +285,10 @@ static sf_status check_row(const sf_compression_test *t, int i, const table_term
                          "\"2 N\" sets the zero of a crosshead's position)",
                          t->path, t->line[i], terms->name[0], written, 100 * strain);
     if (strain < -STRAIN_ZERO)
-        return SF_REFUSE(
-            err,
-            "%s:%d: %s %g is negative; compression must be positive (invert = \"...\" in the file that "
-            "names the test changes the sign)",
-            t->path, t->line[i], terms->name[0], written);
+        return SF_REFUSE(err,
+                         "%s:%d: %s %g is negative; compression must be positive (invert = \"...\" in the "
+                         "file that names the test changes the sign)",
+                         t->path, t->line[i], terms->name[0], written);
     return SF_OK;
 }
 
@@ -350,11 +346,11 @@ static sf_status take_table(const sf_compression_source *source, const table_ter
 /* The strain turns twice: at point `again`, after it began to fall at `first`. */
 static sf_status refuse_turn(const sf_compression_test *t, const table_terms *terms, int again, int first,
                              sf_error *err) {
-    return SF_REFUSE(
-        err,
-        "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading and "
-        "then one unloading",
-        t->path, t->line[again], terms->name[0], t->strain[again] / terms->scale[0], t->line[first]);
+    return SF_REFUSE(err,
+                     "%s:%d: %s %g rises again after it began to fall at line %d; a file holds one loading "
+                     "and then one unloading",
+                     t->path, t->line[again], terms->name[0], t->strain[again] / terms->scale[0],
+                     t->line[first]);
 }
 
 /* Refuses a fall of more than JITTER below what was reached before the largest strain, and
@@ -435,10 +431,10 @@ static sf_status check_sign(sf_compression_test *t, const table_terms *terms, sf
     }
     for (int i = 0; i < t->count; i++)
         if (t->stress[i] < -STRESS_ZERO * size)
-            return SF_REFUSE(
-                err,
-                "%s:%d: %s %g is negative, beyond the scatter about zero; compression must be positive (invert = \"...\" in the file that names the test changes the sign)",
-                t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1]);
+            return SF_REFUSE(err,
+                             "%s:%d: %s %g is negative, beyond the scatter about zero; compression must be "
+                             "positive (invert = \"...\" in the file that names the test changes the sign)",
+                             t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1]);
     return SF_OK;
 }
 
@@ -479,11 +475,11 @@ static sf_status check_unloading(const sf_compression_test *t, const table_terms
     for (int i = t->loading; i < t->count; i++) {
         double loading = sf_compression_loading_stress(t, t->strain[i]);
         if (t->stress[i] > (1 + ABOVE) * loading + SLACK * t->largest_stress)
-            return SF_REFUSE(
-                err,
-                "%s:%d: %s %g of unloading lies above the loading stress (%g in its unit) at the same strain %g",
-                t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1],
-                loading / terms->scale[1], t->strain[i]);
+            return SF_REFUSE(err,
+                             "%s:%d: %s %g of unloading lies above the loading stress (%g in its unit) at "
+                             "the same strain %g",
+                             t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1],
+                             loading / terms->scale[1], t->strain[i]);
     }
     return SF_OK;
 }

@@ -85,10 +85,10 @@ static sf_status find_turns(sf_cycle_record *r, sf_error *err) {
                          r->cycles);
     for (int c = 0; c < r->cycles; c++)
         if (r->strain[r->turn[2 * c + 2]] > RETURN * r->strain[r->turn[2 * c + 1]])
-            return SF_REFUSE(
-                err,
-                "%s: cycle %d returns from a strain of %g to %g only; it must unload below a quarter of it",
-                r->path, c + 1, r->strain[r->turn[2 * c + 1]], r->strain[r->turn[2 * c + 2]]);
+            return SF_REFUSE(err,
+                             "%s: cycle %d returns from a strain of %g to %g only; it must unload below a "
+                             "quarter of it",
+                             r->path, c + 1, r->strain[r->turn[2 * c + 1]], r->strain[r->turn[2 * c + 2]]);
     return SF_OK;
 }
 

@@ -73,10 +73,10 @@ static void put_cycles(FILE *out, const sf_form_fit *fit) {
             fprintf(out, "%s %s %.3g (at its bound, or no record tells it)", k ? "," : "",
                     sf_cycle_parameter(k)->name, fit->value[SF_PARAMETER_RELOAD + k]);
     if (isfinite(fit->set))
-        fprintf(
-            out,
-            "\n  set, not written: reloads take up stress %.2g +- %.1g of the largest strain late, after %.3g s without load",
-            fit->set, fit->set_width, fit->set_time);
+        fprintf(out,
+                "\n  set, not written: reloads take up stress %.2g +- %.1g of the largest strain late, after "
+                "%.3g s without load",
+                fit->set, fit->set_width, fit->set_time);
     for (int n = 0; n < fit->config->record_count; n++) {
         const sf_cycle_record *r = &fit->config->cycles[n];
         const sf_cycle_result *c = &fit->cycles[n];
@@ -132,18 +132,17 @@ static void warn(const void *place, const sf_sink *sink) {
         sf_foam_parameter p = c->form.unknown[k];
         bool is_of_rate = p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
         if (is_of_rate && !sf_form_fit_determines(fit, k))
-            sf_sink_tell(
-                sink, SF_WARNING,
-                "these tests do not determine %s: its standard error exceeds 100 %%, or it is at its bound",
-                sf_parameter_get(p)->name);
+            sf_sink_tell(sink, SF_WARNING,
+                         "these tests do not determine %s: its standard error exceeds 100 %%, or it is at "
+                         "its bound",
+                         sf_parameter_get(p)->name);
     }
     for (int k = 0; k < c->predicted_count; k++)
         if (sf_form_fit_is_below_reference(fit, &c->predicted[k]))
-            sf_sink_tell(
-                sink, SF_WARNING,
-                "the predicted test %s at %g 1/s is below rate_reference = %g 1/s, where the law has no "
-                "effect of the rate",
-                c->predicted[k].path, c->predicted[k].rate, fit->value[SF_PARAMETER_RATE_REFERENCE]);
+            sf_sink_tell(sink, SF_WARNING,
+                         "the predicted test %s at %g 1/s is below rate_reference = %g 1/s, where the law "
+                         "has no effect of the rate",
+                         c->predicted[k].path, c->predicted[k].rate, fit->value[SF_PARAMETER_RATE_REFERENCE]);
 }
 
 /* ---- files ---- */

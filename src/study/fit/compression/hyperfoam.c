@@ -106,10 +106,9 @@ static sf_status read_test(const sf_config *file, sf_config_item *root, sf_hyper
     SF_TRY(sf_config_list(file, root, "tests", true, 8, &tests, err));
     entry = config_setting_get_elem(tests, 0);
     if (config_setting_length(tests) != 1)
-        return sf_config_refuse(
-            file, tests, err,
-            "the hyperfoam is fitted to one test, at one rate; fit the others in files of "
-            "their own, and compare nu and mu");
+        return sf_config_refuse(file, tests, err,
+                                "the hyperfoam is fitted to one test, at one rate; fit the others in files "
+                                "of their own, and compare nu and mu");
     SF_TRY(sf_config_names(file, entry, "file|rate|lateral", err));
     SF_TRY(sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, &source.rate, err));
     SF_TRY(sf_config_file(file, entry, "lateral", false, &lateral, err));

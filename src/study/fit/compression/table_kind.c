@@ -163,11 +163,10 @@ static void warn(const void *place, const sf_sink *sink) {
     static const char *const sides[2] = {"loading", "unloading"};
     for (int k = 0; k < 2; k++)
         if (fit->side[k].points > 0 && fit->side[k].misfit > 2)
-            sf_sink_tell(
-                sink, SF_WARNING,
-                "the law misses the %s by %.3g times its scatter (fit.png, lower panel), %.3g %% of the "
-                "largest stress; the intervals are widened by as much",
-                sides[k], sqrt(fit->side[k].misfit), 100 * fit->side[k].of_largest);
+            sf_sink_tell(sink, SF_WARNING,
+                         "the law misses the %s by %.3g times its scatter (fit.png, lower panel), %.3g %% of "
+                         "the largest stress; the intervals are widened by as much",
+                         sides[k], sqrt(fit->side[k].misfit), 100 * fit->side[k].of_largest);
 }
 
 /* ---- files ---- */
@@ -365,11 +364,10 @@ static sf_status write_simulation(const sf_compression_job *job, const sf_stagin
         const sf_table_test *test = &r->test[k];
         for (int i = 0; i < cube.count; i++)
             SF_CSV_LINE(&csv, k + 1, cube.strain[i], 1e-3 * cube.cube[i], 1e-3 * cube.point[i]);
-        fprintf(
-            job->log,
-            "simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g %% "
-            "unloading\n",
-            test->test.rate, test->difference[0], test->difference[1]);
+        fprintf(job->log,
+                "simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g "
+                "%% unloading\n",
+                test->test.rate, test->difference[0], test->difference[1]);
         fflush(job->log);
     }
     r->simulated = true;

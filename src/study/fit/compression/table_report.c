@@ -222,12 +222,12 @@ static void put_parameters(FILE *out, const sf_compression_fit *fit) {
             sf_html_line(&table, e->name, "%s|%s|%s|%s", shown.value, shown.error, shown.interval, e->note);
     }
     sf_html_table_end(&table);
-    sf_html_note(
-        out,
-        "E is the slope of a straight line through the loading of the slowest test (of several temperatures: of that nearest to 23 degC) below a strain of %g; "
-        "where the curve bends within that range the slope at rest is steeper. The loading curve with its "
-        "interval is in loading_curve.csv.",
-        fit->data.config->modulus_range);
+    sf_html_note(out,
+                 "E is the slope of a straight line through the loading of the slowest test (of several "
+                 "temperatures: of that nearest to 23 degC) below a strain of %g; where the curve bends "
+                 "within that range the slope at rest is steeper. The loading curve with its interval is in "
+                 "loading_curve.csv.",
+                 fit->data.config->modulus_range);
 }
 
 /* A table of the forms that were tried; false: none was. */
@@ -289,12 +289,11 @@ static void put_simulation(FILE *out, const sf_table_result *r) {
     SF_HTML_BLOCK(out, "The simulated test");
     sf_rows_html_table(out, "dense", sf_table_simulation_rows,
                        (sf_records){r->test, sizeof r->test[0], r->test_count});
-    sf_html_note(
-        out,
-        "A cube of the fitted material between platens (softfall-solve), in a time that runs faster with "
-        "everything that depends on the rate, against the material point of the fit; means over blocks "
-        "of time. Differences in percent of the stress, counted as a hundredth of the largest at least. "
-        "simulation.csv holds the curves.");
+    sf_html_note(out,
+                 "A cube of the fitted material between platens (softfall-solve), in a time that runs faster "
+                 "with everything that depends on the rate, against the material point of the fit; means "
+                 "over blocks of time. Differences in percent of the stress, counted as a hundredth of the "
+                 "largest at least. simulation.csv holds the curves.");
 }
 
 static void put_limits(FILE *out, const sf_compression_fit *fit) {
