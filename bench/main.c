@@ -3,7 +3,7 @@
  * from what the machine can do. Writes JSON; docs/performance.md explains it. */
 #include "build_info.h"
 #include "base/program.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include "machine.h"
 #include "report/row.h"
 #include "pre/build.h"

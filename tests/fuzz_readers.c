@@ -7,7 +7,7 @@
 #include "material/curve.h"
 #include "study/fit/compression/compression_config.h"
 #include "study/fit/drop/drop_fit.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include "io/plain_file.h"
 #include "post/figures/compare.h"
 #include "post/figures/figures.h"

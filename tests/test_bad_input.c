@@ -4,7 +4,7 @@
 #include "model_fixture.h"
 #include "program_fixture.h"
 
-#include "model/model_io.h"
+#include "model/model.h"
 #include <errno.h>
 #include <math.h>
 #include <setjmp.h>

@@ -3,7 +3,7 @@
  * between the nodes, missiles that are not symmetric about a plane of the pad. */
 #include "program_fixture.h"
 
-#include "model/model_io.h"
+#include "model/model.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -7,7 +7,7 @@
 
 #include "model_fixture.h"
 
-#include "model/model_io.h"
+#include "model/model.h"
 #include "io/replace.h"
 #include "post/results/results.h"
 #include "solver/run/run.h"

@@ -7,7 +7,7 @@
 
 #include "base/mat3.h"
 #include "base/units.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include "post/figures/figures.h"
 #include <math.h>
 #include <setjmp.h>

@@ -4,7 +4,7 @@
 
 #include "base/units.h"
 #include "model/flight.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include "post/figures/figures.h"
 #include <math.h>
 #include <setjmp.h>

@@ -3,7 +3,7 @@
  * and not to the first contact: over a hole the missile touches the rim when it is below that plane already.
  */
 #include "model/columns.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include "program_fixture.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shape functions and the neighbour grid on random clouds. */
-#include "base/grid.h"
+#include "base/sets.h"
 #include "pre/cloud/mls.h"
 
 #include "pre/cloud/cloud.h"

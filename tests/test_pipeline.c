@@ -7,7 +7,7 @@
 
 #include "model/good_run.h"
 #include "io/h5.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>

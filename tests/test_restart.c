@@ -6,7 +6,7 @@
 #include "run_fixture.h"
 
 #include "io/h5.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include "io/provenance.h"
 #include "io/replace.h"
 #include "material/foam_card.h"

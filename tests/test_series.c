@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "material/laws.h"
 #include "study/column.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -8,7 +8,7 @@
 #include "run_fixture.h"
 
 #include "base/units.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include "solver/set.h"
 #include <setjmp.h>
 #include <stdarg.h>

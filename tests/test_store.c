@@ -3,7 +3,7 @@
  * bit, and nothing is shared where something differs. */
 #include "program_fixture.h"
 
-#include "model/model_io.h"
+#include "model/model.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

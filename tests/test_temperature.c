@@ -7,7 +7,7 @@
 
 #include "material/foam_card.h"
 #include "material/laws.h"
-#include "model/model_io.h"
+#include "model/model.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

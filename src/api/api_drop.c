@@ -3,7 +3,6 @@
 #include "api/api.h"
 #include "build_info.h"
 #include "model/flight.h"
-#include "model/model_io.h"
 #include "post/figures/figures.h"
 #include "solver/run/run.h"
 #include "solver/set.h"

@@ -2,7 +2,6 @@
 #include "gui/session.h"
 
 #include "io/plain_file.h"
-#include "model/model_io.h"
 #include "pre/build.h"
 
 /* ---- shape of a drop ---- */

@@ -3,6 +3,15 @@
 #include "base/lanes.h"
 #include "base/units.h"
 
+/* Members of a struct, from a list, that are also a struct of their own: of the type, under the name. */
+#define SF_WITHIN(members, type, name)                                                                       \
+    union {                                                                                                  \
+        struct {                                                                                             \
+            members                                                                                          \
+        };                                                                                                   \
+        type name;                                                                                           \
+    }
+
 /* sf_law: a material law, as one constant entry of the table in material/laws.h (which says how to add
  * one). Its parameters are declared once, in `parameter`: that list drives the keys of the case file,
  * `softfall-pre --keys`, the check of a model, model.h5 and written material files. A card is the values of

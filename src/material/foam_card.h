@@ -34,12 +34,7 @@ typedef struct sf_foam_shared {
 } sf_foam_shared;
 
 typedef struct sf_foam_card {
-    union {
-        struct {
-            SF_FOAM_SHARED
-        };
-        sf_foam_shared shared;
-    };
+    SF_WITHIN(SF_FOAM_SHARED, sf_foam_shared, shared);
     double modulus;        /* Pa, E: tension, and the least stiffness of the stabilisation */
     double tension_cutoff; /* Pa, largest tensile nominal stress; huge = none */
     /* SF_DENSIFICATION_*: the keys that a case must give; the solver reads the numbers only */
@@ -47,12 +42,7 @@ typedef struct sf_foam_card {
     double densification_start;    /* -, strain from which the law replaces the table; 0 = its end */
     double densification_limit;    /* -, strain eps_L at which the stress becomes infinite; 1 for rule H1 */
     double densification_exponent; /* -, exponent; 0 = the one that makes the additive constant vanish */
-    union {
-        struct {
-            SF_LAW_CURVES
-        };
-        sf_law_curves curves;
-    };
+    SF_WITHIN(SF_LAW_CURVES, sf_law_curves, curves);
 } sf_foam_card;
 
 /* The memory of a foam law, as all laws are. */

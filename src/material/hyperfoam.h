@@ -17,23 +17,13 @@ typedef struct sf_hyperfoam_term {
 } sf_hyperfoam_term;
 
 typedef struct sf_hyperfoam_card {
-    union {
-        struct {
-            SF_FOAM_SHARED
-        };
-        sf_foam_shared shared;
-    };
+    SF_WITHIN(SF_FOAM_SHARED, sf_foam_shared, shared);
     double stable_to; /* -, strain up to which the terms must be stable */
     sf_hyperfoam_term term[SF_HYPERFOAM_TERMS];
 } sf_hyperfoam_card;
 
 typedef struct sf_hyperfoam {
-    union {
-        struct {
-            SF_FOAM_OPTIONS
-        };
-        sf_foam_options options;
-    };
+    SF_WITHIN(SF_FOAM_OPTIONS, sf_foam_options, options);
     double rest; /* Pa, modulus of confined compression at rest */
     int count;
     double mu[SF_HYPERFOAM_TERMS], alpha[SF_HYPERFOAM_TERMS], beta[SF_HYPERFOAM_TERMS];

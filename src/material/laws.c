@@ -3,15 +3,12 @@
 
 #include <math.h>
 
-#define SF_LAW(name) extern const sf_law name;
-#include "material/laws.def"
-#undef SF_LAW
-
-static const sf_law *const laws[] = {
-#define SF_LAW(name) &name,
-#include "material/laws.def"
-#undef SF_LAW
-};
+/* The laws, the default first. */
+#define LIST(LAW) LAW(sf_low_density_foam) LAW(sf_hyperfoam_law)
+#define DECLARE(name) extern const sf_law name;
+#define PLACE(name) &name,
+LIST(DECLARE)
+static const sf_law *const laws[] = {LIST(PLACE)};
 enum { LAWS = sizeof laws / sizeof laws[0] };
 
 const sf_law *sf_law_get(int number) {

@@ -2,10 +2,10 @@
 /* The table of laws, and the batch of points that all laws update.
  *
  * To add a law: one file NAME.c here with the struct of its card, the list of its parameters, its history
- * variables, its functions and the entry `const sf_law sf_NAME` (material/card.h); and one line in laws.def.
- * Case, model.h5, checks, written material files, docs (`softfall-pre --keys`), state, checkpoints and solver
- * follow the entry; tests/test_law.c walks the table: uniaxial stress against the batch, stress against the
- * energy. These files make the library softfall_material, which needs base alone. */
+ * variables, its functions and the entry `const sf_law sf_NAME` (material/card.h); and its name in the list
+ * of laws.c. Case, model.h5, checks, written material files, docs (`softfall-pre --keys`), state, checkpoints
+ * and solver follow the entry; tests/test_law.c walks the table: uniaxial stress against the batch, stress
+ * against the energy. These files make the library softfall_material, which needs base alone. */
 #pragma once
 #include "material/card.h"
 

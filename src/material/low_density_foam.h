@@ -7,12 +7,7 @@
  * the compression curve, rate-dependent loading curves; the rest is shared (foam_point.h). Pure functions. */
 
 typedef struct sf_foam {
-    union {
-        struct {
-            SF_FOAM_OPTIONS
-        };
-        sf_foam_options options;
-    };
+    SF_WITHIN(SF_FOAM_OPTIONS, sf_foam_options, options);
     double modulus; /* Pa, E */
     double cutoff;  /* Pa */
     int64_t curve_count;

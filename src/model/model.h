@@ -2,6 +2,7 @@
 #pragma once
 #include "material/foam_card.h"
 #include "model/columns.h"
+#include "io/provenance.h"
 
 /* sf_model: everything about a drop that does not change while it is solved. softfall-pre builds it, model.h5
  * stores it, softfall-solve reads it and never writes to it.
@@ -370,3 +371,13 @@ typedef struct sf_motion_range {
 
 /* For free missiles too. */
 sf_motion_range sf_motion_measure(const sf_model *model);
+
+/* model.h5: the model's field table and its provenance (docs/formats.md). */
+
+/* Writes a model under a temporary name beside `path` and renames it: on failure an earlier file stays. */
+sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance,
+                         sf_error *err);
+
+/* Reads and checks (sf_model_check) a model. On success the caller owns `*model` (sf_model_free) and, if
+ * `file` is not NULL, the open file (sf_h5_close), for its provenance. On failure both are empty. */
+sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_error *err);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "model/model_io.h"
+#include "model/model.h"
 
 #include "io/replace.h"
 #include "material/laws.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/steps.h"
 
-#include "base/grid.h"
+#include "base/sets.h"
 #include "base/mat3.h"
 
 /* ---- the pad's surface ---- */

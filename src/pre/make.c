@@ -2,7 +2,6 @@
 #include "pre/build.h"
 
 #include "base/mat3.h"
-#include "io/h5.h"
 #include "pre/mesh/gmsh_session.h"
 
 /* The pad of the open geometry. */

@@ -3,7 +3,6 @@
 #pragma once
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/layers.h"
-#include "pre/mesh/missile_shape.h"
 
 /* Covers without cells: the membrane on faces of the pad (theory, section "Membranes"). */
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-pre: CASE -> model.h5. */
 #include "base/program.h"
-#include "model/model_io.h"
 #include "io/replace.h"
 #include "case/keys.h"
 #include "pre/build.h"

@@ -10,7 +10,6 @@
 #include "build_info.h"
 #include "io/process.h"
 #include "model/good_run.h"
-#include "model/model_io.h"
 #include "solver/run/run.h"
 
 /* ---- the command line ---- */

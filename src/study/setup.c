@@ -5,7 +5,6 @@
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include "io/provenance.h"
 #include <gsl/gsl_errno.h>
 #include <omp.h>
 

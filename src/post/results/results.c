@@ -2,7 +2,6 @@
 #include "post/results/results.h"
 
 #include "base/text.h"
-#include "io/provenance.h"
 #include "io/replace.h"
 #include "model/cells.h"
 #include "model/model.h"

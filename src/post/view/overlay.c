@@ -6,7 +6,6 @@
 #include "model/model.h"
 #include "io/plain_file.h"
 #include "report/chart.h"
-#include "io/provenance.h"
 #include "post/view/cut.h"
 #include <argp.h>
 #include <sys/stat.h>

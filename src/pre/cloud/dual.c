@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/dual.h"
 
-#include <string.h>
-
 #include "base/mat3.h"
 
 typedef struct raw_edge {

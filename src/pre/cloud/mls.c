@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/sets.h"
 #include "pre/cloud/mls.h"
-
-#include <math.h>
-#include <string.h>
 
 /* A path may lead as far away as this times the distance of its ends: around the tip of a slit, not around
  * the slit. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "base/grid.h"
+#include "base/sets.h"
 #include "pre/cloud/dual.h"
 
 /* Which nodes do not see each other although they are near? The support of a node is a ball; across a slit or

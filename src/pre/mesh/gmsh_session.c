@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/gmsh_session.h"
 
-#include "pre/mesh/mesh_raw.h"
 #include "pre/mesh/mesher_protocol.h"
 
 #include <unistd.h>

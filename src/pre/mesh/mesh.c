@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "model/model.h"
 
 enum { MAX_VERTICES = 8 };
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/mesh/mesh_raw.h"
-
-#include <string.h>
+#include "pre/mesh/mesh.h"
 
 #include "base/mat3.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "io/provenance.h"
 #include "io/replace.h"
 #include "solver/operators.h"
 #include "solver/state.h"
