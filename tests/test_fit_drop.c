@@ -305,6 +305,38 @@ static void a_predicted_drop_scatters(void **state) {
     program_tear_down(&place);
 }
 
+/* A drop was 1 % faster than its case says: the fit finds the speed, simulates with it, and its figures at
+ * the given speed are those of the case. */
+static void an_unknown_speed_is_found_and_simulated(void **state) {
+    (void)state;
+    program_place place;
+    char text[768];
+    program_set_up(&place);
+    fit_fixture_put_case(&place);
+    program_shell(&place, "cp start.cfg hidden.cfg");
+    const drop_figures given = simulate_hidden(&place, "4.5 m/s"),
+                       real = simulate_hidden(&place, "4.545 m/s");
+    snprintf(
+        text, sizeof text,
+        "material = \"start.cfg\"; curve_form = \"table\"; posterior = false;\n"
+        "unknown = ( { name = \"stress_scale\"; prior_sd = 0.01; } );\n"
+        "drops = ( { name = \"a\"; case = \"case.cfg\"; speed_sd = 0.02; a_max_g = %.9g; a_max_sd = 0.001; "
+        "HIC = %.9g; HIC_sd = 0.002; v_rebound_m_s = %.9g; v_rebound_sd = 0.002; } );\n",
+        real.a_max, real.hic, real.rebound);
+    program_write_text(&place, "fit.cfg", text);
+    program_result fit = program_succeed(&place, "fit", "drop fit.cfg -o out -t 1");
+    program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
+    assert_close(program_json_number(json.data, NULL, "a_max_at_fitted_speed_g"), real.a_max,
+                 0.002 * real.a_max);
+    assert_close(program_json_number(json.data, NULL, "hic_at_fitted_speed"), real.hic, 0.004 * real.hic);
+    assert_close(program_json_number(json.data, NULL, "a_max_g"), given.a_max, 0.004 * given.a_max);
+    assert_close(program_json_number(json.data, NULL, "hic"), given.hic, 0.008 * given.hic);
+    assert_true(real.hic > 1.015 * given.hic);
+    free(json.data);
+    assert_non_null(strstr(fit.out, "  4.54")); /* m/s: the drop of an iterate */
+    program_tear_down(&place);
+}
+
 /* The record of a drop on a mount of 100 Hz tells the mount's frequency beside the foam, and a fit that takes
  * the mount for rigid does not describe it. */
 static void the_mount_of_the_accelerometer_is_found(void **state) {
@@ -417,6 +449,7 @@ int main(void) {
         cmocka_unit_test(hidden_foam_is_found),
         cmocka_unit_test(drops_that_end_too_early_are_refused),
         cmocka_unit_test(a_predicted_drop_scatters),
+        cmocka_unit_test(an_unknown_speed_is_found_and_simulated),
         cmocka_unit_test(the_mount_of_the_accelerometer_is_found),
         cmocka_unit_test(damping_and_coupling_of_the_accelerometer_are_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),

@@ -172,6 +172,11 @@ static void put_misfit(FILE *f, const sf_drop_fit *fit) {
             fit->result.scale);
 }
 
+/* A number of a measured drop at its fitted speed, which is that of the misfit. */
+static double fitted_response(const sf_drop_fit *fit, int d, int kind) {
+    return exp(fit->result.y[fit->row[d] + kind]);
+}
+
 /* Fitted speeds, for drops whose speed is not known exactly. */
 static void put_speeds(FILE *f, const sf_drop_fit *fit) {
     bool any = false;
@@ -184,16 +189,18 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
         "The speeds are known with a standard deviation only, and are unknowns of the fit; the table "
         "above is simulated with %s ones.",
         fit->speeds_fitted ? "the fitted" : "the given");
-    SF_HTML_TABLE table =
-        sf_html_table_begin(f, "dense", "drop|>given (m/s)|>standard deviation (%)|>in the fit (%)|>95 %");
+    SF_HTML_TABLE table = sf_html_table_begin(
+        f, "dense",
+        "drop|>given (m/s)|>standard deviation (%)|>in the fit (%)|>95 %|>a_max there (g)|>HIC there");
     for (int d = 0; d < fit->measured_drops; d++) {
         int k = fit->speed[d];
         if (k < 0)
             continue;
         double shift = fit->result.u[k], width = sf_drop_half_width(fit) * sqrt(fit->result.covariance[k][k]);
-        sf_html_line(&table, fit->input->drop[d].name, "%.4g|%.2f|%+.2f|%+.2f to %+.2f",
+        sf_html_line(&table, fit->input->drop[d].name, "%.4g|%.2f|%+.2f|%+.2f to %+.2f|%.2f|%.1f",
                      fit->columns[d].speed, 100 * fit->input->drop[d].speed_sd, 100 * expm1(shift),
-                     100 * expm1(shift - width), 100 * expm1(shift + width));
+                     100 * expm1(shift - width), 100 * expm1(shift + width),
+                     fitted_response(fit, d, SF_FIT_A_MAX), fitted_response(fit, d, SF_FIT_HIC));
     }
 }
 
@@ -344,6 +351,8 @@ static void json_kind(sf_json *j, const sf_drop_fit *fit, int d, int kind) {
     json_stem(j, stem, "_sd_by_parameters", "", response_sd(fit, d, kind));
     if (kind == SF_FIT_A_MAX || kind == SF_FIT_HIC)
         json_stem(j, stem, "_scatter", "", sf_drop_fit_scatter(fit, d, kind));
+    if (d < fit->measured_drops && fit->speed[d] >= 0)
+        json_stem(j, stem, "_at_fitted_speed", suffix, fitted_response(fit, d, kind));
     json_stem(j, stem, "_from_others", suffix, exp(fit->without[fit->row[d] + kind]));
 }
 
