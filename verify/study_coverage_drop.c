@@ -104,10 +104,10 @@ int main(int argc, char **argv) {
     sf_study_check(&study, all.failed, 0, all.foams / 50., "foams without a result");
     for (int d = LAB_MEASURED; d < LAB_DROPS; d++)
         for (int k = 0; k < SF_FIT_WINDOW; k++) {
-            sf_study_check(&study, all.inside[d][k] / used, 0.9, 1, "%s, %s inside its 95 %% interval",
+            sf_study_check(&study, all.inside[d][k] / used, 0.9, 1, "%s, %s: inside its 95 %% interval",
                            drops[d], kinds[k]);
             sf_study_check(&study, 0.5 * all.width[d][k] / (used - all.open[d][k]), 0,
-                           longest[locks][d - LAB_MEASURED][k], "%s, %s, half width of the interval",
+                           longest[locks][d - LAB_MEASURED][k], "%s, %s: half width of the interval",
                            drops[d], kinds[k]);
         }
     return sf_study_end(&study);

@@ -298,7 +298,7 @@ int main(int argc, char **argv) {
         double worst = 0;
         for (int i = 0; i < MESHES; i++)
             worst = larger(worst, r[i].residual[k]);
-        sf_study_check(&study, worst, 0, 1e-12, "%s, largest over the meshes", residual_name[k]);
+        sf_study_check(&study, worst, 0, 1e-12, "largest over the meshes: %s", residual_name[k]);
     }
     double least = INFINITY;
     for (int i = 1; i < MESHES; i++)
