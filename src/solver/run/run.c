@@ -153,6 +153,7 @@ static void print_progress(drop *d, bool last) {
     if (d->replay || (!last && now - d->last_line < interval))
         return;
     d->last_line = now;
+    /* The line states time, step, acceleration or force, depth, compression and the energy error. */
     double done = (s->time - d->first_time) / (m->run.end_time - d->first_time), spent = now - d->start;
     bool driven = sf_missile_is_driven(m);
     fprintf(run->log,
@@ -162,11 +163,12 @@ static void print_progress(drop *d, bool last) {
             driven ? "force" : "a", sf_recorder_measure(m, s) / (driven ? 1 : SF_STANDARD_GRAVITY),
             driven ? "N" : "g", 1e3 * sf_missile_depth(m, &s->missile), s->largest_compression,
             100 * s->ledger.error);
+    /* The remaining time never rises: steps shrink, but the rebound ends the run early. */
     if (done > 0 && !last) {
-        d->left =
-            fmin(d->left, spent * (1 - done) / done); /* steps shrink, but the rebound ends the run early */
+        d->left = fmin(d->left, spent * (1 - done) / done);
         fprintf(run->log, "  left about %.0f s  ", d->left);
     }
+    /* A terminal overwrites its line until the last one. */
     if (!run->terminal || last)
         fputc('\n', run->log);
     fflush(run->log);
@@ -211,10 +213,13 @@ static bool checkpoint_is_due(const drop *d) {
 
 /* A new step: forces, a row of history, the fields at the peak and a frame if they are due. */
 static sf_status take_step(drop *d, sf_error *err) {
+    /* The forces of the present positions give the accelerations, which the history records. */
     if (sf_step_evaluate(d->m, d->op, d->s, err) != SF_OK || sf_recorder_add(&d->r, d->m, d->s, err) != SF_OK)
         return err->status;
+    /* The fields of a peak are written in the first step after it, if it is clearly above the last one. */
     if (sf_recorder_peak_due(&d->r, d->s) && sf_output_peak(d->out, d->m, d->op, d->s, err) != SF_OK)
         return err->status;
+    /* A frame is written at its times, and results.h5 then links to it; a replay has its frames already. */
     if (!sf_recorder_frame_due(&d->r, d->m, d->s) || d->replay)
         return SF_OK;
     SF_TRY(sf_output_frame(d->out, d->m, d->op, d->s, d->r.frames - 1, err));
@@ -237,17 +242,21 @@ static const char *find_ending(const drop *d) {
 /* Steps to the end; SF_OK also if that is the anvil. A checkpoint holds a step that has been taken. */
 static sf_status run_steps(drop *d, bool taken, sf_error *err) {
     for (;; taken = false) {
+        /* The first step is left out where the checkpoint holds it already. */
         if (!taken && take_step(d, err) != SF_OK)
             return err->status;
+        /* The loop ends after the step that meets an ending, without moving the nodes again. */
         const char *ending = find_ending(d);
         print_progress(d, ending != NULL);
         if (ending) {
             d->run->ending = ending;
             return SF_OK;
         }
+        /* A checkpoint goes with results.h5, so that both hold the same steps after a kill. */
         if (checkpoint_is_due(d) && save(d, err) == SF_OK)
             publish_if_due(d, err);
         SF_TRY(err->status);
+        /* The accelerations move nodes and missile to the next step. */
         sf_step_advance(d->m, d->s);
     }
 }
@@ -266,6 +275,7 @@ static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     notes list = {""};
     const sf_sink sink = {add_line, &list};
     const sf_extremes extremes = sf_recorder_extremes(&d->r);
+    /* The sentences come in this order: the program's, that of a later drop, those of the run. */
     if (d->note[0])
         sf_sink_tell(&sink, SF_WARNING, "%s", d->note);
     if (d->s->drop > 1)
@@ -288,6 +298,7 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
     if (m->set)
         sf_set_measure(m, set);
     const double given_back = sf_model_whole(m) * s->given_back;
+    /* Each scalar of /summary is one entry; `told` leaves out what the run does not have. */
     const struct {
         bool told;
         sf_h5_info info;
@@ -311,6 +322,7 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         {true, {"/summary/contact_time", "s", "first contact, NaN if none"}, &s->missile.contact_time, SF_H5_F64},
         /* clang-format on */
     };
+    /* The sentence of the ending stands first, the notes last. */
     sf_h5_write_text(file, &(sf_h5_info){"/summary/status", "1", "how the run ended"}, status, err);
     for (size_t k = 0; k < sizeof item / sizeof item[0] && err->status == SF_OK; k++)
         if (item[k].told)
@@ -323,10 +335,12 @@ static sf_status conclude(drop *d, const char *status, sf_error *err) {
     sf_h5 *file = NULL;
     int64_t frames = d->r.frames;
     bool shown = sf_state_is_finite(d->m, d->s);
+    /* The last step gets a frame, and the peak its fields, unless they are written already. */
     if (shown && d->r.frame_step != d->s->step)
         sf_output_frame(d->out, d->m, d->op, d->s, frames++, err);
     if (shown && err->status == SF_OK && sf_recorder_peak_ahead(&d->r))
         sf_output_peak(d->out, d->m, d->op, d->s, err);
+    /* The new file replaces results.h5 only when it is complete. */
     if (err->status == SF_OK && sf_output_begin(d->out, true, frames, &file, err) == SF_OK &&
         sf_history_write(&d->r.history, file, err) == SF_OK &&
         sf_output_copy_peak(d->out, file, err) == SF_OK)
@@ -370,12 +384,14 @@ static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     sf_sink_tell(d->run->sink, SF_WARNING,
                  "frame %lld of the run so far is missing or damaged: the run starts from the beginning",
                  (long long)frame);
+    /* State and recorder begin at t = 0; the checkpoint on the disk does not belong to them. */
     sf_recorder_free(&d->r);
     sf_state_free(d->s);
     d->foreign = true;
     d->note = "";
     if (begin_again(d, err) != SF_OK || load(d, NULL, err) != SF_OK)
         return err->status;
+    /* The figures of the run as a whole are kept. */
     d->r.restarts = old.restarts;
     d->r.wall_time = old.wall_time;
     d->r.past_rebound = old.past_rebound;
@@ -390,6 +406,7 @@ static sf_status begin(drop *d, const sf_checkpoint *from, bool *taken, sf_error
     d->saved = from ? d->s->step : -1;
     if (from)
         resume_rebounded(d);
+    /* If a frame up to the checkpoint is lost, the run starts anew. */
     if (sf_output_recover(d->out, d->r.frames, &lost, err) != SF_OK || lost < 0)
         return err->status;
     *taken = false;
@@ -404,9 +421,11 @@ static sf_status replay(drop *d, sf_error *err) {
     d->replay = true;
     if (d->last_step < 0)
         return SF_OK;
+    /* The repetition begins at the checkpoint of these steps, or else at t = 0. */
     bool there = !d->foreign && access(d->out->checkpoint, F_OK) == 0;
     if (there && sf_checkpoint_open(d->out->checkpoint, &last, err) != SF_OK)
         return err->status;
+    /* A repeated step has the bits of the first time, so that the last valid one is reached. */
     sf_recorder_free(&d->r);
     sf_state_free(d->s);
     if ((there ? sf_state_create(d->m, d->s, err) : begin_again(d, err)) == SF_OK &&
@@ -420,19 +439,23 @@ static sf_status replay(drop *d, sf_error *err) {
 static void end_run(drop *d, const sf_error *failure, const sf_error *end, sf_error *late) {
     bool failed = failure->status != SF_OK;
     sf_error unsaved = SF_ERROR_INIT; /* results without a checkpoint are better than none */
+    /* A run that did not fail leaves a checkpoint of its last step. */
     if (d->run->checkpoints && !failed && d->saved != d->s->step)
         save(d, &unsaved);
     d->run->wall_time = d->r.wall_time + sf_clock() - d->start;
+    /* A step with a NaN or infinity is replaced by the last valid one before results.h5 is written. */
     d->run->shown = sf_state_is_finite(d->m, d->s);
     if (d->run->checkpoints && !d->run->shown)
-        replay(d, &unsaved); /* the last valid step is shown instead */
+        replay(d, &unsaved);
     bool whole = conclude(d,
                           failed                 ? failure->text
                           : end->status != SF_OK ? end->text
                                                  : d->run->ending,
                           late) == SF_OK;
+    /* After another failure the results show the failed step, and the checkpoint is the step before. */
     if (d->run->checkpoints && failed && d->run->shown)
         replay(d, &unsaved);
+    /* Complete results need no files of parts of the run. */
     if (whole)
         sf_output_clear(d->out);
     if (unsaved.status != SF_OK)
@@ -450,6 +473,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
               .start = sf_clock(),
               .left = INFINITY};
     sf_error late = SF_ERROR_INIT, end = SF_ERROR_INIT;
+    /* The run steps from the checkpoint or from t = 0 to an ending or a failure. */
     d.last_checkpoint = d.start;
     bool taken = false;
     run->ending = "failed";
@@ -458,11 +482,13 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
         d.r.restarts += from != NULL;
         run_steps(&d, taken, err);
     }
+    /* Results are written also after a numerical failure, but not after another one, as of a file. */
     run->wall_time = d.r.wall_time + sf_clock() - d.start;
     if (err->status == SF_OK && strcmp(run->ending, "anvil") == 0)
         sf_ending_fail_on_anvil(m, s, &end);
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC)
         end_run(&d, err, &end, &late);
+    /* The error is the first of: a failure in ending the run, the missile on the anvil, an interruption. */
     if (late.status != SF_OK)
         SF_FAIL(err, late.status, "%s", late.text);
     else if (end.status != SF_OK)
