@@ -2,6 +2,7 @@
 /* The tables of the documents are those of the program: what stands between `<!-- generated: NAME -->` and
  * `<!-- end -->` is written from the lists in src/. With SF_WRITE_DOCS=1 in the environment the documents are
  * brought up to date instead. */
+#include "base/text.h"
 #include "model/columns.h"
 #include "model/good_run.h"
 #include "model/model.h"
@@ -153,12 +154,24 @@ static void put_forms(FILE *f) {
     }
 }
 
+/* Neighbours that differ in the last word of their meaning are one row: the bends of the spline. */
 static void put_parameters(FILE *f) {
     fputs("| parameter | unit | standard deviation | meaning |\n|---|---|---|---|\n", f);
-    for (int k = 0; k < SF_PARAMETER_COUNT; k++) {
+    for (int k = 0, end; k < SF_PARAMETER_COUNT; k = end) {
         const sf_parameter_info *i = sf_parameter_get((sf_foam_parameter)k);
-        fprintf(f, "| `%s` | %s | %g | ", i->name, *i->unit ? i->unit : "1", i->prior_sd);
-        put_meaning(f, i->description, "");
+        char meaning[256];
+        size_t same = (size_t)(strrchr(i->description, ' ') + 1 - i->description);
+        snprintf(meaning, sizeof meaning, "%s", i->description);
+        fprintf(f, "| `%s`", i->name);
+        for (end = k + 1; end < SF_PARAMETER_COUNT; end++) {
+            const sf_parameter_info *next = sf_parameter_get((sf_foam_parameter)end);
+            if (strncmp(next->description, i->description, same) != 0 || next->prior_sd != i->prior_sd)
+                break;
+            fprintf(f, ", `%s`", next->name);
+            sf_text_add(meaning, sizeof meaning, ", %s", next->description + same);
+        }
+        fprintf(f, " | %s | %g | ", *i->unit ? i->unit : "1", i->prior_sd);
+        put_meaning(f, meaning, "");
     }
 }
 
