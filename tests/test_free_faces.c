@@ -124,7 +124,7 @@ static double deepest_corner(const program_place *p) {
 }
 
 /* A limit: the contact acts at the nodes, so that the rim of a disc lies behind the faces that lead from the
- * nodes below it up to those beside it. */
+ * nodes below it up to those beside it. The verdict says so, and where. */
 static void a_rim_of_the_missile_cuts_the_faces_between_nodes(void **state) {
     const program_place *p = *state;
     program_write_text(p, "block.geo", BLOCK);
@@ -138,6 +138,15 @@ static void a_rim_of_the_missile_cuts_the_faces_between_nodes(void **state) {
     double deep = deepest_corner(p);
     print_message("the disc lies %.1f mm in the faces between nodes of 12 mm\n", 1e3 * deep);
     assert_true(deep > 12e-3 && deep < 36e-3); /* the faces are stretched to 30 mm */
+    program_succeed(p, "post", "r.h5 -o out --force");
+    double cut = program_file_number(p, "out/summary.json", "rim_depth_mm");
+    print_message("at the peak it is %.2f mm from the nearest face\n", cut);
+    assert_true(cut > 0.2 * 50 && cut < 15); /* of a diagonal of 17 mm, to whose ends it may be 8.5 mm */
+    program_result r = program_shell(
+        p,
+        "grep 'depth of the missile in faces, between nodes 26 %% (not to be used beyond 20 %%), at .* mm: "
+        "take a finer mesh there' out/summary.json");
+    assert_int_equal(r.code, 0);
 }
 
 /* Two bars with the section of a house, crosswise, ridge on ridge; cells of 5 mm along the ridges, 9 of them,

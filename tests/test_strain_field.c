@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 #include "model/good_run.h"
@@ -164,12 +165,52 @@ static void layer_that_its_partner_carries_along_does_not_collapse(void **state)
     assert_close(plug_excess(true, 0), 0.4, 1e-12);
 }
 
+/* A wedge, edge down, over the block of cells of 1 m: its edge lies between two rows of nodes of the top, and
+ * no vertex of it is in the block. */
+static void an_edge_of_the_missile_between_nodes_is_measured(void **state) {
+    static double position[3 * NODES], moved[3 * NODES];
+    static uint8_t type[CELLS];
+    double wedge[] = {-20, 6.5, 0, 30, 6.5, 0, -20, 16.5, 10, 30, 16.5, 10, -20, -3.5, 10, 30, -3.5, 10};
+    int32_t triangle[] = {0, 3, 1, 0, 2, 3, 0, 5, 4, 0, 1, 5};
+    sf_results r = *(sf_results *)*state;
+    sf_frame_head head = {.missile_quaternion = {1, 0, 0, 0}};
+    sf_error err = SF_ERROR_INIT;
+    sf_rim_cut cut;
+    for (int i = 0; i < NODES; i++)
+        for (int c = 0; c < 3; c++)
+            position[3 * i + c] = c == 0 ? i % N : c == 1 ? i / N % N : i / N / N;
+    memset(type, 9, sizeof type);
+    r.position = position;
+    r.cell_type = type;
+    r.thickness = N - 1;
+    r.surface_node_count = 6;
+    r.surface_triangle_count = 4;
+    r.surface_position = wedge;
+    r.surface_triangle = triangle;
+    r.symmetry_place[0] = r.symmetry_place[1] = NAN;
+    for (int32_t *n = r.cell_node; n < r.cell_node + r.cell_nnz; n += 8)
+        for (int half = 0; half < 8; half += 4) { /* in the order of VTK */
+            int32_t swap = n[half + 2];
+            n[half + 2] = n[half + 3];
+            n[half + 3] = swap;
+        }
+    for (int k = -1; k < 2; k++) { /* above, in, and deeper than a cell */
+        double at = k < 0 ? 0.1 : k > 0 ? -2.4 : -0.4;
+        head.missile_displacement[2] = N - 1 + at;
+        assert_int_equal(sf_rim_cut_measure(&r, &head, moved, &cut, &err), SF_OK);
+        assert_close(cut.depth, k < 0 ? 0 : -at, 1e-12);
+        assert_true(k < 0 || cut.place[2] == N - 1);
+    }
+    assert_true(fabs(cut.place[1] - 6.5) < 0.6);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(smooth_strain_is_no_collapse_in_a_pad_of_any_thickness),
         cmocka_unit_test(edge_and_corner_of_a_flat_missile_are_no_collapse),
         cmocka_unit_test(nodes_that_collapse_alone_stand_out),
         cmocka_unit_test(layer_that_its_partner_carries_along_does_not_collapse),
+        cmocka_unit_test(an_edge_of_the_missile_between_nodes_is_measured),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -287,12 +287,11 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
         f->layers = sf_layer_figures_compute(r, NULL, NULL, err);
         return err->status;
     }
-    int fields = SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY |
-                 (r->layer_count > 1 ? SF_FIELD_DISPLACEMENT : 0);
+    int fields = SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY | SF_FIELD_DISPLACEMENT;
     if (sf_frame_read_fields(r, &r->peak, fields, &peak, &problem) != SF_OK)
         return sf_results_ended_well(r) ? SF_FAIL(err, problem.status, "%s", problem.text) : SF_OK;
     const double *compression = peak.field[SF_FRAME_LARGEST_COMPRESSION],
-                 *energy = peak.field[SF_FRAME_ENERGY_DENSITY];
+                 *energy = peak.field[SF_FRAME_ENERGY_DENSITY], *moved = peak.field[SF_FRAME_DISPLACEMENT];
     if (compression && energy && isfinite(r->informed_strain))
         f->energy_beyond_data = sf_strain_field_energy_beyond(r, compression, energy, r->informed_strain);
     f->layers = sf_layer_figures_compute(r, compression, energy, err);
@@ -302,7 +301,9 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
             f->energy_beyond_data += f->layers[k].energy_share * f->layers[k].energy_beyond_data;
     }
     if (compression)
-        sf_strain_field_collapse(r, compression, peak.field[SF_FRAME_DISPLACEMENT], &f->local_collapse, err);
+        sf_strain_field_collapse(r, compression, moved, &f->local_collapse, err);
+    if (moved && err->status == SF_OK)
+        sf_rim_cut_measure(r, &r->peak, moved, &f->cut, err);
     return err->status;
 }
 

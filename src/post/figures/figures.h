@@ -89,6 +89,7 @@
     X(NUMBER, energy_beyond_data, "energy_beyond_data", 1, "share of the foam's energy, at /peak, in nodes compressed beyond `informed_strain`, each by that of its layer") \
     X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F") \
     X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point") \
+    X(INNER, cut.depth, "rim_depth_mm", 1e3, "largest depth of the missile's surface in the foam between the pad's nodes, at which the contact acts, at /peak") \
     X(NUMBER, below_anvil, "below_anvil_mm", 1e3, "largest depth of a node below the anvil's plane, in the frames and at /peak; undefined without an anvil") \
     X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next four", \
       .name = "energy error", .unit = "%", .format = "%.4f", .shown = 100) \
@@ -156,6 +157,7 @@ typedef struct sf_figures {
     double free_flight;       /* g: what both are while nothing touches the missile */
     sf_injury injury_raw;
     sf_injury injury;            /* of the filtered curve */
+    sf_rim_cut cut;
     sf_layer_figures *layers;    /* [results->layer_count] owned; NULL: one material, or no contact */
     SF_FIGURES(SF_FIGURE_MEMBER) /* SI */
 } sf_figures;

@@ -21,6 +21,17 @@ sf_status sf_strain_field_collapse(const sf_results *results, const double *comp
 double sf_strain_field_energy_beyond(const sf_results *results, const double *compression,
                                      const double *energy_density, double strain);
 
+/* The depth of the missile's surface in the foam between the nodes, at which the contact acts. */
+typedef struct sf_rim_cut {
+    double depth;    /* m, behind the nearest free face that looks against it */
+    double place[3]; /* m, of a node of that face at rest */
+} sf_rim_cut;
+
+/* Measures it at the vertices and along the edges of the missile's triangles; displacement: [node_count][3]
+ * m. */
+sf_status sf_rim_cut_measure(const sf_results *results, const sf_frame_head *head, const double *displacement,
+                             sf_rim_cut *cut, sf_error *err);
+
 /* Figures of each layer of a pad of several materials. */
 
 /* X(member, key in summary.json, factor from SI to the unit in the key, meaning and, of a row that is

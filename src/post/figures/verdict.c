@@ -66,6 +66,7 @@ SHORT_VALUE(slit, r->slit_fraction)
 SHORT_VALUE(informed, f->energy_beyond_data)
 SHORT_VALUE(edge, fmax(fabs(f->a_max_by_speed), fabs(f->a_max_by_thickness)))
 SHORT_VALUE(anvil, f->max_mean_strain)
+SHORT_VALUE(rim, f->cut.depth / r->thickness)
 SHORT_VALUE(below_anvil, f->below_anvil / r->thickness)
 #undef SHORT_VALUE
 
@@ -131,6 +132,9 @@ static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf
     else
         snprintf(c->text, sizeof c->text, "%s %s (%s %s)", c->title, value,
                  c->grade == SF_GRADE_DO_NOT_USE ? "not to be used beyond" : "good up to", bound);
+    if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_rim)->key)
+        sf_text_add(c->text, sizeof c->text, ", at (%.4g, %.4g, %.4g) mm: take a finer mesh there",
+                    1e3 * f->cut.place[0], 1e3 * f->cut.place[1], 1e3 * f->cut.place[2]);
 }
 
 static void fill_row(int k, const sf_results *r, const sf_figures *f, sf_check *c) {

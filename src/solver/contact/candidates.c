@@ -67,9 +67,7 @@ typedef struct facets {
 static void facets_free(facets *f) {
     sf_grid_free(&f->pad);
     sf_grid_free(&f->support);
-    free(f->centre);
-    free(f->radius);
-    free(f->found);
+    SF_FREE(f->centre, f->radius, f->found);
 }
 
 static void surround(const sf_skin *skin, const sf_state *s, int64_t f, double centre[3], double *radius) {
@@ -206,8 +204,7 @@ sf_status sf_candidates_find(const sf_skin *skin, sf_state *s, sf_error *err) {
             choose_candidates(skin, s, p, reach, &f, &n, used);
         list_nodes(skin, s, used);
     }
-    free(n.is_near);
-    free(n.list);
+    SF_FREE(n.is_near, n.list);
     return err->status;
 }
 

@@ -52,10 +52,7 @@ static sf_status join_alloc(const sf_model *m, joined *j, sf_error *err) {
 }
 
 static void join_free(joined *j) {
-    for (int r = 0; r < COMPONENTS; r++)
-        free(j->parent[r]);
-    free(j->held);
-    free(j->next);
+    SF_FREE(j->parent[0], j->parent[1], j->parent[2], j->held, j->next);
 }
 
 /* True if nodes of one place move as one: each component is tied, or held in both. */
@@ -135,9 +132,7 @@ sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int3
 }
 
 void sf_contact_rows_free(sf_contact_rows *rows) {
-    free(rows->ptr);
-    free(rows->node);
-    free(rows->value);
+    SF_FREE(rows->ptr, rows->node, rows->value);
     memset(rows, 0, sizeof *rows);
 }
 
@@ -238,18 +233,13 @@ sf_status sf_contact_gram_build(const sf_model *m, const sf_contact_rows *rows, 
         }
     }
 done:
-    free(t.ptr);
-    free(t.point);
-    free(t.phi);
+    SF_FREE(t.ptr, t.point, t.phi);
     if (err->status != SF_OK)
         sf_contact_gram_free(gram);
     return err->status;
 }
 
 void sf_contact_gram_free(sf_contact_gram *gram) {
-    free(gram->ptr);
-    free(gram->index);
-    free(gram->value);
-    free(gram->diagonal);
+    SF_FREE(gram->ptr, gram->index, gram->value, gram->diagonal);
     memset(gram, 0, sizeof *gram);
 }

@@ -124,13 +124,7 @@ sf_status sf_missile_surface_build(const sf_model *m, const double axis[3], sf_m
 }
 
 void sf_missile_surface_free(sf_missile_surface *s) {
-    free(s->normal);
-    free(s->vertex_normal);
-    free(s->edge_normal);
-    free(s->rim_edge);
-    free(s->rim_vertex);
-    free(s->start);
-    free(s->member);
+    SF_FREE(s->normal, s->vertex_normal, s->edge_normal, s->rim_edge, s->rim_vertex, s->start, s->member);
     memset(s, 0, sizeof *s);
 }
 
@@ -246,8 +240,7 @@ sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvi
 }
 
 void sf_anvil_free(sf_anvil *anvil) {
-    free(anvil->node);
-    free(anvil->pull);
+    SF_FREE(anvil->node, anvil->pull);
     memset(anvil, 0, sizeof *anvil);
 }
 

@@ -280,18 +280,9 @@ sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 void sf_skin_free(sf_skin *skin) {
-    SF_FREE(skin->node, skin->own, skin->side, skin->next_side, skin->edge, skin->edge_of);
-    free(skin->rest);
-    free(skin->size);
-    free(skin->passive);
-    free(skin->facet);
-    free(skin->half);
-    free(skin->ring_ptr);
-    free(skin->ring);
-    free(skin->held);
-    free(skin->rests);
-    free(skin->normal);
-    free(skin->facet_normal);
+    SF_FREE(skin->node, skin->own, skin->side, skin->next_side, skin->edge, skin->edge_of, skin->rest,
+            skin->size, skin->passive, skin->facet, skin->half, skin->ring_ptr, skin->ring, skin->held,
+            skin->rests, skin->normal, skin->facet_normal);
     sf_contact_rows_free(&skin->rows);
     *skin = (sf_skin){0};
 }
