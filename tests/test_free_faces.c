@@ -190,6 +190,12 @@ static double largest(const program_place *p, const char *column, double most) {
     return strtod(r.out, NULL);
 }
 
+static void figures_of_roofs(const program_place *p, const char *words) {
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", words);
+    program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
+    program_succeed(p, "post", "r.h5 -o out --force");
+}
+
 static void edges_that_cross_carry_each_other(void **state) {
     const program_place *p = *state;
     program_write_text(p, "roofs.geo", ROOFS);
@@ -210,6 +216,13 @@ static void edges_that_cross_carry_each_other(void **state) {
     assert_true(largest(p, "momentum_error_space_1", 1.5) < 1e-12 &&
                 largest(p, "angular_momentum_error_1", 1.5) < 1e-12);
     assert_int_equal(program_shell(p, "cmp two/history.csv out/history.csv").code, 0);
+    /* with 10 cells nodes lie on the crossing: node and edge both act */
+    program_write_text(p, "motion.csv", "time_ms,displacement_mm\n0,0\n4,1\n8,4.5\n");
+    figures_of_roofs(p, "--set geometry.parameters.n=10");
+    deep = largest(p, "penetration_mm", 3);
+    print_message("nodes on the crossing: force %.3f N at 3 mm, penetration %.2g mm, %.2g mm up to 4.5 mm\n",
+                  largest(p, "base_reaction_N", 3), deep, largest(p, "penetration_mm", 5));
+    assert_true(deep < 0.01 * 5 && largest(p, "energy_error_1", 5) < 1e-3);
 }
 
 int main(void) {

@@ -7,7 +7,7 @@
 
 /* Partners of a node: a facet, or one of these. */
 enum { NOTHING = SF_NO_CANDIDATE, FIRST_PLANE = -2 }; /* plane k: FIRST_PLANE - k */
-/* The sweeps of a step, and those where centroids take part, whose rows depend on those of the nodes. */
+/* The sweeps of a step, and those where centroids or edges take part, whose rows depend on those of nodes. */
 enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 60, MORE_SWEEPS = 240 };
 static const double OVER = 1.6;     /* over-relaxation of the latter */
 static const double DEEPEST = 0.5;  /* of the spacing: no deeper does it go on */
@@ -456,6 +456,7 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
 static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
     int64_t first = w->count;
     w->count += sf_touch_edges(skin, s, RETURN * s->dt, &w->pair[first]);
+    w->sweeps = w->count > first ? MORE_SWEEPS : w->sweeps;
     for (int64_t a = first; a < w->count; a++) {
         sf_touch *q = &w->pair[a];
         s->self_penetration = fmax(s->self_penetration, -q->gap);
