@@ -129,8 +129,7 @@ static sf_status make_shape(const sf_cells *cells, const missile_surface *missil
 }
 
 static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_error *err) {
-    const sf_cells cells = {m->node_count, m->cell_count, m->position,
-                            m->cell_type,  m->cell_ptr,   m->cell_node};
+    const sf_cells cells = SF_CELLS_OF(m);
     double place;
     missile_surface missile = {
         m->surface_triangle_count, m->surface_position,
@@ -145,8 +144,7 @@ static sf_status shape_of_model(const sf_model *m, double unit, sf_shape *s, sf_
 }
 
 sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_error *err) {
-    const sf_cells cells = {r->node_count, r->cell_count, r->position,
-                            r->cell_type,  r->cell_ptr,   r->cell_node};
+    const sf_cells cells = SF_CELLS_OF(r);
     const missile_surface missile = {
         r->surface_triangle_count, r->surface_position, r->surface_triangle,
         r->sphere_radius,          r->sphere_centre,    {r->symmetry_place[0], r->symmetry_place[1]},

@@ -126,3 +126,26 @@ void sf_skin_faces_free(sf_skin_faces *s) {
     SF_FREE(s->face, s->node);
     *s = (sf_skin_faces){0};
 }
+
+sf_status sf_skin_triangles(const sf_cells *cells, int64_t *triangles, int32_t **out, uint8_t **out_half,
+                            sf_error *err) {
+    sf_skin_faces skin;
+    *triangles = 0;
+    sf_skin_faces_find(cells, &skin, err);
+    int32_t *node = *out =
+        sf_alloc(err, 6 * (unsigned long)skin.face_count, sizeof *node, "surface of the pad");
+    uint8_t *kind = sf_alloc(err, 2 * (unsigned long)skin.face_count, 1, "surface of the pad");
+    for (int64_t i = 0; err->status == SF_OK && i < skin.face_count; i++)
+        for (int half = 0; half < (skin.face[i][3] < 0 ? 1 : 2); half++) {
+            const int corner[3] = {0, 1 + half, 2 + half};
+            for (int k = 0; k < 3; k++)
+                node[3 * *triangles + k] = (int32_t)skin.node[skin.face[i][corner[k]]];
+            kind[(*triangles)++] = (uint8_t)(skin.face[i][3] < 0 ? 0 : 1 + half);
+        }
+    sf_skin_faces_free(&skin);
+    if (out_half)
+        *out_half = kind;
+    else
+        free(kind);
+    return err->status;
+}

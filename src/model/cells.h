@@ -49,3 +49,14 @@ typedef struct sf_skin_faces {
 /* Release with sf_skin_faces_free, also after a failure. */
 sf_status sf_skin_faces_find(const sf_cells *cells, sf_skin_faces *skin, sf_error *err);
 void sf_skin_faces_free(sf_skin_faces *skin);
+
+/* The cells of a model or of results, at this address. */
+#define SF_CELLS_OF(of)                                                                                      \
+    ((sf_cells){(of)->node_count, (of)->cell_count, (of)->position, (of)->cell_type, (of)->cell_ptr,         \
+                (of)->cell_node})
+
+/* The free faces of the cells as triangles, turned outwards: *node [*count][3], and, unless `half` is NULL,
+ * *half [*count] as of sf_model.skin_half; owned by the caller. Faces between layers are among them, once for
+ * each layer. */
+sf_status sf_skin_triangles(const sf_cells *cells, int64_t *count, int32_t **node, uint8_t **half,
+                            sf_error *err);

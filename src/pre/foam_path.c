@@ -33,7 +33,7 @@ typedef struct hit {
 static sf_status find_surface(const sf_model *m, surface_of_pad *out, sf_error *err) {
     SF_OWNED int32_t *node = NULL;
     *out = (surface_of_pad){0};
-    if (sf_skin_triangles(m, &out->count, &node, NULL, err) == SF_OK)
+    if (sf_skin_triangles(&SF_CELLS_OF(m), &out->count, &node, NULL, err) == SF_OK)
         out->list = sf_alloc(err, (unsigned long)out->count, sizeof *out->list, "surface of the pad");
     for (int64_t i = 0; out->list && i < out->count; i++)
         memcpy(out->list[i].node, &node[3 * i], sizeof out->list[i].node);

@@ -4,33 +4,6 @@
 #include "base/sets.h"
 #include "base/mat3.h"
 
-/* ---- the pad's surface ---- */
-
-sf_status sf_skin_triangles(const sf_model *m, int64_t *triangles, int32_t **out, uint8_t **out_half,
-                            sf_error *err) {
-    const sf_cells cells = {m->node_count, m->cell_count, m->position,
-                            m->cell_type,  m->cell_ptr,   m->cell_node};
-    sf_skin_faces skin;
-    *triangles = 0;
-    sf_skin_faces_find(&cells, &skin, err);
-    int32_t *node = *out =
-        sf_alloc(err, 6 * (unsigned long)skin.face_count, sizeof *node, "surface of the pad");
-    uint8_t *kind = sf_alloc(err, 2 * (unsigned long)skin.face_count, 1, "surface of the pad");
-    for (int64_t i = 0; err->status == SF_OK && i < skin.face_count; i++)
-        for (int half = 0; half < (skin.face[i][3] < 0 ? 1 : 2); half++) {
-            const int corner[3] = {0, 1 + half, 2 + half};
-            for (int k = 0; k < 3; k++)
-                node[3 * *triangles + k] = (int32_t)skin.node[skin.face[i][corner[k]]];
-            kind[(*triangles)++] = (uint8_t)(skin.face[i][3] < 0 ? 0 : 1 + half);
-        }
-    sf_skin_faces_free(&skin);
-    if (out_half)
-        *out_half = kind;
-    else
-        free(kind);
-    return err->status;
-}
-
 /* ---- faces that may touch ---- */
 
 static const double ALONG = 0.99; /* least cosine of a face that is held along its normal */
@@ -101,7 +74,7 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
     int64_t all = 0;
     SF_OWNED uint8_t *mark = mark_nodes(m, err);
     *f = (faces){0};
-    if (mark && sf_skin_triangles(m, &all, &f->node, &f->half, err) == SF_OK) {
+    if (mark && sf_skin_triangles(&SF_CELLS_OF(m), &all, &f->node, &f->half, err) == SF_OK) {
         f->shape = sf_alloc(err, (unsigned long)all, sizeof *f->shape, "skin of the pad");
         f->position = sf_alloc(err, 3 * (unsigned long)all, sizeof(double), "skin of the pad");
         f->radius = sf_alloc(err, (unsigned long)all, sizeof(double), "skin of the pad");

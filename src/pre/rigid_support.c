@@ -268,7 +268,7 @@ sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf
     m->support_count = mesh->support_count;
     for (int k = 0; k < mesh->support_count; k++)
         count += (unsigned long)mesh->support[k].triangle_count;
-    if (count == 0 || sf_skin_triangles(m, &pad.count, &face, NULL, err) != SF_OK)
+    if (count == 0 || sf_skin_triangles(&SF_CELLS_OF(m), &pad.count, &face, NULL, err) != SF_OK)
         return err->status;
     pad.node = face;
     m->support_position = sf_alloc(err, 9 * count, sizeof *m->support_position, "support");

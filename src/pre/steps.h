@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The steps of a build, in their order in build.c and make.c; internal to src/pre. */
 #pragma once
+#include "model/cells.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/layers.h"
 
@@ -167,12 +168,6 @@ void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, cons
 sf_status sf_foam_path_measure(sf_model *model, sf_error *between, sf_error *err);
 
 /* The surface of the pad, and the part of it that may touch the pad itself or the anvil. */
-
-/* The free faces of the model's cells as triangles, turned outwards: *node [*count][3], and, unless `half` is
- * NULL, *half [*count] as of sf_model.skin_half; owned by the caller. Faces between layers are among them,
- * once for each layer. */
-sf_status sf_skin_triangles(const sf_model *model, int64_t *count, int32_t **node, uint8_t **half,
-                            sf_error *err);
 
 /* Sets the model's skin by pad.self_contact: "off" none; "on" the surface but for faces that are tied to
  * another layer or held along their normal; "auto" the same if the foam can touch itself or the anvil, that

@@ -22,46 +22,38 @@ static void faces_free(faces *f) {
 }
 
 /* Adds a face unless it lies in a symmetry plane. */
-static void add_face(const sf_results *r, const int64_t node[3], faces *f) {
-    double *centre = &f->centre[3 * f->count], *radius = &f->radius[f->count], off[2] = {0};
+static void add_face(const sf_results *r, const int32_t node[3], faces *f) {
+    double *centre = &f->centre[3 * f->count], *radius = &f->radius[f->count], off[3] = {0};
+    memmove(&f->node[3 * f->count], node, 3 * sizeof *node);
     memset(centre, 0, 3 * sizeof *centre);
+    *radius = 0;
     for (int k = 0; k < 9; k++) {
-        f->node[3 * f->count + k / 3] = (int32_t)node[k / 3];
-        centre[k % 3] += f->x[3 * node[k / 3] + k % 3] / 3;
-        if (k % 3 < 2)
-            off[k % 3] += fabs(r->position[3 * node[k / 3] + k % 3] - r->symmetry_place[k % 3]);
+        int64_t at = 3 * (int64_t)node[k / 3] + k % 3;
+        centre[k % 3] += f->x[at] / 3;
+        off[k % 3] += k % 3 < 2 ? fabs(r->position[at] - r->symmetry_place[k % 3]) : 0;
     }
+    for (int k = 0; k < 3; k++)
+        *radius = fmax(*radius, sf_distance3(centre, &f->x[3 * (int64_t)node[k]]));
     if (off[0] < 1e-6 * r->thickness || off[1] < 1e-6 * r->thickness)
         return;
-    for (int k = 0; k < 3; k++)
-        *radius = fmax(*radius, sf_distance3(centre, &f->x[3 * node[k]]));
     f->least = fmin(f->least, *radius);
     f->count++;
 }
 
 static sf_status faces_find(const sf_results *r, const double *u, faces *f, sf_error *err) {
-    const sf_cells cells = {r->node_count, r->cell_count, r->position,
-                            r->cell_type,  r->cell_ptr,   r->cell_node};
-    SF_OWNED_BY(sf_skin_faces_free) sf_skin_faces skin = {0};
-    SF_TRY(sf_skin_faces_find(&cells, &skin, err));
-    unsigned long most = 2 * (unsigned long)skin.face_count;
-    f->node = sf_alloc(err, 3 * most, sizeof *f->node, "faces of the pad");
+    int64_t all = 0;
+    SF_TRY(sf_skin_triangles(&SF_CELLS_OF(r), &all, &f->node, NULL, err));
     f->x = sf_alloc(err, 3 * (unsigned long)r->node_count, sizeof *f->x, "faces of the pad");
-    f->centre = sf_alloc(err, 3 * most, sizeof *f->centre, "faces of the pad");
-    f->radius = sf_alloc(err, most, sizeof *f->radius, "faces of the pad");
-    f->found = sf_alloc(err, most, sizeof *f->found, "faces of the pad");
+    f->centre = sf_alloc(err, 3 * (unsigned long)all, sizeof *f->centre, "faces of the pad");
+    f->radius = sf_alloc(err, (unsigned long)all, sizeof *f->radius, "faces of the pad");
+    f->found = sf_alloc(err, (unsigned long)all, sizeof *f->found, "faces of the pad");
     SF_TRY(err->status);
     for (int64_t k = 0; k < 3 * r->node_count; k++)
         f->x[k] = r->position[k] + u[k];
     sf_box3(r->node_count, f->x, f->low, f->high);
     f->least = INFINITY;
-    for (int64_t i = 0; i < skin.face_count; i++)
-        for (int half = 0; half < (skin.face[i][3] < 0 ? 1 : 2); half++) {
-            const int32_t *place = skin.face[i];
-            const int64_t node[3] = {skin.node[place[0]], skin.node[place[1 + half]],
-                                     skin.node[place[2 + half]]};
-            add_face(r, node, f);
-        }
+    for (int64_t k = 0; k < all; k++)
+        add_face(r, &f->node[3 * k], f);
     return f->count > 0 ? sf_grid_build(&f->grid, f->count, f->centre, f->radius, err) : SF_OK;
 }
 

@@ -362,8 +362,7 @@ static sf_status write_page(page *p, const sf_staging *output, const char *text,
 sf_status sf_browser_write(const sf_staging *output, const sf_report *report, const sf_xdmf *made,
                            double megabytes, char *warning, size_t size, sf_error *err) {
     const sf_results *r = report->summary->results;
-    const sf_cells cells = {r->node_count, r->cell_count, r->position,
-                            r->cell_type,  r->cell_ptr,   r->cell_node};
+    const sf_cells cells = SF_CELLS_OF(r);
     page p = {.report = report, .results = r, .made = made, .bytes = megabytes * 1e6};
     sf_error problem = SF_ERROR_INIT;
     SF_OWNED char *text = NULL;

@@ -409,6 +409,15 @@ static sf_touch last_pair(const sf_model *m, const sf_skin *skin, sf_state *s, i
     return q;
 }
 
+/* Makes the next pair of the solve one that acts. */
+static void add_pair(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
+    sf_touch *pair = &w->pair[w->count];
+    s->self_penetration = fmax(s->self_penetration, -pair->gap);
+    pair->gap = fmax(pair->gap, -RETURN * s->dt);
+    w->mobility[w->count] = mobility_of(m, skin, pair, s->self_push);
+    sf_touch_relative(pair, s->self_step, w->step[w->count++]);
+}
+
 /* Books the last step's pairs, finds those of this step, and carries their forces over. */
 static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
     s->self_penetration = 0;
@@ -440,31 +449,23 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         memcpy(&s->self_weight[4 * p], found->weight, sizeof found->weight);
         if (!acts(skin, p, found->facet))
             continue;
-        s->self_penetration = fmax(s->self_penetration, -found->gap);
-        found->gap = fmax(found->gap, -RETURN * s->dt);
-        w->mobility[w->count] = mobility_of(m, skin, found, s->self_push);
-        sf_touch_relative(found, s->self_step, w->step[w->count]);
+        add_pair(m, skin, s, w);
         if (p >= skin->nodes) {
             w->sweeps = MORE_SWEEPS;
             w->relaxation = OVER;
         }
-        w->count++;
     }
 }
 
 /* Adds the pairs of edges. */
 static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
-    int64_t first = w->count;
-    w->count += sf_touch_edges(skin, s, RETURN * s->dt, &w->pair[first]);
-    w->sweeps = w->count > first ? MORE_SWEEPS : w->sweeps;
-    for (int64_t a = first; a < w->count; a++) {
-        sf_touch *q = &w->pair[a];
-        s->self_penetration = fmax(s->self_penetration, -q->gap);
-        q->gap = fmax(q->gap, -RETURN * s->dt);
+    int64_t count = sf_touch_edges(skin, s, RETURN * s->dt, &w->pair[w->count]);
+    w->sweeps = count > 0 ? MORE_SWEEPS : w->sweeps;
+    for (int64_t k = 0; k < count; k++) {
+        sf_touch *q = &w->pair[w->count];
         q->friction = friction_of(m, skin, q->node, q->facet);
-        q->force = w->edge_force[a - first];
-        w->mobility[a] = mobility_of(m, skin, q, s->self_push);
-        sf_touch_relative(q, s->self_step, w->step[a]);
+        q->force = w->edge_force[k];
+        add_pair(m, skin, s, w);
     }
 }
 

@@ -155,30 +155,6 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
     return SF_OK;
 }
 
-/* Lists the sharp edges of the pad's facets, `count` of them, that are convex. */
-static sf_status list_edges(int64_t count, sf_skin *skin, sf_error *err) {
-    SF_OWNED sf_half_edge *half = sf_half_edges(count, skin->facet, err);
-    skin->edge = sf_alloc(err, 12 * (unsigned long)count, sizeof *skin->edge, "skin of the pad");
-    skin->edge_of =
-        sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof *skin->edge_of, "skin of the pad");
-    SF_TRY(err->status);
-    memset(skin->edge_of, -1, 3 * (size_t)skin->facet_count * sizeof *skin->edge_of);
-    for (int64_t k = 0; k + 1 < 3 * count && !skin->watched; k++) {
-        int64_t one = half[k].slot, other = half[k + 1].slot;
-        int32_t *edge = &skin->edge[4 * skin->edge_count];
-        edge[0] = half[k].low;
-        edge[1] = half[k].high;
-        edge[2] = skin->facet[one - one % 3 + (one + 2) % 3];
-        edge[3] = skin->facet[other - other % 3 + (other + 2) % 3];
-        const double *normal = &skin->facet_normal[3 * (one / 3)], *first = &skin->rest[3 * (int64_t)edge[0]],
-                     *third = &skin->rest[3 * (int64_t)edge[3]];
-        if (sf_half_edges_end(half, k, k + 2) == k + 2 && sf_dot3(normal, third) < sf_dot3(normal, first) &&
-            sf_dot3(normal, &skin->facet_normal[3 * (other / 3)]) <= SHARP)
-            skin->edge_of[one] = (int32_t)skin->edge_count++;
-    }
-    return SF_OK;
-}
-
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
     static const double ON_PLANE = 1e-6; /* of the thickness */
     SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
@@ -200,6 +176,43 @@ static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
                 skin->held[p] |= (uint8_t)(1 << axis);
         }
     return err->status;
+}
+
+/* Writes an edge, of one or two half edges, to edge [4]. One alone lies in a symmetry plane or at the end of
+ * the skin. False: it is not sharp, or not convex. */
+static bool take_edge(const sf_skin *skin, const sf_half_edge *half, int64_t count, int32_t edge[4]) {
+    int64_t one = half[0].slot, other = half[count - 1].slot;
+    const double *normal = &skin->facet_normal[3 * (one / 3)];
+    int in = count > 1 ? 0 : skin->held[half->low] & skin->held[half->high];
+    double arm[3], beyond[3];
+    edge[0] = half->low;
+    edge[1] = half->high;
+    edge[2] = skin->facet[one - one % 3 + (one + 2) % 3];
+    edge[3] = skin->facet[other - other % 3 + (other + 2) % 3];
+    for (int r = 0; r < 3; r++) {
+        double turned = r == in - 1 ? -1 : 1;
+        arm[r] = turned * (skin->rest[3 * (int64_t)edge[3] + r] - skin->rest[3 * (int64_t)edge[0] + r]);
+        beyond[r] = turned * skin->facet_normal[3 * (other / 3) + r];
+    }
+    if (in == SF_FIX_X || in == SF_FIX_Y)
+        edge[3] = -in;
+    return (count == 2 || edge[3] < 0) && sf_dot3(normal, arm) < 0 && sf_dot3(normal, beyond) <= SHARP;
+}
+
+/* Lists the sharp edges of the pad's facets, `count` of them, that are convex. */
+static sf_status list_edges(int64_t count, sf_skin *skin, sf_error *err) {
+    SF_OWNED sf_half_edge *half = sf_half_edges(count, skin->facet, err);
+    skin->edge = sf_alloc(err, 12 * (unsigned long)count, sizeof *skin->edge, "skin of the pad");
+    skin->edge_of =
+        sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof *skin->edge_of, "skin of the pad");
+    SF_TRY(err->status);
+    memset(skin->edge_of, -1, 3 * (size_t)skin->facet_count * sizeof *skin->edge_of);
+    for (int64_t k = 0, end; k < 3 * count && !skin->watched; k = end) {
+        end = sf_half_edges_end(half, k, 3 * count);
+        if (end - k <= 2 && take_edge(skin, &half[k], end - k, &skin->edge[4 * skin->edge_count]))
+            skin->edge_of[half[k].slot] = (int32_t)skin->edge_count++;
+    }
+    return SF_OK;
 }
 
 static void find_planes(const sf_model *m, sf_skin *skin) {
@@ -270,8 +283,8 @@ sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
         return SF_OK;
     if (number_nodes(m, skin, err) != SF_OK || place_nodes(m, skin, err) != SF_OK ||
         list_rings(skin, err) != SF_OK || find_normals(skin, err) != SF_OK ||
-        part_sides(skin, err) != SF_OK || list_edges(m->skin_count, skin, err) != SF_OK ||
-        mark_held(m, skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
+        part_sides(skin, err) != SF_OK || mark_held(m, skin, err) != SF_OK ||
+        list_edges(m->skin_count, skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
         build_rows(m, skin, err) != SF_OK)
         sf_skin_free(skin);
     else if (!skin->alone)

@@ -33,7 +33,8 @@ typedef struct sf_skin {
      * side of a point has its number. */
     int32_t *side;      /* [facet_count][3] of the facet's nodes that the facet belongs to */
     int32_t *next_side; /* [..] next side of the same node; -1: none */
-    /* The sharp convex edges of a pad that touches itself: two nodes, and the third nodes of both facets. */
+    /* The sharp convex edges of a pad that touches itself: two nodes, and the third nodes of both facets; -1
+     * or -2 for the mirror image of the first facet, beyond the symmetry plane normal to x or y. */
     int64_t edge_count;
     int32_t *edge;     /* [edge_count][4] */
     int32_t *edge_of;  /* [facet_count][3] from a facet's node to its next, at one facet; -1: none */

@@ -5,6 +5,8 @@
 
 static const double DEEPEST = 0.1;  /* of the spacing: deeper edges lie on the far sides of a thin part */
 static const double CROSSING = 0.2; /* least sine of the angle between two edges */
+static const double ROUNDING =
+    1e-9;                         /* of an edge that begins in a symmetry plane, where another crosses it */
 static const double SLOPE = 0.01; /* least sine by which the faces at an edge fall away from the other edge */
 
 void sf_touch_relative(const sf_touch *q, const double *field, double out[3]) {
@@ -38,19 +40,40 @@ static int falls_away(const sf_state *s, const int32_t edge[4], const double n[3
     int side = 0;
     for (int k = 2; k < 4; k++) {
         double arm[3];
-        subtract(s, edge[k], edge[0], arm);
+        subtract(s, edge[k] < 0 ? edge[2] : edge[k], edge[0], arm);
+        if (edge[k] < 0)
+            arm[-1 - edge[k]] *= -1;
         double slope = sf_dot3(arm, n), least = SLOPE * sqrt(sf_dot3(arm, arm));
         side += slope < -least ? 1 : slope > least ? -1 : 0;
     }
     return side / 2;
 }
 
+/* Where an edge leaves a symmetry plane in which the other lies, its mirror image goes on: there it is along
+ * the normal of the plane, and begins in it. */
+static void straighten(const sf_skin *skin, const int32_t in[4], int32_t edge[4], double along[3]) {
+    for (int r = 0; r < 2; r++) {
+        bool there = (skin->held[in[0]] & skin->held[in[1]]) >> r & 1, first = skin->held[edge[0]] >> r & 1;
+        if (!there || !(first || skin->held[edge[1]] >> r & 1))
+            continue;
+        int32_t begin = edge[!first];
+        edge[1] = edge[first];
+        edge[0] = begin;
+        for (int k = 0; k < 3; k++)
+            along[k] *= k != r ? 0 : first ? 1 : -1;
+    }
+}
+
 /* The pair of two edges that cross, seen along the common perpendicular of their lines, n. */
 static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64_t other, sf_touch *out) {
-    const int32_t *a = &skin->edge[4 * one], *c = &skin->edge[4 * other];
+    int32_t a[4], c[4];
     double u[3], v[3], between[3], n[3], moment[3];
+    memcpy(a, &skin->edge[4 * one], sizeof a);
+    memcpy(c, &skin->edge[4 * other], sizeof c);
     subtract(s, a[1], a[0], u);
     subtract(s, c[1], c[0], v);
+    straighten(skin, a, c, v);
+    straighten(skin, c, a, u);
     subtract(s, c[0], a[0], between);
     sf_cross3(u, v, n);
     double square = sf_dot3(n, n);
@@ -62,7 +85,8 @@ static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64
     double there = sf_dot3(moment, n) / square;
     sf_unit3(n);
     int side = falls_away(s, c, n);
-    if (at < 0 || at > 1 || there < 0 || there > 1 || side == 0 || falls_away(s, a, n) != -side)
+    double from = skin->held[a[0]] ? -ROUNDING : 0, there_from = skin->held[c[0]] ? -ROUNDING : 0;
+    if (at < from || at > 1 || there < there_from || there > 1 || side == 0 || falls_away(s, a, n) != -side)
         return false;
     *out = (sf_touch){.node = a[at > 0.5],
                       .facet = skin->ring[skin->ring_ptr[c[0]]],
