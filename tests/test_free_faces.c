@@ -38,6 +38,17 @@ static const char CASE[] =
     "solver: { end_time = \"26 ms\"; };\n"
     "output: { frame_interval = \"2 ms\"; };\n";
 
+/* Largest magnitude of a column of the history, up to a displacement of `most` mm. */
+static double largest(const program_place *p, const char *column, double most) {
+    program_result r = program_shell(
+        p,
+        "awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) { if ($k == \"%s\") c = k; if ($k == \"displacement_mm\") d = k } "
+        "next } $d < %g { v = $c < 0 ? -$c : $c; if (v > m) m = v } END { print m + 0 }' out/history.csv",
+        column, most);
+    assert_int_equal(r.code, 0);
+    return strtod(r.out, NULL);
+}
+
 /* Depth (m) of the pad's deepest node inside the missile, which is a sphere, over all frames. */
 static double deepest_inside(const program_place *p) {
     sf_results r;
@@ -76,9 +87,12 @@ static void the_missile_touches_faces_that_are_not_named(void **state) {
     const program_place *p = *state;
     program_write_text(p, "block.geo", BLOCK);
     program_write_text(p, "case.cfg", CASE);
-    double part = drop(p, "--set geometry.parameters.whole=0"),
+    double part = drop(p, "--set geometry.parameters.whole=0"), area = largest(p, "contact_area_mm2", 1e9),
+           error = program_file_number(p, "out/summary.json", "a_max_mesh_error"),
            whole = drop(p, "--set geometry.parameters.whole=1");
     assert_relative(part, whole, 1e-12);
+    assert_relative(area, largest(p, "contact_area_mm2", 1e9), 0.03); /* triangles halve some squares */
+    assert_relative(error, program_file_number(p, "out/summary.json", "a_max_mesh_error"), 0.03);
     drop(p, "--set geometry.parameters.whole=1 --set missile.position='[\"58 mm\",\"0 mm\"]'");
 }
 
@@ -191,17 +205,6 @@ static const char ROOFS_CASE[] =
     "material: {\n@include \"materials/eva35.cfg\"\n};\n"
     "missile: { motion = \"motion.csv\"; shape = \"surface\"; friction = 1.0; };\n"
     "solver: { end_time = \"8 ms\"; };\n";
-
-/* Largest magnitude of a column of the history, up to a displacement of `most` mm. */
-static double largest(const program_place *p, const char *column, double most) {
-    program_result r = program_shell(
-        p,
-        "awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) { if ($k == \"%s\") c = k; if ($k == \"displacement_mm\") d = k } "
-        "next } $d < %g { v = $c < 0 ? -$c : $c; if (v > m) m = v } END { print m + 0 }' out/history.csv",
-        column, most);
-    assert_int_equal(r.code, 0);
-    return strtod(r.out, NULL);
-}
 
 static void figures_of_roofs(const program_place *p, const char *words) {
     program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", words);

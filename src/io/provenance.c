@@ -53,9 +53,11 @@ sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *f
     if (strcmp(found, format) != 0)
         return SF_FAIL(err, SF_ERR_IO, "%s is a %s file, expected a %s file", path, found, format);
     SF_TRY(sf_h5_get_attribute_i64(file, "/", "format_version", &version, err));
-    if (version != SF_FORMAT_VERSION)
-        return SF_FAIL(err, SF_ERR_IO, "%s has format version %lld; this program reads version %d", path,
-                       (long long)version, SF_FORMAT_VERSION);
+    int oldest = strcmp(format, "softfall-model") == 0 ? SF_FORMAT_VERSION : 6;
+    if (version > SF_FORMAT_VERSION || version < oldest)
+        return SF_FAIL(err, SF_ERR_IO,
+                       "%s has format version %lld; this program reads version %d: make an older file anew",
+                       path, (long long)version, SF_FORMAT_VERSION);
     return SF_OK;
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 #include "io/h5.h"
 
-enum { SF_FORMAT_VERSION = 6 };
+enum { SF_FORMAT_VERSION = 7 };
 
 /* A case's text holds the files that it includes, each below the line "# from NAME:". */
 #define SF_INCLUDED_BEGIN "# from "
@@ -30,7 +30,8 @@ sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenan
 /* Writes the two attributes of format and version alone. */
 sf_status sf_provenance_mark(sf_h5 *file, const char *format, sf_error *err);
 
-/* Refuses a file that is not of `format` or is of a newer version; `path` is for the sentence. */
+/* Refuses a file that is not of `format`, or is of a newer or an older version; `path` is for the sentence.
+ * Results and checkpoints of version 6 are those of 7: of models the contact points changed. */
 sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *format, sf_error *err);
 
 /* Copies every text of `from`:/provenance to `to`:/provenance/model. */

@@ -476,15 +476,15 @@ static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_con
                      reason, 100 * c->mesh_error_limit);
 }
 
-sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
-                        sf_error *err) {
-    if (check_thickness(m, err) != SF_OK || check_outside(c, m, err) != SF_OK ||
-        check_symmetry(c, mesh, m, err) != SF_OK)
-        return err->status;
-    return check_spacing(c, m, zone, err);
+sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
+    SF_TRY(check_thickness(m, err));
+    SF_TRY(check_outside(c, m, err));
+    return check_symmetry(c, mesh, m, err);
 }
 
-sf_status sf_drop_check_contact(const sf_model *m, sf_error *err) {
+sf_status sf_drop_check_contact(const sf_case *c, const sf_model *m, const sf_contact_zone *zone,
+                                sf_error *err) {
+    SF_TRY(check_spacing(c, m, zone, err));
     SF_TRY(check_mass(m, err));
     return check_arrival(m, err);
 }

@@ -216,12 +216,15 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
     return err->status;
 }
 
-sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_error *err) {
+sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_contact_zone *zone, sf_error *err) {
     enum { FREE, ADDED, LEFT_OUT, NAMED };
+    static const double FACING = -0.64; /* largest cosine of a face that goes on from the named ones */
     SF_OWNED_BY(faces_free) faces f = {0};
     SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
     SF_OWNED double *area = sf_alloc(err, (unsigned long)m->node_count, sizeof *area, "contact points");
+    SF_OWNED double *seen = sf_alloc(err, (unsigned long)m->node_count, sizeof *seen, "contact points");
     SF_OWNED int32_t *node = sf_alloc(err, (unsigned long)m->node_count, sizeof *node, "contact points");
+    double unnamed = 0;
     SF_TRY(err->status);
     SF_TRY(faces_find(m, &f, err));
     for (int64_t k = 0; k < m->fixed_count; k++)
@@ -235,19 +238,34 @@ sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_error *er
     }
     for (int64_t k = 0; k < 3 * f.count; k++) {
         int32_t point = sf_layers_heaviest(layers, m, f.node[k]);
+        double third = f.shape[k / 3].area / 3;
+        int named = 0;
+        for (int c = 0; c < 3; c++)
+            named += mark[sf_layers_heaviest(layers, m, f.node[k - k % 3 + c])] == NAMED;
         mark[point] = mark[point] == FREE ? ADDED : mark[point];
-        area[point] += mark[point] == ADDED ? f.shape[k / 3].area / 3 : 0;
+        area[point] += mark[point] == ADDED ? third : 0;
+        if (named < 3 && sf_dot3(f.shape[k / 3].normal, m->missile.direction) < FACING) {
+            seen[point] += third;
+            unnamed += third;
+        }
     }
     m->contact_count = 0;
     for (int32_t i = 0; i < (int32_t)m->node_count; i++)
         if (mark[i] == ADDED || mark[i] == NAMED) {
-            area[m->contact_count] = area[i];
+            double whole = mark[i] == NAMED ? area[i] + seen[i] : area[i];
+            seen[m->contact_count] = mark[i] == NAMED ? whole : seen[i];
+            area[m->contact_count] = whole;
             node[m->contact_count++] = i;
         }
     SF_FREE(m->contact_node, m->contact_area);
     m->contact_node = node;
-    m->contact_area = area;
+    m->contact_area = seen;
     node = NULL;
+    if (unnamed > 0) {
+        sf_contact_zone_measure(m, zone);
+        m->expected_mesh_error = sf_mesh_error_expect(m, zone);
+    }
+    m->contact_area = area;
     area = NULL;
     return SF_OK;
 }

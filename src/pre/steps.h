@@ -142,14 +142,13 @@ double sf_mesh_error_expect(const sf_model *model, const sf_contact_zone *zone);
  * geometry, which sf_model_check does not have. */
 
 /* SF_ERR_INPUT, naming the key, the value and the bound: the pad's thickness is not one of a pad; the
- * missile starts inside the pad; it is not symmetric
- * to a symmetry plane, or cut open where there is none; the mesh is too coarse for pad.mesh_error_limit. The
- * model has its nodes, its sets and its missile; the mesh still has its sets. */
-sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
-                        sf_error *err);
-/* The same, of all that the missile may touch: its share in the model is lighter than a node; it turns into
- * the pad before it arrives. */
-sf_status sf_drop_check_contact(const sf_model *m, sf_error *err);
+ * missile starts inside the pad; it is not symmetric to a symmetry plane, or cut open where there is none.
+ * The model has its nodes, its sets and its missile; the mesh still has its sets. */
+sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err);
+/* The same, of all that the missile may touch: the mesh is too coarse for pad.mesh_error_limit; its share in
+ * the model is lighter than a node; it turns into the pad before it arrives. */
+sf_status sf_drop_check_contact(const sf_case *c, const sf_model *m, const sf_contact_zone *zone,
+                                sf_error *err);
 
 /* Warns of a symmetry group of the geometry that the case does not hold, of a material where the solver is
  * known to be weak (sf_law.caution), and of a coarse mesh. */
@@ -178,9 +177,10 @@ sf_status sf_foam_path_measure(sf_model *model, sf_error *between, sf_error *err
 sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_error *err);
 
 /* Adds the nodes of the other free faces that are neither held altogether nor part of the base to the contact
- * points, with their areas. What places the missile and measures the pad goes by those of pad.contact and
- * comes before. Needs cells, constraints, ties and masses. */
-sf_status sf_contact_add_free(const sf_layers *layers, sf_model *model, sf_error *err);
+ * points, with their areas, and to those of pad.contact the area of such faces that look at the missile;
+ * where there are some, the zone and the expected mesh error count them. What places the missile and measures
+ * the pad goes by the points of pad.contact and comes before. Needs cells, constraints, ties and masses. */
+sf_status sf_contact_add_free(const sf_layers *layers, sf_model *model, sf_contact_zone *zone, sf_error *err);
 
 /* The supports: rigid fixed bodies of any shape that the pad may touch (theory, section "Contact of the pad
  * with itself"). */
