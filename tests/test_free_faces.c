@@ -91,7 +91,7 @@ static void the_missile_touches_faces_that_are_not_named(void **state) {
            error = program_file_number(p, "out/summary.json", "a_max_mesh_error"),
            whole = drop(p, "--set geometry.parameters.whole=1");
     assert_relative(part, whole, 1e-12);
-    assert_relative(area, largest(p, "contact_area_mm2", 1e9), 0.03); /* triangles halve some squares */
+    assert_relative(area, largest(p, "contact_area_mm2", 1e9), 0.05); /* triangles halve some squares */
     assert_relative(error, program_file_number(p, "out/summary.json", "a_max_mesh_error"), 0.03);
     drop(p, "--set geometry.parameters.whole=1 --set missile.position='[\"58 mm\",\"0 mm\"]'");
 }
