@@ -48,7 +48,7 @@ int main(int argc, char **argv) {
     char runs[PATH_MAX];
     if (argc != 4)
         SF_FAIL(&err, SF_ERR_INPUT, "usage: plan_folders PLAN.cfg DIR FROM");
-    else if (sf_plan_read(argv[1], true, &plan, &err) == SF_OK && sf_units_hold(&err) == SF_OK) {
+    else if (sf_plan_read(argv[1], true, false, &plan, &err) == SF_OK && sf_units_hold(&err) == SF_OK) {
         snprintf(runs, sizeof runs, "%s/runs", argv[2]);
         sf_folder_own(runs, &err);
         for (int64_t row = 0; row < plan.rows && err.status == SF_OK; row++)

@@ -190,7 +190,7 @@ static sf_status read_msh(const char *path, sf_error *err) {
 static sf_status read_plan(const char *path, sf_error *err) {
     sf_plan plan;
     uint64_t hash;
-    if (sf_plan_read(path, false, &plan, err) == SF_OK)
+    if (sf_plan_read(path, false, false, &plan, err) == SF_OK)
         sf_sweep_check_inputs(&plan, &hash, err);
     sf_plan_free(&plan);
     return err->status;
@@ -232,7 +232,7 @@ static sf_status read_rows(const char *path, sf_error *err) {
     sf_analysis analysis = {0};
     uint64_t hash = 0;
     snprintf(table, sizeof table, "%s", in_folder("runs.csv"));
-    if (sf_plan_read(in_folder("sweep.cfg"), false, &plan, err) == SF_OK &&
+    if (sf_plan_read(in_folder("sweep.cfg"), false, false, &plan, err) == SF_OK &&
         sf_runs_create(&plan, &runs, err) == SF_OK && write_rows(&runs, path, table, &hash, err) == SF_OK &&
         sf_runs_read(&runs, table, hash, err) == SF_OK)
         sf_analysis_make(&runs, &analysis, err);

@@ -20,7 +20,7 @@ sf_status sweep_try_plan(const program_place *p, const char *factors, bool huge,
     snprintf(text, sizeof text, "case = \"%s\";\nfactors = ( %s );\n",
              fixture_source("examples/eva50-v4.5/case.cfg"), factors);
     snprintf(path, sizeof path, "%s", program_write_text(p, "plan.cfg", text));
-    return sf_plan_read(path, huge, plan, err);
+    return sf_plan_read(path, huge, false, plan, err);
 }
 
 void sweep_read_plan(const program_place *p, const char *factors, sf_plan *plan) {

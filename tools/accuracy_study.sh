@@ -10,6 +10,7 @@
 #                                                10 mm, in a third of the time: to compare ways to predict
 #     SF_MATERIAL=leap tools/accuracy_study.sh ROWS pad          with another foam, by the name of its file in
 #                                                examples/materials
+#     SF_COARSE=25.0 tools/accuracy_study.sh ROWS [PLAN...]      with coarse drops on nodes of 25 mm (40 mm outside)
 #     SF_TIME=90m tools/accuracy_study.sh ROWS [PLAN...]         stops to simulate the rows of a plan after that time, and
 #                                                compares those that were reached
 #
@@ -25,13 +26,15 @@ out=${SF_OUT:-out}
 folders=()
 mkdir -p "$out"
 for plan in "$@"; do
-    folder=$out/accuracy-$plan${SF_MATERIAL:+-$SF_MATERIAL}
+    folder=$out/accuracy-$plan${SF_MATERIAL:+-$SF_MATERIAL}${SF_COARSE:+-coarse}
     folders+=("$folder")
     sed -e "s/count = 2000/count = $rows/" -e "s,\"\.\./,\"$PWD/examples/,g" "examples/accuracy/$plan.cfg" >"$folder.cfg"
     [ -z "${SF_SPACING:-}" ] || sed -i -e "s/fine_spacing=10.0/fine_spacing=$SF_SPACING/" \
         -e "s/outer_spacing=20.0/outer_spacing=30.0\", \"pad.mesh_error_limit=1/" "$folder.cfg"
     [ -z "${SF_MATERIAL:-}" ] || sed -i "s,^set = \[,&\"material=@$PWD/examples/materials/$SF_MATERIAL.cfg\"\, ," "$folder.cfg"
-    sed -e 's/ accuracy = [0-9.]*;//g' "$folder.cfg" >"$folder-all.cfg"
+    [ -z "${SF_COARSE:-}" ] || printf 'coarse = ["geometry.parameters.fine_spacing=%s", %s];\n' "$SF_COARSE" \
+        '"geometry.parameters.outer_spacing=40.0", "pad.mesh_error_limit=1"' >>"$folder.cfg"
+    sed -e 's/ accuracy = [0-9.]*;//g' -e '/^coarse = /d' "$folder.cfg" >"$folder-all.cfg"
     "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder.cfg" -o "$folder" >"$folder.log"
     cp "$folder/runs.csv" "$folder-predicted.csv"
     ${SF_TIME:+timeout -s INT "$SF_TIME"} "${SF_BIN_DIR:-build/bin}/softfall-sweep" "$folder-all.cfg" -o "$folder" \
@@ -40,6 +43,7 @@ done
 exec python3 - "${folders[@]}" <<'PYTHON'
 import csv
 import math
+import pathlib
 import sys
 
 
@@ -54,6 +58,8 @@ for folder in sys.argv[1:]:
     plan = folder.split("/accuracy-")[-1]
     rows, drops = read(f"{folder}-predicted.csv"), read(f"{folder}/runs.csv")
     simulated = sum(row["run_status"] in ("done", "failed") for row in rows)
+    coarse = pathlib.Path(folder, "coarse/runs.csv")
+    coarse = f", and {sum(row['run_status'] == 'done' for row in read(coarse))} coarse ones" if coarse.exists() else ""
     left = sum(row["run_status"] == "open" for row in rows)
     for low in [name for name in rows[0] if name.endswith("_low")]:
         figure = low[: -len("_low")]
@@ -71,7 +77,7 @@ for folder in sys.argv[1:]:
             sys.exit(f"{folder}: no predicted row was simulated: give more time (SF_TIME)")
         rms = math.sqrt(sum(e * e for e in errors) / len(errors))
         note = f" ({wrong} have none that may be used)" if wrong else ""
-        print(f"| {plan} | {len(rows)} | {simulated} ({100 * simulated / len(rows):.1f} %) | {left} | {figure} "
+        print(f"| {plan} | {len(rows)} | {simulated} ({100 * simulated / len(rows):.1f} %){coarse} | {left} | {figure} "
               f"| {len(errors)}{note} | {100 * held / len(errors):.1f} % | {100 * max(map(abs, errors)):.2f} % "
               f"| {100 * rms:.2f} % |")
 PYTHON

@@ -52,6 +52,10 @@ struct sf_sweep_adaptive {
     int held[SF_SWEEP_FIGURES], checked[SF_SWEEP_FIGURES]; /* of them, in the intervals and with figures */
     sf_sweep_trend trend;
     double *expected; /* [rows][SF_TRENDS] of the columns; NULL: not yet computed; owned */
+    const struct sf_sweep_adaptive *coarse; /* NULL: there are no coarse drops; borrowed, like the next */
+    const sf_runs *coarse_runs;
+    double *base,
+        *doubt; /* [rows][TARGETS] outputs of the coarse drops and their standard deviations; owned */
     int targets;
     sf_predictor model[TARGETS]; /* the plan's figures, then those that are watched */
     bool all;                    /* too few rows can be used: every row is simulated */
@@ -86,13 +90,18 @@ static void list_inputs(sf_sweep_adaptive *a) {
     a->inputs = a->factors;
 }
 
-/* Makes the figures of the columns inputs, too: foams, which differ as words, are near by these. */
-static void add_columns(sf_sweep_adaptive *a) {
-    for (int k = 0; k < SF_TREND_INDENTATION && !a->trend.problem; k++) {
+/* The k-th figure of the columns, or of the coarse drops. */
+static double figure_of(const sf_sweep_adaptive *a, int64_t row, int k) {
+    return a->coarse ? a->base[row * TARGETS + k] : a->expected[row * SF_TRENDS + k];
+}
+
+/* Makes these figures inputs, too: foams, which differ as words, are near by them. */
+static void add_figures(sf_sweep_adaptive *a) {
+    for (int k = 0; k < SF_TREND_INDENTATION && (a->coarse || !a->trend.problem); k++) {
         double low = INFINITY, high = -INFINITY;
         for (int64_t row = 0; row < a->plan->rows; row++) {
-            low = fmin(low, a->expected[row * SF_TRENDS + k]);
-            high = fmax(high, a->expected[row * SF_TRENDS + k]);
+            low = fmin(low, figure_of(a, row, k));
+            high = fmax(high, figure_of(a, row, k));
         }
         a->low[a->factors + k] = low;
         a->range[a->factors + k] = high > low ? high - low : 1;
@@ -104,7 +113,7 @@ static void put_inputs(const sf_sweep_adaptive *a, int64_t row, double *x) {
     for (int i = 0; i < a->factors; i++)
         x[i] = (sf_plan_value(a->plan, a->factor[i], row) - a->low[i]) / a->range[i];
     for (int i = a->factors; i < a->inputs; i++) {
-        double value = (a->expected[row * SF_TRENDS + i - a->factors] - a->low[i]) / a->range[i];
+        double value = (figure_of(a, row, i - a->factors) - a->low[i]) / a->range[i];
         x[i] = isfinite(value) ? value : COLLAPSED;
     }
 }
@@ -170,10 +179,88 @@ static int choose_apart(const sf_sweep_adaptive *a, const sf_runs *runs, int mos
 
 /* ---- what the rows are expected to be ---- */
 
+/* Returns what columns or coarse drops have for the output of a target; 0: columns have no such figure; NaN:
+ * the figures of the coarse drop cannot be used. */
+static double expected_of(const sf_sweep_adaptive *a, int target, int64_t row) {
+    int k = target - a->plan->figure_count, at = k < 0 ? sf_sweep_trend_find(a->plan->figure[target].figure)
+                                                 : k == WATCH_STRAIN  ? SF_TREND_STRAIN
+                                                 : k == WATCH_CONTACT ? SF_TREND_CONTACT
+                                                                      : -1;
+    if (a->coarse)
+        return a->base[row * TARGETS + target];
+    double expected = at < 0 ? 0 : a->expected[row * SF_TRENDS + at];
+    return k == WATCH_STRAIN ? exp(expected) : expected;
+}
+
+/* True of a row that can be used and defines every figure of the plan. */
+static bool has_figures(const sf_runs *runs, int64_t row) {
+    bool all = true;
+    for (int k = 0; k < runs->plan->figure_count; k++)
+        all &= isfinite(sf_runs_value(runs, row, k));
+    return all;
+}
+
+/* The output of a target at a row that was simulated: of a figure and the time of contact the logarithm, of
+ * the use 0 or 1. NaN: the row has none. */
+static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
+    const double *place = sf_runs_place(runs, row);
+    switch (target - a->plan->figure_count) {
+    case WATCH_STRAIN:
+        return place[sf_runs_figure("max_mean_strain")];
+    case WATCH_DATA:
+        return place[sf_runs_figure("energy_beyond_data")];
+    case WATCH_CONTACT:
+        return log(place[sf_runs_figure("rebound_time_ms")] - place[sf_runs_figure("contact_time_ms")]);
+    case WATCH_USE: /* what ended in contact is known by its time, if there is a process of that */
+        return isnan(place[sf_runs_figure("rebound_time_ms")]) && sf_runs_usable(runs, row) &&
+                       a->model[target - 1].count > 0
+                   ? NAN
+                   : !has_figures(runs, row);
+    default:
+        return log(sf_runs_value(runs, row, target));
+    }
+}
+
+/* Finds the output of a target by the coarse drop of a row, which tells nothing of the use; NaN: there is
+ * none. What is watched is also known of coarse rows that were not simulated. */
+static void take_coarse(const sf_sweep_adaptive *a, int target, int64_t row, double *room) {
+    const sf_sweep_adaptive *c = a->coarse;
+    int k = target - a->plan->figure_count;
+    double *value = &a->base[row * TARGETS + target], *doubt = &a->doubt[row * TARGETS + target], x[INPUTS];
+    *value = k == WATCH_USE                               ? 0
+             : k < 0 || is_simulated(a->coarse_runs, row) ? output_of(c, a->coarse_runs, target, row)
+                                                          : NAN;
+    *doubt = k < 0 ? sf_runs_half(a->coarse_runs, row, target) / SF_PREDICTOR_SIDES : 0;
+    if (k < 0 || isfinite(*value) || c->model[target].count == 0)
+        return;
+    put_inputs(c, row, x);
+    sf_predictor_at(&c->model[target], x, room, value, doubt);
+    *value += expected_of(c, target, row);
+}
+
+static sf_status expect_coarse(sf_sweep_adaptive *a, sf_error *err) {
+    unsigned long n = (unsigned long)a->plan->rows;
+    int most = 0, targets = a->plan->figure_count + WATCHED;
+    for (int t = 0; t < targets; t++)
+        most = a->coarse->model[t].count > most ? a->coarse->model[t].count : most;
+    SF_OWNED double *room = sf_alloc(err, (unsigned long)most + 1, sizeof *room, "predictions");
+    a->base = sf_alloc(err, n, TARGETS * sizeof *a->base, "coarse rows");
+    a->doubt = sf_alloc(err, n, TARGETS * sizeof *a->doubt, "coarse rows");
+    for (int64_t row = 0; row < a->plan->rows && err->status == SF_OK; row++)
+        for (int t = 0; t < targets; t++)
+            take_coarse(a, t, row, room);
+    return err->status;
+}
+
 static sf_status expect(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err) {
     if (a->expected)
         return SF_OK;
-    SF_TRY(sf_sweep_trend_learn(runs, a->drops, &a->trend, err));
+    if (a->coarse) {
+        a->trend = (sf_sweep_trend){.plan = a->plan, .problem = "coarse drops stand in their place"};
+        SF_TRY(expect_coarse(a, err));
+    } else {
+        SF_TRY(sf_sweep_trend_learn(runs, a->drops, &a->trend, err));
+    }
     a->expected =
         sf_alloc(err, (unsigned long)runs->count, SF_TRENDS * sizeof *a->expected, "columns of the rows");
     if (a->log && runs->count > MANY_ROWS) {
@@ -186,50 +273,15 @@ static sf_status expect(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err
         sf_sweep_trend_at(&a->trend, row, a->expected + row * SF_TRENDS, err);
     }
     if (err->status == SF_OK)
-        add_columns(a);
+        add_figures(a);
     if (a->log && err->status == SF_OK && a->trend.problem)
         fprintf(a->log, "  rows are predicted without columns: %s\n", a->trend.problem);
     return err->status;
 }
 
-/* ln of what columns expect of a target; 0: they have no such figure. */
-static double expected_of(const sf_sweep_adaptive *a, int target, int64_t row) {
-    int k = target - a->plan->figure_count, at = k < 0 ? sf_sweep_trend_find(a->plan->figure[target].figure)
-                                                 : k == WATCH_STRAIN  ? SF_TREND_STRAIN
-                                                 : k == WATCH_CONTACT ? SF_TREND_CONTACT
-                                                                      : -1;
-    return at < 0 ? 0 : a->expected[row * SF_TRENDS + at];
-}
-
-/* True of a row that can be used and defines every figure of the plan. */
-static bool has_figures(const sf_runs *runs, int64_t row) {
-    bool all = true;
-    for (int k = 0; k < runs->plan->figure_count; k++)
-        all &= isfinite(sf_runs_value(runs, row, k));
-    return all;
-}
-
-/* The output of a process at a row that was simulated: of a figure and the time of contact the logarithm over
- * that of columns, of the strain the difference from theirs, of the use 0 or 1. NaN: the row has none. */
-static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
-    const double *place = sf_runs_place(runs, row);
-    double expected = expected_of(a, target, row);
-    switch (target - a->plan->figure_count) {
-    case WATCH_STRAIN:
-        return place[sf_runs_figure("max_mean_strain")] - exp(expected);
-    case WATCH_DATA:
-        return place[sf_runs_figure("energy_beyond_data")];
-    case WATCH_CONTACT:
-        return log(place[sf_runs_figure("rebound_time_ms")] - place[sf_runs_figure("contact_time_ms")]) -
-               expected;
-    case WATCH_USE: /* what ended in contact is known by its time, if there is a process of that */
-        return isnan(place[sf_runs_figure("rebound_time_ms")]) && sf_runs_usable(runs, row) &&
-                       a->model[target - 1].count > 0
-                   ? NAN
-                   : !has_figures(runs, row);
-    default:
-        return log(sf_runs_value(runs, row, target)) - expected;
-    }
+/* Returns what a process learns: the output over what is expected of it. */
+static double excess_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
+    return output_of(a, runs, target, row) - expected_of(a, target, row);
 }
 
 static void free_models(sf_sweep_adaptive *a) {
@@ -247,7 +299,7 @@ static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int tar
     SF_TRY(err->status);
     double *z = room + p->count;
     for (int64_t row = 0; row < runs->count; row++) {
-        double value = a->check[row] && is_simulated(runs, row) ? output_of(a, runs, target, row) : NAN;
+        double value = a->check[row] && is_simulated(runs, row) ? excess_of(a, runs, target, row) : NAN;
         if (!isfinite(value))
             continue;
         put_inputs(a, row, x);
@@ -274,7 +326,7 @@ static sf_status fit_target(sf_sweep_adaptive *a, const sf_runs *runs, int targe
     SF_TRY(err->status);
     double *y = x + (int64_t)MOST_POINTS * a->inputs;
     for (int64_t row = 0; row < runs->count && n < MOST_POINTS; row++) {
-        double value = is_simulated(runs, row) && !a->check[row] ? output_of(a, runs, target, row) : NAN;
+        double value = is_simulated(runs, row) && !a->check[row] ? excess_of(a, runs, target, row) : NAN;
         if (!isfinite(value))
             continue;
         put_inputs(a, row, x + (int64_t)n * a->inputs);
@@ -302,30 +354,39 @@ static sf_status fit_models(sf_sweep_adaptive *a, const sf_runs *runs, sf_error 
 
 /* ---- outlook of a row ---- */
 
+/* Mean and standard deviation of the output of a target at a row. */
+static void predict(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, double *room,
+                    double *mean, double *deviation) {
+    sf_predictor_at(&a->model[target], x, room, mean, deviation);
+    *mean += expected_of(a, target, row);
+    *deviation = a->coarse ? hypot(*deviation, a->doubt[row * TARGETS + target]) : *deviation;
+}
+
 /* The target whose half interval is the widest over its wish decides. */
-static void hold_against(outlook *o, int target, double ratio, double half) {
+static void hold_against(const sf_sweep_adaptive *a, int64_t row, outlook *o, int target, double ratio,
+                         double half) {
+    double doubt = a->coarse ? a->doubt[row * TARGETS + target] : 0, wish = half / SF_PREDICTOR_SIDES;
     if (ratio > o->ratio) {
         o->ratio = ratio;
         o->target = target;
-        o->wish = half / SF_PREDICTOR_SIDES;
+        o->wish = sqrt(fmax(0, wish * wish - doubt * doubt));
     }
 }
 
 static void judge_figure(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, double *room,
                          outlook *o) {
     double mean, deviation, wish = log1p(a->plan->figure[target].accuracy);
-    sf_predictor_at(&a->model[target], x, room, &mean, &deviation);
-    o->value[target] = exp(mean + expected_of(a, target, row));
+    predict(a, target, row, x, room, &mean, &deviation);
+    o->value[target] = exp(mean);
     o->half[target] = SF_PREDICTOR_SIDES * deviation;
-    hold_against(o, target, isfinite(o->value[target]) ? o->half[target] / wish : INFINITY, wish);
+    hold_against(a, row, o, target, isfinite(o->value[target]) ? o->half[target] / wish : INFINITY, wish);
 }
 
 /* The output of what is watched from which a row cannot be used. */
 static double bound_of(const sf_sweep_adaptive *a, int k, int64_t row) {
-    double expected = expected_of(a, a->plan->figure_count + k, row);
-    return k == WATCH_STRAIN    ? sf_good_run_rule_get(SF_CHECK_anvil)->refuse - exp(expected)
+    return k == WATCH_STRAIN    ? sf_good_run_rule_get(SF_CHECK_anvil)->refuse
            : k == WATCH_DATA    ? sf_good_run_rule_get(SF_CHECK_informed)->refuse
-           : k == WATCH_CONTACT ? a->expected[row * SF_TRENDS + SF_TREND_TIME] - expected
+           : k == WATCH_CONTACT ? a->expected[row * SF_TRENDS + SF_TREND_TIME]
                                 : UNUSABLE;
 }
 
@@ -333,11 +394,11 @@ static void judge_use(const sf_sweep_adaptive *a, int k, int64_t row, const doub
                       outlook *o) {
     int target = a->plan->figure_count + k;
     double mean, deviation, bound = bound_of(a, k, row);
-    sf_predictor_at(&a->model[target], x, room, &mean, &deviation);
+    predict(a, target, row, x, room, &mean, &deviation);
     double margin = fmax(1e-12, fabs(bound - mean)), ratio = SF_PREDICTOR_SIDES * deviation / margin;
     if (mean > bound && ratio <= 1)
         o->unusable = k;
-    hold_against(o, target, isnan(bound) ? INFINITY : ratio, margin);
+    hold_against(a, row, o, target, isnan(bound - mean) ? INFINITY : ratio, margin);
 }
 
 static outlook judge(const sf_sweep_adaptive *a, int64_t row, double *room) {
@@ -506,11 +567,16 @@ sf_sweep_adaptive *sf_sweep_adaptive_new(const sf_plan *plan, const char *drops,
     return NULL;
 }
 
+void sf_sweep_adaptive_correct(sf_sweep_adaptive *a, const sf_sweep_adaptive *coarse, const sf_runs *runs) {
+    a->coarse = coarse;
+    a->coarse_runs = runs;
+}
+
 void sf_sweep_adaptive_free(sf_sweep_adaptive *a) {
     if (!a)
         return;
     free_models(a);
-    SF_FREE(a->expected, a->check, a);
+    SF_FREE(a->expected, a->base, a->doubt, a->check, a);
 }
 
 sf_sweep_chooser sf_sweep_adaptive_chooser(sf_sweep_adaptive *a) {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A campaign that simulates only the rows which it needs: every figure of the plan has a wish for its error,
  * and a row is predicted as soon as its 95 % intervals are within these wishes. It is predicted by Gaussian
- * processes (study/predictor.h) of the difference between the drops and their columns (below).
+ * processes (study/predictor.h) of the difference between the drops and their columns (below), or their
+ * coarse drops.
  * Further processes watch whether the row's figures can be used and are defined: a row that may be near the
  * anvil, beyond its foam's data, in contact at the end of its run, failing or without one of the figures is
  * simulated; one that is sure to be so stays open. Random rows are simulated for
@@ -17,6 +18,12 @@ typedef struct sf_sweep_adaptive sf_sweep_adaptive;
 sf_sweep_adaptive *sf_sweep_adaptive_new(const sf_plan *plan, const char *drops, int jobs, FILE *log,
                                          sf_error *err);
 void sf_sweep_adaptive_free(sf_sweep_adaptive *adaptive);
+
+/* Takes the place of columns: the rows of the same plan by coarse drops, simulated or predicted within half
+ * of the accuracy. `runs`: after their campaign, of which `coarse` was the chooser; both borrowed. A row
+ * whose coarse figures cannot be used is not predicted. */
+void sf_sweep_adaptive_correct(sf_sweep_adaptive *adaptive, const sf_sweep_adaptive *coarse,
+                               const sf_runs *runs);
 
 /* The chooser of a campaign; its context is `adaptive`, borrowed. */
 sf_sweep_chooser sf_sweep_adaptive_chooser(sf_sweep_adaptive *adaptive);

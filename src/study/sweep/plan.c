@@ -9,6 +9,7 @@
 #include <gsl/gsl_randist.h>
 
 enum { MOST_SAMPLES = 100000000 };
+static const double COARSE_PART = 0.5; /* of the accuracies: their error is a part of that of the rows */
 #define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"
 
 /* ---- samples ---- */
@@ -302,24 +303,25 @@ static void key_of(const char *set, char *key, size_t size) {
     snprintf(key, size, "%.*s", (int)strcspn(set, " \t="), set);
 }
 
-static sf_status read_set(const sf_config *config, sf_plan *p, sf_error *err) {
-    const config_setting_t *list = config_lookup(&config->config, "set");
-    int line = list ? (int)config_setting_source_line(list) : 0;
+/* Appends the overrides of the list `name`, "set" or "coarse". */
+static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
+    const config_setting_t *list = config_lookup(&config->config, name);
+    int line = list ? (int)config_setting_source_line(list) : 0, first = p->set_count;
     const char *file = sf_case_source_find(&config->source, line, &line);
     snprintf(p->set_where, sizeof p->set_where, "%.480s:%d", file, line);
-    SF_TRY(sf_config_overrides(config, "set", SF_RUNNER_OVERRIDES, p->set, &p->set_count, err));
+    SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
     if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES)
-        return sf_config_refuse(config, list, err, "set and the factors change more than %d keys",
+        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name,
                                 SF_RUNNER_OVERRIDES);
-    for (int k = 0; k < p->set_count; k++) {
-        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
+    for (int k = first; k < p->set_count; k++) {
+        const config_setting_t *s = config_setting_get_elem(list, (unsigned)(k - first));
         char key[SF_FACTOR_KEY_SIZE];
         key_of(p->set[k], key, sizeof key);
         if (sf_runner_sets_key(key))
-            return sf_config_refuse(config, s, err, "set: " SETS_ITSELF, key);
+            return sf_config_refuse(config, s, err, "%s: " SETS_ITSELF, name, key);
         for (int f = 0; f < p->factor_count; f++)
             if (strcmp(p->factor[f].key, key) == 0)
-                return sf_config_refuse(config, s, err, "set: %s is a factor, at %s", key,
+                return sf_config_refuse(config, s, err, "%s: %s is a factor, at %s", name, key,
                                         p->factor[f].where);
     }
     return SF_OK;
@@ -366,26 +368,36 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
     return err->status;
 }
 
-static sf_status read_plan(const sf_config *config, bool huge, sf_plan *p, sf_error *err) {
+static sf_status read_plan(const sf_config *config, bool huge, bool coarse, sf_plan *p, sf_error *err) {
     const config_setting_t *root = config_root_setting(&config->config);
     const char *title = NULL;
-    SF_TRY(sf_config_names(config, root, "case|title|set|factors|figures", err));
+    SF_TRY(sf_config_names(config, root, "case|title|set|coarse|factors|figures", err));
     SF_TRY(sf_config_file(config, root, "case", true, &p->case_path, err));
     SF_TRY(sf_config_text(config, root, "title", false, &title, err));
     SF_TRY(read_factors(config, huge, p, err));
-    SF_TRY(read_set(config, p, err));
+    SF_TRY(read_set(config, "set", p, err));
+    if (coarse)
+        SF_TRY(read_set(config, "coarse", p, err));
     p->title = title ? strdup(title) : NULL;
     p->folder = strdup(config->folder);
     if (!p->folder)
         return SF_NO_MEMORY(err, "the plan %s", p->path);
-    return read_figures(config, p, err);
+    SF_TRY(read_figures(config, p, err));
+    const config_setting_t *list = config_lookup(&config->config, "coarse");
+    p->coarse = list && !coarse;
+    if (list && !sf_plan_is_adaptive(p))
+        return sf_config_refuse(
+            config, list, err, "coarse drops are for plans that predict rows: give each figure its accuracy");
+    for (int k = 0; coarse && k < p->figure_count; k++)
+        p->figure[k].accuracy *= COARSE_PART;
+    return SF_OK;
 }
 
-sf_status sf_plan_read(const char *path, bool huge, sf_plan *p, sf_error *err) {
+sf_status sf_plan_read(const char *path, bool huge, bool coarse, sf_plan *p, sf_error *err) {
     SF_OWNED_BY(sf_config_close) sf_config config = {0};
     *p = (sf_plan){.path = path};
     SF_TRY(sf_config_open(path, &config, err));
-    return read_plan(&config, huge, p, err);
+    return read_plan(&config, huge, coarse, p, err);
 }
 
 void sf_plan_free(sf_plan *p) {

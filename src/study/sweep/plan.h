@@ -126,7 +126,8 @@ typedef struct sf_plan {
     char *title;      /* owned; NULL: none */
     int set_count;
     char *set[SF_RUNNER_OVERRIDES];       /* "group.key=value" of every run; owned */
-    char set_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of their list, for sentences */
+    char set_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of their last list, for sentences */
+    bool coarse;                          /* coarse drops are asked for, from which the rows are predicted */
     int factor_count, block_count;
     sf_factor factor[SF_SWEEP_FACTORS];
     int block_of[SF_SWEEP_FACTORS];
@@ -136,9 +137,11 @@ typedef struct sf_plan {
     sf_sweep_limit figure[SF_SWEEP_FIGURES]; /* that the report looks at */
 } sf_plan;
 
-/* Reads the plan and makes the values of all rows. `huge`: more than SF_SWEEP_ROWS rows are allowed. Every
- * sentence of an error begins with "file:line". Release with sf_plan_free, also on failure. */
-sf_status sf_plan_read(const char *path, bool huge, sf_plan *plan, sf_error *err);
+/* Reads the plan and makes the values of all rows. `huge`: more than SF_SWEEP_ROWS rows are allowed.
+ * `coarse`: the plan of its coarse drops, whose `set` ends with the overrides of the key `coarse` and whose
+ * accuracies are half of those of the plan. Every sentence of an error begins with "file:line". Release with
+ * sf_plan_free, also on failure. */
+sf_status sf_plan_read(const char *path, bool huge, bool coarse, sf_plan *plan, sf_error *err);
 void sf_plan_free(sf_plan *plan);
 
 /* The value of a factor in a row: a number in its unit, or the index of a word. */

@@ -163,6 +163,8 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     SF_JSON_NUMBERS(&j, {"runs", (double)r->plan->rows}, {"done", (double)a->done},
                     {"failed", (double)a->failed}, {"open", (double)a->open},
                     {"predicted", (double)a->predicted}, {"do_not_use", (double)a->unusable});
+    if (r->coarse > 0)
+        sf_json_number(&j, "coarse_drops", (double)r->coarse);
     json_factors(&j, r->plan);
     sf_sweep_views_json(&j, r->views);
     sf_json_open(&j, "figures", '[');
@@ -254,6 +256,13 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
         "probabilities a prediction whose interval holds the limit is unknown. %lld rows "
         "are open: they are expected to fail, to be not to be used or to lack a figure; runs.csv says why.",
         a->predicted, r->plan->rows, a->open);
+    if (r->coarse > 0)
+        sf_html_note(
+            page,
+            "What is predicted is the ratio to coarse drops, of which %lld were simulated; they tell the "
+            "coarse figures of the other rows within half of the accuracy, which is part of the interval. "
+            "The table is coarse/runs.csv.",
+            (long long)r->coarse);
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {

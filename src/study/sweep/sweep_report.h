@@ -42,6 +42,7 @@ typedef struct sf_sweep_report {
     const char *command_line;
     const sf_sweep_views *views;
     const char *series; /* sf_sweep_series_text */
+    int64_t coarse;     /* drops that were simulated; 0: the plan asks for none */
 } sf_sweep_report;
 
 sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *report, sf_error *err);
