@@ -200,6 +200,18 @@ static bool has_figures(const sf_runs *runs, int64_t row) {
     return all;
 }
 
+/* True of a row without figures if a process of what is watched besides the verdict tells why. */
+static bool is_told(const sf_sweep_adaptive *a, const sf_runs *runs, int64_t row) {
+    const double *place = sf_runs_place(runs, row);
+    const sf_predictor *model = a->model + a->plan->figure_count;
+    return (model[WATCH_STRAIN].count > 0 &&
+            place[sf_runs_figure("max_mean_strain")] >= sf_good_run_rule_get(SF_CHECK_anvil)->refuse) ||
+           (model[WATCH_DATA].count > 0 &&
+            place[sf_runs_figure("energy_beyond_data")] >= sf_good_run_rule_get(SF_CHECK_informed)->refuse) ||
+           (model[WATCH_CONTACT].count > 0 && sf_runs_usable(runs, row) &&
+            isnan(place[sf_runs_figure("rebound_time_ms")]));
+}
+
 /* The output of a target at a row that was simulated: of a figure and the time of contact the logarithm, of
  * the use 0 or 1. NaN: the row has none. */
 static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
@@ -211,11 +223,8 @@ static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int tar
         return place[sf_runs_figure("energy_beyond_data")];
     case WATCH_CONTACT:
         return log(place[sf_runs_figure("rebound_time_ms")] - place[sf_runs_figure("contact_time_ms")]);
-    case WATCH_USE: /* what ended in contact is known by its time, if there is a process of that */
-        return isnan(place[sf_runs_figure("rebound_time_ms")]) && sf_runs_usable(runs, row) &&
-                       a->model[target - 1].count > 0
-                   ? NAN
-                   : !has_figures(runs, row);
+    case WATCH_USE:
+        return is_told(a, runs, row) ? NAN : !has_figures(runs, row);
     default:
         return log(sf_runs_value(runs, row, target));
     }
