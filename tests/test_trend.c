@@ -38,7 +38,8 @@ static int set_up(void **state) {
     sf_error err = SF_ERROR_INIT;
     int result = program_group_folder(state) != 0 || sf_units_hold(&err) != SF_OK;
     write_plan(*state, "plan.cfg", COARSE, FIGURE("a_max_g") ", " FIGURE("hic") ", " FIGURE("v_rebound_m_s"));
-    write_plan(*state, "all.cfg", "", "{ key = \"a_max_g\"; }, { key = \"hic\"; }, { key = \"v_rebound_m_s\"; }");
+    write_plan(*state, "all.cfg", "",
+               "{ key = \"a_max_g\"; }, { key = \"hic\"; }, { key = \"v_rebound_m_s\"; }");
     return result;
 }
 
@@ -81,7 +82,8 @@ static void a_plan_is_predicted_from_its_coarse_drops(void **state) {
     r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2");
     assert_non_null(strstr(r.out, "\n0 coarse drops simulated, 0 were there"));
     assert_non_null(strstr(r.out, "\n0 drops simulated"));
-    program_shell(p, "sed 's/fine_spacing=30/fine_spacing=35/' plan.cfg > wrong.cfg; cp out/runs.csv predicted.csv");
+    program_shell(
+        p, "sed 's/fine_spacing=30/fine_spacing=35/' plan.cfg > wrong.cfg; cp out/runs.csv predicted.csv");
     r = program_run(p, "sweep", "wrong.cfg -o out");
     assert_int_not_equal(r.code, 0);
     assert_non_null(strstr(r.err, "out/coarse holds the runs of another plan"));
@@ -148,16 +150,30 @@ static void predictions_and_columns_are_near_the_drops(void **state) {
     sf_plan_free(&plan);
 }
 
-static void missiles_of_several_sizes_have_no_columns(void **state) {
+/* Columns follow the diameter of the missile: the area of a sphere below a height h is pi (D h - h^2). */
+static void columns_follow_the_diameter_of_the_missile(void **state) {
     const program_place *p = *state;
     sf_plan plan;
     sf_runs runs;
     sf_sweep_trend trend;
-    program_shell(p, "sed -e '/^factors/,/^figures/d' all.cfg > two.cfg; echo 'factors = ( { key = "
-                     "\"geometry.missile_parameters.diameter\"; values = [120.0, 200.0]; } );' >> two.cfg");
-    program_succeed(p, "sweep", "two.cfg -o out --jobs 2 --force");
-    learn(p, "two", &plan, &runs, &trend);
-    assert_string_equal(trend.problem, "the missile's profile differs between the drops");
+    program_shell(
+        p,
+        "sed -e '/^factors/,/^figures/d' all.cfg > sizes.cfg; echo 'factors = ( { key = "
+        "\"geometry.missile_parameters.diameter\"; values = [120.0, 140.0, 160.0, 180.0, 200.0]; } );' >> sizes.cfg");
+    program_succeed(p, "sweep", "sizes.cfg -o out --jobs 2 --force");
+    learn(p, "sizes", &plan, &runs, &trend);
+    assert_null(trend.problem);
+    assert_true(trend.step > 0 && trend.numbers == 1);
+    for (double diameter = 130; diameter < 200; diameter += 20) {
+        double area = 0, height = 0;
+        for (int k = 0; k < SF_COLUMNS; k++) {
+            height += trend.step;
+            area += trend.profile[k][0] + trend.profile[k][1] * diameter;
+            double sphere = M_PI * (1e-3 * diameter * height - height * height);
+            if (height > 0.01)
+                assert_true(fabs(area / sphere - 1) < 0.04);
+        }
+    }
     sf_runs_free(&runs);
     sf_plan_free(&plan);
 }
@@ -167,7 +183,7 @@ int main(void) {
         cmocka_unit_test(coarse_drops_that_are_none_are_refused),
         cmocka_unit_test(a_plan_is_predicted_from_its_coarse_drops),
         cmocka_unit_test(predictions_and_columns_are_near_the_drops),
-        cmocka_unit_test(missiles_of_several_sizes_have_no_columns),
+        cmocka_unit_test(columns_follow_the_diameter_of_the_missile),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -53,15 +53,17 @@ typedef struct sf_sweep_trend {
     sf_columns columns;                     /* of the first finished drop */
     int numbers, number[SF_SWEEP_FACTORS];  /* factors of the geometry that are numbers */
     double thickness[SF_SWEEP_FACTORS + 1]; /* m, and m per unit of each: the pad's thickness is linear */
-    const char *problem;                    /* why there is no trend; NULL: there is one; static */
+    double step;                            /* m, height of a column; 0: all drops have one profile */
+    double profile[SF_COLUMNS][SF_SWEEP_FACTORS + 1]; /* m2, and m2 per unit of each: areas of the columns */
+    const char *problem;                              /* why there is no trend; NULL: there is one; static */
 } sf_sweep_trend;
 
 /* True if the first row is no drop of a missile on a pad of one material: then there is no trend. */
 bool sf_sweep_is_beyond_columns(const sf_plan *plan);
 
 /* Learns the missile's profile and the pad's thickness from the finished drops in the folder `drops`. No
- * trend, with its `problem`, if these are not known of rows that were not simulated: drops differ in more of
- * the geometry than in a thickness that is linear in the factors, or the pad has layers. */
+ * trend, with its `problem`, if these are not known of rows that were not simulated: the thickness or the
+ * areas of the missile below each height are not linear in the factors, or the pad has layers. */
 sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *drops, sf_sweep_trend *trend, sf_error *err);
 
 /* The place of a figure among those of columns; -1: columns do not have it. */

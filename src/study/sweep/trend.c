@@ -5,8 +5,8 @@
 #include <gsl/gsl_multifit.h>
 
 enum { MOST_DROPS = 64, LEVELS = 8 };
-static const double SAME_PROFILE = 0.02, SAME_THICKNESS = 0.01; /* relative */
-static const double SLOWER = 0.99;                              /* of the speed, for the edge */
+static const double SAME_PROFILE = 0.02, NEAR_PROFILE = 0.05, SAME_THICKNESS = 0.01; /* relative */
+static const double SLOWER = 0.99; /* of the speed, for the edge */
 
 int sf_sweep_trend_find(const char *figure) {
     static const char *const names[] = {[SF_TREND_A_MAX] = "a_max_g",
@@ -55,11 +55,11 @@ static double area_below(const sf_columns *c, double height) {
     return area;
 }
 
-static bool is_same_profile(const sf_columns *a, const sf_columns *b) {
+static bool is_same_profile(const sf_columns *a, const sf_columns *b, double slack) {
     double least = fmin(a->thickness, b->thickness);
     for (int k = 1; k <= LEVELS; k++) {
         double p = area_below(a, least * k / LEVELS), q = area_below(b, least * k / LEVELS);
-        if (fabs(p - q) > SAME_PROFILE * fmax(p, q) + area_below(a, a->thickness) / SF_COLUMNS)
+        if (fabs(p - q) > slack * fmax(p, q) + area_below(a, a->thickness) / SF_COLUMNS)
             return false;
     }
     return true;
@@ -71,42 +71,99 @@ static void list_numbers(sf_sweep_trend *t) {
             t->number[t->numbers++] = f;
 }
 
-static double thickness_at(const sf_sweep_trend *t, int64_t row) {
-    double sum = t->thickness[0];
+/* Least squares of a number [count] of the drops, NaN where one has none, in the factors of the geometry: the
+ * terms c. False: so few drops have it that the fit has no use. */
+static bool fit_linear(const sf_sweep_trend *t, const drop *list, int count, const double *value, double *c,
+                       sf_error *err) {
+    double design[MOST_DROPS * (SF_SWEEP_FACTORS + 1)], known[MOST_DROPS],
+        square[(SF_SWEEP_FACTORS + 1) * (SF_SWEEP_FACTORS + 1)], squares;
+    size_t terms = (size_t)t->numbers + 1, n = 0, rank = 0;
+    for (int i = 0; i < count; i++) {
+        if (isnan(value[i]))
+            continue;
+        known[n] = value[i];
+        design[n * terms] = 1;
+        for (size_t k = 1; k < terms; k++)
+            design[n * terms + k] = sf_plan_value(t->plan, t->number[k - 1], list[i].row);
+        n++;
+    }
+    if (n < terms)
+        return false;
+    gsl_matrix_view x = gsl_matrix_view_array(design, n, terms),
+                    covariance = gsl_matrix_view_array(square, terms, terms);
+    gsl_vector_view y = gsl_vector_view_array(known, n), terms_of = gsl_vector_view_array(c, terms);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, terms);
+    if (!work)
+        SF_NO_MEMORY(err, "the geometry of the drops");
+    else
+        gsl_multifit_linear_tsvd(&x.matrix, &y.vector, 1e-10, &terms_of.vector, &covariance.matrix, &squares,
+                                 &rank, work);
+    gsl_multifit_linear_free(work);
+    return work != NULL;
+}
+
+/* Area (m2) of the missile up to a height; each column ends in the middle between its gap and the next. */
+static double area_up_to(const sf_columns *c, double height) {
+    double area = 0, low = 0;
+    for (int k = 0; k < c->count && low < height; k++) {
+        double high = k + 1 < c->count ? 0.5 * (c->gap[k] + c->gap[k + 1]) : 2 * c->gap[k] - low;
+        area += c->area[k] * fmin(1, (height - low) / (high - low));
+        low = high;
+    }
+    return area;
+}
+
+/* The areas between heights, of each level from the drops whose columns, which end with the pad, reach it. Of
+ * levels that hardly any pad has they are those below. */
+static void fit_profile(sf_sweep_trend *t, const drop *list, int count, sf_error *err) {
+    double area[MOST_DROPS], top = 0;
+    for (int i = 0; i < count; i++)
+        top = fmax(top, list[i].columns.thickness);
+    t->step = top / SF_COLUMNS;
+    for (int k = 0; k < SF_COLUMNS && err->status == SF_OK; k++) {
+        int reach = 0;
+        for (int i = 0; i < count; i++) {
+            const sf_columns *c = &list[i].columns;
+            bool reaches = c->thickness >= (k + 1) * t->step * (1 - 1e-9);
+            area[i] = reaches ? area_up_to(c, (k + 1) * t->step) - area_up_to(c, k * t->step) : NAN;
+            reach += reaches;
+        }
+        if (k > 0 && reach < t->numbers + 3)
+            memcpy(t->profile[k], t->profile[k - 1], sizeof t->profile[k]);
+        else
+            fit_linear(t, list, count, area, t->profile[k], err);
+    }
+}
+
+static double linear_at(const sf_sweep_trend *t, const double *c, int64_t row) {
+    double sum = c[0];
     for (int k = 0; k < t->numbers; k++)
-        sum += t->thickness[k + 1] * sf_plan_value(t->plan, t->number[k], row);
+        sum += c[k + 1] * sf_plan_value(t->plan, t->number[k], row);
     return sum;
 }
 
-/* Least squares; the fit has no use where the drops determine fewer terms. */
-static sf_status fit_thickness(sf_sweep_trend *t, const drop *list, int count, sf_error *err) {
-    double design[MOST_DROPS * (SF_SWEEP_FACTORS + 1)], thickness[MOST_DROPS],
-        square[(SF_SWEEP_FACTORS + 1) * (SF_SWEEP_FACTORS + 1)], squares;
-    size_t terms = (size_t)t->numbers + 1, n = (size_t)count, rank = 0;
-    for (size_t i = 0; i < n; i++) {
-        thickness[i] = list[i].columns.thickness;
-        design[i * terms] = 1;
-        for (size_t k = 1; k < terms; k++)
-            design[i * terms + k] = sf_plan_value(t->plan, t->number[k - 1], list[i].row);
+/* The columns of a row, with the mass and speed of the first drop. */
+static sf_columns columns_at(const sf_sweep_trend *t, int64_t row) {
+    sf_columns columns = t->columns;
+    columns.thickness = linear_at(t, t->thickness, row);
+    if (t->step > 0)
+        columns.count = 0;
+    for (int k = 0; k < SF_COLUMNS && t->step > 0; k++) {
+        double area = linear_at(t, t->profile[k], row);
+        if (!(area > 0))
+            continue;
+        columns.gap[columns.count] = (k + 0.5) * t->step;
+        columns.area[columns.count++] = area;
     }
-    gsl_matrix_view x = gsl_matrix_view_array(design, n, terms),
-                    covariance = gsl_matrix_view_array(square, terms, terms);
-    gsl_vector_view y = gsl_vector_view_array(thickness, n), c = gsl_vector_view_array(t->thickness, terms);
-    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, terms);
-    if (!work)
-        return SF_NO_MEMORY(err, "the thickness of the pads");
-    gsl_multifit_linear_tsvd(&x.matrix, &y.vector, 1e-10, &c.vector, &covariance.matrix, &squares, &rank,
-                             work);
-    gsl_multifit_linear_free(work);
-    return SF_OK;
+    return columns;
 }
 
 static const char *find_problem(const sf_sweep_trend *t, const drop *list, int count) {
     for (int k = 0; k < count; k++) {
-        if (!is_same_profile(&list[0].columns, &list[k].columns))
-            return "the missile's profile differs between the drops";
-        double own = list[k].columns.thickness;
-        if (fabs(thickness_at(t, list[k].row) - own) > SAME_THICKNESS * own)
+        const sf_columns own = list[k].columns, told = columns_at(t, list[k].row);
+        if (!is_same_profile(&told, &own, t->step > 0 ? NEAR_PROFILE : SAME_PROFILE))
+            return "the missile's profile is not linear in the factors";
+        if (fabs(told.thickness - own.thickness) > SAME_THICKNESS * own.thickness)
             return "the pad's thickness is not linear in the factors";
     }
     return NULL;
@@ -128,9 +185,17 @@ sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep
     SF_OWNED drop *list = sf_alloc(err, MOST_DROPS, sizeof *list, "columns");
     list_numbers(t);
     if (list && folder && read_drops(runs, folder, list, &count, err) == SF_OK && count > t->numbers) {
+        double thickness[MOST_DROPS] = {0};
+        bool same = true;
         t->columns = list[0].columns;
-        if (fit_thickness(t, list, count, err) == SF_OK)
-            t->problem = find_problem(t, list, count);
+        for (int k = 0; k < count; k++) {
+            thickness[k] = list[k].columns.thickness;
+            same = same && is_same_profile(&list[0].columns, &list[k].columns, SAME_PROFILE);
+        }
+        fit_linear(t, list, count, thickness, t->thickness, err);
+        if (!same && err->status == SF_OK)
+            fit_profile(t, list, count, err);
+        t->problem = find_problem(t, list, count);
     }
     return err->status;
 }
@@ -144,14 +209,14 @@ static void respond(const sf_sweep_trend *t, const sf_case *c, int64_t row, doub
                                 [SF_TREND_STRAIN] = SF_COLUMNS_STRAIN,
                                 [SF_TREND_INDENTATION] = SF_COLUMNS_STRAIN,
                                 [SF_TREND_CONTACT] = SF_FIT_CONTACT};
-    sf_columns columns = t->columns;
+    sf_columns columns = columns_at(t, row);
     double y[SF_COLUMNS_LOGARITHMS];
     SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     sf_error refused = SF_ERROR_INIT;
     columns.mass = c->missile_card.mass;
     columns.speed = -c->missile_card.speed * c->missile_card.direction[2];
-    columns.thickness = thickness_at(t, row);
-    if (!(columns.thickness > 0) || sf_material_law_build(&c->material, &law, &refused) != SF_OK)
+    if (columns.count == 0 || !(columns.thickness > 0) ||
+        sf_material_law_build(&c->material, &law, &refused) != SF_OK)
         return;
     if (sf_columns_expect(&columns, &law, y, &refused) != SF_OK)
         return;
