@@ -49,7 +49,7 @@ static int falls_away(const sf_state *s, const int32_t edge[4], const double n[3
     return side / 2;
 }
 
-/* Where an edge leaves a symmetry plane in which the other lies, its mirror image goes on: there it is along
+/* An edge that leaves a symmetry plane in which the other lies goes on as its mirror image: there it is along
  * the normal of the plane, and begins in it. */
 static void straighten(const sf_skin *skin, const int32_t in[4], int32_t edge[4], double along[3]) {
     for (int r = 0; r < 2; r++) {
