@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of two columns (io/table_csv.h). The sentences of its users: test_case, test_compare, test_cfh. */
+/* Tables of two columns (io/table_csv.h). The sentences of its users: test_case_refusals, test_compare, test_cfh. */
 #include "program_fixture.h"
 
 #include "io/table_csv.h"

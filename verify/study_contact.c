@@ -251,6 +251,27 @@ static void check_column(sf_study *s, const comparison *c, const char *what) {
     sf_study_check(s, c->energy, 0, 1e-3, "%s: energy error", what);
 }
 
+/* Runs the plate on a column of one foam against the reference, and releases it. `title` begins the sentence,
+ * `name` the checks. */
+static void one_column(sf_study *s, const sf_column *column, const fixture_block *block, sf_series *reference,
+                       FILE *data, const char *title, const char *name) {
+    fixture f;
+    double energy, end = reference->time[reference->count - 1];
+    build_column(column, block, &f);
+    sf_series force = run_column(&f, end, &energy);
+    comparison c = compare(&force, reference, data);
+    c.energy = energy;
+    sf_study_text(s,
+                  "%s: peak %.1f g, contact %.2f ms, %lld steps; largest difference of the "
+                  "unfiltered force %.2f %% of the peak.\n\n",
+                  title, c.peak / column->mass / SF_STANDARD_GRAVITY, 1e3 * end, (long long)force.count,
+                  100 * c.raw);
+    check_column(s, &c, name);
+    sf_series_free(reference);
+    sf_series_free(&force);
+    fixture_free(&f);
+}
+
 static void plate_study(sf_study *s) {
     sf_error err = SF_ERROR_INIT;
     sf_foam_card light = {.density = 0.35,
@@ -263,9 +284,7 @@ static void plate_study(sf_study *s) {
     heavy.density = 35;
     heavy.maxwell_modulus = 3.43e6;
     sf_column column = {.height = 0.05, .speed = 4.5, .gravity = SF_STANDARD_GRAVITY, .foam = &light};
-    sf_series reference, force;
-    fixture f;
-    comparison c;
+    sf_series reference;
     FILE *data = sf_study_file(s, "plate.txt");
     sf_study_text(
         s,
@@ -279,41 +298,15 @@ static void plate_study(sf_study *s) {
     const fixture_block fine = {.cells = {6, 6, 20}, .spacing = 0.0125, .flatness = 0.2};
     column.area = 0.075 * 0.075;
     column.mass = 460 * column.area;
-    build_column(&column, &coarse, &f);
     if (sf_column_quasi_static(&column, 2e-6, &reference, &err) != SF_OK)
         sf_study_fail(s, &err);
-    double energy;
-    force = run_column(&f, reference.time[reference.count - 1], &energy);
-    c = compare(&force, &reference, data);
-    c.energy = energy;
-    sf_study_text(s,
-                  "Light foam: peak %.1f g, contact %.2f ms, %lld steps; largest difference of the "
-                  "unfiltered force %.2f %% of the peak.\n\n",
-                  c.peak / column.mass / SF_STANDARD_GRAVITY, 1e3 * reference.time[reference.count - 1],
-                  (long long)force.count, 100 * c.raw);
-    check_column(s, &c, "light foam");
-    sf_series_free(&reference);
-    sf_series_free(&force);
-    fixture_free(&f);
-
+    one_column(s, &column, &coarse, &reference, data, "Light foam", "light foam");
     column.foam = &heavy;
-    build_column(&column, &fine, &f);
     if (sf_column_wave(&column, 200, 0.1e-6, 20, &reference, &err) != SF_OK)
         sf_study_fail(s, &err);
-    force = run_column(&f, reference.time[reference.count - 1], &energy);
-    c = compare(&force, &reference, data);
-    c.energy = energy;
-    sf_study_text(s,
-                  "Foam of 35 kg/m³: peak %.1f g, contact %.2f ms, %lld steps; largest difference of the "
-                  "unfiltered force %.2f %% of the peak.\n\n",
-                  c.peak / column.mass / SF_STANDARD_GRAVITY, 1e3 * reference.time[reference.count - 1],
-                  (long long)force.count, 100 * c.raw);
-    check_column(s, &c, "35 kg/m³");
+    one_column(s, &column, &fine, &reference, data, "Foam of 35 kg/m³", "35 kg/m³");
     if (data)
         fclose(data);
-    sf_series_free(&reference);
-    sf_series_free(&force);
-    fixture_free(&f);
     sf_study_plot(
         s, "plate.png",
         "Plate on a column: force per area against time, solver and one-dimensional references",
@@ -324,6 +317,7 @@ static void plate_study(sf_study *s) {
         "using 1:3 with lines lw 2 title 'wave model'\n"
         "unset multiplot");
 }
+
 /* ---- friction ---- */
 
 static const double TILT = 45; /* degrees between the plate's motion and its normal */
