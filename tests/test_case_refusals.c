@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: the sentence that each fault gets. */
 #include "material/hyperfoam.h"
-#include "material/foam_card.h"
 #include "case_fixture.h"
 
 #include <setjmp.h>
