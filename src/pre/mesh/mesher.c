@@ -434,11 +434,10 @@ static sf_status judge_ending(const conversation *c, sf_error *err) {
         return SF_FAIL(err, SF_INTERRUPTED, "%s: interrupted (%s) while gmsh was at work", c->source->path,
                        strsignal(signal_number));
     if (c->memory || strstr(c->last_line, "bad_alloc")) {
-        snprintf(
-            what, sizeof what,
-            "gmsh asked for more than the %.3g GB of memory that are available: take a coarser mesh, or set "
-            "SOFTFALL_MEMORY_MB",
-            1e-9 * c->bytes);
+        snprintf(what, sizeof what,
+                 "gmsh asked for more than the %.3g GB of memory that are available: take a coarser mesh, "
+                 "or set SOFTFALL_MEMORY_MB",
+                 1e-9 * c->bytes);
         return fail(c, what, err);
     }
     if (c->late || signal_number == SIGXCPU) {

@@ -141,11 +141,10 @@ static bool has_plain_scale(void) {
     gmshOptionGetNumber("Mesh.ScalingFactor", &factor, &ierr);
     if (ierr || factor == 1)
         return true;
-    snprintf(
-        text, sizeof text,
-        "Mesh.ScalingFactor is %g: it scales files that gmsh writes, not the geometry; leave it at 1 and give "
-        "the unit by geometry.length_unit",
-        factor);
+    snprintf(text, sizeof text,
+             "Mesh.ScalingFactor is %g: it scales files that gmsh writes, not the geometry; leave it at 1 "
+             "and give the unit by geometry.length_unit",
+             factor);
     write_error(text);
     return false;
 }

@@ -347,13 +347,12 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
             sf_html_line(&table, NULL, "%.3f to %.3f", height * exp(-margin), height * exp(margin));
     }
     sf_html_table_end(&table);
-    sf_html_note(
-        page,
-        "Where a quadratic misses the points by 3 %% or more, as of a foam that locks up, the interval is that of "
-        "the drops on both sides of the limit. "
-        "The interval of the fit (95 %%, Student's t) says how well a quadratic describes the simulated "
-        "points, and on the rig how well g_eff is known. It is no uncertainty of the height: foam, mesh "
-        "and model are not in it.");
+    sf_html_note(page,
+                 "Where a quadratic misses the points by 3 %% or more, as of a foam that locks up, the "
+                 "interval is that of the drops on both sides of the limit. The interval of the fit (95 %%, "
+                 "Student's t) says how well a quadratic describes the simulated points, and on the rig how "
+                 "well g_eff is known. It is no uncertainty of the height: foam, mesh and model are not in "
+                 "it.");
 }
 
 static void put_notes(FILE *page, const sf_cfh_report *r) {
@@ -408,13 +407,12 @@ static void put_drops(FILE *page, const sf_cfh_report *r) {
         put_spread(page, r->spread, r->rig);
     sf_html_heading(page, "Simulated drops");
     sf_rows_html_table(page, "dense", sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
-    sf_html_note(
-        page,
-        "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: simulated value "
-        "against the fit, ln(value) quadratic in ln(height); a dash: not in the fit, or no value. The "
-        "curve of a foam is extrapolated beyond the strain to which its data reach: %s. The search "
-        "ended because %s.",
-        foams, sf_cfh_step_text(r->ending));
+    sf_html_note(page,
+                 "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: "
+                 "simulated value against the fit, ln(value) quadratic in ln(height); a dash: not in the "
+                 "fit, or no value. The curve of a foam is extrapolated beyond the strain to which its data "
+                 "reach: %s. The search ended because %s.",
+                 foams, sf_cfh_step_text(r->ending));
     put_notes(page, r);
     put_fit_table(page, r);
 }

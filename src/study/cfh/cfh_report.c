@@ -54,11 +54,10 @@ void sf_cfh_draws_text(const sf_cfh_spread *s, char *text, size_t size) {
         sf_text_add(text, size, "%s%d of the %d simulated draws failed: there the columns are not confirmed.",
                     *text ? " " : "", failed, s->checks);
     if (is_aside(s))
-        sf_text_add(
-            text, size,
-            "%sThe height of the case's own material, %.3g m, lies outside of 95 %% of the draws: it is not the foam "
-            "that they describe.",
-            *text ? " " : "", s->own_height);
+        sf_text_add(text, size,
+                    "%sThe height of the case's own material, %.3g m, lies outside of 95 %% of the draws: "
+                    "it is not the foam that they describe.",
+                    *text ? " " : "", s->own_height);
 }
 
 const char *sf_cfh_response_text(const sf_cfh_spread *s) {

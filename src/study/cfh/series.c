@@ -211,11 +211,10 @@ static sf_status check_overrides(int count, const char *const *overrides, sf_err
     for (int k = 0; k < count; k++) {
         const char *name = overrides[k] + strspn(overrides[k], " \t"), *end = name + strlen(group);
         if (strncmp(name, group, strlen(group)) == 0 && strchr(". \t=", *end) && *end)
-            return SF_REFUSE(
-                err,
-                "--set %s: with --posterior the draws are the material, and this would be the same in "
-                "every one of them",
-                overrides[k]);
+            return SF_REFUSE(err,
+                             "--set %s: with --posterior the draws are the material, and this would be the "
+                             "same in every one of them",
+                             overrides[k]);
     }
     return SF_OK;
 }

@@ -82,11 +82,10 @@ static sf_status check_keys(const sf_sweep_campaign *c, keys *k, bool *known, sf
     SF_TRY(read_keys(c, k, err));
     *known = k->there && k->table == sf_plan_hash(c->plan);
     if (k->there && !*known && !c->force)
-        return SF_REFUSE(
-            err,
-            "%s holds the runs of another plan: give another directory, or --force to replace its table "
-            "(finished drops of the same inputs are used again)",
-            c->folder);
+        return SF_REFUSE(err,
+                         "%s holds the runs of another plan: give another directory, or --force to replace "
+                         "its table (finished drops of the same inputs are used again)",
+                         c->folder);
     return SF_OK;
 }
 
@@ -113,11 +112,10 @@ static sf_status open_missing(const sf_sweep_campaign *c, sf_runs *runs, sf_erro
             sf_runs_open(runs, row);
     }
     if (gone > 0 && there == 0)
-        return SF_REFUSE(
-            err,
-            "runs.csv has runs that are done, but the folder %s has the results of none of them: "
-            "put them back, or remove runs.csv to begin anew",
-            c->drops);
+        return SF_REFUSE(err,
+                         "runs.csv has runs that are done, but the folder %s has the results of none of "
+                         "them: put them back, or remove runs.csv to begin anew",
+                         c->drops);
     return SF_OK;
 }
 

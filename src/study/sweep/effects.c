@@ -115,10 +115,9 @@ static void judge(sf_quadratic *s, const fit *f, size_t n, size_t *order, double
     s->rms = sqrt(squares / (double)(n - (size_t)s->terms));
     s->left_out_rms = sqrt(press / (double)n);
     if (isnan(s->left_out_rms))
-        snprintf(
-            s->problem, sizeof s->problem,
-            "without one place in the factors the terms are not determined: its error at runs left out is "
-            "not known");
+        snprintf(s->problem, sizeof s->problem,
+                 "without one place in the factors the terms are not determined: its error at runs left out "
+                 "is not known");
     s->q2 = spread > 0 ? 1 - press / spread : NAN;
 }
 

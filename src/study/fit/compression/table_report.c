@@ -258,9 +258,8 @@ static void put_choice(FILE *out, const sf_compression_fit *fit) {
                       sf_table_rules[rule]);
     if (!put_candidates(out, fit->rule, SF_RULES, rule, sf_table_rules))
         sf_html_paragraph(out, "It was prescribed.");
-    sf_html_note(
-        out, "BIC = n ln(chi2/n) + p ln n; a form that is 10 above the lowest has the data clearly against "
-             "it, one within 2 is as good.");
+    sf_html_note(out, "BIC = n ln(chi2/n) + p ln n; a form that is 10 above the lowest has the data clearly "
+                      "against it, one within 2 is as good.");
 }
 
 static void put_quality(FILE *out, const sf_table_result *r) {
@@ -301,23 +300,20 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
     const sf_estimate *e = fit->estimate;
     double fastest = c->test[c->test_count - 1].rate;
     SF_HTML_BLOCK(out, "Extrapolation");
-    sf_html_paragraph(
-        out,
-        "Strains beyond %.4g: the densification law extrapolates the last part of the data. Compare "
-        "max_local_strain of a drop.",
-        fit->data.end);
+    sf_html_paragraph(out,
+                      "Strains beyond %.4g: the densification law extrapolates the last part of the data. "
+                      "Compare max_local_strain of a drop.",
+                      fit->data.end);
     if (fit->model.form.rate == SF_RATE_MAXWELL)
-        sf_html_paragraph(
-            out,
-            "Rates beyond %.3g 1/s: a drop is faster by orders of magnitude, there the branch is a "
-            "spring of ED = %.4g kPa.",
-            fastest, 1e-3 * e[SF_ESTIMATE_ED].value);
+        sf_html_paragraph(out,
+                          "Rates beyond %.3g 1/s: a drop is faster by orders of magnitude, there the branch "
+                          "is a spring of ED = %.4g kPa.",
+                          fastest, 1e-3 * e[SF_ESTIMATE_ED].value);
     else if (fit->rate_count > 1 && !c->thermal)
-        sf_html_paragraph(
-            out,
-            "Rates beyond %.3g 1/s: the solver holds the fastest curve; a drop is faster by orders of "
-            "magnitude, and the foam may be stiffer there.",
-            fastest);
+        sf_html_paragraph(out,
+                          "Rates beyond %.3g 1/s: the solver holds the fastest curve; a drop is faster by "
+                          "orders of magnitude, and the foam may be stiffer there.",
+                          fastest);
     else
         sf_html_paragraph(
             out, "Rates other than those of the tests (to %.3g 1/s): the law has no rate effect.", fastest);

@@ -75,10 +75,9 @@ static void put_chain(FILE *f, const sf_drop_fit *fit) {
     int count = sf_drop_chain_list(fit, shown);
     if (count == 0)
         return;
-    sf_html_paragraph(
-        f,
-        "Every simulated number of the drops on this page is what the accelerometer reads on its mount and "
-        "behind its high pass, not what the missile does. The drops share both.");
+    sf_html_paragraph(f,
+                      "Every simulated number of the drops on this page is what the accelerometer reads on "
+                      "its mount and behind its high pass, not what the missile does. The drops share both.");
     SF_HTML_TABLE table =
         sf_html_table_begin(f, "dense", "accelerometer|>given|>standard deviation (%)|>in the fit|>95 %");
     for (const sf_chain_shown *c = shown; c < shown + count; c++) {
@@ -98,11 +97,10 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
     if (fit->measured_drops == 0)
         return;
     sf_html_heading(f, "Drops");
-    sf_html_note(
-        f,
-        "The simulation with the identified material against the measurement, as the accelerometer reads "
-        "(F/m), CFC 1000. \"From the others\": the same drop left out of the fit and predicted by the rest "
-        "(corrected surrogate).");
+    sf_html_note(f,
+                 "The simulation with the identified material against the measurement, as the accelerometer "
+                 "reads (F/m), CFC 1000. \"From the others\": the same drop left out of the fit and "
+                 "predicted by the rest (corrected surrogate).");
     SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense", "drop|quantity|>measured|>± %|>simulated|>difference|>from the others");
     for (int d = 0; d < fit->measured_drops; d++)
@@ -133,11 +131,10 @@ static void put_joint(FILE *f, const sf_drop_fit *fit) {
     if (joint->rows == 0)
         return;
     sf_html_heading(f, "Compression tests and cushion curves");
-    sf_html_note(
-        f,
-        "The law at a material point, and as one column of foam under a flat mass. Deviations of a "
-        "test are root mean squares over its largest stress. Below rate_reference the law has no effect of "
-        "the rate.");
+    sf_html_note(f,
+                 "The law at a material point, and as one column of foam under a flat mass. Deviations of a "
+                 "test are root mean squares over its largest stress. Below rate_reference the law has no "
+                 "effect of the rate.");
     SF_HTML_TABLE table =
         sf_html_table_begin(f, "dense", "test|>rate (1/s)|>± %|>loading|>unloading|>largest strain");
     for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
@@ -159,17 +156,15 @@ static void put_joint(FILE *f, const sf_drop_fit *fit) {
 }
 
 static void put_misfit(FILE *f, const sf_drop_fit *fit) {
-    sf_html_paragraph(
-        f,
-        "Misfit: %.2f (sum of squared residuals over their standard deviations) with %.1f degrees of "
-        "freedom.",
-        fit->result.misfit, fit->result.freedom);
+    sf_html_paragraph(f,
+                      "Misfit: %.2f (sum of squared residuals over their standard deviations) with %.1f "
+                      "degrees of freedom.",
+                      fit->result.misfit, fit->result.freedom);
     if (fit->result.scale > 1)
-        sf_html_paragraph(
-            f,
-            "The model misses the data by more than their stated standard deviations, so theirs are "
-            "multiplied by %.2f in the intervals.",
-            fit->result.scale);
+        sf_html_paragraph(f,
+                          "The model misses the data by more than their stated standard deviations, so "
+                          "theirs are multiplied by %.2f in the intervals.",
+                          fit->result.scale);
 }
 
 /* A number of a measured drop at its fitted speed, which is that of the misfit. */
@@ -184,11 +179,10 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
         any = any || fit->speed[d] >= 0;
     if (!any)
         return;
-    sf_html_paragraph(
-        f,
-        "The speeds are known with a standard deviation only, and are unknowns of the fit; the table "
-        "above is simulated with %s ones.",
-        fit->speeds_fitted ? "the fitted" : "the given");
+    sf_html_paragraph(f,
+                      "The speeds are known with a standard deviation only, and are unknowns of the fit; "
+                      "the table above is simulated with %s ones.",
+                      fit->speeds_fitted ? "the fitted" : "the given");
     SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense",
         "drop|>given (m/s)|>standard deviation (%)|>in the fit (%)|>95 %|>a_max there (g)|>HIC there");
@@ -248,10 +242,8 @@ static void put_parameters(FILE *f, const sf_drop_fit *fit) {
     const sf_fit_input *in = fit->input;
     const sf_mapping_result *r = &fit->result;
     sf_html_heading(f, "Parameters");
-    sf_html_note(
-        f,
-        "95 %% intervals (of the logarithm, linearised). A parameter that keeps 90 %% or more of its prior's "
-        "width was hardly seen by the drops.");
+    sf_html_note(f, "95 %% intervals (of the logarithm, linearised). A parameter that keeps 90 %% or more of "
+                    "its prior's width was hardly seen by the drops.");
     SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense", "parameter|>value|>95 %|>prior|>prior factor (1 sd)|>width left of the prior|meaning");
     for (int k = 0; k < in->unknown_count; k++) {
@@ -294,11 +286,10 @@ static void put_curve(FILE *f, const sf_drop_fit *fit) {
     double low, high;
     sf_drop_informed_strains(fit, &low, &high);
     sf_html_heading(f, "Which strains the drops see");
-    sf_html_note(
-        f,
-        "Nine tenths of the information lie between strains of %.2f and %.2f. Outside, its form and the priors "
-        "determine the curve.",
-        low, high);
+    sf_html_note(f,
+                 "Nine tenths of the information lie between strains of %.2f and %.2f. Outside, its form "
+                 "and the priors determine the curve.",
+                 low, high);
     SF_HTML_TABLE table = sf_html_table_begin(
         f, "dense", "strain|>part of the information|>standard deviation of the stress|>before the data");
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {

@@ -379,11 +379,10 @@ static sf_status read_rate(const sf_config *config, sf_config_item *model, sf_fi
 static sf_status check_rate_factor(const sf_config *config, sf_config_item *model, const sf_fit_input *in,
                                    sf_error *err) {
     if (in->start[SF_PARAMETER_RATE_FACTOR] > 0 && !in->form.curve->stress && in->form.base.curve_count > 1)
-        return sf_config_refuse(
-            config, model, err,
-            "a rate factor cannot act on the form \"table\" of %s, which has %lld curves at "
-            "several rates; a foam has one or the other",
-            in->material_path, (long long)in->form.base.curve_count);
+        return sf_config_refuse(config, model, err,
+                                "a rate factor cannot act on the form \"table\" of %s, which has %lld "
+                                "curves at several rates; a foam has one or the other",
+                                in->material_path, (long long)in->form.base.curve_count);
     return SF_OK;
 }
 
@@ -400,10 +399,9 @@ static sf_status check_memory(const sf_config *config, sf_config_item *model, co
                 in->drop[k].name, in->material_path);
     if (in->start[SF_PARAMETER_HU] == 1 &&
         (in->start[SF_PARAMETER_RELOAD] > 0 || in->start[SF_PARAMETER_RECOVERY] > 0))
-        return sf_config_refuse(
-            config, model, err,
-            "HU is 1, but a foam without hysteresis has nothing to remember: give it HU, SHAPE "
-            "and ALPHA of the unloading, or leave out reload and recovery");
+        return sf_config_refuse(config, model, err,
+                                "HU is 1, but a foam without hysteresis has nothing to remember: give it "
+                                "HU, SHAPE and ALPHA of the unloading, or leave out reload and recovery");
     if (in->start[SF_PARAMETER_DRIFT] > 0 && !(in->start[SF_PARAMETER_RELOAD] > 0))
         return sf_config_refuse(config, model, err,
                                 "drift is the fall of reload from loading to loading: give start: { reload = "

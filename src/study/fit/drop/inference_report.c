@@ -185,10 +185,9 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
     if (a->by_evidence)
         return;
     sf_html_heading(f, "Drops left out one by one");
-    sf_html_note(
-        f,
-        "log p of a drop's data given the others'. By importance weights of the whole posterior where "
-        "their Pareto k is below 0.5; else by draws of a wider distribution if enough of them count; else by chains without the drop.");
+    sf_html_note(f, "log p of a drop's data given the others'. By importance weights of the whole posterior "
+                    "where their Pareto k is below 0.5; else by draws of a wider distribution if enough of "
+                    "them count; else by chains without the drop.");
     SF_HTML_TABLE table = sf_html_table_begin(f, "dense", "model|drop|>log density|>Pareto k|by");
     for (int m = 0; m < a->models; m++)
         for (int d = 0; d < a->model[m]->fit->measured_drops; d++) {

@@ -218,11 +218,10 @@ static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *e
                   SF_JOINT_POINTS);
     for (int64_t k = 0; k < table.count && err->status == SF_OK; k++) {
         if (!(table.value[0][k] > 0 && table.value[1][k] > 1))
-            SF_REFUSE(
-                err,
-                "%s:%d: a static stress of %g Pa and a peak of %g g: the stress must be above 0, the peak "
-                "above 1 g",
-                path, table.line[k], table.value[0][k], table.value[1][k]);
+            SF_REFUSE(err,
+                      "%s:%d: a static stress of %g Pa and a peak of %g g: the stress must be above 0, the "
+                      "peak above 1 g",
+                      path, table.line[k], table.value[0][k], table.value[1][k]);
         out->static_stress[out->count] = table.value[0][k];
         out->peak_g[out->count++] = table.value[1][k];
     }

@@ -179,11 +179,10 @@ static void rusch_stress(const double *value, int count, const double *strain, d
             sf_densification_evaluate(&beyond, strain[k], &out[k], &ignored[0], &ignored[1]);
 }
 
-FORM(
-    rusch,
-    "A ((e + e0)^m - e0^m) + B e^n with e0 from the initial slope E, to the strain rusch_end; beyond it A' + "
-    "B'/(1 - 1.4 Phi - e)^n'",
-    .check = rusch_check, .pole = pole_of_solid, .stress = rusch_stress);
+FORM(rusch,
+     "A ((e + e0)^m - e0^m) + B e^n with e0 from the initial slope E, to the strain rusch_end; beyond it A' "
+     "+ B'/(1 - 1.4 Phi - e)^n'",
+     .check = rusch_check, .pole = pole_of_solid, .stress = rusch_stress);
 
 /* ---- avalle (Avalle, Belingardi and Ibba 2007): a plateau that saturates, and a power of e/(1 - e) ---- */
 
