@@ -204,12 +204,13 @@ static void compare_guided(sf_study *study) {
         sf_study_check(study, both, 1, 1, "%s: both rebound after more than 20 mm", ball);
         if (triangles)
             sf_study_check(study, fabs(hardest_free / hardest - 1), 0, same,
-                           "difference of the largest forces, over the peak");
+                           "%s: difference of the forces (triangles: of the largest), over the peak", ball);
         else
             sf_study_check(study, apart / hardest, 0, same,
-                           "largest difference of the forces, over the peak");
-        sf_study_check(study, motion, 0, same,
-                       "of time, displacement, speed, indentation, sideways motion, turn and energy error");
+                           "%s: difference of the forces (triangles: of the largest), over the peak", ball);
+        sf_study_check(
+            study, motion, 0, same,
+            "%s: of time, displacement, speed, indentation, sideways motion, turn and energy error", ball);
         fixture_free(&guided);
         fixture_free(&loose);
     }
@@ -247,14 +248,14 @@ static void balance(sf_study *study) {
             touched += f.state.contact_count > 0;
         }
         bool proper = touched > 100 && l->friction > 0.01 * l->reference && f.state.contact_unsettled == 0;
+        const char *ball = triangles ? "triangles" : "sphere";
         sf_study_check(study, proper, 1, 1,
-                       "%s: more than 100 steps in contact, 1 %% of the energy lost in friction",
-                       triangles ? "triangles" : "sphere");
-        sf_study_check(study, 2 * acos(turned), 0.2, INFINITY, "largest turn, rad");
+                       "%s: more than 100 steps in contact, 1 %% of the energy lost in friction", ball);
+        sf_study_check(study, 2 * acos(turned), 0.2, INFINITY, "%s: largest turn, rad", ball);
         sf_study_check(study, linear, 0, 1e-10,
-                       "largest error of the momentum, along its direction and in space");
-        sf_study_check(study, angular, 0, 1e-10, "largest error of the angular momentum");
-        sf_study_check(study, l->largest_error, 0, 5e-3, "largest error of the energy");
+                       "%s: largest error of the momentum, along its direction and in space", ball);
+        sf_study_check(study, angular, 0, 1e-10, "%s: largest error of the angular momentum", ball);
+        sf_study_check(study, l->largest_error, 0, 5e-3, "%s: largest error of the energy", ball);
         fixture_free(&f);
     }
 }
@@ -302,12 +303,14 @@ static void roll(sf_study *study) {
     }
     sf_study_text(study, "A ball slides on a hard pad without spin, until it rolls:\n\n");
     sf_study_check(study, sliding > 100 && rolling > 100, 1, 1, "more than 100 steps of each");
-    sf_study_check(study, least, 0.97, 1.03,
-                   "loss of momentum over mu times the impulse, while it slides: least");
-    sf_study_check(study, most, 0.97, 1.03, "and most");
-    sf_study_check(study, slow, 0.99 * 5 / 7, 1.01 * 5 / 7,
-                   "its speed, rolling, over that at first (5/7): least");
-    sf_study_check(study, fast, 0.99 * 5 / 7, 1.01 * 5 / 7, "and most");
+    const double loss[] = {least, most}, speed[] = {slow, fast};
+    for (int k = 0; k < 2; k++) {
+        const char *end = k == 0 ? "least" : "most";
+        sf_study_check(study, loss[k], 0.97, 1.03,
+                       "%s: loss of momentum over mu times the impulse, while it slides", end);
+        sf_study_check(study, speed[k], 0.99 * 5 / 7, 1.01 * 5 / 7,
+                       "%s: its speed, rolling, over that at first (5/7)", end);
+    }
     sf_study_check(study, slip, 0, 0.01 * 5 / 7,
                    "largest difference of omega R from its speed, rolling, over that at first");
     sf_study_check(study, about, 0, 0.005, "largest change of v + 2/5 omega R, over v at first");
