@@ -184,12 +184,11 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
                                     "zip: %s has %lld values and %s %lld; the lists must have one length",
                                     p->factor[b->first].key, b->rows, f->key, f->count);
         if (f->uncertain != p->factor[b->first].uncertain)
-            return sf_config_refuse(
-                config, list, err,
-                "zip: one of %s and %s is chosen and the other uncertain, so that no "
-                "probability belongs to a choice: give the chosen one uncertain = true, or "
-                "cross them",
-                p->factor[b->first].key, f->key);
+            return sf_config_refuse(config, list, err,
+                                    "zip: one of %s and %s is chosen and the other uncertain, so that no "
+                                    "probability belongs to a choice: give the chosen one uncertain = true, "
+                                    "or cross them",
+                                    p->factor[b->first].key, f->key);
         SF_TRY(copy_levels(&p->factor[k], err));
     }
     return SF_OK;

@@ -257,12 +257,11 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
         "are open: they are expected to fail, to be not to be used or to lack a figure; runs.csv says why.",
         a->predicted, r->plan->rows, a->open);
     if (r->coarse > 0)
-        sf_html_note(
-            page,
-            "What is predicted is the ratio to coarse drops, of which %lld were simulated; they tell the "
-            "coarse figures of the other rows within half of the accuracy, which is part of the interval. "
-            "The table is coarse/runs.csv.",
-            (long long)r->coarse);
+        sf_html_note(page,
+                     "What is predicted is the ratio to coarse drops, of which %lld were simulated; they "
+                     "tell the coarse figures of the other rows within half of the accuracy, which is part "
+                     "of the interval. The table is coarse/runs.csv.",
+                     (long long)r->coarse);
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
@@ -365,21 +364,19 @@ static void put_effects(FILE *page, const sf_sweep_report *r) {
             scatter |= sf_effect_is_scatter(r->plan, f);
         }
     sf_html_table_end(&t);
-    sf_html_note(
-        page,
-        "All else equal: means over those combinations of the other blocks of the plan of which all runs "
-        "count. More than %d numbers are taken in %d parts; of draws of an unknown the means at 5 and 95 %% of "
-        "them are shown. Numbers that a sample mixes with others: between their least and their greatest "
-        "value by the response surface, if its Q² is %g or more.",
-        SF_EFFECT_LEVELS, SF_EFFECT_BINS, SF_EFFECT_Q2);
+    sf_html_note(page,
+                 "All else equal: means over those combinations of the other blocks of the plan of which "
+                 "all runs count. More than %d numbers are taken in %d parts; of draws of an unknown the "
+                 "means at 5 and 95 %% of them are shown. Numbers that a sample mixes with others: between "
+                 "their least and their greatest value by the response surface, if its Q² is %g or more.",
+                 SF_EFFECT_LEVELS, SF_EFFECT_BINS, SF_EFFECT_Q2);
     note_missing(page, r, "an effect there may be far greater than in the combinations that are whole");
     if (scatter)
-        sf_html_note(
-            page,
-            "Draws, or many words, that a sample mixes with other factors have no bar where each has "
-            "fewer than %d runs: their means are mostly scatter of the others. A saltelli sample "
-            "tells their share (Sobol' indices).",
-            SF_EFFECT_RUNS);
+        sf_html_note(page,
+                     "Draws, or many words, that a sample mixes with other factors have no bar where each "
+                     "has fewer than %d runs: their means are mostly scatter of the others. A saltelli "
+                     "sample tells their share (Sobol' indices).",
+                     SF_EFFECT_RUNS);
 }
 
 static void put_indices(FILE *page, const sf_sweep_report *r) {
@@ -400,13 +397,12 @@ static void put_indices(FILE *page, const sf_sweep_report *r) {
                          sf_plan_saltelli(r->plan)->samples);
         }
     sf_html_table_end(&t);
-    sf_html_note(
-        page,
-        "Estimators of Saltelli (2010) and Jansen, intervals by bootstrap. A sample of which one run has no "
-        "figure (failed, or not to be used) is left out as a whole. Such runs are mostly the hardest drops: "
-        "a figure has no indices where fewer than %.0f %% of the samples are left, as these are no random "
-        "part of all. Take narrower ranges, or a thicker pad.",
-        100 * SF_INDEX_SHARE);
+    sf_html_note(page,
+                 "Estimators of Saltelli (2010) and Jansen, intervals by bootstrap. A sample of which one "
+                 "run has no figure (failed, or not to be used) is left out as a whole. Such runs are "
+                 "mostly the hardest drops: a figure has no indices where fewer than %.0f %% of the samples "
+                 "are left, as these are no random part of all. Take narrower ranges, or a thicker pad.",
+                 100 * SF_INDEX_SHARE);
 }
 
 static void put_surfaces(FILE *page, const sf_sweep_report *r) {
