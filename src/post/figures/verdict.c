@@ -168,6 +168,9 @@ static sf_limit limit_of(const char *key, const char *title, const char *unit, d
     return (sf_limit){key, title, unit, value, bound, judged, judged && value <= bound};
 }
 
+/* Up to this many times its bound a part of a_max is sure: how much a_max errs beyond was never measured. */
+static const double SURE_TO = 3;
+
 void sf_verdict_compute(const sf_results *results, const sf_figures *figures, const sf_limits *limits,
                         sf_verdict *verdict) {
     *verdict = (sf_verdict){.count = SF_CHECKS, .sure = 1};
@@ -176,8 +179,10 @@ void sf_verdict_compute(const sf_results *results, const sf_figures *figures, co
         fill_row(k, results, figures, row);
         if (row->grade > verdict->grade)
             verdict->grade = row->grade;
+        const sf_good_run_rule *rule = sf_good_run_rule_get(k);
+        bool known = rule->sure == 1 || fabs(row->value) <= SURE_TO * rule->refuse;
         if (row->grade == SF_GRADE_DO_NOT_USE)
-            verdict->sure = fmin(verdict->sure, sf_good_run_rule_get(k)->sure);
+            verdict->sure = fmin(verdict->sure, known ? rule->sure : 0);
     }
     if (figures->driven)
         return;

@@ -37,13 +37,13 @@ enum { BOUND_ROUNDS = 8 };
 /* One minimisation. */
 typedef struct minimisation {
     anchor anchor;
-    const double *sd;    /* [responses] */
-    const double *about; /* [parameters] point that holds the step back */
-    double radius;       /* its standard deviation; INFINITY: free */
+    const double *sd;                     /* [responses] */
+    const double *about;                  /* [parameters] point that holds the step back */
+    double radius;                        /* its standard deviation; INFINITY: free */
     bool held[SF_MAPPING_MAX_PARAMETERS]; /* at its bound in `bound` */
     double bound[SF_MAPPING_MAX_PARAMETERS];
-    double *y;           /* [responses] scratch */
-    sf_error err;        /* of the surrogate, inside GSL */
+    double *y;    /* [responses] scratch */
+    sf_error err; /* of the surrogate, inside GSL */
 } minimisation;
 
 /* The value of a parameter within its bounds. */
@@ -339,7 +339,8 @@ static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
 static sf_status regress_matrix(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     size_t n = (size_t)p->parameters, responses = (size_t)p->responses;
-    const double *first = s->linear ? NULL : p->first_matrix, slope = SLOPE[s->linear];
+    bool free = s->linear && !p->first_linear;
+    const double *first = free ? NULL : p->first_matrix, slope = SLOPE[free];
     SF_MATRIX *a = sf_matrix(n, n, err), *b = sf_matrix(responses, n, err);
     SF_TRY(err->status);
     for (size_t k = 0; k < responses * n; k++)
@@ -533,8 +534,8 @@ static bool is_exact(const search *s) {
     return largest < 1e-9;
 }
 
-/* Begins the second phase: where the columns lock up and the simulation does not, their derivatives are
- * nothing that M could correct. One simulation along each parameter, to the side of the last proposal or away
+/* Begins the second phase: where the columns lock up and the simulation does not, M cannot
+ * correct their derivatives. One simulation along each parameter, to the side of the last proposal or away
  * from a bound, tells those of the simulation itself. */
 static sf_status leave_surrogate(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
@@ -548,28 +549,40 @@ static sf_status leave_surrogate(search *s, sf_error *err) {
         double step = copysign(fmin(LONGEST_DIFFERENCE, p->prior_sd[j]), towards[j]);
         memcpy(s->trial.u, s->best.u, sizeof s->trial.u);
         s->trial.u[j] += inside(p, j, s->best.u[j] + step) == s->best.u[j] + step ? step : -step;
-        if (try_point(s, err) == SF_OK)
-            keep_better(s);
+        SF_TRY(try_point(s, err));
+        if (isinf(s->trial.objective)) { /* the other side may do */
+            double other = 2 * s->best.u[j] - s->trial.u[j];
+            s->trial.u[j] = inside(p, j, other);
+            s->result->iterations++;
+            SF_TRY(try_point(s, err));
+        }
+        keep_better(s);
     }
     SF_TRY(err->status);
     return regress_matrix(s, err);
 }
 
-/* Ends the second phase: M corrects the surrogate's derivatives to those found. */
+/* Ends the second phase: offset and M are those of the surrogate again, which other fits to the same data
+ * begin with; 0 where the columns collapse. */
 static sf_status return_to_surrogate(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     int entries = p->responses * p->parameters;
     sf_mapping_result *r = s->result;
+    sf_error failure = SF_ERROR_INIT;
+    r->linear = true;
     s->linear = false;
-    SF_TRY(p->surrogate(p->context, s->best.u, s->best.offset, err));
-    for (int i = 0; i < p->responses; i++)
-        s->best.offset[i] = s->best.y[i] - s->best.offset[i];
     memcpy(r->corrected, r->matrix, (size_t)entries * sizeof *r->matrix);
     memset(r->matrix, 0, (size_t)entries * sizeof *r->matrix);
-    SF_OWNED double *slope = sf_alloc(err, (unsigned long)entries, sizeof *slope, "Jacobian");
+    memset(s->best.offset, 0, (size_t)p->responses * sizeof *s->best.offset);
+    SF_OWNED double *told = sf_alloc(err, (unsigned long)p->responses, sizeof *told, "responses"),
+                    *slope = sf_alloc(err, (unsigned long)entries, sizeof *slope, "Jacobian");
     SF_TRY(err->status);
     const anchor a = anchor_at(s);
-    SF_TRY(differentiate(&a, slope, err));
+    if (p->surrogate(p->context, s->best.u, told, &failure) != SF_OK ||
+        differentiate(&a, slope, &failure) != SF_OK)
+        return failure.status == SF_ERR_NUMERIC ? SF_OK : (*err = failure, err->status);
+    for (int i = 0; i < p->responses; i++)
+        s->best.offset[i] = s->best.y[i] - told[i];
     for (int k = 0; k < entries; k++)
         r->matrix[k] = isfinite(slope[k]) ? r->corrected[k] - slope[k] : 0;
     return SF_OK;
@@ -599,7 +612,7 @@ static sf_status iterate(search *s, sf_error *err) {
                     : idle >= MOST_IDLE                ? "no proposed step lowers the objective"
                                                        : "the limit of simulations came first";
         r->converged = !r->reason;
-        if (settled || idle >= MOST_IDLE || r->iterations == p->max_iterations)
+        if (settled || idle >= MOST_IDLE || r->iterations >= p->max_iterations)
             break;
         for (double hold = 2 * radius; err->status == SF_OK && distance(s) > radius; hold /= 2)
             propose(s, s->best.u, hold, err); /* no farther than the radius */
@@ -620,6 +633,7 @@ sf_status sf_mapping_solve(const sf_mapping_problem *p, sf_mapping_result *r, sf
                              .matrix = sf_alloc(err, entries, sizeof(double), "matrix")};
     search s = {.problem = p,
                 .result = r,
+                .linear = p->first_linear,
                 .best = {.y = sf_alloc(err, n, sizeof(double), "responses"),
                          .offset = sf_alloc(err, n, sizeof(double), "responses")},
                 .trial = {.y = sf_alloc(err, n, sizeof(double), "responses"),
@@ -645,11 +659,12 @@ void sf_mapping_free(sf_mapping_result *r) {
 
 sf_status sf_mapping_refit(const sf_mapping_problem *p, const sf_mapping_result *r, const double *sd,
                            double *u, double *y, sf_error *err) {
-    minimisation m = {.anchor = {p, false, r->u, r->offset, r->matrix},
-                      .sd = sd,
-                      .about = r->u,
-                      .radius = INFINITY,
-                      .err = SF_ERROR_INIT};
+    minimisation m = {
+        .anchor = {p, r->linear, r->u, r->linear ? r->y : r->offset, r->linear ? r->corrected : r->matrix},
+        .sd = sd,
+        .about = r->u,
+        .radius = INFINITY,
+        .err = SF_ERROR_INIT};
     memcpy(u, r->u, (size_t)p->parameters * sizeof *u);
     SF_TRY(minimise(&m, u, err));
     return evaluate(&m.anchor, u, y, err);

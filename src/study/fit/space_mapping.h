@@ -24,13 +24,13 @@ enum { SF_MAPPING_MAX_PARAMETERS = 47 };
 
 typedef struct sf_mapping_problem {
     int parameters, responses;
-    const double *start;    /* [parameters] */
-    const double *prior;    /* [parameters] mean */
-    const double *prior_sd; /* [parameters] > 0 */
+    const double *start;      /* [parameters] */
+    const double *prior;      /* [parameters] mean */
+    const double *prior_sd;   /* [parameters] > 0 */
     const double *low, *high; /* [parameters] bounds that no point exceeds; INFINITY: none of that parameter;
                                  NULL: none at all */
-    const double *measured; /* [responses] */
-    const double *sd;       /* [responses] > 0; INFINITY: predicted only, no datum */
+    const double *measured;   /* [responses] */
+    const double *sd;         /* [responses] > 0; INFINITY: predicted only, no datum */
     const double *bound_sd; /* [responses] INFINITY: none; else no datum: what exceeds `measured` counts over
                                it. NULL: none */
     /* [responses] y - s of a similar problem: the first simulation is then at the minimum of s with it; NULL:
@@ -40,6 +40,8 @@ typedef struct sf_mapping_problem {
      * which first_offset is its y - s (NULL: the start), and [responses][parameters] its M, with which
      * this one begins (NULL: 0) */
     const double *first_point, *first_matrix;
+    bool first_linear; /* that mapping ended without the surrogate: first_offset is its y, first_matrix its
+                          Jacobian, and this one has no surrogate either */
     sf_status (*surrogate)(void *context, const double *u, double *y, sf_error *err);
     sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
     void *context;
@@ -60,12 +62,13 @@ typedef struct sf_mapping_result {
     double *corrected;                   /* [responses][parameters] Jacobian of y_c there; owned */
     double *offset;                      /* [responses] y - s there; owned */
     double *matrix;                      /* [responses][parameters] M; owned */
+    bool linear; /* it ended in the second phase: `corrected` is all that is known beside the best point */
     double covariance[SF_MAPPING_MAX_PARAMETERS][SF_MAPPING_MAX_PARAMETERS];
     double misfit;    /* sum over the data of ((y - measured) / sd)^2 */
     double objective; /* misfit and prior */
     double freedom;   /* number of data less the effective number of parameters that they determine */
     double scale;     /* factor on the data's standard deviations in `covariance`: sqrt(misfit / freedom) if
-                         chi-squared     contradicts them (5 %), else 1 */
+                         chi-squared contradicts them (5 %), else 1 */
     double gain;      /* by which y_c says that the objective could still fall */
     int iterations;
     bool converged;

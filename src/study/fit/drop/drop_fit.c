@@ -111,6 +111,7 @@ static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const ch
                                 .energy_error = NAN,
                                 .scatter = {NAN, NAN},
                                 .grade = SF_GRADE_DO_NOT_USE};
+    s->scatter[0] = s->scatter[1] = NAN;
     snprintf(s->failure, sizeof s->failure, "%s", sentence);
     if (!*s->verdict)
         snprintf(s->verdict, sizeof s->verdict, "%.400s", sentence);
@@ -401,9 +402,10 @@ static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_
     fit->iteration = 0;
     if (failure.status == SF_OK) {
         fit->coarse_iterations = coarse->iterations;
-        problem->first_offset = coarse->offset;
+        problem->first_linear = coarse->linear;
+        problem->first_offset = coarse->linear ? coarse->y : coarse->offset;
         problem->first_point = coarse->u;
-        problem->first_matrix = coarse->matrix;
+        problem->first_matrix = coarse->linear ? coarse->corrected : coarse->matrix;
         return SF_OK;
     }
     if (failure.status != SF_ERR_NUMERIC && failure.status != SF_ERR_MODEL)
@@ -458,8 +460,9 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
         begin_coarse(fit, &problem, &coarse, err);
     if (err->status == SF_OK && sf_mapping_solve(&problem, &fit->result, err) == SF_OK &&
         finish(fit, err) == SF_OK && leave_one_out(fit, &problem, err) == SF_OK &&
-        bound_curve(fit, err) == SF_OK)
-        locate_information(fit, err);
+        bound_curve(fit, err) == SF_OK && locate_information(fit, err) == SF_ERR_NUMERIC &&
+        fit->result.linear)
+        *err = (sf_error)SF_ERROR_INIT; /* the columns collapse where the drops do not */
     sf_mapping_free(&coarse);
     return err->status;
 }

@@ -31,6 +31,13 @@ static bool is_below_reference(const sf_drop_fit *fit, const sf_joint_test *test
 
 /* ---- report.html ---- */
 
+static bool has_speeds(const sf_drop_fit *fit) {
+    int count = 0;
+    for (int d = 0; d < fit->measured_drops; d++)
+        count += fit->speed[d] >= 0;
+    return count > 0;
+}
+
 /* Why the fit has not converged. The marginal standard deviations of the last step can hide a fall of the
  * objective along correlated parameters: what is left of it is said. */
 static void describe_end(const sf_drop_fit *fit, char *text, size_t size) {
@@ -38,7 +45,16 @@ static void describe_end(const sf_drop_fit *fit, char *text, size_t size) {
     const sf_mapping_result *r = &fit->result;
     snprintf(text, size, "%s%s", r->reason ? "; " : "", r->reason ? r->reason : "");
     if (r->gain > LEAST)
-        sf_text_add(text, size, "; the corrected columns expect the objective to fall by %.2g more", r->gain);
+        sf_text_add(text, size, "; the model of the last step expects the objective to fall by %.2g more",
+                    r->gain);
+    if (r->linear)
+        sf_text_add(
+            text, size,
+            "; the last steps have derivatives of simulations, as those of the columns misled: posterior, "
+            "sensitivities and predictions, which have columns, are less sure");
+    if (has_speeds(fit))
+        sf_text_add(text, size, "; the drops are told at %s speeds, the misfit is that at the fitted ones",
+                    fit->speeds_fitted ? "the fitted" : "the given");
     for (int k = 0; k < fit->input->unknown_count; k++) {
         double low, high;
         sf_drop_fit_bounds(fit->input, k, &low, &high);
@@ -174,10 +190,7 @@ static double fitted_response(const sf_drop_fit *fit, int d, int kind) {
 
 /* Fitted speeds, for drops whose speed is not known exactly. */
 static void put_speeds(FILE *f, const sf_drop_fit *fit) {
-    bool any = false;
-    for (int d = 0; d < fit->measured_drops; d++)
-        any = any || fit->speed[d] >= 0;
-    if (!any)
+    if (!has_speeds(fit))
         return;
     sf_html_paragraph(f,
                       "The speeds are known with a standard deviation only, and are unknowns of the fit; "
@@ -355,6 +368,10 @@ static void json_drops(sf_json *j, const sf_drop_fit *fit) {
         SF_JSON_OBJECT(j, NULL);
         sf_json_text(j, "name", drop->name);
         sf_json_bool(j, "used", !drop->predicted);
+        if (!drop->predicted && fit->speed[d] >= 0) {
+            sf_json_number(j, "speed_fitted_m_s", drop->speed * exp(fit->result.u[fit->speed[d]]));
+            sf_json_text(j, "figures_at", fit->speeds_fitted ? "fitted speed" : "given speed");
+        }
         if (drop->number > 0)
             sf_json_number(j, "drop_of_series", drop->number);
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)

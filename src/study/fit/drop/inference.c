@@ -139,9 +139,9 @@ static double mean_offset(const sf_drop_fit *fit, int kind) {
     return count > 0 ? sum / count : 0;
 }
 
-/* Offset of the columns at the speeds as given: the fit's for what was measured; from the simulations with
- * the result for what is predicted or, where the simulation or its columns failed, the mean of the measured
- * drops. */
+/* Offset of the columns at the speeds as given: the fit's for what was measured at a known speed; from the
+ * simulations with the result for other drops or, where the simulation or its columns failed, the mean of the
+ * measured drops. */
 static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     int n = responses_of(fit), measured = fit->row[fit->measured_drops];
@@ -154,6 +154,14 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     sf_drop_fit_respond(fit, fit->measured_drops, fit->input->drop_count, &card, NULL, in->offset, err);
     for (int k = 0; k < n; k++)
         in->offset[k] = k < measured ? fit->result.offset[k] : fit->y[k] - in->offset[k];
+    SF_TRY(err->status);
+    SF_OWNED double *given = sf_alloc(err, (unsigned long)n, sizeof *given, "responses");
+    for (int d = 0; d < fit->measured_drops && err->status == SF_OK && !fit->speeds_fitted; d++) {
+        sf_error failure = SF_ERROR_INIT; /* the columns may collapse at this speed */
+        if (fit->speed[d] >= 0 && sf_drop_fit_respond(fit, d, d + 1, &card, NULL, given, &failure) == SF_OK)
+            for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
+                in->offset[k] = fit->y[k] - given[k];
+    }
     for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++)
             if (*fit->simulated[d].failure || !isfinite(in->offset[fit->row[d] + kind]))
