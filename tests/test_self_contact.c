@@ -110,6 +110,38 @@ static void a_cut_block_is_as_stiff_as_the_whole_one(void **state) {
     assert_true(place[0] < 36 && fabs(place[2] - 20) < 0.2);
 }
 
+/* A sheet folded at x = 36 mm, its limbs 12 mm apart at their ends, is pressed until they lie on each other.
+ * Between walls every column of it is then as stiff as the whole block at the column's own strain. */
+static void a_folded_sheet_meets_itself(void **state) {
+    const program_place *p = *state;
+    program_write_text(p, "cut.geo", CUT);
+    program_write_text(p, "case.cfg", CUT_CASE);
+    program_write_text(p, "motion.csv", "time_ms,displacement_mm\n0,0\n24,24\n");
+    program_write_text(
+        p, "folded.py",
+        "import csv\n"
+        "rows = [(float(r['indentation_mm']) / 40, float(r['contact_force_N'])) for r in csv.DictReader(open('whole.csv'))]\n"
+        "def force(e):\n"
+        "    k = next((k for k in range(1, len(rows)) if rows[k][0] >= e), len(rows) - 1)\n"
+        "    (a, f), (b, g) = rows[k - 1], rows[k]\n"
+        "    return f + (g - f) * (e - a) / (b - a)\n"
+        "gaps = [max(0, 12 * (1 - x / 36)) for x in (0.05 + 0.1 * k for k in range(400))]\n"
+        "print(sum(force(1 - 16 / (40 - gap)) for gap in gaps) / 400)\n");
+    run(p, "--set geometry.parameters.slit=0.0");
+    program_shell(p, "mv out/history.csv whole.csv");
+    figures folded = run(p, "--set geometry.parameters.slit=12.0");
+    program_result r = program_shell(p, "python3 folded.py");
+    double expected = strtod(r.out, NULL), place[3];
+    print_message(
+        "folded %.2f N, by columns %.2f N; penetration %.2g mm, energy error %.1e, momentum %.1e, angular %.1e\n",
+        folded.force, expected, folded.penetration, folded.energy_error, folded.momentum, folded.angular);
+    assert_relative(folded.force, expected, 0.02);
+    assert_true(folded.penetration < 0.01 * 5 && folded.energy_error < 1e-3);
+    assert_true(folded.momentum < 1e-12 && folded.angular < 1e-12);
+    program_shell(p, "sed -i 's/slit = 0.1/slit = 12.0/' case.cfg");
+    passes_through(p, "another face of the foam", place);
+}
+
 /* Two slabs of a block of 40 mm whose meshes do not match, with a gap of a hundredth of a millimetre: of
  * hexahedra, prisms over rows of triangles, prisms over triangles without order, or tetrahedra. */
 enum { HEXAHEDRA, ROWS_OF_PRISMS, PRISMS, TETRAHEDRA };
@@ -346,6 +378,7 @@ static void only_pads_that_can_touch_themselves_have_the_contact(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cut_block_is_as_stiff_as_the_whole_one),
+        cmocka_unit_test(a_folded_sheet_meets_itself),
         cmocka_unit_test(bodies_with_other_meshes_pass_on_the_stress),
         cmocka_unit_test(bodies_of_triangles_pass_on_the_stress),
         cmocka_unit_test(a_tile_on_feet_comes_down_to_the_floor),
