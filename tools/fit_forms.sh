@@ -6,12 +6,13 @@
 # HIC and its window to the measured ones over the drops of the fit, at the speeds as given and as fitted, and whether the fit converged. Below 10 mm each fit begins with
 # drops on meshes of 10 mm (coarse_set); their simulations stand behind a plus. Resumes.
 #
-#     tools/fit_forms.sh [SPACING_MM=10 [OUT=out/fit_forms [REGEX]]]     REGEX: only the fits whose name it finds
+#     tools/fit_forms.sh [SPACING_MM=10 [OUT=out/fit_forms [REGEX [posterior]]]]     REGEX: only the fits whose name it finds;
+#                                     posterior: with chains, and the 95 % intervals that they give to the drops of the fit
 #
 # The programs are those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-PYTHONDONTWRITEBYTECODE=1 exec python3 - "${SF_BIN_DIR:-build/bin}/softfall-fit" "${1:-10}" "${2:-out/fit_forms}" "${3:-}" <<'PYTHON'
+PYTHONDONTWRITEBYTECODE=1 exec python3 - "${SF_BIN_DIR:-build/bin}/softfall-fit" "${1:-10}" "${2:-out/fit_forms}" "${3:-}" "${4:-}" <<'PYTHON'
 import json
 import os
 import re
@@ -67,17 +68,19 @@ print("| drops | model | simulations of each drop | misfit | objective | a_max |
 print("|---|---|---:|---:|---:|---:|---:|---:|---|")
 for name, (drops, lock) in sets.items():
     for curve, rate, rest in models:
-        label = f"{name}, {curve}, {rate}".replace(", ", "-").replace(" ", "_")
+        label = f"{name}, {curve}, {rate}{', posterior' if sys.argv[5] else ''}".replace(", ", "-").replace(" ", "_")
         if not re.search(sys.argv[4], label):
             continue
+        chains = "posterior = false;\n" if not sys.argv[5] else "predict = ( " + ", ".join(
+            f'{{ name = "again-{drop}"; case = "../{drop}/case.cfg"; }}' for drop in re.findall(r'name = "(eva\d\S*)"', drops if "name" in drops else read(
+                "examples/fit/eva35_five_drops.inc"))) + " );\n"
         folder, fit = f"{out}/{label}", f"{out}/examples/fit/{label}.cfg"
         write(fit, f"""name = "foam";
 material = "eva35_forms_start.cfg";
 solid_density = "940 kg/m3";
 unknown = ( {lock}{{ name = "HU"; prior_sd = 0.5; }}, {{ name = "SHAPE"; prior_sd = 0.6; }} );
 forms = ( {{ curve = "{curve}"; rate = "{rate}"; {rest} }} );
-posterior = false;
-{coarse}{drops}""")
+{chains}{coarse}{drops}""")
         if not os.path.exists(f"{folder}/fit.json"):
             with open(f"{folder}.log", "w", encoding="utf-8") as log:
                 subprocess.run([program, "drop", fit, "-o", folder, "--force"], stdout=log, stderr=subprocess.STDOUT)
@@ -90,4 +93,6 @@ posterior = false;
         status = "converged" if result["converged"] else f"{result.get('reason', 'not converged')}, expected gain {result['expected_gain']:.2g}"
         print(f"| {name} | {curve}, {rate} | {result['iterations']}{' + %d' % result['coarse_iterations'] if coarse else ''} | {result['misfit']:.3g} | {objective:.4g} | {largest(result, 'a_max', '_g')} | {largest(result, 'hic')} | "
               f"{largest(result, 'hic_window', '_ms')} | {status} |", flush=True)
+        if sys.argv[5]:
+            print(*re.findall(r"\n  again-.* \(95 %: .*", log), sep="", flush=True)
 PYTHON
