@@ -339,8 +339,8 @@ static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
 static sf_status regress_matrix(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     size_t n = (size_t)p->parameters, responses = (size_t)p->responses;
-    bool free = s->linear && !p->first_linear;
-    const double *first = free ? NULL : p->first_matrix, slope = SLOPE[free];
+    bool anew = s->linear && !p->first_linear;
+    const double *first = anew ? NULL : p->first_matrix, slope = SLOPE[anew];
     SF_MATRIX *a = sf_matrix(n, n, err), *b = sf_matrix(responses, n, err);
     SF_TRY(err->status);
     for (size_t k = 0; k < responses * n; k++)
