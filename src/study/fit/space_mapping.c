@@ -588,6 +588,22 @@ static sf_status return_to_surrogate(search *s, sf_error *err) {
     return SF_OK;
 }
 
+/* Proposes again until the trial is no farther from the best point than `radius`. */
+static sf_status hold_back(search *s, double radius, sf_error *err) {
+    for (double hold = 2 * radius; err->status == SF_OK && distance(s) > radius; hold /= 2)
+        propose(s, s->best.u, hold, err);
+    return err->status;
+}
+
+/* True if no step over the distance of the second phase's differences is expected to gain what counts. A gain
+ * that is expected farther away is an extrapolation of their noise. */
+static bool is_flat(search *s, sf_error *err) {
+    double step, gain = INFINITY;
+    if (s->linear && hold_back(s, LONGEST_DIFFERENCE, err) == SF_OK)
+        measure_step(s, &step, &gain, err);
+    return gain < 10 * s->problem->tolerance + noise_of(s);
+}
+
 static sf_status iterate(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     sf_mapping_result *r = s->result;
@@ -607,6 +623,8 @@ static sf_status iterate(search *s, sf_error *err) {
             idle = 0;
             continue;
         }
+        settled = settled || (idle >= MOST_IDLE && is_flat(s, err));
+        SF_TRY(err->status);
         r->reason = settled && !is_bound(p, s->best.y) ? NULL
                     : settled                          ? "a drop stands at the bound of what can be used"
                     : idle >= MOST_IDLE                ? "no proposed step lowers the objective"
@@ -614,9 +632,7 @@ static sf_status iterate(search *s, sf_error *err) {
         r->converged = !r->reason;
         if (settled || idle >= MOST_IDLE || r->iterations >= p->max_iterations)
             break;
-        for (double hold = 2 * radius; err->status == SF_OK && distance(s) > radius; hold /= 2)
-            propose(s, s->best.u, hold, err); /* no farther than the radius */
-        SF_TRY(err->status);
+        SF_TRY(hold_back(s, radius, err));
         SF_TRY(measure_step(s, &step, &expected, err));
         SF_TRY(advance(s, expected, &radius, &idle, err));
         r->iterations++;

@@ -50,8 +50,9 @@ typedef struct sf_mapping_problem {
     double tolerance; /* in standard deviations. Converged: the free next step is below it in every parameter,
                          or would lower the objective by less than its square, or two steps in a row, taken or
                          not, lowered it by less than twice the tolerance where the free step expects less
-                         than ten times it. With a first_matrix a short step must lower it by less than twice
-                         the tolerance, too */
+                         than ten times it, or in the second phase five in a row where a step of 0.1 expects
+                         less than that. With a first_matrix a short step must lower it by less than twice the
+                         tolerance, too */
     /* called after each simulation; may be NULL */
     void (*progress)(void *context, int iteration, const double *u, const double *y, double objective);
 } sf_mapping_problem;
