@@ -211,6 +211,57 @@ static void simulations_replace_a_surrogate_with_an_edge(void **state) {
     sf_mapping_free(&r);
 }
 
+/* Columns with an edge and a second parameter that hardly counts; the simulation with the noise of a drop. */
+static sf_status flat_surrogate(void *context, const double *u, double *y, sf_error *err) {
+    (void)context;
+    (void)err;
+    y[0] = 0.3 * u[0] - 0.1 * tanh(50 * (u[0] - 0.3)) + 0.02 * u[1];
+    y[1] = 0.5 * u[0] + 0.02 * u[1];
+    y[2] = 0.25 * u[0] + 0.02 * u[1];
+    return SF_OK;
+}
+
+static sf_status noisy_simulate(void *context, const double *u, double *y, sf_error *err) {
+    const toy *t = context;
+    (void)err;
+    y[0] = 0.3 * u[0] + 0.03 * u[1];
+    y[1] = 0.5 * u[0] + 0.03 * u[1];
+    y[2] = 0.25 * u[0] + 0.04 * u[1];
+    for (int i = 0; i < 3; i++)
+        y[i] += 0.002 * sin(1e5 * (u[0] + 2 * u[1]) + 2.4 * i + t->simulations);
+    return SF_OK;
+}
+
+/* Data that contradict each other leave a minimum with large residuals, at the end of a valley along the
+ * second parameter, whose gradient over a difference of 0.1 is lost in the noise. The search finds it, with
+ * few exceptions, and says so: it neither stops in the valley nor calls itself not converged there. */
+static void a_search_finds_the_end_of_a_valley_with_noise(void **state) {
+    (void)state;
+    enum { PHASES = 200 };
+    static const double measured[3] = {0.05, 0.35, 0.1}, sd[3] = {0.02, 0.04, 0.02};
+    static const double LOWEST = 23.33; /* objective without noise at 0.569, -1.706; 33 where u[1] = 1.4 */
+    int converged = 0, found = 0;
+    for (int phase = 0; phase < PHASES; phase++) {
+        toy t = {.simulations = phase};
+        sf_mapping_problem p = toy_problem(&t, measured);
+        p.sd = sd;
+        p.surrogate = flat_surrogate;
+        p.simulate = noisy_simulate;
+        p.max_iterations = 60;
+        p.tolerance = 0.1;
+        sf_mapping_result r;
+        sf_error err = SF_ERROR_INIT;
+        assert_int_equal(sf_mapping_solve(&p, &r, &err), SF_OK);
+        assert_true(r.linear);
+        converged += r.converged;
+        found += r.objective < LOWEST + 2;
+        sf_mapping_free(&r);
+    }
+    print_message("%d of %d searches converged, %d at the minimum\n", converged, PHASES, found);
+    assert_true(converged >= 0.95 * PHASES);
+    assert_true(found >= 0.85 * PHASES);
+}
+
 static sf_status failing_simulate(void *context, const double *u, double *y, sf_error *err) {
     (void)context;
     (void)u;
@@ -238,6 +289,7 @@ int main(void) {
         cmocka_unit_test(a_bound_holds_the_minimum),
         cmocka_unit_test(mapping_survives_rejected_and_failed_steps),
         cmocka_unit_test(simulations_replace_a_surrogate_with_an_edge),
+        cmocka_unit_test(a_search_finds_the_end_of_a_valley_with_noise),
         cmocka_unit_test(mapping_passes_on_a_failed_simulation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,201 +4,19 @@
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_linalg.h>
-#include <gsl/gsl_multifit_nlinear.h>
 #include <gsl/gsl_qrng.h>
 #include <string.h>
 
-enum { FIT_STEPS = 60 };
-static const double DIFFERENCE = 1e-3; /* of the scaled parameters, for Jacobians */
-
-/* The corrected surrogate, anchored at a simulated point; in the second phase linear, without a surrogate. */
-typedef struct anchor {
-    const sf_mapping_problem *problem;
-    bool linear;
-    const double *u;      /* [parameters] */
-    const double *offset; /* [responses] */
-    const double *matrix; /* [responses][parameters] */
-} anchor;
-
 /* The regression of M expects, in logarithms, this: the simulation's own noise, the second derivative of y -
- * s, and the size of M; the latter two without the surrogate ([1]), too. */
+ * s, and the size of M; without the surrogate ([1]) the part of a change by which it is curved over a step of
+ * 1, and the size of the Jacobian. */
 static const double NOISE = 0.002, CURVATURE[2] = {0.05, 1}, SLOPE[2] = {0.3, 3};
 
 enum { MOST_IDLE = 5 };                  /* steps in a row that gain nothing: the phase ends */
 static const double LEAST_RADIUS = 0.02; /* of the trust region: shorter steps only tell the noise */
 /* Between simulations for a derivative; the prior's standard deviation, if that is less. */
-static const double LONGEST_DIFFERENCE = 0.1;
-
-/* A minimisation leaves a bound by no more than a part of the first; a parameter that leaves its bound again
- * begins the second away from it. */
-static const double BOUND = 1e-3, RELEASE = 0.05;
-enum { BOUND_ROUNDS = 8 };
-
-/* One minimisation. */
-typedef struct minimisation {
-    anchor anchor;
-    const double *sd;                     /* [responses] */
-    const double *about;                  /* [parameters] point that holds the step back */
-    double radius;                        /* its standard deviation; INFINITY: free */
-    bool held[SF_MAPPING_MAX_PARAMETERS]; /* at its bound in `bound` */
-    double bound[SF_MAPPING_MAX_PARAMETERS];
-    double *y;    /* [responses] scratch */
-    sf_error err; /* of the surrogate, inside GSL */
-} minimisation;
-
-/* The value of a parameter within its bounds. */
-static double inside(const sf_mapping_problem *p, int j, double u) {
-    return p->low ? fmin(fmax(u, p->low[j]), p->high[j]) : u;
-}
-
-static sf_status evaluate(const anchor *a, const double *u, double *y, sf_error *err) {
-    const sf_mapping_problem *p = a->problem;
-    if (!a->linear)
-        SF_TRY(p->surrogate(p->context, u, y, err));
-    for (int i = 0; i < p->responses; i++) {
-        y[i] = a->offset[i] + (a->linear ? 0 : y[i]);
-        for (int j = 0; j < p->parameters; j++)
-            y[i] += a->matrix[i * p->parameters + j] * (u[j] - a->u[j]);
-    }
-    return SF_OK;
-}
-
-/* Residual of a response: of a datum, or of what exceeds a bound. */
-static double residual(const sf_mapping_problem *p, const double *sd, const double *y, int i) {
-    double over = y[i] - p->measured[i];
-    if (p->bound_sd && !isinf(p->bound_sd[i]))
-        return fmax(0, over) / p->bound_sd[i];
-    return isinf(sd[i]) ? 0 : over / sd[i];
-}
-
-/* Residuals: data, prior, and what holds the step back and within the bounds. */
-static int residuals(const gsl_vector *x, void *data, gsl_vector *f) {
-    minimisation *m = data;
-    const sf_mapping_problem *p = m->anchor.problem;
-    double u[SF_MAPPING_MAX_PARAMETERS];
-    sf_error err = SF_ERROR_INIT;
-    for (int j = 0; j < p->parameters; j++)
-        u[j] = m->held[j] ? m->bound[j] : inside(p, j, gsl_vector_get(x, (size_t)j));
-    if (evaluate(&m->anchor, u, m->y, &err) != SF_OK) {
-        m->err = err;
-        for (size_t k = 0; k < f->size; k++)
-            gsl_vector_set(f, k, 1e6);
-        return GSL_SUCCESS; /* a point where the surrogate fails is a bad point, not the end */
-    }
-    size_t row = 0;
-    for (int i = 0; i < p->responses; i++)
-        gsl_vector_set(f, row++, residual(p, m->sd, m->y, i));
-    for (int j = 0; j < p->parameters; j++)
-        gsl_vector_set(f, row++, (u[j] - p->prior[j]) / p->prior_sd[j]);
-    for (int j = 0; j < p->parameters; j++)
-        gsl_vector_set(f, row++,
-                       (isinf(m->radius) ? 0 : (u[j] - m->about[j]) / m->radius) +
-                           (gsl_vector_get(x, (size_t)j) - u[j]) / BOUND);
-    return GSL_SUCCESS;
-}
-
-/* Their Jacobian by central differences: absolute steps, as the parameters are logarithms. */
-static int residual_jacobian(const gsl_vector *x, void *data, gsl_matrix *jacobian) {
-    sf_error err = SF_ERROR_INIT;
-    SF_VECTOR *at = sf_vector(x->size, &err), *high = sf_vector(jacobian->size1, &err),
-              *low = sf_vector(jacobian->size1, &err);
-    for (size_t j = 0; j < x->size && err.status == SF_OK; j++) {
-        gsl_vector_memcpy(at, x);
-        gsl_vector_set(at, j, gsl_vector_get(x, j) + DIFFERENCE);
-        residuals(at, data, high);
-        gsl_vector_set(at, j, gsl_vector_get(x, j) - DIFFERENCE);
-        residuals(at, data, low);
-        gsl_vector_sub(high, low);
-        gsl_vector_scale(high, 1 / (2 * DIFFERENCE));
-        gsl_matrix_set_col(jacobian, j, high);
-    }
-    return err.status == SF_OK ? GSL_SUCCESS : GSL_ENOMEM;
-}
-
-/* Minimises from `u`, which gets the minimum; what is held stays. */
-static sf_status descend(minimisation *m, double *u, sf_error *err) {
-    const sf_mapping_problem *p = m->anchor.problem;
-    size_t n = (size_t)p->responses + 2 * (size_t)p->parameters;
-    gsl_multifit_nlinear_parameters options = gsl_multifit_nlinear_default_parameters();
-    gsl_multifit_nlinear_fdf fdf = {
-        .f = residuals, .df = residual_jacobian, .n = n, .p = (size_t)p->parameters, .params = m};
-    gsl_multifit_nlinear_workspace *w =
-        gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &options, n, (size_t)p->parameters);
-    if (!w)
-        SF_NO_MEMORY(err, "a least-squares problem of %zu residuals", n);
-    if (err->status == SF_OK) {
-        int info = 0;
-        gsl_vector_const_view start = gsl_vector_const_view_array(u, (size_t)p->parameters);
-        gsl_multifit_nlinear_init(&start.vector, &fdf, w);
-        gsl_multifit_nlinear_driver(FIT_STEPS, 1e-7, 1e-10, 1e-10, NULL, NULL, &info, w);
-        for (int j = 0; j < p->parameters; j++)
-            u[j] = m->held[j] ? m->bound[j] : inside(p, j, gsl_vector_get(w->x, (size_t)j));
-        if (evaluate(&m->anchor, u, m->y, err) != SF_OK && m->err.status != SF_OK)
-            *err = m->err;
-    }
-    gsl_multifit_nlinear_free(w);
-    return err->status;
-}
-
-/* Sum of the squared residuals. */
-static double cost(minimisation *m, const double *u, gsl_vector *f) {
-    double square;
-    gsl_vector_const_view x = gsl_vector_const_view_array(u, (size_t)m->anchor.problem->parameters);
-    residuals(&x.vector, m, f);
-    gsl_blas_ddot(f, f, &square);
-    return square;
-}
-
-/* Holds the parameters that have reached a bound, and lets those go that fall from it. Returns if any did. */
-static bool change_held(minimisation *m, double *u, gsl_vector *f) {
-    const sf_mapping_problem *p = m->anchor.problem;
-    bool changed = false;
-    for (int j = 0; j < p->parameters; j++) {
-        bool low = u[j] <= p->low[j], high = u[j] >= p->high[j], held = m->held[j];
-        double least = cost(m, u, f), at = u[j];
-        if (!low && !high)
-            continue;
-        m->held[j] = false;
-        u[j] += low ? DIFFERENCE : -DIFFERENCE;
-        m->held[j] = !(cost(m, u, f) < least);
-        m->bound[j] = at;
-        u[j] = m->held[j] ? at : at + (low ? RELEASE : -RELEASE);
-        changed |= m->held[j] != held;
-    }
-    return changed;
-}
-
-/* Minimises from `u`, which gets the minimum within the bounds. */
-static sf_status minimise(minimisation *m, double *u, sf_error *err) {
-    const sf_mapping_problem *p = m->anchor.problem;
-    SF_VECTOR *f = sf_vector((size_t)p->responses + 2 * (size_t)p->parameters, err);
-    SF_OWNED double *y = sf_alloc(err, (unsigned long)p->responses, sizeof *y, "responses");
-    m->y = y;
-    for (int round = 0; round < BOUND_ROUNDS && err->status == SF_OK; round++)
-        if (descend(m, u, err) == SF_OK && (!p->low || !change_held(m, u, f)))
-            break;
-    return err->status;
-}
-
-/* Jacobian [responses][parameters] of the corrected surrogate by central differences. */
-static sf_status differentiate(const anchor *a, double *jacobian, sf_error *err) {
-    const sf_mapping_problem *p = a->problem;
-    double u[SF_MAPPING_MAX_PARAMETERS];
-    size_t n = (size_t)p->responses;
-    SF_OWNED double *plus = sf_alloc(err, n, sizeof *plus, "responses"),
-                    *minus = sf_alloc(err, n, sizeof *minus, "responses");
-    for (int j = 0; j < p->parameters && err->status == SF_OK; j++) {
-        memcpy(u, a->u, (size_t)p->parameters * sizeof *u);
-        u[j] = a->u[j] + DIFFERENCE;
-        evaluate(a, u, plus, err);
-        u[j] = a->u[j] - DIFFERENCE;
-        if (err->status == SF_OK)
-            evaluate(a, u, minus, err);
-        for (int i = 0; i < p->responses && err->status == SF_OK; i++)
-            jacobian[i * p->parameters + j] = (plus[i] - minus[i]) / (2 * DIFFERENCE);
-    }
-    return err->status;
-}
+static const double LEAST_DIFFERENCE = 0.1;
+static const double LONGEST_STEP = 1; /* of the second phase where shorter steps gain nothing */
 
 /* c = (a / scale^2 + prior)^-1; positive definite by the prior. */
 static void invert_information(const sf_mapping_problem *p, const gsl_matrix *a, double scale,
@@ -255,14 +73,14 @@ static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_r
 static double misfit_of(const sf_mapping_problem *p, const double *y) {
     double sum = 0;
     for (int i = 0; i < p->responses; i++)
-        sum += pow(residual(p, p->sd, y, i), 2);
+        sum += pow(sf_mapping_residual(p, p->sd, y, i), 2);
     return sum;
 }
 
 /* True if a bound holds the point: the data alone would move it beyond. */
 static bool is_bound(const sf_mapping_problem *p, const double *y) {
     for (int i = 0; i < p->responses && p->bound_sd; i++)
-        if (!isinf(p->bound_sd[i]) && residual(p, p->sd, y, i) > p->tolerance)
+        if (!isinf(p->bound_sd[i]) && sf_mapping_residual(p, p->sd, y, i) > p->tolerance)
             return true;
     return false;
 }
@@ -291,8 +109,8 @@ typedef struct search {
     double *y, *offset;                     /* [count][responses]; owned */
 } search;
 
-static anchor anchor_at(const search *s) {
-    return (anchor){s->problem, s->linear, s->best.u, s->best.offset, s->result->matrix};
+static sf_mapping_model model_at(const search *s) {
+    return (sf_mapping_model){s->problem, s->linear, s->best.u, s->best.offset, s->result->matrix};
 }
 
 static sf_status simulate(search *s, point *at, sf_error *err) {
@@ -313,6 +131,18 @@ static sf_status simulate(search *s, point *at, sf_error *err) {
     return SF_OK;
 }
 
+/* Standard deviation of the change of y - s to a point, `length` away, as a secant: the noise, and the
+ * curvature. Without the surrogate that is a part of the change itself, as what hardly counts is hardly
+ * curved: long steps along it tell its derivative. */
+static double secant_error(const search *s, int k, double length) {
+    const sf_mapping_problem *p = s->problem;
+    double change = s->linear ? 0 : length;
+    for (int i = 0; i < p->responses && s->linear; i++)
+        if (!isinf(p->sd[i]))
+            change = fmax(change, fabs(s->offset[k * p->responses + i] - s->best.offset[i]));
+    return hypot(NOISE, CURVATURE[s->linear] * length * change);
+}
+
 /* Adds a point to the normal equations (A, b) of the rows of M; the farther it is from `best`, the less the
  * secant to it tells about the derivative there. */
 static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
@@ -322,7 +152,7 @@ static void add_secant(const search *s, int k, gsl_matrix *a, gsl_matrix *b) {
         step[j] = s->u[k][j] - s->best.u[j];
         square += step[j] * step[j];
     }
-    double weight = 1 / (NOISE * NOISE + pow(CURVATURE[s->linear] * square, 2));
+    double weight = pow(secant_error(s, k, sqrt(square)), -2);
     for (int j = 0; j < n; j++) {
         for (int l = 0; l < n; l++)
             *gsl_matrix_ptr(a, (size_t)j, (size_t)l) += weight * step[j] * step[l];
@@ -363,11 +193,11 @@ static sf_status regress_matrix(search *s, sf_error *err) {
 static sf_status measure_step(search *s, double *step, double *gain, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     sf_mapping_result *r = s->result;
-    const anchor a = anchor_at(s);
+    const sf_mapping_model model = model_at(s);
     r->misfit = s->best.misfit;
-    SF_TRY(differentiate(&a, r->corrected, err));
+    SF_TRY(sf_mapping_differentiate(&model, r->corrected, err));
     SF_TRY(estimate(p, false, r, err));
-    SF_TRY(evaluate(&a, s->trial.u, s->trial.y, err));
+    SF_TRY(sf_mapping_evaluate(&model, s->trial.u, s->trial.y, err));
     *gain = s->best.objective - misfit_of(p, s->trial.y) - prior_of(p, s->trial.u);
     *step = 0;
     for (int j = 0; j < p->parameters; j++)
@@ -384,20 +214,16 @@ static double distance(const search *s) {
 
 /* The trial becomes the minimum of the corrected surrogate from `from`, held back from `best` by `hold`. */
 static sf_status propose(search *s, const double *from, double hold, sf_error *err) {
-    minimisation m = {.anchor = anchor_at(s),
-                      .sd = s->problem->sd,
-                      .about = s->best.u,
-                      .radius = hold,
-                      .err = SF_ERROR_INIT};
+    const sf_mapping_model model = model_at(s);
     memmove(s->trial.u, from, (size_t)s->problem->parameters * sizeof *from);
-    return minimise(&m, s->trial.u, err);
+    return sf_mapping_minimise(&model, s->problem->sd, s->best.u, hold, s->trial.u, err);
 }
 
 /* Objective by the corrected surrogate at the trial; INFINITY: the law cannot be there. */
 static double expect(search *s, sf_error *err) {
-    const anchor a = anchor_at(s);
+    const sf_mapping_model model = model_at(s);
     sf_error failure = SF_ERROR_INIT;
-    if (evaluate(&a, s->trial.u, s->trial.y, &failure) == SF_OK)
+    if (sf_mapping_evaluate(&model, s->trial.u, s->trial.y, &failure) == SF_OK)
         return misfit_of(s->problem, s->trial.y) + prior_of(s->problem, s->trial.u);
     if (failure.status == SF_ERR_MEMORY)
         *err = failure;
@@ -422,7 +248,8 @@ static sf_status propose_widely(search *s, sf_error *err) {
         for (int l = 0; k > 0 && l < PLACES; l++) {
             gsl_qrng_get(places, place);
             for (int j = 0; j < p->parameters; j++)
-                s->trial.u[j] = inside(p, j, p->prior[j] + p->prior_sd[j] * gsl_cdf_ugaussian_Pinv(place[j]));
+                s->trial.u[j] =
+                    sf_mapping_inside(p, j, p->prior[j] + p->prior_sd[j] * gsl_cdf_ugaussian_Pinv(place[j]));
             double objective = expect(s, err);
             if (objective < least) {
                 least = objective;
@@ -461,7 +288,7 @@ static double noise_of(const search *s) {
     double sum = 0;
     for (int i = 0; i < p->responses && s->linear; i++)
         if (!isinf(p->sd[i]))
-            sum += pow(2 * residual(p, p->sd, s->best.y, i) * NOISE / p->sd[i], 2);
+            sum += pow(2 * sf_mapping_residual(p, p->sd, s->best.y, i) * NOISE / p->sd[i], 2);
     return sqrt(sum);
 }
 
@@ -534,6 +361,16 @@ static bool is_exact(const search *s) {
     return largest < 1e-9;
 }
 
+/* Step of a parameter that changes a datum by five times the noise, as the columns have it. */
+static double difference_of(const search *s, int j) {
+    const sf_mapping_problem *p = s->problem;
+    double slope = 0;
+    for (int i = 0; i < p->responses; i++)
+        if (!isinf(p->sd[i]))
+            slope = fmax(slope, fabs(s->result->corrected[i * p->parameters + j]));
+    return fmin(fmin(fmax(LEAST_DIFFERENCE, 5 * NOISE / slope), LONGEST_STEP), p->prior_sd[j]);
+}
+
 /* Begins the second phase: where the columns lock up and the simulation does not, M cannot
  * correct their derivatives. One simulation along each parameter, to the side of the last proposal or away
  * from a bound, tells those of the simulation itself. */
@@ -546,13 +383,13 @@ static sf_status leave_surrogate(search *s, sf_error *err) {
     memcpy(s->offset, s->y, (size_t)s->count * (size_t)p->responses * sizeof *s->y);
     memcpy(s->best.offset, s->best.y, (size_t)p->responses * sizeof *s->y);
     for (int j = 0; j < p->parameters && err->status == SF_OK; j++, s->result->iterations++) {
-        double step = copysign(fmin(LONGEST_DIFFERENCE, p->prior_sd[j]), towards[j]);
+        double step = copysign(difference_of(s, j), towards[j]);
         memcpy(s->trial.u, s->best.u, sizeof s->trial.u);
-        s->trial.u[j] += inside(p, j, s->best.u[j] + step) == s->best.u[j] + step ? step : -step;
+        s->trial.u[j] += sf_mapping_inside(p, j, s->best.u[j] + step) == s->best.u[j] + step ? step : -step;
         SF_TRY(try_point(s, err));
         if (isinf(s->trial.objective)) { /* the other side may do */
             double other = 2 * s->best.u[j] - s->trial.u[j];
-            s->trial.u[j] = inside(p, j, other);
+            s->trial.u[j] = sf_mapping_inside(p, j, other);
             s->result->iterations++;
             SF_TRY(try_point(s, err));
         }
@@ -577,9 +414,9 @@ static sf_status return_to_surrogate(search *s, sf_error *err) {
     SF_OWNED double *told = sf_alloc(err, (unsigned long)p->responses, sizeof *told, "responses"),
                     *slope = sf_alloc(err, (unsigned long)entries, sizeof *slope, "Jacobian");
     SF_TRY(err->status);
-    const anchor a = anchor_at(s);
+    const sf_mapping_model model = model_at(s);
     if (p->surrogate(p->context, s->best.u, told, &failure) != SF_OK ||
-        differentiate(&a, slope, &failure) != SF_OK)
+        sf_mapping_differentiate(&model, slope, &failure) != SF_OK)
         return failure.status == SF_ERR_NUMERIC ? SF_OK : (*err = failure, err->status);
     for (int i = 0; i < p->responses; i++)
         s->best.offset[i] = s->best.y[i] - told[i];
@@ -595,11 +432,11 @@ static sf_status hold_back(search *s, double radius, sf_error *err) {
     return err->status;
 }
 
-/* True if no step over the distance of the second phase's differences is expected to gain what counts. A gain
- * that is expected farther away is an extrapolation of their noise. */
+/* True if no step over the distance of the second phase's differences is expected to gain what counts: beyond
+ * it their noise is extrapolated. */
 static bool is_flat(search *s, sf_error *err) {
     double step, gain = INFINITY;
-    if (s->linear && hold_back(s, LONGEST_DIFFERENCE, err) == SF_OK)
+    if (s->linear && hold_back(s, LEAST_DIFFERENCE, err) == SF_OK)
         measure_step(s, &step, &gain, err);
     return gain < 10 * s->problem->tolerance + noise_of(s);
 }
@@ -608,7 +445,8 @@ static sf_status iterate(search *s, sf_error *err) {
     const sf_mapping_problem *p = s->problem;
     sf_mapping_result *r = s->result;
     double radius = INFINITY, step = 0, expected = 0;
-    int idle = 0; /* steps in a row, taken or not, that lowered the objective by nothing that counts */
+    int idle = 0;        /* steps in a row, taken or not, that lowered the objective by nothing that counts */
+    bool longer = false; /* the longest step is tried, or was in vain */
     SF_TRY(begin(s, err));
     r->iterations = 1;
     for (;;) {
@@ -619,9 +457,14 @@ static sf_status iterate(search *s, sf_error *err) {
         bool doubtful = settled ? contradicts(r) && !p->first_matrix : idle >= MOST_IDLE;
         if (doubtful && !s->linear && !is_exact(s) && r->iterations + p->parameters < p->max_iterations) {
             SF_TRY(leave_surrogate(s, err));
-            radius = LONGEST_DIFFERENCE;
+            radius = LEAST_DIFFERENCE;
             idle = 0;
             continue;
+        }
+        if (idle >= MOST_IDLE && s->linear && !settled && !longer) {
+            longer = true;
+            idle--;
+            radius = LONGEST_STEP;
         }
         settled = settled || (idle >= MOST_IDLE && is_flat(s, err));
         SF_TRY(err->status);
@@ -635,6 +478,7 @@ static sf_status iterate(search *s, sf_error *err) {
         SF_TRY(hold_back(s, radius, err));
         SF_TRY(measure_step(s, &step, &expected, err));
         SF_TRY(advance(s, expected, &radius, &idle, err));
+        longer = longer && idle > 0;
         r->iterations++;
     }
     if (s->linear)
@@ -675,13 +519,9 @@ void sf_mapping_free(sf_mapping_result *r) {
 
 sf_status sf_mapping_refit(const sf_mapping_problem *p, const sf_mapping_result *r, const double *sd,
                            double *u, double *y, sf_error *err) {
-    minimisation m = {
-        .anchor = {p, r->linear, r->u, r->linear ? r->y : r->offset, r->linear ? r->corrected : r->matrix},
-        .sd = sd,
-        .about = r->u,
-        .radius = INFINITY,
-        .err = SF_ERROR_INIT};
+    const sf_mapping_model model = {p, r->linear, r->u, r->linear ? r->y : r->offset,
+                                    r->linear ? r->corrected : r->matrix};
     memcpy(u, r->u, (size_t)p->parameters * sizeof *u);
-    SF_TRY(minimise(&m, u, err));
-    return evaluate(&m.anchor, u, y, err);
+    SF_TRY(sf_mapping_minimise(&model, sd, r->u, INFINITY, u, err));
+    return sf_mapping_evaluate(&model, u, y, err);
 }

@@ -18,44 +18,7 @@
  *
  * A problem that begins with another's M is not checked in this way at its end. */
 #pragma once
-#include "base/error.h"
-
-enum { SF_MAPPING_MAX_PARAMETERS = 47 };
-
-typedef struct sf_mapping_problem {
-    int parameters, responses;
-    const double *start;      /* [parameters] */
-    const double *prior;      /* [parameters] mean */
-    const double *prior_sd;   /* [parameters] > 0 */
-    const double *low, *high; /* [parameters] bounds that no point exceeds; INFINITY: none of that parameter;
-                                 NULL: none at all */
-    const double *measured;   /* [responses] */
-    const double *sd;         /* [responses] > 0; INFINITY: predicted only, no datum */
-    const double *bound_sd; /* [responses] INFINITY: none; else no datum: what exceeds `measured` counts over
-                               it. NULL: none */
-    /* [responses] y - s of a similar problem: the first simulation is then at the minimum of s with it; NULL:
-     * at the start */
-    const double *first_offset;
-    /* The end of an earlier mapping with the same parameters and responses: [parameters] the point at
-     * which first_offset is its y - s (NULL: the start), and [responses][parameters] its M, with which
-     * this one begins (NULL: 0) */
-    const double *first_point, *first_matrix;
-    bool first_linear; /* that mapping ended without the surrogate: first_offset is its y, first_matrix its
-                          Jacobian, and this one has no surrogate either */
-    sf_status (*surrogate)(void *context, const double *u, double *y, sf_error *err);
-    sf_status (*simulate)(void *context, const double *u, double *y, sf_error *err);
-    void *context;
-    int max_iterations; /* simulations at most */
-    bool wide; /* first the lowest minimum of y_c from a design over the prior, not only from the start */
-    double tolerance; /* in standard deviations. Converged: the free next step is below it in every parameter,
-                         or would lower the objective by less than its square, or two steps in a row, taken or
-                         not, lowered it by less than twice the tolerance where the free step expects less
-                         than ten times it, or in the second phase five in a row where a step of 0.1 expects
-                         less than that. With a first_matrix a short step must lower it by less than twice the
-                         tolerance, too */
-    /* called after each simulation; may be NULL */
-    void (*progress)(void *context, int iteration, const double *u, const double *y, double objective);
-} sf_mapping_problem;
+#include "study/fit/mapping_model.h"
 
 typedef struct sf_mapping_result {
     double u[SF_MAPPING_MAX_PARAMETERS]; /* best simulated point */
