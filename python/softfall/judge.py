@@ -141,7 +141,7 @@ def _probability(p: Protocol, drops: Drops) -> tuple[float, float, float] | None
 
 def _judge_height(p: Protocol, drops: Drops) -> Outcome:
     made = Outcome("", meaning="height at the limit (m)")
-    bounds: list[tuple[float, bool]] = []  # heights of all positions, and whether each is exact
+    bounds: list[tuple[float, float]] = []  # heights of all positions, between which the figure reaches its limit
     for search in drops.searches:
         bounds.append(_take_search(p, search, made))
     measured: dict[tuple[str, str], dict[float, list[Drop]]] = {}
@@ -149,28 +149,30 @@ def _judge_height(p: Protocol, drops: Drops) -> Outcome:
         measured.setdefault((spot.condition, spot.position), {})[spot.height] = group
     for (condition, position), heights in measured.items():
         bounds.append(_cross(p, f"{condition}, {position}", heights, made))
-    values = [value for value, exact in bounds if exact]
-    least = min(values, default=math.nan)
-    if any(math.isnan(value) for value, _ in bounds):
+    low, high = (min((bound[k] for bound in bounds), default=math.nan) for k in (0, 1))
+    if not bounds or any(math.isnan(value) for bound in bounds for value in bound):
         made.stated = "not determined: " + (made.notes[-1] if made.notes else _why(made.lines))
-    elif any(not exact and value <= (least if values else math.inf) and value < 0 for value, exact in bounds):
-        made.stated = f"below {min(-value for value, exact in bounds if not exact and value < 0):.3g} m"
-    elif not values:
-        made.stated = f"above {min(value for value, _ in bounds):.3g} m"
-    else:
-        lower_bounds = [value for value, exact in bounds if not exact and value < least]
-        made.value = least
-        rounded = math.floor(least / p.rounding + 1e-9) * p.rounding if p.rounding else least
-        if p.rounding and not rounded:
-            made.notes.append(f"the height is below one step of the rounding, {p.rounding:g} m")
-        made.stated = f"{rounded:.3g} m" if not lower_bounds else f"between {min(lower_bounds):.3g} and {least:.3g} m"
+        return made
+    if (high, high) in bounds and low:
+        made.value = high
         decisive = min((line for line in made.lines if not math.isnan(line.value)), key=lambda line: line.value)
         made.low, made.high = decisive.low, decisive.high
+    if not low:
+        made.stated = f"below {high:.3g} m"
+    elif math.isinf(high):
+        made.stated = f"above {low:.3g} m"
+    elif low < high:
+        made.stated = f"between {low:.3g} and {high:.3g} m"
+    else:
+        rounded = math.floor(high / p.rounding + 1e-9) * p.rounding if p.rounding else high
+        if p.rounding and not rounded:
+            made.notes.append(f"the height is below one step of the rounding, {p.rounding:g} m")
+        made.stated = f"{rounded:.3g} m"
     return made
 
 
-def _take_search(p: Protocol, search: Search, made: Outcome) -> tuple[float, bool]:
-    """Adds the line of a search; returns its height, negative where it is an upper bound, and whether it is exact."""
+def _take_search(p: Protocol, search: Search, made: Outcome) -> tuple[float, float]:
+    """Adds the line of a search; returns the heights between which its own lies: twice the same where it is exact, 0 or inf without a bound."""
     found: dict[str, Any] = search.summary["critical_fall_height"]
     of = f"{search.condition}, {search.position}"
     verdict, value = found["verdict"], found.get("height_m")
@@ -186,20 +188,23 @@ def _take_search(p: Protocol, search: Search, made: Outcome) -> tuple[float, boo
         elif limit < NO_LIMIT and verdict == "found":
             made.lines.append(Line(of, labels[one["criterion"]], math.nan if height is None else height, limit,
                                    note="" if height else f"{one['state']} up to {found['highest_simulated_m']:g} m"))
+    exceeded = float(found.get("exceeded_at_m") or math.inf)  # by a drop that cannot be used
     if verdict == "found":
-        return first.value, True
+        return first.value, first.value
     if verdict.startswith("above"):
-        return float(found["highest_simulated_m"]), False  # of a drop that can be used
+        if exceeded < math.inf:
+            first.note += f"; a drop from {exceeded:.3g} m exceeds a limit, though its figures cannot be used"
+        return float(found["highest_simulated_m"]), exceeded  # of a drop that can be used
     if verdict.startswith("below"):
-        return -float(found["lowest_simulated_m"] or found["exceeded_at_m"]), False
+        return 0.0, float(found["lowest_simulated_m"] or exceeded)
     made.notes.append(f"{of}: {found.get('problem') or verdict}")
-    return math.nan, False
+    return math.nan, math.nan
 
 
-def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome) -> tuple[float, bool]:
-    """Returns where a figure first reaches its limit: straight lines of its logarithm over that of the height, between the measured heights."""
+def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome) -> tuple[float, float]:
+    """Returns between which heights a figure first reaches its limit, as _take_search: straight lines of its logarithm over that of the height."""
     order = sorted(heights)
-    best: tuple[float, bool] = (order[-1], False)
+    best = (order[-1], math.inf)
     for figure in p.figures:
         if figure.limit is None:
             continue
@@ -209,19 +214,19 @@ def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome
         if bad is not None:
             made.lines.append(Line(of, figure.label, math.nan, figure.limit, None,
                                    note=f"{bad:g} m: {_unusable(heights[bad], _counted(p, heights[bad])) or f'there is no {figure.label}'}"))
-            return math.nan, False
+            return math.nan, math.nan
         k = next((k for k, value in enumerate(values) if value >= figure.limit), None)
         if k is None:
             made.lines.append(Line(of, figure.label, math.nan, figure.limit, note=f"not reached up to {order[-1]:g} m"))
         elif k == 0:
             made.lines.append(Line(of, figure.label, math.nan, figure.limit, note=f"exceeded at the lowest height, {order[0]:g} m"))
-            return -order[0], False
+            return 0.0, order[0]
         else:
             share = math.log(figure.limit / values[k - 1]) / math.log(values[k] / values[k - 1])
             height = order[k - 1] * (order[k] / order[k - 1]) ** share
             made.lines.append(Line(of, figure.label, height, figure.limit, note=f"between {order[k - 1]:g} and {order[k]:g} m"))
-            if not best[1] or height < best[0]:
-                best = (height, True)
+            if height < best[1]:
+                best = (height, height)
     return best
 
 

@@ -351,15 +351,16 @@ def test_a_search_shows_its_drops_beside_measured_ones(case, tmp_path):
     assert len(rows) == 1 + len(shown) + 1
 
 
-@pytest.mark.parametrize("verdict, deciding, said", [
-    ("above the highest point", None, "above 1.2 m"), ("below the lowest point", "HIC", "below 0.5 m"), ("below the lowest point", "anvil", "below 1.4 m"),
+@pytest.mark.parametrize("verdict, deciding, exceeded, said", [
+    ("above the highest point", None, None, "above 1.2 m"), ("above the highest point", None, 1.4, "between 1.2 and 1.4 m"),
+    ("below the lowest point", "HIC", 1.4, "below 0.5 m"), ("below the lowest point", "anvil", 1.4, "below 1.4 m"),
 ])
-def test_a_bound_of_a_search_is_that_of_drops_that_can_be_used(verdict, deciding, said):
-    """A drop that failed at 2 m bounds nothing."""
+def test_a_bound_of_a_search_is_that_of_drops_that_can_be_used(verdict, deciding, exceeded, said):
+    """A drop that failed at 2 m bounds nothing; one that exceeds a limit for sure bounds from above, though it has no figures."""
     p = protocol.read("en1177")
     lowest = None if deciding == "anvil" else 0.5
     found = {"verdict": verdict, "deciding": deciding, "height_m": None, "height_low_m": None, "height_high_m": None, "lowest_simulated_m": lowest,
-             "highest_simulated_m": 1.2, "exceeded_at_m": 1.4}
+             "highest_simulated_m": 1.2, "exceeded_at_m": exceeded}
     criteria = [{"criterion": "a_max", "limit_g": 200, "height_m": None, "state": "not reached"}, {"criterion": "HIC", "limit": 1000, "height_m": None, "state": "not reached"}]
     points = [{"height_m": h} for h in (0.4, 0.5, 1.2, 2.0)]
     search = protocol_drops.Search("as it is", "centre", pathlib.Path(), {"critical_fall_height": found, "criteria": criteria, "points": points})
