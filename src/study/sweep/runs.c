@@ -143,6 +143,31 @@ double sf_runs_value(const sf_runs *r, int64_t row, int figure) {
     return sf_runs_usable(r, row) ? sf_runs_place(r, row)[r->column[figure]] : NAN;
 }
 
+const char *const sf_runs_refined[SF_REFINED] = {"a_max_g", "hic", "max_indentation_mm", "v_rebound_m_s"};
+
+sf_runs_pair sf_runs_refine(const sf_runs *r, int64_t row) {
+    const bool own = sf_runs_usable(r, row), both = own && r->coarse && sf_runs_usable(r->coarse, row);
+    const sf_runs *bad = own ? r->coarse : r;
+    const size_t cells = sf_runs_figure("cells");
+    sf_runs_pair pair = {.note = ""};
+    if (!both)
+        snprintf(pair.note, sizeof pair.note, "%s drop: %s", own ? "its coarse" : "its",
+                 bad && bad->message[row] ? bad->message[row] : "not simulated");
+    for (int k = 0; k < SF_REFINED; k++) {
+        const size_t at = sf_runs_figure(sf_runs_refined[k]);
+        sf_error err = SF_ERROR_INIT;
+        pair.figure[k] = (sf_refined){NAN, NAN};
+        if (!both)
+            continue;
+        const double *fine = sf_runs_place(r, row), *coarse = sf_runs_place(r->coarse, row);
+        if (sf_figure_refine(fine[at], coarse[at], SF_SWEEP_RATIO, fine[cells] / coarse[cells],
+                             &pair.figure[k], &err) != SF_OK)
+            sf_text_add(pair.note, sizeof pair.note, "%s%s: %s", *pair.note ? "; " : "", sf_runs_refined[k],
+                        err.text);
+    }
+    return pair;
+}
+
 /* ---- runs.csv ---- */
 
 static void put_heading(sf_csv *csv, const sf_runs *r) {
@@ -154,6 +179,10 @@ static void put_heading(sf_csv *csv, const sf_runs *r) {
     sf_figure_csv_keys(csv);
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
         sf_csv_print(csv, "%s_low,%s_high", r->plan->figure[k].figure, r->plan->figure[k].figure);
+    for (int k = 0; k < SF_REFINED && r->plan->refine; k++)
+        sf_csv_print(csv, "%s_refined,%s_refined_error", sf_runs_refined[k], sf_runs_refined[k]);
+    if (r->plan->refine)
+        sf_csv_print(csv, "refined_note");
     sf_csv_end(csv);
 }
 
@@ -171,6 +200,13 @@ static void put_interval(sf_csv *csv, const sf_runs *r, int64_t row, int figure)
     SF_CSV_NUMBERS(csv, value * exp(-half), value * exp(half));
 }
 
+static void put_pair(sf_csv *csv, const sf_runs *r, int64_t row) {
+    const sf_runs_pair pair = sf_runs_refine(r, row);
+    for (int k = 0; k < SF_REFINED; k++)
+        SF_CSV_NUMBERS(csv, pair.figure[k].value, pair.figure[k].error);
+    sf_csv_text(csv, pair.note);
+}
+
 static void put_row(sf_csv *csv, const sf_runs *r, int64_t row) {
     char text[SF_SWEEP_OVERRIDE_SIZE];
     sf_csv_print(csv, "%lld", (long long)row + 1);
@@ -185,6 +221,8 @@ static void put_row(sf_csv *csv, const sf_runs *r, int64_t row) {
         put_figure(csv, r, &sf_figure_at[k], sf_runs_place(r, row)[k]);
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
         put_interval(csv, r, row, k);
+    if (r->plan->refine)
+        put_pair(csv, r, row);
     sf_csv_end(csv);
 }
 

@@ -5,7 +5,7 @@
 #include "build_info.h"
 #include "report/chart.h"
 
-enum { LISTED = 50, CELLS_LISTED = 200 };
+enum { LISTED = 50, CELLS_LISTED = 200, PRINTED = 5 };
 
 static const char caution[] = "Figures of simulated drops: indicative, not a certification.";
 static const char *const sampling_words[] = {[SF_SAMPLING_RANDOM] = "random",
@@ -152,6 +152,20 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
     }
 }
 
+static void json_refined(sf_json *j, const sf_runs *runs) {
+    SF_JSON_ARRAY(j, "refined");
+    for (int64_t row = 0; row < runs->count; row++) {
+        const sf_runs_pair pair = sf_runs_refine(runs, row);
+        SF_JSON_OBJECT(j, NULL);
+        sf_json_integer(j, "id", row + 1);
+        for (int k = 0; k < SF_REFINED; k++) {
+            SF_JSON_OBJECT(j, sf_runs_refined[k]);
+            SF_JSON_NUMBERS(j, {"value", pair.figure[k].value}, {"error", pair.figure[k].error});
+        }
+        sf_json_text(j, "note", *pair.note ? pair.note : NULL);
+    }
+}
+
 sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
     FILE *file = sf_staging_open(output, "sweep.json", err);
     const sf_analysis *a = r->analysis;
@@ -166,6 +180,8 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     if (r->coarse > 0)
         sf_json_number(&j, "coarse_drops", (double)r->coarse);
     json_factors(&j, r->plan);
+    if (r->plan->refine)
+        json_refined(&j, r->runs);
     sf_sweep_views_json(&j, r->views);
     sf_json_open(&j, "figures", '[');
     for (int k = 0; k < r->plan->figure_count; k++) {
@@ -262,6 +278,28 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
                      "tell the coarse figures of the other rows within half of the accuracy, which is part "
                      "of the interval. The table is coarse/runs.csv.",
                      (long long)r->coarse);
+}
+
+static void put_refined(FILE *page, const sf_runs *runs) {
+    if (!runs->plan->refine)
+        return;
+    sf_html_heading(page, "Figures for ever finer meshes");
+    sf_html_table t = sf_html_table_begin(
+        page, "dense", ">id|>a_max (g)|>HIC|>indentation (mm)|>rebound speed (m/s)|no value because");
+    for (int64_t row = 0; row < runs->count && row < CELLS_LISTED; row++) {
+        const sf_runs_pair pair = sf_runs_refine(runs, row);
+        sf_html_row(&t);
+        sf_html_cell(&t, "%lld", (long long)row + 1);
+        for (int k = 0; k < SF_REFINED; k++)
+            sf_html_cell(&t, isnan(pair.figure[k].value) ? "–" : "%.4g ± %.2g", pair.figure[k].value,
+                         pair.figure[k].error);
+        sf_html_cell(&t, "%s", pair.note);
+    }
+    sf_html_table_end(&t);
+    sf_html_note(page,
+                 "Extrapolated from the drop of a row and one with %d times its spacings%s. All else in this "
+                 "report is of the rows as they are, with the error of their meshes.",
+                 SF_SWEEP_RATIO, runs->count > CELLS_LISTED ? "; runs.csv has the other rows" : "");
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
@@ -466,6 +504,7 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
     put_tiles(page, r);
     put_factors(page, r->plan, r->series);
     put_predictions(page, r);
+    put_refined(page, r->runs);
     put_pictures(page, output);
     put_probability(page, r);
     put_effects(page, r);
@@ -478,6 +517,15 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
 
 /* ---- terminal ---- */
 
+static void print_refined(FILE *out, const sf_runs *runs, int64_t row) {
+    const sf_runs_pair pair = sf_runs_refine(runs, row);
+    fprintf(out, "  run %lld for ever finer meshes:", (long long)row + 1);
+    for (int k = 0; k < SF_REFINED; k++)
+        if (!isnan(pair.figure[k].value))
+            fprintf(out, " %s %.4g +- %.2g;", sf_runs_refined[k], pair.figure[k].value, pair.figure[k].error);
+    fprintf(out, " %s\n", *pair.note ? pair.note : "all figures");
+}
+
 void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
     fprintf(out, "%lld runs: %lld done, %lld failed, %lld open; the figures of %lld are not to be used\n",
@@ -487,8 +535,10 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     for (int k = 0; k < r->plan->figure_count && a->predicted > 0; k++)
         fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n", a->predicted,
                 r->plan->figure[k].figure, 100 * a->widest[k], 100 * r->plan->figure[k].accuracy);
+    for (int64_t row = 0; r->plan->refine && row < r->runs->count && row < PRINTED; row++)
+        print_refined(out, r->runs, row);
     int listed = 0;
-    for (long long row = 0; row < r->runs->count && listed < 5; row++)
+    for (long long row = 0; row < r->runs->count && listed < PRINTED; row++)
         if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)
             fprintf(out, "  run %lld failed: %s\n", row + 1, r->runs->message[row]);
     if (a->failed > listed)
