@@ -581,8 +581,7 @@ sf_status sf_figure_refine(double fine, double coarse, double ratio, double cell
                                                                           : NULL;
     *refined = (sf_refined){NAN, NAN};
     if (cause)
-        return SF_REFUSE(err, "%.4g, and %.4g with %g times the spacing and %.3g times fewer cells: %s", fine,
-                         coarse, ratio, cells, cause);
+        return SF_REFUSE(err, "%.4g, and %.4g with %g times the spacing: %s", fine, coarse, ratio, cause);
     *refined = (sf_refined){fine + correction, fmax(fabs(correction), LEAST_ERROR * fabs(fine))};
     return SF_OK;
 }
