@@ -128,7 +128,7 @@ static sf_status estimate(const sf_study *study, const job *j, level *l, sf_erro
     SF_TRY(sf_runs_create(&l->plan, &l->runs, err));
     SF_TRY(sf_sweep_campaign_status(&l->campaign, &l->runs, &open, err));
     SF_TRY(sf_sweep_cost_estimate(&l->runs, open, l->campaign.drops, &cost, err));
-    if (l->plan.doubled && isnan(cost.seconds))
+    if (l == &j->coarse && j->fine.plan.refine && isnan(cost.seconds))
         return SF_REFUSE(err, "refine: with %d times its spacings %s", SF_SWEEP_RATIO, cost.basis);
     sf_sweep_cost_print(stdout, &cost, elsewhere ? 0 : study->jobs);
     if (sf_plan_is_adaptive(&l->plan)) {

@@ -38,11 +38,8 @@ static void put_terms(const sf_quadratic *s, const double *x, double *term) {
 /* Range of a number, and whether it has three values. */
 static void measure(sf_quadratic *s, int i, int64_t n, const double *x) {
     int stride = s->d + s->offsets;
-    double low = x[i], high = x[i];
-    for (int64_t k = 0; k < n; k++) {
-        low = fmin(low, x[k * stride + i]);
-        high = fmax(high, x[k * stride + i]);
-    }
+    double low, high;
+    gsl_stats_minmax(&low, &high, x + i, (size_t)stride, (size_t)n);
     s->centre[i] = 0.5 * (low + high);
     s->half[i] = high > low ? 0.5 * (high - low) : 1;
     for (int64_t k = 0; k < n; k++)

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/plan.h"
 
+#include "base/hash.h"
 #include "io/plain_file.h"
+#include "pre/mesh/geo_parameters.h"
 #include "study/fit/posterior/mixture.h"
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_randist.h>
+#include <gsl/gsl_statistics.h>
 
 enum { MOST_SAMPLES = 100000000 };
 static const double COARSE_PART = 0.5; /* of the accuracies: their error is a part of that of the rows */
@@ -324,6 +327,29 @@ static sf_status read_set(const sf_config *config, const char *name, sf_plan *p,
     return SF_OK;
 }
 
+/* Reads `refine`, and appends what it changes in the coarse drops: the spacings, and the largest expected
+ * error of a_max, that of two spacings across the thickness (SF_MESH_ERROR_THICKNESS). */
+static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, sf_error *err) {
+    static const char *const changes[] = {"geometry.spacing_factor=2", "pad.mesh_error_limit=0.125"};
+    const config_setting_t *s = config_lookup(&config->config, "refine");
+    int method = 0;
+    if (!s)
+        return SF_OK;
+    SF_TRY(
+        sf_config_choice(config, config_root_setting(&config->config), "refine", "richardson", &method, err));
+    if (sf_plan_is_adaptive(p))
+        return sf_config_refuse(config, s, err,
+                                "refine: a row that is predicted has no mesh: leave out the accuracies");
+    if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES - 2)
+        return sf_config_refuse(config, s, err, "refine: set and the factors change more than %d keys",
+                                SF_RUNNER_OVERRIDES - 2);
+    p->refine = p->coarse = !coarse;
+    for (int k = 0; k < 2 && coarse; k++)
+        if (!(p->set[p->set_count++] = strdup(changes[k])))
+            return SF_NO_MEMORY(err, "the plan %s", p->path);
+    return SF_OK;
+}
+
 static sf_status add_figure(const sf_config *config, const config_setting_t *s, const char *key, double limit,
                             double accuracy, sf_plan *p, sf_error *err) {
     const sf_figure *figure = sf_figure_find(key);
@@ -368,39 +394,26 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
 static sf_status read_plan(const sf_config *config, bool huge, bool coarse, sf_plan *p, sf_error *err) {
     const config_setting_t *root = config_root_setting(&config->config);
     const char *title = NULL;
-    int method = 0;
     SF_TRY(sf_config_names(config, root, "case|title|set|coarse|refine|factors|figures", err));
     SF_TRY(sf_config_file(config, root, "case", true, &p->case_path, err));
     SF_TRY(sf_config_text(config, root, "title", false, &title, err));
     SF_TRY(read_factors(config, huge, p, err));
     SF_TRY(read_set(config, "set", p, err));
-    const config_setting_t *list = config_lookup(&config->config, "coarse"),
-                           *refine = config_lookup(&config->config, "refine");
-    if (coarse && !refine)
+    if (coarse)
         SF_TRY(read_set(config, "coarse", p, err));
     p->title = title ? strdup(title) : NULL;
     p->folder = strdup(config->folder);
     if (!p->folder)
         return SF_NO_MEMORY(err, "the plan %s", p->path);
     SF_TRY(read_figures(config, p, err));
-    p->coarse = (list || refine) && !coarse;
-    p->refine = refine && !coarse;
-    p->doubled = refine && coarse;
-    if (refine && sf_plan_is_adaptive(p))
-        return sf_config_refuse(
-            config, refine, err,
-            "refine: a row that is predicted has no mesh: leave out the accuracies, or refine");
-    if (refine && p->set_count + p->factor_count > SF_RUNNER_OVERRIDES - SF_SWEEP_DOUBLED)
-        return sf_config_refuse(config, refine, err, "refine: set and the factors change more than %d keys",
-                                SF_RUNNER_OVERRIDES - SF_SWEEP_DOUBLED);
-    if (refine)
-        SF_TRY(sf_config_choice(config, root, "refine", "richardson", &method, err));
+    const config_setting_t *list = config_lookup(&config->config, "coarse");
+    p->coarse = list && !coarse;
     if (list && !sf_plan_is_adaptive(p))
         return sf_config_refuse(
             config, list, err, "coarse drops are for plans that predict rows: give each figure its accuracy");
     for (int k = 0; coarse && k < p->figure_count; k++)
         p->figure[k].accuracy *= COARSE_PART;
-    return SF_OK;
+    return read_refine(config, coarse, p, err);
 }
 
 sf_status sf_plan_read(const char *path, bool huge, bool coarse, sf_plan *p, sf_error *err) {
@@ -417,4 +430,170 @@ void sf_plan_free(sf_plan *p) {
         free(p->set[k]);
     SF_FREE(p->folder, p->case_path, p->title);
     *p = (sf_plan){0};
+}
+
+/* ---- rows ---- */
+
+double sf_plan_value(const sf_plan *p, int factor, int64_t row) {
+    const sf_block *b = &p->block[p->block_of[factor]];
+    return p->factor[factor].value[row / b->stride % b->rows];
+}
+
+/* True if the overrides of this factor replace a whole group; they come first. */
+static bool is_group(const sf_factor *f) {
+    return f->words && f->text[0][0] == '@';
+}
+
+/* A file in place of a group is relative to the plan. */
+static void set_override(const sf_plan *p, int k, char *text) {
+    const char *set = p->set[k];
+    const char *file = sf_case_override_file(set);
+    if (file && *file != '/')
+        snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%.*s%s/%s", (int)(file - set), set, p->folder, file);
+    else
+        snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%s", set);
+}
+
+int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE]) {
+    int count = 0;
+    for (int groups = 1; groups >= 0; groups--) {
+        for (int f = 0; f < p->factor_count; f++)
+            if (is_group(&p->factor[f]) == groups)
+                sf_factor_override(&p->factor[f], sf_plan_value(p, f, row), text[count++],
+                                   SF_SWEEP_OVERRIDE_SIZE);
+        for (int k = 0; groups && k < p->set_count; k++)
+            set_override(p, k, text[count++]);
+    }
+    return count;
+}
+
+uint64_t sf_plan_hash(const sf_plan *p) {
+    uint64_t hash = sf_hash_bytes(SF_HASH_START, &p->rows, sizeof p->rows);
+    for (int k = 0; k < p->set_count; k++)
+        hash = sf_hash_bytes(hash, p->set[k], strlen(p->set[k]) + 1);
+    for (int f = 0; f < p->factor_count; f++) {
+        const sf_factor *factor = &p->factor[f];
+        const sf_block *b = &p->block[p->block_of[f]];
+        hash = sf_hash_bytes(hash, factor->key, strlen(factor->key) + 1);
+        hash = sf_hash_bytes(hash, factor->unit, strlen(factor->unit) + 1);
+        hash = sf_hash_bytes(hash, factor->name, strlen(factor->name) + 1);
+        hash = sf_hash_bytes(hash, &b->stride, sizeof b->stride);
+        hash = sf_hash_bytes(hash, factor->value, (size_t)b->rows * sizeof *factor->value);
+        for (int64_t k = 0; factor->words && k < factor->count; k++)
+            hash = sf_hash_bytes(hash, factor->label[k], strlen(factor->label[k]) + 1);
+    }
+    return hash;
+}
+
+bool sf_plan_is_adaptive(const sf_plan *p) {
+    return p->figure[0].accuracy > 0;
+}
+
+const sf_block *sf_plan_saltelli(const sf_plan *p) {
+    for (int k = 0; k < p->block_count; k++)
+        if (p->block[k].kind == SF_BLOCK_SAMPLE && p->block[k].method == SF_SAMPLING_SALTELLI)
+            return &p->block[k];
+    return NULL;
+}
+
+/* ---- inputs of the rows ---- */
+
+sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_error *err) {
+    char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
+    const char *list[SF_RUNNER_OVERRIDES];
+    int count = sf_plan_overrides(plan, row, text);
+    for (int k = 0; k < count; k++)
+        list[k] = text[k];
+    return sf_case_read(plan->case_path, count, list, NULL, c, err);
+}
+
+/* True if an entry of `set` alone gives this sentence. */
+static bool is_of_set(const sf_plan *p, const char *sentence) {
+    bool found = false;
+    for (int k = 0; k < p->set_count && !found; k++) {
+        char text[SF_SWEEP_OVERRIDE_SIZE];
+        const char *const list[] = {text};
+        SF_OWNED_BY(sf_case_free) sf_case c = {0};
+        sf_error err = SF_ERROR_INIT;
+        set_override(p, k, text);
+        sf_case_read(p->case_path, 1, list, NULL, &c, &err);
+        found = strcmp(err.text, sentence) == 0;
+    }
+    return found;
+}
+
+/* Enters the key of a row, which is 0 if its case is refused, into the hash. The sentence names the line of
+ * the factor, or of `set`. */
+static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64_t *hash, uint64_t *own,
+                       sf_error *err) {
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
+    sf_error inner = SF_ERROR_INIT;
+    *own = 0;
+    sf_sweep_read_case(p, row, &c, &inner);
+    for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
+        sf_geo_parameters_check_alone(sf_campaign_geometry(&c, k), &inner);
+    if (inner.status == SF_OK && c.drops > 1 && (sf_plan_is_adaptive(p) || p->refine))
+        SF_REFUSE(&inner, "series.drops = %g: only first drops are %s out", c.drops,
+                  p->refine ? "refined; leave `refine`" : "predicted; leave `accuracy`");
+    if (inner.status == SF_OK && p->refine && c.pad.spacing_factor != 1)
+        SF_REFUSE(&inner, "geometry.spacing_factor is that of the coarse drops of `refine`: leave it out");
+    if (inner.status == SF_OK)
+        sf_campaign_key(&c, own, &inner);
+    *hash = sf_hash_bytes(*hash, own, sizeof *own);
+    *hash = c.counted > 1 ? sf_hash_bytes(*hash, &c.counted, sizeof c.counted) : *hash;
+    if (inner.status == SF_OK)
+        return SF_OK;
+    return SF_FAIL(err, inner.status, "%s: %.900s", is_of_set(p, inner.text) ? p->set_where : f->where,
+                   inner.text);
+}
+
+/* Rows that the plan has: what stands beside a value in a zip or a sample belongs to it. All other blocks are
+ * at their first value. */
+static sf_status check_extremes(const sf_plan *p, int factor, uint64_t *hash, sf_error *err) {
+    const sf_factor *f = &p->factor[factor];
+    const sf_block *b = &p->block[p->block_of[factor]];
+    size_t least, greatest;
+    uint64_t key;
+    gsl_stats_minmax_index(&least, &greatest, f->value, 1, (size_t)b->rows);
+    SF_TRY(check(p, (int64_t)least * b->stride, f, hash, &key, err));
+    return check(p, (int64_t)greatest * b->stride, f, hash, &key, err);
+}
+
+static bool is_same_folder(const char *a, const char *b) {
+    size_t length = sf_path_folder_length(a);
+    return length == sf_path_folder_length(b) && strncmp(a, b, length) == 0;
+}
+
+/* The key of a run knows a geometry by its own text; what that merges lies beside it. */
+static sf_status refuse_double(const sf_factor *f, const uint64_t *key, int64_t k, sf_error *err) {
+    for (int64_t i = 0; i < k && strncmp(f->key, "geometry.", 9) == 0; i++)
+        if (key[i] == key[k] && !is_same_folder(f->text[i], f->text[k]))
+            return SF_REFUSE(err, "%s: %.300s and %.300s have " SF_CAMPAIGN_SAME_TEXT, f->where, f->label[i],
+                             f->label[k]);
+    return SF_OK;
+}
+
+static sf_status check_words(const sf_plan *p, int factor, uint64_t *hash, sf_error *err) {
+    const sf_factor *f = &p->factor[factor];
+    const sf_block *b = &p->block[p->block_of[factor]];
+    SF_OWNED uint64_t *key = sf_alloc(err, (unsigned long)f->count, sizeof *key, "keys");
+    for (int64_t k = 0; k < f->count && err->status == SF_OK; k++) {
+        int64_t row = 0;
+        while (row < b->rows && f->value[row] != (double)k)
+            row++;
+        if (row < b->rows && check(p, row * b->stride, f, hash, &key[k], err) == SF_OK) /* or never drawn */
+            refuse_double(f, key, k, err);
+    }
+    return err->status;
+}
+
+sf_status sf_sweep_check_inputs(const sf_plan *p, uint64_t *hash, sf_error *err) {
+    *hash = SF_HASH_START;
+    for (int f = 0; f < p->factor_count && err->status == SF_OK; f++) {
+        if (p->factor[f].words)
+            check_words(p, f, hash, err);
+        else
+            check_extremes(p, f, hash, err);
+    }
+    return err->status;
 }

@@ -93,8 +93,7 @@ sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index 
                      sf_error *err);
 
 enum {
-    SF_SWEEP_RATIO = 2,
-    SF_SWEEP_DOUBLED = 4, /* overrides of a row for that, at most */
+    SF_SWEEP_RATIO = 2, /* spacing of a coarse drop that refines a row over that of the row */
     SF_SWEEP_FACTORS = SF_RUNNER_OVERRIDES - 1,
     SF_SWEEP_FIGURES = 6,
     SF_SWEEP_OVERRIDE_SIZE = 4352,
@@ -131,7 +130,6 @@ typedef struct sf_plan {
     char set_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of their last list, for sentences */
     bool coarse; /* coarse drops are asked for, by which the rows are predicted or, if `refine`, refined */
     bool refine;
-    bool doubled; /* these are the drops that refine others: with SF_SWEEP_RATIO times the spacings */
     int factor_count, block_count;
     sf_factor factor[SF_SWEEP_FACTORS];
     int block_of[SF_SWEEP_FACTORS];
@@ -143,8 +141,8 @@ typedef struct sf_plan {
 
 /* Reads the plan and makes the values of all rows. `huge`: more than SF_SWEEP_ROWS rows are allowed.
  * `coarse`: the plan of its coarse drops, whose `set` ends with the overrides of the key `coarse` and whose
- * accuracies are half of those of the plan, or whose spacings are doubled. Every sentence of an error begins
- * with "file:line". Release with sf_plan_free, also on failure. */
+ * accuracies are half of those of the plan, or whose `set` ends with those of the key `refine`. Every
+ * sentence of an error begins with "file:line". Release with sf_plan_free, also on failure. */
 sf_status sf_plan_read(const char *path, bool huge, bool coarse, sf_plan *plan, sf_error *err);
 void sf_plan_free(sf_plan *plan);
 

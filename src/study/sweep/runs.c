@@ -143,18 +143,31 @@ double sf_runs_value(const sf_runs *r, int64_t row, int figure) {
     return sf_runs_usable(r, row) ? sf_runs_place(r, row)[r->column[figure]] : NAN;
 }
 
-const char *const sf_runs_refined[SF_REFINED] = {"a_max_g", "hic", "max_indentation_mm", "v_rebound_m_s"};
+/* ---- rows of two meshes ---- */
+
+#define REFINED(key, k, name, unit)                                                                          \
+    {key "_refined", name, unit, SF_ROW_OF(NUMBER, sf_runs_pair, figure[k].value)}, {                        \
+        key "_refined_error", "±", unit, "%.2g", SF_ROW_OF(NUMBER, sf_runs_pair, figure[k].error)            \
+    }
+static const sf_row pair_rows[] = {{"id", "run", SF_ROW_OF(COUNT, sf_runs_pair, id)},
+                                   REFINED("a_max_g", 0, "a_max", "g"),
+                                   REFINED("hic", 1, "HIC", NULL),
+                                   REFINED("max_indentation_mm", 2, "indentation", "mm"),
+                                   REFINED("v_rebound_m_s", 3, "rebound", "m/s"),
+                                   {"refined_note", "no value because", SF_ROW_OF(TEXT, sf_runs_pair, note)}};
+const sf_rows sf_runs_pair_rows = SF_ROWS(pair_rows);
 
 sf_runs_pair sf_runs_refine(const sf_runs *r, int64_t row) {
+    static const char *const keys[SF_REFINED] = {"a_max_g", "hic", "max_indentation_mm", "v_rebound_m_s"};
     const bool own = sf_runs_usable(r, row), both = own && r->coarse && sf_runs_usable(r->coarse, row);
     const sf_runs *bad = own ? r->coarse : r;
     const size_t cells = sf_runs_figure("cells");
-    sf_runs_pair pair = {.note = ""};
+    sf_runs_pair pair = {.id = row + 1};
     if (!both)
         snprintf(pair.note, sizeof pair.note, "%s drop: %s", own ? "its coarse" : "its",
                  bad && bad->message[row] ? bad->message[row] : "not simulated");
     for (int k = 0; k < SF_REFINED; k++) {
-        const size_t at = sf_runs_figure(sf_runs_refined[k]);
+        const size_t at = sf_runs_figure(keys[k]);
         sf_error err = SF_ERROR_INIT;
         pair.figure[k] = (sf_refined){NAN, NAN};
         if (!both)
@@ -162,8 +175,7 @@ sf_runs_pair sf_runs_refine(const sf_runs *r, int64_t row) {
         const double *fine = sf_runs_place(r, row), *coarse = sf_runs_place(r->coarse, row);
         if (sf_figure_refine(fine[at], coarse[at], SF_SWEEP_RATIO, fine[cells] / coarse[cells],
                              &pair.figure[k], &err) != SF_OK)
-            sf_text_add(pair.note, sizeof pair.note, "%s%s: %s", *pair.note ? "; " : "", sf_runs_refined[k],
-                        err.text);
+            sf_text_add(pair.note, sizeof pair.note, "%s%s: %s", *pair.note ? "; " : "", keys[k], err.text);
     }
     return pair;
 }
@@ -179,10 +191,8 @@ static void put_heading(sf_csv *csv, const sf_runs *r) {
     sf_figure_csv_keys(csv);
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
         sf_csv_print(csv, "%s_low,%s_high", r->plan->figure[k].figure, r->plan->figure[k].figure);
-    for (int k = 0; k < SF_REFINED && r->plan->refine; k++)
-        sf_csv_print(csv, "%s_refined,%s_refined_error", sf_runs_refined[k], sf_runs_refined[k]);
-    if (r->plan->refine)
-        sf_csv_print(csv, "refined_note");
+    for (size_t k = 1; k < sf_runs_pair_rows.count && r->plan->refine; k++)
+        sf_csv_print(csv, "%s", pair_rows[k].key);
     sf_csv_end(csv);
 }
 

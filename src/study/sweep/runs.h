@@ -63,12 +63,13 @@ double sf_runs_value(const sf_runs *runs, int64_t row, int figure);
 /* The figures of a row that its coarse drop refines; NaN where there is no value, `note` then says why. */
 enum { SF_REFINED = 4 };
 typedef struct sf_runs_pair {
+    int64_t id;
     sf_refined figure[SF_REFINED];
     char note[1024];
 } sf_runs_pair;
 
-extern const char *const sf_runs_refined[SF_REFINED]; /* their keys */
 sf_runs_pair sf_runs_refine(const sf_runs *runs, int64_t row);
+extern const sf_rows sf_runs_pair_rows;
 
 /* True if the figures of the row can be used: done and not "do not use", or predicted. */
 bool sf_runs_usable(const sf_runs *runs, int64_t row);

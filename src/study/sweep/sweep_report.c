@@ -4,8 +4,9 @@
 #include "base/text.h"
 #include "build_info.h"
 #include "report/chart.h"
+#include <gsl/gsl_statistics.h>
 
-enum { LISTED = 50, CELLS_LISTED = 200, PRINTED = 5 };
+enum { LISTED = 50, CELLS_LISTED = 200 };
 
 static const char caution[] = "Figures of simulated drops: indicative, not a certification.";
 static const char *const sampling_words[] = {[SF_SAMPLING_RANDOM] = "random",
@@ -16,15 +17,12 @@ static const char *const sampling_words[] = {[SF_SAMPLING_RANDOM] = "random",
 /* ---- factors in words ---- */
 
 static void list_text(const sf_factor *f, char *text, size_t size) {
-    double low = INFINITY, high = -INFINITY;
+    double low, high;
     if (f->words) {
         snprintf(text, size, "%lld %s", f->count, f->uncertain ? "draws" : "levels");
         return;
     }
-    for (int64_t k = 0; k < f->count; k++) {
-        low = fmin(low, f->number[k]);
-        high = fmax(high, f->number[k]);
-    }
+    gsl_stats_minmax(&low, &high, f->number, 1, (size_t)f->count);
     snprintf(text, size, "%lld values, %.6g to %.6g %s", f->count, low, high, f->unit);
 }
 
@@ -157,12 +155,7 @@ static void json_refined(sf_json *j, const sf_runs *runs) {
     for (int64_t row = 0; row < runs->count; row++) {
         const sf_runs_pair pair = sf_runs_refine(runs, row);
         SF_JSON_OBJECT(j, NULL);
-        sf_json_integer(j, "id", row + 1);
-        for (int k = 0; k < SF_REFINED; k++) {
-            SF_JSON_OBJECT(j, sf_runs_refined[k]);
-            SF_JSON_NUMBERS(j, {"value", pair.figure[k].value}, {"error", pair.figure[k].error});
-        }
-        sf_json_text(j, "note", *pair.note ? pair.note : NULL);
+        sf_rows_json(j, sf_runs_pair_rows, &pair);
     }
 }
 
@@ -280,26 +273,23 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
                      (long long)r->coarse);
 }
 
+/* Refines the first rows, for a table; `pair` [LISTED]. */
+static sf_records list_pairs(const sf_runs *runs, sf_runs_pair *pair) {
+    int64_t count = 0;
+    for (; count < runs->count && count < LISTED; count++)
+        pair[count] = sf_runs_refine(runs, count);
+    return (sf_records){pair, sizeof *pair, count};
+}
+
 static void put_refined(FILE *page, const sf_runs *runs) {
-    if (!runs->plan->refine)
-        return;
+    sf_runs_pair pair[LISTED];
     sf_html_heading(page, "Figures for ever finer meshes");
-    sf_html_table t = sf_html_table_begin(
-        page, "dense", ">id|>a_max (g)|>HIC|>indentation (mm)|>rebound speed (m/s)|no value because");
-    for (int64_t row = 0; row < runs->count && row < CELLS_LISTED; row++) {
-        const sf_runs_pair pair = sf_runs_refine(runs, row);
-        sf_html_row(&t);
-        sf_html_cell(&t, "%lld", (long long)row + 1);
-        for (int k = 0; k < SF_REFINED; k++)
-            sf_html_cell(&t, isnan(pair.figure[k].value) ? "–" : "%.4g ± %.2g", pair.figure[k].value,
-                         pair.figure[k].error);
-        sf_html_cell(&t, "%s", pair.note);
-    }
-    sf_html_table_end(&t);
-    sf_html_note(page,
-                 "Extrapolated from the drop of a row and one with %d times its spacings%s. All else in this "
-                 "report is of the rows as they are, with the error of their meshes.",
-                 SF_SWEEP_RATIO, runs->count > CELLS_LISTED ? "; runs.csv has the other rows" : "");
+    sf_rows_html_table(page, "dense", sf_runs_pair_rows, list_pairs(runs, pair));
+    sf_html_note(
+        page,
+        "Extrapolated from the drop of a row and one with %d times its spacings; runs.csv has all rows. All "
+        "else in this report is of the rows as they are, with the error of their meshes.",
+        SF_SWEEP_RATIO);
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
@@ -504,7 +494,8 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
     put_tiles(page, r);
     put_factors(page, r->plan, r->series);
     put_predictions(page, r);
-    put_refined(page, r->runs);
+    if (r->plan->refine)
+        put_refined(page, r->runs);
     put_pictures(page, output);
     put_probability(page, r);
     put_effects(page, r);
@@ -517,15 +508,6 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
 
 /* ---- terminal ---- */
 
-static void print_refined(FILE *out, const sf_runs *runs, int64_t row) {
-    const sf_runs_pair pair = sf_runs_refine(runs, row);
-    fprintf(out, "  run %lld for ever finer meshes:", (long long)row + 1);
-    for (int k = 0; k < SF_REFINED; k++)
-        if (!isnan(pair.figure[k].value))
-            fprintf(out, " %s %.4g +- %.2g;", sf_runs_refined[k], pair.figure[k].value, pair.figure[k].error);
-    fprintf(out, " %s\n", *pair.note ? pair.note : "all figures");
-}
-
 void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
     fprintf(out, "%lld runs: %lld done, %lld failed, %lld open; the figures of %lld are not to be used\n",
@@ -535,10 +517,11 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     for (int k = 0; k < r->plan->figure_count && a->predicted > 0; k++)
         fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n", a->predicted,
                 r->plan->figure[k].figure, 100 * a->widest[k], 100 * r->plan->figure[k].accuracy);
-    for (int64_t row = 0; r->plan->refine && row < r->runs->count && row < PRINTED; row++)
-        print_refined(out, r->runs, row);
+    sf_runs_pair pair[LISTED];
+    if (r->plan->refine)
+        sf_rows_text_table(out, sf_runs_pair_rows, list_pairs(r->runs, pair));
     int listed = 0;
-    for (long long row = 0; row < r->runs->count && listed < PRINTED; row++)
+    for (long long row = 0; row < r->runs->count && listed < 5; row++)
         if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)
             fprintf(out, "  run %lld failed: %s\n", row + 1, r->runs->message[row]);
     if (a->failed > listed)
