@@ -20,10 +20,9 @@ int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
 }
 
 static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
-    gsl_rng *rng = sf_random(seed, err);
+    SF_RANDOM *rng = sf_random(seed, err);
     for (int i = 0; rng && i < d; i++)
         shift[i] = gsl_rng_uniform_pos(rng);
-    gsl_rng_free(rng);
     return err->status;
 }
 
@@ -82,12 +81,11 @@ sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, dou
         return sobol(d, count, seed, u, err);
     if (method == SF_SAMPLING_SALTELLI)
         return saltelli(d, count, seed, u, err);
-    gsl_rng *rng = sf_random(seed, err);
+    SF_RANDOM *rng = sf_random(seed, err);
     if (rng && method == SF_SAMPLING_LATIN)
         latin(rng, d, count, u, err);
     for (int64_t k = 0; rng && method != SF_SAMPLING_LATIN && k < count * d; k++)
         u[k] = gsl_rng_uniform_pos(rng);
-    gsl_rng_free(rng);
     return err->status;
 }
 
