@@ -144,8 +144,8 @@ static void assert_note(const sf_runs *r, int64_t row, int values, const char *w
     const sf_runs_pair pair = sf_runs_refine(r, row);
     int count = 0;
     for (int k = 0; k < SF_REFINED; k++) {
-        assert_int_equal(isnan(pair.figure[k].value), isnan(pair.figure[k].error));
-        count += !isnan(pair.figure[k].value);
+        assert_int_equal(isnan(pair.figure[k][0]), isnan(pair.figure[k][1]));
+        count += !isnan(pair.figure[k][0]);
     }
     if (count != values || !strstr(pair.note, words))
         fail_msg("%d values: %s", count, pair.note);
@@ -174,8 +174,8 @@ static void pairs_that_tell_no_value_have_a_note(void **state) {
     assert_note(&fine, 3, 0, "its coarse drop: the missile reached the anvil");
     assert_note(&fine, 4, 0, "with 2 times the spacing: parts of the mesh are no coarser");
     assert_note(&fine, 5, 2, "hic: 500, and 400 with 2 times the spacing: too far");
-    assert_true(fabs(sf_runs_refine(&fine, 0).figure[0].value - 100 - 2 / (pow(2, 1.3) - 1)) < 1e-9);
-    assert_true(fabs(sf_runs_refine(&fine, 0).figure[2].error - 0.15) < 1e-9); /* equal by chance */
+    assert_true(fabs(sf_runs_refine(&fine, 0).figure[0][0] - 100 - 2 / (pow(2, 1.3) - 1)) < 1e-9);
+    assert_true(fabs(sf_runs_refine(&fine, 0).figure[2][1] - 0.15) < 1e-9); /* equal by chance */
     sf_runs_free(&fine);
     sf_runs_free(&coarse);
 }

@@ -91,9 +91,9 @@ def cfc(time: Any, value: Any, channel_class: float, out: Any) -> None:
 
 def refine(fine: float, coarse: float, ratio: float, cells: float) -> tuple[float, float]:
     """softfall_refine: value and error at ever finer meshes."""
-    value, error = c.c_double(), c.c_double()
-    _call("softfall_refine", c.c_double(fine), c.c_double(coarse), c.c_double(ratio), c.c_double(cells), c.byref(value), c.byref(error))
-    return value.value, error.value
+    refined = (c.c_double * 2)()
+    _call("softfall_refine", c.c_double(fine), c.c_double(coarse), c.c_double(ratio), c.c_double(cells), refined)
+    return refined[0], refined[1]
 
 
 class RecordParts(NamedTuple):

@@ -450,12 +450,9 @@ softfall_status softfall_cfc(const double *time, const double *value, int64_t co
     return softfall_return(&err, error);
 }
 
-softfall_status softfall_refine(double fine, double coarse, double ratio, double cells, double *value,
-                                double *value_error, softfall_error *error) {
+softfall_status softfall_refine(double fine, double coarse, double ratio, double cells, double refined[2],
+                                softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
-    sf_refined refined;
-    sf_figure_refine(fine, coarse, ratio, cells, &refined, &err);
-    *value = refined.value;
-    *value_error = refined.error;
+    sf_figure_refine(fine, coarse, ratio, cells, refined, &err);
     return softfall_return(&err, error);
 }

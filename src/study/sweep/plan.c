@@ -9,7 +9,7 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_statistics.h>
 
-enum { MOST_SAMPLES = 100000000 };
+enum { MOST_SAMPLES = 100000000, REFINE_CHANGES = 2 };
 static const double COARSE_PART = 0.5; /* of the accuracies: their error is a part of that of the rows */
 #define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"
 
@@ -305,12 +305,12 @@ static void key_of(const char *set, char *key, size_t size) {
 static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
     const config_setting_t *list = config_lookup(&config->config, name);
     int line = list ? (int)config_setting_source_line(list) : 0, first = p->set_count;
+    int most = SF_RUNNER_OVERRIDES - (config_lookup(&config->config, "refine") ? REFINE_CHANGES : 0);
     const char *file = sf_case_source_find(&config->source, line, &line);
     snprintf(p->set_where, sizeof p->set_where, "%.480s:%d", file, line);
     SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
-    if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES)
-        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name,
-                                SF_RUNNER_OVERRIDES);
+    if (p->set_count + p->factor_count > most)
+        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name, most);
     for (int k = first; k < p->set_count; k++) {
         const config_setting_t *s = config_setting_get_elem(list, (unsigned)(k - first));
         char key[SF_FACTOR_KEY_SIZE];
@@ -328,7 +328,8 @@ static sf_status read_set(const sf_config *config, const char *name, sf_plan *p,
 /* Reads `refine`, and appends what it changes in the coarse drops: the spacings, and the largest expected
  * error of a_max, that of two spacings across the thickness (SF_MESH_ERROR_THICKNESS). */
 static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, sf_error *err) {
-    static const char *const changes[] = {"geometry.spacing_factor=2", "pad.mesh_error_limit=0.125"};
+    static const char *const changes[REFINE_CHANGES] = {"geometry.spacing_factor=2",
+                                                        "pad.mesh_error_limit=0.125"};
     const config_setting_t *s = config_lookup(&config->config, "refine");
     int method = 0;
     if (!s)
@@ -338,11 +339,8 @@ static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, s
     if (sf_plan_is_adaptive(p))
         return sf_config_refuse(config, s, err,
                                 "refine: a row that is predicted has no mesh: leave out the accuracies");
-    if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES - 2)
-        return sf_config_refuse(config, s, err, "refine: set and the factors change more than %d keys",
-                                SF_RUNNER_OVERRIDES - 2);
     p->refine = p->coarse = !coarse;
-    for (int k = 0; k < 2 && coarse; k++)
+    for (int k = 0; k < REFINE_CHANGES && coarse; k++)
         if (!(p->set[p->set_count++] = strdup(changes[k])))
             return SF_NO_MEMORY(err, "the plan %s", p->path);
     return SF_OK;

@@ -146,8 +146,8 @@ double sf_runs_value(const sf_runs *r, int64_t row, int figure) {
 /* ---- rows of two meshes ---- */
 
 #define REFINED(key, k, name, unit)                                                                          \
-    {key "_refined", name, unit, SF_ROW_OF(NUMBER, sf_runs_pair, figure[k].value)}, {                        \
-        key "_refined_error", "±", unit, "%.2g", SF_ROW_OF(NUMBER, sf_runs_pair, figure[k].error)            \
+    {key "_refined", name, unit, SF_ROW_OF(NUMBER, sf_runs_pair, figure[k][0])}, {                           \
+        key "_refined_error", "±", unit, "%.2g", SF_ROW_OF(NUMBER, sf_runs_pair, figure[k][1])               \
     }
 static const sf_row pair_rows[] = {{"id", "run", SF_ROW_OF(COUNT, sf_runs_pair, id)},
                                    REFINED("a_max_g", 0, "a_max", "g"),
@@ -169,12 +169,12 @@ sf_runs_pair sf_runs_refine(const sf_runs *r, int64_t row) {
     for (int k = 0; k < SF_REFINED; k++) {
         const size_t at = sf_runs_figure(keys[k]);
         sf_error err = SF_ERROR_INIT;
-        pair.figure[k] = (sf_refined){NAN, NAN};
+        pair.figure[k][0] = pair.figure[k][1] = NAN;
         if (!both)
             continue;
         const double *fine = sf_runs_place(r, row), *coarse = sf_runs_place(r->coarse, row);
         if (sf_figure_refine(fine[at], coarse[at], SF_SWEEP_RATIO, fine[cells] / coarse[cells],
-                             &pair.figure[k], &err) != SF_OK)
+                             pair.figure[k], &err) != SF_OK)
             sf_text_add(pair.note, sizeof pair.note, "%s%s: %s", *pair.note ? "; " : "", keys[k], err.text);
     }
     return pair;
@@ -213,7 +213,7 @@ static void put_interval(sf_csv *csv, const sf_runs *r, int64_t row, int figure)
 static void put_pair(sf_csv *csv, const sf_runs *r, int64_t row) {
     const sf_runs_pair pair = sf_runs_refine(r, row);
     for (int k = 0; k < SF_REFINED; k++)
-        SF_CSV_NUMBERS(csv, pair.figure[k].value, pair.figure[k].error);
+        sf_csv_numbers(csv, 2, pair.figure[k]);
     sf_csv_text(csv, pair.note);
 }
 

@@ -64,7 +64,7 @@ double sf_runs_value(const sf_runs *runs, int64_t row, int figure);
 enum { SF_REFINED = 4 };
 typedef struct sf_runs_pair {
     int64_t id;
-    sf_refined figure[SF_REFINED];
+    double figure[SF_REFINED][2]; /* and its error */
     char note[1024];
 } sf_runs_pair;
 
