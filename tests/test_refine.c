@@ -123,7 +123,7 @@ static void plans_that_cannot_be_refined_are_refused(void **state) {
         p, "sed 's/fine_spacing/fine/; s/outer_spacing/outer/; s|\"[^\"]*/pad.geo|\"own.geo|' case.cfg > "
            "own.cfg; sed 's/case.cfg/own.cfg/; s/^set.*//' plan.cfg > wrong.cfg");
     program_result r = program_run(p, "sweep", "wrong.cfg -o wrong --dry-run");
-    if (!strstr(r.err, "geometry.parameters gives no spacing to multiply"))
+    if (!strstr(r.err, "wrong.cfg:3: ") || !strstr(r.err, "geometry.parameters gives no spacing to multiply"))
         fail_msg("%s", r.err);
     assert_int_equal(program_shell(p, "test -e wrong").code, 1);
 }

@@ -303,9 +303,10 @@ static void key_of(const char *set, char *key, size_t size) {
 
 /* Appends the overrides of the list `name`, "set" or "coarse". */
 static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
-    const config_setting_t *list = config_lookup(&config->config, name);
-    int line = list ? (int)config_setting_source_line(list) : 0, first = p->set_count;
-    int most = SF_RUNNER_OVERRIDES - (config_lookup(&config->config, "refine") ? REFINE_CHANGES : 0);
+    const config_setting_t *list = config_lookup(&config->config, name),
+                           *refine = config_lookup(&config->config, "refine"), *place = list ? list : refine;
+    int line = place ? (int)config_setting_source_line(place) : 0, first = p->set_count;
+    int most = SF_RUNNER_OVERRIDES - (refine ? REFINE_CHANGES : 0);
     const char *file = sf_case_source_find(&config->source, line, &line);
     snprintf(p->set_where, sizeof p->set_where, "%.480s:%d", file, line);
     SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
