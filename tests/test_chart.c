@@ -68,7 +68,6 @@ static void every_kind_is_drawn(void **state) {
     begin(p, &output, &err);
     sf_chart *chart = make_chart(&err);
     assert_int_equal(sf_chart_write(chart, &output, warning, sizeof warning, &err), SF_OK);
-    sf_chart_free(chart);
     assert_string_equal(warning, "");
     char *svg = sf_chart_svg(&output, "all", "softfall-test", warning, sizeof warning);
     assert_string_equal(warning, "");
@@ -118,7 +117,6 @@ static void without_gnuplot_the_script_stays_and_a_warning_says_so(void **state)
     assert_int_equal(sf_chart_write(chart, &output, warning, sizeof warning, &err), SF_OK);
     setenv("PATH", path, 1);
     free(path);
-    sf_chart_free(chart);
     assert_non_null(strstr(warning, "all.png was not drawn, as gnuplot cannot be run"));
     assert_true(sf_staging_has(&output, "all.gp"));
     sf_staging_end(&output);
@@ -136,7 +134,6 @@ static void a_failure_before_is_returned_by_the_last_call(void **state) {
     sf_series_point(sf_chart_series(chart, (sf_series_style){.kind = SF_SERIES_LINE}, NULL), 0, 0);
     assert_int_equal(sf_chart_write(chart, &output, warning, sizeof warning, &err), SF_ERR_MEMORY);
     assert_false(sf_staging_has(&output, "all.gp"));
-    sf_chart_free(chart);
     sf_staging_end(&output);
 }
 

@@ -213,6 +213,11 @@ SOFTFALL_API softfall_status softfall_hic(const double *time, const double *dece
  * measured curve: at its own rate if that is uniform. `filtered` [count] belongs to the caller. */
 SOFTFALL_API softfall_status softfall_cfc(const double *time, const double *value, int64_t count,
                                           double filter, double *filtered, softfall_error *error);
+/* A figure at ever finer meshes and its error, `refined`, from those at a spacing and at `ratio` times it
+ * (docs/python.md, "Two meshes for one answer"). `cells`: the finer mesh's number of cells over the coarser
+ * one's; INFINITY: not known. SOFTFALL_INPUT, and NaN, where the pair tells no value; the sentence says why. */
+SOFTFALL_API softfall_status softfall_refine(double fine, double coarse, double ratio, double cells,
+                                             double refined[2], softfall_error *error);
 
 /* A measured record of one impact in a file of a laboratory, read, filtered and judged as softfall-post does
  * with

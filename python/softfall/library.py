@@ -89,6 +89,13 @@ def cfc(time: Any, value: Any, channel_class: float, out: Any) -> None:
     _call("softfall_cfc", _array(time), _array(value), c.c_int64(time.size), c.c_double(channel_class), _array(out))
 
 
+def refine(fine: float, coarse: float, ratio: float, cells: float) -> tuple[float, float]:
+    """softfall_refine: value and error at ever finer meshes."""
+    refined = (c.c_double * 2)()
+    _call("softfall_refine", c.c_double(fine), c.c_double(coarse), c.c_double(ratio), c.c_double(cells), refined)
+    return refined[0], refined[1]
+
+
 class RecordParts(NamedTuple):
     """What the library says of a measured record."""
 

@@ -5,15 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple, Sequence
 
+from . import library
 from .case import Case
 from .drop import Drop
 from .errors import InputError
 
-# Orders found over five spacings of the paper's drops are 1.1 to 1.9 (docs/verification.md, "Mesh study"). With 1.3 the values of pairs
-# 10 and 5 mm, and 6.67 and 3.33 mm, lie within half of the stated error of those of five spacings, a_max and HIC of all five drops.
-ORDER = 1.3
 SPACINGS = ("geometry.parameters.fine_spacing", "geometry.parameters.outer_spacing", "geometry.parameters.spacing")
-LEAST = 0.005  # of the value: a_max of a honeycomb differs by as much between meshes that seem to agree (docs/python.md)
 
 
 class Refined(NamedTuple):
@@ -33,14 +30,14 @@ class Refinement(dict[str, Refined]):
         self.fine, self.coarse = fine, coarse
 
 
-def extrapolate(fine: float, coarse: float, ratio: float = 2.0, order: float = ORDER) -> Refined:
-    """Returns the value at a spacing of zero from those at h and `ratio` h: Richardson's extrapolation.
+def extrapolate(fine: float, coarse: float, ratio: float = 2.0, cells: float = math.inf) -> Refined:
+    """Returns the value at a spacing of zero from those at h and `ratio` h, as softfall-sweep with `refine`. `cells`: the number of
+    cells at h over that at `ratio` h, if it is known. A pair that tells no value is an InputError.
 
     >>> extrapolate(95.274, 93.858)
     Refined(value=96.242..., error=0.968..., fine=95.274, coarse=93.858)
     """
-    correction = (fine - coarse) / (ratio**order - 1)
-    return Refined(fine + correction, max(abs(correction), LEAST * abs(fine)), fine, coarse)
+    return Refined(*library.refine(fine, coarse, ratio, cells), fine, coarse)
 
 
 def refine(case: Case, figures: Sequence[str] = ("a_max_g", "hic"), spacings: Sequence[str] = SPACINGS, ratio: float = 2.0,
@@ -64,7 +61,7 @@ def refine(case: Case, figures: Sequence[str] = ("a_max_g", "hic"), spacings: Se
         values = fine.figures[key], coarse.figures[key]
         if not all(isinstance(value, (int, float)) and math.isfinite(value) for value in values):
             raise InputError(f"{key} is not a number in both drops: {values[0]} and {values[1]}")
-        made[key] = extrapolate(*values, ratio)
+        made[key] = extrapolate(*values, ratio, fine.figures["cells"] / coarse.figures["cells"])
     for name, drop in (("finer", fine), ("coarser", coarse)):
         if drop.verdict == "do not use":
             raise InputError(f"the {name} drop is not to be used: {'; '.join(drop.verdict.remarks)}")

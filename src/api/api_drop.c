@@ -449,3 +449,10 @@ softfall_status softfall_cfc(const double *time, const double *value, int64_t co
             filtered[i] = sf_series_at(&made, time[i]);
     return softfall_return(&err, error);
 }
+
+softfall_status softfall_refine(double fine, double coarse, double ratio, double cells, double refined[2],
+                                softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_figure_refine(fine, coarse, ratio, cells, refined, &err);
+    return softfall_return(&err, error);
+}

@@ -28,6 +28,7 @@ typedef struct sf_geo_source {
     char *path; /* NULL: the missile is in the pad's file */
     int parameter_count;
     sf_geo_parameter parameter[SF_CASE_MAX_PARAMETERS];
+    double spacing_factor; /* -, for the parameters with "spacing" in their names; 0: none */
     double unit; /* m per unit that it has or is to have; 0: not known */
 } sf_geo_source;
 

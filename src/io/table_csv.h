@@ -73,6 +73,7 @@ typedef struct sf_table_layout {
     bool ragged;  /* a row may be shorter than the heading as long as it holds both columns */
     sf_table_check *check; /* NULL: none */
 } sf_table_layout;
+#define SF_TABLE_NAMES(array) .names = (array), .name_count = sizeof(array) / sizeof *(array)
 
 enum { SF_TABLE_INTERPRETATION = 384 };
 

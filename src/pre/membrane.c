@@ -17,14 +17,10 @@ static void add_face(const sf_mesh *mesh, const sf_layers *l, const sf_boundary_
 static sf_status add_group(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
                            const sf_node_set *set, uint8_t *taken, sf_model *m, sf_error *err) {
     int64_t before = m->membrane_count;
-    SF_OWNED uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "membrane");
-    for (int64_t k = 0; member && k < set->count; k++)
-        member[set->node[k]] = 1;
+    SF_OWNED uint8_t *member = sf_node_set_mark(mesh, set, err);
     for (int64_t f = 0; member && f < dual->face_count && err->status == SF_OK; f++) {
         const sf_boundary_face *face = &dual->face[f];
-        bool inside = true;
-        for (int k = 0; k < face->size; k++)
-            inside = inside && member[face->node[k]];
+        bool inside = sf_face_is_inside(face, member);
         if (inside && taken[f]++)
             SF_REFUSE(err, "membrane.faces: a face of the group \"%s\" is in another one, too", set->name);
         else if (inside)

@@ -128,6 +128,8 @@ static sf_status estimate(const sf_study *study, const job *j, level *l, sf_erro
     SF_TRY(sf_runs_create(&l->plan, &l->runs, err));
     SF_TRY(sf_sweep_campaign_status(&l->campaign, &l->runs, &open, err));
     SF_TRY(sf_sweep_cost_estimate(&l->runs, open, l->campaign.drops, &cost, err));
+    if (l == &j->coarse && j->fine.plan.refine && isnan(cost.seconds))
+        return SF_REFUSE(err, "refine: with %d times its spacings %s", SF_SWEEP_RATIO, cost.basis);
     sf_sweep_cost_print(stdout, &cost, elsewhere ? 0 : study->jobs);
     if (sf_plan_is_adaptive(&l->plan)) {
         int64_t first = sf_sweep_adaptive_design(&l->plan);
@@ -156,7 +158,7 @@ static sf_status estimate(const sf_study *study, const job *j, level *l, sf_erro
 static sf_status estimate_all(const sf_study *study, job *j, sf_error *err) {
     sf_sweep_print_table(stdout, &j->fine.plan, TABLE_ROWS);
     if (j->fine.plan.coarse) {
-        fputs("Coarse drops, from which the rows are predicted: ", stdout);
+        printf("Coarse drops, from which the rows are %s: ", j->fine.plan.refine ? "refined" : "predicted");
         SF_TRY(estimate(study, j, &j->coarse, err));
     }
     return estimate(study, j, &j->fine, err);
@@ -177,6 +179,7 @@ static sf_status run_level(const sf_study *study, level *l, const level *coarse,
     sf_sweep_chooser chooser;
     sf_runs_free(&l->runs);
     SF_TRY(sf_runs_create(&l->plan, &l->runs, err));
+    l->runs.coarse = coarse ? &coarse->runs : NULL;
     runner->engine.drop_seconds = l->drop_seconds;
     const sf_sweep_engine engine = sf_sweep_drops(runner, study->jobs);
     l->campaign.log = stdout;

@@ -75,7 +75,8 @@ typedef struct sf_panel {
 typedef struct sf_chart sf_chart;
 typedef struct sf_series_data sf_series_data;
 
-/* A chart of width x height pixels with the file name NAME; NULL: no memory. Release with sf_chart_free. */
+/* A chart of width x height pixels with the file name NAME; NULL: no memory. sf_chart_write releases it,
+ * or sf_chart_free. */
 sf_chart *sf_chart_new(const char *name, int width, int height, sf_error *err);
 void sf_chart_free(sf_chart *chart);
 
@@ -117,9 +118,9 @@ void sf_chart_mark(sf_chart *chart, sf_mark_kind kind, double x, double y, const
 #define sf_chart_spot(chart, x, y, ...) sf_chart_mark(chart, SF_MARK_SPOT, x, y, __VA_ARGS__)
 void sf_chart_band(sf_chart *chart, const double x[2], const double y[2], const char *colour, double opacity);
 
-/* Writes NAME.gp and draws NAME.png in the staging directory. If gnuplot is absent or fails, `warning` (size
- * bytes) says so in a sentence; otherwise it is "". */
-sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *warning, size_t size,
+/* Writes NAME.gp and draws NAME.png in the staging directory, and releases the chart. If gnuplot is absent or
+ * fails, `warning` (size bytes) says so in a sentence; otherwise it is "". */
+sf_status sf_chart_write(sf_chart *chart, const sf_staging *output, char *warning, size_t size,
                          sf_error *err);
 
 /* NAME as an SVG element that can stand in a page, after sf_chart_write. From malloc, owned by the caller;

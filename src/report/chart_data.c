@@ -268,13 +268,13 @@ void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, con
     sf_html_figure(page, svg, "%s.", svg ? caption : warning);
 }
 
-sf_status sf_chart_write(const sf_chart *chart, const sf_staging *output, char *warning, size_t size,
+sf_status sf_chart_write(sf_chart *chart, const sf_staging *output, char *warning, size_t size,
                          sf_error *err) {
     warning[0] = '\0';
-    if (!chart || sf_chart_script(chart, output, err) != SF_OK)
-        return err->status;
-    run(output, chart->name, "png", NULL, warning, size);
-    return SF_OK;
+    if (chart && sf_chart_script(chart, output, err) == SF_OK)
+        run(output, chart->name, "png", NULL, warning, size);
+    sf_chart_free(chart);
+    return err->status;
 }
 
 char *sf_chart_page(const sf_chart *chart, const sf_staging *output, const char *program, char *warning,

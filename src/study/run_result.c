@@ -29,6 +29,27 @@ static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runne
     return err->status;
 }
 
+static double figure_of(const double *figure, const char *key) {
+    return figure ? figure[sf_figure_find(key) - sf_figure_at] : NAN;
+}
+
+double sf_runner_figure(const sf_runner_result *result, const char *key) {
+    return figure_of(result->figure, key);
+}
+
+/* Sets the numbers that are figures, of which it takes the list; what has no figure is NaN. */
+static void take_numbers(double *f, sf_runner_result *out) {
+    out->a_max_g = figure_of(f, "a_max_g");
+    out->hic = figure_of(f, "hic");
+    out->v0 = figure_of(f, "v0_m_s");
+    out->v_rebound = figure_of(f, "v_rebound_m_s");
+    out->max_indentation = 1e-3 * figure_of(f, "max_indentation_mm");
+    out->energy_error = figure_of(f, "energy_error");
+    out->nodes = (int64_t)figure_of(f, "nodes");
+    out->steps = (int64_t)figure_of(f, "steps");
+    out->figure = f;
+}
+
 /* The end of every reading: the path, or nothing if anything failed. */
 static sf_status finish_result(const char *path, sf_runner_result *out, sf_error *err) {
     out->path = strdup(path);
@@ -58,45 +79,16 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
     if (sf_figures_compute(&r, 1000, &f, err) == SF_OK && !f.touched)
         SF_REFUSE(err, "the missile of %s never touched the pad", path);
     SF_TRY(err->status);
-    *out = (sf_runner_result){.a_max_g = f.injury.a_max_g,
-                              .hic = f.injury.hic.value,
-                              .hic_window = f.injury.hic.t2 - f.injury.hic.t1,
+    *out = (sf_runner_result){.hic_window = f.injury.hic.t2 - f.injury.hic.t1,
                               .contact_time = f.rebound_time - r.contact_time,
-                              .v0 = f.v0,
-                              .v_rebound = f.v_rebound,
-                              .max_indentation = f.max_indentation,
                               .max_local_strain = f.max_local_strain,
-                              .energy_error = f.energy_error,
-                              .nodes = r.node_count,
-                              .steps = r.steps,
                               .curve = f.filtered};
     judge(&r, &f, out);
     write_record(at, &r, &f, out);
     f.filtered = (sf_series){0};
-    if (take_layers(&r, &f, out, err) == SF_OK)
-        take_figures(&r, &f, out, err);
+    if (take_layers(&r, &f, out, err) == SF_OK && take_figures(&r, &f, out, err) == SF_OK)
+        take_numbers(out->figure, out);
     return finish_result(path, out, err);
-}
-
-static double figure_of(const double *figure, const char *key) {
-    return figure ? figure[sf_figure_find(key) - sf_figure_at] : NAN;
-}
-
-double sf_runner_figure(const sf_runner_result *result, const char *key) {
-    return figure_of(result->figure, key);
-}
-
-/* Sets the numbers that are figures, of which it takes the list; what has no figure is NaN. */
-static void take_numbers(double *f, sf_runner_result *out) {
-    out->a_max_g = figure_of(f, "a_max_g");
-    out->hic = figure_of(f, "hic");
-    out->v0 = figure_of(f, "v0_m_s");
-    out->v_rebound = figure_of(f, "v_rebound_m_s");
-    out->max_indentation = 1e-3 * figure_of(f, "max_indentation_mm");
-    out->energy_error = figure_of(f, "energy_error");
-    out->nodes = (int64_t)figure_of(f, "nodes");
-    out->steps = (int64_t)figure_of(f, "steps");
-    out->figure = f;
 }
 
 /* Reads one drop, of which `figures_only` are wanted: from its record, without the results, if there is one.

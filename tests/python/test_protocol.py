@@ -475,10 +475,16 @@ def test_pairs_of_the_mesh_study_are_within_half_of_the_stated_error():
     assert checked == 20
 
 
-def test_a_case_is_refined_by_its_two_drops(case, drop):
-    refined = softfall.refine(case, ratio=1.25)
-    assert refined["hic"].fine == drop.figures["hic"] and refined.coarse.figures["hic"] == refined["hic"].coarse
-    assert refined["hic"].value == pytest.approx(refined["hic"].fine + (refined["hic"].fine - refined["hic"].coarse) / (1.25**1.3 - 1))
+def test_a_case_is_refined_by_its_two_drops(case, slow):
+    refined = softfall.refine(slow)
+    assert refined.coarse.figures["hic"] == refined["hic"].coarse
+    assert refined["hic"].fine == slow.run().figures["hic"]
+    assert refined["hic"].value == pytest.approx(refined["hic"].fine + (refined["hic"].fine - refined["hic"].coarse) / (2**1.3 - 1))
+    case.update({"geometry.parameters.fine_spacing": 20.0, "geometry.parameters.outer_spacing": 20.0})
+    with pytest.raises(softfall.InputError, match="with 1.25 times the spacing: too far apart"):
+        softfall.refine(case, ratio=1.25)
+    with pytest.raises(softfall.InputError, match="with 2 times the spacing: parts of the mesh are no coarser"):
+        refinement.extrapolate(100, 98, cells=3)
     with pytest.raises(softfall.InputError, match="none of the spacings"):
         softfall.refine(case, spacings=["geometry.parameters.nothing"])
     with pytest.raises(softfall.InputError, match="ratio: 9"):

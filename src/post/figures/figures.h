@@ -191,3 +191,11 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
                                      sf_figures *figures, sf_error *err);
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *figures, sf_error *err);
 void sf_figures_free(sf_figures *figures);
+
+/* Extrapolates a figure from the spacings h and `ratio` h to zero (Richardson, order 1.3): `refined` receives
+ * the value and its error, which is the whole correction, at least 0.5 % of the figure. `cells`: their number
+ * at h over that at `ratio` h; INFINITY: not known. SF_ERR_INPUT, and NaN: a figure is no number, the mesh is
+ * not coarser in all directions, or the correction is above the 10 % of the figure up to which it was
+ * checked. */
+sf_status sf_figure_refine(double fine, double coarse, double ratio, double cells, double refined[2],
+                           sf_error *err);

@@ -297,9 +297,7 @@ static sf_status write_picture(const overlay *o, char *warning, size_t size, sf_
             if (s->time[i] >= contact - 2e-3)
                 sf_series_point(line, 1e3 * (s->time[i] - contact), s->value[i]);
     }
-    sf_chart_write(chart, &o->output, warning, size, err);
-    sf_chart_free(chart);
-    return err->status;
+    return sf_chart_write(chart, &o->output, warning, size, err);
 }
 
 static void put_table(FILE *page, const overlay *o) {

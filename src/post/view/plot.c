@@ -216,7 +216,5 @@ sf_status sf_plot_write(const sf_staging *output, const sf_results *results, con
         put_compression(chart, panel, &p);
     else if (panel)
         put_drop(chart, panel, &p);
-    sf_chart_write(chart, output, warning, size, err);
-    sf_chart_free(chart);
-    return err->status;
+    return sf_chart_write(chart, output, warning, size, err);
 }

@@ -209,15 +209,14 @@ static double length(const double a[3]) {
     return sqrt(sf_dot3(a, a));
 }
 
-/* [node_count] 1: in the set; owned by the caller. */
-static uint8_t *mark_members(const sf_mesh *mesh, const sf_node_set *set, sf_error *err) {
+uint8_t *sf_node_set_mark(const sf_mesh *mesh, const sf_node_set *set, sf_error *err) {
     uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "the nodes of a surface group");
     for (int64_t k = 0; member && k < set->count; k++)
         member[set->node[k]] = 1;
     return member;
 }
 
-static bool is_inside(const sf_boundary_face *face, const uint8_t *member) {
+bool sf_face_is_inside(const sf_boundary_face *face, const uint8_t *member) {
     bool inside = true;
     for (int k = 0; k < face->size; k++)
         inside = inside && member[face->node[k]];
@@ -226,12 +225,12 @@ static bool is_inside(const sf_boundary_face *face, const uint8_t *member) {
 
 sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, int layer,
                           double *area, sf_error *err) {
-    SF_OWNED uint8_t *member = mark_members(mesh, set, err);
+    SF_OWNED uint8_t *member = sf_node_set_mark(mesh, set, err);
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         const sf_boundary_face *face = &dual->face[f];
         if (layer != SF_ANY_LAYER && mesh->cell_layer[face->cell] != layer)
             continue;
-        for (int k = 0; is_inside(face, member) && k < face->size; k++) {
+        for (int k = 0; sf_face_is_inside(face, member) && k < face->size; k++) {
             sf_facet_triangle part[2];
             double weight[2][4];
             sf_dual_boundary(mesh, face, k, part, weight);
@@ -258,11 +257,11 @@ static void face_area(const sf_mesh *mesh, const sf_boundary_face *face, double 
 
 sf_status sf_surface_find_sides(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
                                 const double direction[3], sf_surface_sides *sides, sf_error *err) {
-    SF_OWNED uint8_t *member = mark_members(mesh, set, err);
+    SF_OWNED uint8_t *member = sf_node_set_mark(mesh, set, err);
     *sides = (sf_surface_sides){0};
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         double a[3];
-        if (!is_inside(&dual->face[f], member))
+        if (!sf_face_is_inside(&dual->face[f], member))
             continue;
         face_area(mesh, &dual->face[f], a);
         double along = sf_dot3(a, direction);

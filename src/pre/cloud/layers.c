@@ -249,15 +249,10 @@ sf_status sf_layers_area(const sf_mesh *mesh, const sf_dual *dual, const sf_laye
  * face of the surface in it; where there is no such face, all. */
 static sf_status mark_copies(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
                              const sf_node_set *set, uint8_t *mark, sf_error *err) {
-    SF_OWNED uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "a node set");
-    for (int64_t k = 0; member && k < set->count; k++)
-        member[set->node[k]] = 1;
+    SF_OWNED uint8_t *member = sf_node_set_mark(mesh, set, err);
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         const sf_boundary_face *face = &dual->face[f];
-        bool inside = true;
-        for (int k = 0; k < face->size; k++)
-            inside = inside && member[face->node[k]];
-        for (int k = 0; inside && k < face->size; k++)
+        for (int k = 0; sf_face_is_inside(face, member) && k < face->size; k++)
             mark[sf_layers_copy(l, face->node[k], layer_of(mesh, face->cell))] = 1;
     }
     for (int64_t k = 0; member && k < set->count; k++) {

@@ -216,8 +216,11 @@ static char *parameter_text(const sf_geo_source *source) {
     for (size_t k = 0; out && k < sizeof targets / sizeof *targets; k++)
         if (fabs(source->unit / targets[k].size - 1) < 1e-9)
             fprintf(out, "Geometry.OCCTargetUnit = \"%s\";\n", targets[k].name);
-    for (int k = 0; out && k < source->parameter_count; k++)
-        fprintf(out, "%s = %.17g;\n", source->parameter[k].name, source->parameter[k].value);
+    for (int k = 0; out && k < source->parameter_count; k++) {
+        const sf_geo_parameter *p = &source->parameter[k];
+        bool scaled = source->spacing_factor > 0 && strstr(p->name, "spacing");
+        fprintf(out, "%s = %.17g;\n", p->name, p->value * (scaled ? source->spacing_factor : 1));
+    }
     if (out)
         fclose(out);
     if (c) {

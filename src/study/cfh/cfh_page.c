@@ -148,9 +148,7 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *wa
         put_fit(chart, r, c);
         put_points(chart, r, c);
     }
-    sf_chart_write(chart, output, warning, size, err);
-    sf_chart_free(chart);
-    return err->status;
+    return sf_chart_write(chart, output, warning, size, err);
 }
 
 /* ---- the section about the interval ---- */

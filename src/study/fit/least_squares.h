@@ -5,16 +5,14 @@
 #include "base/error.h"
 #include <math.h>
 #include <gsl/gsl_matrix.h>
-#include <gsl/gsl_rng.h>
 
 /* Return zeros, or NULL without memory. */
 gsl_vector *sf_vector(size_t size, sf_error *err);
 gsl_matrix *sf_matrix(size_t rows, size_t columns, sf_error *err);
 
-/* `SF_VECTOR *x = sf_vector(3, err)` is released at the end of its block; so are a matrix and a generator. */
+/* `SF_VECTOR *x = sf_vector(3, err)` is released at the end of its block; so is a matrix. */
 #define SF_VECTOR SF_OWNED_BY(sf_release_vector) gsl_vector
 #define SF_MATRIX SF_OWNED_BY(sf_release_matrix) gsl_matrix
-#define SF_RANDOM SF_OWNED_BY(sf_release_random) gsl_rng
 
 static inline void sf_release_vector(gsl_vector **vector) {
     gsl_vector_free(*vector);
@@ -22,10 +20,6 @@ static inline void sf_release_vector(gsl_vector **vector) {
 
 static inline void sf_release_matrix(gsl_matrix **matrix) {
     gsl_matrix_free(*matrix);
-}
-
-static inline void sf_release_random(gsl_rng **random) {
-    gsl_rng_free(*random);
 }
 
 /* Deviations [count] at parameters; GSL_SUCCESS, or another code where there are none. */

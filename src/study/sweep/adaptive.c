@@ -5,6 +5,7 @@
 #include "study/predictor.h"
 #include "study/sweep/analysis.h"
 #include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics.h>
 
 enum {
     CHECKED_PART = 40, /* one row of so many is a check, within bounds */
@@ -75,11 +76,8 @@ typedef struct outlook {
 static void list_inputs(sf_sweep_adaptive *a) {
     const sf_plan *p = a->plan;
     for (int f = 0; f < p->factor_count; f++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t k = 0; k < p->block[p->block_of[f]].rows; k++) {
-            low = fmin(low, p->factor[f].value[k]);
-            high = fmax(high, p->factor[f].value[k]);
-        }
+        double low, high;
+        gsl_stats_minmax(&low, &high, p->factor[f].value, 1, (size_t)p->block[p->block_of[f]].rows);
         if (!(high > low))
             continue;
         a->word[a->factors] = p->factor[f].words;

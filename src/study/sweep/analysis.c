@@ -54,14 +54,13 @@ static void estimate(const sample *s, const int64_t *pick, double *out) {
 
 /* value [resamples][2 d] */
 static sf_status resample(const sample *s, uint64_t seed, int resamples, double *value, sf_error *err) {
-    gsl_rng *rng = sf_random(seed, err);
+    SF_RANDOM *rng = sf_random(seed, err);
     SF_OWNED int64_t *pick = sf_alloc(err, (unsigned long)s->used, sizeof *pick, "bootstrap samples");
     for (int r = 0; r < resamples && err->status == SF_OK; r++) {
         for (int64_t k = 0; k < s->used; k++)
             pick[k] = (int64_t)gsl_rng_uniform_int(rng, (unsigned long)s->used);
         estimate(s, pick, value + r * 2 * s->d);
     }
-    gsl_rng_free(rng);
     return err->status;
 }
 
@@ -180,13 +179,12 @@ static bool is_drawn(gsl_rng *random, int64_t wanted, int64_t left) {
 
 bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err) {
     int64_t picked = 0;
-    gsl_rng *random = sf_random(SURFACE_SEED, err);
+    SF_RANDOM *random = sf_random(SURFACE_SEED, err);
     bool *pick = sf_alloc(err, (unsigned long)count, sizeof *pick, "a picture");
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         pick[k] = picked < most && is_drawn(random, most - picked, count - k);
         picked += pick[k];
     }
-    gsl_rng_free(random);
     if (err->status == SF_OK)
         return pick;
     free(pick);
@@ -199,7 +197,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
                                    offsets = count_offsets(a->plan);
     s->of = count_values(a, figure);
     int64_t most = s->of < SF_SURFACE_ROWS ? s->of : SF_SURFACE_ROWS, left = s->of;
-    gsl_rng *random = sf_random(SURFACE_SEED, err);
+    SF_RANDOM *random = sf_random(SURFACE_SEED, err);
     SF_OWNED double *x =
         sf_alloc(err, (unsigned long)most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
     s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
@@ -216,7 +214,6 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     for (int i = 0; i < d && err->status == SF_OK; i++)
         if (sf_effect_is_by_surface(a->plan, numbers[i]))
             sf_effect_of_surface(&s->fit, i, s->rows, x, &a->effect[figure][numbers[i]]);
-    gsl_rng_free(random);
     return err->status;
 }
 

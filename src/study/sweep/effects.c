@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/analysis.h"
 
+#include "study/fit/least_squares.h"
+
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_multifit.h>
@@ -38,11 +40,8 @@ static void put_terms(const sf_quadratic *s, const double *x, double *term) {
 /* Range of a number, and whether it has three values. */
 static void measure(sf_quadratic *s, int i, int64_t n, const double *x) {
     int stride = s->d + s->offsets;
-    double low = x[i], high = x[i];
-    for (int64_t k = 0; k < n; k++) {
-        low = fmin(low, x[k * stride + i]);
-        high = fmax(high, x[k * stride + i]);
-    }
+    double low, high;
+    gsl_stats_minmax(&low, &high, x + i, (size_t)stride, (size_t)n);
     s->centre[i] = 0.5 * (low + high);
     s->half[i] = high > low ? 0.5 * (high - low) : 1;
     for (int64_t k = 0; k < n; k++)
@@ -157,23 +156,18 @@ sf_status sf_quadratic_fit(int d, int offsets, int64_t n, const double *x, const
         return SF_OK;
     }
     const size_t rows = (size_t)n, columns = (size_t)terms;
-    gsl_vector *scratch = gsl_vector_alloc(columns);
-    fit f = {gsl_matrix_alloc(rows, columns), gsl_matrix_alloc(columns, columns), gsl_vector_alloc(rows),
-             gsl_vector_alloc(rows), gsl_vector_alloc(columns)};
+    SF_MATRIX *matrix = sf_matrix(rows, columns, err), *covariance = sf_matrix(columns, columns, err);
+    SF_VECTOR *right = sf_vector(rows, err), *weight = sf_vector(rows, err);
+    SF_VECTOR *c = sf_vector(columns, err), *scratch = sf_vector(columns, err);
+    fit f = {matrix, covariance, right, weight, c};
     gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(rows, columns);
     SF_OWNED size_t *order = sf_alloc(err, rows, sizeof *order, "the response surface");
     s->terms = terms;
-    if (f.terms && f.covariance && f.y && f.weight && f.c && work && scratch && order)
+    if (err->status == SF_OK && work)
         solve(s, &f, n, x, y, order, left_out, scratch, work);
     else if (err->status == SF_OK)
         SF_NO_MEMORY(err, "the response surface");
-    gsl_matrix_free(f.terms);
-    gsl_matrix_free(f.covariance);
-    gsl_vector_free(f.y);
-    gsl_vector_free(f.weight);
-    gsl_vector_free(f.c);
     gsl_multifit_linear_free(work);
-    gsl_vector_free(scratch);
     return err->status;
 }
 

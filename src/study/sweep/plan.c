@@ -7,8 +7,9 @@
 #include "study/fit/posterior/mixture.h"
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_randist.h>
+#include <gsl/gsl_statistics.h>
 
-enum { MOST_SAMPLES = 100000000 };
+enum { MOST_SAMPLES = 100000000, REFINE_CHANGES = 2 };
 static const double COARSE_PART = 0.5; /* of the accuracies: their error is a part of that of the rows */
 #define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"
 
@@ -19,10 +20,9 @@ int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
 }
 
 static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
-    gsl_rng *rng = sf_random(seed, err);
+    SF_RANDOM *rng = sf_random(seed, err);
     for (int i = 0; rng && i < d; i++)
         shift[i] = gsl_rng_uniform_pos(rng);
-    gsl_rng_free(rng);
     return err->status;
 }
 
@@ -81,12 +81,11 @@ sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, dou
         return sobol(d, count, seed, u, err);
     if (method == SF_SAMPLING_SALTELLI)
         return saltelli(d, count, seed, u, err);
-    gsl_rng *rng = sf_random(seed, err);
+    SF_RANDOM *rng = sf_random(seed, err);
     if (rng && method == SF_SAMPLING_LATIN)
         latin(rng, d, count, u, err);
     for (int64_t k = 0; rng && method != SF_SAMPLING_LATIN && k < count * d; k++)
         u[k] = gsl_rng_uniform_pos(rng);
-    gsl_rng_free(rng);
     return err->status;
 }
 
@@ -304,14 +303,15 @@ static void key_of(const char *set, char *key, size_t size) {
 
 /* Appends the overrides of the list `name`, "set" or "coarse". */
 static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
-    const config_setting_t *list = config_lookup(&config->config, name);
-    int line = list ? (int)config_setting_source_line(list) : 0, first = p->set_count;
+    const config_setting_t *list = config_lookup(&config->config, name),
+                           *refine = config_lookup(&config->config, "refine"), *place = list ? list : refine;
+    int line = place ? (int)config_setting_source_line(place) : 0, first = p->set_count;
+    int most = SF_RUNNER_OVERRIDES - (refine ? REFINE_CHANGES : 0);
     const char *file = sf_case_source_find(&config->source, line, &line);
     snprintf(p->set_where, sizeof p->set_where, "%.480s:%d", file, line);
     SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
-    if (p->set_count + p->factor_count > SF_RUNNER_OVERRIDES)
-        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name,
-                                SF_RUNNER_OVERRIDES);
+    if (p->set_count + p->factor_count > most)
+        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name, most);
     for (int k = first; k < p->set_count; k++) {
         const config_setting_t *s = config_setting_get_elem(list, (unsigned)(k - first));
         char key[SF_FACTOR_KEY_SIZE];
@@ -323,6 +323,27 @@ static sf_status read_set(const sf_config *config, const char *name, sf_plan *p,
                 return sf_config_refuse(config, s, err, "%s: %s is a factor, at %s", name, key,
                                         p->factor[f].where);
     }
+    return SF_OK;
+}
+
+/* Reads `refine`, and appends what it changes in the coarse drops: the spacings, and the largest expected
+ * error of a_max, that of two spacings across the thickness (SF_MESH_ERROR_THICKNESS). */
+static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, sf_error *err) {
+    static const char *const changes[REFINE_CHANGES] = {"geometry.spacing_factor=2",
+                                                        "pad.mesh_error_limit=0.125"};
+    const config_setting_t *s = config_lookup(&config->config, "refine");
+    int method = 0;
+    if (!s)
+        return SF_OK;
+    SF_TRY(
+        sf_config_choice(config, config_root_setting(&config->config), "refine", "richardson", &method, err));
+    if (sf_plan_is_adaptive(p))
+        return sf_config_refuse(config, s, err,
+                                "refine: a row that is predicted has no mesh: leave out the accuracies");
+    p->refine = p->coarse = !coarse;
+    for (int k = 0; k < REFINE_CHANGES && coarse; k++)
+        if (!(p->set[p->set_count++] = strdup(changes[k])))
+            return SF_NO_MEMORY(err, "the plan %s", p->path);
     return SF_OK;
 }
 
@@ -370,7 +391,7 @@ static sf_status read_figures(const sf_config *config, sf_plan *p, sf_error *err
 static sf_status read_plan(const sf_config *config, bool huge, bool coarse, sf_plan *p, sf_error *err) {
     const config_setting_t *root = config_root_setting(&config->config);
     const char *title = NULL;
-    SF_TRY(sf_config_names(config, root, "case|title|set|coarse|factors|figures", err));
+    SF_TRY(sf_config_names(config, root, "case|title|set|coarse|refine|factors|figures", err));
     SF_TRY(sf_config_file(config, root, "case", true, &p->case_path, err));
     SF_TRY(sf_config_text(config, root, "title", false, &title, err));
     SF_TRY(read_factors(config, huge, p, err));
@@ -389,7 +410,7 @@ static sf_status read_plan(const sf_config *config, bool huge, bool coarse, sf_p
             config, list, err, "coarse drops are for plans that predict rows: give each figure its accuracy");
     for (int k = 0; coarse && k < p->figure_count; k++)
         p->figure[k].accuracy *= COARSE_PART;
-    return SF_OK;
+    return read_refine(config, coarse, p, err);
 }
 
 sf_status sf_plan_read(const char *path, bool huge, bool coarse, sf_plan *p, sf_error *err) {
@@ -508,8 +529,11 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     sf_sweep_read_case(p, row, &c, &inner);
     for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
         sf_geo_parameters_check_alone(sf_campaign_geometry(&c, k), &inner);
-    if (inner.status == SF_OK && c.drops > 1 && sf_plan_is_adaptive(p))
-        SF_REFUSE(&inner, "series.drops = %g: only first drops are predicted; leave `accuracy` out", c.drops);
+    if (inner.status == SF_OK && c.drops > 1 && (sf_plan_is_adaptive(p) || p->refine))
+        SF_REFUSE(&inner, "series.drops = %g: only first drops are %s out", c.drops,
+                  p->refine ? "refined; leave `refine`" : "predicted; leave `accuracy`");
+    if (inner.status == SF_OK && p->refine && c.pad.spacing_factor != 1)
+        SF_REFUSE(&inner, "geometry.spacing_factor is that of the coarse drops of `refine`: leave it out");
     if (inner.status == SF_OK)
         sf_campaign_key(&c, own, &inner);
     *hash = sf_hash_bytes(*hash, own, sizeof *own);
@@ -525,14 +549,11 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
 static sf_status check_extremes(const sf_plan *p, int factor, uint64_t *hash, sf_error *err) {
     const sf_factor *f = &p->factor[factor];
     const sf_block *b = &p->block[p->block_of[factor]];
-    int64_t least = 0, greatest = 0;
-    for (int64_t k = 1; k < b->rows; k++) {
-        least = f->value[k] < f->value[least] ? k : least;
-        greatest = f->value[k] > f->value[greatest] ? k : greatest;
-    }
+    size_t least, greatest;
     uint64_t key;
-    SF_TRY(check(p, least * b->stride, f, hash, &key, err));
-    return check(p, greatest * b->stride, f, hash, &key, err);
+    gsl_stats_minmax_index(&least, &greatest, f->value, 1, (size_t)b->rows);
+    SF_TRY(check(p, (int64_t)least * b->stride, f, hash, &key, err));
+    return check(p, (int64_t)greatest * b->stride, f, hash, &key, err);
 }
 
 static bool is_same_folder(const char *a, const char *b) {

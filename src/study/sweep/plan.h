@@ -93,6 +93,7 @@ sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index 
                      sf_error *err);
 
 enum {
+    SF_SWEEP_RATIO = 2, /* spacing of a coarse drop that refines a row over that of the row */
     SF_SWEEP_FACTORS = SF_RUNNER_OVERRIDES - 1,
     SF_SWEEP_FIGURES = 6,
     SF_SWEEP_OVERRIDE_SIZE = 4352,
@@ -127,7 +128,8 @@ typedef struct sf_plan {
     int set_count;
     char *set[SF_RUNNER_OVERRIDES];       /* "group.key=value" of every run; owned */
     char set_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of their last list, for sentences */
-    bool coarse;                          /* coarse drops are asked for, from which the rows are predicted */
+    bool coarse; /* coarse drops are asked for, by which the rows are predicted or, if `refine`, refined */
+    bool refine;
     int factor_count, block_count;
     sf_factor factor[SF_SWEEP_FACTORS];
     int block_of[SF_SWEEP_FACTORS];
@@ -139,8 +141,8 @@ typedef struct sf_plan {
 
 /* Reads the plan and makes the values of all rows. `huge`: more than SF_SWEEP_ROWS rows are allowed.
  * `coarse`: the plan of its coarse drops, whose `set` ends with the overrides of the key `coarse` and whose
- * accuracies are half of those of the plan. Every sentence of an error begins with "file:line". Release with
- * sf_plan_free, also on failure. */
+ * accuracies are half of those of the plan, or whose `set` ends with those of the key `refine`. Every
+ * sentence of an error begins with "file:line". Release with sf_plan_free, also on failure. */
 sf_status sf_plan_read(const char *path, bool huge, bool coarse, sf_plan *plan, sf_error *err);
 void sf_plan_free(sf_plan *plan);
 

@@ -143,6 +143,43 @@ double sf_runs_value(const sf_runs *r, int64_t row, int figure) {
     return sf_runs_usable(r, row) ? sf_runs_place(r, row)[r->column[figure]] : NAN;
 }
 
+/* ---- rows of two meshes ---- */
+
+#define REFINED(key, k, name, unit)                                                                          \
+    {key "_refined", name, unit, SF_ROW_OF(NUMBER, sf_runs_pair, figure[k][0])}, {                           \
+        key "_refined_error", "±", unit, "%.2g", SF_ROW_OF(NUMBER, sf_runs_pair, figure[k][1])               \
+    }
+static const sf_row pair_rows[] = {{"id", "run", SF_ROW_OF(COUNT, sf_runs_pair, id)},
+                                   REFINED("a_max_g", 0, "a_max", "g"),
+                                   REFINED("hic", 1, "HIC", NULL),
+                                   REFINED("max_indentation_mm", 2, "indentation", "mm"),
+                                   REFINED("v_rebound_m_s", 3, "rebound", "m/s"),
+                                   {"refined_note", "no value because", SF_ROW_OF(TEXT, sf_runs_pair, note)}};
+const sf_rows sf_runs_pair_rows = SF_ROWS(pair_rows);
+
+sf_runs_pair sf_runs_refine(const sf_runs *r, int64_t row) {
+    static const char *const keys[SF_REFINED] = {"a_max_g", "hic", "max_indentation_mm", "v_rebound_m_s"};
+    const bool own = sf_runs_usable(r, row), both = own && r->coarse && sf_runs_usable(r->coarse, row);
+    const sf_runs *bad = own ? r->coarse : r;
+    const size_t cells = sf_runs_figure("cells");
+    sf_runs_pair pair = {.id = row + 1};
+    if (!both)
+        snprintf(pair.note, sizeof pair.note, "%s drop: %s", own ? "its coarse" : "its",
+                 bad && bad->message[row] ? bad->message[row] : "not simulated");
+    for (int k = 0; k < SF_REFINED; k++) {
+        const size_t at = sf_runs_figure(keys[k]);
+        sf_error err = SF_ERROR_INIT;
+        pair.figure[k][0] = pair.figure[k][1] = NAN;
+        if (!both)
+            continue;
+        const double *fine = sf_runs_place(r, row), *coarse = sf_runs_place(r->coarse, row);
+        if (sf_figure_refine(fine[at], coarse[at], SF_SWEEP_RATIO, fine[cells] / coarse[cells],
+                             pair.figure[k], &err) != SF_OK)
+            sf_text_add(pair.note, sizeof pair.note, "%s%s: %s", *pair.note ? "; " : "", keys[k], err.text);
+    }
+    return pair;
+}
+
 /* ---- runs.csv ---- */
 
 static void put_heading(sf_csv *csv, const sf_runs *r) {
@@ -154,6 +191,8 @@ static void put_heading(sf_csv *csv, const sf_runs *r) {
     sf_figure_csv_keys(csv);
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
         sf_csv_print(csv, "%s_low,%s_high", r->plan->figure[k].figure, r->plan->figure[k].figure);
+    for (size_t k = 1; k < sf_runs_pair_rows.count && r->plan->refine; k++)
+        sf_csv_print(csv, "%s", pair_rows[k].key);
     sf_csv_end(csv);
 }
 
@@ -171,6 +210,13 @@ static void put_interval(sf_csv *csv, const sf_runs *r, int64_t row, int figure)
     SF_CSV_NUMBERS(csv, value * exp(-half), value * exp(half));
 }
 
+static void put_pair(sf_csv *csv, const sf_runs *r, int64_t row) {
+    const sf_runs_pair pair = sf_runs_refine(r, row);
+    for (int k = 0; k < SF_REFINED; k++)
+        sf_csv_numbers(csv, 2, pair.figure[k]);
+    sf_csv_text(csv, pair.note);
+}
+
 static void put_row(sf_csv *csv, const sf_runs *r, int64_t row) {
     char text[SF_SWEEP_OVERRIDE_SIZE];
     sf_csv_print(csv, "%lld", (long long)row + 1);
@@ -185,6 +231,8 @@ static void put_row(sf_csv *csv, const sf_runs *r, int64_t row) {
         put_figure(csv, r, &sf_figure_at[k], sf_runs_place(r, row)[k]);
     for (int k = 0; k < r->plan->figure_count && r->half; k++)
         put_interval(csv, r, row, k);
+    if (r->plan->refine)
+        put_pair(csv, r, row);
     sf_csv_end(csv);
 }
 

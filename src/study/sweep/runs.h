@@ -14,6 +14,8 @@ enum { SF_RUNS_TEXTS = 64 };
 
 typedef struct sf_runs {
     const sf_plan *plan; /* borrowed */
+    const struct sf_runs
+        *coarse; /* by which its rows are predicted or refined, ended; borrowed; NULL: none */
     int64_t count;
     size_t column[SF_SWEEP_FIGURES]; /* of those of the plan among them */
     unsigned char *state, *grade; /* [count] sf_sweep_state, sf_grade */
@@ -57,6 +59,17 @@ int64_t sf_runs_count(const sf_runs *runs, sf_sweep_state state);
 
 /* Figure `figure` of the plan if the row can be used, else NaN. */
 double sf_runs_value(const sf_runs *runs, int64_t row, int figure);
+
+/* The figures of a row that its coarse drop refines; NaN where there is no value, `note` then says why. */
+enum { SF_REFINED = 4 };
+typedef struct sf_runs_pair {
+    int64_t id;
+    double figure[SF_REFINED][2]; /* and its error */
+    char note[1024];
+} sf_runs_pair;
+
+sf_runs_pair sf_runs_refine(const sf_runs *runs, int64_t row);
+extern const sf_rows sf_runs_pair_rows;
 
 /* True if the figures of the row can be used: done and not "do not use", or predicted. */
 bool sf_runs_usable(const sf_runs *runs, int64_t row);

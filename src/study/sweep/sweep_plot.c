@@ -464,7 +464,6 @@ sf_status sf_sweep_plot(const sf_staging *output, const sf_analysis *a, const ch
         char own[320] = "";
         sf_chart *chart = d->draw ? d->draw(a, folder, err) : draw_panels(a, pictures[k].name, d, err);
         sf_chart_write(chart, output, own, sizeof own, err);
-        sf_chart_free(chart);
         if (!*warning)
             snprintf(warning, size, "%s", own);
     }

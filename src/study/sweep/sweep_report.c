@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "build_info.h"
 #include "report/chart.h"
+#include <gsl/gsl_statistics.h>
 
 enum { LISTED = 50, CELLS_LISTED = 200 };
 
@@ -16,15 +17,12 @@ static const char *const sampling_words[] = {[SF_SAMPLING_RANDOM] = "random",
 /* ---- factors in words ---- */
 
 static void list_text(const sf_factor *f, char *text, size_t size) {
-    double low = INFINITY, high = -INFINITY;
+    double low, high;
     if (f->words) {
         snprintf(text, size, "%lld %s", f->count, f->uncertain ? "draws" : "levels");
         return;
     }
-    for (int64_t k = 0; k < f->count; k++) {
-        low = fmin(low, f->number[k]);
-        high = fmax(high, f->number[k]);
-    }
+    gsl_stats_minmax(&low, &high, f->number, 1, (size_t)f->count);
     snprintf(text, size, "%lld values, %.6g to %.6g %s", f->count, low, high, f->unit);
 }
 
@@ -152,6 +150,15 @@ static void json_probability(sf_json *j, const sf_sweep_report *r, int figure) {
     }
 }
 
+static void json_refined(sf_json *j, const sf_runs *runs) {
+    SF_JSON_ARRAY(j, "refined");
+    for (int64_t row = 0; row < runs->count; row++) {
+        const sf_runs_pair pair = sf_runs_refine(runs, row);
+        SF_JSON_OBJECT(j, NULL);
+        sf_rows_json(j, sf_runs_pair_rows, &pair);
+    }
+}
+
 sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
     FILE *file = sf_staging_open(output, "sweep.json", err);
     const sf_analysis *a = r->analysis;
@@ -166,6 +173,8 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     if (r->coarse > 0)
         sf_json_number(&j, "coarse_drops", (double)r->coarse);
     json_factors(&j, r->plan);
+    if (r->plan->refine)
+        json_refined(&j, r->runs);
     sf_sweep_views_json(&j, r->views);
     sf_json_open(&j, "figures", '[');
     for (int k = 0; k < r->plan->figure_count; k++) {
@@ -262,6 +271,25 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
                      "tell the coarse figures of the other rows within half of the accuracy, which is part "
                      "of the interval. The table is coarse/runs.csv.",
                      (long long)r->coarse);
+}
+
+/* Refines the first rows, for a table; `pair` [LISTED]. */
+static sf_records list_pairs(const sf_runs *runs, sf_runs_pair *pair) {
+    int64_t count = 0;
+    for (; count < runs->count && count < LISTED; count++)
+        pair[count] = sf_runs_refine(runs, count);
+    return (sf_records){pair, sizeof *pair, count};
+}
+
+static void put_refined(FILE *page, const sf_runs *runs) {
+    sf_runs_pair pair[LISTED];
+    sf_html_heading(page, "Figures for ever finer meshes");
+    sf_rows_html_table(page, "dense", sf_runs_pair_rows, list_pairs(runs, pair));
+    sf_html_note(
+        page,
+        "Extrapolated from the drop of a row and one with %d times its spacings; runs.csv has all rows. All "
+        "else in this report is of the rows as they are, with the error of their meshes.",
+        SF_SWEEP_RATIO);
 }
 
 static void put_pictures(FILE *page, const sf_staging *output) {
@@ -466,6 +494,8 @@ sf_status sf_sweep_write_page(const sf_staging *output, const sf_sweep_report *r
     put_tiles(page, r);
     put_factors(page, r->plan, r->series);
     put_predictions(page, r);
+    if (r->plan->refine)
+        put_refined(page, r->runs);
     put_pictures(page, output);
     put_probability(page, r);
     put_effects(page, r);
@@ -487,6 +517,9 @@ void sf_sweep_print(FILE *out, const sf_sweep_report *r) {
     for (int k = 0; k < r->plan->figure_count && a->predicted > 0; k++)
         fprintf(out, "  %lld predicted: %s within %.3g %% (95 %%), %.3g %% asked for\n", a->predicted,
                 r->plan->figure[k].figure, 100 * a->widest[k], 100 * r->plan->figure[k].accuracy);
+    sf_runs_pair pair[LISTED];
+    if (r->plan->refine)
+        sf_rows_text_table(out, sf_runs_pair_rows, list_pairs(r->runs, pair));
     int listed = 0;
     for (long long row = 0; row < r->runs->count && listed < 5; row++)
         if (r->runs->state[row] == SF_SWEEP_FAILED && ++listed)

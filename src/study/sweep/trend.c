@@ -47,19 +47,22 @@ static sf_status read_drops(const sf_runs *runs, const char *folder, drop *list,
     return err->status;
 }
 
-/* Area (m2) of the missile that is at most `height` above its lowest point. */
-static double area_below(const sf_columns *c, double height) {
-    double area = 0;
-    for (int k = 0; k < c->count && c->gap[k] < height; k++)
-        area += c->area[k];
+/* Area (m2) of the missile up to a height; each column ends in the middle between its gap and the next. */
+static double area_up_to(const sf_columns *c, double height) {
+    double area = 0, low = 0;
+    for (int k = 0; k < c->count && low < height; k++) {
+        double high = k + 1 < c->count ? 0.5 * (c->gap[k] + c->gap[k + 1]) : 2 * c->gap[k] - low;
+        area += c->area[k] * fmin(1, (height - low) / (high - low));
+        low = high;
+    }
     return area;
 }
 
 static bool is_same_profile(const sf_columns *a, const sf_columns *b, double slack) {
     double least = fmin(a->thickness, b->thickness);
     for (int k = 1; k <= LEVELS; k++) {
-        double p = area_below(a, least * k / LEVELS), q = area_below(b, least * k / LEVELS);
-        if (fabs(p - q) > slack * fmax(p, q) + area_below(a, a->thickness) / SF_COLUMNS)
+        double p = area_up_to(a, least * k / LEVELS), q = area_up_to(b, least * k / LEVELS);
+        if (fabs(p - q) > slack * fmax(p, q) + area_up_to(a, a->thickness) / SF_COLUMNS)
             return false;
     }
     return true;
@@ -100,17 +103,6 @@ static bool fit_linear(const sf_sweep_trend *t, const drop *list, int count, con
                                  &rank, work);
     gsl_multifit_linear_free(work);
     return work != NULL;
-}
-
-/* Area (m2) of the missile up to a height; each column ends in the middle between its gap and the next. */
-static double area_up_to(const sf_columns *c, double height) {
-    double area = 0, low = 0;
-    for (int k = 0; k < c->count && low < height; k++) {
-        double high = k + 1 < c->count ? 0.5 * (c->gap[k] + c->gap[k + 1]) : 2 * c->gap[k] - low;
-        area += c->area[k] * fmin(1, (height - low) / (high - low));
-        low = high;
-    }
-    return area;
 }
 
 /* The areas between heights, of each level from the drops whose columns, which end with the pad, reach it. Of

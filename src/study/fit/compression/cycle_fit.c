@@ -24,8 +24,7 @@ static sf_table_layout time_layout(void) {
     return (sf_table_layout){.what = "record of cycles",
                              .column = {"time", "strain"},
                              .wanted = {"\"time_s\"", "\"strain\" or \"strain_percent\""},
-                             .names = names,
-                             .name_count = sizeof names / sizeof *names};
+                             SF_TABLE_NAMES(names)};
 }
 
 /* The pause (s) before point i; 0: none. */

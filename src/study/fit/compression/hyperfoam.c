@@ -66,8 +66,7 @@ static sf_table_layout lateral_layout(void) {
         .what = "test",
         .column = {"strain", "lateral strain"},
         .wanted = {"\"strain\" or \"strain_percent\"", "\"lateral_strain\" or \"lateral_strain_percent\""},
-        .names = names,
-        .name_count = sizeof names / sizeof *names,
+        SF_TABLE_NAMES(names),
         .check = check_lateral};
 }
 

@@ -177,9 +177,7 @@ static sf_status write_picture(const sf_staging *output, const sf_compression_fi
         0.08, 0.98, 0.07, 0.34);
     sf_axis_range(&below->x, 0, 1.02 * end);
     put_deviations(chart, below, fit);
-    sf_chart_write(chart, output, warning, size, err);
-    sf_chart_free(chart);
-    return err->status;
+    return sf_chart_write(chart, output, warning, size, err);
 }
 
 /* ---- the page ---- */

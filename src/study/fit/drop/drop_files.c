@@ -230,9 +230,7 @@ static sf_status write_picture(const sf_drop_fit *fit, const strain_bin *bin, co
     put_strain_panels(chart, bin);
     if (fit->input->drop_count > 0)
         put_drop_panel(chart, fit);
-    sf_chart_write(chart, output, warning, size, err);
-    sf_chart_free(chart);
-    return err->status;
+    return sf_chart_write(chart, output, warning, size, err);
 }
 
 /* ---- the material ---- */

@@ -7,20 +7,8 @@
 
 /* ---- importance sampling ---- */
 
-/* log of the mean of exp(x). */
-static double log_mean(int count, const double *x) {
-    double largest = -INFINITY, sum = 0;
-    for (int k = 0; k < count; k++)
-        largest = fmax(largest, x[k]);
-    if (!isfinite(largest))
-        return largest;
-    for (int k = 0; k < count; k++)
-        sum += exp(x[k] - largest);
-    return largest + log(sum / count);
-}
-
-/* (sum w)^2 / sum w^2. */
-static double effective_size(int count, const double *x) {
+/* Returns the log of the mean of the weights exp(x); `effective`: (sum w)^2 / sum w^2; NULL: not wanted. */
+static double log_mean(int count, const double *x, double *effective) {
     double largest = -INFINITY, sum = 0, squares = 0;
     for (int k = 0; k < count; k++)
         largest = fmax(largest, x[k]);
@@ -28,7 +16,9 @@ static double effective_size(int count, const double *x) {
         sum += exp(x[k] - largest);
         squares += exp(2 * (x[k] - largest));
     }
-    return squares > 0 ? sum * sum / squares : 0;
+    if (effective)
+        *effective = squares > 0 ? sum * sum / squares : 0;
+    return isfinite(largest) ? largest + log(sum / count) : largest;
 }
 
 sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixture, int draws, uint64_t seed,
@@ -44,8 +34,7 @@ sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixtur
 #pragma omp parallel for schedule(dynamic, 8)
     for (int k = 0; k < draws; k++)
         weight[k] = sf_target_at(target, &u[k * n]) - sf_mixture_log_density(mixture, &u[k * n]);
-    e->log_value = log_mean(draws, weight);
-    e->effective = effective_size(draws, weight);
+    e->log_value = log_mean(draws, weight, &e->effective);
     e->error = e->effective > 0 ? sqrt(fmax(0, 1 / e->effective - 1. / draws)) : INFINITY;
     e->trusted = e->effective >= 100 && e->effective >= draws / 50.;
     return err->status;
@@ -191,7 +180,7 @@ static sf_status weigh(const double *all, int groups, int g, int count, double *
     out->converged = out->pareto_k < USABLE;
     for (int s = 0; s < count; s++)
         sum[s] = scratch[s] + all[s * groups + g];
-    out->log_density = log_mean(count, sum) - log_mean(count, scratch);
+    out->log_density = log_mean(count, sum, NULL) - log_mean(count, scratch, NULL);
     return err->status;
 }
 
@@ -217,7 +206,7 @@ static sf_status sample(const sf_grouped *g, int group, const sf_chains *whole,
     SF_TRY(err->status);
     for (int s = 0; s < count; s++)
         all[s] = all[s * g->groups + group];
-    out->log_density = log_mean(count, all);
+    out->log_density = log_mean(count, all, NULL);
     out->sampled = true;
     out->converged = chains.converged;
     return SF_OK;
@@ -270,12 +259,14 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
 static sf_status take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out,
                            sf_error *err) {
     SF_OWNED double *others = sf_alloc(err, (unsigned long)w->count, sizeof *others, "draws");
+    double size;
     SF_TRY(err->status);
     for (int k = 0; k < w->count; k++)
         others[k] = isinf(w->weight[k]) ? -INFINITY : w->weight[k] - w->conditional[k * groups + group];
-    out->drawn = out->converged = w->count > 0 && effective_size(w->count, others) >= effective;
+    double without_group = log_mean(w->count, others, &size);
+    out->drawn = out->converged = w->count > 0 && size >= effective;
     if (out->drawn)
-        out->log_density = log_mean(w->count, w->weight) - log_mean(w->count, others);
+        out->log_density = log_mean(w->count, w->weight, NULL) - without_group;
     return SF_OK;
 }
 

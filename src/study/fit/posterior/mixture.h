@@ -34,8 +34,13 @@ static inline double sf_target_at(const sf_target *target, const double *u) {
     return value == value ? value : -__builtin_inf();
 }
 
-/* The generator of a seed; NULL without memory. Release with gsl_rng_free. */
+/* The generator of a seed; NULL without memory. `SF_RANDOM *r = sf_random(1, err)` is released at the end of
+ * its block. */
 gsl_rng *sf_random(uint64_t seed, sf_error *err);
+#define SF_RANDOM SF_OWNED_BY(sf_release_random) gsl_rng
+static inline void sf_release_random(gsl_rng **random) {
+    gsl_rng_free(*random);
+}
 
 /* A seed of its own for the `index`-th of several generators of one `seed`. */
 static inline uint64_t sf_seed_of(uint64_t seed, uint64_t index) {
