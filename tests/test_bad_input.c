@@ -331,7 +331,7 @@ static void damaged_models_are_refused_with_what_is_wrong(void **state) {
         {curve_of_three_points, "fewer than 4 points"},
         {material_out_of_range, "is of material 1, of 0 to 0"},
         {unknown_law, "\"no_such_law\" is not a law that this program has"},
-        {no_materials, "/material/count: 0 is not between 1 and 256"},
+        {no_materials, "/material/count is 0, outside 1 to 256"},
         {three_planes, "symmetry factor is 3"},
         {held_in_no_direction, "has mask 0"},
         {frame_before_the_beginning, "frame time -0.001 s"},

@@ -484,7 +484,7 @@ static void bad_command_lines_are_refused(void **state) {
         {"--filter 500", "60, 180, 600 and 1000"},
         {"--reference x.csv --window 5", "\"5\" is not a window"},
         {"--reference x.csv --regions 5-1", "not a list of regions"},
-        {"--reference x.csv --shift soon", "not a time in ms"},
+        {"--reference x.csv --shift soon", "expected a time in ms"},
         {"--reference /nonexistent/x.csv", "the reference /nonexistent/x.csv cannot be read"},
         {"second.h5", "one results file"},
         {"--unknown", "unrecognized option"},

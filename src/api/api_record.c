@@ -37,7 +37,8 @@ typedef struct settings {
 static sf_status take_number(const char *name, const char *value, double *out, sf_error *err) {
     char *end;
     *out = strtod(value, &end);
-    return end != value && *end == '\0' ? SF_OK : SF_REFUSE(err, "%s: \"%.80s\" is no number", name, value);
+    return end != value && *end == '\0' ? SF_OK
+                                        : SF_REFUSE(err, "%s: \"%.80s\" is not a number", name, value);
 }
 
 static sf_status take_option(sf_reference_options *o, const char *name, const char *value, sf_error *err) {
@@ -73,7 +74,7 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
 static sf_status take_options(settings *s, const char *const *options, int count, sf_error *err) {
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         if (s->count == (int)(sizeof s->texts / sizeof s->texts[0]))
-            return SF_REFUSE(err, "a record has at most %d options", s->count);
+            return SF_REFUSE(err, "%d options of a record" SF_AT_MOST("%d"), s->count + 1, s->count);
         char *text = s->texts[s->count++] = strdup(options[k]), *value = text ? strchr(text, '=') : NULL;
         if (!text)
             return SF_NO_MEMORY(err, "the options of a record");
@@ -146,6 +147,6 @@ softfall_status softfall_record_figure(const softfall_record *r, const char *key
             *value = figures[k].factor * *(const double *)((const char *)&r->injury + figures[k].place);
             return softfall_return(&err, error);
         }
-    SF_REFUSE(&err, "a record has no figure \"%.80s\"", key);
+    SF_REFUSE(&err, "unknown figure \"%.80s\" of a record", key);
     return softfall_return(&err, error);
 }

@@ -173,8 +173,7 @@ static sf_status check_stack(char **argv, sf_error *err) {
         if (setrlimit(RLIMIT_STACK, &stack) == 0)
             execv("/proc/self/exe", argv); /* threads take the limit of the start */
     }
-    return SF_FAIL(err, SF_ERR_MEMORY,
-                   "the stack is limited to %llu kB; at least %d kB are needed (ulimit -s)",
+    return SF_FAIL(err, SF_ERR_MEMORY, "the stack is limited to %llu kB" SF_AT_LEAST("%d kB") " (ulimit -s)",
                    (unsigned long long)given / 1024, LEAST_STACK / 1024);
 }
 
@@ -309,7 +308,7 @@ sf_status sf_program_read_texts(const char *option, const char *text, void *text
     enum { MOST = sizeof((sf_option_texts *)0)->text / sizeof(char *) };
     sf_option_texts *all = texts;
     if (all->count == MOST)
-        return SF_REFUSE(err, "at most %d %s options", MOST, option);
+        return SF_REFUSE(err, "%d %s options" SF_AT_MOST("%d"), MOST + 1, option, MOST);
     all->text[all->count++] = text;
     return SF_OK;
 }

@@ -75,7 +75,7 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
     memset(curve, 0, sizeof *curve);
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count < SF_CURVE_MIN_POINTS)
-        SF_REFUSE(err, "%s: %lld points; a compression curve needs at least %d", path, (long long)table.count,
+        SF_REFUSE(err, "%s: %lld points" SF_AT_LEAST("%d"), path, (long long)table.count,
                   SF_CURVE_MIN_POINTS);
     else if (!(table.value[1][table.count - 1] > 0.0))
         SF_REFUSE(err, "%s: the stress is zero everywhere", path);
@@ -127,7 +127,7 @@ static sf_status check_slopes(const char *path, const sf_case_curve *curve, sf_e
         if (!(slope <= STEEPEST))
             return SF_REFUSE(err,
                              "%s: from the strain %g to %g the stress rises from %g to %g Pa, with a modulus "
-                             "of %.3g Pa; at most %g Pa are possible",
+                             "of %.3g Pa; at most %g Pa are allowed",
                              path, curve->strain[k - 1], curve->strain[k], curve->stress[k - 1],
                              curve->stress[k], slope, STEEPEST);
     }
@@ -139,7 +139,7 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     char where[SF_CASE_WHERE_SIZE];
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_REFUSE_AT(reader, setting, err, "%s: the name of a curve's CSV file is expected",
+        return SF_REFUSE_AT(reader, setting, err, "%s: expected the name of a curve's CSV file",
                             reader->material_group);
     SF_OWNED char *path = sf_case_resolve(reader, setting, text, err);
     SF_TRY(err->status);
@@ -288,7 +288,7 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
                                 ")",
                                 reader->material_group);
         if (config_setting_length(setting) > MOST_CURVES)
-            return SF_REFUSE_AT(reader, setting, err, "%s.curves: %d curves; at most %d are read",
+            return SF_REFUSE_AT(reader, setting, err, "%s.curves: %d curves" SF_AT_MOST("%d"),
                                 reader->material_group, config_setting_length(setting), MOST_CURVES);
         const config_setting_t *head = config_setting_get_elem(setting, 0);
         bool thermal = config_setting_is_group(head) && config_setting_get_member(head, "temperature");
@@ -326,7 +326,7 @@ static sf_status check_motion_point(const sf_table_point *p, sf_error *err) {
     double speed = fabs(p->value[1] - p->before[1]) / span;
     if (!(speed <= SF_MOTION_MAX_SPEED))
         return SF_REFUSE(
-            err, "%s:%d: displacement %s after %g means a speed of %g m/s; at most %g m/s are possible",
+            err, "%s:%d: displacement %s after %g means a speed of %g m/s; at most %g m/s are allowed",
             p->path, p->line, p->text[1], p->last[1], speed, SF_MOTION_MAX_SPEED);
     return SF_OK;
 }
@@ -354,7 +354,7 @@ static sf_status check_motion_table(const char *path, const sf_table *table, sf_
     for (int64_t k = 0; k < table->count; k++)
         largest = fmax(largest, fabs(table->value[1][k]));
     if (table->count < 2)
-        return SF_REFUSE(err, "%s: %lld points; a motion needs at least 2", path, (long long)table->count);
+        return SF_REFUSE(err, "%s: %lld points" SF_AT_LEAST("2"), path, (long long)table->count);
     if (!(largest > 0.0))
         return SF_REFUSE(err, "%s: the displacement is zero everywhere", path);
     return SF_OK;
@@ -366,7 +366,7 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     sf_case *c = reader->out;
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_REFUSE_AT(reader, setting, err, "missile.motion: the name of a CSV file is expected");
+        return SF_REFUSE_AT(reader, setting, err, "missile.motion: expected the name of a CSV file");
     SF_OWNED char *path = sf_case_resolve(reader, setting, text, err);
     SF_TRY(err->status);
     sf_table table = {0};

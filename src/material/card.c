@@ -64,8 +64,8 @@ static sf_status check_parameter(const sf_material *m, const sf_parameter *p, in
     if (word || idle || (value <= high && (p->low_open ? value > p->low : value >= p->low)))
         return SF_OK;
     const char *unit = p->kind == SF_PARAMETER_QUANTITY ? sf_quantity_unit(p->quantity) : "";
-    return SF_FAIL(err, SF_ERR_MODEL, "material %lld (%s): %s is %g, outside %g to %g%s%s", (long long)index,
-                   m->law->name, p->key, value, p->low, p->high, *unit ? " " : "", unit);
+    return SF_FAIL(err, SF_ERR_MODEL, "material %lld (%s): %s" SF_OUTSIDE("%g", "%g", "%g%s%s"),
+                   (long long)index, m->law->name, p->key, value, p->low, p->high, *unit ? " " : "", unit);
 }
 
 static bool all_finite(const double *value, int64_t count) {

@@ -100,7 +100,7 @@ static void steffen_slopes(int64_t count, const double *x, const double *y, doub
 
 static sf_status check_points(int64_t index, int64_t count, const double *x, sf_error *err) {
     if (count < 3)
-        return SF_REFUSE(err, "compression curve %lld has %lld points; it needs at least 3", (long long)index,
+        return SF_REFUSE(err, "compression curve %lld has %lld points" SF_AT_LEAST("3"), (long long)index,
                          (long long)count);
     for (int64_t i = 1; i < count; i++)
         if (!(x[i] > x[i - 1]))

@@ -58,7 +58,7 @@ static const sf_parameter parameters[] = {
 /* Checks one term; `name` names the place. */
 static sf_status check_term(const sf_hyperfoam_term *t, const char *name, sf_error *err) {
     if (t->mu != 0 && fabs(t->alpha) < 0.01)
-        return SF_FAIL(err, SF_ERR_MODEL, "%s: alpha is %g; its amount must be 0.01 at least", name,
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: alpha is %g; its amount must be at least 0.01", name,
                        t->alpha);
     if (t->nu != 0 && t->beta != 0)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: both nu (%g) and beta (%g); a term has one of them", name,

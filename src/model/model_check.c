@@ -49,7 +49,7 @@ static sf_status check_finite(const sf_model *model, sf_error *err) {
             scalar ? (const double *)(base + field[k].offset) : *(double *const *)(base + field[k].offset);
         for (int64_t i = 0; i < rows * field[k].columns; i++)
             if (!isfinite(data[i]))
-                return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld is not a finite number", field[k].path,
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld is not finite", field[k].path,
                                (long long)i);
     }
     return SF_OK;
@@ -57,7 +57,7 @@ static sf_status check_finite(const sf_model *model, sf_error *err) {
 
 static sf_status check_bound(const char *name, double value, double low, double high, sf_error *err) {
     if (!(value >= low && value <= high))
-        return SF_FAIL(err, SF_ERR_MODEL, "%s is %g, outside %g to %g", name, value, low, high);
+        return SF_FAIL(err, SF_ERR_MODEL, "%s" SF_OUTSIDE("%g", "%g", "%g"), name, value, low, high);
     return SF_OK;
 }
 
@@ -282,7 +282,7 @@ static sf_status check_nodes(const sf_model *m, sf_error *err) {
         if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0 && m->support[i] > 0))
             return SF_FAIL(err, SF_ERR_MODEL,
                            "node %lld has volume %g m3, mass %g kg, spacing %g m, support %g m: all must be "
-                           "> 0",
+                           "above 0",
                            (long long)i, m->volume[i], m->mass[i], m->spacing[i], m->support[i]);
     return SF_OK;
 }
@@ -340,7 +340,7 @@ static sf_status check_ties(const sf_model *m, sf_error *err) {
 static sf_status check_frame_times(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; k < m->frame_time_count; k++)
         if (m->frame_time[k] < 0 || (k > 0 && m->frame_time[k] < m->frame_time[k - 1]))
-            return SF_FAIL(err, SF_ERR_MODEL, "frame time %g s is negative or not in ascending order",
+            return SF_FAIL(err, SF_ERR_MODEL, "frame time %g s is negative or out of order",
                            m->frame_time[k]);
     return SF_OK;
 }

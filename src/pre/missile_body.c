@@ -199,7 +199,7 @@ static sf_status check_inertia(const double inertia[6], sf_error *err) {
         return SF_OK;
     return SF_REFUSE(err,
                      "missile.inertia: no body has the principal moments %.4g, %.4g and %.4g kg m2: they "
-                     "must be positive, and none larger than the sum of the others",
+                     "must be above 0, and none larger than the sum of the others",
                      p[0], p[1], p[2]);
 }
 

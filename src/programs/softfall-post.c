@@ -59,7 +59,7 @@ static sf_status read_reference_filter(const char *option, const char *text, voi
 static sf_status read_ms(const char *option, const char *text, void *time, sf_error *err) {
     double ms = NAN;
     if (!sf_decimal_is(text, &ms))
-        return SF_REFUSE(err, "%s %s: not a time in ms", option, text);
+        return SF_REFUSE(err, "%s %s: expected a time in ms", option, text);
     *(double *)time = ms * 1e-3;
     return SF_OK;
 }
@@ -67,7 +67,7 @@ static sf_status read_ms(const char *option, const char *text, void *time, sf_er
 static sf_status read_impact(const char *option, const char *text, void *impact, sf_error *err) {
     double value = 0;
     if (!sf_decimal_is(text, &value) || value != floor(value) || value < 1 || value > SF_RECORD_IMPACTS)
-        return SF_REFUSE(err, "%s %s: the number of an impact is expected, from 1 to %d", option, text,
+        return SF_REFUSE(err, "%s %s: expected the number of an impact, from 1 to %d", option, text,
                          SF_RECORD_IMPACTS);
     *(int *)impact = (int)value;
     return SF_OK;
@@ -76,7 +76,7 @@ static sf_status read_impact(const char *option, const char *text, void *impact,
 static sf_status read_view(const char *option, const char *text, void *view, sf_error *err) {
     double *size = view;
     if (!sf_decimal_is(text, size) || !(*size >= 0 && *size <= SF_BROWSER_MOST_MB))
-        return SF_REFUSE(err, "%s %s: a size from 0 to %d MB is expected", option, text, SF_BROWSER_MOST_MB);
+        return SF_REFUSE(err, "%s %s: expected a size from 0 to %d MB", option, text, SF_BROWSER_MOST_MB);
     return SF_OK;
 }
 
@@ -201,7 +201,7 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
             "motion compression.csv and .png instead of the acceleration. Open the drop in ParaView with paraview "
             "--script=pad_paraview.py, in that directory. The "
             "figures are indicative, not a certification.",
-        .second = "one results file is expected, found \"%s\" as well",
+        .second = "expected one results file, found \"%s\" as well",
         .operand = AT(results_path),
         .fault = find_fault,
         .list = {{list, o}}};

@@ -67,7 +67,7 @@ static sf_status check_cells(const sf_results *r, sf_error *err) {
 
 static sf_status check_positive(double value, const char *path, sf_error *err) {
     if (!(value > 0) || !isfinite(value))
-        return SF_FAIL(err, SF_ERR_IO, "%s is %g, it must be positive", path, value);
+        return SF_FAIL(err, SF_ERR_IO, "%s: %g" SF_NOT_ABOVE_0, path, value);
     return SF_OK;
 }
 
@@ -91,8 +91,8 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "/model/surface_position is empty: the missile has no surface");
     for (int64_t i = 0; i < r->node_count; i++)
         if (!(r->volume[i] > 0) || !isfinite(r->volume[i]))
-            return SF_FAIL(err, SF_ERR_IO, "/model/volume: node %lld has %g m3, it must be positive",
-                           (long long)i, r->volume[i]);
+            return SF_FAIL(err, SF_ERR_IO, "/model/volume: node %lld: %g m3" SF_NOT_ABOVE_0, (long long)i,
+                           r->volume[i]);
     if (r->symmetry_factor != 1 && r->symmetry_factor != 2 && r->symmetry_factor != 4)
         return SF_FAIL(err, SF_ERR_IO, "/model/symmetry_factor is %lld, it must be 1, 2 or 4",
                        (long long)r->symmetry_factor);
@@ -168,10 +168,10 @@ static sf_status check_history(sf_results *r, const int64_t *rows, sf_error *err
         r->history.rows = i;
     }
     if (r->history.rows < 3 && r->has_summary && !sf_results_ended_well(r))
-        return SF_FAIL(err, SF_ERR_IO, "%s (/history has %lld usable rows, figures need at least 3)",
-                       r->status, (long long)r->history.rows);
+        return SF_FAIL(err, SF_ERR_IO, "%s (/history has %lld usable rows" SF_AT_LEAST("3") ")", r->status,
+                       (long long)r->history.rows);
     if (r->history.rows < 3)
-        return SF_FAIL(err, SF_ERR_IO, "/history has %lld usable rows, at least 3 are needed",
+        return SF_FAIL(err, SF_ERR_IO, "/history has %lld usable rows" SF_AT_LEAST("3"),
                        (long long)r->history.rows);
     return SF_OK;
 }

@@ -64,7 +64,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
         return 0;
     case 'm':
         if (sscanf(text, "%d-%d", &o->mean[0], &o->mean[1]) != 2 || o->mean[0] < 1 || o->mean[1] < o->mean[0])
-            argp_error(state, "--mean %s: the first and the last drop are expected, such as 2-3", text);
+            argp_error(state, "--mean %s: expected the first and the last drop, such as 2-3", text);
         return 0;
     case ARGP_KEY_END:
         if (o->count < (o->series ? 1 : 2) || !o->directory)

@@ -33,7 +33,7 @@ static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layer
         l->first[k + 1] += l->first[k];
     unsigned long all = err->status == SF_OK ? (unsigned long)l->first[l->count] : 0;
     if (all > INT32_MAX)
-        return SF_REFUSE(err, "the layers have %lu nodes; at most %d are supported", all, INT32_MAX);
+        return SF_REFUSE(err, "the layers have %lu nodes" SF_AT_MOST("%d"), all, INT32_MAX);
     l->origin = sf_alloc(err, all, sizeof *l->origin, "layers");
     l->copy = sf_alloc(err, all, sizeof *l->copy, "layers");
     SF_OWNED int64_t *next = sf_alloc(err, (unsigned long)l->count, sizeof *next, "layers");

@@ -211,7 +211,7 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
             centroid(mesh, k, c);
             return SF_FAIL(err, SF_ERR_MODEL,
                            "cell %lld (%s) at (%g, %g, %g) m is inverted or flat: its volume is %g m3 and "
-                           "its smallest corner Jacobian %g m3; both must be positive",
+                           "its smallest corner Jacobian %g m3; both must be above 0",
                            (long long)k, sf_cell_shape_of(mesh->cell_type[k])->name, c[0], c[1], c[2], v,
                            low);
         }

@@ -219,7 +219,7 @@ static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, c
 sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_mesh *mesh, sf_error *err) {
     memset(mesh, 0, sizeof *mesh);
     if (raw->node_count > INT32_MAX)
-        return SF_REFUSE(err, "the mesh has %zu nodes; at most %d are supported", raw->node_count, INT32_MAX);
+        return SF_REFUSE(err, "the mesh has %zu nodes" SF_AT_MOST("%d"), raw->node_count, INT32_MAX);
     SF_OWNED sf_tag_index *index = sf_raw_mesh_index(raw, err);
     SF_OWNED int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "node numbers");
     if (err->status == SF_OK && number_nodes(raw, index, number, mesh, err) == SF_OK &&

@@ -306,7 +306,7 @@ sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], dou
     int64_t n = surface->node_count;
     double mean[3] = {0}, scale = 0, chisq;
     if (n < 4)
-        return SF_FAIL(err, SF_ERR_MODEL, "the missile's surface has %lld nodes; a sphere needs 4",
+        return SF_FAIL(err, SF_ERR_MODEL, "the missile's surface has %lld nodes" SF_AT_LEAST("4"),
                        (long long)n);
     for (int64_t k = 0; k < 3 * n; k++)
         mean[k % 3] += surface->position[k] / (double)n;

@@ -188,8 +188,8 @@ static sf_status count_draws(const char *folder, int *count, sf_error *err) {
     if (*count == 0)
         return SF_REFUSE(err, "--posterior %s: there is no draw-001.cfg", folder);
     if (*count < SF_CFH_LEAST_DRAWS)
-        return SF_REFUSE(err, "--posterior %s: %d draws, at least %d are needed for an interval", folder,
-                         *count, SF_CFH_LEAST_DRAWS);
+        return SF_REFUSE(err, "--posterior %s: %d draws for an interval" SF_AT_LEAST("%d"), folder, *count,
+                         SF_CFH_LEAST_DRAWS);
     return SF_OK;
 }
 

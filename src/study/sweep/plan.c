@@ -31,8 +31,7 @@ static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) 
 static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
     double shift[SF_SOBOL_DIMENSIONS] = {0};
     if (d > SF_SOBOL_DIMENSIONS)
-        return SF_REFUSE(err, "the Sobol' sequence has at most %d coordinates, not %d", SF_SOBOL_DIMENSIONS,
-                         d);
+        return SF_REFUSE(err, "%d coordinates of a Sobol' sequence" SF_AT_MOST("%d"), d, SF_SOBOL_DIMENSIONS);
     gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
     if (!q)
         return SF_NO_MEMORY(err, "the Sobol' sequence");
@@ -272,8 +271,8 @@ static sf_status multiply(const sf_config *config, const config_setting_t *list,
                                 "the plan has %.0f runs, more than %d: give --yes if it is meant", product,
                                 SF_SWEEP_ROWS);
     if (product > MOST_SAMPLES)
-        return sf_config_refuse(config, list, err, "the plan has %.3g runs: more than %d cannot be planned",
-                                product, MOST_SAMPLES);
+        return sf_config_refuse(config, list, err, "the plan has %.3g runs" SF_AT_MOST("%d"), product,
+                                MOST_SAMPLES);
     for (int k = p->block_count - 1; k >= 0; k--) {
         p->block[k].stride = p->rows;
         p->rows *= p->block[k].rows;
@@ -330,10 +329,11 @@ static sf_status add_figure(const sf_config *config, const config_setting_t *s, 
                             double accuracy, sf_plan *p, sf_error *err) {
     const sf_figure *figure = sf_figure_find(key);
     if (!figure || figure->row.type == SF_ROW_TEXT)
-        return sf_config_refuse(config, s, err, "\"%.80s\" is no figure of summary.json (docs/formats.md)",
-                                key);
+        return sf_config_refuse(config, s, err,
+                                "unknown figure \"%.80s\" of summary.json (docs/formats.md lists them)", key);
     if (p->figure_count == SF_SWEEP_FIGURES)
-        return sf_config_refuse(config, s, err, "at most %d figures", SF_SWEEP_FIGURES);
+        return sf_config_refuse(config, s, err, "%d figures" SF_AT_MOST("%d"), p->figure_count + 1,
+                                SF_SWEEP_FIGURES);
     p->figure[p->figure_count++] = (sf_sweep_limit){figure->row.key, limit, accuracy};
     if ((accuracy > 0) != (p->figure[0].accuracy > 0))
         return sf_config_refuse(

@@ -126,7 +126,7 @@ sf_status sf_cycle_records_read(const sf_config *file, sf_config_item *root, sf_
         SF_TRY(read_record(file, group, &c->cycles[c->record_count++], err));
         for (int j = 0; j < k; j++)
             if (is_same_record(&c->cycles[j], &c->cycles[k]))
-                return sf_config_refuse(file, group, err, "cycles: the record %s is there already",
+                return sf_config_refuse(file, group, err, "cycles: the record %s is given twice",
                                         c->cycles[j].path);
     }
     return SF_OK;

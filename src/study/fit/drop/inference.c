@@ -301,7 +301,7 @@ static double prior_norm(const sf_fit_input *input) {
 
 static sf_status prepare(sf_drop_inference *in, bool leave_one_out, sf_error *err) {
     if (in->parameters > SF_POSTERIOR_MOST)
-        return SF_REFUSE(err, "%d unknown parameters: at most %d can be sampled",
+        return SF_REFUSE(err, "%d unknown parameters to be sampled" SF_AT_MOST("%d"),
                          in->fit->input->unknown_count, SF_POSTERIOR_MOST - 2);
     in->prior_norm = prior_norm(in->fit->input);
     SF_TRY(list_data(in, err));

@@ -284,7 +284,7 @@ sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const s
     int count = chains->chains * chains->kept;
     SF_OWNED_BY(free_wide) wide w = {0};
     if (g->groups > MOST_GROUPS)
-        return SF_REFUSE(err, "%d groups of data: at most %d are left out one by one", g->groups,
+        return SF_REFUSE(err, "%d groups of data to be left out one by one" SF_AT_MOST("%d"), g->groups,
                          MOST_GROUPS);
     SF_OWNED double *all = split_all(g, chains->sample, count, err),
                     *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");

@@ -95,7 +95,7 @@ static sf_status set_scale(const sf_mixture *m, const double *scale, sf_mixture_
 sf_status sf_mixture_single(int n, const double *centre, const double *scale, double freedom, sf_mixture *m,
                             sf_error *err) {
     if (n < 1 || n > N)
-        return SF_REFUSE(err, "%d parameters: 1 to %d are expected", n, N);
+        return SF_REFUSE(err, "the number of parameters" SF_OUTSIDE("%d", "1", "%d"), n, N);
     *m = (sf_mixture){.parameters = n, .parts = 1, .freedom = freedom};
     m->part[0].weight = 1;
     memcpy(m->part[0].centre, centre, (size_t)n * sizeof *centre);
