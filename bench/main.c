@@ -9,7 +9,7 @@
 #include "pre/build.h"
 #include "pre/mesh/gmsh_session.h"
 #include "solver/step.h"
-#include "solver/time_step.h"
+#include "solver/state.h"
 #include "traffic.h"
 
 #include <argp.h>

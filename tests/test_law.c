@@ -5,7 +5,7 @@
 
 #include "material/foam_card.h"
 #include "point_fixture.h"
-#include "solver/field/domain_stress.h"
+#include "solver/field/field.h"
 #include "material/hyperfoam.h"
 #include <math.h>
 #include <setjmp.h>

@@ -2,10 +2,8 @@
 /* libsoftfall: drops, their results and figures, models in files. */
 #include "api/api.h"
 #include "build_info.h"
-#include "model/flight.h"
 #include "post/figures/figures.h"
 #include "solver/run/run.h"
-#include "solver/set.h"
 #include "solver/step.h"
 
 #include <omp.h>

@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "material/laws.h"
-#include "model/flight.h"
 
 #define AT(path) sf_case_setting(reader, path)
 #define REFUSE_AT(path, ...) SF_REFUSE_AT(reader, AT(path), err, __VA_ARGS__)

@@ -2,8 +2,6 @@
 #include "pre/steps.h"
 
 #include "base/mat3.h"
-#include "base/sets.h"
-#include "model/flight.h"
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
 static const double EARLY = 0.1; /* steps of depth before that */

@@ -4,7 +4,6 @@
 #include <gsl/gsl_eigen.h>
 
 #include "base/mat3.h"
-#include "base/sets.h"
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
 

@@ -4,7 +4,6 @@
 #include <gsl/gsl_sort.h>
 
 #include "base/mat3.h"
-#include "base/sets.h"
 
 /* Components of a symmetric tensor in the order of base/mat3.h. */
 static const int ROW[6] = {0, 1, 2, 0, 1, 0}, COLUMN[6] = {0, 1, 2, 1, 2, 2};

@@ -2,7 +2,6 @@
 #include "pre/steps.h"
 
 #include "base/mat3.h"
-#include "base/sets.h"
 
 static const double SHARP =
     0.77; /* cosine of the normals of two faces, 40 degrees: their edge is no facet edge */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/missile.h"
 
-#include "model/flight.h"
 #include "base/mat3.h"
 
 double sf_missile_free_fall(const sf_model *m) {

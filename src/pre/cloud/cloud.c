@@ -3,7 +3,6 @@
 
 #include "base/hash.h"
 #include "base/mat3.h"
-#include "base/sets.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/sets.h"
 #include "pre/cloud/cloud.h"
 
 #include "base/mat3.h"

@@ -3,8 +3,6 @@
 
 #include "base/mat3.h"
 
-#include "pre/cloud/mls.h"
-
 enum { MAX_ENLARGEMENTS = 12 };
 static const double ENLARGEMENT = 1.15;
 

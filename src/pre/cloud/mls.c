@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/cloud/mls.h"
+#include "pre/cloud/cloud.h"
 
 /* A path may lead as far away as this times the distance of its ends: around the tip of a slit, not around
  * the slit. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/field/membrane.h"
+#include "solver/field/field.h"
 
 #include "base/mat3.h"
 #include "model/stability.h"

@@ -4,9 +4,6 @@
 #include <errno.h>
 #include <unistd.h>
 
-#include "solver/field/domain_stress.h"
-#include "solver/set.h"
-
 static const sf_member members[] = {
 #define NUMBER(type, name, size, units, meaning) SF_MEMBER(sf_state, name, type, units, meaning),
 #define OF_MISSILE(type, name, size, units, meaning) SF_MEMBER(sf_state, missile.name, type, units, meaning),

@@ -3,7 +3,6 @@
 
 #include "base/sets.h"
 #include "base/mat3.h"
-#include "solver/field/domain_stress.h"
 
 enum { SLAB = 64 * SF_LANES }; /* nodes: more would be felt in the memory of a run */
 

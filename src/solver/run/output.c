@@ -8,7 +8,6 @@
 
 #include "base/text.h"
 #include "io/folder.h"
-#include "model/flight.h"
 
 /* Returns the place of the symmetry plane normal to an axis; NaN: there is none. */
 static double find_plane(const sf_model *m, int axis) {

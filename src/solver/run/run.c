@@ -5,7 +5,6 @@
 
 #include "base/text.h"
 #include "material/low_density_foam.h"
-#include "solver/set.h"
 #include "solver/step.h"
 
 static const double REBOUND_WAIT = 1e-3; /* s, without contact before the run may end */

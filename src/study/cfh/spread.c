@@ -2,7 +2,6 @@
 #include "study/cfh/spread.h"
 
 #include "io/process.h"
-#include "study/predictor.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>

@@ -2,7 +2,6 @@
 #include "study/sweep/adaptive.h"
 
 #include "io/process.h"
-#include "study/predictor.h"
 #include "study/sweep/analysis.h"
 #include <gsl/gsl_sort.h>
 
