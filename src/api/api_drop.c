@@ -63,7 +63,7 @@ static sf_status take_set(softfall_drop *d, const sf_state *before, double pause
         return SF_OK;
     for (int k = 0; k < 3; k++) {
         const double *from = *own[k];
-        if ((*own[k] = sf_alloc(err, (unsigned long)count[k], sizeof *from, "the reference of a drop")))
+        if ((*own[k] = sf_alloc(err, count[k], sizeof *from, "the reference of a drop")))
             memcpy(*own[k], from, (size_t)count[k] * sizeof *from);
     }
     SF_TRY(err->status);

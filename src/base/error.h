@@ -81,8 +81,10 @@ void sf_release(void *pointer);
 void sf_free_all(size_t count, void *pointers[]);
 
 /* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
- * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
-void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);
+ * them with free(). The count may be of any integer type; `count * size` is checked for overflow; zero bytes
+ * give a valid block. */
+void *sf_allocate(sf_error *err, unsigned long count, unsigned long size, const char *what);
+#define sf_alloc(err, count, size, what) sf_allocate(err, (unsigned long)(count), size, what)
 
 /* Makes room for one more element behind `count` elements of `size` bytes. `array` is the address of a
  * pointer that is NULL at first and that only this function changes. False: out of memory, and nothing has

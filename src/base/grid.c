@@ -35,8 +35,8 @@ sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, co
         grid->bins[c] = (int64_t)((high[c] - low[c]) / grid->width) + 1;
     }
     int64_t bins = grid->bins[0] * grid->bins[1] * grid->bins[2];
-    grid->start = sf_alloc(err, (unsigned long)bins + 2, sizeof *grid->start, "neighbour grid");
-    grid->node = sf_alloc(err, (unsigned long)count, sizeof *grid->node, "neighbour grid");
+    grid->start = sf_alloc(err, bins + 2, sizeof *grid->start, "neighbour grid");
+    grid->node = sf_alloc(err, count, sizeof *grid->node, "neighbour grid");
     if (err->status != SF_OK) {
         sf_grid_free(grid);
         return err->status;

@@ -194,7 +194,7 @@ static void *wait_for_all(void *gate) {
 
 sf_status sf_program_try_threads(int threads, sf_error *err) {
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
-    SF_OWNED pthread_t *thread = sf_alloc(err, (unsigned long)threads, sizeof *thread, "the threads");
+    SF_OWNED pthread_t *thread = sf_alloc(err, threads, sizeof *thread, "the threads");
     int count = 0, failed = 0;
     SF_TRY(err->status);
     pthread_mutex_lock(&gate);

@@ -13,8 +13,7 @@ sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
         .what = what,
         .column = {"strain", "stress"},
         .wanted = {"\"strain\" or \"strain_percent\"", "\"stress_Pa\", \"stress_kPa\" or \"stress_MPa\""},
-        .names = names,
-        .name_count = sizeof names / sizeof *names,
+        SF_TABLE_NAMES(names),
         .words = {"strain|*dehnung|*stauchung|deformation|déformation|deformación|deformazione",
                   "stress|*spannung|contrainte|tensión|esfuerzo|sforzo|tensione"},
         .unfit = {"true|log|ln|logarithmic|hencky|natural|wahre|logarithmische", "true|cauchy|wahre"},
@@ -214,22 +213,13 @@ static sf_status check_order(const sf_case_reader *reader, const config_setting_
         config_setting_get_string(file[1]));
 }
 
-/* Stress of curve k at a strain within it. */
-static double stress_at(const sf_law_curves *c, int64_t k, double strain) {
-    int64_t i = c->curve_ptr[k] + 1;
-    while (i + 1 < c->curve_ptr[k + 1] && c->curve_strain[i] < strain)
-        i++;
-    double x = (strain - c->curve_strain[i - 1]) / (c->curve_strain[i] - c->curve_strain[i - 1]);
-    return c->curve_stress[i - 1] + fmin(1, x) * (c->curve_stress[i] - c->curve_stress[i - 1]);
-}
-
 /* The curve at part x of the way from curve k to the next, by the logarithm of the stress at the strains of
  * both, up to the end of the shorter one. */
 static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_case_curve *out, sf_error *err) {
     int64_t first = c->curve_ptr[k], count = c->curve_ptr[k + 2] - first;
     double end = fmin(c->curve_strain[c->curve_ptr[k + 1] - 1], c->curve_strain[c->curve_ptr[k + 2] - 1]);
-    double *strain = sf_alloc(err, (unsigned long)count, sizeof *strain, "curve"),
-           *stress = sf_alloc(err, (unsigned long)count, sizeof *stress, "curve");
+    double *strain = sf_alloc(err, count, sizeof *strain, "curve"),
+           *stress = sf_alloc(err, count, sizeof *stress, "curve");
     *out = (sf_case_curve){.strain = strain, .stress = stress};
     SF_TRY(err->status);
     memcpy(strain, &c->curve_strain[first], (size_t)count * sizeof *strain);
@@ -237,7 +227,7 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
     for (int64_t i = 0; i < count && strain[i] <= end; i++) {
         if (out->count > 0 && strain[i] - strain[out->count - 1] < 1e-9)
             continue;
-        double at = strain[i], low = stress_at(c, k, at), high = stress_at(c, k + 1, at);
+        double at = strain[i], low = sf_law_curve_stress(c, k, at), high = sf_law_curve_stress(c, k + 1, at);
         strain[out->count] = at;
         stress[out->count++] = low > 0 && high > 0 ? exp((1 - x) * log(low) + x * log(high)) : 0;
     }
@@ -340,8 +330,7 @@ static const sf_table_layout motion_layout = {
     .what = "motion",
     .column = {"time", "displacement"},
     .wanted = {"\"time_s\" or \"time_ms\"", "\"displacement_m\" or \"displacement_mm\""},
-    .names = motion_names,
-    .name_count = sizeof motion_names / sizeof *motion_names,
+    SF_TABLE_NAMES(motion_names),
     .words =
         {"time|t|*zeit|temps|tiempo|tempo",
          "displacement|extension|crosshead|position|travel|stroke|*weg|desplazamiento|déplacement|spostamento"},

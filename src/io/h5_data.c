@@ -368,7 +368,7 @@ static sf_status copy_rows(const sf_h5 *from, const char *path, hid_t set, hid_t
     int64_t rows = (int64_t)extent[0], row_size = items / rows * (int64_t)H5Tget_size(type);
     int64_t piece = row_size < SF_H5_COPY_SIZE ? SF_H5_COPY_SIZE / row_size : 1;
     piece = piece < rows ? piece : rows;
-    SF_OWNED void *data = sf_alloc(err, (unsigned long)piece, (unsigned long)row_size, path);
+    SF_OWNED void *data = sf_alloc(err, piece, (unsigned long)row_size, path);
     for (int64_t first = 0; first < rows && err->status == SF_OK; first += piece) {
         int64_t count = piece < rows - first ? piece : rows - first;
         if (!move_rows(set, type, first, count, data, NULL))

@@ -50,6 +50,9 @@ typedef enum sf_table_part { SF_TABLE_SPECIMEN, SF_TABLE_CYCLE, SF_TABLE_PARTS }
 /* Refuses a point. */
 typedef sf_status sf_table_check(const sf_table_point *point, sf_error *err);
 
+/* The names of a layout, from an array of them. */
+#define SF_TABLE_NAMES(array) .names = (array), .name_count = sizeof(array) / sizeof *(array)
+
 typedef struct sf_table_layout {
     const char *what;      /* "curve" */
     const char *column[2]; /* "strain", "stress" */

@@ -165,7 +165,7 @@ sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curv
                          x[count - 1]);
     curve->step = curve->start / SF_CURVE_INTERVALS;
     curve->piece = sf_alloc(err, SF_CURVE_INTERVALS, sizeof *curve->piece, "curve table");
-    SF_OWNED double *slopes = sf_alloc(err, (unsigned long)count, sizeof *slopes, "curve slopes");
+    SF_OWNED double *slopes = sf_alloc(err, count, sizeof *slopes, "curve slopes");
     if (err->status == SF_OK) {
         double stress, slope;
         steffen_slopes(count, x, y, slopes);

@@ -8,8 +8,8 @@ sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) 
         .cutoff = card->tension_cutoff,
         .curve_count = card->curve_count,
     };
-    foam->curve = sf_alloc(err, (unsigned long)card->curve_count, sizeof *foam->curve, "curves");
-    foam->curve_rate = sf_alloc(err, (unsigned long)card->curve_count, sizeof *foam->curve_rate, "curves");
+    foam->curve = sf_alloc(err, card->curve_count, sizeof *foam->curve, "curves");
+    foam->curve_rate = sf_alloc(err, card->curve_count, sizeof *foam->curve_rate, "curves");
     for (int64_t k = 0; k < card->curve_count && err->status == SF_OK; k++) {
         foam->curve_rate[k] = card->curve_rate[k];
         sf_curve_build(card, k, &foam->curve[k], err);

@@ -281,8 +281,8 @@ double sf_model_density(const sf_model *model) {
 
 sf_status sf_model_take_materials(sf_model *model, sf_material *material, int count, sf_error *err) {
     if (!model->node_material)
-        model->node_material = sf_alloc(err, (unsigned long)model->node_count, 1, "materials of the nodes");
-    model->material = sf_alloc(err, (unsigned long)count, sizeof *model->material, "materials");
+        model->node_material = sf_alloc(err, model->node_count, 1, "materials of the nodes");
+    model->material = sf_alloc(err, count, sizeof *model->material, "materials");
     SF_TRY(err->status);
     model->material_count = count;
     memcpy(model->material, material, (size_t)count * sizeof *material);

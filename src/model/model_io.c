@@ -166,7 +166,7 @@ static sf_status read_materials(const sf_h5 *h5, sf_model *model, sf_error *err)
     if (count < 1 || count > SF_MATERIAL_MAX)
         return SF_FAIL(err, SF_ERR_MODEL, "/material/count" SF_OUTSIDE("%lld", "1", "%d"), (long long)count,
                        SF_MATERIAL_MAX);
-    model->material = sf_alloc(err, (unsigned long)count, sizeof *model->material, "materials");
+    model->material = sf_alloc(err, count, sizeof *model->material, "materials");
     for (int64_t k = 0; k < count && err->status == SF_OK; k++)
         read_material(h5, &model->material[k], k, err);
     return err->status;

@@ -177,8 +177,7 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
     if (!sf_missile_turns(m) || !(rate * flight > 0))
         return SF_OK;
     sf_surface surface = sf_surface_of_missile(m);
-    surface.position =
-        sf_alloc(err, 3 * (unsigned long)surface.node_count, sizeof *surface.position, "missile's flight");
+    surface.position = sf_alloc(err, 3 * surface.node_count, sizeof *surface.position, "missile's flight");
     card.shape = SF_SHAPE_SURFACE;
     for (int k = 1; k <= POSES && err->status == SF_OK; k++) {
         double before = flight * k / POSES, distance = 0;
@@ -222,9 +221,7 @@ static double triangle_distance(const double x[3], const double a[3], const doub
     double nearest[3];
     int feature;
     sf_triangle_nearest(a, b, c, x, nearest, &feature);
-    for (int k = 0; k < 3; k++)
-        nearest[k] -= x[k];
-    return sqrt(sf_dot3(nearest, nearest));
+    return sf_distance3(nearest, x);
 }
 
 /* A missile that is drawn on both sides of the plane is its own mirror image: the model has one side alone.

@@ -34,14 +34,14 @@ static sf_status find_surface(const sf_model *m, surface_of_pad *out, sf_error *
     SF_OWNED int32_t *node = NULL;
     *out = (surface_of_pad){0};
     if (sf_skin_triangles(&SF_CELLS_OF(m), &out->count, &node, NULL, err) == SF_OK)
-        out->list = sf_alloc(err, (unsigned long)out->count, sizeof *out->list, "surface of the pad");
+        out->list = sf_alloc(err, out->count, sizeof *out->list, "surface of the pad");
     for (int64_t i = 0; out->list && i < out->count; i++)
         memcpy(out->list[i].node, &node[3 * i], sizeof out->list[i].node);
     return err->status;
 }
 
 static uint8_t *mark_nodes(const sf_model *m, sf_error *err) {
-    uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "thickness of the pad");
+    uint8_t *mark = sf_alloc(err, m->node_count, 1, "thickness of the pad");
     for (int64_t k = 0; mark && k < m->contact_count; k++)
         mark[m->contact_node[k]] |= MARK_TOUCHED;
     for (int64_t k = 0; mark && k < m->fixed_count; k++)
@@ -79,8 +79,7 @@ static double facing(const sf_model *m, const triangle *t) {
 }
 
 static int by_place(const void *a, const void *b) {
-    double x = ((const hit *)a)->order, y = ((const hit *)b)->order;
-    return (x > y) - (x < y);
+    return SF_ORDER(((const hit *)a)->order, ((const hit *)b)->order);
 }
 
 /* The parts of a ray: foam, and air between the parts of foam and below them to the anvil. */

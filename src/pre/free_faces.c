@@ -32,7 +32,7 @@ static shape shape_of(const sf_model *m, const int32_t node[3]) {
 
 /* The components that are held at each node, and 8 where it is tied to another layer. */
 static uint8_t *mark_nodes(const sf_model *m, sf_error *err) {
-    uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
+    uint8_t *mark = sf_alloc(err, m->node_count, 1, "skin of the pad");
     for (int64_t k = 0; mark && k < m->fixed_count; k++)
         mark[m->fixed_node[k]] |= m->fixed_mask[k];
     for (int64_t k = 0; mark && k < m->tie_count; k++) {
@@ -74,9 +74,9 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
     SF_OWNED uint8_t *mark = mark_nodes(m, err);
     *f = (faces){0};
     if (mark && sf_skin_triangles(&SF_CELLS_OF(m), &all, &f->node, &f->half, err) == SF_OK) {
-        f->shape = sf_alloc(err, (unsigned long)all, sizeof *f->shape, "skin of the pad");
-        f->position = sf_alloc(err, 3 * (unsigned long)all, sizeof(double), "skin of the pad");
-        f->radius = sf_alloc(err, (unsigned long)all, sizeof(double), "skin of the pad");
+        f->shape = sf_alloc(err, all, sizeof *f->shape, "skin of the pad");
+        f->position = sf_alloc(err, 3 * all, sizeof(double), "skin of the pad");
+        f->radius = sf_alloc(err, all, sizeof(double), "skin of the pad");
     }
     for (int64_t i = 0; err->status == SF_OK && i < all; i++) {
         const shape s = shape_of(m, &f->node[3 * i]);
@@ -153,7 +153,7 @@ static bool meets_image(const sf_model *m, const shape *s, double length) {
 /* *first: a face that can touch another one, its image, or the anvil; -1: none can. */
 static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first, sf_error *err) {
     static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
-    SF_OWNED int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
+    SF_OWNED int32_t *near = sf_alloc(err, f->count, sizeof *near, "skin of the pad");
     double anvil = f->high[2] - m->anvil.depth;
     *first = -1;
     for (int64_t i = 0; near && i < f->count && *first < 0; i++) {
@@ -219,10 +219,10 @@ sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_contact_z
     enum { FREE, ADDED, LEFT_OUT, NAMED };
     static const double FACING = -0.64; /* largest cosine of a face that goes on from the named ones */
     SF_OWNED_BY(faces_free) faces f = {0};
-    SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
-    SF_OWNED double *area = sf_alloc(err, (unsigned long)m->node_count, sizeof *area, "contact points");
-    SF_OWNED double *seen = sf_alloc(err, (unsigned long)m->node_count, sizeof *seen, "contact points");
-    SF_OWNED int32_t *node = sf_alloc(err, (unsigned long)m->node_count, sizeof *node, "contact points");
+    SF_OWNED uint8_t *mark = sf_alloc(err, m->node_count, 1, "contact points");
+    SF_OWNED double *area = sf_alloc(err, m->node_count, sizeof *area, "contact points");
+    SF_OWNED double *seen = sf_alloc(err, m->node_count, sizeof *seen, "contact points");
+    SF_OWNED int32_t *node = sf_alloc(err, m->node_count, sizeof *node, "contact points");
     double unnamed = 0;
     SF_TRY(err->status);
     SF_TRY(faces_find(m, &f, err));
@@ -285,14 +285,10 @@ static void add_face(const sf_mesh *mesh, const sf_layers *l, const sf_boundary_
 static sf_status add_group(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
                            const sf_node_set *set, uint8_t *taken, sf_model *m, sf_error *err) {
     int64_t before = m->membrane_count;
-    SF_OWNED uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "membrane");
-    for (int64_t k = 0; member && k < set->count; k++)
-        member[set->node[k]] = 1;
+    SF_OWNED uint8_t *member = sf_surface_members(mesh, set, err);
     for (int64_t f = 0; member && f < dual->face_count && err->status == SF_OK; f++) {
         const sf_boundary_face *face = &dual->face[f];
-        bool inside = true;
-        for (int k = 0; k < face->size; k++)
-            inside = inside && member[face->node[k]];
+        bool inside = sf_surface_has_face(face, member);
         if (inside && taken[f]++)
             SF_REFUSE(err, "membrane.faces: a face of the group \"%s\" is in another one, too", set->name);
         else if (inside)
@@ -308,7 +304,7 @@ sf_status sf_membrane_take(const sf_case *c, const sf_mesh *mesh, const sf_dual 
     unsigned long most = 4 * (unsigned long)dual->face_count;
     if (c->membrane_count == 0)
         return SF_OK;
-    SF_OWNED uint8_t *taken = sf_alloc(err, (unsigned long)dual->face_count, 1, "membrane");
+    SF_OWNED uint8_t *taken = sf_alloc(err, dual->face_count, 1, "membrane");
     m->membrane = c->membrane_card;
     m->membrane_triangle = sf_alloc(err, 3 * most, sizeof *m->membrane_triangle, "membrane");
     m->membrane_share = sf_alloc(err, most, sizeof *m->membrane_share, "membrane");

@@ -215,8 +215,8 @@ sf_status sf_base_rest(const sf_case *c, const sf_base_marks *marks, sf_model *m
     }
     if (m->rest_count == 0)
         return SF_OK;
-    m->rest_node = sf_alloc(err, (unsigned long)m->rest_count, sizeof *m->rest_node, "resting nodes");
-    m->rest_load = sf_alloc(err, (unsigned long)m->rest_count, sizeof *m->rest_load, "resting nodes");
+    m->rest_node = sf_alloc(err, m->rest_count, sizeof *m->rest_node, "resting nodes");
+    m->rest_load = sf_alloc(err, m->rest_count, sizeof *m->rest_load, "resting nodes");
     SF_TRY(err->status);
     int64_t used = 0;
     for (int64_t i = 0; i < m->node_count; i++)

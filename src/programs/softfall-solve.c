@@ -8,7 +8,6 @@
 
 #include "base/program.h"
 #include "build_info.h"
-#include "io/process.h"
 #include "model/good_run.h"
 #include "solver/run/run.h"
 

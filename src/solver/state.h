@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include <time.h>
-
+#include "io/process.h"
 #include "solver/field/field.h"
 #include "solver/missile.h"
 
@@ -23,17 +22,11 @@ typedef struct sf_stopwatch {
     double seconds[SF_PHASES]; /* of the present step */
 } sf_stopwatch;
 
-static inline double sf_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Adds the time since the last call to `phase`. Does nothing without a watch. */
 static inline void sf_lap(sf_stopwatch *watch, sf_phase phase) {
     if (!watch)
         return;
-    double now = sf_clock();
+    double now = sf_process_now();
     watch->seconds[phase] += now - watch->mark;
     watch->mark = now;
 }

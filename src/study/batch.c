@@ -259,7 +259,7 @@ sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
     if (strcmp(head, HEAD) != 0 || !m->folder || !m->runs || wanted < 0 || !rest ||
         (size_t)wanted > strlen(rest))
         return SF_REFUSE(err, "%s is not the manifest of a batch", path);
-    m->run = sf_alloc(err, (unsigned long)wanted, sizeof *m->run, "runs");
+    m->run = sf_alloc(err, wanted, sizeof *m->run, "runs");
     for (; err->status == SF_OK && m->count < wanted; m->count++)
         if (!rest || !take_run(strsep(&rest, "\n"), &m->run[m->count]))
             return SF_REFUSE(err, "%s:%d: this is not the line of a run: the manifest is damaged", path,

@@ -85,8 +85,7 @@ static sf_table_layout layout_of(const sf_reference_options *o, const char *colu
         .column = {"time", "acceleration"},
         .wanted = {"time_s, time_ms or time_us (or \"Time (ms)\")",
                    "acceleration_g, acceleration_m_s2 or acceleration_km_s2 (or \"Acceleration (g)\")"},
-        .names = names,
-        .name_count = sizeof names / sizeof *names,
+        SF_TABLE_NAMES(names),
         .words = {"time|t|*zeit|temps|tiempo|tempo",
                   "acceleration|deceleration|accel|acc|a|*beschleunigung|accélération|aceleración|"
                   "accelerazione"},

@@ -11,8 +11,8 @@ static const double MOST_SAMPLES = 1e7; /* of a curve: 100 s at 100 kHz */
 
 sf_status sf_series_create(int64_t count, sf_series *series, sf_error *err) {
     *series = (sf_series){0};
-    series->time = sf_alloc(err, (unsigned long)count, sizeof(double), "times of a curve");
-    series->value = sf_alloc(err, (unsigned long)count, sizeof(double), "values of a curve");
+    series->time = sf_alloc(err, count, sizeof(double), "times of a curve");
+    series->value = sf_alloc(err, count, sizeof(double), "values of a curve");
     series->count = count;
     if (!series->time || !series->value)
         sf_series_free(series);
@@ -185,7 +185,7 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     /* The impulse response fades as exp(-pole t / sqrt 2): to 1e-9 in 30 / pole. */
     int64_t pad = (int64_t)ceil(30 / (pole * step)) + 2;
     int64_t total = uniform->count + 2 * pad;
-    work = sf_alloc(err, (unsigned long)total, sizeof *work, "the padded curve");
+    work = sf_alloc(err, total, sizeof *work, "the padded curve");
     SF_TRY(err->status);
     SF_TRY(sf_series_create(uniform->count, filtered, err));
     for (int64_t k = 0; k < total; k++)

@@ -59,7 +59,7 @@ static bool is_one_place(const sf_results *r, int64_t a, int64_t b) {
 
 /* [node_count] the nodes, those at one place one after another; owned by the caller, NULL on failure. */
 static int64_t *order_by_place(const sf_results *r, sf_error *err) {
-    int64_t *order = sf_alloc(err, (unsigned long)r->node_count, sizeof *order, "nodes by place");
+    int64_t *order = sf_alloc(err, r->node_count, sizeof *order, "nodes by place");
     for (int64_t i = 0; order && i < r->node_count; i++)
         order[i] = i;
     if (order)
@@ -70,7 +70,7 @@ static int64_t *order_by_place(const sf_results *r, sf_error *err) {
 /* [node_count] the next node at the same place, in a ring; owned by the caller. */
 static int64_t *ring_copies(const sf_results *r, sf_error *err) {
     SF_OWNED int64_t *order = order_by_place(r, err);
-    int64_t *next = sf_alloc(err, (unsigned long)r->node_count, sizeof *next, "nodes by place");
+    int64_t *next = sf_alloc(err, r->node_count, sizeof *next, "nodes by place");
     for (int64_t k = 0, first = 0; err->status == SF_OK && k < r->node_count; k++) {
         bool last = k + 1 == r->node_count || !is_one_place(r, order[k], order[k + 1]);
         next[order[k]] = last ? order[first] : order[k + 1];
@@ -143,9 +143,8 @@ sf_status sf_strain_field_collapse(const sf_results *r, const double *compressio
         .r = r,
         .compression = compression,
         .displacement = displacement,
-        .cells = {
-            .first = sf_alloc(err, (unsigned long)r->node_count + 2, sizeof *s.cells.first, "cells of nodes"),
-            .cell = sf_alloc(err, (unsigned long)r->cell_nnz, sizeof *s.cells.cell, "cells of nodes")}};
+        .cells = {.first = sf_alloc(err, r->node_count + 2, sizeof *s.cells.first, "cells of nodes"),
+                  .cell = sf_alloc(err, r->cell_nnz, sizeof *s.cells.cell, "cells of nodes")}};
     *collapse = 0;
     if (err->status == SF_OK) {
         list_cells(r, &s.cells);
@@ -225,9 +224,8 @@ static void add_peak(const sf_results *r, const double *compression, const doubl
 
 sf_layer_figures *sf_layer_figures_compute(const sf_results *r, const double *compression,
                                            const double *energy_density, sf_error *err) {
-    sf_layer_figures *f = r->layer_count > 0 ? sf_alloc(err, (unsigned long)r->layer_count, sizeof *f,
-                                                        "the figures of the layers")
-                                             : NULL;
+    sf_layer_figures *f =
+        r->layer_count > 0 ? sf_alloc(err, r->layer_count, sizeof *f, "the figures of the layers") : NULL;
     if (!f)
         return NULL;
     for (int k = 0; k < r->layer_count; k++) {
@@ -324,10 +322,10 @@ static void add_face(const sf_results *r, const int32_t node[3], faces *f) {
 static sf_status faces_find(const sf_results *r, const double *u, faces *f, sf_error *err) {
     int64_t all = 0;
     SF_TRY(sf_skin_triangles(&SF_CELLS_OF(r), &all, &f->node, NULL, err));
-    f->x = sf_alloc(err, 3 * (unsigned long)r->node_count, sizeof *f->x, "faces of the pad");
-    f->centre = sf_alloc(err, 3 * (unsigned long)all, sizeof *f->centre, "faces of the pad");
-    f->radius = sf_alloc(err, (unsigned long)all, sizeof *f->radius, "faces of the pad");
-    f->found = sf_alloc(err, (unsigned long)all, sizeof *f->found, "faces of the pad");
+    f->x = sf_alloc(err, 3 * r->node_count, sizeof *f->x, "faces of the pad");
+    f->centre = sf_alloc(err, 3 * all, sizeof *f->centre, "faces of the pad");
+    f->radius = sf_alloc(err, all, sizeof *f->radius, "faces of the pad");
+    f->found = sf_alloc(err, all, sizeof *f->found, "faces of the pad");
     SF_TRY(err->status);
     for (int64_t k = 0; k < 3 * r->node_count; k++)
         f->x[k] = r->position[k] + u[k];

@@ -275,7 +275,7 @@ static sf_status read_sphere(sf_results *r, sf_error *err) {
 static sf_status read_layer_names(sf_results *r, sf_error *err) {
     char *rest = NULL;
     int count = 0;
-    r->layer_name = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_name, "names of layers");
+    r->layer_name = sf_alloc(err, r->layer_count, sizeof *r->layer_name, "names of layers");
     if (!r->layer_name || sf_h5_read_text(r->file, "/model/layer_names", &r->layer_names, err) != SF_OK)
         return err->status;
     for (char *line = strtok_r(r->layer_names, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
@@ -318,7 +318,7 @@ static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_er
                                         "layer_compression"};
     static const size_t offsets[] = {offsetof(sf_layer_sums, stored), offsetof(sf_layer_sums, hysteresis),
                                      offsetof(sf_layer_sums, viscous), offsetof(sf_layer_sums, compression)};
-    r->layer_sums = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_sums, "sums of layers");
+    r->layer_sums = sf_alloc(err, r->layer_count, sizeof *r->layer_sums, "sums of layers");
     for (int k = 0; k < 4 && err->status == SF_OK; k++) {
         char path[80];
         SF_OWNED double *value = NULL;

@@ -190,8 +190,7 @@ static int by_depth(const void *a, const void *b, void *positions) {
 static sf_status write_rows(sf_csv *csv, const sf_results *r, const sf_frame *frame, sf_error *err) {
     double axis[2], top;
     sf_section_point station[SF_SECTION_STATIONS];
-    SF_OWNED int32_t *nodes =
-        sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
+    SF_OWNED int32_t *nodes = sf_alloc(err, r->node_count, sizeof *nodes, "the nodes of the section");
     size_t count = 0;
     SF_TRY(err->status);
     sf_axis_find(r, axis);

@@ -66,6 +66,11 @@ void sf_dual_boundary(const sf_mesh *mesh, const sf_boundary_face *face, int cor
 
 enum { SF_ANY_LAYER = -1 };
 
+/* [mesh->node_count] 1: the node is in the set; owned by the caller, NULL on failure. */
+uint8_t *sf_surface_members(const sf_mesh *mesh, const sf_node_set *set, sf_error *err);
+/* True if all nodes of the face are members. */
+bool sf_surface_has_face(const sf_boundary_face *face, const uint8_t *member);
+
 /* Adds to area [mesh->node_count], m2, the share of each node by the median dual, as the volumes do; of the
  * faces of one layer only, unless it is SF_ANY_LAYER. */
 sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, int layer,

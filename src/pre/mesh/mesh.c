@@ -163,9 +163,7 @@ typedef struct sorted_node {
 
 static int compare_along(const void *a, const void *b) {
     const sorted_node *p = a, *q = b;
-    if (p->along != q->along)
-        return p->along < q->along ? -1 : 1;
-    return p->node < q->node ? -1 : p->node > q->node;
+    return p->along != q->along ? SF_ORDER(p->along, q->along) : SF_ORDER(p->node, q->node);
 }
 
 /* Coinciding nodes are an invisible crack: a mesh of parts that were not joined. Near nodes are near along

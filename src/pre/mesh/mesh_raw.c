@@ -2,6 +2,7 @@
 #include "pre/mesh/mesh.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
 
 void sf_raw_mesh_free(sf_raw_mesh *raw) {
     SF_FREE(raw->tag, raw->xyz, raw->cell_type, raw->cell_chosen, raw->cell_node, raw->face_group,
@@ -41,8 +42,7 @@ sf_status sf_raw_mesh_add_face(sf_raw_mesh *raw, int32_t group, int32_t part, co
 }
 
 static int compare_tag(const void *a, const void *b) {
-    const sf_tag_index *p = a, *q = b;
-    return p->tag < q->tag ? -1 : p->tag > q->tag;
+    return SF_ORDER(((const sf_tag_index *)a)->tag, ((const sf_tag_index *)b)->tag);
 }
 
 sf_tag_index *sf_raw_mesh_index(const sf_raw_mesh *raw, sf_error *err) {
@@ -243,8 +243,7 @@ typedef struct face_key {
 } face_key;
 
 static int compare_key(const void *a, const void *b) {
-    const face_key *p = a, *q = b;
-    return sf_raw_face_compare(p->tag, q->tag);
+    return sf_raw_face_compare(((const face_key *)a)->tag, ((const face_key *)b)->tag);
 }
 
 /* Shared by the steps below. */

@@ -168,7 +168,7 @@ static sf_status write_layers(const sf_model *m, const sf_operators *op, const s
     int64_t count = m->material_count;
     if (count < 2)
         return SF_OK;
-    SF_OWNED double *sums = sf_alloc(err, 4 * (unsigned long)count, sizeof *sums, "sums of the layers");
+    SF_OWNED double *sums = sf_alloc(err, 4 * count, sizeof *sums, "sums of the layers");
     if (sums)
         sum_layers(m, op, s, sums);
     for (int k = 0; k < 4 && err->status == SF_OK; k++)

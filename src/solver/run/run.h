@@ -3,7 +3,6 @@
 #include "io/replace.h"
 #include "solver/operators.h"
 #include "solver/state.h"
-#include <signal.h>
 
 /* A frame: the fields at the nodes at one time, as docs/formats.md lists them. */
 

@@ -272,7 +272,7 @@ sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int overr
     *out = (sf_cfh_draws){.folder = folder};
     SF_TRY(check_overrides(override_count, overrides, err));
     SF_TRY(count_draws(folder, &count, err));
-    out->draw = sf_alloc(err, (unsigned long)count, sizeof *out->draw, "draws");
+    out->draw = sf_alloc(err, count, sizeof *out->draw, "draws");
     for (int k = 0; k < override_count; k++)
         list[k + 1] = overrides[k];
     while (err->status == SF_OK && out->count < count) {

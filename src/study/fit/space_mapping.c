@@ -172,7 +172,7 @@ static bool change_held(minimisation *m, double *u, gsl_vector *f) {
 static sf_status minimise(minimisation *m, double *u, sf_error *err) {
     const sf_mapping_problem *p = m->anchor.problem;
     SF_VECTOR *f = sf_vector((size_t)p->responses + 2 * (size_t)p->parameters, err);
-    SF_OWNED double *y = sf_alloc(err, (unsigned long)p->responses, sizeof *y, "responses");
+    SF_OWNED double *y = sf_alloc(err, p->responses, sizeof *y, "responses");
     m->y = y;
     for (int round = 0; round < BOUND_ROUNDS && err->status == SF_OK; round++)
         if (descend(m, u, err) == SF_OK && (!p->low || !change_held(m, u, f)))
@@ -574,8 +574,8 @@ static sf_status return_to_surrogate(search *s, sf_error *err) {
     memcpy(r->corrected, r->matrix, (size_t)entries * sizeof *r->matrix);
     memset(r->matrix, 0, (size_t)entries * sizeof *r->matrix);
     memset(s->best.offset, 0, (size_t)p->responses * sizeof *s->best.offset);
-    SF_OWNED double *told = sf_alloc(err, (unsigned long)p->responses, sizeof *told, "responses"),
-                    *slope = sf_alloc(err, (unsigned long)entries, sizeof *slope, "Jacobian");
+    SF_OWNED double *told = sf_alloc(err, p->responses, sizeof *told, "responses"),
+                    *slope = sf_alloc(err, entries, sizeof *slope, "Jacobian");
     SF_TRY(err->status);
     const anchor a = anchor_at(s);
     if (p->surrogate(p->context, s->best.u, told, &failure) != SF_OK ||

@@ -112,10 +112,10 @@ static sf_status make_levels(sf_factor *f, int64_t count, bool words, sf_error *
     f->words = words;
     f->count = count;
     if (words) {
-        f->text = sf_alloc(err, (unsigned long)count, sizeof *f->text, "levels");
-        f->label = sf_alloc(err, (unsigned long)count, sizeof *f->label, "levels");
+        f->text = sf_alloc(err, count, sizeof *f->text, "levels");
+        f->label = sf_alloc(err, count, sizeof *f->label, "levels");
     } else {
-        f->number = sf_alloc(err, (unsigned long)count, sizeof *f->number, "levels");
+        f->number = sf_alloc(err, count, sizeof *f->number, "levels");
     }
     return err->status;
 }

@@ -236,8 +236,7 @@ static sf_table_layout machine_layout(void) {
         .what = "test",
         .column = {"displacement", "force"},
         .wanted = {"\"displacement_mm\"", "\"force_N\""},
-        .names = names,
-        .name_count = sizeof names / sizeof *names,
+        SF_TABLE_NAMES(names),
         .words =
             {"displacement|extension|crosshead|position|travel|stroke|deformation|deflection|compression|*weg|"
              "*verformung|*stauchung|desplazamiento|déplacement|spostamento",

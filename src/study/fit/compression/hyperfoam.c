@@ -66,8 +66,7 @@ static sf_table_layout lateral_layout(void) {
         .what = "test",
         .column = {"strain", "lateral strain"},
         .wanted = {"\"strain\" or \"strain_percent\"", "\"lateral_strain\" or \"lateral_strain_percent\""},
-        .names = names,
-        .name_count = sizeof names / sizeof *names,
+        SF_TABLE_NAMES(names),
         .check = check_lateral};
 }
 
@@ -292,7 +291,7 @@ static sf_status fit_unloading(const sf_compression_test *t, fitted *fit, sf_err
     sf_hyperfoam foam = sf_hyperfoam_build(&fit->card);
     int count = t->count - t->loading;
     double lateral = 0, peak = 0;
-    SF_OWNED double *loading = sf_alloc(err, 2 * (unsigned long)count, sizeof *loading, "unloading");
+    SF_OWNED double *loading = sf_alloc(err, 2 * count, sizeof *loading, "unloading");
     SF_TRY(err->status);
     sf_unloading_points points = {count,           t->stress + t->loading, loading, NULL,
                                   loading + count, t->largest_stress,      false,   1};

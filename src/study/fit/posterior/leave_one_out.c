@@ -36,7 +36,7 @@ sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixtur
     int n = target->parameters;
     *e = (sf_evidence){.draws = draws};
     SF_OWNED double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws"),
-                    *weight = sf_alloc(err, (unsigned long)draws, sizeof *weight, "draws");
+                    *weight = sf_alloc(err, draws, sizeof *weight, "draws");
     SF_RANDOM *random = sf_random(sf_seed_of(seed, 0), err);
     SF_TRY(err->status);
     for (int k = 0; k < draws; k++)
@@ -88,8 +88,8 @@ double sf_pareto_smooth(int count, double *weight, sf_error *err) {
     int tail = (int)fmin(0.2 * count, 3 * sqrt(count));
     if (tail < LEAST)
         return INFINITY;
-    SF_OWNED size_t *order = sf_alloc(err, (unsigned long)count, sizeof *order, "weights");
-    SF_OWNED double *x = sf_alloc(err, (unsigned long)tail, sizeof *x, "weights");
+    SF_OWNED size_t *order = sf_alloc(err, count, sizeof *order, "weights");
+    SF_OWNED double *x = sf_alloc(err, tail, sizeof *x, "weights");
     if (!order || !x)
         return INFINITY;
     gsl_sort_index(order, weight, 1, (size_t)count);
@@ -183,7 +183,7 @@ static double *split_all(const sf_grouped *g, const double *sample, int count, s
 /* By weights 1 / p(y_g | others, u); `scratch` [count]. */
 static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
                        sf_error *err) {
-    SF_OWNED double *sum = sf_alloc(err, (unsigned long)count, sizeof *sum, "weights");
+    SF_OWNED double *sum = sf_alloc(err, count, sizeof *sum, "weights");
     SF_TRY(err->status);
     for (int s = 0; s < count; s++)
         scratch[s] = -all[s * groups + g];
@@ -242,7 +242,7 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
     static const double FREEDOM = 5;
     int n = chains->parameters, draws = options->draws;
     sf_mixture m;
-    *w = (wide){.weight = sf_alloc(err, (unsigned long)draws, sizeof(double), "draws"),
+    *w = (wide){.weight = sf_alloc(err, draws, sizeof(double), "draws"),
                 .conditional = sf_alloc(err, (unsigned long)(draws * g->groups), sizeof(double), "draws")};
     SF_OWNED double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws");
     SF_RANDOM *random = sf_random(sf_seed_of(options->chains.seed, 700), err);
@@ -269,7 +269,7 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
 /* Estimates log p(group | others) by the weights, and sets `out->drawn` if enough draws count. */
 static sf_status take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out,
                            sf_error *err) {
-    SF_OWNED double *others = sf_alloc(err, (unsigned long)w->count, sizeof *others, "draws");
+    SF_OWNED double *others = sf_alloc(err, w->count, sizeof *others, "draws");
     SF_TRY(err->status);
     for (int k = 0; k < w->count; k++)
         others[k] = isinf(w->weight[k]) ? -INFINITY : w->weight[k] - w->conditional[k * groups + group];
@@ -287,7 +287,7 @@ sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const s
         return SF_REFUSE(err, "%d groups of data to be left out one by one" SF_AT_MOST("%d"), g->groups,
                          MOST_GROUPS);
     SF_OWNED double *all = split_all(g, chains->sample, count, err),
-                    *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");
+                    *scratch = sf_alloc(err, count, sizeof *scratch, "weights");
     for (int k = 0; k < g->groups && err->status == SF_OK; k++) {
         out[k] = (sf_left_out){.converged = false};
         if (weigh(all, g->groups, k, count, scratch, &out[k], err) != SF_OK || out[k].converged)

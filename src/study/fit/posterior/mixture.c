@@ -165,7 +165,7 @@ static sf_status find_axis(samples *s, sf_error *err) {
 
 /* First shares: equal slices along the axis. */
 static sf_status slice(const samples *s, int parts, sf_error *err) {
-    SF_OWNED double *sorted = sf_alloc(err, (unsigned long)s->count, sizeof *sorted, "samples");
+    SF_OWNED double *sorted = sf_alloc(err, s->count, sizeof *sorted, "samples");
     SF_TRY(err->status);
     memcpy(sorted, s->position, (size_t)s->count * sizeof *sorted);
     gsl_sort(sorted, 1, (size_t)s->count);
@@ -253,7 +253,7 @@ sf_status sf_mixture_fit(int n, int count, const double *u, double freedom, sf_m
     if (n < 1 || n > N || count < 2 * (n + 1))
         return SF_FAIL(err, SF_ERR_NUMERIC, "%d samples are too few to describe %d parameters", count, n);
     SF_OWNED double *share = sf_alloc(err, (unsigned long)count * SF_MIXTURE_MOST, sizeof *share, "samples"),
-                    *position = sf_alloc(err, (unsigned long)count, sizeof *position, "samples");
+                    *position = sf_alloc(err, count, sizeof *position, "samples");
     SF_TRY(err->status);
     samples all = {.n = n, .count = count, .u = u, .share = share, .position = position}, half = all;
     int parts = 1;
