@@ -329,7 +329,7 @@ static void damaged_models_are_refused_with_what_is_wrong(void **state) {
         {no_curve, "no usable compression curve"},
         {curve_from_nowhere, "does not start at (0, 0)"},
         {curve_of_three_points, "fewer than 4 points"},
-        {material_out_of_range, "is of material 1, of 0 to 0"},
+        {material_out_of_range, "is 1, outside 0 to 0"},
         {unknown_law, "\"no_such_law\" is not a law that this program has"},
         {no_materials, "/material/count is 0, outside 1 to 256"},
         {three_planes, "symmetry factor is 3"},

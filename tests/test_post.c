@@ -440,7 +440,7 @@ static void bad_input_is_refused_with_its_cause(void **state) {
         {{.format = "softfall-model"}, "is a softfall-model file"},
         {{.lost_rows = 5}, "/history/velocity has 4195 rows"},
         {{.nan_row = 17}, "/history/acceleration: row 17 is not finite"},
-        {{.bad_cell = true}, "/model/cell_node: entry 72 is 29, it must be in 0 to 28"},
+        {{.bad_cell = true}, "/model/cell_node: entry 72 is 29, outside 0 to 28"},
         {{.headless_frame = true}, "/frames/000003/time"},
     };
     outcome result = run_post(p, "");

@@ -105,19 +105,18 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
     for (int k = 0; k < SF_HYPERFOAM_TERMS; k++) {
         *place = groups[k];
         if (given->is(given->reader, groups[k], "nu") && given->is(given->reader, groups[k], "beta"))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: both nu and beta are given; a term has one of them",
-                           groups[k]);
+            return SF_REFUSE(err, "%s: both nu and beta are given; a term has one of them", groups[k]);
         if (k > 0 &&
             given->is(given->reader, groups[k], "mu") != given->is(given->reader, groups[k], "alpha"))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: mu and alpha are both needed", groups[k]);
+            return SF_REFUSE(err, "%s: mu and alpha are both needed", groups[k]);
         if (k > 0 && !given->is(given->reader, groups[k], "mu") &&
             (given->is(given->reader, groups[k], "nu") || given->is(given->reader, groups[k], "beta")))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s.mu is missing", groups[k]);
+            return SF_REFUSE(err, "%s.mu is missing", groups[k]);
     }
     sf_error inner = SF_ERROR_INIT;
     SF_TRY(sf_foam_check_shared_keys(&foam->shared, false, given, place, err));
     if (check_terms(foam, place, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s", inner.text);
+        return SF_REFUSE(err, "%s", inner.text);
     return SF_OK;
 }
 

@@ -274,7 +274,7 @@ static const sf_parameter parameters[] = {
 
 static sf_status refuse(sf_error *err, const char **place, const char *where, const char *sentence) {
     *place = where;
-    return SF_FAIL(err, SF_ERR_INPUT, "%s", sentence);
+    return SF_REFUSE(err, "%s", sentence);
 }
 
 static sf_status check_densification(const sf_foam_card *foam, const sf_given *given, const char **place,
@@ -287,28 +287,28 @@ static sf_status check_densification(const sf_foam_card *foam, const sf_given *g
     }
     *place = "material.densification.start";
     if (foam->densification_start > end)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %g lies beyond the end of the compression table (%g)", *place,
-                       foam->densification_start, end);
+        return SF_REFUSE(err, "%s: %g lies beyond the end of the compression table (%g)", *place,
+                         foam->densification_start, end);
     *place = "material.densification.limit";
     if (foam->densification_rule == SF_DENSIFICATION_H1) {
         if (foam->densification_limit != 1.0)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %g belongs to rule H2; the limit of H1 is 1", *place,
-                           foam->densification_limit);
+            return SF_REFUSE(err, "%s: %g belongs to rule H2; the limit of H1 is 1", *place,
+                             foam->densification_limit);
         return SF_OK;
     }
     static const char *const needed[] = {"limit", "exponent"};
     for (int i = 0; i < 2; i++)
         if (!given->is(given->reader, "material.densification", needed[i])) {
             *place = "material.densification";
-            return SF_FAIL(err, SF_ERR_INPUT, "%s.%s is missing: rule H2 needs it", *place, needed[i]);
+            return SF_REFUSE(err, "%s.%s is missing: rule H2 needs it", *place, needed[i]);
         }
     if (!(foam->densification_exponent > 0.0))
         return refuse(err, place, "material.densification.exponent",
                       "material.densification.exponent: rule H2 needs one above 0");
     double start = foam->densification_start > 0.0 ? foam->densification_start : largest;
     if (foam->densification_limit <= start)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %g is not above the strain %g at which the law starts", *place,
-                       foam->densification_limit, start);
+        return SF_REFUSE(err, "%s: %g is not above the strain %g at which the law starts", *place,
+                         foam->densification_limit, start);
     return SF_OK;
 }
 
@@ -334,7 +334,7 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
     sf_error inner = SF_ERROR_INIT;
     *place = "material.rate_factor";
     if (check(foam, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "material.%s", inner.text);
+        return SF_REFUSE(err, "material.%s", inner.text);
     return check_densification(foam, given, place, err);
 }
 

@@ -18,7 +18,7 @@ static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const in
     for (int64_t i = 0; i < rows; i++)
         for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
             if (index[k] < 0 || index[k] >= limit)
-                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld refers to node %d, of 0 to %lld", name,
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld: a node" SF_OUTSIDE("%d", "0", "%lld"), name,
                                (long long)i, index[k], (long long)limit - 1);
             if (ascending && k > ptr[i] && index[k] <= index[k - 1])
                 return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld is not in ascending order", name,
@@ -61,21 +61,28 @@ static sf_status check_bound(const char *name, double value, double low, double 
     return SF_OK;
 }
 
+/* Of bytes that each name one of 0 to `most`. */
+static sf_status check_bytes(const char *name, int64_t count, const uint8_t *byte, int64_t most,
+                             sf_error *err) {
+    for (int64_t k = 0; k < count; k++)
+        if (byte[k] > most)
+            return SF_FAIL(err, SF_ERR_MODEL, "%s %lld" SF_OUTSIDE("%d", "0", "%lld"), name, (long long)k,
+                           byte[k], (long long)most);
+    return SF_OK;
+}
+
 static sf_status check_materials(const sf_model *m, sf_error *err) {
     if (m->material_count < 1 || m->material_count > SF_MATERIAL_MAX)
-        return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld materials; 1 to %d are possible",
+        return SF_FAIL(err, SF_ERR_MODEL, "the number of materials" SF_OUTSIDE("%lld", "1", "%d"),
                        (long long)m->material_count, SF_MATERIAL_MAX);
     for (int64_t k = 0; k < m->material_count; k++)
         SF_TRY(sf_material_check(&m->material[k], k, err));
-    for (int64_t i = 0; i < m->node_count; i++) {
-        if (m->node_material[i] >= m->material_count)
-            return SF_FAIL(err, SF_ERR_MODEL, "node %lld is of material %d, of 0 to %lld", (long long)i,
-                           m->node_material[i], (long long)m->material_count - 1);
-        if (i > 0 && m->node_material[i] < m->node_material[i - 1])
+    SF_TRY(check_bytes("material of node", m->node_count, m->node_material, m->material_count - 1, err));
+    for (int64_t i = 1; i < m->node_count; i++)
+        if (m->node_material[i] < m->node_material[i - 1])
             return SF_FAIL(err, SF_ERR_MODEL,
                            "node %lld is of material %d, after one of %d: they must ascend", (long long)i,
                            m->node_material[i], m->node_material[i - 1]);
-    }
     return SF_OK;
 }
 
@@ -192,7 +199,7 @@ static sf_status check_surface(const char *name, int64_t count, const int32_t *t
                                sf_error *err) {
     for (int64_t k = 0; k < 3 * count; k++)
         if (triangle[k] < 0 || triangle[k] >= nodes)
-            return SF_FAIL(err, SF_ERR_MODEL, "%s triangle %lld refers to node %d, of 0 to %lld", name,
+            return SF_FAIL(err, SF_ERR_MODEL, "%s triangle %lld: a node" SF_OUTSIDE("%d", "0", "%lld"), name,
                            (long long)k / 3, triangle[k], (long long)nodes - 1);
     return SF_OK;
 }
@@ -200,10 +207,8 @@ static sf_status check_surface(const char *name, int64_t count, const int32_t *t
 static sf_status check_supports(const sf_model *m, sf_error *err) {
     SF_TRY(
         check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count, err));
-    for (int64_t k = 0; k < m->support_triangle_count; k++)
-        if (m->support_part[k] >= m->support_count)
-            return SF_FAIL(err, SF_ERR_MODEL, "support triangle %lld is of support %d, of 0 to %lld",
-                           (long long)k, m->support_part[k], (long long)m->support_count - 1);
+    SF_TRY(check_bytes("support of triangle", m->support_triangle_count, m->support_part,
+                       m->support_count - 1, err));
     for (int64_t k = 0; k < m->support_count; k++)
         SF_TRY(check_bound("support friction", m->support_friction[k], 0, 10, err));
     return SF_OK;
@@ -245,14 +250,6 @@ static sf_status check_triangles(const char *name, const sf_model *m, int64_t co
                            "triangle %lld of the %s has the nodes %d, %d, %d: three of 0 to %lld are needed",
                            (long long)k / 3, name, node[0], node[1], node[2], (long long)m->node_count - 1);
     }
-    return SF_OK;
-}
-
-static sf_status check_halves(const sf_model *m, sf_error *err) {
-    for (int64_t k = 0; k < m->skin_count; k++)
-        if (m->skin_half[k] > 2)
-            return SF_FAIL(err, SF_ERR_MODEL, "triangle %lld of the pad's skin is half %d, of 0 to 2",
-                           (long long)k, m->skin_half[k]);
     return SF_OK;
 }
 
@@ -352,7 +349,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
     if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
         check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
-        check_halves(m, err) != SF_OK ||
+        check_bytes("half of the skin's triangle", m->skin_count, m->skin_half, 2, err) != SF_OK ||
         check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
         check_supports(m, err) != SF_OK || check_pairs(m, err) != SF_OK)
         return err->status;

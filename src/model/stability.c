@@ -34,11 +34,11 @@ sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err
 /* Lengths of the gradients of a triangle's shape functions, m-1: the opposite side over twice the area, which
  * is returned, m2. */
 static double gradients(const sf_model *m, const int32_t node[3], double length[3]) {
+    const double *x[3];
     double side[3][3], normal[3];
+    sf_corners(m->position, node, x);
     for (int k = 0; k < 3; k++)
-        for (int r = 0; r < 3; r++)
-            side[k][r] = m->position[3 * (int64_t)node[(k + 2) % 3] + r] -
-                         m->position[3 * (int64_t)node[(k + 1) % 3] + r];
+        sf_sub3(x[(k + 2) % 3], x[(k + 1) % 3], side[k]);
     sf_cross3(side[0], side[1], normal);
     double twice = sqrt(sf_dot3(normal, normal));
     for (int k = 0; k < 3; k++)

@@ -161,8 +161,7 @@ static void move_surface(const sf_model *m, double before, double *position) {
     sf_flight_orientation(&m->missile, before, quaternion);
     for (int64_t k = 0; k < m->surface_node_count; k++) {
         double arm[3];
-        for (int c = 0; c < 3; c++)
-            arm[c] = m->surface_position[3 * k + c] - m->missile.centre[c];
+        sf_sub3(&m->surface_position[3 * k], m->missile.centre, arm);
         sf_rotate(quaternion, arm, &position[3 * k]);
         for (int c = 0; c < 3; c++)
             position[3 * k + c] += m->missile.centre[c] + shift[c];

@@ -57,14 +57,9 @@ static bool all_marked(const uint8_t *mark, const triangle *t, node_mark which) 
 
 /* ---- rays ---- */
 
-static void corners(const sf_model *m, const triangle *t, const double *x[3]) {
-    for (int k = 0; k < 3; k++)
-        x[k] = &m->position[3 * (int64_t)t->node[k]];
-}
-
 static void find_centroid(const sf_model *m, const triangle *t, double out[3]) {
     const double *x[3];
-    corners(m, t, x);
+    sf_corners(m->position, t->node, x);
     for (int k = 0; k < 3; k++)
         out[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
 }
@@ -73,7 +68,7 @@ static void find_centroid(const sf_model *m, const triangle *t, double out[3]) {
 static double facing(const sf_model *m, const triangle *t) {
     const double *x[3];
     double normal[3];
-    corners(m, t, x);
+    sf_corners(m->position, t->node, x);
     sf_triangle_normal(x[0], x[1], x[2], normal);
     return sf_dot3(normal, m->missile.direction) / sqrt(sf_dot3(normal, normal));
 }
@@ -97,7 +92,7 @@ static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8
     find_centroid(m, &pad->list[first], from);
     for (int64_t i = 0; i < pad->count && count < MOST_HITS; i++) {
         const double *x[3];
-        corners(m, &pad->list[i], x);
+        sf_corners(m->position, pad->list[i].node, x);
         double at = -sf_triangle_travel(x[0], x[1], x[2], m->missile.direction, from);
         if (i == first || !isfinite(at) || at < slack)
             continue;
@@ -175,7 +170,7 @@ static double depth_inside(const sf_model *m, const surface_of_pad *pad, const d
         const double *x[3];
         if (!isfinite(t->travel))
             continue;
-        corners(m, t, x);
+        sf_corners(m->position, t->node, x);
         double spacing = fmax(fmax(m->spacing[t->node[0]], m->spacing[t->node[1]]), m->spacing[t->node[2]]),
                inside = sf_triangle_travel(x[0], x[1], x[2], m->missile.direction, point) + m->missile.gap;
         if (isfinite(inside) && inside > ROUNDING * spacing)

@@ -14,19 +14,14 @@ typedef struct shape {
 static shape shape_of(const sf_model *m, const int32_t node[3]) {
     shape s = {{0}, {0}, 0, 0};
     const double *x[3];
-    for (int k = 0; k < 3; k++)
-        x[k] = &m->position[3 * (int64_t)node[k]];
+    sf_corners(m->position, node, x);
     sf_triangle_normal(x[0], x[1], x[2], s.normal);
     s.area = 0.5 * sqrt(sf_dot3(s.normal, s.normal));
     sf_unit3(s.normal);
     for (int r = 0; r < 3; r++)
         s.centroid[r] = x[0][r] + ((x[1][r] - x[0][r]) + (x[2][r] - x[0][r])) / 3;
-    for (int k = 0; k < 3; k++) {
-        double arm[3];
-        for (int r = 0; r < 3; r++)
-            arm[r] = m->position[3 * (int64_t)node[k] + r] - s.centroid[r];
-        s.radius = fmax(s.radius, sqrt(sf_dot3(arm, arm)));
-    }
+    for (int k = 0; k < 3; k++)
+        s.radius = fmax(s.radius, sf_distance3(x[k], s.centroid));
     return s;
 }
 

@@ -86,8 +86,7 @@ sf_status sf_solid_measure(int64_t node_count, const double *position, int64_t t
     for (int64_t t = 0; t < triangle_count; t++) {
         double x[3][3];
         for (int v = 0; v < 3; v++)
-            for (int c = 0; c < 3; c++)
-                x[v][c] = position[3 * (int64_t)triangle[3 * t + v] + c] - middle[c];
+            sf_sub3(&position[3 * (int64_t)triangle[3 * t + v]], middle, x[v]);
         add_tetrahedron(x, &volume, first, second);
     }
     if (!(volume > 0) || !isfinite(volume))
@@ -169,8 +168,7 @@ static void round_off(const sf_surface *s, const sf_missile_card *card, sf_solid
     for (int64_t t = 0; t < s->triangle_count; t++) {
         double x[3][3];
         for (int v = 0; v < 3; v++)
-            for (int c = 0; c < 3; c++)
-                x[v][c] = s->position[3 * (int64_t)s->triangle[3 * t + v] + c] - card->sphere_centre[c];
+            sf_sub3(&s->position[3 * (int64_t)s->triangle[3 * t + v]], card->sphere_centre, x[v]);
         add_bulge(x, card->sphere_radius, &sum);
     }
     solid_of(&sum, card->sphere_centre, solid);
@@ -253,8 +251,7 @@ static bool find_flat(const sf_surface *s, double most, double middle[2]) {
     middle[0] = middle[1] = 0;
     for (int64_t t = 0; t < s->triangle_count; t++) {
         const double *x[3];
-        for (int v = 0; v < 3; v++)
-            x[v] = &s->position[3 * (int64_t)s->triangle[3 * t + v]];
+        sf_corners(s->position, &s->triangle[3 * t], x);
         if (x[0][2] > most || x[1][2] > most || x[2][2] > most)
             continue;
         double area =

@@ -85,8 +85,7 @@ static double depth_behind(const triangles *s, const double x[3]) {
         double point[3], r[3], normal[3];
         int feature;
         sf_triangle_nearest(corner(s, t, 0), corner(s, t, 1), corner(s, t, 2), x, point, &feature);
-        for (int k = 0; k < 3; k++)
-            r[k] = x[k] - point[k];
+        sf_sub3(x, point, r);
         double square = sf_dot3(r, r);
         if (square > best * (1 + SAME))
             continue;

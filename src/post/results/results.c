@@ -41,8 +41,8 @@ static sf_status check_indices(const int32_t *index, int64_t count, int64_t limi
                                sf_error *err) {
     for (int64_t i = 0; i < count; i++)
         if (index[i] < 0 || index[i] >= limit)
-            return SF_FAIL(err, SF_ERR_IO, "%s: entry %lld is %d, it must be in 0 to %lld", path,
-                           (long long)i, index[i], (long long)limit - 1);
+            return SF_FAIL(err, SF_ERR_IO, "%s: entry %lld" SF_OUTSIDE("%d", "0", "%lld"), path, (long long)i,
+                           index[i], (long long)limit - 1);
     return SF_OK;
 }
 
@@ -146,8 +146,8 @@ static sf_status check_row(const sf_results *r, int64_t i, sf_error *err) {
                            sf_history_column_get(c)->name, (long long)i);
     const double *time = r->history.time;
     if (!(time[i] >= 0 && time[i] <= LONGEST_TIME))
-        return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld, it must be in 0 to %g s", time[i],
-                       (long long)i, LONGEST_TIME);
+        return SF_FAIL(err, SF_ERR_IO, "/history/time: row %lld" SF_OUTSIDE("%.9g s", "0", "%g s"),
+                       (long long)i, time[i], LONGEST_TIME);
     if (i > 0 && !(time[i] > time[i - 1]))
         return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld does not follow %.9g s", time[i],
                        (long long)i, time[i - 1]);
@@ -184,8 +184,7 @@ double sf_results_fall_speed(const sf_results *r) {
 
 void sf_results_place(const sf_results *r, const sf_frame_head *head, const double x[3], double out[3]) {
     double arm[3];
-    for (int k = 0; k < 3; k++)
-        arm[k] = x[k] - r->missile_centre[k];
+    sf_sub3(x, r->missile_centre, arm);
     sf_rotate(head->missile_quaternion, arm, out);
     for (int k = 0; k < 3; k++)
         out[k] = (r->turns ? out[k] + r->missile_centre[k] : x[k]) + head->missile_displacement[k];
@@ -297,13 +296,15 @@ static sf_status read_layers(sf_results *r, sf_error *err) {
     SF_TRY(read_array(r, "/model/node_layer", SF_H5_U8, &nodes, 1, &r->node_layer, err));
     SF_TRY(read_array(r, "/model/layer_density", SF_H5_F64, &count, 1, &r->layer_density, err));
     if (count < 1 || count > SF_MATERIAL_MAX)
-        return SF_FAIL(err, SF_ERR_IO, "/model/layer_density: %lld layers, 1 to %d are possible",
+        return SF_FAIL(err, SF_ERR_IO,
+                       "/model/layer_density: the number of layers" SF_OUTSIDE("%lld", "1", "%d"),
                        (long long)count, SF_MATERIAL_MAX);
     r->layer_count = (int)count;
     SF_TRY(read_array(r, "/model/layer_informed_strain", SF_H5_F64, &count, 1, &r->layer_informed, err));
     for (int64_t i = 0; i < r->node_count; i++)
         if (r->node_layer[i] >= count)
-            return SF_FAIL(err, SF_ERR_IO, "/model/node_layer: node %lld is of layer %d, of 0 to %lld",
+            return SF_FAIL(err, SF_ERR_IO,
+                           "/model/node_layer: the layer of node %lld" SF_OUTSIDE("%d", "0", "%lld"),
                            (long long)i, r->node_layer[i], (long long)count - 1);
     for (int64_t k = 0; k < count; k++)
         if (!(r->layer_density[k] > 0) || isnan(r->layer_informed[k]))

@@ -137,16 +137,13 @@ static void locate_stations(const sf_results *r, const double axis[2], double bo
 }
 
 double sf_section_stations(const sf_results *r, sf_section_point station[SF_SECTION_STATIONS]) {
-    double axis[2], bottom = INFINITY, top = -INFINITY;
-    for (int64_t i = 0; i < r->node_count; i++) {
-        bottom = fmin(bottom, r->position[3 * i + 2]);
-        top = fmax(top, r->position[3 * i + 2]);
-    }
+    double axis[2], low[3], high[3];
+    sf_box3(r->node_count, r->position, low, high);
     sf_axis_find(r, axis);
     for (int s = 0; s < SF_SECTION_STATIONS; s++)
         station[s] = (sf_section_point){0};
-    locate_stations(r, axis, bottom, top, station);
-    return top;
+    locate_stations(r, axis, low[2], high[2], station);
+    return high[2];
 }
 
 bool sf_section_inside(const sf_section_point *point) {

@@ -242,10 +242,8 @@ static void face_area(const sf_mesh *mesh, const sf_boundary_face *face, double 
                  *r = &mesh->position[3 * face->node[2]],
                  *s = face->size == 4 ? &mesh->position[3 * face->node[3]] : p;
     double d[3], e[3];
-    for (int c = 0; c < 3; c++) {
-        d[c] = r[c] - p[c];
-        e[c] = s[c] - q[c];
-    }
+    sf_sub3(r, p, d);
+    sf_sub3(s, q, e);
     sf_cross3(d, e, out);
     for (int c = 0; c < 3; c++)
         out[c] *= 0.5;

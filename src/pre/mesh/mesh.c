@@ -75,8 +75,7 @@ static int local_vertices(const sf_mesh *mesh, int64_t cell, double x[MAX_VERTIC
     int count = (int)(mesh->cell_ptr[cell + 1] - mesh->cell_ptr[cell]);
     const double *origin = mesh->position + 3 * (int64_t)node[0];
     for (int a = 0; a < count; a++)
-        for (int i = 0; i < 3; i++)
-            x[a][i] = mesh->position[3 * (int64_t)node[a] + i] - origin[i];
+        sf_sub3(&mesh->position[3 * (int64_t)node[a]], origin, x[a]);
     return count;
 }
 

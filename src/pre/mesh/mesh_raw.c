@@ -340,10 +340,8 @@ static double side(const surface_builder *b, size_t face) {
     const double *r = node_position(b, tag[2]);
     const double *s = face_size(b->raw, face) == 4 ? node_position(b, tag[3]) : p;
     double d[3], e[3];
-    for (int i = 0; i < 3; i++) {
-        d[i] = r[i] - p[i];
-        e[i] = s[i] - q[i];
-    }
+    sf_sub3(r, p, d);
+    sf_sub3(s, q, e);
     return sf_triple3(b->outward + 3 * face, d, e);
 }
 

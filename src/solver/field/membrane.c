@@ -27,8 +27,7 @@ static sf_status number_nodes(const sf_model *m, sf_membrane *b, sf_error *err) 
 static double shape_triangle(const double *const x[3], double gradient[6]) {
     double side[2][3], normal[3], along[3], across[3];
     for (int k = 0; k < 2; k++)
-        for (int r = 0; r < 3; r++)
-            side[k][r] = x[k + 1][r] - x[0][r];
+        sf_sub3(x[k + 1], x[0], side[k]);
     sf_cross3(side[0], side[1], normal);
     double twice = sqrt(sf_dot3(normal, normal));
     memcpy(along, side[0], sizeof along);
@@ -49,8 +48,7 @@ static sf_status shape_triangles(const sf_model *m, sf_membrane *b, sf_error *er
     b->volume = sf_alloc(err, b->triangle_count, sizeof *b->volume, "membrane");
     for (int64_t t = 0; err->status == SF_OK && t < b->triangle_count; t++) {
         const double *x[3];
-        for (int k = 0; k < 3; k++)
-            x[k] = &m->position[3 * (int64_t)m->membrane_triangle[3 * t + k]];
+        sf_corners(m->position, &m->membrane_triangle[3 * t], x);
         b->volume[t] = shape_triangle(x, &b->gradient[6 * t]) * m->membrane.thickness * m->membrane_share[t];
     }
     return err->status;

@@ -138,8 +138,7 @@ sf_status sf_output_name(sf_output *o, const char *results, sf_error *err) {
     memset(o, 0, sizeof *o);
     o->lock = -1;
     if (strlen(results) > SF_PATH_SIZE - 64)
-        return SF_FAIL(err, SF_ERR_INPUT, "the path of the results file is longer than %d bytes",
-                       SF_PATH_SIZE - 64);
+        return SF_REFUSE(err, "the path of the results file is longer than %d bytes", SF_PATH_SIZE - 64);
     snprintf(o->results, sizeof o->results, "%s", results);
     snprintf(o->checkpoint, sizeof o->checkpoint, "%.4000s.restart", results);
     snprintf(o->folder, sizeof o->folder, "%.4000s.run", results);
@@ -170,7 +169,7 @@ sf_status sf_output_open(sf_output *o, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be opened: %s", o->folder, strerror(errno));
     if (flock(o->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         sf_output_close(o);
-        return SF_FAIL(err, SF_ERR_INPUT, "another softfall-solve is writing %s", o->results);
+        return SF_REFUSE(err, "another softfall-solve is writing %s", o->results);
     }
     if (sf_folder_check(o->lock, o->folder, is_name, err) == SF_OK)
         sf_folder_remove_known(o->lock, is_rest, NULL);

@@ -376,10 +376,10 @@ static sf_status begin_again(const drop *d, sf_error *err) {
 static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     const sf_recorder old = d->r;
     if (d->s->drop > 1 && !d->run->earlier.results)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "frame %lld of the run so far is missing or damaged, and the run began from the pad "
-                       "of an earlier one: start it again with --force and --start-from",
-                       (long long)frame);
+        return SF_REFUSE(err,
+                         "frame %lld of the run so far is missing or damaged, and the run began from the pad "
+                         "of an earlier one: start it again with --force and --start-from",
+                         (long long)frame);
     sf_sink_tell(d->run->sink, SF_WARNING,
                  "frame %lld of the run so far is missing or damaged: the run starts from the beginning",
                  (long long)frame);
