@@ -237,8 +237,8 @@ static void posteriors_that_cannot_be_meant_are_refused(void **state) {
         {"echo 'response_error = { HIC = 0.0; HIC_sd = -1; };' >> bad/draw-050.cfg", "--posterior bad",
          "HIC_sd: -1 is out of bounds"},
         {"true", "--check-drops 2", "without --posterior"},
-        {"true", "--posterior bad --check-drops 10", "not a number from 0 to 9"},
-        {"true", "--posterior bad --check-drops two", "not a number from 0 to 9"},
+        {"true", "--posterior bad --check-drops 10", "expected a whole number from 0 to 9"},
+        {"true", "--posterior bad --check-drops two", "expected a whole number from 0 to 9"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         program_shell(p, "rm -rf bad && cp -r posterior bad && %s", cases[k].spoil);

@@ -86,11 +86,9 @@ static sf_status take_options(settings *s, const char *const *options, int count
 }
 
 static sf_status read_record(softfall_record *r, const sf_reference_options *options, sf_error *err) {
-    if (sf_reference_read(options, &r->reference, err) != SF_OK ||
-        sf_injury_evaluate(&r->reference.curve, &r->injury, err) != SF_OK ||
-        sf_record_judge(&r->reference.raw, &r->reference.curve, r->reference.other, &r->verdict, err) !=
-            SF_OK)
-        return err->status;
+    SF_TRY(sf_reference_read(options, &r->reference, err));
+    SF_TRY(sf_injury_evaluate(&r->reference.curve, &r->injury, err));
+    SF_TRY(sf_record_judge(&r->reference.raw, &r->reference.curve, r->reference.other, &r->verdict, err));
     sf_record_line(&r->verdict, r->line, sizeof r->line);
     return SF_OK;
 }

@@ -292,10 +292,15 @@ sf_status sf_command_parse(const sf_command *c, int argc, char **argv, sf_error 
     return err->status;
 }
 
-sf_status sf_program_read_threads(const char *option, const char *text, void *threads, sf_error *err) {
-    if (!sf_whole_is(text, 1, SF_MOST_THREADS, threads))
-        return SF_REFUSE(err, "%s takes a number from 1 to %d, not \"%s\"", option, SF_MOST_THREADS, text);
+sf_status sf_program_read_whole(const char *option, const char *text, int low, int high, int *out,
+                                sf_error *err) {
+    if (!sf_whole_is(text, low, high, out))
+        return SF_REFUSE(err, "%s %s: expected a whole number from %d to %d", option, text, low, high);
     return SF_OK;
+}
+
+sf_status sf_program_read_threads(const char *option, const char *text, void *threads, sf_error *err) {
+    return sf_program_read_whole(option, text, 1, SF_MOST_THREADS, threads, err);
 }
 
 sf_status sf_program_read_limit(const char *option, const char *text, void *limit, sf_error *err) {

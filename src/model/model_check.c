@@ -61,7 +61,7 @@ static sf_status check_bound(const char *name, double value, double low, double 
     return SF_OK;
 }
 
-/* Of bytes that each name one of 0 to `most`. */
+/* Fails if one of the bytes is above `most`; the number of the byte follows `name` in the sentence. */
 static sf_status check_bytes(const char *name, int64_t count, const uint8_t *byte, int64_t most,
                              sf_error *err) {
     for (int64_t k = 0; k < count; k++)
@@ -119,11 +119,11 @@ static sf_status check_freedom(const sf_model *m, sf_error *err) {
             err, SF_ERR_MODEL,
             "the missile's inertia has the principal moments %g, %g and %g kg m2: no body has them", p[0],
             p[1], p[2]);
-    for (int c = 0; c < 3; c++)
-        if (check_bound("place of the missile's centre (m)", card->centre[c], -2e3, 2e3, err) != SF_OK ||
-            check_bound("angular velocity of the missile (rad/s)", card->angular_velocity[c], -1e3, 1e3,
-                        err) != SF_OK)
-            return err->status;
+    for (int c = 0; c < 3; c++) {
+        SF_TRY(check_bound("place of the missile's centre (m)", card->centre[c], -2e3, 2e3, err));
+        SF_TRY(check_bound("angular velocity of the missile (rad/s)", card->angular_velocity[c], -1e3, 1e3,
+                           err));
+    }
     return SF_OK;
 }
 

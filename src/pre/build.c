@@ -467,9 +467,8 @@ static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
     SF_TRY(err->status);
     m->frame_time_count = c->frame_time_count;
     memcpy(m->frame_time, c->frame_time, (size_t)c->frame_time_count * sizeof *m->frame_time);
-    if (sf_model_take_materials(m, c->layer ? c->layer : &c->material, c->layer ? c->layer_count : 1, err) !=
-        SF_OK)
-        return err->status;
+    SF_TRY(
+        sf_model_take_materials(m, c->layer ? c->layer : &c->material, c->layer ? c->layer_count : 1, err));
     m->motion_count = c->motion_count;
     m->motion_time = c->motion_time;
     m->motion_displacement = c->motion_displacement;

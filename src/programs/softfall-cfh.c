@@ -93,9 +93,7 @@ static sf_status read_heights(const char *option, const char *text, void *values
 }
 
 static sf_status read_checks(const char *option, const char *text, void *checks, sf_error *err) {
-    if (!sf_whole_is(text, 0, SF_CFH_CHECKS, checks))
-        return SF_REFUSE(err, "%s %s: not a number from 0 to %d", option, text, SF_CFH_CHECKS);
-    return SF_OK;
+    return sf_program_read_whole(option, text, 0, SF_CFH_CHECKS, checks, err);
 }
 
 /* Refuses options that contradict each other. */

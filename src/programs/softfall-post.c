@@ -267,20 +267,18 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
 }
 
 static void print_warnings(const job *j) {
+    const char *const warnings[] = {j->plot_warning, j->state_warning, j->view_warning};
+    const sf_sink sink = sf_program_sink("softfall-post");
     fflush(stdout);
     for (int k = 0; k < j->results.note_count; k++)
-        fprintf(stderr, "softfall-post: warning: %s\n", j->results.notes[k]);
+        sf_sink_tell(&sink, SF_WARNING, "%s", j->results.notes[k]);
     if (!j->figures.touched)
-        fprintf(stderr,
-                "softfall-post: warning: the missile never touched the pad: there are no injury figures\n");
+        sf_sink_tell(&sink, SF_WARNING, "the missile never touched the pad: there are no injury figures");
     else if (!j->figures.rebounded && !j->figures.driven)
-        fprintf(
-            stderr,
-            "softfall-post: warning: the run ended in contact: no rebound speed, the peak may lie ahead\n");
-    const char *const warnings[] = {j->plot_warning, j->state_warning, j->view_warning};
+        sf_sink_tell(&sink, SF_WARNING, "the run ended in contact: no rebound speed, the peak may lie ahead");
     for (int k = 0; k < 3; k++)
         if (*warnings[k])
-            fprintf(stderr, "softfall-post: warning: %s\n", warnings[k]);
+            sf_sink_tell(&sink, SF_WARNING, "%s", warnings[k]);
 }
 
 static void print_files(const job *j) {

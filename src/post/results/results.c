@@ -76,17 +76,14 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
     if (r->node_count < 1 || r->node_count > INT32_MAX || r->cell_nnz > INT32_MAX - r->cell_count)
         return SF_FAIL(err, SF_ERR_IO, "/model has %lld nodes and %lld cell vertices: 1 to 2^31 are possible",
                        (long long)r->node_count, (long long)r->cell_nnz);
-    if (check_finite(r->position, 3 * r->node_count, "/model/position", err) != SF_OK ||
-        check_finite(r->surface_position, 3 * r->surface_node_count, "/model/surface_position", err) ||
-        check_cells(r, err) != SF_OK ||
-        check_indices(r->surface_triangle, 3 * r->surface_triangle_count, r->surface_node_count,
-                      "/model/surface_triangle", err) != SF_OK)
-        return err->status;
-    if (check_finite(r->support_position, 3 * r->support_node_count, "/model/support_position", err) !=
-            SF_OK ||
-        check_indices(r->support_triangle, 3 * r->support_triangle_count, r->support_node_count,
-                      "/model/support_triangle", err) != SF_OK)
-        return err->status;
+    SF_TRY(check_finite(r->position, 3 * r->node_count, "/model/position", err));
+    SF_TRY(check_finite(r->surface_position, 3 * r->surface_node_count, "/model/surface_position", err));
+    SF_TRY(check_cells(r, err));
+    SF_TRY(check_indices(r->surface_triangle, 3 * r->surface_triangle_count, r->surface_node_count,
+                         "/model/surface_triangle", err));
+    SF_TRY(check_finite(r->support_position, 3 * r->support_node_count, "/model/support_position", err));
+    SF_TRY(check_indices(r->support_triangle, 3 * r->support_triangle_count, r->support_node_count,
+                         "/model/support_triangle", err));
     if (r->surface_node_count < 1)
         return SF_FAIL(err, SF_ERR_IO, "/model/surface_position is empty: the missile has no surface");
     for (int64_t i = 0; i < r->node_count; i++)
@@ -340,20 +337,18 @@ static sf_status read_model(sf_results *r, sf_error *err) {
     SF_TRY(read_array(r, "/model/volume", SF_H5_F64, &r->node_count, 1, &r->volume, err));
     SF_TRY(read_array(r, "/model/cell_type", SF_H5_U8, &r->cell_count, 1, &r->cell_type, err));
     pointers = r->cell_count + 1;
-    if (read_array(r, "/model/cell_ptr", SF_H5_I64, &pointers, 1, &r->cell_ptr, err) != SF_OK ||
-        read_array(r, "/model/cell_node", SF_H5_I32, &r->cell_nnz, 1, &r->cell_node, err) != SF_OK ||
-        read_array(r, "/model/surface_position", SF_H5_F64, &r->surface_node_count, 3, &r->surface_position,
-                   err) ||
-        read_array(r, "/model/surface_triangle", SF_H5_I32, &r->surface_triangle_count, 3,
-                   &r->surface_triangle, err))
-        return err->status;
+    SF_TRY(read_array(r, "/model/cell_ptr", SF_H5_I64, &pointers, 1, &r->cell_ptr, err));
+    SF_TRY(read_array(r, "/model/cell_node", SF_H5_I32, &r->cell_nnz, 1, &r->cell_node, err));
+    SF_TRY(read_array(r, "/model/surface_position", SF_H5_F64, &r->surface_node_count, 3,
+                      &r->surface_position, err));
+    SF_TRY(read_array(r, "/model/surface_triangle", SF_H5_I32, &r->surface_triangle_count, 3,
+                      &r->surface_triangle, err));
     if (sf_h5_exists(r->file, "/model/support_position")) {
         r->support_node_count = r->support_triangle_count = -1;
-        if (read_array(r, "/model/support_position", SF_H5_F64, &r->support_node_count, 3,
-                       &r->support_position, err) ||
-            read_array(r, "/model/support_triangle", SF_H5_I32, &r->support_triangle_count, 3,
-                       &r->support_triangle, err))
-            return err->status;
+        SF_TRY(read_array(r, "/model/support_position", SF_H5_F64, &r->support_node_count, 3,
+                          &r->support_position, err));
+        SF_TRY(read_array(r, "/model/support_triangle", SF_H5_I32, &r->support_triangle_count, 3,
+                          &r->support_triangle, err));
     }
     SF_TRY(read_integer(r, "/model/symmetry_factor", &r->symmetry_factor, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/thickness", &r->thickness, err));

@@ -282,11 +282,9 @@ static sf_status write_csv(const overlay *o, sf_error *err) {
 static sf_status write_picture(const overlay *o, char *warning, size_t size, sf_error *err) {
     sf_chart *chart = sf_chart_new("compare", 1600, 900, err);
     sf_panel *panel = sf_chart_panel(chart);
-    if (panel) {
-        sf_axis_label(&panel->x, "time from first contact (ms)");
-        sf_axis_label(&panel->y, "deceleration (g)");
-        panel->key = SF_KEY_TOP_RIGHT;
-    }
+    sf_axis_label(&panel->x, "time from first contact (ms)");
+    sf_axis_label(&panel->y, "deceleration (g)");
+    panel->key = SF_KEY_TOP_RIGHT;
     for (int k = 0; k < o->count; k++) {
         const sf_series *s = &o->run[k].figures.filtered;
         double contact = o->run[k].results.contact_time;

@@ -185,15 +185,14 @@ static sf_status write_head(const sf_model *m, const sf_state *s, const char *pa
     sf_missile_translation(m, &s->missile, displacement);
     for (int c = 0; c < 3; c++)
         reaction[c] = sf_model_whole(m) * s->base_reaction[c];
-    if (write_item(file, path, "time", "s", "time", 0, NULL, &s->time, err) != SF_OK ||
-        write_item(file, path, "acceleration", "m s-2",
-                   "specific force on the missile, against its direction of motion", 0, NULL, &acceleration,
-                   err) != SF_OK ||
-        write_item(file, path, "missile_displacement", "m", "translation of the missile's centre since t = 0",
-                   1, &three, displacement, err) != SF_OK ||
-        write_item(file, path, "missile_quaternion", "1", "orientation of the missile, w, x, y, z", 1, &four,
-                   s->missile.quaternion, err) != SF_OK)
-        return err->status;
+    SF_TRY(write_item(file, path, "time", "s", "time", 0, NULL, &s->time, err));
+    SF_TRY(write_item(file, path, "acceleration", "m s-2",
+                      "specific force on the missile, against its direction of motion", 0, NULL,
+                      &acceleration, err));
+    SF_TRY(write_item(file, path, "missile_displacement", "m",
+                      "translation of the missile's centre since t = 0", 1, &three, displacement, err));
+    SF_TRY(write_item(file, path, "missile_quaternion", "1", "orientation of the missile, w, x, y, z", 1,
+                      &four, s->missile.quaternion, err));
     return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three, reaction,
                       err);
 }

@@ -73,9 +73,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     };
     size_t count = sizeof item / sizeof item[0];
     for (size_t k = m->support_triangle_count > 0 ? 0 : 2; k < count; k++)
-        if (sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err) !=
-            SF_OK)
-            return err->status;
+        SF_TRY(sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err));
     return SF_OK;
 }
 
@@ -330,10 +328,9 @@ sf_status sf_output_copy_peak(const sf_output *o, sf_h5 *file, sf_error *err) {
 
 sf_status sf_output_begin(sf_output *o, bool copied, int64_t count, sf_h5 **file, sf_error *err) {
     static const char *const base[] = {"/provenance", "/model", NULL};
-    if (sf_replace_begin(o->results, o->partial, err) != SF_OK ||
-        sf_h5_create(o->partial, file, err) != SF_OK ||
-        sf_provenance_mark(*file, "softfall-results", err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_replace_begin(o->results, o->partial, err));
+    SF_TRY(sf_h5_create(o->partial, file, err));
+    SF_TRY(sf_provenance_mark(*file, "softfall-results", err));
     take(o, copied, BASE, base, *file, err);
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         char name[32], group[32];

@@ -134,9 +134,8 @@ static sf_status read_history(sf_history *h, const sf_h5 *file, sf_error *err) {
 
 sf_status sf_recorder_read(sf_recorder *r, const sf_model *m, const sf_state *s, const sf_h5 *file,
                            sf_error *err) {
-    if (sf_members_read(file, "/recorder", members, MEMBERS, r, err) != SF_OK ||
-        read_history(&r->history, file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_members_read(file, "/recorder", members, MEMBERS, r, err));
+    SF_TRY(read_history(&r->history, file, err));
     bool whole = r->history.rows == s->step + 1 && r->frames >= 0 && r->frames <= r->history.rows &&
                  r->next_frame > s->time && r->next_extra >= 0 && r->next_extra <= m->frame_time_count;
     if (!whole)
