@@ -9,7 +9,7 @@
 #include "pre/build.h"
 #include "pre/mesh/gmsh_session.h"
 #include "solver/step.h"
-#include "solver/time_step.h"
+#include "solver/state.h"
 #include "traffic.h"
 
 #include <argp.h>
@@ -179,7 +179,7 @@ static sf_status keep_step(record *r, const sf_stopwatch *watch, sf_error *err) 
 
 static sf_status run_steps(const sf_model *m, const sf_operators *op, double end_time, sf_state *s, record *r,
                            sf_error *err) {
-    double start = sf_clock();
+    double start = sf_process_now();
     sf_stopwatch watch = {.mark = start};
     s->watch = &watch;
     while (s->time < end_time) {
@@ -194,7 +194,7 @@ static sf_status run_steps(const sf_model *m, const sf_operators *op, double end
             return err->status;
         memset(watch.seconds, 0, sizeof watch.seconds);
     }
-    r->wall = sf_clock() - start;
+    r->wall = sf_process_now() - start;
     return SF_OK;
 }
 

@@ -4,7 +4,7 @@
 #include "extreme.h"
 
 #include "pre/mesh/gmsh_session.h"
-#include "solver/field/domain_stress.h"
+#include "solver/field/field.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>

@@ -238,12 +238,12 @@ static void what_is_no_manifest_is_refused(void **state) {
     static const struct {
         const char *text, *part;
     } cases[] = {
-        {"", "is no manifest of a batch"},
+        {"", "is not the manifest of a batch"},
         {"softfall-manifest 1\nfolder\t/\nruns\truns\ncount\t2\nabc\n",
-         "bad.tsv:5: this is no line of a run"},
-        {"softfall-manifest 1\nfolder\t/\nruns\truns\ncount\t1000000000\n", "is no manifest of a batch"},
+         "bad.tsv:5: this is not the line of a run"},
+        {"softfall-manifest 1\nfolder\t/\nruns\truns\ncount\t1000000000\n", "is not the manifest of a batch"},
         {"softfall-manifest 1\nfolder\t/\nruns\truns\ncount\t1\n0123456789abcdef\tg\t../up\tcase\t\n",
-         "bad.tsv:5: this is no line of a run"},
+         "bad.tsv:5: this is not the line of a run"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         sf_error err = SF_ERROR_INIT;

@@ -77,8 +77,8 @@ static void rate_curves_are_checked(void **state) {
 static void curve_faults_name_file_line_and_value(void **state) {
     (void)state;
 #define HEAD "strain,stress_kPa\n"
-    assert_curve_refused("# nothing\n", "0 points; a compression curve needs at least 4");
-    assert_curve_refused(HEAD "0,0\n0.1,2\n0.2,3\n", "3 points; a compression curve needs at least 4");
+    assert_curve_refused("# nothing\n", "0 points; at least 4 are needed");
+    assert_curve_refused(HEAD "0,0\n0.1,2\n0.2,3\n", "3 points; at least 4 are needed");
     assert_curve_refused("eps,stress_kPa\n0,0\n", ":1: the header has no column \"strain\"");
     assert_curve_refused("strain,stress\n0,0\n", ":1: the header has no column \"stress_Pa\"");
     assert_curve_refused("strain,stress_kPa,stress_Pa\n0,0,0\n", "two stress columns");
@@ -125,7 +125,7 @@ static void motion_replaces_mass_and_speed(void **state) {
                         "none.csv cannot be read: No such file", "(named at --set missile.motion=none.csv)",
                         NULL);
     case_assert_refused(DRIVEN(""), "missile.motion=materials", "is not a plain file", NULL);
-    case_assert_refused(DRIVEN(""), "missile.motion=3", "missile.motion: the name of a CSV file is expected",
+    case_assert_refused(DRIVEN(""), "missile.motion=3", "missile.motion: expected the name of a CSV file",
                         NULL);
 }
 
@@ -134,8 +134,8 @@ static void motion_faults_name_file_line_and_value(void **state) {
     static const struct {
         const char *text, *part;
     } faults[] = {
-        {"", "0 points; a motion needs at least 2"},
-        {"0,0\n", "1 points; a motion needs at least 2"},
+        {"", "0 points; at least 2 are needed"},
+        {"0,0\n", "1 points; at least 2 are needed"},
         {"1,0\n2,1\n", ":2: time 1 in the first point; a motion starts at (0, 0)"},
         {"0,1\n2,1\n", ":2: displacement 1 in the first point; a motion starts at (0, 0)"},
         {"0,0\n2,1\n2,3\n", ":4: time 2 is not above the one before it (2)"},

@@ -128,8 +128,8 @@ static void points_that_give_no_crossing_are_refused(void **state) {
         {5, {1, 1.2, 1.4, 1.6, 1.8}, {100, 150, 140, 220, 250}, SF_ERR_NUMERIC, "falls from 150 at 1.2 m"},
         {5, {1, 1.2, 1.4, 1.6, 1.8}, {300, 250, 200, 150, 100}, SF_ERR_NUMERIC, "falls from 300"},
         {5, {1, 1.2, 1.1, 1.6, 1.8}, {100, 150, 180, 220, 250}, SF_ERR_INPUT, "out of order"},
-        {5, {1, 1.2, 1.4, 1.6, 1.8}, {100, 150, -1, 220, 250}, SF_ERR_INPUT, "not positive"},
-        {5, {1, 1.2, 1.4, 1.6, 1.8}, {100, 150, NAN, 220, 250}, SF_ERR_INPUT, "not positive"},
+        {5, {1, 1.2, 1.4, 1.6, 1.8}, {100, 150, -1, 220, 250}, SF_ERR_INPUT, "not above 0"},
+        {5, {1, 1.2, 1.4, 1.6, 1.8}, {100, 150, NAN, 220, 250}, SF_ERR_INPUT, "not above 0"},
     };
     for (size_t q = 0; q < sizeof cases / sizeof cases[0]; q++) {
         sf_error err = SF_ERROR_INIT;
@@ -412,7 +412,7 @@ static void tables_of_the_rig_that_make_no_sense_are_refused(void **state) {
         {"height_m,h_m,speed_m_s\n1,1,4\n", "two height columns"},
         {"height_m,speed_m_s\n1,4\n2,fast\n", ":3: speed \"fast\" is not a number"},
         {"height_m,speed_m_s\n1,4\n2\n", ":3: 1 values where the header has 2 columns"},
-        {"height_m,speed_m_s\n1,4\n-2,5\n", "pair 2, -2 m and 5 m/s, is not positive"},
+        {"height_m,speed_m_s\n1,4\n-2,5\n", "pair 2, -2 m and 5 m/s, is not above 0"},
         {"height_m,speed_m_s\n1,4\n1.1,5.5\n", "faster than free fall"},
     };
     char path[] = "/tmp/softfall-rig-XXXXXX";

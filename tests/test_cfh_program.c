@@ -215,7 +215,8 @@ static void posteriors_that_cannot_be_meant_are_refused(void **state) {
         const char *spoil, *words, *part;
     } cases[] = {
         {"true", "--posterior none", "--posterior none: there is no draw-001.cfg"},
-        {"rm bad/draw-100.cfg", "--posterior bad", "--posterior bad: 99 draws, at least 100 are needed"},
+        {"rm bad/draw-100.cfg", "--posterior bad",
+         "--posterior bad: 99 draws for an interval; at least 100 are needed"},
         {"for k in bad/draw-*.csv; do cp bad/draw-001.csv $k.new && mv $k.new $k; done", "--posterior bad",
          "--posterior bad: all 100 draws are the same material"},
         {"true", "--posterior bad --set material.HU=0.5",
@@ -236,8 +237,8 @@ static void posteriors_that_cannot_be_meant_are_refused(void **state) {
         {"echo 'response_error = { HIC = 0.0; HIC_sd = -1; };' >> bad/draw-050.cfg", "--posterior bad",
          "HIC_sd: -1 is out of bounds"},
         {"true", "--check-drops 2", "without --posterior"},
-        {"true", "--posterior bad --check-drops 10", "not a number from 0 to 9"},
-        {"true", "--posterior bad --check-drops two", "not a number from 0 to 9"},
+        {"true", "--posterior bad --check-drops 10", "expected a whole number from 0 to 9"},
+        {"true", "--posterior bad --check-drops two", "expected a whole number from 0 to 9"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         program_shell(p, "rm -rf bad && cp -r posterior bad && %s", cases[k].spoil);
@@ -306,8 +307,8 @@ static void too_few_drops_that_succeed_determine_nothing(void **state) {
     } cases[] = {
         {"none", "20 m,22 m,24 m,26 m", "the missile reached the anvil", "below the lowest point",
          "Critical fall height below 2", 0, 4},
-        {"some", "1 m,2 m,24 m,26 m", "a_max has 2 points, at least 4 are needed", "not determined",
-         "Critical fall height not determined", SF_ERR_INPUT, 2},
+        {"some", "1 m,2 m,24 m,26 m", "a_max has 2 points for a crossing; at least 4 are needed",
+         "not determined", "Critical fall height not determined", SF_ERR_INPUT, 2},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         char path[64];
@@ -341,10 +342,10 @@ static void command_lines_that_cannot_be_meant_are_refused(void **state) {
         {"--limit-hic many", "--limit-hic many: not a positive number"},
         {"--height 2", "has no unit"},
         {"--height '2 kg'", "--height"},
-        {"--height '0 m'", "not between 1 cm"},
+        {"--height '0 m'", "outside 1 cm"},
         {"--height '12 m'", "above the greatest height"},
         {"--heights '1 m,2 m,3 m'", "at least 4"},
-        {"--heights '1 m,2 m,3 m,200 cm'", "2 m stands twice"},
+        {"--heights '1 m,2 m,3 m,200 cm'", "2 m is given twice"},
         {"--heights '1 m,2 m,3 m,4 m' --height '1 m'", "--height does not go with it"},
         {"--heights '1 m,2 m,3 m,4 m' --max-height '9 m'", "--max-height does not go with it"},
         {"--set missile.velocity='3 m/s'", "the drop height decides the speed"},

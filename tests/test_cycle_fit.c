@@ -195,7 +195,7 @@ static void specimens_are_fitted_together(void **state) {
     assert_true(low > 0.005 && high > 0.005 && low < 0.05 && high < 0.05);
     r = fit_all(p, "same", "( { file = \"plain.csv\"; }, { file = \"plain.csv\"; } )", "plain.csv",
                 "stiff.csv");
-    assert_true(r.code == 2 && strstr(r.err, "is there already"));
+    assert_true(r.code == 2 && strstr(r.err, "is given twice"));
     r = fit_all(p, "same", "( )", "plain.csv", "stiff.csv");
     assert_true(r.code == 2 && strstr(r.err, "cycles must be a list"));
     r = fit_all(p, "same", "( { file = \"plain.csv\"; } ); rate_model = \"factor\"", "plain.csv",

@@ -135,25 +135,25 @@ static void bad_parameters_are_refused(void **state) {
         {GOOD "curve_form = \"foam\";\n", "one of gas|"},
         {GOOD "curve_form = \"gas_solid\";\n", "needs solid_density"},
         {GOOD "solid_density = \"60 kg/m3\";\n", "solids that foams are made of"},
-        {GOOD "unknown = ( { name = \"avalle_A\"; } );\n", "is no parameter of curve_form = \"gas\""},
+        {GOOD "unknown = ( { name = \"avalle_A\"; } );\n", "is not a parameter of curve_form = \"gas\""},
         {GOOD "start: { p0 = \"600 kPa\"; };\n", "is not below E"},
         {GOOD "start: { E = \"3e5 MPa\"; };\n", "E is above 1e+10"},
         {GOOD "start: { p0 = \"3 kg\"; };\n", "p0: "},
-        {GOOD "start: { q0 = \"3 kPa\"; };\n", "\"q0\" is no parameter of the foam"},
+        {GOOD "start: { q0 = \"3 kPa\"; };\n", "unknown parameter \"q0\" of the foam"},
         {GOOD "start: { m = 0.5; };\n", "m is 0.5, outside 1.001 to 10"},
         {GOOD "start = 3;\n", "start must be a group"},
         {GOOD "solid_density = \"940 kg/m3\";\n", "solid_density is given, but curve_form = \"gas\" has no"},
         {GOOD
          "curve_form = \"gas_solid\"; solid_density = \"940 kg/m3\"; start: { solid_fraction = 0.3; };\n",
          "the solid fraction is given twice"},
-        {GOOD "unknown = ( { name = \"p1\"; } );\n", "\"p1\" is no parameter of the foam"},
-        {GOOD "unknown = ( { name = \"stress_scale\"; } );\n", "is no parameter of curve_form = \"gas\""},
+        {GOOD "unknown = ( { name = \"p1\"; } );\n", "unknown parameter \"p1\" of the foam"},
+        {GOOD "unknown = ( { name = \"stress_scale\"; } );\n", "is not a parameter of curve_form = \"gas\""},
         {GOOD "unknown = ( { name = \"eta\"; } );\n", "eta is 0 in the start material"},
-        {GOOD "unknown = ( { name = \"p0\"; }, { name = \"p0\"; } );\n", "p0 is unknown twice"},
+        {GOOD "unknown = ( { name = \"p0\"; }, { name = \"p0\"; } );\n", "unknown: p0 is given twice"},
         {GOOD "unknown = ( { name = \"p0\"; prior_sd = 0.0; } );\n", "prior_sd is 0, outside"},
         {GOOD "start: { avalle_A = \"40 kPa\"; };\n",
-         "fit.cfg:3: start: avalle_A is no parameter of curve_form = \"gas\""},
-        {GOOD "start: { solid_fraction = 0.05; };\n", "start: solid_fraction is no parameter of"},
+         "fit.cfg:3: start: avalle_A is not a parameter of curve_form = \"gas\""},
+        {GOOD "start: { solid_fraction = 0.05; };\n", "start: solid_fraction is not a parameter of"},
     };
     assert_refusals(bad, sizeof bad / sizeof bad[0]);
 }
@@ -175,7 +175,7 @@ static void bad_models_are_refused(void **state) {
          "curve is \"gass\""},
         {GOOD "start: { eta = \"1 Pa s\"; };\n"
               "forms = ( { curve = \"spline\"; rate = \"both\"; unknown = ( " ALL_OF_SPLINE " ); } );\n",
-         "would be one more than 20 unknown parameters"},
+         "would be unknown number 21; at most 20 are allowed"},
         {"material = \"rates.cfg\"; forms = ( { curve = \"table\"; rate = \"factor\"; } );\n" DROPS(
              "a_max_g = 60.0;"),
          "rates.cfg, which has 2 curves at several rates; a foam has one or the other"},
@@ -185,7 +185,7 @@ static void bad_models_are_refused(void **state) {
         {GOOD
          "start: { avalle_A = \"40 kPa\"; };\n"
          "forms = ( { curve = \"gas\"; start: { avalle_A = \"40 kPa\"; }; }, { curve = \"avalle\"; } );\n",
-         "fit.cfg:4: start: avalle_A is no parameter of curve = \"gas\""},
+         "fit.cfg:4: start: avalle_A is not a parameter of curve = \"gas\""},
         {GOOD "forms = ( { curve = \"gas\"; rate = \"maxwell\"; start: { rate_factor = 0.2; }; } );\n",
          "fit.cfg:3: start: rate_factor is of the rate factor, which a model with rate = \"maxwell\""},
         {GOOD "forms = ( { curve = \"gas\"; rate = \"none\"; start: { rate_factor = 0.2; }; } );\n",

@@ -233,7 +233,7 @@ static void bad_input_gets_one_sentence(void **state) {
     static const struct {
         const char *text, *sentence;
     } bad[] = {
-        {GOOD "curve_form = \"foam\";", "fit.cfg:2: curve_form is \"foam\": free or one of gas|"},
+        {GOOD "curve_form = \"foam\";", "fit.cfg:2: curve_form is \"foam\"; expected free or one of gas|"},
         {GOOD "curve_form = \"table\";", "but not table"},
         {GOOD "curve_form = \"gas_solid\";", "needs solid_density"},
         {GOOD "curve_form = \"gas_solid\"; solid_density = \"50 kg/m3\";", "solids that foams are made of"},

@@ -3,7 +3,6 @@
 #include "program_fixture.h"
 
 #include "base/units.h"
-#include "model/flight.h"
 #include "model/model.h"
 #include "post/figures/figures.h"
 #include <math.h>

@@ -5,7 +5,7 @@
 
 #include "material/foam_card.h"
 #include "point_fixture.h"
-#include "solver/field/domain_stress.h"
+#include "solver/field/field.h"
 #include "material/hyperfoam.h"
 #include <math.h>
 #include <setjmp.h>
@@ -300,7 +300,7 @@ static void materials_in_disorder_are_refused(void **state) {
     err = (sf_error)SF_ERROR_INIT;
     f.model.node_material[40] = 2;
     assert_int_equal(sf_model_check(&f.model, &err), SF_ERR_MODEL);
-    assert_non_null(strstr(err.text, "node 40 is of material 2, of 0 to 1"));
+    assert_non_null(strstr(err.text, "material of node 40 is 2, outside 0 to 1"));
     fixture_free(&f);
 }
 

@@ -135,7 +135,7 @@ static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     assert_true(figure(ours, "rebounded") == 1);
     double value = 1;
     assert_int_equal(softfall_figure(ours, "nodes", &value, &error), SOFTFALL_INPUT);
-    assert_true(value == 1 && strstr(error.text, "there is no figure \"nodes\""));
+    assert_true(value == 1 && strstr(error.text, "unknown figure \"nodes\""));
     assert_int_equal(softfall_drop_figures(p->drop, 100, &none, &error), SOFTFALL_INPUT);
     assert_null(none);
     softfall_figures_free(ours);

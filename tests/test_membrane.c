@@ -17,7 +17,7 @@
 #include "post_check.h"
 #include "pre/build.h"
 #include "solver/constraint/constraint.h"
-#include "solver/field/membrane.h"
+#include "solver/field/field.h"
 
 static const char *const COVER[] = {
     "membrane.faces=[\"top\"]",  "membrane.E=10 MPa",           "membrane.nu=0.3",

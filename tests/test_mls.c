@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shape functions and the neighbour grid on random clouds. */
 #include "base/sets.h"
-#include "pre/cloud/mls.h"
 
 #include "pre/cloud/cloud.h"
 #include <math.h>

@@ -114,8 +114,8 @@ static void a_device_or_a_pipe_is_never_an_output(void **state) {
         {"mkdir e3 && ln -s /dev/null e3/fit.json", "fit", "compression sound/fit.cfg -o e3 --force", says},
         {"mkdir e4 && ln -s /dev/null e4/foam.cfg", "fit", "drop fit.cfg -o e4 --force", says},
         {"mkdir e5 && mkdir e5/cfh.png", "cfh", "good.cfg -o e5 --force", says},
-        {NULL, "post", "results.h5 -o pipe --force", "is not a directory"},
-        {NULL, "cfh", "good.cfg -o to-null --force", "is not a directory"},
+        {NULL, "post", "results.h5 -o pipe --force", "is not a folder"},
+        {NULL, "cfh", "good.cfg -o to-null --force", "is not a folder"},
     };
     /* A node of one's own, where that is possible: what would happen to /dev/null is seen on it. */
     program_shell(p, "mkfifo pipe; ln -s null to-null; ln -s nowhere to-nothing");
@@ -139,7 +139,7 @@ static void a_name_that_cannot_be_made_is_refused_first(void **state) {
             const char *name, *sentence;
         } rows[] = {{"''", "is empty"},
                     {longer, file ? "too long" : "File name too long"},
-                    {file ? "out" : "good.cfg", file ? "it is a folder" : "is not a directory"},
+                    {file ? "out" : "good.cfg", file ? "it is a folder" : "is not a folder"},
                     {"missing/new", "No such file"},
                     {file ? "out/" : "''", file ? "it is a folder" : "is empty"}};
         for (size_t q = 0; q < sizeof rows / sizeof rows[0]; q++) {
@@ -174,7 +174,7 @@ static void strange_files_in_a_run_folder_stay(void **state) {
          "was not made by softfall"},
         {"mkdir s2.h5.run && echo mine > s2.h5.run/base.h5", "solve", "model.h5 -o s2.h5 --force",
          "was not made by softfall"},
-        {"echo mine > s3.h5.run", "solve", "model.h5 -o s3.h5 --force", "cannot be used as a folder"},
+        {"echo mine > s3.h5.run", "solve", "model.h5 -o s3.h5 --force", "cannot be opened: "},
         {"mkdir -p f1/runs && echo mine > f1/runs/notes", "cfh", "good.cfg -o f1 --force",
          "was not made by softfall"},
         {"mkdir -p f2/runs && echo mine > f2/runs/a.cfg", "fit", "drop fit.cfg -o f2 --force",

@@ -440,7 +440,7 @@ static void bad_input_is_refused_with_its_cause(void **state) {
         {{.format = "softfall-model"}, "is a softfall-model file"},
         {{.lost_rows = 5}, "/history/velocity has 4195 rows"},
         {{.nan_row = 17}, "/history/acceleration: row 17 is not finite"},
-        {{.bad_cell = true}, "/model/cell_node: entry 72 is 29, it must be in 0 to 28"},
+        {{.bad_cell = true}, "/model/cell_node: entry 72 is 29, outside 0 to 28"},
         {{.headless_frame = true}, "/frames/000003/time"},
     };
     outcome result = run_post(p, "");
@@ -484,7 +484,7 @@ static void bad_command_lines_are_refused(void **state) {
         {"--filter 500", "60, 180, 600 and 1000"},
         {"--reference x.csv --window 5", "\"5\" is not a window"},
         {"--reference x.csv --regions 5-1", "not a list of regions"},
-        {"--reference x.csv --shift soon", "not a time in ms"},
+        {"--reference x.csv --shift soon", "expected a time in ms"},
         {"--reference /nonexistent/x.csv", "the reference /nonexistent/x.csv cannot be read"},
         {"second.h5", "one results file"},
         {"--unknown", "unrecognized option"},

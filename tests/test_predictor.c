@@ -6,7 +6,7 @@
 #include "sweep_fixture.h"
 
 #include "base/units.h"
-#include "study/predictor.h"
+#include "study/column.h"
 #include "study/sweep/adaptive.h"
 #include "study/sweep/analysis.h"
 #include <gsl/gsl_rng.h>

@@ -9,7 +9,7 @@
 
 #include "base/units.h"
 #include "model/model.h"
-#include "solver/set.h"
+#include "solver/state.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

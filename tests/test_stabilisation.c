@@ -4,7 +4,7 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "solver/field/domain_stress.h"
+#include "solver/field/field.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -367,7 +367,7 @@ static void the_sobol_sequence_begins_as_it_is_known_and_has_its_limit(void **st
         assert_close(u[k], known[k], 0);
     assert_int_equal(sf_sample(SF_SAMPLING_SOBOL, 40, 2, 1, many, &err), SF_OK);
     assert_int_equal(sf_sample(SF_SAMPLING_SOBOL, 41, 2, 1, many, &err), SF_ERR_INPUT);
-    assert_non_null(strstr(err.text, "at most 40 coordinates, not 41"));
+    assert_non_null(strstr(err.text, "41 coordinates of a Sobol' sequence; at most 40 are allowed"));
     free(many);
 }
 

@@ -179,7 +179,7 @@ static void a_size_that_is_none_is_refused(void **state) {
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         program_result r = program_run(p, "post", "results.h5 -o refused --view=%s", bad[k]);
         assert_int_equal(r.code, SF_ERR_INPUT);
-        assert_non_null(strstr(r.err, "a size from 0 to 200 MB is expected"));
+        assert_non_null(strstr(r.err, "expected a size from 0 to 200 MB"));
         assert_int_equal(program_shell(p, "test -e refused").code, 1);
     }
 }

@@ -5,7 +5,6 @@
 #include "model_fixture.h"
 
 #include "pre/cloud/cloud.h"
-#include "pre/cloud/mls.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

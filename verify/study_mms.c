@@ -8,7 +8,7 @@
 #include "study.h"
 
 #include "solver/constraint/constraint.h"
-#include "solver/time_step.h"
+#include "solver/state.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>

@@ -2,10 +2,8 @@
 /* libsoftfall: drops, their results and figures, models in files. */
 #include "api/api.h"
 #include "build_info.h"
-#include "model/flight.h"
 #include "post/figures/figures.h"
 #include "solver/run/run.h"
-#include "solver/set.h"
 #include "solver/step.h"
 
 #include <omp.h>
@@ -50,7 +48,7 @@ static const softfall_drop_options by_default;
 
 static sf_status check_options(const softfall_drop_options *o, sf_error *err) {
     if (o->threads < 0 || o->threads > 1024)
-        return SF_REFUSE(err, "threads: %d is not between 0 and 1024", o->threads);
+        return SF_REFUSE(err, "threads" SF_OUTSIDE("%d", "0", "1024"), o->threads);
     if (!(o->end_time >= 0) || !isfinite(o->end_time))
         return SF_REFUSE(err, "end_time: %g s is not 0 or above", o->end_time);
     return SF_OK;
@@ -65,7 +63,7 @@ static sf_status take_set(softfall_drop *d, const sf_state *before, double pause
         return SF_OK;
     for (int k = 0; k < 3; k++) {
         const double *from = *own[k];
-        if ((*own[k] = sf_alloc(err, (unsigned long)count[k], sizeof *from, "the reference of a drop")))
+        if ((*own[k] = sf_alloc(err, count[k], sizeof *from, "the reference of a drop")))
             memcpy(*own[k], from, (size_t)count[k] * sizeof *from);
     }
     SF_TRY(err->status);
@@ -117,7 +115,7 @@ softfall_status softfall_drop_next(const softfall_drop *before, double pause, so
     sf_error err = SF_ERROR_INIT;
     *out = NULL;
     if (!(pause > 0) || !isfinite(pause))
-        SF_REFUSE(&err, "pause: %g s is not above 0", pause);
+        SF_REFUSE(&err, "pause: %g s" SF_NOT_ABOVE_0, pause);
     else if (before->ending == SOFTFALL_RUNNING || before->failure.status != SF_OK ||
              before->state.contact_count > 0)
         SF_REFUSE(&err, "the drop before has not ended, or its missile still touches the pad");
@@ -212,7 +210,7 @@ static sf_status take_field(const softfall_drop *d, const char *name, double *va
     while (field < SF_FRAME_FIELDS && strcmp(d->field[field].name, name) != 0)
         field++;
     if (field == SF_FRAME_FIELDS)
-        return SF_REFUSE(err, "there is no field \"%.80s\" of the nodes", name);
+        return SF_REFUSE(err, "unknown field \"%.80s\" of the nodes", name);
     int64_t needed = d->model.node_count * d->field[field].components;
     if (size != needed)
         return SF_REFUSE(err, "the field \"%s\" has %lld values, room was given for %lld", name,
@@ -368,7 +366,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .history = d->recorder.history};
     sf_flight_gravity(&m->missile, r->gravity);
     if (r->history.rows < 3)
-        return SF_REFUSE(err, "the drop has %lld steps: figures need 3 at least", (long long)r->history.rows);
+        return SF_REFUSE(err, "the drop has %lld steps" SF_AT_LEAST("3"), (long long)r->history.rows);
     return SF_OK;
 }
 
@@ -410,7 +408,7 @@ softfall_status softfall_figure(const softfall_figures *figures, const char *key
     if (k < figures->count)
         *value = figures->value[k];
     else
-        SF_REFUSE(&err, "there is no figure \"%.80s\"; softfall_figures_list has their keys", key);
+        SF_REFUSE(&err, "unknown figure \"%.80s\"; softfall_figures_list has their keys", key);
     return softfall_return(&err, error);
 }
 
@@ -426,7 +424,7 @@ softfall_status softfall_hic(const double *time, const double *deceleration, int
     const sf_series curve = borrow(time, deceleration, count);
     sf_hic found = {0};
     if (!(window > 0))
-        SF_REFUSE(&err, "window: %g s is not above 0", window);
+        SF_REFUSE(&err, "window: %g s" SF_NOT_ABOVE_0, window);
     else if (sf_series_check(&curve, "the deceleration", &err) == SF_OK)
         sf_hic_evaluate(&curve, window, &found, &err);
     *hic = err.status == SF_OK ? found.value : NAN;

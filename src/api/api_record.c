@@ -37,7 +37,8 @@ typedef struct settings {
 static sf_status take_number(const char *name, const char *value, double *out, sf_error *err) {
     char *end;
     *out = strtod(value, &end);
-    return end != value && *end == '\0' ? SF_OK : SF_REFUSE(err, "%s: \"%.80s\" is no number", name, value);
+    return end != value && *end == '\0' ? SF_OK
+                                        : SF_REFUSE(err, "%s: \"%.80s\" is not a number", name, value);
 }
 
 static sf_status take_option(sf_reference_options *o, const char *name, const char *value, sf_error *err) {
@@ -73,7 +74,7 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
 static sf_status take_options(settings *s, const char *const *options, int count, sf_error *err) {
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         if (s->count == (int)(sizeof s->texts / sizeof s->texts[0]))
-            return SF_REFUSE(err, "a record has at most %d options", s->count);
+            return SF_REFUSE(err, "%d options of a record" SF_AT_MOST("%d"), s->count + 1, s->count);
         char *text = s->texts[s->count++] = strdup(options[k]), *value = text ? strchr(text, '=') : NULL;
         if (!text)
             return SF_NO_MEMORY(err, "the options of a record");
@@ -85,11 +86,9 @@ static sf_status take_options(settings *s, const char *const *options, int count
 }
 
 static sf_status read_record(softfall_record *r, const sf_reference_options *options, sf_error *err) {
-    if (sf_reference_read(options, &r->reference, err) != SF_OK ||
-        sf_injury_evaluate(&r->reference.curve, &r->injury, err) != SF_OK ||
-        sf_record_judge(&r->reference.raw, &r->reference.curve, r->reference.other, &r->verdict, err) !=
-            SF_OK)
-        return err->status;
+    SF_TRY(sf_reference_read(options, &r->reference, err));
+    SF_TRY(sf_injury_evaluate(&r->reference.curve, &r->injury, err));
+    SF_TRY(sf_record_judge(&r->reference.raw, &r->reference.curve, r->reference.other, &r->verdict, err));
     sf_record_line(&r->verdict, r->line, sizeof r->line);
     return SF_OK;
 }
@@ -146,6 +145,6 @@ softfall_status softfall_record_figure(const softfall_record *r, const char *key
             *value = figures[k].factor * *(const double *)((const char *)&r->injury + figures[k].place);
             return softfall_return(&err, error);
         }
-    SF_REFUSE(&err, "a record has no figure \"%.80s\"", key);
+    SF_REFUSE(&err, "unknown figure \"%.80s\" of a record", key);
     return softfall_return(&err, error);
 }

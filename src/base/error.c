@@ -34,7 +34,7 @@ static void *allocate(unsigned long bytes) {
     return block;
 }
 
-void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what) {
+void *sf_allocate(sf_error *err, unsigned long count, unsigned long size, const char *what) {
     if (size != 0 && count > (SIZE_MAX - 64) / size) {
         SF_FAIL(err, SF_ERR_MEMORY, "%s: %lu items of %lu bytes exceed the address space", what, count, size);
         return NULL;

@@ -44,6 +44,14 @@ typedef struct sf_error {
 /* Records that there is no memory for what the format names: SF_NO_MEMORY(err, "the path %s", path). */
 #define SF_NO_MEMORY(err, ...) SF_FAIL(err, SF_ERR_MEMORY, "out of memory for " __VA_ARGS__)
 
+/* The wording of the commonest faults, beside what is at fault: "a window of -1 s is not above 0", "PATH: 2
+ * points; at least 3 are needed". The parameters are conversions or literals: SF_OUTSIDE("%g", "0", "%d"). */
+#define SF_NOT_ABOVE_0 " is not above 0"
+#define SF_OUTSIDE(value, low, high) " is " value ", outside " low " to " high
+#define SF_AT_LEAST(count) "; at least " count " are needed"
+#define SF_AT_MOST(count) "; at most " count " are allowed"
+#define SF_NOT_WRITTEN "%s cannot be written (disk full?)"
+
 /* Leaves the function with the status of `call` unless that is SF_OK. Where something must be released, let
  * its variable be SF_OWNED, chain the calls in one condition, or use `goto done`. */
 #define SF_TRY(call)                                                                                         \
@@ -73,8 +81,10 @@ void sf_release(void *pointer);
 void sf_free_all(size_t count, void *pointers[]);
 
 /* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
- * them with free(). `count * size` is checked for overflow; zero bytes give a valid block. */
-void *sf_alloc(sf_error *err, unsigned long count, unsigned long size, const char *what);
+ * them with free(). The count may be of any integer type; `count * size` is checked for overflow; zero bytes
+ * give a valid block. */
+void *sf_allocate(sf_error *err, unsigned long count, unsigned long size, const char *what);
+#define sf_alloc(err, count, size, what) sf_allocate(err, (unsigned long)(count), size, what)
 
 /* Makes room for one more element behind `count` elements of `size` bytes. `array` is the address of a
  * pointer that is NULL at first and that only this function changes. False: out of memory, and nothing has

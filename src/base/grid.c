@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/sets.h"
 
-#include <math.h>
+#include "base/mat3.h"
 
 static int64_t bin_of(const sf_grid *grid, int axis, double x) {
     double b = floor((x - grid->origin[axis]) / grid->width);
@@ -15,15 +15,11 @@ static int64_t bin_index(const sf_grid *grid, const double x[3]) {
 
 sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, const double *support,
                         sf_error *err) {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
     *grid = (sf_grid){.position = position, .support = support};
-    for (int64_t i = 0; i < count; i++) {
+    sf_box3(count, position, low, high);
+    for (int64_t i = 0; i < count; i++)
         grid->width = fmax(grid->width, support[i]);
-        for (int c = 0; c < 3; c++) {
-            low[c] = fmin(low[c], position[3 * i + c]);
-            high[c] = fmax(high[c], position[3 * i + c]);
-        }
-    }
     /* One outsized support would make every bin huge; one tiny one would make too many: bound the number of
      * bins. */
     double volume = 1;
@@ -35,8 +31,8 @@ sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, co
         grid->bins[c] = (int64_t)((high[c] - low[c]) / grid->width) + 1;
     }
     int64_t bins = grid->bins[0] * grid->bins[1] * grid->bins[2];
-    grid->start = sf_alloc(err, (unsigned long)bins + 2, sizeof *grid->start, "neighbour grid");
-    grid->node = sf_alloc(err, (unsigned long)count, sizeof *grid->node, "neighbour grid");
+    grid->start = sf_alloc(err, bins + 2, sizeof *grid->start, "neighbour grid");
+    grid->node = sf_alloc(err, count, sizeof *grid->node, "neighbour grid");
     if (err->status != SF_OK) {
         sf_grid_free(grid);
         return err->status;

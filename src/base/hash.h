@@ -9,27 +9,29 @@
 #define SF_HASH_START UINT64_C(14695981039346656037)
 #define SF_HASH_PRIME UINT64_C(1099511628211)
 
+static inline uint64_t sf_hash_word(const char *byte, size_t left) {
+    uint64_t word = 0;
+    memcpy(&word, byte, left < sizeof word ? left : sizeof word);
+    return word;
+}
+
 /* Over words of 64 bits, for the damage of large data: `size` bytes, a last incomplete word filled with
  * zeros. Every change of one word changes the hash; two words that differ in their highest bits alone, such
  * as two doubles of few digits, may cancel. */
 static inline uint64_t sf_hash(uint64_t hash, const void *data, size_t size) {
     const char *byte = data;
     for (size_t k = 0; k < size; k += sizeof hash) {
-        uint64_t word = 0;
-        memcpy(&word, byte + k, size - k < sizeof word ? size - k : sizeof word);
-        hash = (hash ^ word) * SF_HASH_PRIME;
+        hash = (hash ^ sf_hash_word(byte + k, size - k)) * SF_HASH_PRIME;
     }
     return hash;
 }
 
-/* The same with every word mixed into all bits of the hash: for the identity of inputs. The multiplier is that of
- * MurmurHash3's last step. */
+/* The same with every word mixed into all bits of the hash: for the identity of inputs. The multiplier is
+ * that of MurmurHash3's last step. */
 static inline uint64_t sf_hash_identity(uint64_t hash, const void *data, size_t size) {
     const char *byte = data;
     for (size_t k = 0; k < size; k += sizeof hash) {
-        uint64_t word = 0;
-        memcpy(&word, byte + k, size - k < sizeof word ? size - k : sizeof word);
-        hash = (hash ^ word) * UINT64_C(0xff51afd7ed558ccd);
+        hash = (hash ^ sf_hash_word(byte + k, size - k)) * UINT64_C(0xff51afd7ed558ccd);
         hash ^= hash >> 32;
     }
     return hash;

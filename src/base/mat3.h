@@ -14,6 +14,12 @@ static inline void sf_cross3(const double a[3], const double b[3], double out[3]
         out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
+/* a - b; `out` may be one of them. */
+static inline void sf_sub3(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] - b[k];
+}
+
 static inline double sf_distance3(const double a[3], const double b[3]) {
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
                 (a[2] - b[2]) * (a[2] - b[2]));
@@ -152,13 +158,17 @@ void sf_rigid_product(const double matrix[6], const double v[3], double out[3]);
 void sf_rigid_turn(const double inertia[6], const double q[4], const double momentum[3], double dt,
                    double turn[3]);
 
+/* The places of a triangle's nodes. */
+static inline void sf_corners(const double *position, const int32_t node[3], const double *out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = &position[3 * (int64_t)node[k]];
+}
+
 /* Normal of a triangle, of twice its area. */
 static inline void sf_triangle_normal(const double *a, const double *b, const double *c, double out[3]) {
     double u[3], v[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-    }
+    sf_sub3(b, a, u);
+    sf_sub3(c, a, v);
     sf_cross3(u, v, out);
 }
 
@@ -167,13 +177,11 @@ static inline void sf_triangle_normal(const double *a, const double *b, const do
 static inline void sf_triangle_nearest(const double *a, const double *b, const double *c, const double x[3],
                                        double out[3], int *feature) {
     double ab[3], ac[3], ap[3], bp[3], cp[3], s = 0, t = 0;
-    for (int k = 0; k < 3; k++) {
-        ab[k] = b[k] - a[k];
-        ac[k] = c[k] - a[k];
-        ap[k] = x[k] - a[k];
-        bp[k] = x[k] - b[k];
-        cp[k] = x[k] - c[k];
-    }
+    sf_sub3(b, a, ab);
+    sf_sub3(c, a, ac);
+    sf_sub3(x, a, ap);
+    sf_sub3(x, b, bp);
+    sf_sub3(x, c, cp);
     double d1 = sf_dot3(ab, ap), d2 = sf_dot3(ac, ap), d3 = sf_dot3(ab, bp), d4 = sf_dot3(ac, bp),
            d5 = sf_dot3(ab, cp), d6 = sf_dot3(ac, cp);
     double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;

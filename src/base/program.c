@@ -173,8 +173,7 @@ static sf_status check_stack(char **argv, sf_error *err) {
         if (setrlimit(RLIMIT_STACK, &stack) == 0)
             execv("/proc/self/exe", argv); /* threads take the limit of the start */
     }
-    return SF_FAIL(err, SF_ERR_MEMORY,
-                   "the stack is limited to %llu kB; at least %d kB are needed (ulimit -s)",
+    return SF_FAIL(err, SF_ERR_MEMORY, "the stack is limited to %llu kB" SF_AT_LEAST("%d kB") " (ulimit -s)",
                    (unsigned long long)given / 1024, LEAST_STACK / 1024);
 }
 
@@ -195,7 +194,7 @@ static void *wait_for_all(void *gate) {
 
 sf_status sf_program_try_threads(int threads, sf_error *err) {
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
-    SF_OWNED pthread_t *thread = sf_alloc(err, (unsigned long)threads, sizeof *thread, "the threads");
+    SF_OWNED pthread_t *thread = sf_alloc(err, threads, sizeof *thread, "the threads");
     int count = 0, failed = 0;
     SF_TRY(err->status);
     pthread_mutex_lock(&gate);
@@ -293,10 +292,15 @@ sf_status sf_command_parse(const sf_command *c, int argc, char **argv, sf_error 
     return err->status;
 }
 
-sf_status sf_program_read_threads(const char *option, const char *text, void *threads, sf_error *err) {
-    if (!sf_whole_is(text, 1, SF_MOST_THREADS, threads))
-        return SF_REFUSE(err, "%s takes a number from 1 to %d, not \"%s\"", option, SF_MOST_THREADS, text);
+sf_status sf_program_read_whole(const char *option, const char *text, int low, int high, int *out,
+                                sf_error *err) {
+    if (!sf_whole_is(text, low, high, out))
+        return SF_REFUSE(err, "%s %s: expected a whole number from %d to %d", option, text, low, high);
     return SF_OK;
+}
+
+sf_status sf_program_read_threads(const char *option, const char *text, void *threads, sf_error *err) {
+    return sf_program_read_whole(option, text, 1, SF_MOST_THREADS, threads, err);
 }
 
 sf_status sf_program_read_limit(const char *option, const char *text, void *limit, sf_error *err) {
@@ -309,7 +313,7 @@ sf_status sf_program_read_texts(const char *option, const char *text, void *text
     enum { MOST = sizeof((sf_option_texts *)0)->text / sizeof(char *) };
     sf_option_texts *all = texts;
     if (all->count == MOST)
-        return SF_REFUSE(err, "at most %d %s options", MOST, option);
+        return SF_REFUSE(err, "%d %s options" SF_AT_MOST("%d"), MOST + 1, option, MOST);
     all->text[all->count++] = text;
     return SF_OK;
 }

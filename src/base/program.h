@@ -63,6 +63,10 @@ typedef struct sf_option_texts {
  * behind those before it (sf_option_texts). */
 sf_option_reader sf_program_read_threads, sf_program_read_limit, sf_program_read_texts;
 
+/* For the readers of whole numbers within bounds. */
+sf_status sf_program_read_whole(const char *option, const char *text, int low, int high, int *out,
+                                sf_error *err);
+
 /* Prints "program: sentence" (and the source line when SOFTFALL_DEBUG is set in the environment) to stderr. A
  * standard output that could not be written counts as a failure. Returns the process exit code that belongs
  * to the status. */

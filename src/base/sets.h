@@ -10,7 +10,7 @@
 
 /* [count] each number alone; owned by the caller, NULL on failure. `what`: for the sentence. */
 static inline int64_t *sf_sets_alone(int64_t count, const char *what, sf_error *err) {
-    int64_t *parent = sf_alloc(err, (unsigned long)count, sizeof *parent, what);
+    int64_t *parent = sf_alloc(err, count, sizeof *parent, what);
     for (int64_t k = 0; parent && k < count; k++)
         parent[k] = k;
     return parent;
@@ -29,10 +29,12 @@ static inline void sf_sets_join(int64_t *parent, int64_t a, int64_t b) {
     parent[a > b ? a : b] = a > b ? b : a;
 }
 
+/* The order of two numbers, for functions of qsort: -1, 0 or 1. */
+#define SF_ORDER(x, y) (((x) > (y)) - ((x) < (y)))
+
 /* Compares two numbers of type int32_t, for qsort. */
 static inline int sf_by_number(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
+    return SF_ORDER(*(const int32_t *)a, *(const int32_t *)b);
 }
 
 /* Returns the first place from `low` to `high` - 1 of an ascending list whose number is not below `value`;
@@ -67,14 +69,14 @@ typedef struct sf_half_edge {
 
 static inline int sf_half_edge_compare(const void *a, const void *b) {
     const sf_half_edge *x = a, *y = b;
-    int low = (x->low > y->low) - (x->low < y->low), high = (x->high > y->high) - (x->high < y->high);
-    return low ? low : high ? high : (x->slot > y->slot) - (x->slot < y->slot);
+    int low = SF_ORDER(x->low, y->low), high = SF_ORDER(x->high, y->high);
+    return low ? low : high ? high : SF_ORDER(x->slot, y->slot);
 }
 
 /* [3 count] the edges of the triangles, those at the same place together; owned by the caller, NULL on
  * failure. */
 static inline sf_half_edge *sf_half_edges(int64_t count, const int32_t *triangle, sf_error *err) {
-    sf_half_edge *edge = sf_alloc(err, 3 * (unsigned long)count, sizeof *edge, "edges of triangles");
+    sf_half_edge *edge = sf_alloc(err, 3 * count, sizeof *edge, "edges of triangles");
     for (int64_t k = 0; edge && k < 3 * count; k++) {
         int32_t a = triangle[k], b = triangle[k % 3 == 2 ? k - 2 : k + 1];
         edge[k] = (sf_half_edge){a < b ? a : b, a < b ? b : a, k, a < b};

@@ -139,7 +139,7 @@ static bool read_name(reader *r, char name[NAME]) {
         return true;
     char shown[NAME + 24];
     snprintf(shown, sizeof shown, "%.*s", (int)(r->at - from), from);
-    return used > 0 ? fail(r, "there is no unit \"%.24s\" here (softfall-pre --keys lists them)", shown)
+    return used > 0 ? fail(r, "unknown unit \"%.24s\" (softfall-pre --keys lists them)", shown)
            : isdigit((unsigned char)*r->at) ? fail(r, "a second number \"%.24s\" follows", r->at)
                                             : fail(r, "a unit's name is missing before \"%.24s\"", r->at);
 }

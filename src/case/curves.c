@@ -74,7 +74,7 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
     memset(curve, 0, sizeof *curve);
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count < SF_CURVE_MIN_POINTS)
-        SF_REFUSE(err, "%s: %lld points; a compression curve needs at least %d", path, (long long)table.count,
+        SF_REFUSE(err, "%s: %lld points" SF_AT_LEAST("%d"), path, (long long)table.count,
                   SF_CURVE_MIN_POINTS);
     else if (!(table.value[1][table.count - 1] > 0.0))
         SF_REFUSE(err, "%s: the stress is zero everywhere", path);
@@ -126,7 +126,7 @@ static sf_status check_slopes(const char *path, const sf_case_curve *curve, sf_e
         if (!(slope <= STEEPEST))
             return SF_REFUSE(err,
                              "%s: from the strain %g to %g the stress rises from %g to %g Pa, with a modulus "
-                             "of %.3g Pa; at most %g Pa are possible",
+                             "of %.3g Pa; at most %g Pa are allowed",
                              path, curve->strain[k - 1], curve->strain[k], curve->stress[k - 1],
                              curve->stress[k], slope, STEEPEST);
     }
@@ -138,7 +138,7 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     char where[SF_CASE_WHERE_SIZE];
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_REFUSE_AT(reader, setting, err, "%s: the name of a curve's CSV file is expected",
+        return SF_REFUSE_AT(reader, setting, err, "%s: expected the name of a curve's CSV file",
                             reader->material_group);
     SF_OWNED char *path = sf_case_resolve(reader, setting, text, err);
     SF_TRY(err->status);
@@ -213,22 +213,13 @@ static sf_status check_order(const sf_case_reader *reader, const config_setting_
         config_setting_get_string(file[1]));
 }
 
-/* Stress of curve k at a strain within it. */
-static double stress_at(const sf_law_curves *c, int64_t k, double strain) {
-    int64_t i = c->curve_ptr[k] + 1;
-    while (i + 1 < c->curve_ptr[k + 1] && c->curve_strain[i] < strain)
-        i++;
-    double x = (strain - c->curve_strain[i - 1]) / (c->curve_strain[i] - c->curve_strain[i - 1]);
-    return c->curve_stress[i - 1] + fmin(1, x) * (c->curve_stress[i] - c->curve_stress[i - 1]);
-}
-
 /* The curve at part x of the way from curve k to the next, by the logarithm of the stress at the strains of
  * both, up to the end of the shorter one. */
 static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_case_curve *out, sf_error *err) {
     int64_t first = c->curve_ptr[k], count = c->curve_ptr[k + 2] - first;
     double end = fmin(c->curve_strain[c->curve_ptr[k + 1] - 1], c->curve_strain[c->curve_ptr[k + 2] - 1]);
-    double *strain = sf_alloc(err, (unsigned long)count, sizeof *strain, "curve"),
-           *stress = sf_alloc(err, (unsigned long)count, sizeof *stress, "curve");
+    double *strain = sf_alloc(err, count, sizeof *strain, "curve"),
+           *stress = sf_alloc(err, count, sizeof *stress, "curve");
     *out = (sf_case_curve){.strain = strain, .stress = stress};
     SF_TRY(err->status);
     memcpy(strain, &c->curve_strain[first], (size_t)count * sizeof *strain);
@@ -236,7 +227,7 @@ static sf_status interpolate(const sf_law_curves *c, int64_t k, double x, sf_cas
     for (int64_t i = 0; i < count && strain[i] <= end; i++) {
         if (out->count > 0 && strain[i] - strain[out->count - 1] < 1e-9)
             continue;
-        double at = strain[i], low = stress_at(c, k, at), high = stress_at(c, k + 1, at);
+        double at = strain[i], low = sf_law_curve_stress(c, k, at), high = sf_law_curve_stress(c, k + 1, at);
         strain[out->count] = at;
         stress[out->count++] = low > 0 && high > 0 ? exp((1 - x) * log(low) + x * log(high)) : 0;
     }
@@ -287,7 +278,7 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
                                 ")",
                                 reader->material_group);
         if (config_setting_length(setting) > MOST_CURVES)
-            return SF_REFUSE_AT(reader, setting, err, "%s.curves: %d curves; at most %d are read",
+            return SF_REFUSE_AT(reader, setting, err, "%s.curves: %d curves" SF_AT_MOST("%d"),
                                 reader->material_group, config_setting_length(setting), MOST_CURVES);
         const config_setting_t *head = config_setting_get_elem(setting, 0);
         bool thermal = config_setting_is_group(head) && config_setting_get_member(head, "temperature");
@@ -325,7 +316,7 @@ static sf_status check_motion_point(const sf_table_point *p, sf_error *err) {
     double speed = fabs(p->value[1] - p->before[1]) / span;
     if (!(speed <= SF_MOTION_MAX_SPEED))
         return SF_REFUSE(
-            err, "%s:%d: displacement %s after %g means a speed of %g m/s; at most %g m/s are possible",
+            err, "%s:%d: displacement %s after %g means a speed of %g m/s; at most %g m/s are allowed",
             p->path, p->line, p->text[1], p->last[1], speed, SF_MOTION_MAX_SPEED);
     return SF_OK;
 }
@@ -352,7 +343,7 @@ static sf_status check_motion_table(const char *path, const sf_table *table, sf_
     for (int64_t k = 0; k < table->count; k++)
         largest = fmax(largest, fabs(table->value[1][k]));
     if (table->count < 2)
-        return SF_REFUSE(err, "%s: %lld points; a motion needs at least 2", path, (long long)table->count);
+        return SF_REFUSE(err, "%s: %lld points" SF_AT_LEAST("2"), path, (long long)table->count);
     if (!(largest > 0.0))
         return SF_REFUSE(err, "%s: the displacement is zero everywhere", path);
     return SF_OK;
@@ -364,7 +355,7 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     sf_case *c = reader->out;
     const char *text = config_setting_get_string(setting);
     if (!text || !*text)
-        return SF_REFUSE_AT(reader, setting, err, "missile.motion: the name of a CSV file is expected");
+        return SF_REFUSE_AT(reader, setting, err, "missile.motion: expected the name of a CSV file");
     SF_OWNED char *path = sf_case_resolve(reader, setting, text, err);
     SF_TRY(err->status);
     sf_table table = {0};

@@ -115,7 +115,7 @@ static sf_status read_escape(cursor *c) {
     char next = c->at + 1 < c->end ? c->at[1] : '\0';
     bool code = next == 'x' && c->end - c->at > 3 && is_hexadecimal(c->at[2]) && is_hexadecimal(c->at[3]);
     if (code ? c->at[2] == '0' && c->at[3] == '0' : next == '\0' || !strchr("fnrt\\\"", next))
-        return REFUSE(c, "\\%.*s in a text is no character (a backslash is written \\\\)", code ? 3 : 1,
+        return REFUSE(c, "\\%.*s in a text is not a character (a backslash is written \\\\)", code ? 3 : 1,
                       next ? c->at + 1 : "");
     c->at += code ? 4 : 2;
     return SF_OK;

@@ -300,7 +300,7 @@ static sf_status read_layer(const sf_case_reader *reader, const config_setting_t
 static sf_status read_layers(sf_case_reader *reader, sf_error *err) {
     sf_case *c = reader->out;
     int count = config_setting_length(reader->layers);
-    c->layer = sf_alloc(err, (unsigned long)count, sizeof *c->layer, "materials");
+    c->layer = sf_alloc(err, count, sizeof *c->layer, "materials");
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         const config_setting_t *setting = config_setting_get_elem(reader->layers, (unsigned)k);
         const char *name = config_setting_name(setting);

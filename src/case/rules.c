@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "material/laws.h"
-#include "model/flight.h"
 
 #define AT(path) sf_case_setting(reader, path)
 #define REFUSE_AT(path, ...) SF_REFUSE_AT(reader, AT(path), err, __VA_ARGS__)
@@ -164,7 +163,7 @@ static sf_status check_direction(const sf_case_reader *reader, sf_error *err) {
     if (towards < FLATTEST * sqrt(square))
         return REFUSE("missile.direction",
                       "[%g, %g, %g] is %.1f degrees from the normal of the pad's face (pad.up) and "
-                      "grazes it; at most %.0f degrees are possible",
+                      "grazes it; at most %.0f degrees are allowed",
                       d[0], d[1], d[2], acos(towards / sqrt(square)) * 180 / M_PI,
                       acos(FLATTEST) * 180 / M_PI);
     return SF_OK;
@@ -254,13 +253,13 @@ sf_status sf_case_add_interface(const sf_case_reader *reader, const config_setti
                             "interfaces: the pad has one material; layers are the groups of materials");
     for (int k = 0; k < entry->between_count && k < 2; k++)
         if ((own.layer[k] = find_layer(c, entry->between[k], strlen(entry->between[k]))) < 0)
-            return SF_REFUSE_AT(reader, group, err, "interfaces.between: materials has no layer \"%s\"",
+            return SF_REFUSE_AT(reader, group, err, "interfaces.between: unknown layer \"%s\" of materials",
                                 entry->between[k]);
     if (entry->between_count != 2)
         return SF_REFUSE_AT(reader, group, err,
                             "interfaces.between must name two layers, for example [\"upper\", \"cover\"]");
     if (sf_case_interface_find(c, own.layer[0], own.layer[1]))
-        return SF_REFUSE_AT(reader, group, err, "interfaces: \"%s\" and \"%s\" are there twice",
+        return SF_REFUSE_AT(reader, group, err, "interfaces: \"%s\" and \"%s\" are given twice",
                             entry->between[0], entry->between[1]);
     if (own.kind != SF_INTERFACE_LOOSE && !isnan(entry->friction))
         return SF_REFUSE_AT(reader, group, err,

@@ -72,7 +72,7 @@ static sf_status check_bounds(const slot *s, double value, const char *unit) {
     if (key->high != 0.0)
         snprintf(upper, sizeof upper, " and at most %g%s%s", key->high, blank, unit);
     return REFUSE(s, "%g%s%s is out of bounds; it must be %s %g%s%s%s", value, blank, unit,
-                  key->low_open ? "greater than" : "at least", key->low, blank, unit, upper);
+                  key->low_open ? "above" : "at least", key->low, blank, unit, upper);
 }
 
 static sf_status read_quantity(const slot *s) {
@@ -132,7 +132,7 @@ static sf_status read_bool(const slot *s) {
 static sf_status copy_name(const slot *s, const config_setting_t *item, char *name) {
     const char *text = config_setting_get_string(item);
     if (!text)
-        return REFUSE(s, "%s stands where a name is expected, for example \"top\"", type_phrase(item));
+        return REFUSE(s, "the value is %s; expected a name, for example \"top\"", type_phrase(item));
     if (*text == '\0')
         return REFUSE(s, "the name is empty");
     for (const char *c = text; *c; c++)
@@ -159,12 +159,12 @@ static sf_status read_names(const slot *s) {
         return REFUSE(s, "the value is %s; expected an array of names, for example [\"base\"]",
                       type_phrase(s->setting));
     if (length > SF_CASE_MAX_GROUPS)
-        return REFUSE(s, "%d names; at most %d are allowed", length, SF_CASE_MAX_GROUPS);
+        return REFUSE(s, "%d names" SF_AT_MOST("%d"), length, SF_CASE_MAX_GROUPS);
     for (*count = 0; *count < length; ++*count) {
         SF_TRY(copy_name(s, config_setting_get_elem(s->setting, (unsigned)*count), name[*count]));
         for (int i = 0; i < *count; i++)
             if (strcmp(name[i], name[*count]) == 0)
-                return REFUSE(s, "\"%s\" is named twice", name[i]);
+                return REFUSE(s, "\"%s\" is given twice", name[i]);
     }
     return SF_OK;
 }
@@ -324,7 +324,7 @@ static sf_status read_path(const slot *s) {
     const char *text = config_setting_get_string(s->setting);
     sf_error inner = SF_ERROR_INIT;
     if (!text || !*text)
-        return REFUSE(s, "%s stands where a file name is expected",
+        return REFUSE(s, "the value is %s; expected the name of a file",
                       text ? "an empty text" : type_phrase(s->setting));
     *path = sf_case_resolve(s->reader, s->setting, text, s->err);
     if (!*path)
@@ -339,7 +339,7 @@ static sf_status read_parameters(const slot *s) {
         return REFUSE(s, "the value is %s; expected a group such as { side = 400.0; }",
                       type_phrase(s->setting));
     if (count > SF_CASE_MAX_PARAMETERS)
-        return REFUSE(s, "%d parameters; at most %d are allowed", count, SF_CASE_MAX_PARAMETERS);
+        return REFUSE(s, "%d parameters" SF_AT_MOST("%d"), count, SF_CASE_MAX_PARAMETERS);
     for (int i = 0; i < count; i++) {
         slot own = *s;
         own.setting = config_setting_get_elem(s->setting, (unsigned)i);
@@ -355,8 +355,8 @@ static sf_status read_parameters(const slot *s) {
         else
             return REFUSE(&own, "\"%s\" is not a finite plain number (in the geometry's own unit)", name);
         if (fabs(parameter->value) > LARGEST_PARAMETER)
-            return REFUSE(&own, "%s = %g is out of bounds; it must be between -%g and %g", name,
-                          parameter->value, LARGEST_PARAMETER, LARGEST_PARAMETER);
+            return REFUSE(&own, "%s" SF_OUTSIDE("%g", "-%g", "%g"), name, parameter->value, LARGEST_PARAMETER,
+                          LARGEST_PARAMETER);
     }
     source->parameter_count = count;
     return SF_OK;

@@ -9,8 +9,7 @@
 static sf_status find_skin(const sf_cells *c, sf_shape *s, sf_error *err) {
     sf_skin_faces skin;
     if (sf_skin_faces_find(c, &skin, err) == SF_OK)
-        s->pad.position =
-            sf_alloc(err, 3 * (unsigned long)skin.node_count, sizeof(double), "the pad's picture");
+        s->pad.position = sf_alloc(err, 3 * skin.node_count, sizeof(double), "the pad's picture");
     for (int64_t k = 0; k < 3 * skin.node_count && s->pad.position; k++)
         s->pad.position[k] = c->position[3 * skin.node[k / 3] + k % 3] / s->unit;
     s->pad.node_count = skin.node_count;
@@ -90,10 +89,9 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
     int parts = m->radius > 0 ? 4 : 1;
     int64_t pieces = m->triangles * parts * parts, most = 2 * pieces + m->fixed;
     double low[3], high[3];
-    s->missile.position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
-    s->missile_position = sf_alloc(err, 9 * (unsigned long)most, sizeof(double), "the missile's picture");
-    s->missile.face =
-        sf_alloc(err, 4 * (unsigned long)most, sizeof *s->missile.face, "the missile's picture");
+    s->missile.position = sf_alloc(err, 9 * most, sizeof(double), "the missile's picture");
+    s->missile_position = sf_alloc(err, 9 * most, sizeof(double), "the missile's picture");
+    s->missile.face = sf_alloc(err, 4 * most, sizeof *s->missile.face, "the missile's picture");
     SF_TRY(err->status);
     double *to = s->missile_position;
     for (int64_t t = 0; t < m->triangles; t++)
@@ -178,10 +176,10 @@ static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const 
     SF_OWNED_BY(sf_frame_free) sf_frame fields = {{0}};
     *out = (sf_shape_frame){0};
     SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err));
-    out->pad = sf_alloc(err, 3 * (unsigned long)s->pad.node_count, sizeof(double), "a frame");
-    out->missile = sf_alloc(err, 3 * (unsigned long)s->missile.node_count, sizeof(double), "a frame");
+    out->pad = sf_alloc(err, 3 * s->pad.node_count, sizeof(double), "a frame");
+    out->missile = sf_alloc(err, 3 * s->missile.node_count, sizeof(double), "a frame");
     if (fields.field[SF_FRAME_VON_MISES])
-        out->stress = sf_alloc(err, (unsigned long)s->pad.node_count, sizeof(double), "a frame");
+        out->stress = sf_alloc(err, s->pad.node_count, sizeof(double), "a frame");
     if (err->status == SF_OK)
         gather(s, &fields, out);
     for (int64_t k = 0; k < s->missile_nodes && err->status == SF_OK; k++) {
@@ -373,8 +371,8 @@ static void show_missile(sf_pictures *p, const sf_case *c, const sf_pictures_pla
     const double unit = c->length_unit;
     sf_body body = {.node_count = n, .position = t->corner, .face_count = t->count};
     sf_error none = SF_ERROR_INIT;
-    body.face = sf_alloc(&none, 4 * (unsigned long)t->count + 1, sizeof *body.face, "the missile's picture");
-    SF_OWNED double *move = sf_alloc(&none, 3 * (unsigned long)n + 1, sizeof *move, "the missile's picture");
+    body.face = sf_alloc(&none, 4 * t->count + 1, sizeof *body.face, "the missile's picture");
+    SF_OWNED double *move = sf_alloc(&none, 3 * n + 1, sizeof *move, "the missile's picture");
     sf_geometry_box(low, high);
     shift[2] = high[2] - t->low[2] + place->gap / unit;
     for (int d = 0; d < 2 && place->given; d++)
@@ -450,7 +448,7 @@ void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit
     if (sf_model_read(path, &m, NULL, &err) == SF_OK &&
         shape_of_model(&m, length_unit, &p->shape, &err) == SF_OK && begin_pictures(p, &err) == SF_OK) {
         int64_t most = p->shape.pad.node_count + p->shape.missile.node_count;
-        zero = sf_alloc(&err, 3 * (unsigned long)most, sizeof *zero, "a picture");
+        zero = sf_alloc(&err, 3 * most, sizeof *zero, "a picture");
     }
     if (zero) {
         sf_view_add(SF_PICTURE_PAD, 0, 0, &p->shape.pad, zero, zero);

@@ -111,7 +111,7 @@ static sf_status make_mark(int handle, const char *path, sf_error *err) {
     if (file >= 0 && close(file) != 0)
         done = false;
     return done ? SF_OK
-                : SF_FAIL(err, SF_ERR_IO, "cannot write in the folder %s: %s", path, strerror(reason));
+                : SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be written in: %s", path, strerror(reason));
 }
 
 static sf_status take(int handle, const char *path, sf_error *err) {
@@ -131,7 +131,7 @@ sf_status sf_folder_own(const char *path, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", path, strerror(errno));
     int handle = sf_folder_open(path);
     if (handle < 0)
-        return SF_FAIL(err, errno == ENOTDIR ? SF_ERR_INPUT : SF_ERR_IO, "%s cannot be used as a folder: %s",
+        return SF_FAIL(err, errno == ENOTDIR ? SF_ERR_INPUT : SF_ERR_IO, "the folder %s cannot be opened: %s",
                        path, strerror(errno));
     take(handle, path, err);
     close(handle);
@@ -165,7 +165,7 @@ sf_status sf_folder_lock(const char *path, int *handle, sf_error *err) {
     enum { TRIES = 50 }; /* the copies of a process that was killed end a moment after it */
     *handle = sf_folder_open(path);
     if (*handle < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s cannot be used as a folder: %s", path, strerror(errno));
+        return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be opened: %s", path, strerror(errno));
     if (!is_locked(*handle, TRIES))
         return SF_OK;
     close(*handle);

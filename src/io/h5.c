@@ -37,7 +37,7 @@ sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
     if (id >= 0)
         H5Fflush(id, H5F_SCOPE_LOCAL); /* its signature tells what it is if this process is killed */
     else
-        return SF_FAIL(err, SF_ERR_IO, "cannot create %s: %s", path,
+        return SF_FAIL(err, SF_ERR_IO, "%s cannot be created: %s", path,
                        errno ? strerror(errno) : "HDF5 refuses it");
     return wrap(id, path, true, file, err);
 }

@@ -107,7 +107,7 @@ sf_status sf_h5_rows_begin(sf_h5 *file, const sf_h5_info *info, sf_h5_type type,
 
 sf_status sf_h5_rows_add(sf_h5_rows *rows, int64_t count, const void *data, sf_error *err) {
     if (!move_rows(rows->set, native_type(rows->type), rows->next, count, NULL, data))
-        return SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", rows->file->path, rows->path);
+        return SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, rows->file->path, rows->path);
     rows->next += count;
     return SF_OK;
 }
@@ -116,7 +116,7 @@ sf_status sf_h5_rows_end(sf_h5_rows *rows, sf_error *err) {
     if (rows->set < 0)
         return err->status;
     if (H5Dclose(rows->set) < 0) /* small pieces wait in the library until now */
-        SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", rows->file->path, rows->path);
+        SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, rows->file->path, rows->path);
     rows->set = -1;
     if (err->status == SF_OK && rows->next != rows->count)
         SF_FAIL(err, SF_ERR_IO, "%s: %s was given %lld of its %lld rows", rows->file->path, rows->path,
@@ -160,7 +160,7 @@ sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type typ
     bool written = set < 0 || H5Sget_simple_extent_npoints(space) == 0 ||
                    H5Dwrite(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
     if ((set >= 0 && H5Dclose(set) < 0) || !written)
-        SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
+        SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, file->path, info->path);
     return err->status;
 }
 
@@ -175,7 +175,7 @@ sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text
     written = H5Dclose(set) >= 0 && written; /* HDF5 may write a short text only here */
     set = -1;
     if (!written)
-        return SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", file->path, info->path);
+        return SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, file->path, info->path);
     return SF_OK;
 }
 
@@ -261,7 +261,7 @@ static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h
     SF_TRY(check_shape(file, path, set, size, rank, dims, &count, err));
     *data = sf_alloc(err, count, type == SF_H5_U8 ? 1 : type == SF_H5_I32 ? 4 : 8, path);
     if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0) {
-        SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", file->path, path);
+        SF_FAIL(err, SF_ERR_IO, "%s: %s cannot be read", file->path, path);
         free(*data);
         *data = NULL;
     }
@@ -368,13 +368,13 @@ static sf_status copy_rows(const sf_h5 *from, const char *path, hid_t set, hid_t
     int64_t rows = (int64_t)extent[0], row_size = items / rows * (int64_t)H5Tget_size(type);
     int64_t piece = row_size < SF_H5_COPY_SIZE ? SF_H5_COPY_SIZE / row_size : 1;
     piece = piece < rows ? piece : rows;
-    SF_OWNED void *data = sf_alloc(err, (unsigned long)piece, (unsigned long)row_size, path);
+    SF_OWNED void *data = sf_alloc(err, piece, (unsigned long)row_size, path);
     for (int64_t first = 0; first < rows && err->status == SF_OK; first += piece) {
         int64_t count = piece < rows - first ? piece : rows - first;
         if (!move_rows(set, type, first, count, data, NULL))
-            SF_FAIL(err, SF_ERR_IO, "%s: reading %s failed", from->path, path);
+            SF_FAIL(err, SF_ERR_IO, "%s: %s cannot be read", from->path, path);
         else if (!move_rows(made, type, first, count, NULL, data))
-            SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);
+            SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, to->path, path);
     }
     return err->status;
 }
@@ -395,7 +395,7 @@ static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf
         items > 0)
         copy_rows(from, path, set, type, items, to, made, err);
     if (made >= 0 && H5Dclose(made) < 0)
-        SF_FAIL(err, SF_ERR_IO, "%s: writing %s failed (disk full?)", to->path, path);
+        SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, to->path, path);
     return err->status;
 }
 

@@ -375,7 +375,7 @@ char *sf_path_whole(const char *folder, const char *path, sf_error *err) {
     char here[PATH_MAX] = "";
     bool relative = *path != '/', below_here = relative && (!folder || *folder != '/');
     if (below_here && !getcwd(here, sizeof here)) {
-        SF_FAIL(err, SF_ERR_IO, "the present folder is not known: %s", strerror(errno));
+        SF_FAIL(err, SF_ERR_IO, "the present folder is unknown: %s", strerror(errno));
         return NULL;
     }
     char *whole = calloc(strlen(here) + (folder ? strlen(folder) : 0) + strlen(path) + 5, 1);

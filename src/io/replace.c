@@ -106,7 +106,7 @@ FILE *sf_replace_create(const char *path, sf_error *err) {
     FILE *file = handle >= 0 ? fdopen(handle, "w") : NULL;
     if (file)
         return file;
-    SF_FAIL(err, SF_ERR_IO, "cannot write %s: %s", path, strerror(errno));
+    SF_FAIL(err, SF_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
     if (handle >= 0)
         close(handle);
     return NULL;
@@ -166,7 +166,7 @@ FILE *sf_replace_open(const char *path, sf_replacement *out, sf_error *err) {
 sf_status sf_replace_close(sf_replacement *out, sf_error *err) {
     bool failed = ferror(out->file) != 0;
     if (fclose(out->file) != 0 || failed)
-        SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", out->path);
+        SF_FAIL(err, SF_ERR_IO, SF_NOT_WRITTEN, out->path);
     if (err->status == SF_OK)
         return sf_replace_commit(out->partial, out->path, err);
     unlink(out->partial);
@@ -252,7 +252,7 @@ sf_status sf_seal_add(const char *path, sf_error *err) {
     int handle = sf_replace_reopen(path);
     FILE *file = handle >= 0 ? fdopen(handle, "r+b") : NULL;
     if (!file) {
-        SF_FAIL(err, SF_ERR_IO, "cannot open %s: %s", path, strerror(errno));
+        SF_FAIL(err, SF_ERR_IO, "%s cannot be opened: %s", path, strerror(errno));
         if (handle >= 0)
             close(handle);
         return err->status;
@@ -260,7 +260,7 @@ sf_status sf_seal_add(const char *path, sf_error *err) {
     seal s = compute(file, UINT64_MAX);
     bool done = !ferror(file) && fseeko(file, 0, SEEK_END) == 0 && fwrite(&s, sizeof s, 1, file) == 1;
     if (fclose(file) != 0 || !done)
-        return SF_FAIL(err, SF_ERR_IO, "writing %s failed: %s", path, strerror(errno));
+        return SF_FAIL(err, SF_ERR_IO, "%s cannot be written: %s", path, strerror(errno));
     return SF_OK;
 }
 
@@ -290,7 +290,7 @@ sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err)
     errno = 0;
     *state = examine(file);
     if (ferror(file))
-        SF_FAIL(err, SF_ERR_IO, "reading %s failed: %s", path, strerror(errno));
+        SF_FAIL(err, SF_ERR_IO, "%s cannot be read: %s", path, strerror(errno));
     fclose(file);
     return err->status;
 }

@@ -32,7 +32,7 @@ static sf_status check_files(const char *directory, const char *const *names, bo
     for (; *names && err->status == SF_OK; names++) {
         SF_OWNED char *path = join(directory, *names, err);
         if (path && sf_replace_check(path, err) == SF_OK && !force && sf_replace_exists(path))
-            SF_REFUSE(err, "%s already holds %s: give another directory, or --force to replace it", directory,
+            SF_REFUSE(err, "%s already holds %s: give another folder, or --force to replace it", directory,
                       *names);
     }
     return err->status;
@@ -44,7 +44,7 @@ sf_status sf_staging_check(const char *directory, const char *const *names, bool
         return SF_REFUSE(err, "the name of the output directory is empty");
     if (stat(directory, &info) == 0)
         return S_ISDIR(info.st_mode) ? check_files(directory, names, force, err)
-                                     : SF_REFUSE(err, "%s exists and is not a directory", directory);
+                                     : SF_REFUSE(err, "%s exists and is not a folder", directory);
     if (errno != ENOENT || lstat(directory, &info) == 0)
         return SF_REFUSE(err, "the folder %s cannot be made: %s", directory, strerror(errno));
     return sf_replace_check_folder(directory, err);
@@ -55,7 +55,7 @@ static sf_status make_directory(sf_staging *output, bool force, sf_error *err) {
     if (mkdir(output->directory, 0777) == 0)
         output->created = true;
     else if (errno != EEXIST)
-        SF_FAIL(err, SF_ERR_IO, "cannot make the directory %s: %s", output->directory, strerror(errno));
+        SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", output->directory, strerror(errno));
     return err->status;
 }
 
@@ -103,7 +103,7 @@ sf_status sf_staging_begin(const char *directory, const char *const *names, bool
         output->aside = join(directory, name, err);
     }
     if (output->aside && !mkdtemp(output->aside)) {
-        SF_FAIL(err, SF_ERR_IO, "cannot write in %s: %s", directory, strerror(errno));
+        SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be written in: %s", directory, strerror(errno));
         free(output->aside);
         output->aside = NULL;
     }
@@ -125,7 +125,7 @@ FILE *sf_staging_open(const sf_staging *output, const char *name, sf_error *err)
 sf_status sf_staging_close(FILE *file, const char *name, sf_error *err) {
     bool failed = ferror(file) != 0;
     if (fclose(file) != 0 || failed)
-        return SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", name);
+        return SF_FAIL(err, SF_ERR_IO, SF_NOT_WRITTEN, name);
     return SF_OK;
 }
 
@@ -149,7 +149,7 @@ sf_status sf_staging_commit(sf_staging *output, sf_error *err) {
         SF_OWNED char *to = from ? join(output->directory, *name, err) : NULL;
         if (to && access(from, F_OK) != 0) {
             if (unlink(to) != 0 && errno != ENOENT)
-                SF_FAIL(err, SF_ERR_IO, "cannot remove the old %s: %s", to, strerror(errno));
+                SF_FAIL(err, SF_ERR_IO, "the old %s cannot be removed: %s", to, strerror(errno));
         } else if (to) {
             sf_replace_commit(from, to, err);
         }
@@ -270,7 +270,7 @@ sf_status sf_tree_put(sf_tree *tree, const char *name, const char *text, size_t 
     note(tree, name, strlen(name), err);
     bool done = fwrite(text, 1, size, file) == size && fflush(file) == 0 && fsync(fileno(file)) == 0;
     if (fclose(file) != 0 || !done)
-        SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", path);
+        SF_FAIL(err, SF_ERR_IO, SF_NOT_WRITTEN, path);
     return err->status;
 }
 

@@ -400,7 +400,7 @@ static sf_status read_number(csv *file, const char *name, const char *text, doub
         text = plain;
     if (!sf_table_number(text, value))
         return SF_REFUSE(err, "%s:%d: %s \"%s\" is not a number%s", file->path, file->line, name, text,
-                         *text ? " (a number such as 12.5 is expected)" : " (the cell is empty)");
+                         *text ? " (expected a number such as 12.5)" : " (the cell is empty)");
     SF_TRY(check_mark(file, name, text, err));
     if (!isfinite(*value))
         return SF_REFUSE(err, "%s:%d: %s \"%s\" is not finite", file->path, file->line, name, text);

@@ -50,6 +50,9 @@ typedef enum sf_table_part { SF_TABLE_SPECIMEN, SF_TABLE_CYCLE, SF_TABLE_PARTS }
 /* Refuses a point. */
 typedef sf_status sf_table_check(const sf_table_point *point, sf_error *err);
 
+/* The names of a layout, from an array of them. */
+#define SF_TABLE_NAMES(array) .names = (array), .name_count = sizeof(array) / sizeof *(array)
+
 typedef struct sf_table_layout {
     const char *what;      /* "curve" */
     const char *column[2]; /* "strain", "stress" */
@@ -73,7 +76,6 @@ typedef struct sf_table_layout {
     bool ragged;  /* a row may be shorter than the heading as long as it holds both columns */
     sf_table_check *check; /* NULL: none */
 } sf_table_layout;
-#define SF_TABLE_NAMES(array) .names = (array), .name_count = sizeof(array) / sizeof *(array)
 
 enum { SF_TABLE_INTERPRETATION = 384 };
 

@@ -64,8 +64,8 @@ static sf_status check_parameter(const sf_material *m, const sf_parameter *p, in
     if (word || idle || (value <= high && (p->low_open ? value > p->low : value >= p->low)))
         return SF_OK;
     const char *unit = p->kind == SF_PARAMETER_QUANTITY ? sf_quantity_unit(p->quantity) : "";
-    return SF_FAIL(err, SF_ERR_MODEL, "material %lld (%s): %s is %g, outside %g to %g%s%s", (long long)index,
-                   m->law->name, p->key, value, p->low, p->high, *unit ? " " : "", unit);
+    return SF_FAIL(err, SF_ERR_MODEL, "material %lld (%s): %s" SF_OUTSIDE("%g", "%g", "%g%s%s"),
+                   (long long)index, m->law->name, p->key, value, p->low, p->high, *unit ? " " : "", unit);
 }
 
 static bool all_finite(const double *value, int64_t count) {
@@ -75,25 +75,25 @@ static bool all_finite(const double *value, int64_t count) {
     return true;
 }
 
-static double interpolate(const sf_law_curves *c, int64_t k, double strain) {
+double sf_law_curve_stress(const sf_law_curves *c, int64_t k, double strain) {
     int64_t low = c->curve_ptr[k], i = c->curve_ptr[k + 1] - 1;
     while (i - low > 1) {
         int64_t middle = low + (i - low) / 2;
         *(c->curve_strain[middle] < strain ? &low : &i) = middle;
     }
     double x = (strain - c->curve_strain[i - 1]) / (c->curve_strain[i] - c->curve_strain[i - 1]);
-    return c->curve_stress[i - 1] + x * (c->curve_stress[i] - c->curve_stress[i - 1]);
+    return c->curve_stress[i - 1] + fmin(1, x) * (c->curve_stress[i] - c->curve_stress[i - 1]);
 }
 
 bool sf_law_curve_falls(const sf_law_curves *c, int64_t k, sf_curve_fall *fall) {
     static const double SLACK = 0.01; /* of the stress there and halfway: noise where the curves are one */
     double end = fmin(c->curve_strain[c->curve_ptr[k] - 1], c->curve_strain[c->curve_ptr[k + 1] - 1]),
-           half = interpolate(c, k - 1, 0.5 * end), worst = 0;
+           half = sf_law_curve_stress(c, k - 1, 0.5 * end), worst = 0;
     for (int64_t i = c->curve_ptr[k - 1]; i < c->curve_ptr[k + 1]; i++) { /* the points of both */
         double strain = c->curve_strain[i];
         if (strain > end)
             continue;
-        double slow = interpolate(c, k - 1, strain), fast = interpolate(c, k, strain),
+        double slow = sf_law_curve_stress(c, k - 1, strain), fast = sf_law_curve_stress(c, k, strain),
                excess = (slow - fast) / (slow + half) - SLACK;
         if (excess > worst) {
             worst = excess;

@@ -72,6 +72,8 @@ typedef struct sf_curve_fall {
 /* True if the stress of curve k >= 1 falls with the rate, beyond noise: such a foam would create energy.
  * `fall`: the worst place. */
 bool sf_law_curve_falls(const sf_law_curves *curves, int64_t k, sf_curve_fall *fall);
+/* Stress (Pa) of curve k at a strain within it. */
+double sf_law_curve_stress(const sf_law_curves *curves, int64_t k, double strain);
 
 /* A history variable of a point: rows first .. first + components - 1 of sf_law_batch.history. All begin as
  * 0; those that a card does not need are 0 at every update, and take no memory. */

@@ -100,7 +100,7 @@ static void steffen_slopes(int64_t count, const double *x, const double *y, doub
 
 static sf_status check_points(int64_t index, int64_t count, const double *x, sf_error *err) {
     if (count < 3)
-        return SF_REFUSE(err, "compression curve %lld has %lld points; it needs at least 3", (long long)index,
+        return SF_REFUSE(err, "compression curve %lld has %lld points" SF_AT_LEAST("3"), (long long)index,
                          (long long)count);
     for (int64_t i = 1; i < count; i++)
         if (!(x[i] > x[i - 1]))
@@ -165,7 +165,7 @@ sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curv
                          x[count - 1]);
     curve->step = curve->start / SF_CURVE_INTERVALS;
     curve->piece = sf_alloc(err, SF_CURVE_INTERVALS, sizeof *curve->piece, "curve table");
-    SF_OWNED double *slopes = sf_alloc(err, (unsigned long)count, sizeof *slopes, "curve slopes");
+    SF_OWNED double *slopes = sf_alloc(err, count, sizeof *slopes, "curve slopes");
     if (err->status == SF_OK) {
         double stress, slope;
         steffen_slopes(count, x, y, slopes);

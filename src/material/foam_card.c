@@ -33,7 +33,7 @@ static sf_status check_shift(const sf_foam_shared *foam, bool rates, sf_error *e
                 !(foam->kelvin_viscosity > 0)
             ? "moves nothing: this material has no curves at several rates, rate_factor, ED or eta"
             : NULL;
-    return wrong ? SF_FAIL(err, SF_ERR_INPUT, "material.shift %s", wrong) : SF_OK;
+    return wrong ? SF_REFUSE(err, "material.shift %s", wrong) : SF_OK;
 }
 
 double sf_foam_shift(void *card, sf_law_curves *curves, double temperature) {
@@ -63,19 +63,19 @@ sf_status sf_foam_check_shared_keys(const sf_foam_shared *foam, bool rates, cons
     sf_error inner = SF_ERROR_INIT;
     *place = foam->hysteresis_hu == 1 ? "material.memory" : "material.SHAPE";
     if (sf_foam_check_shared(foam, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "material.%s", inner.text);
+        return SF_REFUSE(err, "material.%s", inner.text);
     *place = "material.shift";
     SF_TRY(check_shift(foam, rates, err));
     *place = "material.ED";
     if (given->is(given->reader, "material", "ED") && foam->maxwell_modulus > 0.0 &&
         !given->is(given->reader, "material", "BETA1"))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for example "
-                       "BETA1 = \"5000 1/s\"");
+        return SF_REFUSE(err,
+                         "material.BETA1 is missing: a Maxwell branch (ED) needs its decay rate, for example "
+                         "BETA1 = \"5000 1/s\"");
     *place = "material.rate_reference";
     if (foam->rate_factor > 0 && !given->is(given->reader, "material", "rate_reference"))
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "material.rate_reference is missing: a rate factor needs the rate at which it is 1, "
-                       "for example rate_reference = \"0.01 1/s\"");
+        return SF_REFUSE(err,
+                         "material.rate_reference is missing: a rate factor needs the rate at which it is 1, "
+                         "for example rate_reference = \"0.01 1/s\"");
     return SF_OK;
 }

@@ -88,6 +88,17 @@ void sf_foam_point_rest(const void *numbers, double pause, double (*history)[SF_
 /* sf_law.softening of such numbers. */
 double sf_foam_point_softening(const void *numbers, double (*history)[SF_LANES], int lane);
 
+/* The members of sf_law that all foam laws have in common; they name functions and lists of the law's file.
+ */
+#define SF_FOAM_LAW(card)                                                                                    \
+    .card_size = sizeof(card), .parameter = parameters,                                                      \
+    .parameter_count = sizeof parameters / sizeof parameters[0], .density = offsetof(card, density),         \
+    .length = offsetof(card, damp_length), .rest_modulus = rest_modulus, .check = check,                     \
+    .check_keys = check_keys, .data_end = data_end, .informed_strain = informed_strain,                      \
+    .rest_bounds = rest_bounds, .history = history, .history_count = sizeof history / sizeof history[0],     \
+    .build = build, .energy = energy, .shift = sf_foam_shift, .rest = sf_foam_point_rest,                    \
+    .softening = sf_foam_point_softening
+
 /* For an overstress: advances the filtered rate, of the most compressed direction (theory eq. 22). */
 void sf_foam_point_filter(const sf_foam_options *options, double dt, sf_law_batch *batch,
                           const sf_foam_rate *rate);

@@ -58,7 +58,7 @@ static const sf_parameter parameters[] = {
 /* Checks one term; `name` names the place. */
 static sf_status check_term(const sf_hyperfoam_term *t, const char *name, sf_error *err) {
     if (t->mu != 0 && fabs(t->alpha) < 0.01)
-        return SF_FAIL(err, SF_ERR_MODEL, "%s: alpha is %g; its amount must be 0.01 at least", name,
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: alpha is %g; its amount must be at least 0.01", name,
                        t->alpha);
     if (t->nu != 0 && t->beta != 0)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: both nu (%g) and beta (%g); a term has one of them", name,
@@ -105,19 +105,18 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
     for (int k = 0; k < SF_HYPERFOAM_TERMS; k++) {
         *place = groups[k];
         if (given->is(given->reader, groups[k], "nu") && given->is(given->reader, groups[k], "beta"))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: both nu and beta are given; a term has one of them",
-                           groups[k]);
+            return SF_REFUSE(err, "%s: both nu and beta are given; a term has one of them", groups[k]);
         if (k > 0 &&
             given->is(given->reader, groups[k], "mu") != given->is(given->reader, groups[k], "alpha"))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: mu and alpha are both needed", groups[k]);
+            return SF_REFUSE(err, "%s: mu and alpha are both needed", groups[k]);
         if (k > 0 && !given->is(given->reader, groups[k], "mu") &&
             (given->is(given->reader, groups[k], "nu") || given->is(given->reader, groups[k], "beta")))
-            return SF_FAIL(err, SF_ERR_INPUT, "%s.mu is missing", groups[k]);
+            return SF_REFUSE(err, "%s.mu is missing", groups[k]);
     }
     sf_error inner = SF_ERROR_INIT;
     SF_TRY(sf_foam_check_shared_keys(&foam->shared, false, given, place, err));
     if (check_terms(foam, place, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s", inner.text);
+        return SF_REFUSE(err, "%s", inner.text);
     return SF_OK;
 }
 
@@ -194,30 +193,13 @@ const sf_law sf_hyperfoam_law = {
     .name = "hyperfoam",
     .description =
         "Ogden-Storakers hyperfoam of 1 to 3 terms: lateral strain; hysteresis, Maxwell branch, rate",
-    .card_size = sizeof(sf_hyperfoam_card),
-    .parameter = parameters,
-    .parameter_count = sizeof parameters / sizeof parameters[0],
-    .density = offsetof(sf_hyperfoam_card, density),
-    .rest_modulus = rest_modulus,
-    .length = offsetof(sf_hyperfoam_card, damp_length),
+    SF_FOAM_LAW(sf_hyperfoam_card),
     .curves = SIZE_MAX,
-    .check = check,
-    .check_keys = check_keys,
-    .data_end = data_end,
     .data_end_words = "the terms are known to be stable up to",
     .stiffness_keys = "term_1.mu, term_1.alpha ...",
-    .informed_strain = informed_strain,
-    .rest_bounds = rest_bounds,
     .caution = caution,
-    .history = history,
-    .history_count = sizeof history / sizeof history[0],
-    .build = build,
     .release = free,
     .update = sf_hyperfoam_update,
-    .shift = sf_foam_shift,
-    .rest = sf_foam_point_rest,
-    .softening = sf_foam_point_softening,
-    .energy = energy,
     .uniaxial = uniaxial,
 };
 

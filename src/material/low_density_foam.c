@@ -8,8 +8,8 @@ sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) 
         .cutoff = card->tension_cutoff,
         .curve_count = card->curve_count,
     };
-    foam->curve = sf_alloc(err, (unsigned long)card->curve_count, sizeof *foam->curve, "curves");
-    foam->curve_rate = sf_alloc(err, (unsigned long)card->curve_count, sizeof *foam->curve_rate, "curves");
+    foam->curve = sf_alloc(err, card->curve_count, sizeof *foam->curve, "curves");
+    foam->curve_rate = sf_alloc(err, card->curve_count, sizeof *foam->curve_rate, "curves");
     for (int64_t k = 0; k < card->curve_count && err->status == SF_OK; k++) {
         foam->curve_rate[k] = card->curve_rate[k];
         sf_curve_build(card, k, &foam->curve[k], err);
@@ -274,7 +274,7 @@ static const sf_parameter parameters[] = {
 
 static sf_status refuse(sf_error *err, const char **place, const char *where, const char *sentence) {
     *place = where;
-    return SF_FAIL(err, SF_ERR_INPUT, "%s", sentence);
+    return SF_REFUSE(err, "%s", sentence);
 }
 
 static sf_status check_densification(const sf_foam_card *foam, const sf_given *given, const char **place,
@@ -287,28 +287,28 @@ static sf_status check_densification(const sf_foam_card *foam, const sf_given *g
     }
     *place = "material.densification.start";
     if (foam->densification_start > end)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %g lies beyond the end of the compression table (%g)", *place,
-                       foam->densification_start, end);
+        return SF_REFUSE(err, "%s: %g lies beyond the end of the compression table (%g)", *place,
+                         foam->densification_start, end);
     *place = "material.densification.limit";
     if (foam->densification_rule == SF_DENSIFICATION_H1) {
         if (foam->densification_limit != 1.0)
-            return SF_FAIL(err, SF_ERR_INPUT, "%s: %g belongs to rule H2; the limit of H1 is 1", *place,
-                           foam->densification_limit);
+            return SF_REFUSE(err, "%s: %g belongs to rule H2; the limit of H1 is 1", *place,
+                             foam->densification_limit);
         return SF_OK;
     }
     static const char *const needed[] = {"limit", "exponent"};
     for (int i = 0; i < 2; i++)
         if (!given->is(given->reader, "material.densification", needed[i])) {
             *place = "material.densification";
-            return SF_FAIL(err, SF_ERR_INPUT, "%s.%s is missing: rule H2 needs it", *place, needed[i]);
+            return SF_REFUSE(err, "%s.%s is missing: rule H2 needs it", *place, needed[i]);
         }
     if (!(foam->densification_exponent > 0.0))
         return refuse(err, place, "material.densification.exponent",
                       "material.densification.exponent: rule H2 needs one above 0");
     double start = foam->densification_start > 0.0 ? foam->densification_start : largest;
     if (foam->densification_limit <= start)
-        return SF_FAIL(err, SF_ERR_INPUT, "%s: %g is not above the strain %g at which the law starts", *place,
-                       foam->densification_limit, start);
+        return SF_REFUSE(err, "%s: %g is not above the strain %g at which the law starts", *place,
+                         foam->densification_limit, start);
     return SF_OK;
 }
 
@@ -334,7 +334,7 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
     sf_error inner = SF_ERROR_INIT;
     *place = "material.rate_factor";
     if (check(foam, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT, "material.%s", inner.text);
+        return SF_REFUSE(err, "material.%s", inner.text);
     return check_densification(foam, given, place, err);
 }
 
@@ -406,29 +406,12 @@ static double energy(const void *numbers, double strain) {
 const sf_law sf_low_density_foam = {
     .name = "low_density_foam",
     .description = "uncoupled principal stresses from compression curves, hysteresis, Maxwell branch, rate",
-    .card_size = sizeof(sf_foam_card),
-    .parameter = parameters,
-    .parameter_count = sizeof parameters / sizeof parameters[0],
-    .density = offsetof(sf_foam_card, density),
-    .rest_modulus = rest_modulus,
-    .length = offsetof(sf_foam_card, damp_length),
+    SF_FOAM_LAW(sf_foam_card),
     .curves = offsetof(sf_foam_card, curves),
-    .check = check,
-    .check_keys = check_keys,
-    .data_end = data_end,
     .limit_strain = limit_strain,
     .data_end_words = "the compression table ends at",
     .stiffness_keys = "E, curve",
-    .informed_strain = informed_strain,
-    .rest_bounds = rest_bounds,
-    .history = history,
-    .history_count = sizeof history / sizeof history[0],
-    .build = build,
     .release = release,
     .update = sf_foam_update,
-    .shift = sf_foam_shift,
-    .rest = sf_foam_point_rest,
-    .softening = sf_foam_point_softening,
-    .energy = energy,
     .uniaxial = sf_foam_uniaxial,
 };

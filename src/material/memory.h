@@ -56,7 +56,7 @@ typedef struct sf_memory {
     double recovery;  /* -, part of the softening that a decade of time at rest takes back */
     double start;     /* s, time at rest from which decades count */
     double permanent; /* -, part that stays for ever */
-    double set;       /* -, part of a drop's largest displacement that is left at once (solver/set.h) */
+    double set;       /* -, part of a drop's largest displacement that is left at once (solver/state.h) */
     double set_recovery; /* -, part of the set that a decade of time at rest takes back */
 } sf_memory;
 

@@ -93,9 +93,9 @@ static int64_t keep_single(face *list, int64_t count) {
 
 /* Numbers the nodes of the faces in the order of the mesh. */
 static sf_status number_nodes(const sf_cells *c, const face *list, sf_skin_faces *s, sf_error *err) {
-    SF_OWNED int32_t *place = sf_alloc(err, (unsigned long)c->node_count, sizeof *place, "the pad's skin");
-    s->node = sf_alloc(err, (unsigned long)c->node_count, sizeof *s->node, "the pad's skin");
-    s->face = sf_alloc(err, (unsigned long)s->face_count, sizeof *s->face, "the pad's skin");
+    SF_OWNED int32_t *place = sf_alloc(err, c->node_count, sizeof *place, "the pad's skin");
+    s->node = sf_alloc(err, c->node_count, sizeof *s->node, "the pad's skin");
+    s->face = sf_alloc(err, s->face_count, sizeof *s->face, "the pad's skin");
     for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++)
         if (list[k / 4].node[k % 4] >= 0)
             place[list[k / 4].node[k % 4]] = 1;
@@ -113,7 +113,7 @@ static sf_status number_nodes(const sf_cells *c, const face *list, sf_skin_faces
 
 sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err) {
     int64_t count = list_faces(c, NULL);
-    SF_OWNED face *list = sf_alloc(err, (unsigned long)count, sizeof *list, "the pad's faces");
+    SF_OWNED face *list = sf_alloc(err, count, sizeof *list, "the pad's faces");
     *s = (sf_skin_faces){0};
     SF_TRY(err->status);
     list_faces(c, list);
@@ -132,9 +132,8 @@ sf_status sf_skin_triangles(const sf_cells *cells, int64_t *triangles, int32_t *
     sf_skin_faces skin;
     *triangles = 0;
     sf_skin_faces_find(cells, &skin, err);
-    int32_t *node = *out =
-        sf_alloc(err, 6 * (unsigned long)skin.face_count, sizeof *node, "surface of the pad");
-    uint8_t *kind = sf_alloc(err, 2 * (unsigned long)skin.face_count, 1, "surface of the pad");
+    int32_t *node = *out = sf_alloc(err, 6 * skin.face_count, sizeof *node, "surface of the pad");
+    uint8_t *kind = sf_alloc(err, 2 * skin.face_count, 1, "surface of the pad");
     for (int64_t i = 0; err->status == SF_OK && i < skin.face_count; i++)
         for (int half = 0; half < (skin.face[i][3] < 0 ? 1 : 2); half++) {
             const int corner[3] = {0, 1 + half, 2 + half};

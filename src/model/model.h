@@ -41,7 +41,7 @@ typedef struct sf_missile_card {
     double friction;         /* -, Coulomb coefficient against the pad */
     double gravity;          /* m s-2, acts on the missile; 0 with a prescribed motion */
     double down[3];          /* -, its direction, a unit vector; all 0, as in older models: -z */
-    double gap;              /* m, distance still to travel along `direction` at t = 0; model/flight.h */
+    double gap;              /* m, distance still to travel along `direction` at t = 0; sf_flight_time */
     double clearance;        /* m, height of its lowest point above the top of the undeformed pad, its highest
                                 point, at t = 0; negative over a hole */
     int64_t impact_known;    /* 1: the next line holds; models of older versions do not say */
@@ -219,7 +219,7 @@ typedef struct sf_model {
     sf_anvil_card anvil;
     sf_run_options run;
 
-    /* The permanent set of earlier drops (solver/set.h), not in model.h5; NULL: none. `position`, `volume`
+    /* The permanent set of earlier drops (solver/state.h), not in model.h5; NULL: none. `position`, `volume`
      * and `domain_b` are then those of the pad with it. */
     double *set; /* [node_count][3] m, coefficients of its field; then [node_count] -, parts that rests have
                     taken back; then [node_count][3] m, coefficients of the field of places; then m, z of the
@@ -381,3 +381,31 @@ sf_status sf_model_write(const char *path, const sf_model *model, const sf_prove
 /* Reads and checks (sf_model_check) a model. On success the caller owns `*model` (sf_model_free) and, if
  * `file` is not NULL, the open file (sf_h5_close), for its provenance. On failure both are empty. */
 sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_error *err);
+
+/* The free flight of the missile over `missile.gap`. The case says how it arrives: its speed, its pose and
+ * its angular velocity are those of first contact, whatever the gap. The flight is followed backwards from
+ * there to t = 0, under gravity and without torque. Without a gap, and with a prescribed motion, nothing is
+ * to be done. The model's surface stands in the pose of arrival, `gap` away along the direction. */
+
+/* Acceleration of the missile by gravity (m s-2), and its part along the direction. */
+void sf_flight_gravity(const sf_missile_card *card, double gravity[3]);
+double sf_flight_pull(const sf_missile_card *card);
+
+/* Time of flight (s); NaN: a fall over the gap alone makes the missile faster than its speed. */
+double sf_flight_time(const sf_missile_card *card);
+
+/* Speed (m s-1) along the direction at t = 0. */
+double sf_flight_start_speed(const sf_missile_card *card);
+
+/* Velocity (m s-1) of the centre at t = 0; a guided missile moves along its direction. */
+void sf_flight_start_velocity(const sf_missile_card *card, double velocity[3]);
+
+/* The place of the missile `before` (s) its arrival, against the model's surface: the displacement (m) of its
+ * centre, and of a free missile the rotation of its axes about it (base/mat3.h). */
+void sf_flight_displacement(const sf_missile_card *card, double before, double displacement[3]);
+void sf_flight_orientation(const sf_missile_card *card, double before, double quaternion[4]);
+
+/* The energy (J) and the momentum (kg m s-1, along the direction) that gravity adds to a missile of this mass
+ * (kg) from t = 0 to its arrival. */
+double sf_flight_energy(const sf_missile_card *card, double mass);
+double sf_flight_momentum(const sf_missile_card *card, double mass);

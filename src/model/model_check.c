@@ -4,7 +4,7 @@
 #include "base/sets.h"
 #include "base/mat3.h"
 #include "model/cells.h"
-#include "model/flight.h"
+#include "model/model.h"
 
 /* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
 static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr,
@@ -18,7 +18,7 @@ static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const in
     for (int64_t i = 0; i < rows; i++)
         for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
             if (index[k] < 0 || index[k] >= limit)
-                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld refers to node %d, of 0 to %lld", name,
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld: a node" SF_OUTSIDE("%d", "0", "%lld"), name,
                                (long long)i, index[k], (long long)limit - 1);
             if (ascending && k > ptr[i] && index[k] <= index[k - 1])
                 return SF_FAIL(err, SF_ERR_MODEL, "%s: row %lld is not in ascending order", name,
@@ -49,7 +49,7 @@ static sf_status check_finite(const sf_model *model, sf_error *err) {
             scalar ? (const double *)(base + field[k].offset) : *(double *const *)(base + field[k].offset);
         for (int64_t i = 0; i < rows * field[k].columns; i++)
             if (!isfinite(data[i]))
-                return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld is not a finite number", field[k].path,
+                return SF_FAIL(err, SF_ERR_MODEL, "%s: entry %lld is not finite", field[k].path,
                                (long long)i);
     }
     return SF_OK;
@@ -57,25 +57,32 @@ static sf_status check_finite(const sf_model *model, sf_error *err) {
 
 static sf_status check_bound(const char *name, double value, double low, double high, sf_error *err) {
     if (!(value >= low && value <= high))
-        return SF_FAIL(err, SF_ERR_MODEL, "%s is %g, outside %g to %g", name, value, low, high);
+        return SF_FAIL(err, SF_ERR_MODEL, "%s" SF_OUTSIDE("%g", "%g", "%g"), name, value, low, high);
+    return SF_OK;
+}
+
+/* Fails if one of the bytes is above `most`; the number of the byte follows `name` in the sentence. */
+static sf_status check_bytes(const char *name, int64_t count, const uint8_t *byte, int64_t most,
+                             sf_error *err) {
+    for (int64_t k = 0; k < count; k++)
+        if (byte[k] > most)
+            return SF_FAIL(err, SF_ERR_MODEL, "%s %lld" SF_OUTSIDE("%d", "0", "%lld"), name, (long long)k,
+                           byte[k], (long long)most);
     return SF_OK;
 }
 
 static sf_status check_materials(const sf_model *m, sf_error *err) {
     if (m->material_count < 1 || m->material_count > SF_MATERIAL_MAX)
-        return SF_FAIL(err, SF_ERR_MODEL, "the model has %lld materials; 1 to %d are possible",
+        return SF_FAIL(err, SF_ERR_MODEL, "the number of materials" SF_OUTSIDE("%lld", "1", "%d"),
                        (long long)m->material_count, SF_MATERIAL_MAX);
     for (int64_t k = 0; k < m->material_count; k++)
         SF_TRY(sf_material_check(&m->material[k], k, err));
-    for (int64_t i = 0; i < m->node_count; i++) {
-        if (m->node_material[i] >= m->material_count)
-            return SF_FAIL(err, SF_ERR_MODEL, "node %lld is of material %d, of 0 to %lld", (long long)i,
-                           m->node_material[i], (long long)m->material_count - 1);
-        if (i > 0 && m->node_material[i] < m->node_material[i - 1])
+    SF_TRY(check_bytes("material of node", m->node_count, m->node_material, m->material_count - 1, err));
+    for (int64_t i = 1; i < m->node_count; i++)
+        if (m->node_material[i] < m->node_material[i - 1])
             return SF_FAIL(err, SF_ERR_MODEL,
                            "node %lld is of material %d, after one of %d: they must ascend", (long long)i,
                            m->node_material[i], m->node_material[i - 1]);
-    }
     return SF_OK;
 }
 
@@ -112,11 +119,11 @@ static sf_status check_freedom(const sf_model *m, sf_error *err) {
             err, SF_ERR_MODEL,
             "the missile's inertia has the principal moments %g, %g and %g kg m2: no body has them", p[0],
             p[1], p[2]);
-    for (int c = 0; c < 3; c++)
-        if (check_bound("place of the missile's centre (m)", card->centre[c], -2e3, 2e3, err) != SF_OK ||
-            check_bound("angular velocity of the missile (rad/s)", card->angular_velocity[c], -1e3, 1e3,
-                        err) != SF_OK)
-            return err->status;
+    for (int c = 0; c < 3; c++) {
+        SF_TRY(check_bound("place of the missile's centre (m)", card->centre[c], -2e3, 2e3, err));
+        SF_TRY(check_bound("angular velocity of the missile (rad/s)", card->angular_velocity[c], -1e3, 1e3,
+                           err));
+    }
     return SF_OK;
 }
 
@@ -192,7 +199,7 @@ static sf_status check_surface(const char *name, int64_t count, const int32_t *t
                                sf_error *err) {
     for (int64_t k = 0; k < 3 * count; k++)
         if (triangle[k] < 0 || triangle[k] >= nodes)
-            return SF_FAIL(err, SF_ERR_MODEL, "%s triangle %lld refers to node %d, of 0 to %lld", name,
+            return SF_FAIL(err, SF_ERR_MODEL, "%s triangle %lld: a node" SF_OUTSIDE("%d", "0", "%lld"), name,
                            (long long)k / 3, triangle[k], (long long)nodes - 1);
     return SF_OK;
 }
@@ -200,10 +207,8 @@ static sf_status check_surface(const char *name, int64_t count, const int32_t *t
 static sf_status check_supports(const sf_model *m, sf_error *err) {
     SF_TRY(
         check_surface("support", m->support_triangle_count, m->support_triangle, m->support_node_count, err));
-    for (int64_t k = 0; k < m->support_triangle_count; k++)
-        if (m->support_part[k] >= m->support_count)
-            return SF_FAIL(err, SF_ERR_MODEL, "support triangle %lld is of support %d, of 0 to %lld",
-                           (long long)k, m->support_part[k], (long long)m->support_count - 1);
+    SF_TRY(check_bytes("support of triangle", m->support_triangle_count, m->support_part,
+                       m->support_count - 1, err));
     for (int64_t k = 0; k < m->support_count; k++)
         SF_TRY(check_bound("support friction", m->support_friction[k], 0, 10, err));
     return SF_OK;
@@ -248,14 +253,6 @@ static sf_status check_triangles(const char *name, const sf_model *m, int64_t co
     return SF_OK;
 }
 
-static sf_status check_halves(const sf_model *m, sf_error *err) {
-    for (int64_t k = 0; k < m->skin_count; k++)
-        if (m->skin_half[k] > 2)
-            return SF_FAIL(err, SF_ERR_MODEL, "triangle %lld of the pad's skin is half %d, of 0 to 2",
-                           (long long)k, m->skin_half[k]);
-    return SF_OK;
-}
-
 static sf_status check_areas(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; k < m->contact_count; k++)
         if (!(m->contact_area[k] >= 0))
@@ -282,7 +279,7 @@ static sf_status check_nodes(const sf_model *m, sf_error *err) {
         if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0 && m->support[i] > 0))
             return SF_FAIL(err, SF_ERR_MODEL,
                            "node %lld has volume %g m3, mass %g kg, spacing %g m, support %g m: all must be "
-                           "> 0",
+                           "above 0",
                            (long long)i, m->volume[i], m->mass[i], m->spacing[i], m->support[i]);
     return SF_OK;
 }
@@ -340,7 +337,7 @@ static sf_status check_ties(const sf_model *m, sf_error *err) {
 static sf_status check_frame_times(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; k < m->frame_time_count; k++)
         if (m->frame_time[k] < 0 || (k > 0 && m->frame_time[k] < m->frame_time[k - 1]))
-            return SF_FAIL(err, SF_ERR_MODEL, "frame time %g s is negative or not in ascending order",
+            return SF_FAIL(err, SF_ERR_MODEL, "frame time %g s is negative or out of order",
                            m->frame_time[k]);
     return SF_OK;
 }
@@ -352,7 +349,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return SF_FAIL(err, SF_ERR_MODEL, "the model has no contact points or no missile surface");
     if (check_finite(m, err) != SF_OK || check_cards(m, err) != SF_OK ||
         check_triangles("pad's skin", m, m->skin_count, m->skin_triangle, err) != SF_OK ||
-        check_halves(m, err) != SF_OK ||
+        check_bytes("half of the skin's triangle", m->skin_count, m->skin_half, 2, err) != SF_OK ||
         check_triangles("membrane", m, m->membrane_count, m->membrane_triangle, err) != SF_OK ||
         check_supports(m, err) != SF_OK || check_pairs(m, err) != SF_OK)
         return err->status;

@@ -116,7 +116,7 @@ static sf_status read_curves(const sf_h5 *h5, sf_law_curves *curves, int64_t ind
         int64_t rows = *(const int64_t *)(base + f->rows_offset);
         void *data = NULL;
         if (rows < 0 || rows > INT64_MAX / 2)
-            return SF_FAIL(err, SF_ERR_MODEL, "%s: its count %lld is not between 0 and %lld", path,
+            return SF_FAIL(err, SF_ERR_MODEL, "%s: its count" SF_OUTSIDE("%lld", "0", "%lld"), path,
                            (long long)rows, (long long)(INT64_MAX / 2));
         rows += f->rows_extra;
         sf_h5_read(h5, path, f->type, 1, &rows, &data, err);
@@ -164,9 +164,9 @@ static sf_status read_material(const sf_h5 *h5, sf_material *m, int64_t index, s
 static sf_status read_materials(const sf_h5 *h5, sf_model *model, sf_error *err) {
     int64_t count = model->material_count;
     if (count < 1 || count > SF_MATERIAL_MAX)
-        return SF_FAIL(err, SF_ERR_MODEL, "/material/count: %lld is not between 1 and %d", (long long)count,
+        return SF_FAIL(err, SF_ERR_MODEL, "/material/count" SF_OUTSIDE("%lld", "1", "%d"), (long long)count,
                        SF_MATERIAL_MAX);
-    model->material = sf_alloc(err, (unsigned long)count, sizeof *model->material, "materials");
+    model->material = sf_alloc(err, count, sizeof *model->material, "materials");
     for (int64_t k = 0; k < count && err->status == SF_OK; k++)
         read_material(h5, &model->material[k], k, err);
     return err->status;
@@ -218,7 +218,7 @@ static sf_status read_field(const sf_h5 *h5, const sf_model_field *field, sf_mod
     }
     int64_t rows = *(const int64_t *)(base + field->rows_offset);
     if (rows < 0 || rows > INT64_MAX / 2)
-        return SF_FAIL(err, SF_ERR_MODEL, "%s: its count %lld is not between 0 and %lld", field->path,
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: its count" SF_OUTSIDE("%lld", "0", "%lld"), field->path,
                        (long long)rows, (long long)(INT64_MAX / 2));
     if (absent && rows == 0)
         return SF_OK;

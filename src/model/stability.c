@@ -5,8 +5,7 @@
 #include "material/laws.h"
 
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err) {
-    SF_OWNED double *share =
-        sf_alloc(err, (unsigned long)model->node_count, sizeof *share, "stability constants");
+    SF_OWNED double *share = sf_alloc(err, model->node_count, sizeof *share, "stability constants");
     SF_TRY(err->status);
     for (int64_t l = 0; l < model->node_count; l++)
         for (int64_t k = model->domain_ptr[l]; k < model->domain_ptr[l + 1]; k++) {
@@ -35,11 +34,11 @@ sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err
 /* Lengths of the gradients of a triangle's shape functions, m-1: the opposite side over twice the area, which
  * is returned, m2. */
 static double gradients(const sf_model *m, const int32_t node[3], double length[3]) {
+    const double *x[3];
     double side[3][3], normal[3];
+    sf_corners(m->position, node, x);
     for (int k = 0; k < 3; k++)
-        for (int r = 0; r < 3; r++)
-            side[k][r] = m->position[3 * (int64_t)node[(k + 2) % 3] + r] -
-                         m->position[3 * (int64_t)node[(k + 1) % 3] + r];
+        sf_sub3(x[(k + 2) % 3], x[(k + 1) % 3], side[k]);
     sf_cross3(side[0], side[1], normal);
     double twice = sqrt(sf_dot3(normal, normal));
     for (int k = 0; k < 3; k++)
@@ -50,8 +49,8 @@ static double gradients(const sf_model *m, const int32_t node[3], double length[
 sf_status sf_stability_membrane(const sf_model *m, double *load, sf_error *err) {
     const sf_membrane_card *card = &m->membrane;
     double plane = card->modulus * card->thickness / (1 - card->poisson * card->poisson);
-    SF_OWNED double *stiff = sf_alloc(err, (unsigned long)m->node_count, sizeof *stiff, "membrane");
-    SF_OWNED double *column = sf_alloc(err, (unsigned long)m->node_count, sizeof *column, "membrane");
+    SF_OWNED double *stiff = sf_alloc(err, m->node_count, sizeof *stiff, "membrane");
+    SF_OWNED double *column = sf_alloc(err, m->node_count, sizeof *column, "membrane");
     *load = 0;
     for (int64_t t = 0; err->status == SF_OK && t < m->membrane_count; t++) {
         const int32_t *node = &m->membrane_triangle[3 * t];
@@ -74,7 +73,7 @@ sf_status sf_stability_membrane(const sf_model *m, double *load, sf_error *err) 
 /* The bound on the step at rest. */
 static sf_status first_step(const sf_model *m, double *step, int64_t *critical, double *constant,
                             sf_error *err) {
-    SF_OWNED double *c = sf_alloc(err, (unsigned long)m->node_count, sizeof *c, "stability constants");
+    SF_OWNED double *c = sf_alloc(err, m->node_count, sizeof *c, "stability constants");
     SF_TRY(err->status);
     SF_TRY(sf_stability_constants(m, c, err));
     *step = INFINITY;

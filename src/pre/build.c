@@ -149,7 +149,7 @@ static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dua
 static sf_status report_gaps(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *layers, sf_model *m,
                              sf_build_report *report, sf_error *err) {
     sf_domains gaps;
-    SF_OWNED double *support = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *support, "supports");
+    SF_OWNED double *support = sf_alloc(err, mesh->node_count, sizeof *support, "supports");
     for (int64_t i = 0; support && i < layers->first[layers->count]; i++)
         support[layers->origin[i]] = fmax(support[layers->origin[i]], m->support[i]);
     if (support && sf_domains_find_gaps(mesh, dual, support, &gaps, err) == SF_OK)
@@ -256,8 +256,8 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
  * nodes becomes that of the points. */
 static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const sf_node_set *set,
                                double *area, int64_t *count, sf_error *err) {
-    SF_OWNED uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
-    int32_t *list = sf_alloc(err, (unsigned long)set->count, sizeof *list, "contact points");
+    SF_OWNED uint8_t *point = sf_alloc(err, m->node_count, 1, "contact points");
+    int32_t *list = sf_alloc(err, set->count, sizeof *list, "contact points");
     *count = 0;
     for (int64_t k = 0; point && k < set->count; k++) {
         int32_t node = set->node[k], best = sf_layers_heaviest(layers, m, node);
@@ -275,7 +275,7 @@ static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const
 
 /* Likewise of the resting nodes, 1 in `rest`. */
 static sf_status gather_rest(const sf_layers *layers, const sf_model *m, uint8_t *rest, sf_error *err) {
-    SF_OWNED uint8_t *point = sf_alloc(err, (unsigned long)m->node_count, 1, "resting nodes");
+    SF_OWNED uint8_t *point = sf_alloc(err, m->node_count, 1, "resting nodes");
     for (int32_t i = 0; point && i < (int32_t)m->node_count; i++)
         if (rest[i])
             point[sf_layers_heaviest(layers, m, i)] = 1;
@@ -287,9 +287,9 @@ static sf_status gather_rest(const sf_layers *layers, const sf_model *m, uint8_t
 /* Groups to constrained nodes (with their components) and contact points. */
 static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_layers *layers,
                             double *contact_area, sf_model *m, sf_build_report *report, sf_error *err) {
-    SF_OWNED uint8_t *mask = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
-    SF_OWNED uint8_t *base = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
-    SF_OWNED uint8_t *rest = sf_alloc(err, (unsigned long)m->node_count, 1, "constraints");
+    SF_OWNED uint8_t *mask = sf_alloc(err, m->node_count, 1, "constraints");
+    SF_OWNED uint8_t *base = sf_alloc(err, m->node_count, 1, "constraints");
+    SF_OWNED uint8_t *rest = sf_alloc(err, m->node_count, 1, "constraints");
     const sf_base_marks marks = {mask, base, rest};
     SF_OWNED int32_t *contact = NULL;
     int64_t points = 0;
@@ -303,11 +303,11 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_laye
     const sf_node_set *set = sf_group_need(mesh, "pad.contact", c->contact_group, err);
     if (!set || !(contact = gather_contact(layers, m, set, contact_area, &points, err)))
         return err->status;
-    m->contact_node = sf_alloc(err, (unsigned long)points, sizeof *m->contact_node, "contact points");
-    m->contact_area = sf_alloc(err, (unsigned long)points, sizeof *m->contact_area, "contact points");
-    m->fixed_node = sf_alloc(err, (unsigned long)m->fixed_count, sizeof *m->fixed_node, "constraints");
-    m->fixed_mask = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
-    m->fixed_base = sf_alloc(err, (unsigned long)m->fixed_count, 1, "constraints");
+    m->contact_node = sf_alloc(err, points, sizeof *m->contact_node, "contact points");
+    m->contact_area = sf_alloc(err, points, sizeof *m->contact_area, "contact points");
+    m->fixed_node = sf_alloc(err, m->fixed_count, sizeof *m->fixed_node, "constraints");
+    m->fixed_mask = sf_alloc(err, m->fixed_count, 1, "constraints");
+    m->fixed_base = sf_alloc(err, m->fixed_count, 1, "constraints");
     SF_TRY(err->status);
     /* A node that is held altogether cannot give way to the missile: it is no contact point. */
     for (int64_t k = 0; k < points; k++)
@@ -463,13 +463,12 @@ static sf_status take_series(const sf_case *c, sf_model *m, sf_error *err) {
 }
 
 static sf_status take_cards(sf_case *c, sf_model *m, sf_error *err) {
-    m->frame_time = sf_alloc(err, (unsigned long)c->frame_time_count, sizeof *m->frame_time, "frame times");
+    m->frame_time = sf_alloc(err, c->frame_time_count, sizeof *m->frame_time, "frame times");
     SF_TRY(err->status);
     m->frame_time_count = c->frame_time_count;
     memcpy(m->frame_time, c->frame_time, (size_t)c->frame_time_count * sizeof *m->frame_time);
-    if (sf_model_take_materials(m, c->layer ? c->layer : &c->material, c->layer ? c->layer_count : 1, err) !=
-        SF_OK)
-        return err->status;
+    SF_TRY(
+        sf_model_take_materials(m, c->layer ? c->layer : &c->material, c->layer ? c->layer_count : 1, err));
     m->motion_count = c->motion_count;
     m->motion_time = c->motion_time;
     m->motion_displacement = c->motion_displacement;

@@ -2,8 +2,6 @@
 #include "pre/steps.h"
 
 #include "base/mat3.h"
-#include "base/sets.h"
-#include "model/flight.h"
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
 static const double EARLY = 0.1; /* steps of depth before that */
@@ -163,8 +161,7 @@ static void move_surface(const sf_model *m, double before, double *position) {
     sf_flight_orientation(&m->missile, before, quaternion);
     for (int64_t k = 0; k < m->surface_node_count; k++) {
         double arm[3];
-        for (int c = 0; c < 3; c++)
-            arm[c] = m->surface_position[3 * k + c] - m->missile.centre[c];
+        sf_sub3(&m->surface_position[3 * k], m->missile.centre, arm);
         sf_rotate(quaternion, arm, &position[3 * k]);
         for (int c = 0; c < 3; c++)
             position[3 * k + c] += m->missile.centre[c] + shift[c];
@@ -179,8 +176,7 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
     if (!sf_missile_turns(m) || !(rate * flight > 0))
         return SF_OK;
     sf_surface surface = sf_surface_of_missile(m);
-    surface.position =
-        sf_alloc(err, 3 * (unsigned long)surface.node_count, sizeof *surface.position, "missile's flight");
+    surface.position = sf_alloc(err, 3 * surface.node_count, sizeof *surface.position, "missile's flight");
     card.shape = SF_SHAPE_SURFACE;
     for (int k = 1; k <= POSES && err->status == SF_OK; k++) {
         double before = flight * k / POSES, distance = 0;
@@ -224,9 +220,7 @@ static double triangle_distance(const double x[3], const double a[3], const doub
     double nearest[3];
     int feature;
     sf_triangle_nearest(a, b, c, x, nearest, &feature);
-    for (int k = 0; k < 3; k++)
-        nearest[k] -= x[k];
-    return sqrt(sf_dot3(nearest, nearest));
+    return sf_distance3(nearest, x);
 }
 
 /* A missile that is drawn on both sides of the plane is its own mirror image: the model has one side alone.

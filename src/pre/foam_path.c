@@ -34,14 +34,14 @@ static sf_status find_surface(const sf_model *m, surface_of_pad *out, sf_error *
     SF_OWNED int32_t *node = NULL;
     *out = (surface_of_pad){0};
     if (sf_skin_triangles(&SF_CELLS_OF(m), &out->count, &node, NULL, err) == SF_OK)
-        out->list = sf_alloc(err, (unsigned long)out->count, sizeof *out->list, "surface of the pad");
+        out->list = sf_alloc(err, out->count, sizeof *out->list, "surface of the pad");
     for (int64_t i = 0; out->list && i < out->count; i++)
         memcpy(out->list[i].node, &node[3 * i], sizeof out->list[i].node);
     return err->status;
 }
 
 static uint8_t *mark_nodes(const sf_model *m, sf_error *err) {
-    uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "thickness of the pad");
+    uint8_t *mark = sf_alloc(err, m->node_count, 1, "thickness of the pad");
     for (int64_t k = 0; mark && k < m->contact_count; k++)
         mark[m->contact_node[k]] |= MARK_TOUCHED;
     for (int64_t k = 0; mark && k < m->fixed_count; k++)
@@ -57,14 +57,9 @@ static bool all_marked(const uint8_t *mark, const triangle *t, node_mark which) 
 
 /* ---- rays ---- */
 
-static void corners(const sf_model *m, const triangle *t, const double *x[3]) {
-    for (int k = 0; k < 3; k++)
-        x[k] = &m->position[3 * (int64_t)t->node[k]];
-}
-
 static void find_centroid(const sf_model *m, const triangle *t, double out[3]) {
     const double *x[3];
-    corners(m, t, x);
+    sf_corners(m->position, t->node, x);
     for (int k = 0; k < 3; k++)
         out[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
 }
@@ -73,14 +68,13 @@ static void find_centroid(const sf_model *m, const triangle *t, double out[3]) {
 static double facing(const sf_model *m, const triangle *t) {
     const double *x[3];
     double normal[3];
-    corners(m, t, x);
+    sf_corners(m->position, t->node, x);
     sf_triangle_normal(x[0], x[1], x[2], normal);
     return sf_dot3(normal, m->missile.direction) / sqrt(sf_dot3(normal, normal));
 }
 
 static int by_place(const void *a, const void *b) {
-    double x = ((const hit *)a)->order, y = ((const hit *)b)->order;
-    return (x > y) - (x < y);
+    return SF_ORDER(((const hit *)a)->order, ((const hit *)b)->order);
 }
 
 /* The parts of a ray: foam, and air between the parts of foam and below them to the anvil. */
@@ -98,7 +92,7 @@ static path follow_ray(const sf_model *m, const surface_of_pad *pad, const uint8
     find_centroid(m, &pad->list[first], from);
     for (int64_t i = 0; i < pad->count && count < MOST_HITS; i++) {
         const double *x[3];
-        corners(m, &pad->list[i], x);
+        sf_corners(m->position, pad->list[i].node, x);
         double at = -sf_triangle_travel(x[0], x[1], x[2], m->missile.direction, from);
         if (i == first || !isfinite(at) || at < slack)
             continue;
@@ -176,7 +170,7 @@ static double depth_inside(const sf_model *m, const surface_of_pad *pad, const d
         const double *x[3];
         if (!isfinite(t->travel))
             continue;
-        corners(m, t, x);
+        sf_corners(m->position, t->node, x);
         double spacing = fmax(fmax(m->spacing[t->node[0]], m->spacing[t->node[1]]), m->spacing[t->node[2]]),
                inside = sf_triangle_travel(x[0], x[1], x[2], m->missile.direction, point) + m->missile.gap;
         if (isfinite(inside) && inside > ROUNDING * spacing)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/steps.h"
 
-#include "base/sets.h"
 #include "base/mat3.h"
 
 /* ---- faces that may touch ---- */
@@ -15,25 +14,20 @@ typedef struct shape {
 static shape shape_of(const sf_model *m, const int32_t node[3]) {
     shape s = {{0}, {0}, 0, 0};
     const double *x[3];
-    for (int k = 0; k < 3; k++)
-        x[k] = &m->position[3 * (int64_t)node[k]];
+    sf_corners(m->position, node, x);
     sf_triangle_normal(x[0], x[1], x[2], s.normal);
     s.area = 0.5 * sqrt(sf_dot3(s.normal, s.normal));
     sf_unit3(s.normal);
     for (int r = 0; r < 3; r++)
         s.centroid[r] = x[0][r] + ((x[1][r] - x[0][r]) + (x[2][r] - x[0][r])) / 3;
-    for (int k = 0; k < 3; k++) {
-        double arm[3];
-        for (int r = 0; r < 3; r++)
-            arm[r] = m->position[3 * (int64_t)node[k] + r] - s.centroid[r];
-        s.radius = fmax(s.radius, sqrt(sf_dot3(arm, arm)));
-    }
+    for (int k = 0; k < 3; k++)
+        s.radius = fmax(s.radius, sf_distance3(x[k], s.centroid));
     return s;
 }
 
 /* The components that are held at each node, and 8 where it is tied to another layer. */
 static uint8_t *mark_nodes(const sf_model *m, sf_error *err) {
-    uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
+    uint8_t *mark = sf_alloc(err, m->node_count, 1, "skin of the pad");
     for (int64_t k = 0; mark && k < m->fixed_count; k++)
         mark[m->fixed_node[k]] |= m->fixed_mask[k];
     for (int64_t k = 0; mark && k < m->tie_count; k++) {
@@ -75,9 +69,9 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
     SF_OWNED uint8_t *mark = mark_nodes(m, err);
     *f = (faces){0};
     if (mark && sf_skin_triangles(&SF_CELLS_OF(m), &all, &f->node, &f->half, err) == SF_OK) {
-        f->shape = sf_alloc(err, (unsigned long)all, sizeof *f->shape, "skin of the pad");
-        f->position = sf_alloc(err, 3 * (unsigned long)all, sizeof(double), "skin of the pad");
-        f->radius = sf_alloc(err, (unsigned long)all, sizeof(double), "skin of the pad");
+        f->shape = sf_alloc(err, all, sizeof *f->shape, "skin of the pad");
+        f->position = sf_alloc(err, 3 * all, sizeof(double), "skin of the pad");
+        f->radius = sf_alloc(err, all, sizeof(double), "skin of the pad");
     }
     for (int64_t i = 0; err->status == SF_OK && i < all; i++) {
         const shape s = shape_of(m, &f->node[3 * i]);
@@ -154,7 +148,7 @@ static bool meets_image(const sf_model *m, const shape *s, double length) {
 /* *first: a face that can touch another one, its image, or the anvil; -1: none can. */
 static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first, sf_error *err) {
     static const double LEAST = 1e-6, DOWN = -0.2; /* of the thickness; cosine of a face over the anvil */
-    SF_OWNED int32_t *near = sf_alloc(err, (unsigned long)f->count, sizeof *near, "skin of the pad");
+    SF_OWNED int32_t *near = sf_alloc(err, f->count, sizeof *near, "skin of the pad");
     double anvil = f->high[2] - m->anvil.depth;
     *first = -1;
     for (int64_t i = 0; near && i < f->count && *first < 0; i++) {
@@ -220,10 +214,10 @@ sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_contact_z
     enum { FREE, ADDED, LEFT_OUT, NAMED };
     static const double FACING = -0.64; /* largest cosine of a face that goes on from the named ones */
     SF_OWNED_BY(faces_free) faces f = {0};
-    SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "contact points");
-    SF_OWNED double *area = sf_alloc(err, (unsigned long)m->node_count, sizeof *area, "contact points");
-    SF_OWNED double *seen = sf_alloc(err, (unsigned long)m->node_count, sizeof *seen, "contact points");
-    SF_OWNED int32_t *node = sf_alloc(err, (unsigned long)m->node_count, sizeof *node, "contact points");
+    SF_OWNED uint8_t *mark = sf_alloc(err, m->node_count, 1, "contact points");
+    SF_OWNED double *area = sf_alloc(err, m->node_count, sizeof *area, "contact points");
+    SF_OWNED double *seen = sf_alloc(err, m->node_count, sizeof *seen, "contact points");
+    SF_OWNED int32_t *node = sf_alloc(err, m->node_count, sizeof *node, "contact points");
     double unnamed = 0;
     SF_TRY(err->status);
     SF_TRY(faces_find(m, &f, err));
@@ -268,4 +262,63 @@ sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_contact_z
     m->contact_area = area;
     area = NULL;
     return SF_OK;
+}
+
+/* ---- covers without cells ---- */
+
+/* Adds the triangles of a boundary face: of a quadrangle those on both diagonals. */
+static void add_face(const sf_mesh *mesh, const sf_layers *l, const sf_boundary_face *face, sf_model *m) {
+    int layer = mesh->cell_layer ? mesh->cell_layer[face->cell] : 0;
+    for (int k = 0; k < (face->size == 4 ? 4 : 1); k++) {
+        for (int v = 0; v < 3; v++)
+            m->membrane_triangle[3 * m->membrane_count + v] =
+                sf_layers_copy(l, face->node[(k + v) % face->size], layer);
+        m->membrane_share[m->membrane_count++] = face->size == 4 ? 0.5 : 1;
+    }
+}
+
+static sf_status add_group(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
+                           const sf_node_set *set, uint8_t *taken, sf_model *m, sf_error *err) {
+    int64_t before = m->membrane_count;
+    SF_OWNED uint8_t *member = sf_surface_members(mesh, set, err);
+    for (int64_t f = 0; member && f < dual->face_count && err->status == SF_OK; f++) {
+        const sf_boundary_face *face = &dual->face[f];
+        bool inside = sf_surface_has_face(face, member);
+        if (inside && taken[f]++)
+            SF_REFUSE(err, "membrane.faces: a face of the group \"%s\" is in another one, too", set->name);
+        else if (inside)
+            add_face(mesh, l, face, m);
+    }
+    if (err->status == SF_OK && m->membrane_count == before)
+        SF_REFUSE(err, "membrane.faces: no face of the group \"%s\" is on the surface of the pad", set->name);
+    return err->status;
+}
+
+sf_status sf_membrane_take(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
+                           sf_model *m, sf_error *err) {
+    unsigned long most = 4 * (unsigned long)dual->face_count;
+    if (c->membrane_count == 0)
+        return SF_OK;
+    SF_OWNED uint8_t *taken = sf_alloc(err, dual->face_count, 1, "membrane");
+    m->membrane = c->membrane_card;
+    m->membrane_triangle = sf_alloc(err, 3 * most, sizeof *m->membrane_triangle, "membrane");
+    m->membrane_share = sf_alloc(err, most, sizeof *m->membrane_share, "membrane");
+    for (int g = 0; g < c->membrane_count && err->status == SF_OK; g++) {
+        const sf_node_set *set = sf_group_need(mesh, "membrane.faces", c->membrane_group[g], err);
+        if (set)
+            add_group(mesh, dual, l, set, taken, m, err);
+    }
+    return err->status;
+}
+
+void sf_membrane_weigh(sf_model *m) {
+    double area = m->membrane.density * m->membrane.thickness;
+    for (int64_t t = 0; t < m->membrane_count; t++) {
+        const int32_t *node = &m->membrane_triangle[3 * t];
+        double normal[3];
+        sf_triangle_normal(&m->position[3 * (int64_t)node[0]], &m->position[3 * (int64_t)node[1]],
+                           &m->position[3 * (int64_t)node[2]], normal);
+        for (int k = 0; k < 3; k++)
+            m->mass[node[k]] += area * m->membrane_share[t] * sqrt(sf_dot3(normal, normal)) / 6;
+    }
 }

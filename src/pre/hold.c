@@ -4,7 +4,6 @@
 #include <gsl/gsl_eigen.h>
 
 #include "base/mat3.h"
-#include "base/sets.h"
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
 
@@ -70,7 +69,7 @@ static void number_bodies(const sf_model *m, int32_t *number, body_list *b) {
 static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
     unsigned long cells = (unsigned long)m->cell_count;
     SF_OWNED int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
-    b->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *b->node, "parts of the pad");
+    b->node = sf_alloc(err, m->node_count, sizeof *b->node, "parts of the pad");
     b->first = sf_alloc(err, cells, sizeof *b->first, "parts of the pad");
     if (err->status == SF_OK && (b->cell = join_cells(m, err)))
         number_bodies(m, number, b);
@@ -89,8 +88,8 @@ static sf_status find_bodies(const sf_model *m, body_list *b, sf_error *err) {
         find_parts(m, b, err);
     } else {
         b->count = 1;
-        b->cell = sf_alloc(err, (unsigned long)m->cell_count, sizeof *b->cell, "parts of the pad");
-        b->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *b->node, "parts of the pad");
+        b->cell = sf_alloc(err, m->cell_count, sizeof *b->cell, "parts of the pad");
+        b->node = sf_alloc(err, m->node_count, sizeof *b->node, "parts of the pad");
         b->first = sf_alloc(err, 1, sizeof *b->first, "parts of the pad");
     }
     if (err->status != SF_OK)
@@ -391,8 +390,8 @@ static void spread_reach(int64_t bodies, const box *body, double reach, uint8_t 
 sf_status sf_hold_warn_apart(const sf_model *m, const sf_sink *sink, sf_error *err) {
     SF_OWNED_BY(free_bodies) body_list b = {0};
     SF_TRY(find_parts(m, &b, err));
-    SF_OWNED box *body = sf_alloc(err, (unsigned long)b.count + 1, sizeof *body, "bodies of the pad");
-    SF_OWNED uint8_t *reached = sf_alloc(err, (unsigned long)b.count + 1, 1, "bodies of the pad");
+    SF_OWNED box *body = sf_alloc(err, b.count + 1, sizeof *body, "bodies of the pad");
+    SF_OWNED uint8_t *reached = sf_alloc(err, b.count + 1, 1, "bodies of the pad");
     SF_TRY(err->status);
     int64_t apart = 0, first = 0;
     for (int64_t k = 0; k <= b.count; k++)

@@ -4,7 +4,6 @@
 #include <gsl/gsl_sort.h>
 
 #include "base/mat3.h"
-#include "base/sets.h"
 
 /* Components of a symmetric tensor in the order of base/mat3.h. */
 static const int ROW[6] = {0, 1, 2, 0, 1, 0}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
@@ -87,8 +86,7 @@ sf_status sf_solid_measure(int64_t node_count, const double *position, int64_t t
     for (int64_t t = 0; t < triangle_count; t++) {
         double x[3][3];
         for (int v = 0; v < 3; v++)
-            for (int c = 0; c < 3; c++)
-                x[v][c] = position[3 * (int64_t)triangle[3 * t + v] + c] - middle[c];
+            sf_sub3(&position[3 * (int64_t)triangle[3 * t + v]], middle, x[v]);
         add_tetrahedron(x, &volume, first, second);
     }
     if (!(volume > 0) || !isfinite(volume))
@@ -170,8 +168,7 @@ static void round_off(const sf_surface *s, const sf_missile_card *card, sf_solid
     for (int64_t t = 0; t < s->triangle_count; t++) {
         double x[3][3];
         for (int v = 0; v < 3; v++)
-            for (int c = 0; c < 3; c++)
-                x[v][c] = s->position[3 * (int64_t)s->triangle[3 * t + v] + c] - card->sphere_centre[c];
+            sf_sub3(&s->position[3 * (int64_t)s->triangle[3 * t + v]], card->sphere_centre, x[v]);
         add_bulge(x, card->sphere_radius, &sum);
     }
     solid_of(&sum, card->sphere_centre, solid);
@@ -199,7 +196,7 @@ static sf_status check_inertia(const double inertia[6], sf_error *err) {
         return SF_OK;
     return SF_REFUSE(err,
                      "missile.inertia: no body has the principal moments %.4g, %.4g and %.4g kg m2: they "
-                     "must be positive, and none larger than the sum of the others",
+                     "must be above 0, and none larger than the sum of the others",
                      p[0], p[1], p[2]);
 }
 
@@ -254,8 +251,7 @@ static bool find_flat(const sf_surface *s, double most, double middle[2]) {
     middle[0] = middle[1] = 0;
     for (int64_t t = 0; t < s->triangle_count; t++) {
         const double *x[3];
-        for (int v = 0; v < 3; v++)
-            x[v] = &s->position[3 * (int64_t)s->triangle[3 * t + v]];
+        sf_corners(s->position, &s->triangle[3 * t], x);
         if (x[0][2] > most || x[1][2] > most || x[2][2] > most)
             continue;
         double area =
@@ -295,8 +291,7 @@ static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, 
     const bool plane[2] = {sf_symmetry_plane(m, 0, &place[0]), sf_symmetry_plane(m, 1, &place[1])};
     int64_t count = 0;
     bool at_node = false;
-    SF_OWNED double *angle =
-        sf_alloc(err, 4 * (unsigned long)m->contact_count, sizeof *angle, "impact point");
+    SF_OWNED double *angle = sf_alloc(err, 4 * m->contact_count, sizeof *angle, "impact point");
     SF_TRY(err->status);
     for (int image = 0; image < 4; image++) {
         if ((image & 1 && !plane[0]) || (image & 2 && !plane[1]))

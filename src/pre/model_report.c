@@ -2,7 +2,6 @@
 #include "pre/build.h"
 
 #include "base/mat3.h"
-#include "model/flight.h"
 #include "base/text.h"
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop

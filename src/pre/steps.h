@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The steps of a build, in their order in build.c and make.c; internal to src/pre. */
 #pragma once
-#include "model/cells.h"
 #include "pre/cloud/cloud.h"
-#include "pre/cloud/layers.h"
 
 /* Covers without cells: the membrane on faces of the pad (theory, section "Membranes"). */
 

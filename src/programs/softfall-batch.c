@@ -76,9 +76,9 @@ static sf_status run_group(const options *o, const sf_manifest *m, const char *o
     int count = last - first;
     const sf_manifest_run *run = &m->run[first];
     sf_runner runner = {.folder = m->runs, .threads = o->threads, .log = stdout};
-    SF_OWNED sf_runner_drop *drop = sf_alloc(err, (unsigned long)count, sizeof *drop, "drops");
-    SF_OWNED sf_error *failure = sf_alloc(err, (unsigned long)count, sizeof *failure, "failures");
-    SF_OWNED uint64_t *key = sf_alloc(err, (unsigned long)count, sizeof *key, "keys");
+    SF_OWNED sf_runner_drop *drop = sf_alloc(err, count, sizeof *drop, "drops");
+    SF_OWNED sf_error *failure = sf_alloc(err, count, sizeof *failure, "failures");
+    SF_OWNED uint64_t *key = sf_alloc(err, count, sizeof *key, "keys");
     for (int k = 0; err->status == SF_OK && k < count; k++)
         drop[k] = run[k].drop;
     for (int k = 0; err->status == SF_OK && k < count; k++)

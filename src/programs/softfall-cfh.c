@@ -36,7 +36,8 @@ static sf_status read_override(const char *option, const char *text, void *value
         return SF_REFUSE(err, "%s %s: the drop height decides the speed; --height gives the first one",
                          option, text);
     if (o->override_count == SF_RUNNER_OVERRIDES - 1)
-        return SF_REFUSE(err, "at most %d %s options", SF_RUNNER_OVERRIDES - 1, option);
+        return SF_REFUSE(err, "%d %s options" SF_AT_MOST("%d"), SF_RUNNER_OVERRIDES, option,
+                         SF_RUNNER_OVERRIDES - 1);
     o->overrides[o->override_count++] = text;
     return SF_OK;
 }
@@ -47,7 +48,7 @@ static sf_status parse_height(const sf_units *units, const char *option, const c
     if (sf_units_parse(units, text, SF_LENGTH, height, &reason) != SF_OK)
         return SF_FAIL(err, reason.status, "%s: %.900s", option, reason.text);
     if (!(*height >= LOWEST_HEIGHT && *height <= GREATEST_HEIGHT))
-        return SF_REFUSE(err, "%s: a drop height of %s is not between 1 cm and %g m", option, text,
+        return SF_REFUSE(err, "%s: the drop height" SF_OUTSIDE("%s", "1 cm", "%g m"), option, text,
                          GREATEST_HEIGHT);
     return SF_OK;
 }
@@ -65,15 +66,16 @@ static sf_status parse_list(const sf_units *units, const char *option, char *lis
     const char *item;
     while (err->status == SF_OK && (item = strsep(&list, ",")) != NULL) {
         if (o->list_count == SF_CFH_MAX_POINTS)
-            return SF_REFUSE(err, "%s: at most %d heights", option, SF_CFH_MAX_POINTS);
+            return SF_REFUSE(err, "%s: %d heights" SF_AT_MOST("%d"), option, SF_CFH_MAX_POINTS + 1,
+                             SF_CFH_MAX_POINTS);
         parse_height(units, option, item + strspn(item, " \t"), &o->list[o->list_count++], err);
     }
     if (err->status == SF_OK && o->list_count < SF_CFH_MIN_POINTS)
-        SF_REFUSE(err, "%s: %d heights, at least %d are needed", option, o->list_count, SF_CFH_MIN_POINTS);
+        SF_REFUSE(err, "%s: %d heights" SF_AT_LEAST("%d"), option, o->list_count, SF_CFH_MIN_POINTS);
     gsl_sort(o->list, 1, (size_t)o->list_count);
     for (int k = 1; k < o->list_count; k++)
         if (o->list[k] < o->list[k - 1] * (1 + 1e-6))
-            SF_REFUSE(err, "%s: %g m stands twice in the list", option, o->list[k]);
+            SF_REFUSE(err, "%s: %g m is given twice", option, o->list[k]);
     return err->status;
 }
 
@@ -91,9 +93,7 @@ static sf_status read_heights(const char *option, const char *text, void *values
 }
 
 static sf_status read_checks(const char *option, const char *text, void *checks, sf_error *err) {
-    if (!sf_whole_is(text, 0, SF_CFH_CHECKS, checks))
-        return SF_REFUSE(err, "%s %s: not a number from 0 to %d", option, text, SF_CFH_CHECKS);
-    return SF_OK;
+    return sf_program_read_whole(option, text, 0, SF_CFH_CHECKS, checks, err);
 }
 
 /* Refuses options that contradict each other. */

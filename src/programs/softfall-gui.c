@@ -38,7 +38,7 @@ static sf_status begin_wait(script_state *s, char *rest, sf_error *err) {
             s->deadline = sf_process_now() + (patience > 0 ? patience : 60);
             return SF_OK;
         }
-    return SF_REFUSE(err, "line %d: \"%s\" is no activity", s->line, rest);
+    return SF_REFUSE(err, "line %d: unknown activity \"%s\"", s->line, rest);
 }
 
 static sf_status look_wait(script_state *s, const sf_session *session, sf_error *err) {
@@ -73,7 +73,7 @@ static sf_status enter(script_state *s, sf_session *session, char *rest, sf_erro
         return SF_REFUSE(err, "line %d: set KEY=VALUE", s->line);
     *equals = '\0';
     if (!sf_fields_enter(&session->fields, rest, equals + 1))
-        return SF_REFUSE(err, "line %d: there is no field \"%s\"", s->line, rest);
+        return SF_REFUSE(err, "line %d: unknown field \"%s\"", s->line, rest);
     sf_session_act(session, "check");
     return SF_OK;
 }
@@ -98,7 +98,7 @@ static sf_status act(script_state *s, sf_session *session, char *word, char *res
     else if (strcmp(word, "quit") == 0)
         s->ended = true;
     else
-        return SF_REFUSE(err, "line %d: there is no word \"%s\"", s->line, word);
+        return SF_REFUSE(err, "line %d: unknown word \"%s\"", s->line, word);
     fflush(out);
     return SF_OK;
 }

@@ -75,7 +75,7 @@ static sf_status find_case(const example_list *e, const char *name, char path[PA
             return SF_OK;
         snprintf(names + used, sizeof names - used, "%s%s", k ? ", " : "", e->entry[k]->d_name);
     }
-    return SF_REFUSE(err, "there is no example \"%.80s\"; the examples are %s", name, names);
+    return SF_REFUSE(err, "unknown example \"%.80s\"; the examples are %s", name, names);
 }
 
 /* ---- the program ---- */

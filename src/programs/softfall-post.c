@@ -59,7 +59,7 @@ static sf_status read_reference_filter(const char *option, const char *text, voi
 static sf_status read_ms(const char *option, const char *text, void *time, sf_error *err) {
     double ms = NAN;
     if (!sf_decimal_is(text, &ms))
-        return SF_REFUSE(err, "%s %s: not a time in ms", option, text);
+        return SF_REFUSE(err, "%s %s: expected a time in ms", option, text);
     *(double *)time = ms * 1e-3;
     return SF_OK;
 }
@@ -67,7 +67,7 @@ static sf_status read_ms(const char *option, const char *text, void *time, sf_er
 static sf_status read_impact(const char *option, const char *text, void *impact, sf_error *err) {
     double value = 0;
     if (!sf_decimal_is(text, &value) || value != floor(value) || value < 1 || value > SF_RECORD_IMPACTS)
-        return SF_REFUSE(err, "%s %s: the number of an impact is expected, from 1 to %d", option, text,
+        return SF_REFUSE(err, "%s %s: expected the number of an impact, from 1 to %d", option, text,
                          SF_RECORD_IMPACTS);
     *(int *)impact = (int)value;
     return SF_OK;
@@ -76,7 +76,7 @@ static sf_status read_impact(const char *option, const char *text, void *impact,
 static sf_status read_view(const char *option, const char *text, void *view, sf_error *err) {
     double *size = view;
     if (!sf_decimal_is(text, size) || !(*size >= 0 && *size <= SF_BROWSER_MOST_MB))
-        return SF_REFUSE(err, "%s %s: a size from 0 to %d MB is expected", option, text, SF_BROWSER_MOST_MB);
+        return SF_REFUSE(err, "%s %s: expected a size from 0 to %d MB", option, text, SF_BROWSER_MOST_MB);
     return SF_OK;
 }
 
@@ -201,7 +201,7 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
             "motion compression.csv and .png instead of the acceleration. Open the drop in ParaView with paraview "
             "--script=pad_paraview.py, in that directory. The "
             "figures are indicative, not a certification.",
-        .second = "one results file is expected, found \"%s\" as well",
+        .second = "expected one results file, found \"%s\" as well",
         .operand = AT(results_path),
         .fault = find_fault,
         .list = {{list, o}}};
@@ -267,20 +267,18 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
 }
 
 static void print_warnings(const job *j) {
+    const char *const warnings[] = {j->plot_warning, j->state_warning, j->view_warning};
+    const sf_sink sink = sf_program_sink("softfall-post");
     fflush(stdout);
     for (int k = 0; k < j->results.note_count; k++)
-        fprintf(stderr, "softfall-post: warning: %s\n", j->results.notes[k]);
+        sf_sink_tell(&sink, SF_WARNING, "%s", j->results.notes[k]);
     if (!j->figures.touched)
-        fprintf(stderr,
-                "softfall-post: warning: the missile never touched the pad: there are no injury figures\n");
+        sf_sink_tell(&sink, SF_WARNING, "the missile never touched the pad: there are no injury figures");
     else if (!j->figures.rebounded && !j->figures.driven)
-        fprintf(
-            stderr,
-            "softfall-post: warning: the run ended in contact: no rebound speed, the peak may lie ahead\n");
-    const char *const warnings[] = {j->plot_warning, j->state_warning, j->view_warning};
+        sf_sink_tell(&sink, SF_WARNING, "the run ended in contact: no rebound speed, the peak may lie ahead");
     for (int k = 0; k < 3; k++)
         if (*warnings[k])
-            fprintf(stderr, "softfall-post: warning: %s\n", warnings[k]);
+            sf_sink_tell(&sink, SF_WARNING, "%s", warnings[k]);
 }
 
 static void print_files(const job *j) {

@@ -8,7 +8,6 @@
 
 #include "base/program.h"
 #include "build_info.h"
-#include "io/process.h"
 #include "model/good_run.h"
 #include "solver/run/run.h"
 
@@ -33,7 +32,7 @@ static sf_status read_time(const char *option, const char *text, void *time, sf_
     sf_units *units = NULL;
     if (sf_units_open(&units, &inner) == SF_OK &&
         sf_units_parse(units, text, SF_TIME, time, &inner) == SF_OK && !(*(double *)time > 0))
-        SF_REFUSE(&inner, "\"%s\" is not above 0 s", text);
+        SF_REFUSE(&inner, "\"%s\"" SF_NOT_ABOVE_0, text);
     sf_units_close(&units);
     return inner.status != SF_OK ? SF_FAIL(err, inner.status, "%s: %s", option, inner.text) : SF_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "report/chart_data.h"
+#include "report/chart.h"
 
 #include "base/text.h"
 #include "io/plain_file.h"

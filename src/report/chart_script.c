@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The script of a chart: the only commands of gnuplot in softfall. */
-#include "report/chart_data.h"
+#include "report/chart.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/missile.h"
 
-#include "model/flight.h"
 #include "base/mat3.h"
 
 double sf_missile_free_fall(const sf_model *m) {
@@ -18,13 +17,11 @@ static double find_lowest(const sf_model *m, const double centre[3], const doubl
     double low = INFINITY, x[3], r[3], down[3];
     sf_rotate_back(quaternion, (const double[3]){0, 0, -1}, down);
     if (card->shape == SF_SHAPE_SPHERE && sf_dot3(down, card->direction) >= card->sphere_cap_cosine) {
-        for (int k = 0; k < 3; k++)
-            r[k] = card->sphere_centre[k] - card->centre[k];
+        sf_sub3(card->sphere_centre, card->centre, r);
         return centre[2] - sf_dot3(down, r) - card->sphere_radius;
     }
     for (int64_t i = 0; i < m->surface_node_count; i++) {
-        for (int k = 0; k < 3; k++)
-            x[k] = m->surface_position[3 * i + k] - card->centre[k];
+        sf_sub3(&m->surface_position[3 * i], card->centre, x);
         low = fmin(low, centre[2] - sf_dot3(down, x));
     }
     return low;
@@ -34,12 +31,10 @@ static double find_radius(const sf_model *m) {
     const sf_missile_card *card = &m->missile;
     double square = 0, r[3];
     for (int64_t i = 0; i < m->surface_node_count; i++) {
-        for (int k = 0; k < 3; k++)
-            r[k] = m->surface_position[3 * i + k] - card->centre[k];
+        sf_sub3(&m->surface_position[3 * i], card->centre, r);
         square = fmax(square, sf_dot3(r, r));
     }
-    for (int k = 0; k < 3; k++)
-        r[k] = card->sphere_centre[k] - card->centre[k];
+    sf_sub3(card->sphere_centre, card->centre, r);
     return fmax(sqrt(square), card->shape == SF_SHAPE_SPHERE ? sqrt(sf_dot3(r, r)) + card->sphere_radius : 0);
 }
 
@@ -86,8 +81,7 @@ static void find_centre(const sf_model *m, const sf_missile *missile, double out
 static void turn_back(const sf_model *m, const double centre[3], const double quaternion[4],
                       const double x[3], double out[3]) {
     double r[3];
-    for (int k = 0; k < 3; k++)
-        r[k] = x[k] - centre[k];
+    sf_sub3(x, centre, r);
     sf_rotate_back(quaternion, r, out);
     for (int k = 0; k < 3; k++)
         out[k] += m->missile.centre[k];
@@ -118,8 +112,7 @@ void sf_missile_translation(const sf_model *m, const sf_missile *missile, double
 /* x from the centre. */
 static void find_arm(const sf_model *m, const sf_missile *missile, const double x[3], double arm[3]) {
     find_centre(m, missile, arm);
-    for (int r = 0; r < 3; r++)
-        arm[r] = x[r] - arm[r];
+    sf_sub3(x, arm, arm);
 }
 
 void sf_missile_motion_at(const sf_model *m, const sf_missile *missile, const double x[3], double out[3]) {
@@ -202,8 +195,7 @@ sf_missile_response sf_missile_predict(const sf_model *m, const sf_missile *miss
 }
 
 static void response_arm(const sf_missile_response *response, const double x[3], double arm[3]) {
-    for (int r = 0; r < 3; r++)
-        arm[r] = x[r] - response->centre[r];
+    sf_sub3(x, response->centre, arm);
 }
 
 void sf_missile_free_motion(const sf_missile_response *response, const double x[3], double out[3]) {
@@ -462,8 +454,7 @@ double sf_missile_gravity_work(const sf_model *m, const sf_missile *missile) {
         sf_flight_displacement(&m->missile, flight, start);
     double gravity[3], moved[3];
     sf_flight_gravity(&m->missile, gravity);
-    for (int r = 0; r < 3; r++)
-        moved[r] = missile->translation[r] - start[r];
+    sf_sub3(missile->translation, start, moved);
     if (sf_missile_turns(m))
         return sf_missile_mass(m) * sf_dot3(gravity, moved) + 0; /* not -0 */
     return sf_missile_weight(m) * missile->displacement;
@@ -515,8 +506,7 @@ static void look_at_rotation(const sf_model *m, const sf_missile *missile, sf_mi
     double gyroscopic[3], net[3];
     sf_rigid_angular_velocity(inertia, missile->quaternion, missile->spin_now, view->angular_velocity);
     sf_cross3(view->angular_velocity, missile->spin_now, gyroscopic);
-    for (int r = 0; r < 3; r++)
-        net[r] = missile->torque[r] - gyroscopic[r];
+    sf_sub3(missile->torque, gyroscopic, net);
     sf_rigid_angular_velocity(inertia, missile->quaternion, net, view->angular_acceleration);
 }
 

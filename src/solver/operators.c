@@ -2,10 +2,10 @@
 #include "solver/operators.h"
 
 #include "model/stability.h"
-#include "solver/set.h"
+#include "solver/state.h"
 
 static sf_status build_laws(const sf_model *m, sf_operators *op, sf_error *err) {
-    op->law = sf_alloc(err, (unsigned long)m->material_count, sizeof *op->law, "laws");
+    op->law = sf_alloc(err, m->material_count, sizeof *op->law, "laws");
     for (; op->law && op->law_count < m->material_count; op->law_count++)
         if (sf_material_law_build(&m->material[op->law_count], &op->law[op->law_count], err) != SF_OK)
             break;
@@ -15,7 +15,7 @@ static sf_status build_laws(const sf_model *m, sf_operators *op, sf_error *err) 
 /* `owned`: the same model if arrays that are no longer needed may be released at once; else NULL. */
 static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_error *err) {
     memset(op, 0, sizeof *op);
-    op->stability = sf_alloc(err, (unsigned long)m->node_count, sizeof *op->stability, "stability constants");
+    op->stability = sf_alloc(err, m->node_count, sizeof *op->stability, "stability constants");
     if (err->status != SF_OK || build_laws(m, op, err) != SF_OK ||
         sf_stability_constants(m, op->stability, err) != SF_OK || sf_halo_build(m, &op->halo, err) != SF_OK)
         return err->status;

@@ -4,9 +4,7 @@
 #include "solver/constraint/constraint.h"
 #include "solver/contact/rigid_surface.h"
 #include "solver/contact/skin.h"
-#include "material/laws.h"
-#include "solver/field/halo.h"
-#include "solver/field/membrane.h"
+#include "solver/field/field.h"
 
 typedef struct sf_operators {
     int64_t law_count;

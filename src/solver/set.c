@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/set.h"
+#include "solver/state.h"
 
 #include "base/mat3.h"
 #include "solver/constraint/constraint.h"
@@ -30,8 +30,7 @@ static void leave(const sf_memory *m, const double peak[3], double pause, double
 /* The set of the model after a rest. */
 static sf_status leave_all(const sf_model *m, const double *peak, double pause, sf_error *err) {
     SF_OWNED_BY(sf_constraint_free) sf_constraint c = {0};
-    SF_OWNED double *reaction =
-        sf_alloc(err, 3 * (unsigned long)m->node_count, sizeof *reaction, "permanent set");
+    SF_OWNED double *reaction = sf_alloc(err, 3 * m->node_count, sizeof *reaction, "permanent set");
     if (!reaction || sf_constraint_build(m, &c, err) != SF_OK)
         return err->status;
     for (int64_t i = 0; i < m->node_count; i++)

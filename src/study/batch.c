@@ -210,7 +210,7 @@ sf_status sf_manifest_write(const char *path, const char *runs, int count, const
     char here[SF_PATH_SIZE], group[SF_MANIFEST_GROUP_SIZE] = "";
     sf_replacement file;
     if (!getcwd(here, sizeof here))
-        return SF_FAIL(err, SF_ERR_IO, "the present folder is not known");
+        return SF_FAIL(err, SF_ERR_IO, "the present folder is unknown");
     check_text(here, err);
     check_text(runs, err);
     for (int k = 0; k < count; k++)
@@ -258,11 +258,11 @@ sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
     long wanted = count ? strtol(count, NULL, 10) : -1;
     if (strcmp(head, HEAD) != 0 || !m->folder || !m->runs || wanted < 0 || !rest ||
         (size_t)wanted > strlen(rest))
-        return SF_REFUSE(err, "%s is no manifest of a batch", path);
-    m->run = sf_alloc(err, (unsigned long)wanted, sizeof *m->run, "runs");
+        return SF_REFUSE(err, "%s is not the manifest of a batch", path);
+    m->run = sf_alloc(err, wanted, sizeof *m->run, "runs");
     for (; err->status == SF_OK && m->count < wanted; m->count++)
         if (!rest || !take_run(strsep(&rest, "\n"), &m->run[m->count]))
-            return SF_REFUSE(err, "%s:%d: this is no line of a run: the manifest is damaged", path,
+            return SF_REFUSE(err, "%s:%d: this is not the line of a run: the manifest is damaged", path,
                              m->count + 5);
     return err->status;
 }

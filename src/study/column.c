@@ -392,7 +392,7 @@ sf_status sf_pulse_hic(const sf_series *a, sf_hic *hic, sf_error *err) {
     pulse p = {.a = a};
     if (a->count < 3 || !is_single(&p))
         return sf_hic_evaluate(a, INFINITY, hic, err);
-    p.integral = sf_alloc(err, (unsigned long)a->count, sizeof(double), "a pulse");
+    p.integral = sf_alloc(err, a->count, sizeof(double), "a pulse");
     SF_TRY(err->status);
     for (int64_t k = 1; k < a->count; k++)
         p.integral[k] =

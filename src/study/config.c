@@ -98,7 +98,7 @@ sf_status sf_config_number(const sf_config *config, const config_setting_t *grou
     if (!sf_config_is_number(s, out))
         return sf_config_refuse(config, s, err, "%s must be a number", name);
     if (!(*out >= low && *out <= high))
-        return sf_config_refuse(config, s, err, "%s is %g, outside %g to %g", name, *out, low, high);
+        return sf_config_refuse(config, s, err, "%s" SF_OUTSIDE("%g", "%g", "%g"), name, *out, low, high);
     return SF_OK;
 }
 
@@ -197,7 +197,7 @@ sf_status sf_config_list(const sf_config *config, const config_setting_t *group,
     if (!config_setting_is_list(s) || config_setting_length(s) == 0)
         return sf_config_refuse(config, s, err, "%s must be a list: %s = ( { ... }, { ... } )", name, name);
     if (config_setting_length(s) > most)
-        return sf_config_refuse(config, s, err, "%s has %d entries; at most %d are taken", name,
+        return sf_config_refuse(config, s, err, "%s has %d entries" SF_AT_MOST("%d"), name,
                                 config_setting_length(s), most);
     for (int k = 0; k < config_setting_length(s); k++)
         if (!config_setting_is_group(config_setting_get_elem(s, (unsigned)k)))

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/predictor.h"
+#include "study/column.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multimin.h>
 #include <gsl/gsl_sort.h>
-#include <math.h>
-#include <string.h>
 
 enum { MOST_FOR_LENGTHS = 250, STEPS = 60, LEAST_FOR_CALIBRATION = 20 };
 /* Normal prior of ln(length) and ln(nugget): it holds lengths that the points do not determine. The lengths

@@ -13,7 +13,7 @@ static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *ou
 static sf_status take_layers(const sf_results *r, const sf_figures *f, sf_runner_result *out, sf_error *err) {
     if (r->layer_count == 0 || !f->layers)
         return SF_OK;
-    out->layer_strain = sf_alloc(err, (unsigned long)r->layer_count, sizeof *out->layer_strain, "layers");
+    out->layer_strain = sf_alloc(err, r->layer_count, sizeof *out->layer_strain, "layers");
     out->layer_count = out->layer_strain ? r->layer_count : 0;
     for (int k = 0; k < out->layer_count; k++)
         out->layer_strain[k] = f->layers[k].max_local_strain;

@@ -331,7 +331,7 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
     char folder[SF_RUN_PATH_SIZE], path[SF_RUN_PATH_SIZE + 32], log[SF_RUN_PATH_SIZE + 32], complaint[320];
     struct stat before = {0}; /* of the log, which goes on */
     SF_OWNED_BY(sf_manifest_free) sf_manifest m = {0};
-    SF_OWNED uint64_t *key = sf_alloc(err, (unsigned long)b->count, sizeof *key, "keys");
+    SF_OWNED uint64_t *key = sf_alloc(err, b->count, sizeof *key, "keys");
     int code = 0, size = choose_group_size(b);
     for (int k = 0; key && k < b->count; k++)
         key[k] = b->request[k].key;
@@ -369,7 +369,7 @@ static sf_status simulate_pending(batch *b, sf_error *failure, sf_error *err) {
     if (b->pending_count == 0)
         return SF_OK;
     SF_TRY(sf_folder_own(b->runner->folder, err));
-    SF_OWNED sf_error *own = sf_alloc(err, (unsigned long)b->pending_count, sizeof *own, "failures");
+    SF_OWNED sf_error *own = sf_alloc(err, b->pending_count, sizeof *own, "failures");
     for (int k = 0; own && k < b->pending_count; k++)
         own[k] = (sf_error)SF_ERROR_INIT;
     if (own && sf_engine_is_local(&b->runner->engine))
@@ -450,7 +450,7 @@ sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop 
 
 sf_status sf_runner_run_batch(sf_runner *runner, int count, const sf_runner_drop *drop,
                               sf_runner_result *result, sf_error *err) {
-    SF_OWNED sf_error *failure = sf_alloc(err, (unsigned long)count, sizeof *failure, "failures");
+    SF_OWNED sf_error *failure = sf_alloc(err, count, sizeof *failure, "failures");
     memset(result, 0, (size_t)count * sizeof *result);
     if (failure && sf_runner_run_each(runner, count, drop, result, failure, err) == SF_OK)
         decide(count, failure, err);

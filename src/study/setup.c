@@ -11,15 +11,11 @@
 enum { LAST_GROUP = 9 };
 
 static sf_status read_per_job(const char *option, const char *text, void *per_job, sf_error *err) {
-    if (!sf_whole_is(text, 1, 100000, per_job))
-        return SF_REFUSE(err, "%s %s: not a number from 1 to 100000", option, text);
-    return SF_OK;
+    return sf_program_read_whole(option, text, 1, 100000, per_job, err);
 }
 
 static sf_status read_jobs(const char *option, const char *text, void *jobs, sf_error *err) {
-    if (!sf_whole_is(text, 1, SF_PROCESS_JOBS, jobs))
-        return SF_REFUSE(err, "%s takes a number from 1 to %d, not \"%s\"", option, SF_PROCESS_JOBS, text);
-    return SF_OK;
+    return sf_program_read_whole(option, text, 1, SF_PROCESS_JOBS, jobs, err);
 }
 
 static const sf_option common[] = {

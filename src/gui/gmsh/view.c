@@ -58,8 +58,8 @@ static void remove_view(int tag) {
 /* The faces of so many corners as elements of the model's one entity. */
 static sf_status add_faces(const sf_body *b, int corners, size_t *first, sf_error *err) {
     size_t count = 0;
-    SF_OWNED size_t *tag = sf_alloc(err, (unsigned long)b->face_count, sizeof *tag, "a picture"),
-                    *node = sf_alloc(err, (unsigned long)b->face_count, 4 * sizeof *node, "a picture");
+    SF_OWNED size_t *tag = sf_alloc(err, b->face_count, sizeof *tag, "a picture"),
+                    *node = sf_alloc(err, b->face_count, 4 * sizeof *node, "a picture");
     for (int64_t k = 0; k < b->face_count && err->status == SF_OK; k++) {
         if ((b->face[4 * k + 3] < 0 ? 3 : 4) != corners)
             continue;
@@ -75,7 +75,7 @@ static sf_status add_faces(const sf_body *b, int corners, size_t *first, sf_erro
 
 /* Returns the tags of the nodes, from 1 on; the caller frees them. */
 static size_t *number_nodes(const sf_body *b, sf_error *err) {
-    size_t *tag = sf_alloc(err, (unsigned long)b->node_count, sizeof *tag, "a picture");
+    size_t *tag = sf_alloc(err, b->node_count, sizeof *tag, "a picture");
     for (int64_t k = 0; k < b->node_count && tag; k++)
         tag[k] = (size_t)k + 1;
     return tag;

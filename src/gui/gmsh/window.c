@@ -35,7 +35,7 @@ sf_status sf_geometry_show(const char *path, const char *opened, sf_error *err) 
     gmshOpen(*opened ? opened : path, &failed);
     take_error(path, err);
     if (err->status == SF_OK && failed != 0)
-        SF_REFUSE(err, "gmsh cannot read the geometry %s", path);
+        SF_REFUSE(err, "the geometry %s cannot be read by gmsh", path);
     return err->status;
 }
 
@@ -403,5 +403,5 @@ void sf_window_fit(const double low[3], const double high[3], double left, doubl
 sf_status sf_window_write_picture(const char *path, sf_error *err) {
     int ierr = 0;
     gmshWrite(path, &ierr);
-    return ierr == 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "gmsh cannot write the picture %s", path);
+    return ierr == 0 ? SF_OK : SF_FAIL(err, SF_ERR_IO, "the picture %s cannot be written by gmsh", path);
 }

@@ -38,7 +38,7 @@ sf_status sf_regions_parse(const char *text, sf_region **regions, int64_t *count
     for (const char *c = text; *c; c++)
         most += *c == ',';
     if (most > MOST_REGIONS)
-        return SF_REFUSE(err, "%lu regions; at most %d are compared", most, MOST_REGIONS);
+        return SF_REFUSE(err, "%lu regions" SF_AT_MOST("%d"), most, MOST_REGIONS);
     *regions = sf_alloc(err, most, sizeof **regions, "the regions");
     SF_TRY(err->status);
     const char *rest = text;
@@ -128,9 +128,9 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
     double sum = 0, squares = 0, residual = 0, origin = 0, slack = 1e-9;
     double intervals = floor((region.end - region.begin) / interval + slack);
     if (!(intervals < MOST_SAMPLES))
-        return SF_REFUSE(
-            err, "the region %g to %g ms would be sampled %.3g times, every %g ms; at most %d are possible",
-            region.begin * 1e3, region.end * 1e3, intervals, interval * 1e3, MOST_SAMPLES);
+        return SF_REFUSE(err,
+                         "the region %g to %g ms would be sampled %.3g times, every %g ms" SF_AT_MOST("%d"),
+                         region.begin * 1e3, region.end * 1e3, intervals, interval * 1e3, MOST_SAMPLES);
     int64_t samples = (int64_t)intervals + 1;
     for (int64_t k = 0; k < samples; k++) {
         double time = region.begin + (double)k * interval;

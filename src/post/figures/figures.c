@@ -190,11 +190,9 @@ static sf_status compute_rotation(const sf_results *r, sf_figures *f, sf_error *
                         *const velocity[3] = {h->angular_velocity_x, h->angular_velocity_y,
                                               h->angular_velocity_z};
     f->peak_resultant = f->injury.a_max_g;
-    if (find_peak(r, acceleration, first_contact(h) > h->time[0], f, &f->peak_angular_acceleration,
-                  &f->peak_angular_acceleration_time, err))
-        return err->status;
-    if (find_peak(r, velocity, true, f, &f->peak_angular_velocity, &f->peak_angular_velocity_time, err))
-        return err->status;
+    SF_TRY(find_peak(r, acceleration, first_contact(h) > h->time[0], f, &f->peak_angular_acceleration,
+                     &f->peak_angular_acceleration_time, err));
+    SF_TRY(find_peak(r, velocity, true, f, &f->peak_angular_velocity, &f->peak_angular_velocity_time, err));
     return compute_bric(r, f, err);
 }
 

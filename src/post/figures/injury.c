@@ -226,7 +226,7 @@ sf_status sf_hic_evaluate(const sf_series *acceleration_g, double window, sf_hic
     *hic = (sf_hic){0, NAN, NAN};
     search s = {.window = window, .t1 = NAN, .t2 = NAN};
     if (!(window > 0))
-        return SF_REFUSE(err, "a HIC window of %g s is not positive", window);
+        return SF_REFUSE(err, "a HIC window of %g s" SF_NOT_ABOVE_0, window);
     SF_TRY(sf_series_check(acceleration_g, "the acceleration curve", err));
     if (grid_build(&s, acceleration_g, err) == SF_OK && levels_build(&s, err) == SF_OK) {
         search_start(&s);

@@ -30,8 +30,8 @@ static void record_free(record *r) {
 static sf_status record_open(const sf_series *raw, const sf_series *curve, record *r, sf_error *err) {
     int64_t n = raw->count, top = 0;
     *r = (record){.raw = raw, .curve = curve};
-    r->median = sf_alloc(err, (unsigned long)n, sizeof(double), "medians of the record");
-    r->work = sf_alloc(err, (unsigned long)n, sizeof(double), "medians of the record");
+    r->median = sf_alloc(err, n, sizeof(double), "medians of the record");
+    r->work = sf_alloc(err, n, sizeof(double), "medians of the record");
     if (err->status != SF_OK) {
         record_free(r);
         return err->status;

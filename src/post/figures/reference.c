@@ -388,8 +388,8 @@ static sf_status make(record *r, sf_reference *reference, sf_error *err) {
                          o->path, o->column ? o->column_option : o->invert_option);
     SF_TRY(read_axes(r, err));
     if (r->axis[0].count < FEWEST_POINTS)
-        return SF_REFUSE(err, "%s has %lld points, at least %d are needed", o->path,
-                         (long long)r->axis[0].count, FEWEST_POINTS);
+        return SF_REFUSE(err, "%s has %lld points" SF_AT_LEAST("%d"), o->path, (long long)r->axis[0].count,
+                         FEWEST_POINTS);
     for (int64_t i = 0; o->invert && i < r->axis[0].count; i++)
         r->axis[0].value[i] = 0 - r->axis[0].value[i];
     SF_TRY(make_resultant(r->axis, r->axes, &reference->raw, err));

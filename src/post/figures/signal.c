@@ -11,8 +11,8 @@ static const double MOST_SAMPLES = 1e7; /* of a curve: 100 s at 100 kHz */
 
 sf_status sf_series_create(int64_t count, sf_series *series, sf_error *err) {
     *series = (sf_series){0};
-    series->time = sf_alloc(err, (unsigned long)count, sizeof(double), "times of a curve");
-    series->value = sf_alloc(err, (unsigned long)count, sizeof(double), "values of a curve");
+    series->time = sf_alloc(err, count, sizeof(double), "times of a curve");
+    series->value = sf_alloc(err, count, sizeof(double), "values of a curve");
     series->count = count;
     if (!series->time || !series->value)
         sf_series_free(series);
@@ -26,7 +26,7 @@ void sf_series_free(sf_series *series) {
 
 sf_status sf_series_check(const sf_series *series, const char *name, sf_error *err) {
     if (series->count < 2)
-        return SF_REFUSE(err, "%s has %lld points, at least 2 are needed", name, (long long)series->count);
+        return SF_REFUSE(err, "%s has %lld points" SF_AT_LEAST("2"), name, (long long)series->count);
     for (int64_t i = 0; i < series->count; i++) {
         if (!isfinite(series->time[i]) || !isfinite(series->value[i]))
             return SF_REFUSE(err, "%s: point %lld is not finite", name, (long long)i + 1);
@@ -101,7 +101,7 @@ sf_status sf_signal_resample(const sf_series *series, double rate, sf_series *un
     double span = series->time[series->count - 1] - start;
     double intervals = floor(span * rate * (1 + 1e-12) + 1e-9);
     if (!(intervals >= 1) || intervals > MOST_SAMPLES)
-        return SF_REFUSE(err, "a curve of %.3g s cannot be sampled at %.3g Hz: 2 to %g samples are possible",
+        return SF_REFUSE(err, "a curve of %.3g s cannot be sampled at %.3g Hz: 2 to %g samples are allowed",
                          span, rate, MOST_SAMPLES);
     SF_TRY(sf_series_create((int64_t)intervals + 1, uniform, err));
     int64_t segment = 0, last = uniform->count - 1;
@@ -185,7 +185,7 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
     /* The impulse response fades as exp(-pole t / sqrt 2): to 1e-9 in 30 / pole. */
     int64_t pad = (int64_t)ceil(30 / (pole * step)) + 2;
     int64_t total = uniform->count + 2 * pad;
-    work = sf_alloc(err, (unsigned long)total, sizeof *work, "the padded curve");
+    work = sf_alloc(err, total, sizeof *work, "the padded curve");
     SF_TRY(err->status);
     SF_TRY(sf_series_create(uniform->count, filtered, err));
     for (int64_t k = 0; k < total; k++)
@@ -282,6 +282,6 @@ sf_status sf_signal_parse_coupling(const char *text, sf_signal_chain *chain, sf_
     sf_units_parse(units, text, SF_TIME, &chain->coupling, err);
     sf_units_close(&units);
     if (err->status == SF_OK && !(chain->coupling >= LEAST && chain->coupling <= MOST))
-        SF_REFUSE(err, "the time constant %s is not between 1 ms and 1000 s", text);
+        SF_REFUSE(err, "the time constant" SF_OUTSIDE("%s", "1 ms", "1000 s"), text);
     return err->status;
 }

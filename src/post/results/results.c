@@ -41,8 +41,8 @@ static sf_status check_indices(const int32_t *index, int64_t count, int64_t limi
                                sf_error *err) {
     for (int64_t i = 0; i < count; i++)
         if (index[i] < 0 || index[i] >= limit)
-            return SF_FAIL(err, SF_ERR_IO, "%s: entry %lld is %d, it must be in 0 to %lld", path,
-                           (long long)i, index[i], (long long)limit - 1);
+            return SF_FAIL(err, SF_ERR_IO, "%s: entry %lld" SF_OUTSIDE("%d", "0", "%lld"), path, (long long)i,
+                           index[i], (long long)limit - 1);
     return SF_OK;
 }
 
@@ -67,7 +67,7 @@ static sf_status check_cells(const sf_results *r, sf_error *err) {
 
 static sf_status check_positive(double value, const char *path, sf_error *err) {
     if (!(value > 0) || !isfinite(value))
-        return SF_FAIL(err, SF_ERR_IO, "%s is %g, it must be positive", path, value);
+        return SF_FAIL(err, SF_ERR_IO, "%s: %g" SF_NOT_ABOVE_0, path, value);
     return SF_OK;
 }
 
@@ -76,23 +76,20 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
     if (r->node_count < 1 || r->node_count > INT32_MAX || r->cell_nnz > INT32_MAX - r->cell_count)
         return SF_FAIL(err, SF_ERR_IO, "/model has %lld nodes and %lld cell vertices: 1 to 2^31 are possible",
                        (long long)r->node_count, (long long)r->cell_nnz);
-    if (check_finite(r->position, 3 * r->node_count, "/model/position", err) != SF_OK ||
-        check_finite(r->surface_position, 3 * r->surface_node_count, "/model/surface_position", err) ||
-        check_cells(r, err) != SF_OK ||
-        check_indices(r->surface_triangle, 3 * r->surface_triangle_count, r->surface_node_count,
-                      "/model/surface_triangle", err) != SF_OK)
-        return err->status;
-    if (check_finite(r->support_position, 3 * r->support_node_count, "/model/support_position", err) !=
-            SF_OK ||
-        check_indices(r->support_triangle, 3 * r->support_triangle_count, r->support_node_count,
-                      "/model/support_triangle", err) != SF_OK)
-        return err->status;
+    SF_TRY(check_finite(r->position, 3 * r->node_count, "/model/position", err));
+    SF_TRY(check_finite(r->surface_position, 3 * r->surface_node_count, "/model/surface_position", err));
+    SF_TRY(check_cells(r, err));
+    SF_TRY(check_indices(r->surface_triangle, 3 * r->surface_triangle_count, r->surface_node_count,
+                         "/model/surface_triangle", err));
+    SF_TRY(check_finite(r->support_position, 3 * r->support_node_count, "/model/support_position", err));
+    SF_TRY(check_indices(r->support_triangle, 3 * r->support_triangle_count, r->support_node_count,
+                         "/model/support_triangle", err));
     if (r->surface_node_count < 1)
         return SF_FAIL(err, SF_ERR_IO, "/model/surface_position is empty: the missile has no surface");
     for (int64_t i = 0; i < r->node_count; i++)
         if (!(r->volume[i] > 0) || !isfinite(r->volume[i]))
-            return SF_FAIL(err, SF_ERR_IO, "/model/volume: node %lld has %g m3, it must be positive",
-                           (long long)i, r->volume[i]);
+            return SF_FAIL(err, SF_ERR_IO, "/model/volume: node %lld: %g m3" SF_NOT_ABOVE_0, (long long)i,
+                           r->volume[i]);
     if (r->symmetry_factor != 1 && r->symmetry_factor != 2 && r->symmetry_factor != 4)
         return SF_FAIL(err, SF_ERR_IO, "/model/symmetry_factor is %lld, it must be 1, 2 or 4",
                        (long long)r->symmetry_factor);
@@ -146,8 +143,8 @@ static sf_status check_row(const sf_results *r, int64_t i, sf_error *err) {
                            sf_history_column_get(c)->name, (long long)i);
     const double *time = r->history.time;
     if (!(time[i] >= 0 && time[i] <= LONGEST_TIME))
-        return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld, it must be in 0 to %g s", time[i],
-                       (long long)i, LONGEST_TIME);
+        return SF_FAIL(err, SF_ERR_IO, "/history/time: row %lld" SF_OUTSIDE("%.9g s", "0", "%g s"),
+                       (long long)i, time[i], LONGEST_TIME);
     if (i > 0 && !(time[i] > time[i - 1]))
         return SF_FAIL(err, SF_ERR_IO, "/history/time: %.9g s in row %lld does not follow %.9g s", time[i],
                        (long long)i, time[i - 1]);
@@ -168,10 +165,10 @@ static sf_status check_history(sf_results *r, const int64_t *rows, sf_error *err
         r->history.rows = i;
     }
     if (r->history.rows < 3 && r->has_summary && !sf_results_ended_well(r))
-        return SF_FAIL(err, SF_ERR_IO, "%s (/history has %lld usable rows, figures need at least 3)",
-                       r->status, (long long)r->history.rows);
+        return SF_FAIL(err, SF_ERR_IO, "%s (/history has %lld usable rows" SF_AT_LEAST("3") ")", r->status,
+                       (long long)r->history.rows);
     if (r->history.rows < 3)
-        return SF_FAIL(err, SF_ERR_IO, "/history has %lld usable rows, at least 3 are needed",
+        return SF_FAIL(err, SF_ERR_IO, "/history has %lld usable rows" SF_AT_LEAST("3"),
                        (long long)r->history.rows);
     return SF_OK;
 }
@@ -184,8 +181,7 @@ double sf_results_fall_speed(const sf_results *r) {
 
 void sf_results_place(const sf_results *r, const sf_frame_head *head, const double x[3], double out[3]) {
     double arm[3];
-    for (int k = 0; k < 3; k++)
-        arm[k] = x[k] - r->missile_centre[k];
+    sf_sub3(x, r->missile_centre, arm);
     sf_rotate(head->missile_quaternion, arm, out);
     for (int k = 0; k < 3; k++)
         out[k] = (r->turns ? out[k] + r->missile_centre[k] : x[k]) + head->missile_displacement[k];
@@ -275,7 +271,7 @@ static sf_status read_sphere(sf_results *r, sf_error *err) {
 static sf_status read_layer_names(sf_results *r, sf_error *err) {
     char *rest = NULL;
     int count = 0;
-    r->layer_name = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_name, "names of layers");
+    r->layer_name = sf_alloc(err, r->layer_count, sizeof *r->layer_name, "names of layers");
     if (!r->layer_name || sf_h5_read_text(r->file, "/model/layer_names", &r->layer_names, err) != SF_OK)
         return err->status;
     for (char *line = strtok_r(r->layer_names, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
@@ -297,13 +293,15 @@ static sf_status read_layers(sf_results *r, sf_error *err) {
     SF_TRY(read_array(r, "/model/node_layer", SF_H5_U8, &nodes, 1, &r->node_layer, err));
     SF_TRY(read_array(r, "/model/layer_density", SF_H5_F64, &count, 1, &r->layer_density, err));
     if (count < 1 || count > SF_MATERIAL_MAX)
-        return SF_FAIL(err, SF_ERR_IO, "/model/layer_density: %lld layers, 1 to %d are possible",
+        return SF_FAIL(err, SF_ERR_IO,
+                       "/model/layer_density: the number of layers" SF_OUTSIDE("%lld", "1", "%d"),
                        (long long)count, SF_MATERIAL_MAX);
     r->layer_count = (int)count;
     SF_TRY(read_array(r, "/model/layer_informed_strain", SF_H5_F64, &count, 1, &r->layer_informed, err));
     for (int64_t i = 0; i < r->node_count; i++)
         if (r->node_layer[i] >= count)
-            return SF_FAIL(err, SF_ERR_IO, "/model/node_layer: node %lld is of layer %d, of 0 to %lld",
+            return SF_FAIL(err, SF_ERR_IO,
+                           "/model/node_layer: the layer of node %lld" SF_OUTSIDE("%d", "0", "%lld"),
                            (long long)i, r->node_layer[i], (long long)count - 1);
     for (int64_t k = 0; k < count; k++)
         if (!(r->layer_density[k] > 0) || isnan(r->layer_informed[k]))
@@ -318,7 +316,7 @@ static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_er
                                         "layer_compression"};
     static const size_t offsets[] = {offsetof(sf_layer_sums, stored), offsetof(sf_layer_sums, hysteresis),
                                      offsetof(sf_layer_sums, viscous), offsetof(sf_layer_sums, compression)};
-    r->layer_sums = sf_alloc(err, (unsigned long)r->layer_count, sizeof *r->layer_sums, "sums of layers");
+    r->layer_sums = sf_alloc(err, r->layer_count, sizeof *r->layer_sums, "sums of layers");
     for (int k = 0; k < 4 && err->status == SF_OK; k++) {
         char path[80];
         SF_OWNED double *value = NULL;
@@ -339,20 +337,18 @@ static sf_status read_model(sf_results *r, sf_error *err) {
     SF_TRY(read_array(r, "/model/volume", SF_H5_F64, &r->node_count, 1, &r->volume, err));
     SF_TRY(read_array(r, "/model/cell_type", SF_H5_U8, &r->cell_count, 1, &r->cell_type, err));
     pointers = r->cell_count + 1;
-    if (read_array(r, "/model/cell_ptr", SF_H5_I64, &pointers, 1, &r->cell_ptr, err) != SF_OK ||
-        read_array(r, "/model/cell_node", SF_H5_I32, &r->cell_nnz, 1, &r->cell_node, err) != SF_OK ||
-        read_array(r, "/model/surface_position", SF_H5_F64, &r->surface_node_count, 3, &r->surface_position,
-                   err) ||
-        read_array(r, "/model/surface_triangle", SF_H5_I32, &r->surface_triangle_count, 3,
-                   &r->surface_triangle, err))
-        return err->status;
+    SF_TRY(read_array(r, "/model/cell_ptr", SF_H5_I64, &pointers, 1, &r->cell_ptr, err));
+    SF_TRY(read_array(r, "/model/cell_node", SF_H5_I32, &r->cell_nnz, 1, &r->cell_node, err));
+    SF_TRY(read_array(r, "/model/surface_position", SF_H5_F64, &r->surface_node_count, 3,
+                      &r->surface_position, err));
+    SF_TRY(read_array(r, "/model/surface_triangle", SF_H5_I32, &r->surface_triangle_count, 3,
+                      &r->surface_triangle, err));
     if (sf_h5_exists(r->file, "/model/support_position")) {
         r->support_node_count = r->support_triangle_count = -1;
-        if (read_array(r, "/model/support_position", SF_H5_F64, &r->support_node_count, 3,
-                       &r->support_position, err) ||
-            read_array(r, "/model/support_triangle", SF_H5_I32, &r->support_triangle_count, 3,
-                       &r->support_triangle, err))
-            return err->status;
+        SF_TRY(read_array(r, "/model/support_position", SF_H5_F64, &r->support_node_count, 3,
+                          &r->support_position, err));
+        SF_TRY(read_array(r, "/model/support_triangle", SF_H5_I32, &r->support_triangle_count, 3,
+                          &r->support_triangle, err));
     }
     SF_TRY(read_integer(r, "/model/symmetry_factor", &r->symmetry_factor, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/thickness", &r->thickness, err));

@@ -326,8 +326,8 @@ static sf_status write_facts(page *p, sf_error *err) {
     int64_t numbers = 3 * (p->node_count + r->surface_node_count + r->surface_triangle_count +
                            r->support_node_count + r->support_triangle_count) +
                       4 * p->skin.face_count + r->cell_nnz; /* more than the longest array has */
-    p->value = sf_alloc(err, 3 * (unsigned long)p->node_count, sizeof *p->value, "view.html");
-    p->coded = sf_alloc(err, (unsigned long)numbers, 4, "view.html");
+    p->value = sf_alloc(err, 3 * p->node_count, sizeof *p->value, "view.html");
+    p->coded = sf_alloc(err, numbers, 4, "view.html");
     SF_TRY(err->status);
     sf_axis_find(r, axis);
     SF_JSON_OBJECT(&p->json, NULL);

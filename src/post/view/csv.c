@@ -137,16 +137,13 @@ static void locate_stations(const sf_results *r, const double axis[2], double bo
 }
 
 double sf_section_stations(const sf_results *r, sf_section_point station[SF_SECTION_STATIONS]) {
-    double axis[2], bottom = INFINITY, top = -INFINITY;
-    for (int64_t i = 0; i < r->node_count; i++) {
-        bottom = fmin(bottom, r->position[3 * i + 2]);
-        top = fmax(top, r->position[3 * i + 2]);
-    }
+    double axis[2], low[3], high[3];
+    sf_box3(r->node_count, r->position, low, high);
     sf_axis_find(r, axis);
     for (int s = 0; s < SF_SECTION_STATIONS; s++)
         station[s] = (sf_section_point){0};
-    locate_stations(r, axis, bottom, top, station);
-    return top;
+    locate_stations(r, axis, low[2], high[2], station);
+    return high[2];
 }
 
 bool sf_section_inside(const sf_section_point *point) {
@@ -190,8 +187,7 @@ static int by_depth(const void *a, const void *b, void *positions) {
 static sf_status write_rows(sf_csv *csv, const sf_results *r, const sf_frame *frame, sf_error *err) {
     double axis[2], top;
     sf_section_point station[SF_SECTION_STATIONS];
-    SF_OWNED int32_t *nodes =
-        sf_alloc(err, (unsigned long)r->node_count, sizeof *nodes, "the nodes of the section");
+    SF_OWNED int32_t *nodes = sf_alloc(err, r->node_count, sizeof *nodes, "the nodes of the section");
     size_t count = 0;
     SF_TRY(err->status);
     sf_axis_find(r, axis);

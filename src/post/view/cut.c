@@ -171,8 +171,7 @@ static sf_status cut_surface(sf_cut *cut, int64_t count, const double *position,
     for (int64_t t = 0; t < count; t++) {
         double segment[2][2];
         const double *corner[3];
-        for (int k = 0; k < 3; k++)
-            corner[k] = &position[3 * (int64_t)triangle[3 * t + k]];
+        sf_corners(position, &triangle[3 * t], corner);
         if (cross_triangle(cut, corner, segment))
             SF_TRY(append(&cut->outline, &cut->outline_count, segment, sizeof *cut->outline, err));
     }

@@ -64,7 +64,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
         return 0;
     case 'm':
         if (sscanf(text, "%d-%d", &o->mean[0], &o->mean[1]) != 2 || o->mean[0] < 1 || o->mean[1] < o->mean[0])
-            argp_error(state, "--mean %s: the first and the last drop are expected, such as 2-3", text);
+            argp_error(state, "--mean %s: expected the first and the last drop, such as 2-3", text);
         return 0;
     case ARGP_KEY_END:
         if (o->count < (o->series ? 1 : 2) || !o->directory)
@@ -282,11 +282,9 @@ static sf_status write_csv(const overlay *o, sf_error *err) {
 static sf_status write_picture(const overlay *o, char *warning, size_t size, sf_error *err) {
     sf_chart *chart = sf_chart_new("compare", 1600, 900, err);
     sf_panel *panel = sf_chart_panel(chart);
-    if (panel) {
-        sf_axis_label(&panel->x, "time from first contact (ms)");
-        sf_axis_label(&panel->y, "deceleration (g)");
-        panel->key = SF_KEY_TOP_RIGHT;
-    }
+    sf_axis_label(&panel->x, "time from first contact (ms)");
+    sf_axis_label(&panel->y, "deceleration (g)");
+    panel->key = SF_KEY_TOP_RIGHT;
     for (int k = 0; k < o->count; k++) {
         const sf_series *s = &o->run[k].figures.filtered;
         double contact = o->run[k].results.contact_time;

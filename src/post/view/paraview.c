@@ -73,9 +73,8 @@ static void put_facts(FILE *f, const sf_results *r, const sf_xdmf *made) {
 
 sf_status sf_template_read(const char *name, const char *mark, char **text, sf_error *err) {
     char path[PATH_MAX];
-    if (sf_process_find_shared(name, path, sizeof path, err) != SF_OK ||
-        sf_plain_read(path, NULL, SF_PLAIN_TEXT, text, NULL, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_process_find_shared(name, path, sizeof path, err));
+    SF_TRY(sf_plain_read(path, NULL, SF_PLAIN_TEXT, text, NULL, err));
     if (strstr(*text, mark))
         return SF_OK;
     free(*text);

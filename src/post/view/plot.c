@@ -212,9 +212,9 @@ sf_status sf_plot_write(const sf_staging *output, const sf_results *results, con
     find_values(&p);
     sf_chart *chart = sf_chart_new(name, WIDTH, HEIGHT, err);
     sf_panel *panel = sf_chart_panel(chart);
-    if (panel && figures->driven)
+    if (figures->driven)
         put_compression(chart, panel, &p);
-    else if (panel)
+    else
         put_drop(chart, panel, &p);
     return sf_chart_write(chart, output, warning, size, err);
 }

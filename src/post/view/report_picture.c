@@ -206,13 +206,11 @@ static sf_status draw_profile(const sf_staging *output, const sf_results *r, con
     double top = sf_section_stations(r, station);
     sf_chart *chart = sf_chart_new("profile", SMALL_WIDTH, SMALL_HEIGHT, err);
     sf_panel *panel = sf_chart_panel(chart);
-    if (panel) {
-        sf_axis_label(&panel->x, "von Mises stress (kPa)");
-        sf_axis_label(&panel->y, "undeformed depth (mm)");
-        sf_axis_range(&panel->y, r->thickness * 1e3, 0);
-        panel->x.logarithmic = true;
-        panel->key = SF_KEY_BELOW;
-    }
+    sf_axis_label(&panel->x, "von Mises stress (kPa)");
+    sf_axis_label(&panel->y, "undeformed depth (mm)");
+    sf_axis_range(&panel->y, r->thickness * 1e3, 0);
+    panel->x.logarithmic = true;
+    panel->key = SF_KEY_BELOW;
     for (int k = 0; k < SF_INSTANTS; k++) {
         if (!list[k].head)
             continue;
@@ -233,13 +231,11 @@ static sf_status draw_force(const sf_staging *output, const sf_history *h, char 
                             size_t size, sf_error *err) {
     sf_chart *chart = sf_chart_new("force", HALF_WIDTH, FORCE_HEIGHT, err);
     sf_panel *panel = sf_chart_panel(chart);
-    if (panel) {
-        sf_axis_label(&panel->x, "indentation (mm)");
-        sf_axis_range(&panel->x, 0, NAN);
-        sf_axis_label(&panel->y, "contact force (kN)");
-        sf_axis_range(&panel->y, 0, NAN);
-        panel->y.step = tic_step(fmax(1e-3 * sf_history_largest(h, h->contact_force), 1e-9));
-    }
+    sf_axis_label(&panel->x, "indentation (mm)");
+    sf_axis_range(&panel->x, 0, NAN);
+    sf_axis_label(&panel->y, "contact force (kN)");
+    sf_axis_range(&panel->y, 0, NAN);
+    panel->y.step = tic_step(fmax(1e-3 * sf_history_largest(h, h->contact_force), 1e-9));
     sf_series_points(sf_chart_series(chart, line_of("#08519c", 3.5), NULL), h->rows, h->indentation,
                      h->contact_force, 1e3, 1e-3, 0);
     snprintf(text, size, "Force on the missile over its indentation.");
@@ -272,14 +268,12 @@ static sf_status draw_energies(const sf_staging *output, const sf_history *h, co
     sf_chart *chart = sf_chart_new("energies", HALF_WIDTH, HALF_HEIGHT, err);
     sf_panel *panel = sf_chart_panel(chart);
     sf_plot_time_range(f, NULL, range);
-    if (panel) {
-        sf_axis_label(&panel->x, "time (ms)");
-        sf_axis_range(&panel->x, range[0] * 1e3, range[1] * 1e3);
-        sf_axis_label(&panel->y, "energy (J)");
-        sf_axis_range(&panel->y, 0, NAN);
-        panel->y.step = tic_step(fmax(top, 1e-9));
-        panel->key = SF_KEY_RIGHT;
-    }
+    sf_axis_label(&panel->x, "time (ms)");
+    sf_axis_range(&panel->x, range[0] * 1e3, range[1] * 1e3);
+    sf_axis_label(&panel->y, "energy (J)");
+    sf_axis_range(&panel->y, 0, NAN);
+    panel->y.step = tic_step(fmax(top, 1e-9));
+    panel->key = SF_KEY_RIGHT;
     put_energies(chart, h, top);
     snprintf(text, size, "Energies of the whole pad and missile; those below 1 %% are left out.");
     *svg = take_curve(chart, output, text, size, err);

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/sets.h"
 #include "io/plain_file.h"
 #include "io/provenance.h"
 #include "io/replace.h"
@@ -105,7 +106,7 @@ static sf_status put_integers(const store *s, const char *path, const char *desc
 static sf_status write_topology(const store *s, sf_error *err) {
     const sf_results *r = s->results;
     int64_t length = r->cell_nnz + r->cell_count, k = 0;
-    SF_OWNED int32_t *mixed = sf_alloc(err, (unsigned long)length, sizeof *mixed, "the topology");
+    SF_OWNED int32_t *mixed = sf_alloc(err, length, sizeof *mixed, "the topology");
     SF_TRY(err->status);
     for (int64_t c = 0; c < r->cell_count; c++) {
         mixed[k++] = r->cell_type[c];
@@ -124,8 +125,7 @@ static sf_status write_topology(const store *s, sf_error *err) {
  * its nodes do. */
 static sf_status write_materials(const store *s, sf_error *err) {
     const sf_results *r = s->results;
-    SF_OWNED uint8_t *material =
-        sf_alloc(err, (unsigned long)r->cell_count, sizeof *material, "materials of cells");
+    SF_OWNED uint8_t *material = sf_alloc(err, r->cell_count, sizeof *material, "materials of cells");
     for (int64_t c = 0; c < r->cell_count && err->status == SF_OK; c++)
         material[c] = r->layer_count > 0 ? r->node_layer[r->cell_node[r->cell_ptr[c]]] : 0;
     if (err->status == SF_OK &&
@@ -141,7 +141,7 @@ static sf_status write_materials(const store *s, sf_error *err) {
  * surface, `head`, by the missile's place. */
 static sf_status write_points(const store *s, const sf_h5_info *info, int64_t count, const double *position,
                               const double *displacement, const sf_frame_head *head, sf_error *err) {
-    SF_OWNED double *moved = sf_alloc(err, 3 * (unsigned long)count, sizeof *moved, info->description);
+    SF_OWNED double *moved = sf_alloc(err, 3 * count, sizeof *moved, info->description);
     SF_TRY(err->status);
     for (int64_t i = 0; i < count; i++)
         if (head)
@@ -162,28 +162,16 @@ static sf_status write_supports(const store *s, sf_error *err) {
                         r->support_node_count, r->support_position, NULL, NULL, err);
 }
 
-/* The row of the history of that time, or the last before it. */
-static int64_t row_at(const sf_history *h, double time) {
-    int64_t low = 0, high = h->rows - 1;
-    while (low < high) {
-        int64_t middle = (low + high + 1) / 2;
-        if (h->time[middle] <= time)
-            low = middle;
-        else
-            high = middle - 1;
-    }
-    return low;
-}
-
 static sf_status write_missile_arrays(const store *s, const sf_frame_head *head, int64_t index,
                                       sf_error *err) {
     const sf_results *r = s->results;
-    int64_t row = row_at(&r->history, head->time), n = r->surface_node_count;
+    int64_t row = sf_interval_find(r->history.time, r->history.rows + 1, head->time), /* the last up to it */
+        n = r->surface_node_count;
     double value[MISSILE_ARRAYS][3] = {[SPEED] = {r->history.velocity[row]},
                                        [ACCELERATION] = {sf_figures_reading(r, row)},
                                        [FORCE] = {r->history.contact_force[row]}};
     sf_results_place(r, head, r->sphere_centre, value[CENTRE]);
-    SF_OWNED double *all = sf_alloc(err, 3 * (unsigned long)n, sizeof *all, "arrays of the missile");
+    SF_OWNED double *all = sf_alloc(err, 3 * n, sizeof *all, "arrays of the missile");
     for (int k = 0; k < missile_array_count(r) && err->status == SF_OK; k++) {
         const struct missile_array *a = &missile_arrays[k];
         char path[96];

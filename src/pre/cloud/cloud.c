@@ -3,7 +3,6 @@
 
 #include "base/hash.h"
 #include "base/mat3.h"
-#include "base/sets.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 
@@ -14,9 +13,7 @@ typedef struct keyed_node {
 
 static int by_key(const void *a, const void *b) {
     const keyed_node *x = a, *y = b;
-    if (x->key != y->key)
-        return x->key < y->key ? -1 : 1;
-    return (x->node > y->node) - (x->node < y->node);
+    return x->key != y->key ? SF_ORDER(x->key, y->key) : SF_ORDER(x->node, y->node);
 }
 
 /* Spreads the low 21 bits of x to every third bit. */
@@ -32,9 +29,9 @@ static uint64_t spread(uint64_t x) {
 sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
     int64_t n = mesh->node_count;
     double low[3] = {INFINITY, INFINITY, INFINITY}, extent = 0;
-    SF_OWNED keyed_node *order = sf_alloc(err, (unsigned long)n, sizeof *order, "node order");
-    SF_OWNED int32_t *rank = sf_alloc(err, (unsigned long)n, sizeof *rank, "node order");
-    SF_OWNED double *moved = sf_alloc(err, 3 * (unsigned long)n, sizeof *moved, "node order");
+    SF_OWNED keyed_node *order = sf_alloc(err, n, sizeof *order, "node order");
+    SF_OWNED int32_t *rank = sf_alloc(err, n, sizeof *rank, "node order");
+    SF_OWNED double *moved = sf_alloc(err, 3 * n, sizeof *moved, "node order");
     SF_TRY(err->status);
     for (int64_t k = 0; k < 3 * n; k++)
         low[k % 3] = fmin(low[k % 3], mesh->position[k]);

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/sets.h"
 #include "pre/cloud/cloud.h"
 
 #include "base/mat3.h"
@@ -35,8 +34,8 @@ static void free_probes(probes *p) {
 
 static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p, sf_error *err) {
     unsigned long most = (unsigned long)(mesh->node_count + dual->face_count);
-    SF_OWNED uint8_t *surface = sf_alloc(err, (unsigned long)mesh->node_count, 1, "surface nodes");
-    p->node = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *p->node, "surface nodes");
+    SF_OWNED uint8_t *surface = sf_alloc(err, mesh->node_count, 1, "surface nodes");
+    p->node = sf_alloc(err, mesh->node_count, sizeof *p->node, "surface nodes");
     p->position = sf_alloc(err, 3 * most, sizeof *p->position, "surface points");
     p->zero = sf_alloc(err, most, sizeof *p->zero, "surface points");
     p->near = sf_alloc(err, most, sizeof *p->near, "surface points");
@@ -134,8 +133,7 @@ static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_erro
 static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *err) {
     int64_t parts = 0, least = 0;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    SF_OWNED int64_t *cells =
-        sf_alloc(err, (unsigned long)mesh->cell_count, sizeof *cells, "connected cells");
+    SF_OWNED int64_t *cells = sf_alloc(err, mesh->cell_count, sizeof *cells, "connected cells");
     SF_TRY(err->status);
     for (int64_t c = 0; c < mesh->cell_count; c++)
         cells[sf_sets_find(parent, c)]++;
@@ -185,7 +183,7 @@ static int64_t corner(const sf_mesh *mesh, int64_t cell, int32_t node) {
 static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
     int64_t corners = mesh->cell_ptr[mesh->cell_count];
     SF_OWNED int64_t *parent = sf_sets_alone(corners, "connected cells", err);
-    SF_OWNED int64_t *root = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *root, "connected cells");
+    SF_OWNED int64_t *root = sf_alloc(err, mesh->node_count, sizeof *root, "connected cells");
     SF_TRY(err->status);
     for (int64_t f = 0; f < dual->inner_count; f++)
         for (int k = 0; k < 4; k++) {
@@ -235,8 +233,8 @@ typedef struct face_lists {
 static sf_status list_faces(const sf_dual *dual, face_lists *lists, sf_error *err) {
     lists->outer_count = dual->face_count;
     lists->inner_count = dual->inner_count;
-    lists->outer = sf_alloc(err, (unsigned long)dual->face_count, sizeof *lists->outer, "boundary faces");
-    lists->inner = sf_alloc(err, (unsigned long)dual->inner_count, sizeof *lists->inner, "inner faces");
+    lists->outer = sf_alloc(err, dual->face_count, sizeof *lists->outer, "boundary faces");
+    lists->inner = sf_alloc(err, dual->inner_count, sizeof *lists->inner, "inner faces");
     for (int64_t f = 0; lists->outer && f < dual->face_count; f++) {
         memcpy(lists->outer[f].node, dual->face[f].node, sizeof dual->face[f].node);
         sf_face_sort(lists->outer[f].node);
@@ -319,7 +317,7 @@ static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dua
     double place, slack;
     if (!find_plane(mesh, set, &axis, &place, &slack))
         return SF_OK;
-    SF_OWNED uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "nodes of a symmetry plane");
+    SF_OWNED uint8_t *member = sf_alloc(err, mesh->node_count, 1, "nodes of a symmetry plane");
     for (int g = 0; member && g < c->symmetry_count; g++) { /* a plane may be that of several groups */
         const sf_node_set *any = sf_mesh_find_set(mesh, c->symmetry_group[g]);
         for (int64_t k = 0; any && k < any->count; k++)

@@ -3,8 +3,6 @@
 
 #include "base/mat3.h"
 
-#include "pre/cloud/mls.h"
-
 enum { MAX_ENLARGEMENTS = 12 };
 static const double ENLARGEMENT = 1.15;
 
@@ -218,7 +216,7 @@ static sf_status look_around(builder *b, const double *support, sf_error *err) {
 static sf_status integrate_with_growth(builder *b, double *support, sf_error *err) {
     const double *first = NULL;
     int64_t n = b->mesh->node_count;
-    SF_OWNED double *start = sf_alloc(err, (unsigned long)n, sizeof *start, "supports");
+    SF_OWNED double *start = sf_alloc(err, n, sizeof *start, "supports");
     SF_TRY(err->status);
     memcpy(start, support, (size_t)n * sizeof *start);
     first = start;
@@ -279,9 +277,9 @@ static sf_status shape_at_nodes(builder *b, sf_error *err) {
     int64_t n = b->mesh->node_count, capacity = 64 * n, used = 0;
     sf_domains *out = b->out;
     SF_OWNED workspace *w = calloc(1, sizeof *w);
-    out->phi_ptr = sf_alloc(err, (unsigned long)n + 1, sizeof *out->phi_ptr, "shape functions");
-    out->phi_node = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_node, "shape functions");
-    out->phi_value = sf_alloc(err, (unsigned long)capacity, sizeof *out->phi_value, "shape functions");
+    out->phi_ptr = sf_alloc(err, n + 1, sizeof *out->phi_ptr, "shape functions");
+    out->phi_node = sf_alloc(err, capacity, sizeof *out->phi_node, "shape functions");
+    out->phi_value = sf_alloc(err, capacity, sizeof *out->phi_value, "shape functions");
     if (!w)
         SF_NO_MEMORY(err, "the shape functions at the nodes");
     for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
@@ -346,8 +344,8 @@ static void row_add(void *target, int32_t node, const double part[3]) {
 /* The boundary corners of each node: [corner_ptr[i], corner_ptr[i+1]) are 4 * face + corner. */
 static int64_t *list_corners(const builder *b, int64_t **corner, sf_error *err) {
     int64_t n = b->mesh->node_count;
-    int64_t *ptr = sf_alloc(err, (unsigned long)n + 2, sizeof *ptr, "boundary corners");
-    *corner = sf_alloc(err, 4 * (unsigned long)b->dual->face_count, sizeof **corner, "boundary corners");
+    int64_t *ptr = sf_alloc(err, n + 2, sizeof *ptr, "boundary corners");
+    *corner = sf_alloc(err, 4 * b->dual->face_count, sizeof **corner, "boundary corners");
     if (err->status != SF_OK)
         return ptr;
     for (int64_t f = 0; f < b->dual->face_count; f++)
@@ -398,11 +396,10 @@ static sf_status assemble_rows(builder *b, sf_error *err) {
     int64_t n = b->mesh->node_count, *corner = NULL;
     sf_domains *out = b->out;
     SF_OWNED int64_t *corner_ptr = list_corners(b, &corner, err);
-    row_sum row = {sf_alloc(err, (unsigned long)n, sizeof *row.slot, "row"), 0,
-                   sf_alloc(err, (unsigned long)n, sizeof *row.node, "row"),
-                   sf_alloc(err, 3 * (unsigned long)n, sizeof *row.sum, "row")};
-    out->volume = sf_alloc(err, (unsigned long)n, sizeof *out->volume, "volumes");
-    out->ptr = sf_alloc(err, (unsigned long)n + 1, sizeof *out->ptr, "domains");
+    row_sum row = {sf_alloc(err, n, sizeof *row.slot, "row"), 0, sf_alloc(err, n, sizeof *row.node, "row"),
+                   sf_alloc(err, 3 * n, sizeof *row.sum, "row")};
+    out->volume = sf_alloc(err, n, sizeof *out->volume, "volumes");
+    out->ptr = sf_alloc(err, n + 1, sizeof *out->ptr, "domains");
     if (err->status != SF_OK)
         goto done;
     for (int64_t i = 0; i < n; i++)
@@ -419,8 +416,8 @@ static sf_status assemble_rows(builder *b, sf_error *err) {
             goto done;
         }
     }
-    out->node = sf_alloc(err, (unsigned long)out->ptr[n], sizeof *out->node, "domains");
-    out->b = sf_alloc(err, 3 * (unsigned long)out->ptr[n], sizeof *out->b, "domains");
+    out->node = sf_alloc(err, out->ptr[n], sizeof *out->node, "domains");
+    out->b = sf_alloc(err, 3 * out->ptr[n], sizeof *out->b, "domains");
     for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
         domain_row(b, corner_ptr, corner, i, &row, &out->volume[i]);
         finish_row(&row, out->volume[i], &out->node[out->ptr[i]], &out->b[3 * out->ptr[i]]);
@@ -438,10 +435,10 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
                  .cloud = {mesh->position, support},
                  .condition_limit = condition_limit,
                  .out = out};
-    b.edge = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge, "edge integrals");
-    b.poor = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.poor, "node marks");
-    b.edge_reach = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge_reach, "reaches");
-    b.reach = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.reach, "reaches");
+    b.edge = sf_alloc(err, dual->edge_count, sizeof *b.edge, "edge integrals");
+    b.poor = sf_alloc(err, mesh->node_count, sizeof *b.poor, "node marks");
+    b.edge_reach = sf_alloc(err, dual->edge_count, sizeof *b.edge_reach, "reaches");
+    b.reach = sf_alloc(err, mesh->node_count, sizeof *b.reach, "reaches");
     if (err->status == SF_OK)
         measure_reach(&b);
     if (err->status == SF_OK && integrate_with_growth(&b, support, err) == SF_OK &&
@@ -463,8 +460,8 @@ sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const d
                                sf_domains *out, sf_error *err) {
     memset(out, 0, sizeof *out);
     builder b = {.mesh = mesh, .dual = dual, .out = out};
-    b.edge_reach = sf_alloc(err, (unsigned long)dual->edge_count, sizeof *b.edge_reach, "reaches");
-    b.reach = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *b.reach, "reaches");
+    b.edge_reach = sf_alloc(err, dual->edge_count, sizeof *b.edge_reach, "reaches");
+    b.reach = sf_alloc(err, mesh->node_count, sizeof *b.reach, "reaches");
     if (err->status == SF_OK) {
         measure_reach(&b);
         if (look_around(&b, support, err) == SF_OK)
@@ -535,7 +532,7 @@ sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const 
                                 const double *spacing, double volume, sf_invariants *out, sf_error *err) {
     int64_t n = mesh->node_count;
     *out = (sf_invariants){0};
-    SF_OWNED double *balance = sf_alloc(err, 3 * (unsigned long)n, sizeof *balance, "invariants");
+    SF_OWNED double *balance = sf_alloc(err, 3 * n, sizeof *balance, "invariants");
     double total = 0;
     SF_TRY(err->status);
     sf_domains_boundary_integral(mesh, dual, d, balance);

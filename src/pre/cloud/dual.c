@@ -2,6 +2,7 @@
 #include "pre/cloud/dual.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
 
 typedef struct raw_edge {
     int32_t low, high;
@@ -10,18 +11,15 @@ typedef struct raw_edge {
 
 static int by_edge(const void *a, const void *b) {
     const raw_edge *x = a, *y = b;
-    if (x->low != y->low)
-        return x->low < y->low ? -1 : 1;
-    if (x->high != y->high)
-        return x->high < y->high ? -1 : 1;
-    return (x->use.cell > y->use.cell) - (x->use.cell < y->use.cell);
+    int low = SF_ORDER(x->low, y->low), high = SF_ORDER(x->high, y->high);
+    return low ? low : high ? high : SF_ORDER(x->use.cell, y->use.cell);
 }
 
 static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t count = 0, k = 0;
     for (int64_t c = 0; c < mesh->cell_count; c++)
         count += sf_cell_shape_of(mesh->cell_type[c])->edges;
-    SF_OWNED raw_edge *raw = sf_alloc(err, (unsigned long)count, sizeof *raw, "cell edges");
+    SF_OWNED raw_edge *raw = sf_alloc(err, count, sizeof *raw, "cell edges");
     SF_TRY(err->status);
     for (int64_t c = 0; c < mesh->cell_count; c++) {
         const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[c]);
@@ -34,9 +32,9 @@ static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
     qsort(raw, (size_t)count, sizeof *raw, by_edge);
     for (k = 0; k < count; k++)
         dual->edge_count += k == 0 || raw[k].low != raw[k - 1].low || raw[k].high != raw[k - 1].high;
-    dual->edge = sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge, "edges");
-    dual->use_ptr = sf_alloc(err, (unsigned long)dual->edge_count + 1, sizeof *dual->use_ptr, "edges");
-    dual->use = sf_alloc(err, (unsigned long)count, sizeof *dual->use, "edges");
+    dual->edge = sf_alloc(err, 2 * dual->edge_count, sizeof *dual->edge, "edges");
+    dual->use_ptr = sf_alloc(err, dual->edge_count + 1, sizeof *dual->use_ptr, "edges");
+    dual->use = sf_alloc(err, count, sizeof *dual->use, "edges");
     int64_t edge = -1;
     for (k = 0; k < count && err->status == SF_OK; k++) {
         if (k == 0 || raw[k].low != raw[k - 1].low || raw[k].high != raw[k - 1].high) {
@@ -91,7 +89,7 @@ static sf_status add_inner(const sf_mesh *mesh, const sf_cell_face *raw, sf_dual
 static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t count, k;
     SF_OWNED sf_cell_face *raw = sf_mesh_faces(mesh, NULL, &count, err);
-    dual->face = sf_alloc(err, (unsigned long)count, sizeof *dual->face, "boundary faces");
+    dual->face = sf_alloc(err, count, sizeof *dual->face, "boundary faces");
     dual->inner = sf_alloc(err, (unsigned long)count / 2, sizeof *dual->inner, "inner faces");
     SF_TRY(err->status);
     for (k = 0; k < count && err->status == SF_OK;) {
@@ -116,11 +114,9 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
 
 static sf_status build_adjacency(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t n = mesh->node_count;
-    dual->edge_ptr = sf_alloc(err, (unsigned long)n + 2, sizeof *dual->edge_ptr, "edge adjacency");
-    dual->edge_node =
-        sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_node, "edge adjacency");
-    dual->edge_id =
-        sf_alloc(err, 2 * (unsigned long)dual->edge_count, sizeof *dual->edge_id, "edge adjacency");
+    dual->edge_ptr = sf_alloc(err, n + 2, sizeof *dual->edge_ptr, "edge adjacency");
+    dual->edge_node = sf_alloc(err, 2 * dual->edge_count, sizeof *dual->edge_node, "edge adjacency");
+    dual->edge_id = sf_alloc(err, 2 * dual->edge_count, sizeof *dual->edge_id, "edge adjacency");
     SF_TRY(err->status);
     for (int64_t k = 0; k < 2 * dual->edge_count; k++)
         dual->edge_ptr[dual->edge[k] + 2]++;
@@ -209,14 +205,14 @@ static double length(const double a[3]) {
     return sqrt(sf_dot3(a, a));
 }
 
-uint8_t *sf_node_set_mark(const sf_mesh *mesh, const sf_node_set *set, sf_error *err) {
-    uint8_t *member = sf_alloc(err, (unsigned long)mesh->node_count, 1, "the nodes of a surface group");
+uint8_t *sf_surface_members(const sf_mesh *mesh, const sf_node_set *set, sf_error *err) {
+    uint8_t *member = sf_alloc(err, mesh->node_count, 1, "the nodes of a surface group");
     for (int64_t k = 0; member && k < set->count; k++)
         member[set->node[k]] = 1;
     return member;
 }
 
-bool sf_face_is_inside(const sf_boundary_face *face, const uint8_t *member) {
+bool sf_surface_has_face(const sf_boundary_face *face, const uint8_t *member) {
     bool inside = true;
     for (int k = 0; k < face->size; k++)
         inside = inside && member[face->node[k]];
@@ -225,12 +221,12 @@ bool sf_face_is_inside(const sf_boundary_face *face, const uint8_t *member) {
 
 sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set, int layer,
                           double *area, sf_error *err) {
-    SF_OWNED uint8_t *member = sf_node_set_mark(mesh, set, err);
+    SF_OWNED uint8_t *member = sf_surface_members(mesh, set, err);
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         const sf_boundary_face *face = &dual->face[f];
         if (layer != SF_ANY_LAYER && mesh->cell_layer[face->cell] != layer)
             continue;
-        for (int k = 0; sf_face_is_inside(face, member) && k < face->size; k++) {
+        for (int k = 0; sf_surface_has_face(face, member) && k < face->size; k++) {
             sf_facet_triangle part[2];
             double weight[2][4];
             sf_dual_boundary(mesh, face, k, part, weight);
@@ -246,10 +242,8 @@ static void face_area(const sf_mesh *mesh, const sf_boundary_face *face, double 
                  *r = &mesh->position[3 * face->node[2]],
                  *s = face->size == 4 ? &mesh->position[3 * face->node[3]] : p;
     double d[3], e[3];
-    for (int c = 0; c < 3; c++) {
-        d[c] = r[c] - p[c];
-        e[c] = s[c] - q[c];
-    }
+    sf_sub3(r, p, d);
+    sf_sub3(s, q, e);
     sf_cross3(d, e, out);
     for (int c = 0; c < 3; c++)
         out[c] *= 0.5;
@@ -257,11 +251,11 @@ static void face_area(const sf_mesh *mesh, const sf_boundary_face *face, double 
 
 sf_status sf_surface_find_sides(const sf_mesh *mesh, const sf_dual *dual, const sf_node_set *set,
                                 const double direction[3], sf_surface_sides *sides, sf_error *err) {
-    SF_OWNED uint8_t *member = sf_node_set_mark(mesh, set, err);
+    SF_OWNED uint8_t *member = sf_surface_members(mesh, set, err);
     *sides = (sf_surface_sides){0};
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         double a[3];
-        if (!sf_face_is_inside(&dual->face[f], member))
+        if (!sf_surface_has_face(&dual->face[f], member))
             continue;
         face_area(mesh, &dual->face[f], a);
         double along = sf_dot3(a, direction);

@@ -64,12 +64,12 @@ void sf_dual_boundary(const sf_mesh *mesh, const sf_boundary_face *face, int cor
 /* A surface group as faces: the boundary faces whose nodes all belong to it. Its area by nodes, and the way
  * it looks. */
 
-/* Returns [mesh->node_count] with 1 for the nodes of the set; owned by the caller; NULL without memory. */
-uint8_t *sf_node_set_mark(const sf_mesh *mesh, const sf_node_set *set, sf_error *err);
-/* True if all nodes of the face are marked. */
-bool sf_face_is_inside(const sf_boundary_face *face, const uint8_t *member);
-
 enum { SF_ANY_LAYER = -1 };
+
+/* [mesh->node_count] 1: the node is in the set; owned by the caller, NULL on failure. */
+uint8_t *sf_surface_members(const sf_mesh *mesh, const sf_node_set *set, sf_error *err);
+/* True if all nodes of the face are members. */
+bool sf_surface_has_face(const sf_boundary_face *face, const uint8_t *member);
 
 /* Adds to area [mesh->node_count], m2, the share of each node by the median dual, as the volumes do; of the
  * faces of one layer only, unless it is SF_ANY_LAYER. */

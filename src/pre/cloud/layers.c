@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/cloud/layers.h"
+#include "pre/cloud/cloud.h"
 
 #include "base/mat3.h"
-#include "base/sets.h"
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
 
@@ -25,7 +24,7 @@ static uint8_t *mark_layers(const sf_mesh *mesh, int count, sf_error *err) {
 
 static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layers *l, sf_error *err) {
     unsigned long n = (unsigned long)mesh->node_count;
-    l->first = sf_alloc(err, (unsigned long)l->count + 1, sizeof *l->first, "layers");
+    l->first = sf_alloc(err, l->count + 1, sizeof *l->first, "layers");
     l->copy_ptr = sf_alloc(err, n + 1, sizeof *l->copy_ptr, "layers");
     for (int64_t k = 0; err->status == SF_OK && k < mesh->node_count * l->count; k++)
         l->first[k % l->count + 1] += used[k];
@@ -33,10 +32,10 @@ static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layer
         l->first[k + 1] += l->first[k];
     unsigned long all = err->status == SF_OK ? (unsigned long)l->first[l->count] : 0;
     if (all > INT32_MAX)
-        return SF_REFUSE(err, "the layers have %lu nodes; at most %d are supported", all, INT32_MAX);
+        return SF_REFUSE(err, "the layers have %lu nodes" SF_AT_MOST("%d"), all, INT32_MAX);
     l->origin = sf_alloc(err, all, sizeof *l->origin, "layers");
     l->copy = sf_alloc(err, all, sizeof *l->copy, "layers");
-    SF_OWNED int64_t *next = sf_alloc(err, (unsigned long)l->count, sizeof *next, "layers");
+    SF_OWNED int64_t *next = sf_alloc(err, l->count, sizeof *next, "layers");
     int64_t copies = 0;
     if (err->status == SF_OK)
         memcpy(next, l->first, (size_t)l->count * sizeof *next);
@@ -107,9 +106,7 @@ static uint8_t normal_component(const sf_mesh *mesh, const sf_inner_face *face) 
 
 static int by_nodes(const void *a, const void *b) {
     const sf_layer_tie *p = a, *q = b;
-    if (p->node != q->node)
-        return p->node < q->node ? -1 : 1;
-    return (p->other > q->other) - (p->other < q->other);
+    return p->node != q->node ? SF_ORDER(p->node, q->node) : SF_ORDER(p->other, q->other);
 }
 
 /* The ties of one face between two layers. */
@@ -153,7 +150,7 @@ static sf_status find_ties(const sf_case *c, const sf_mesh *mesh, const sf_dual 
     int64_t faces = 0;
     for (int64_t f = 0; f < dual->inner_count; f++)
         faces += layer_of(mesh, dual->inner[f].cell[0]) != layer_of(mesh, dual->inner[f].cell[1]);
-    l->tie = sf_alloc(err, 4 * (unsigned long)faces, sizeof *l->tie, "ties between layers");
+    l->tie = sf_alloc(err, 4 * faces, sizeof *l->tie, "ties between layers");
     for (int64_t f = 0; err->status == SF_OK && f < dual->inner_count; f++)
         if (layer_of(mesh, dual->inner[f].cell[0]) != layer_of(mesh, dual->inner[f].cell[1]))
             tie_face(c, mesh, &dual->inner[f], &pairs, l, err);
@@ -200,10 +197,10 @@ sf_status sf_layers_part(const sf_mesh *mesh, const sf_layers *l, int layer, sf_
             entries += mesh->cell_ptr[k + 1] - mesh->cell_ptr[k];
         }
     unsigned long cells = (unsigned long)part->cell_count;
-    part->position = sf_alloc(err, 3 * (unsigned long)nodes, sizeof *part->position, "a layer");
+    part->position = sf_alloc(err, 3 * nodes, sizeof *part->position, "a layer");
     part->cell_type = sf_alloc(err, cells, sizeof *part->cell_type, "a layer");
     part->cell_ptr = sf_alloc(err, cells + 1, sizeof *part->cell_ptr, "a layer");
-    part->cell_node = sf_alloc(err, (unsigned long)entries, sizeof *part->cell_node, "a layer");
+    part->cell_node = sf_alloc(err, entries, sizeof *part->cell_node, "a layer");
     int64_t cell = 0, used = 0;
     for (int64_t i = 0; err->status == SF_OK && i < nodes; i++)
         memcpy(&part->position[3 * i], &mesh->position[3 * (int64_t)l->origin[l->first[layer] + i]],
@@ -235,7 +232,7 @@ int32_t sf_layers_heaviest(const sf_layers *layers, const sf_model *m, int32_t n
 
 sf_status sf_layers_area(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l, const sf_node_set *set,
                          double *area, sf_error *err) {
-    SF_OWNED double *own = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *own, "areas");
+    SF_OWNED double *own = sf_alloc(err, mesh->node_count, sizeof *own, "areas");
     for (int layer = 0; own && layer < l->count && err->status == SF_OK; layer++) {
         memset(own, 0, (size_t)mesh->node_count * sizeof *own);
         if (sf_surface_area(mesh, dual, set, l->count > 1 ? layer : SF_ANY_LAYER, own, err) == SF_OK)
@@ -249,10 +246,11 @@ sf_status sf_layers_area(const sf_mesh *mesh, const sf_dual *dual, const sf_laye
  * face of the surface in it; where there is no such face, all. */
 static sf_status mark_copies(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l,
                              const sf_node_set *set, uint8_t *mark, sf_error *err) {
-    SF_OWNED uint8_t *member = sf_node_set_mark(mesh, set, err);
+    SF_OWNED uint8_t *member = sf_surface_members(mesh, set, err);
     for (int64_t f = 0; member && f < dual->face_count; f++) {
         const sf_boundary_face *face = &dual->face[f];
-        for (int k = 0; sf_face_is_inside(face, member) && k < face->size; k++)
+        bool inside = sf_surface_has_face(face, member);
+        for (int k = 0; inside && k < face->size; k++)
             mark[sf_layers_copy(l, face->node[k], layer_of(mesh, face->cell))] = 1;
     }
     for (int64_t k = 0; member && k < set->count; k++) {
@@ -268,12 +266,12 @@ static sf_status mark_copies(const sf_mesh *mesh, const sf_dual *dual, const sf_
 static sf_status split_set(const sf_mesh *mesh, const sf_dual *dual, const sf_layers *l, sf_node_set *set,
                            sf_error *err) {
     int64_t n = l->first[l->count], count = 0;
-    SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)n, 1, "a node set");
+    SF_OWNED uint8_t *mark = sf_alloc(err, n, 1, "a node set");
     if (mark)
         mark_copies(mesh, dual, l, set, mark, err);
     for (int64_t i = 0; mark && i < n; i++)
         count += mark[i];
-    int32_t *node = sf_alloc(err, (unsigned long)count, sizeof *node, "a node set");
+    int32_t *node = sf_alloc(err, count, sizeof *node, "a node set");
     SF_TRY(err->status);
     SF_FREE(set->node, set->face);
     set->node = node;
@@ -291,7 +289,7 @@ sf_status sf_layers_split(sf_mesh *mesh, const sf_dual *dual, const sf_layers *l
         return SF_OK;
     for (int s = 0; s < mesh->set_count && err->status == SF_OK; s++)
         split_set(mesh, dual, l, &mesh->set[s], err);
-    double *position = sf_alloc(err, 3 * (unsigned long)n, sizeof *position, "positions");
+    double *position = sf_alloc(err, 3 * n, sizeof *position, "positions");
     SF_TRY(err->status);
     for (int64_t i = 0; i < n; i++)
         memcpy(&position[3 * i], &mesh->position[3 * (int64_t)l->origin[i]], 3 * sizeof *position);

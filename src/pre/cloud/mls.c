@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/cloud/mls.h"
+#include "pre/cloud/cloud.h"
 
 /* A path may lead as far away as this times the distance of its ends: around the tip of a slit, not around
  * the slit. */
@@ -134,7 +134,7 @@ static searcher *make_searcher(const sf_mesh *mesh, const sf_dual *dual) {
 
 sf_hidden *sf_visibility_build(const sf_mesh *mesh, const sf_dual *dual, const sf_grid *grid,
                                const double *reach, sf_error *err) {
-    sf_hidden *hidden = sf_alloc(err, (unsigned long)mesh->node_count, sizeof *hidden, "hidden nodes");
+    sf_hidden *hidden = sf_alloc(err, mesh->node_count, sizeof *hidden, "hidden nodes");
     bool failed = !hidden;
 #pragma omp parallel if (hidden != NULL)
     {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/gmsh_session.h"
 
+#include "base/sets.h"
 #include "pre/mesh/mesher_protocol.h"
 
 #include <unistd.h>
@@ -120,9 +121,7 @@ typedef struct claim {
 
 static int compare_claims(const void *a, const void *b) {
     const claim *p = a, *q = b;
-    if (p->entity != q->entity)
-        return p->entity < q->entity ? -1 : 1;
-    return (p->group > q->group) - (p->group < q->group);
+    return p->entity != q->entity ? SF_ORDER(p->entity, q->entity) : SF_ORDER(p->group, q->group);
 }
 
 static int compare_names(const void *a, const void *b) {
@@ -397,8 +396,7 @@ sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, d
     const sf_geo_data *data = &session->open.data;
     SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     memset(mesh, 0, sizeof *mesh);
-    SF_OWNED const sf_geo_group **chosen =
-        sf_alloc(err, (unsigned long)volumes->count, sizeof *chosen, "the pad's volumes");
+    SF_OWNED const sf_geo_group **chosen = sf_alloc(err, volumes->count, sizeof *chosen, "the pad's volumes");
     if (!chosen || read_volumes(session, volumes, unit, chosen, &raw, err) != SF_OK)
         return err->status;
     for (size_t g = 0; g < data->group_count; g++)

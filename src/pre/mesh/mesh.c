@@ -75,8 +75,7 @@ static int local_vertices(const sf_mesh *mesh, int64_t cell, double x[MAX_VERTIC
     int count = (int)(mesh->cell_ptr[cell + 1] - mesh->cell_ptr[cell]);
     const double *origin = mesh->position + 3 * (int64_t)node[0];
     for (int a = 0; a < count; a++)
-        for (int i = 0; i < 3; i++)
-            x[a][i] = mesh->position[3 * (int64_t)node[a] + i] - origin[i];
+        sf_sub3(&mesh->position[3 * (int64_t)node[a]], origin, x[a]);
     return count;
 }
 
@@ -163,9 +162,7 @@ typedef struct sorted_node {
 
 static int compare_along(const void *a, const void *b) {
     const sorted_node *p = a, *q = b;
-    if (p->along != q->along)
-        return p->along < q->along ? -1 : 1;
-    return p->node < q->node ? -1 : p->node > q->node;
+    return p->along != q->along ? SF_ORDER(p->along, q->along) : SF_ORDER(p->node, q->node);
 }
 
 /* Coinciding nodes are an invisible crack: a mesh of parts that were not joined. Near nodes are near along
@@ -211,7 +208,7 @@ static sf_status check_cells(const sf_mesh *mesh, double *volume, sf_error *err)
             centroid(mesh, k, c);
             return SF_FAIL(err, SF_ERR_MODEL,
                            "cell %lld (%s) at (%g, %g, %g) m is inverted or flat: its volume is %g m3 and "
-                           "its smallest corner Jacobian %g m3; both must be positive",
+                           "its smallest corner Jacobian %g m3; both must be above 0",
                            (long long)k, sf_cell_shape_of(mesh->cell_type[k])->name, c[0], c[1], c[2], v,
                            low);
         }

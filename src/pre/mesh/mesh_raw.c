@@ -2,6 +2,7 @@
 #include "pre/mesh/mesh.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
 
 void sf_raw_mesh_free(sf_raw_mesh *raw) {
     SF_FREE(raw->tag, raw->xyz, raw->cell_type, raw->cell_chosen, raw->cell_node, raw->face_group,
@@ -41,8 +42,7 @@ sf_status sf_raw_mesh_add_face(sf_raw_mesh *raw, int32_t group, int32_t part, co
 }
 
 static int compare_tag(const void *a, const void *b) {
-    const sf_tag_index *p = a, *q = b;
-    return p->tag < q->tag ? -1 : p->tag > q->tag;
+    return SF_ORDER(((const sf_tag_index *)a)->tag, ((const sf_tag_index *)b)->tag);
 }
 
 sf_tag_index *sf_raw_mesh_index(const sf_raw_mesh *raw, sf_error *err) {
@@ -219,7 +219,7 @@ static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, c
 sf_status sf_mesh_assemble(const sf_raw_mesh *raw, int layers, double unit, sf_mesh *mesh, sf_error *err) {
     memset(mesh, 0, sizeof *mesh);
     if (raw->node_count > INT32_MAX)
-        return SF_REFUSE(err, "the mesh has %zu nodes; at most %d are supported", raw->node_count, INT32_MAX);
+        return SF_REFUSE(err, "the mesh has %zu nodes" SF_AT_MOST("%d"), raw->node_count, INT32_MAX);
     SF_OWNED sf_tag_index *index = sf_raw_mesh_index(raw, err);
     SF_OWNED int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "node numbers");
     if (err->status == SF_OK && number_nodes(raw, index, number, mesh, err) == SF_OK &&
@@ -243,8 +243,7 @@ typedef struct face_key {
 } face_key;
 
 static int compare_key(const void *a, const void *b) {
-    const face_key *p = a, *q = b;
-    return sf_raw_face_compare(p->tag, q->tag);
+    return sf_raw_face_compare(((const face_key *)a)->tag, ((const face_key *)b)->tag);
 }
 
 /* Shared by the steps below. */
@@ -341,10 +340,8 @@ static double side(const surface_builder *b, size_t face) {
     const double *r = node_position(b, tag[2]);
     const double *s = face_size(b->raw, face) == 4 ? node_position(b, tag[3]) : p;
     double d[3], e[3];
-    for (int i = 0; i < 3; i++) {
-        d[i] = r[i] - p[i];
-        e[i] = s[i] - q[i];
-    }
+    sf_sub3(r, p, d);
+    sf_sub3(s, q, e);
     return sf_triple3(b->outward + 3 * face, d, e);
 }
 

@@ -76,14 +76,8 @@ bool sf_geometry_files_are_same(const char *const folder[SF_GEOMETRIES], const c
 
 static const char KIND[] = "mesh";
 
-/* gmsh tells formats by the name. */
-static const char *name_of(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-/* Computes the key from the geometry's own file, its parameters and softfall-mesh. False: the key is not
- * known, and nothing is shared. */
+/* Computes the key from the geometry's own file with its name, by which gmsh tells formats, its parameters
+ * and softfall-mesh. False: the key is not known, and nothing is shared. */
 static bool find_key(const sf_geo_source *source, uint64_t *key) {
     char mesher[PATH_MAX];
     uint64_t content[2];
@@ -92,7 +86,7 @@ static bool find_key(const sf_geo_source *source, uint64_t *key) {
         sf_plain_hash(mesher, NULL, SF_PLAIN_ANY, &content[0], &none) != SF_OK ||
         sf_plain_hash(source->path, NULL, SF_PLAIN_ANY, &content[1], &none) != SF_OK)
         return false;
-    const char *name = name_of(source->path);
+    const char *name = sf_path_name(source->path);
     *key = sf_hash_bytes(SF_HASH_START, content, sizeof content);
     *key = sf_hash_bytes(*key, name, strlen(name) + 1);
     *key = sf_hash_bytes(*key, &source->unit, sizeof source->unit);
@@ -107,7 +101,7 @@ static bool find_key(const sf_geo_source *source, uint64_t *key) {
 
 static bool are_files_same(const sf_geo_source *source, const char *files) {
     char folder[PATH_MAX];
-    int length = (int)(name_of(source->path) - source->path);
+    int length = (int)(sf_path_name(source->path) - source->path);
     if (snprintf(folder, sizeof folder, "%.*s", length > 1 ? length - 1 : length, source->path) >=
         (int)sizeof folder)
         return false;

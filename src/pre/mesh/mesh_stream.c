@@ -83,8 +83,7 @@ static sf_status read_nodes(reader *r, const char *file, sf_geo_data *out, sf_er
 static sf_status read_groups(reader *r, const char *file, sf_geo_data *out, sf_error *err) {
     size_t count = take_count(r, 4);
     if (count > SF_GEO_MAX_GROUPS)
-        return SF_REFUSE(err, "%s has %zu physical groups; at most %d are read", file, count,
-                         SF_GEO_MAX_GROUPS);
+        return SF_REFUSE(err, "%s has %zu physical groups" SF_AT_MOST("%d"), file, count, SF_GEO_MAX_GROUPS);
     out->group = sf_alloc(err, count, sizeof *out->group, "physical groups");
     for (size_t g = 0; out->group && !r->bad && g < count && err->status == SF_OK; g++) {
         sf_geo_group *group = &out->group[out->group_count++];

@@ -306,7 +306,7 @@ sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], dou
     int64_t n = surface->node_count;
     double mean[3] = {0}, scale = 0, chisq;
     if (n < 4)
-        return SF_FAIL(err, SF_ERR_MODEL, "the missile's surface has %lld nodes; a sphere needs 4",
+        return SF_FAIL(err, SF_ERR_MODEL, "the missile's surface has %lld nodes" SF_AT_LEAST("4"),
                        (long long)n);
     for (int64_t k = 0; k < 3 * n; k++)
         mean[k % 3] += surface->position[k] / (double)n;
@@ -414,8 +414,7 @@ sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_c
 /* Travel of a sphere until it touches x, or infinity. */
 static double sphere_travel(const sf_missile_card *card, const double x[3]) {
     double r[3], along, across;
-    for (int c = 0; c < 3; c++)
-        r[c] = x[c] - card->sphere_centre[c];
+    sf_sub3(x, card->sphere_centre, r);
     along = sf_dot3(r, card->direction);
     across = sf_dot3(r, r) - along * along;
     double square = card->sphere_radius * card->sphere_radius - across;
@@ -427,11 +426,9 @@ static double sphere_travel(const sf_missile_card *card, const double x[3]) {
 double sf_triangle_travel(const double *a, const double *b, const double *c, const double direction[3],
                           const double x[3]) {
     double u[3], v[3], r[3], p[3], q[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-        r[k] = x[k] - a[k];
-    }
+    sf_sub3(b, a, u);
+    sf_sub3(c, a, v);
+    sf_sub3(x, a, r);
     sf_cross3(direction, v, p);
     sf_cross3(r, u, q);
     double determinant = sf_dot3(u, p), slack = 1e-9;

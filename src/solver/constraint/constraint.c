@@ -52,7 +52,7 @@ static sf_status list_rows(const sf_model *m, sf_constraint *c, sf_ldl_entries *
         }
         a->part[range] = c->rows;
     }
-    c->row = sf_alloc(err, (unsigned long)c->rows, sizeof *c->row, "constraint nodes");
+    c->row = sf_alloc(err, c->rows, sizeof *c->row, "constraint nodes");
     for (int range = 0; range < 4 && err->status == SF_OK; range++)
         for (int64_t k = 0; k < all; k++) {
             const sf_constraint_row held = row_of(m, k, &mask);
@@ -68,7 +68,7 @@ static sf_status list_touched(const sf_model *m, sf_constraint *c, int32_t *plac
         place[c->row_place[k]] = 1;
     for (int64_t i = 0; i < m->node_count; i++)
         c->touched_count += place[i];
-    c->touched = sf_alloc(err, (unsigned long)c->touched_count, sizeof *c->touched, "constraint lists");
+    c->touched = sf_alloc(err, c->touched_count, sizeof *c->touched, "constraint lists");
     int64_t count = 0;
     for (int64_t i = 0; i < m->node_count && err->status == SF_OK; i++)
         if (place[i]) {
@@ -122,7 +122,7 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
     for (int64_t r = 0; r < c->rows; r++)
         entries += phi_count(m, c->row[r].node) + phi_count(m, c->row[r].other);
     unsigned long all = (unsigned long)entries, rows = (unsigned long)c->rows;
-    SF_OWNED int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "constraint lists");
+    SF_OWNED int32_t *place = sf_alloc(err, m->node_count, sizeof *place, "constraint lists");
     c->row_ptr = sf_alloc(err, rows + 1, sizeof *c->row_ptr, "constraint lists");
     c->row_place = sf_alloc(err, all, sizeof *c->row_place, "constraint lists");
     c->row_phi = sf_alloc(err, all, sizeof *c->row_phi, "constraint lists");
@@ -136,7 +136,7 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
     }
     SF_TRY(err->status);
     SF_TRY(list_touched(m, c, place, err));
-    c->node_ptr = sf_alloc(err, (unsigned long)c->touched_count + 1, sizeof *c->node_ptr, "constraint lists");
+    c->node_ptr = sf_alloc(err, c->touched_count + 1, sizeof *c->node_ptr, "constraint lists");
     for (int64_t k = 0; k < entries; k++)
         c->row_place[k] = place[c->row_place[k]];
     if (err->status == SF_OK)
@@ -151,9 +151,9 @@ static sf_status gram_entries(const sf_model *m, const sf_constraint *c, sf_ldl_
         int64_t rows = c->node_ptr[t + 1] - c->node_ptr[t];
         pairs += rows * (rows + 1) / 2;
     }
-    a->row = sf_alloc(err, (unsigned long)pairs, sizeof *a->row, "constraint matrix");
-    a->column = sf_alloc(err, (unsigned long)pairs, sizeof *a->column, "constraint matrix");
-    a->value = sf_alloc(err, (unsigned long)pairs, sizeof *a->value, "constraint matrix");
+    a->row = sf_alloc(err, pairs, sizeof *a->row, "constraint matrix");
+    a->column = sf_alloc(err, pairs, sizeof *a->column, "constraint matrix");
+    a->value = sf_alloc(err, pairs, sizeof *a->value, "constraint matrix");
     for (int64_t t = 0; t < c->touched_count && err->status == SF_OK; t++)
         for (int64_t p = c->node_ptr[t]; p < c->node_ptr[t + 1]; p++)
             for (int64_t q = c->node_ptr[t]; q <= p; q++) {
@@ -169,7 +169,7 @@ static sf_status gram_entries(const sf_model *m, const sf_constraint *c, sf_ldl_
 
 /* The rows in the order of the elimination. */
 static sf_status order_rows(sf_constraint *c, sf_error *err) {
-    sf_constraint_row *row = sf_alloc(err, (unsigned long)c->rows, sizeof *row, "constraint nodes");
+    sf_constraint_row *row = sf_alloc(err, c->rows, sizeof *row, "constraint nodes");
     for (int64_t r = 0; r < c->rows && err->status == SF_OK; r++)
         row[r] = c->row[c->factor.order[r]];
     free(c->row);
@@ -179,7 +179,7 @@ static sf_status order_rows(sf_constraint *c, sf_error *err) {
 
 static sf_status build_work(const sf_model *m, sf_constraint *c, sf_error *err) {
     unsigned long touched = (unsigned long)c->touched_count;
-    c->lambda = sf_alloc(err, (unsigned long)c->rows, sizeof *c->lambda, "constraint forces");
+    c->lambda = sf_alloc(err, c->rows, sizeof *c->lambda, "constraint forces");
     c->field = sf_alloc(err, touched, sizeof *c->field, "constraint forces");
     c->mobility = sf_alloc(err, touched, sizeof *c->mobility, "constraint forces");
     for (int64_t t = 0; t < c->touched_count && err->status == SF_OK; t++)

@@ -277,7 +277,7 @@ static sf_status share_lists(sf_ldl *f, sf_error *err) {
         f->list[j] = shared ? f->list[j - 1] + 1 : room;
         room += shared ? 0 : f->column[j + 1] - f->column[j];
     }
-    f->place = sf_alloc(err, (unsigned long)room, sizeof *f->place, "factor of the constraints");
+    f->place = sf_alloc(err, room, sizeof *f->place, "factor of the constraints");
     for (int64_t j = 0; j < f->rows && f->place; j++)
         memcpy(&f->place[f->list[j]], &all[f->column[j]],
                (size_t)(f->column[j + 1] - f->column[j]) * sizeof *all);
@@ -336,7 +336,7 @@ sf_status sf_ldl_build(const sf_ldl_entries *a, sf_ldl *f, sf_error *err) {
     w.common.print = 0;
     w.common.supernodal = CHOLMOD_SIMPLICIAL; /* no BLAS: the same bits whatever its threads */
     w.common.final_monotonic = 1;
-    w.position = sf_alloc(err, (unsigned long)w.rows, sizeof *w.position, "factor of the constraints");
+    w.position = sf_alloc(err, w.rows, sizeof *w.position, "factor of the constraints");
     for (int range = 0; range <= 3 && err->status == SF_OK; range++)
         order_range(&w, range, err);
     for (int c = 0; c < 3 && err->status == SF_OK; c++)

@@ -195,9 +195,9 @@ static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
 
 sf_status sf_candidates_find(const sf_skin *skin, sf_state *s, sf_error *err) {
     SF_OWNED_BY(facets_free) facets f = {0};
-    SF_OWNED uint8_t *used = sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact");
-    neighbourhood n = {sf_alloc(err, (unsigned long)skin->count, 1, "candidates of contact"),
-                       sf_alloc(err, (unsigned long)skin->count, sizeof *n.list, "candidates of contact"), 0};
+    SF_OWNED uint8_t *used = sf_alloc(err, skin->count, 1, "candidates of contact");
+    neighbourhood n = {sf_alloc(err, skin->count, 1, "candidates of contact"),
+                       sf_alloc(err, skin->count, sizeof *n.list, "candidates of contact"), 0};
     double reach = s->self_room = NEAR * skin->spacing;
     if (facets_find(skin, s, &f, err) == SF_OK) {
         for (int64_t p = 0; p < skin->count; p++)

@@ -101,7 +101,7 @@ static int64_t put_row(const sf_model *m, const joined *j, int32_t first, sf_con
 
 sf_status sf_contact_rows_build(const sf_model *m, sf_contact_rows *rows, sf_error *err) {
     int64_t points = sf_model_points(m);
-    SF_OWNED int32_t *node = sf_alloc(err, (unsigned long)points, sizeof *node, "contact rows");
+    SF_OWNED int32_t *node = sf_alloc(err, points, sizeof *node, "contact rows");
     memset(rows, 0, sizeof *rows);
     for (int64_t c = 0; node && c < points; c++)
         node[c] = (int32_t)sf_model_point_node(m, c);
@@ -114,7 +114,7 @@ sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int3
                                    sf_contact_rows *rows, sf_error *err) {
     joined j = {0};
     memset(rows, 0, sizeof *rows);
-    rows->ptr = sf_alloc(err, (unsigned long)points + 1, sizeof *rows->ptr, "contact rows");
+    rows->ptr = sf_alloc(err, points + 1, sizeof *rows->ptr, "contact rows");
     if (err->status == SF_OK)
         join_alloc(m, &j, err);
     for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
@@ -122,8 +122,8 @@ sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int3
             rows->ptr[c + 1] = put_row(m, &j, point[c], rows, rows->ptr[c]);
         if (pass == 1)
             break;
-        rows->node = sf_alloc(err, (unsigned long)rows->ptr[points], sizeof *rows->node, "contact rows");
-        rows->value = sf_alloc(err, (unsigned long)rows->ptr[points], sizeof *rows->value, "contact rows");
+        rows->node = sf_alloc(err, rows->ptr[points], sizeof *rows->node, "contact rows");
+        rows->value = sf_alloc(err, rows->ptr[points], sizeof *rows->value, "contact rows");
     }
     join_free(&j);
     if (err->status != SF_OK)
@@ -145,9 +145,9 @@ typedef struct transposed {
 
 static sf_status transpose(const sf_model *m, const sf_contact_rows *rows, transposed *t, sf_error *err) {
     int64_t count = rows->ptr[sf_model_points(m)];
-    t->ptr = sf_alloc(err, (unsigned long)m->node_count + 2, sizeof *t->ptr, "contact lists");
-    t->point = sf_alloc(err, (unsigned long)count, sizeof *t->point, "contact lists");
-    t->phi = sf_alloc(err, (unsigned long)count, sizeof *t->phi, "contact lists");
+    t->ptr = sf_alloc(err, m->node_count + 2, sizeof *t->ptr, "contact lists");
+    t->point = sf_alloc(err, count, sizeof *t->point, "contact lists");
+    t->phi = sf_alloc(err, count, sizeof *t->phi, "contact lists");
     SF_TRY(err->status);
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t c = 0; c < sf_model_points(m); c++)
@@ -226,10 +226,8 @@ sf_status sf_contact_gram_build(const sf_model *m, const sf_contact_rows *rows, 
                 dense[list[k]] = 0;
         }
         if (pass == 0) {
-            gram->index =
-                sf_alloc(err, (unsigned long)gram->ptr[count], sizeof *gram->index, "contact matrix");
-            gram->value =
-                sf_alloc(err, (unsigned long)gram->ptr[count], sizeof *gram->value, "contact matrix");
+            gram->index = sf_alloc(err, gram->ptr[count], sizeof *gram->index, "contact matrix");
+            gram->value = sf_alloc(err, gram->ptr[count], sizeof *gram->value, "contact matrix");
         }
     }
 done:

@@ -66,7 +66,7 @@ static sf_status build_bins(sf_missile_surface *s, int64_t nodes, int64_t triang
     for (int a = 0; a < 2; a++)
         s->bins[a] = (int64_t)((s->high[a] - s->low[a]) / s->reach) + 1;
     int64_t bins = s->bins[0] * s->bins[1];
-    s->start = sf_alloc(err, (unsigned long)bins + 2, sizeof *s->start, "missile bins");
+    s->start = sf_alloc(err, bins + 2, sizeof *s->start, "missile bins");
     for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
         for (int64_t t = 0; t < triangles; t++) {
             int64_t range[2][2];
@@ -107,12 +107,11 @@ sf_status sf_missile_surface_build(const sf_model *m, const double axis[3], sf_m
     s->triangle = m->surface_triangle;
     for (int64_t c = 0; c < m->contact_count; c++)
         s->reach = fmax(s->reach, m->spacing[m->contact_node[c]]);
-    s->normal = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *s->normal, "missile normals");
-    s->edge_normal = sf_alloc(err, 9 * (unsigned long)triangles, sizeof *s->edge_normal, "missile normals");
-    s->vertex_normal =
-        sf_alloc(err, 3 * (unsigned long)m->surface_node_count, sizeof *s->vertex_normal, "missile normals");
-    s->rim_edge = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *s->rim_edge, "missile rim");
-    s->rim_vertex = sf_alloc(err, (unsigned long)m->surface_node_count, sizeof *s->rim_vertex, "missile rim");
+    s->normal = sf_alloc(err, 3 * triangles, sizeof *s->normal, "missile normals");
+    s->edge_normal = sf_alloc(err, 9 * triangles, sizeof *s->edge_normal, "missile normals");
+    s->vertex_normal = sf_alloc(err, 3 * m->surface_node_count, sizeof *s->vertex_normal, "missile normals");
+    s->rim_edge = sf_alloc(err, 3 * triangles, sizeof *s->rim_edge, "missile rim");
+    s->rim_vertex = sf_alloc(err, m->surface_node_count, sizeof *s->rim_vertex, "missile rim");
     if (err->status == SF_OK) {
         build_normals(s, triangles);
         if (build_edge_normals(s, triangles, err) == SF_OK)
@@ -222,13 +221,13 @@ sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvi
     memset(anvil, 0, sizeof *anvil);
     if (m->rest_count == 0)
         return SF_OK;
-    SF_OWNED double *load = sf_alloc(err, (unsigned long)m->node_count, sizeof *load, "weight of the pad");
+    SF_OWNED double *load = sf_alloc(err, m->node_count, sizeof *load, "weight of the pad");
     if (load)
         add_loads(m, rows, load);
     for (int64_t i = 0; load && i < m->node_count; i++)
         count += load[i] != 0;
-    anvil->node = sf_alloc(err, (unsigned long)count, sizeof *anvil->node, "weight of the pad");
-    anvil->pull = sf_alloc(err, (unsigned long)count, sizeof *anvil->pull, "weight of the pad");
+    anvil->node = sf_alloc(err, count, sizeof *anvil->node, "weight of the pad");
+    anvil->pull = sf_alloc(err, count, sizeof *anvil->pull, "weight of the pad");
     for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
         if (load[i] != 0) {
             anvil->node[anvil->count] = (int32_t)i;

@@ -9,7 +9,7 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     SF_OWNED int32_t *place = sf_alloc(err, nodes, sizeof *place, "skin of the pad");
     skin->facet_count = m->skin_count + m->support_triangle_count;
     skin->node = sf_alloc(err, nodes, sizeof *skin->node, "skin of the pad");
-    skin->facet = sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof *skin->facet, "skin of the pad");
+    skin->facet = sf_alloc(err, 3 * skin->facet_count, sizeof *skin->facet, "skin of the pad");
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->skin_count; k++)
         place[m->skin_triangle[k]] = 1;
     for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
@@ -25,7 +25,7 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     skin->count = skin->nodes + sf_model_skin_centroids(m);
     skin->own =
         sf_alloc(err, (unsigned long)(skin->count - skin->nodes), sizeof *skin->own, "skin of the pad");
-    skin->half = sf_alloc(err, (unsigned long)skin->facet_count, 1, "skin of the pad");
+    skin->half = sf_alloc(err, skin->facet_count, 1, "skin of the pad");
     for (int64_t k = 1; err->status == SF_OK && k < m->skin_count; k++)
         if (sf_model_skin_is_quadrangle(m, k)) {
             skin->half[k - 1] = 1;
@@ -38,8 +38,8 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 static sf_status place_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
-    skin->rest = sf_alloc(err, 3 * (unsigned long)skin->count, sizeof *skin->rest, "skin of the pad");
-    skin->size = sf_alloc(err, (unsigned long)skin->count, sizeof *skin->size, "skin of the pad");
+    skin->rest = sf_alloc(err, 3 * skin->count, sizeof *skin->rest, "skin of the pad");
+    skin->size = sf_alloc(err, skin->count, sizeof *skin->size, "skin of the pad");
     for (int64_t p = 0; err->status == SF_OK && p < skin->moving; p++) {
         memcpy(&skin->rest[3 * p], &m->position[3 * (int64_t)skin->node[p]], 3 * sizeof *skin->rest);
         skin->size[p] = m->spacing[skin->node[p]];
@@ -62,7 +62,7 @@ static sf_status place_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
 static sf_status list_rings(sf_skin *skin, sf_error *err) {
     int64_t corners = 3 * skin->facet_count;
     unsigned long all = (unsigned long)(corners + skin->count - skin->nodes);
-    skin->ring_ptr = sf_alloc(err, (unsigned long)skin->count + 2, sizeof *skin->ring_ptr, "skin of the pad");
+    skin->ring_ptr = sf_alloc(err, skin->count + 2, sizeof *skin->ring_ptr, "skin of the pad");
     skin->ring = sf_alloc(err, all, sizeof *skin->ring, "skin of the pad");
     if (err->status != SF_OK)
         return err->status;
@@ -79,9 +79,8 @@ static sf_status list_rings(sf_skin *skin, sf_error *err) {
 
 /* Normals at rest; those of a node are weighted by the areas. */
 static sf_status find_normals(sf_skin *skin, sf_error *err) {
-    skin->normal = sf_alloc(err, 3 * (unsigned long)skin->count, sizeof(double), "skin of the pad");
-    skin->facet_normal =
-        sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof(double), "skin of the pad");
+    skin->normal = sf_alloc(err, 3 * skin->count, sizeof(double), "skin of the pad");
+    skin->facet_normal = sf_alloc(err, 3 * skin->facet_count, sizeof(double), "skin of the pad");
     for (int64_t f = 0; err->status == SF_OK && f < skin->facet_count; f++) {
         const double *x[3];
         double *normal = &skin->facet_normal[3 * f];
@@ -124,7 +123,7 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
     enum { MOST_FACETS = 1000 };
     int64_t corners = 3 * skin->facet_count, sides = skin->count;
     SF_OWNED int64_t *parent = sf_sets_alone(corners, "skin of the pad", err);
-    skin->side = sf_alloc(err, (unsigned long)corners, sizeof *skin->side, "skin of the pad");
+    skin->side = sf_alloc(err, corners, sizeof *skin->side, "skin of the pad");
     skin->next_side =
         sf_alloc(err, (unsigned long)(corners + sides), sizeof *skin->next_side, "skin of the pad");
     SF_TRY(err->status);
@@ -157,9 +156,9 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
 
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
     static const double ON_PLANE = 1e-6; /* of the thickness */
-    SF_OWNED uint8_t *mark = sf_alloc(err, (unsigned long)m->node_count, 1, "skin of the pad");
-    skin->held = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
-    skin->rests = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
+    SF_OWNED uint8_t *mark = sf_alloc(err, m->node_count, 1, "skin of the pad");
+    skin->held = sf_alloc(err, skin->count, 1, "skin of the pad");
+    skin->rests = sf_alloc(err, skin->count, 1, "skin of the pad");
     for (int64_t k = 0; err->status == SF_OK && k < m->fixed_count; k++)
         mark[m->fixed_node[k]] = m->fixed_mask[k];
     for (int64_t k = 0; err->status == SF_OK && k < m->rest_count; k++)
@@ -203,8 +202,7 @@ static bool take_edge(const sf_skin *skin, const sf_half_edge *half, int64_t cou
 static sf_status list_edges(int64_t count, sf_skin *skin, sf_error *err) {
     SF_OWNED sf_half_edge *half = sf_half_edges(count, skin->facet, err);
     skin->edge = sf_alloc(err, 12 * (unsigned long)count, sizeof *skin->edge, "skin of the pad");
-    skin->edge_of =
-        sf_alloc(err, 3 * (unsigned long)skin->facet_count, sizeof *skin->edge_of, "skin of the pad");
+    skin->edge_of = sf_alloc(err, 3 * skin->facet_count, sizeof *skin->edge_of, "skin of the pad");
     SF_TRY(err->status);
     memset(skin->edge_of, -1, 3 * (size_t)skin->facet_count * sizeof *skin->edge_of);
     for (int64_t k = 0, end; k < 3 * count && !skin->watched; k = end) {
@@ -253,7 +251,7 @@ static bool is_narrow(const sf_skin *skin, int64_t p) {
 }
 
 static sf_status mark_passive(sf_skin *skin, sf_error *err) {
-    skin->passive = sf_alloc(err, (unsigned long)skin->count, 1, "skin of the pad");
+    skin->passive = sf_alloc(err, skin->count, 1, "skin of the pad");
     for (int64_t p = skin->moving; err->status == SF_OK && p < skin->count; p++)
         skin->passive[p] = p >= skin->nodes || skin->held[p] != 0 || !is_narrow(skin, p);
     return err->status;

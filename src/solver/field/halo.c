@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/field/halo.h"
+#include "solver/field/field.h"
 
 /* Lists the nodes of other groups that group g sees, marked in `seen` (zero on entry and exit), into `list`
  * if that is not NULL, and returns how many. */
@@ -52,9 +52,9 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
     h->group_count = (m->node_count + SF_GROUP - 1) / SF_GROUP;
     SF_OWNED uint8_t *seen = sf_alloc(err, n, 1, "group lists");
     SF_OWNED int32_t *place = sf_alloc(err, n, sizeof *place, "group lists");
-    h->ptr = sf_alloc(err, (unsigned long)h->group_count + 1, sizeof *h->ptr, "group lists");
+    h->ptr = sf_alloc(err, h->group_count + 1, sizeof *h->ptr, "group lists");
     h->slot_ptr = sf_alloc(err, n + 1, sizeof *h->slot_ptr, "group lists");
-    h->local = sf_alloc(err, (unsigned long)m->domain_nnz, sizeof *h->local, "group lists");
+    h->local = sf_alloc(err, m->domain_nnz, sizeof *h->local, "group lists");
     for (int64_t g = 0; g < h->group_count && err->status == SF_OK; g++) {
         int64_t count = list_others(m, g, seen, NULL);
         h->ptr[g + 1] = h->ptr[g] + count;

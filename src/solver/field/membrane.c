@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/field/membrane.h"
+#include "solver/field/field.h"
 
 #include "base/mat3.h"
 #include "model/stability.h"
@@ -7,10 +7,10 @@
 /* ---- constants ---- */
 
 static sf_status number_nodes(const sf_model *m, sf_membrane *b, sf_error *err) {
-    SF_OWNED int32_t *place = sf_alloc(err, (unsigned long)m->node_count, sizeof *place, "membrane");
+    SF_OWNED int32_t *place = sf_alloc(err, m->node_count, sizeof *place, "membrane");
     b->triangle_count = m->membrane_count;
-    b->node = sf_alloc(err, (unsigned long)m->node_count, sizeof *b->node, "membrane");
-    b->triangle = sf_alloc(err, 3 * (unsigned long)m->membrane_count, sizeof *b->triangle, "membrane");
+    b->node = sf_alloc(err, m->node_count, sizeof *b->node, "membrane");
+    b->triangle = sf_alloc(err, 3 * m->membrane_count, sizeof *b->triangle, "membrane");
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->membrane_count; k++)
         place[m->membrane_triangle[k]] = 1;
     for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
@@ -27,8 +27,7 @@ static sf_status number_nodes(const sf_model *m, sf_membrane *b, sf_error *err) 
 static double shape_triangle(const double *const x[3], double gradient[6]) {
     double side[2][3], normal[3], along[3], across[3];
     for (int k = 0; k < 2; k++)
-        for (int r = 0; r < 3; r++)
-            side[k][r] = x[k + 1][r] - x[0][r];
+        sf_sub3(x[k + 1], x[0], side[k]);
     sf_cross3(side[0], side[1], normal);
     double twice = sqrt(sf_dot3(normal, normal));
     memcpy(along, side[0], sizeof along);
@@ -45,12 +44,11 @@ static double shape_triangle(const double *const x[3], double gradient[6]) {
 }
 
 static sf_status shape_triangles(const sf_model *m, sf_membrane *b, sf_error *err) {
-    b->gradient = sf_alloc(err, 6 * (unsigned long)b->triangle_count, sizeof *b->gradient, "membrane");
-    b->volume = sf_alloc(err, (unsigned long)b->triangle_count, sizeof *b->volume, "membrane");
+    b->gradient = sf_alloc(err, 6 * b->triangle_count, sizeof *b->gradient, "membrane");
+    b->volume = sf_alloc(err, b->triangle_count, sizeof *b->volume, "membrane");
     for (int64_t t = 0; err->status == SF_OK && t < b->triangle_count; t++) {
         const double *x[3];
-        for (int k = 0; k < 3; k++)
-            x[k] = &m->position[3 * (int64_t)m->membrane_triangle[3 * t + k]];
+        sf_corners(m->position, &m->membrane_triangle[3 * t], x);
         b->volume[t] = shape_triangle(x, &b->gradient[6 * t]) * m->membrane.thickness * m->membrane_share[t];
     }
     return err->status;

@@ -4,9 +4,6 @@
 #include <errno.h>
 #include <unistd.h>
 
-#include "solver/field/domain_stress.h"
-#include "solver/set.h"
-
 static const sf_member members[] = {
 #define NUMBER(type, name, size, units, meaning) SF_MEMBER(sf_state, name, type, units, meaning),
 #define OF_MISSILE(type, name, size, units, meaning) SF_MEMBER(sf_state, missile.name, type, units, meaning),
@@ -138,15 +135,15 @@ static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, con
     char *status = NULL;
     int64_t *touching = NULL, one = 1;
     if (!sf_h5_exists(results, "/summary/status"))
-        return SF_FAIL(err, SF_ERR_INPUT, "%s has not ended: --restart %s ends it", path, path);
+        return SF_REFUSE(err, "%s has not ended: --restart %s ends it", path, path);
     if (sf_h5_read_text(results, "/summary/status", &status, err) == SF_OK &&
         sf_h5_read(checkpoint, "/state/contact_count", SF_H5_I64, 1, &one, (void **)&touching, err) ==
             SF_OK &&
         ((strcmp(status, "rebound") != 0 && strcmp(status, "finished") != 0) || *touching > 0))
-        SF_FAIL(err, SF_ERR_INPUT,
-                "%s ended \"%.80s\" with %lld points in contact: a pad goes on only after the missile has "
-                "left it",
-                path, status, (long long)*touching);
+        SF_REFUSE(err,
+                  "%s ended \"%.80s\" with %lld points in contact: a pad goes on only after the missile has "
+                  "left it",
+                  path, status, (long long)*touching);
     SF_FREE(status, touching);
     return err->status;
 }
@@ -160,10 +157,11 @@ static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type typ
     sf_error inner = SF_ERROR_INIT;
     sf_status status = sf_h5_read(file, name, type, columns > 1 ? 2 : 1, dims, &data, &inner);
     if (status != SF_OK || memcmp(data, mine, bytes) != 0)
-        SF_FAIL(err, SF_ERR_INPUT,
-                "the pad of %s is another one (%s differs): the geometry of the pad, its mesh and its layers "
-                "must be the same, also whole or quarter",
-                path, name);
+        SF_REFUSE(
+            err,
+            "the pad of %s is another one (%s differs): the geometry of the pad, its mesh and its layers "
+            "must be the same, also whole or quarter",
+            path, name);
     return err->status;
 }
 
@@ -182,10 +180,10 @@ static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const 
     void *history = NULL;
     sf_error inner = SF_ERROR_INIT;
     if (sf_h5_read(checkpoint, "/state/history", SF_H5_F64, 2, dims, &history, &inner) != SF_OK)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "the foam of %s remembers other things than this one (%.200s): law, memory, ED, "
-                       "rate_factor and curves of several rates must be there in both or in none",
-                       path, inner.text);
+        return SF_REFUSE(err,
+                         "the foam of %s remembers other things than this one (%.200s): law, memory, ED, "
+                         "rate_factor and curves of several rates must be there in both or in none",
+                         path, inner.text);
     free(s->history);
     s->history = history;
     if (sf_h5_read(checkpoint, "/state/drop", SF_H5_I64, 1, &one, (void **)&number, err) == SF_OK)
@@ -197,10 +195,10 @@ static sf_status open_earlier(const sf_earlier *e, sf_checkpoint *c, sf_error *e
     char path[SF_PATH_SIZE];
     snprintf(path, sizeof path, "%.4000s.restart", e->results);
     if (access(path, F_OK) != 0)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "%s is not there: it holds the state of the pad of %s, which must run without "
-                       "--no-checkpoint",
-                       path, e->results);
+        return SF_REFUSE(err,
+                         "%s is not there: it holds the state of the pad of %s, which must run without "
+                         "--no-checkpoint",
+                         path, e->results);
     return sf_checkpoint_open(path, c, err);
 }
 

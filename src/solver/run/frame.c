@@ -3,7 +3,6 @@
 
 #include "base/sets.h"
 #include "base/mat3.h"
-#include "solver/field/domain_stress.h"
 
 enum { SLAB = 64 * SF_LANES }; /* nodes: more would be felt in the memory of a run */
 
@@ -169,7 +168,7 @@ static sf_status write_layers(const sf_model *m, const sf_operators *op, const s
     int64_t count = m->material_count;
     if (count < 2)
         return SF_OK;
-    SF_OWNED double *sums = sf_alloc(err, 4 * (unsigned long)count, sizeof *sums, "sums of the layers");
+    SF_OWNED double *sums = sf_alloc(err, 4 * count, sizeof *sums, "sums of the layers");
     if (sums)
         sum_layers(m, op, s, sums);
     for (int k = 0; k < 4 && err->status == SF_OK; k++)
@@ -186,15 +185,14 @@ static sf_status write_head(const sf_model *m, const sf_state *s, const char *pa
     sf_missile_translation(m, &s->missile, displacement);
     for (int c = 0; c < 3; c++)
         reaction[c] = sf_model_whole(m) * s->base_reaction[c];
-    if (write_item(file, path, "time", "s", "time", 0, NULL, &s->time, err) != SF_OK ||
-        write_item(file, path, "acceleration", "m s-2",
-                   "specific force on the missile, against its direction of motion", 0, NULL, &acceleration,
-                   err) != SF_OK ||
-        write_item(file, path, "missile_displacement", "m", "translation of the missile's centre since t = 0",
-                   1, &three, displacement, err) != SF_OK ||
-        write_item(file, path, "missile_quaternion", "1", "orientation of the missile, w, x, y, z", 1, &four,
-                   s->missile.quaternion, err) != SF_OK)
-        return err->status;
+    SF_TRY(write_item(file, path, "time", "s", "time", 0, NULL, &s->time, err));
+    SF_TRY(write_item(file, path, "acceleration", "m s-2",
+                      "specific force on the missile, against its direction of motion", 0, NULL,
+                      &acceleration, err));
+    SF_TRY(write_item(file, path, "missile_displacement", "m",
+                      "translation of the missile's centre since t = 0", 1, &three, displacement, err));
+    SF_TRY(write_item(file, path, "missile_quaternion", "1", "orientation of the missile, w, x, y, z", 1,
+                      &four, s->missile.quaternion, err));
     return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three, reaction,
                       err);
 }

@@ -8,7 +8,6 @@
 
 #include "base/text.h"
 #include "io/folder.h"
-#include "model/flight.h"
 
 /* Returns the place of the symmetry plane normal to an axis; NaN: there is none. */
 static double find_plane(const sf_model *m, int axis) {
@@ -74,9 +73,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     };
     size_t count = sizeof item / sizeof item[0];
     for (size_t k = m->support_triangle_count > 0 ? 0 : 2; k < count; k++)
-        if (sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err) !=
-            SF_OK)
-            return err->status;
+        SF_TRY(sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err));
     return SF_OK;
 }
 
@@ -139,8 +136,7 @@ sf_status sf_output_name(sf_output *o, const char *results, sf_error *err) {
     memset(o, 0, sizeof *o);
     o->lock = -1;
     if (strlen(results) > SF_PATH_SIZE - 64)
-        return SF_FAIL(err, SF_ERR_INPUT, "the path of the results file is longer than %d bytes",
-                       SF_PATH_SIZE - 64);
+        return SF_REFUSE(err, "the path of the results file is longer than %d bytes", SF_PATH_SIZE - 64);
     snprintf(o->results, sizeof o->results, "%s", results);
     snprintf(o->checkpoint, sizeof o->checkpoint, "%.4000s.restart", results);
     snprintf(o->folder, sizeof o->folder, "%.4000s.run", results);
@@ -171,7 +167,7 @@ sf_status sf_output_open(sf_output *o, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be opened: %s", o->folder, strerror(errno));
     if (flock(o->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         sf_output_close(o);
-        return SF_FAIL(err, SF_ERR_INPUT, "another softfall-solve is writing %s", o->results);
+        return SF_REFUSE(err, "another softfall-solve is writing %s", o->results);
     }
     if (sf_folder_check(o->lock, o->folder, is_name, err) == SF_OK)
         sf_folder_remove_known(o->lock, is_rest, NULL);
@@ -332,10 +328,9 @@ sf_status sf_output_copy_peak(const sf_output *o, sf_h5 *file, sf_error *err) {
 
 sf_status sf_output_begin(sf_output *o, bool copied, int64_t count, sf_h5 **file, sf_error *err) {
     static const char *const base[] = {"/provenance", "/model", NULL};
-    if (sf_replace_begin(o->results, o->partial, err) != SF_OK ||
-        sf_h5_create(o->partial, file, err) != SF_OK ||
-        sf_provenance_mark(*file, "softfall-results", err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_replace_begin(o->results, o->partial, err));
+    SF_TRY(sf_h5_create(o->partial, file, err));
+    SF_TRY(sf_provenance_mark(*file, "softfall-results", err));
     take(o, copied, BASE, base, *file, err);
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         char name[32], group[32];

@@ -134,9 +134,8 @@ static sf_status read_history(sf_history *h, const sf_h5 *file, sf_error *err) {
 
 sf_status sf_recorder_read(sf_recorder *r, const sf_model *m, const sf_state *s, const sf_h5 *file,
                            sf_error *err) {
-    if (sf_members_read(file, "/recorder", members, MEMBERS, r, err) != SF_OK ||
-        read_history(&r->history, file, err) != SF_OK)
-        return err->status;
+    SF_TRY(sf_members_read(file, "/recorder", members, MEMBERS, r, err));
+    SF_TRY(read_history(&r->history, file, err));
     bool whole = r->history.rows == s->step + 1 && r->frames >= 0 && r->frames <= r->history.rows &&
                  r->next_frame > s->time && r->next_extra >= 0 && r->next_extra <= m->frame_time_count;
     if (!whole)
@@ -169,6 +168,12 @@ static double area_in_contact(const sf_model *m, const sf_state *s) {
         return value;                                                                                        \
     }
 
+/* The components of a member of sf_missile_motion. */
+#define MOTION(name)                                                                                         \
+    VALUE(name##_x, sf_missile_read(m, &s->missile).name[0])                                                 \
+    VALUE(name##_y, sf_missile_read(m, &s->missile).name[1])                                                 \
+    VALUE(name##_z, sf_missile_read(m, &s->missile).name[2])
+
 /* clang-format off */
 VALUE(time, s->time)
 VALUE(acceleration, sf_missile_reading(m, &s->missile))
@@ -195,25 +200,15 @@ VALUE(energy_weight, whole * s->ledger.weight)
 VALUE(energy_anvil, whole * s->ledger.anvil)
 VALUE(energy_error, s->ledger.error)
 VALUE(momentum_error, s->ledger.momentum_error)
-VALUE(translation_x, sf_missile_read(m, &s->missile).translation[0])
-VALUE(translation_y, sf_missile_read(m, &s->missile).translation[1])
-VALUE(translation_z, sf_missile_read(m, &s->missile).translation[2])
+MOTION(translation)
 VALUE(quaternion_w, s->missile.quaternion[0])
 VALUE(quaternion_x, s->missile.quaternion[1])
 VALUE(quaternion_y, s->missile.quaternion[2])
 VALUE(quaternion_z, s->missile.quaternion[3])
-VALUE(velocity_x, sf_missile_read(m, &s->missile).velocity[0])
-VALUE(velocity_y, sf_missile_read(m, &s->missile).velocity[1])
-VALUE(velocity_z, sf_missile_read(m, &s->missile).velocity[2])
-VALUE(specific_force_x, sf_missile_read(m, &s->missile).specific_force[0])
-VALUE(specific_force_y, sf_missile_read(m, &s->missile).specific_force[1])
-VALUE(specific_force_z, sf_missile_read(m, &s->missile).specific_force[2])
-VALUE(angular_velocity_x, sf_missile_read(m, &s->missile).angular_velocity[0])
-VALUE(angular_velocity_y, sf_missile_read(m, &s->missile).angular_velocity[1])
-VALUE(angular_velocity_z, sf_missile_read(m, &s->missile).angular_velocity[2])
-VALUE(angular_acceleration_x, sf_missile_read(m, &s->missile).angular_acceleration[0])
-VALUE(angular_acceleration_y, sf_missile_read(m, &s->missile).angular_acceleration[1])
-VALUE(angular_acceleration_z, sf_missile_read(m, &s->missile).angular_acceleration[2])
+MOTION(velocity)
+MOTION(specific_force)
+MOTION(angular_velocity)
+MOTION(angular_acceleration)
 VALUE(momentum_error_space, s->ledger.vector_error)
 VALUE(angular_momentum_error, s->ledger.angular_error)
 VALUE(largest_compression, s->largest_compression)

@@ -5,7 +5,6 @@
 
 #include "base/text.h"
 #include "material/low_density_foam.h"
-#include "solver/set.h"
 #include "solver/step.h"
 
 static const double REBOUND_WAIT = 1e-3; /* s, without contact before the run may end */
@@ -149,7 +148,7 @@ static void print_progress(drop *d, bool last) {
     const sf_model *m = d->m;
     const sf_state *s = d->s;
     const sf_run *run = d->run;
-    double now = sf_clock(), interval = run->terminal ? 0.2 : PROGRESS_INTERVAL;
+    double now = sf_process_now(), interval = run->terminal ? 0.2 : PROGRESS_INTERVAL;
     if (d->replay || (!last && now - d->last_line < interval))
         return;
     d->last_line = now;
@@ -180,24 +179,24 @@ static sf_status publish(drop *d, sf_error *err) {
     if (sf_output_begin(d->out, false, d->r.frames, &file, err) == SF_OK)
         sf_history_write(&d->r.history, file, err);
     d->published = d->r.history.rows;
-    d->last_published = sf_clock();
+    d->last_published = sf_process_now();
     return sf_output_commit(d->out, &file, err);
 }
 
 static sf_status publish_if_due(drop *d, sf_error *err) {
     bool due = sf_output_is_due(d->out, d->r.history.rows - d->published) ||
-               sf_clock() - d->last_published >= LONGEST_SILENCE;
+               sf_process_now() - d->last_published >= LONGEST_SILENCE;
     return due ? publish(d, err) : SF_OK;
 }
 
 static sf_status save(drop *d, sf_error *err) {
     double before = d->r.wall_time;
-    d->r.wall_time += sf_clock() - d->start;
+    d->r.wall_time += sf_process_now() - d->start;
     sf_checkpoint_write(d->out, d->run->provenance, d->m, d->s, &d->r, err);
     d->r.wall_time = before;
     d->foreign = false;
     d->saved = d->s->step;
-    d->last_checkpoint = sf_clock();
+    d->last_checkpoint = sf_process_now();
     d->next_checkpoint = d->s->time + d->run->checkpoint_time;
     return err->status;
 }
@@ -208,7 +207,7 @@ static bool checkpoint_is_due(const drop *d) {
     double interval =
         fmin(d->run->checkpoint_wall, fmax(FIRST_CHECKPOINT, 2 * (d->last_checkpoint - d->start)));
     return d->run->checkpoints && !d->replay &&
-           (d->s->time >= d->next_checkpoint || sf_clock() - d->last_checkpoint >= interval);
+           (d->s->time >= d->next_checkpoint || sf_process_now() - d->last_checkpoint >= interval);
 }
 
 /* A new step: forces, a row of history, the fields at the peak and a frame if they are due. */
@@ -377,10 +376,10 @@ static sf_status begin_again(const drop *d, sf_error *err) {
 static sf_status start_anew(drop *d, int64_t frame, sf_error *err) {
     const sf_recorder old = d->r;
     if (d->s->drop > 1 && !d->run->earlier.results)
-        return SF_FAIL(err, SF_ERR_INPUT,
-                       "frame %lld of the run so far is missing or damaged, and the run began from the pad "
-                       "of an earlier one: start it again with --force and --start-from",
-                       (long long)frame);
+        return SF_REFUSE(err,
+                         "frame %lld of the run so far is missing or damaged, and the run began from the pad "
+                         "of an earlier one: start it again with --force and --start-from",
+                         (long long)frame);
     sf_sink_tell(d->run->sink, SF_WARNING,
                  "frame %lld of the run so far is missing or damaged: the run starts from the beginning",
                  (long long)frame);
@@ -442,7 +441,7 @@ static void end_run(drop *d, const sf_error *failure, const sf_error *end, sf_er
     /* A run that did not fail leaves a checkpoint of its last step. */
     if (d->run->checkpoints && !failed && d->saved != d->s->step)
         save(d, &unsaved);
-    d->run->wall_time = d->r.wall_time + sf_clock() - d->start;
+    d->run->wall_time = d->r.wall_time + sf_process_now() - d->start;
     /* A step with a NaN or infinity is replaced by the last valid one before results.h5 is written. */
     d->run->shown = sf_state_is_finite(d->m, d->s);
     if (d->run->checkpoints && !d->run->shown)
@@ -470,7 +469,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
               .run = run,
               .out = out,
               .note = run->note,
-              .start = sf_clock(),
+              .start = sf_process_now(),
               .left = INFINITY};
     sf_error late = SF_ERROR_INIT, end = SF_ERROR_INIT;
     /* The run steps from the checkpoint or from t = 0 to an ending or a failure. */
@@ -483,7 +482,7 @@ sf_status sf_run_drop(const sf_model *m, const sf_operators *op, sf_state *s, sf
         run_steps(&d, taken, err);
     }
     /* Results are written also after a numerical failure, but not after another one, as of a file. */
-    run->wall_time = d.r.wall_time + sf_clock() - d.start;
+    run->wall_time = d.r.wall_time + sf_process_now() - d.start;
     if (err->status == SF_OK && strcmp(run->ending, "anvil") == 0)
         sf_ending_fail_on_anvil(m, s, &end);
     if (err->status == SF_OK || err->status == SF_ERR_NUMERIC)

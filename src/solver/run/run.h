@@ -3,7 +3,6 @@
 #include "io/replace.h"
 #include "solver/operators.h"
 #include "solver/state.h"
-#include <signal.h>
 
 /* A frame: the fields at the nodes at one time, as docs/formats.md lists them. */
 
@@ -184,7 +183,7 @@ sf_status sf_checkpoint_read(const sf_checkpoint *checkpoint, const sf_model *mo
                              sf_state *state, sf_recorder *recorder, sf_error *err);
 
 /* A drop on a pad that has been hit before: its foam's history goes on from the end of an earlier run,
- * unloaded to rest, and its permanent set (solver/set.h) is the reference. Nothing else of it remains. */
+ * unloaded to rest, and its permanent set (solver/state.h) is the reference. Nothing else of it remains. */
 
 /* The pad from which a run begins. */
 typedef struct sf_earlier {

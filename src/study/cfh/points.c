@@ -36,7 +36,7 @@ static sf_status fit_rig(const char *name, int pairs, const double *height, cons
                          SF_CFH_MAX_PAIRS);
     for (int k = 0; k < pairs; k++) {
         if (!(height[k] > 0) || !(speed[k] > 0))
-            return SF_REFUSE(err, "%s: pair %d, %g m and %g m/s, is not positive", name, k + 1, height[k],
+            return SF_REFUSE(err, "%s: pair %d, %g m and %g m/s, is not above 0", name, k + 1, height[k],
                              speed[k]);
         if (speed[k] > MAX_SPEED_RATIO * sf_cfh_speed(height[k]))
             return SF_REFUSE(err, "%s: pair %d, %g m/s from %g m, is faster than free fall (%.4g m/s)", name,
@@ -97,7 +97,7 @@ static sf_status check_points(const char *name, int count, const double *height,
     double largest = 0, at = 0;
     for (int k = 0; k < count; k++) {
         if (!(value[k] > 0) || !isfinite(value[k]) || !(height[k] > (k ? height[k - 1] : 0)))
-            return SF_REFUSE(err, "%s: point %d, %g at %g m, is not positive or out of order", name, k + 1,
+            return SF_REFUSE(err, "%s: point %d, %g at %g m, is not above 0 or out of order", name, k + 1,
                              value[k], height[k]);
         if (value[k] < (1 - MAX_FALL) * largest)
             return SF_FAIL(err, SF_ERR_NUMERIC,
@@ -213,7 +213,7 @@ sf_status sf_cfh_cross(const char *name, int count, const double *height, const 
     out->side = above == count ? SF_CFH_NOT_REACHED : above > 0 ? SF_CFH_CROSSED : SF_CFH_EXCEEDED;
     bool crossed = out->side == SF_CFH_CROSSED;
     if (count < SF_CFH_MIN_POINTS && crossed)
-        return SF_REFUSE(err, "%s has %d points, at least %d are needed for a crossing", name, count,
+        return SF_REFUSE(err, "%s has %d points for a crossing" SF_AT_LEAST("%d"), name, count,
                          SF_CFH_MIN_POINTS);
     if (count < SF_CFH_MIN_POINTS)
         return SF_OK;

@@ -188,8 +188,8 @@ static sf_status count_draws(const char *folder, int *count, sf_error *err) {
     if (*count == 0)
         return SF_REFUSE(err, "--posterior %s: there is no draw-001.cfg", folder);
     if (*count < SF_CFH_LEAST_DRAWS)
-        return SF_REFUSE(err, "--posterior %s: %d draws, at least %d are needed for an interval", folder,
-                         *count, SF_CFH_LEAST_DRAWS);
+        return SF_REFUSE(err, "--posterior %s: %d draws for an interval" SF_AT_LEAST("%d"), folder, *count,
+                         SF_CFH_LEAST_DRAWS);
     return SF_OK;
 }
 
@@ -272,7 +272,7 @@ sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int overr
     *out = (sf_cfh_draws){.folder = folder};
     SF_TRY(check_overrides(override_count, overrides, err));
     SF_TRY(count_draws(folder, &count, err));
-    out->draw = sf_alloc(err, (unsigned long)count, sizeof *out->draw, "draws");
+    out->draw = sf_alloc(err, count, sizeof *out->draw, "draws");
     for (int k = 0; k < override_count; k++)
         list[k + 1] = overrides[k];
     while (err->status == SF_OK && out->count < count) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/cfh/spread.h"
 
+#include "base/sets.h"
 #include "io/process.h"
-#include "study/predictor.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -48,7 +48,7 @@ static sf_status drop_grid(const sf_cfh_spread *s, const sf_columns *pad, const 
 
 static sf_status drop_draws(sf_cfh_spread *s, const sf_columns *pad, const sf_cfh_draws *draws,
                             sf_error *err) {
-    SF_OWNED sf_error *errors = sf_alloc(err, (unsigned long)s->draws, sizeof *errors, "draws");
+    SF_OWNED sf_error *errors = sf_alloc(err, s->draws, sizeof *errors, "draws");
     SF_TRY(err->status);
 #pragma omp parallel for schedule(dynamic)
     for (int d = 0; d < s->draws; d++) {
@@ -246,7 +246,7 @@ static sf_cfh_interval interval_of(double *values, int count) {
 }
 
 static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
-    SF_OWNED double *values = sf_alloc(err, (unsigned long)s->draws, sizeof *values, "draws");
+    SF_OWNED double *values = sf_alloc(err, s->draws, sizeof *values, "draws");
     SF_TRY(err->status);
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         for (int k = 0; k < s->grid; k++) {
@@ -282,7 +282,7 @@ sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, 
         const sf_cfh_fit *fit = &result->crossing[c].fit;
         s->fit_scatter[c] = fit->count > 3 ? fit->rms * sqrt(fit->count / (fit->count - 3.0)) : NAN;
     }
-    s->draw = sf_alloc(err, (unsigned long)s->draws, sizeof *s->draw, "draws");
+    s->draw = sf_alloc(err, s->draws, sizeof *s->draw, "draws");
     if (s->draw && list_drops(s, &pad->columns, own, points, err) == SF_OK &&
         drop_draws(s, &pad->columns, draws, err) == SF_OK && correct_draws(s, err) == SF_OK) {
         take_responses(s, draws);
@@ -305,8 +305,7 @@ typedef struct place {
 
 static int compare_places(const void *a, const void *b) {
     const place *x = a, *y = b;
-    return x->height != y->height ? (x->height > y->height) - (x->height < y->height)
-                                  : (x->draw > y->draw) - (x->draw < y->draw);
+    return x->height != y->height ? SF_ORDER(x->height, y->height) : SF_ORDER(x->draw, y->draw);
 }
 
 void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {

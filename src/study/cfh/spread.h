@@ -5,7 +5,7 @@
  *
  *     ln y_draw(h) = ln columns_draw(h) + b(ln h, ln columns_draw(h)),
  *
- * where b is a Gaussian process (study/predictor.h) of ln y_simulated - ln columns at the drops of the case's
+ * where b is a Gaussian process (study/column.h) of ln y_simulated - ln columns at the drops of the case's
  * own material and of some draws, whose deviation is the columns' own error. Each draw is repeated
  * with random errors of the responses (study/fit/drop/inference.h), of the mesh, of the points about their
  * fit, of the corrected columns and of the rig. Heights are those of free fall (m) unless a name says "rig".

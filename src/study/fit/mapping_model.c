@@ -150,7 +150,7 @@ sf_status sf_mapping_minimise(const sf_mapping_model *model, const double *sd, c
                               double hold, double *u, sf_error *err) {
     const sf_mapping_problem *p = model->problem;
     SF_VECTOR *f = sf_vector((size_t)p->responses + 2 * (size_t)p->parameters, err);
-    SF_OWNED double *y = sf_alloc(err, (unsigned long)p->responses, sizeof *y, "responses");
+    SF_OWNED double *y = sf_alloc(err, p->responses, sizeof *y, "responses");
     minimisation m = {
         .model = *model, .sd = sd, .about = about, .radius = hold, .y = y, .err = SF_ERROR_INIT};
     for (int round = 0; round < BOUND_ROUNDS && err->status == SF_OK; round++)

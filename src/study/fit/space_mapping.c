@@ -411,8 +411,8 @@ static sf_status return_to_surrogate(search *s, sf_error *err) {
     memcpy(r->corrected, r->matrix, (size_t)entries * sizeof *r->matrix);
     memset(r->matrix, 0, (size_t)entries * sizeof *r->matrix);
     memset(s->best.offset, 0, (size_t)p->responses * sizeof *s->best.offset);
-    SF_OWNED double *told = sf_alloc(err, (unsigned long)p->responses, sizeof *told, "responses"),
-                    *slope = sf_alloc(err, (unsigned long)entries, sizeof *slope, "Jacobian");
+    SF_OWNED double *told = sf_alloc(err, p->responses, sizeof *told, "responses"),
+                    *slope = sf_alloc(err, entries, sizeof *slope, "Jacobian");
     SF_TRY(err->status);
     const sf_mapping_model model = model_at(s);
     if (p->surrogate(p->context, s->best.u, told, &failure) != SF_OK ||

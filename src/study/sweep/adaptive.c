@@ -2,7 +2,6 @@
 #include "study/sweep/adaptive.h"
 
 #include "io/process.h"
-#include "study/predictor.h"
 #include "study/sweep/analysis.h"
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>
@@ -147,7 +146,7 @@ static int choose_apart(const sf_sweep_adaptive *a, const sf_runs *runs, int mos
                         sf_error *err) {
     int64_t step = (runs->count + DESIGN_SAMPLE - 1) / DESIGN_SAMPLE, n = (runs->count + step - 1) / step;
     int count = 0;
-    SF_OWNED double *x = sf_alloc(err, (unsigned long)n, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
+    SF_OWNED double *x = sf_alloc(err, n, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
     if (!x)
         return 0;
     double *apart = x + n * a->inputs, own[INPUTS];
@@ -250,7 +249,7 @@ static sf_status expect_coarse(sf_sweep_adaptive *a, sf_error *err) {
     int most = 0, targets = a->plan->figure_count + WATCHED;
     for (int t = 0; t < targets; t++)
         most = a->coarse->model[t].count > most ? a->coarse->model[t].count : most;
-    SF_OWNED double *room = sf_alloc(err, (unsigned long)most + 1, sizeof *room, "predictions");
+    SF_OWNED double *room = sf_alloc(err, most + 1, sizeof *room, "predictions");
     a->base = sf_alloc(err, n, TARGETS * sizeof *a->base, "coarse rows");
     a->doubt = sf_alloc(err, n, TARGETS * sizeof *a->doubt, "coarse rows");
     for (int64_t row = 0; row < a->plan->rows && err->status == SF_OK; row++)
@@ -268,8 +267,7 @@ static sf_status expect(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err
     } else {
         SF_TRY(sf_sweep_trend_learn(runs, a->drops, &a->trend, err));
     }
-    a->expected =
-        sf_alloc(err, (unsigned long)runs->count, SF_TRENDS * sizeof *a->expected, "columns of the rows");
+    a->expected = sf_alloc(err, runs->count, SF_TRENDS * sizeof *a->expected, "columns of the rows");
     if (a->log && runs->count > MANY_ROWS) {
         fprintf(a->log, "  %lld rows are read, and their columns computed\n", (long long)runs->count);
         fflush(a->log);
@@ -471,7 +469,7 @@ static int choose_needed(const sf_sweep_adaptive *a, int64_t count, const int64_
     *which = target;
     SF_OWNED double *x = sf_alloc(err, SAMPLE, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
     SF_OWNED int64_t *of = sf_alloc(err, SAMPLE, sizeof *of, "rows");
-    SF_OWNED int *chosen = sf_alloc(err, (unsigned long)most, sizeof *chosen, "rows");
+    SF_OWNED int *chosen = sf_alloc(err, most, sizeof *chosen, "rows");
     if (err->status != SF_OK)
         return 0;
     double *wish = x + (int64_t)SAMPLE * a->inputs;
@@ -493,8 +491,8 @@ static int choose_needed(const sf_sweep_adaptive *a, int64_t count, const int64_
 static int choose_round(sf_sweep_adaptive *a, const sf_runs *runs, int most, int64_t *next, sf_error *err) {
     int64_t open = sf_runs_count(runs, SF_SWEEP_OPEN), ended = runs->count - open, count;
     int64_t step = open / SAMPLE + 1;
-    SF_OWNED int64_t *row = sf_alloc(err, (unsigned long)open, sizeof *row, "rows");
-    SF_OWNED outlook *o = sf_alloc(err, (unsigned long)open, sizeof *o, "predictions");
+    SF_OWNED int64_t *row = sf_alloc(err, open, sizeof *row, "rows");
+    SF_OWNED outlook *o = sf_alloc(err, open, sizeof *o, "predictions");
     int n = 0, target = 0, wanted = (int)(ended / ROUND_PART);
     wanted = wanted < a->jobs ? a->jobs : wanted;
     wanted = wanted < most ? wanted : most;
@@ -541,8 +539,8 @@ static int next(void *context, const sf_runs *runs, int most, int64_t *row, sf_e
 static sf_status finish(void *context, sf_runs *runs, sf_error *err) {
     sf_sweep_adaptive *a = context;
     int64_t open = sf_runs_count(runs, SF_SWEEP_OPEN);
-    SF_OWNED int64_t *row = sf_alloc(err, (unsigned long)open, sizeof *row, "rows");
-    SF_OWNED outlook *o = sf_alloc(err, (unsigned long)open, sizeof *o, "predictions");
+    SF_OWNED int64_t *row = sf_alloc(err, open, sizeof *row, "rows");
+    SF_OWNED outlook *o = sf_alloc(err, open, sizeof *o, "predictions");
     if (row && o && open > 0 && !a->all) {
         list_open(runs, 1, row);
         judge_rows(a, open, row, o, err);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A campaign that simulates only the rows which it needs: every figure of the plan has a wish for its error,
  * and a row is predicted as soon as its 95 % intervals are within these wishes. It is predicted by Gaussian
- * processes (study/predictor.h) of the difference between the drops and their columns (below), or their
+ * processes (study/column.h) of the difference between the drops and their columns (below), or their
  * coarse drops.
  * Further processes watch whether the row's figures can be used and are defined: a row that may be near the
  * anvil, beyond its foam's data, in contact at the end of its run, failing or without one of the figures is

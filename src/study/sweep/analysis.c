@@ -55,7 +55,7 @@ static void estimate(const sample *s, const int64_t *pick, double *out) {
 /* value [resamples][2 d] */
 static sf_status resample(const sample *s, uint64_t seed, int resamples, double *value, sf_error *err) {
     SF_RANDOM *rng = sf_random(seed, err);
-    SF_OWNED int64_t *pick = sf_alloc(err, (unsigned long)s->used, sizeof *pick, "bootstrap samples");
+    SF_OWNED int64_t *pick = sf_alloc(err, s->used, sizeof *pick, "bootstrap samples");
     for (int r = 0; r < resamples && err->status == SF_OK; r++) {
         for (int64_t k = 0; k < s->used; k++)
             pick[k] = (int64_t)gsl_rng_uniform_int(rng, (unsigned long)s->used);
@@ -76,10 +76,10 @@ static void interval(const double *value, int resamples, int columns, int i, dou
 
 static sf_status evaluate(const sample *s, uint64_t seed, sf_index *index, sf_error *err) {
     int columns = 2 * s->d, resamples = s->used * s->d > LARGE ? FEWER_RESAMPLES : RESAMPLES;
-    SF_OWNED double *value = sf_alloc(err, (unsigned long)resamples, (unsigned long)columns * sizeof *value,
-                                      "the bootstrap"),
-                    *all = sf_alloc(err, (unsigned long)columns, sizeof *all, "indices"),
-                    *scratch = sf_alloc(err, (unsigned long)resamples, sizeof *scratch, "the bootstrap");
+    SF_OWNED double *value =
+                        sf_alloc(err, resamples, (unsigned long)columns * sizeof *value, "the bootstrap"),
+                    *all = sf_alloc(err, columns, sizeof *all, "indices"),
+                    *scratch = sf_alloc(err, resamples, sizeof *scratch, "the bootstrap");
     if (err->status == SF_OK && resample(s, seed, resamples, value, err) == SF_OK) {
         estimate(s, NULL, all);
         for (int i = 0; i < s->d && isfinite(all[i]); i++) {
@@ -94,7 +94,7 @@ static sf_status evaluate(const sample *s, uint64_t seed, sf_index *index, sf_er
 
 sf_status sf_indices(int d, int64_t n, const double *y, uint64_t seed, sf_index *index, long long *used,
                      sf_error *err) {
-    sample s = {.d = d, .n = n, .y = y, .place = sf_alloc(err, (unsigned long)n, sizeof(int64_t), "samples")};
+    sample s = {.d = d, .n = n, .y = y, .place = sf_alloc(err, n, sizeof(int64_t), "samples")};
     for (int i = 0; i < d; i++)
         index[i] = (sf_index){NAN, NAN, NAN, NAN, NAN, NAN};
     if (s.place) {
@@ -180,7 +180,7 @@ static bool is_drawn(gsl_rng *random, int64_t wanted, int64_t left) {
 bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err) {
     int64_t picked = 0;
     SF_RANDOM *random = sf_random(SURFACE_SEED, err);
-    bool *pick = sf_alloc(err, (unsigned long)count, sizeof *pick, "a picture");
+    bool *pick = sf_alloc(err, count, sizeof *pick, "a picture");
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         pick[k] = picked < most && is_drawn(random, most - picked, count - k);
         picked += pick[k];
@@ -198,10 +198,9 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     s->of = count_values(a, figure);
     int64_t most = s->of < SF_SURFACE_ROWS ? s->of : SF_SURFACE_ROWS, left = s->of;
     SF_RANDOM *random = sf_random(SURFACE_SEED, err);
-    SF_OWNED double *x =
-        sf_alloc(err, (unsigned long)most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
-    s->simulated = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
-    s->left_out = sf_alloc(err, (unsigned long)most, sizeof(double), "a surface");
+    SF_OWNED double *x = sf_alloc(err, most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
+    s->simulated = sf_alloc(err, most, sizeof(double), "a surface");
+    s->left_out = sf_alloc(err, most, sizeof(double), "a surface");
     for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
         double value = sf_runs_value(a->runs, row, figure);
         if (isnan(value) || !is_drawn(random, most - s->rows, left--))
@@ -252,7 +251,7 @@ void sf_analysis_term(const sf_analysis *a, const sf_quadratic *s, int term, cha
 
 static sf_status make_indices(sf_analysis *a, int figure, sf_error *err) {
     const sf_block *b = sf_plan_saltelli(a->plan);
-    SF_OWNED double *y = sf_alloc(err, (unsigned long)b->rows, sizeof *y, "indices");
+    SF_OWNED double *y = sf_alloc(err, b->rows, sizeof *y, "indices");
     for (int64_t row = 0; row < b->rows && y; row++)
         y[row] = sf_runs_value(a->runs, row, figure);
     if (y)

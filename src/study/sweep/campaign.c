@@ -223,7 +223,7 @@ static int compare_geometries(const void *a, const void *b) {
 /* Returns the rows, sorted; from sf_alloc, NULL on failure. */
 static geometry *list_geometries(const sf_runs *runs, int64_t *count, sf_error *err) {
     int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN);
-    geometry *list = sf_alloc(err, (unsigned long)ended, sizeof *list, "geometries");
+    geometry *list = sf_alloc(err, ended, sizeof *list, "geometries");
     *count = 0;
     for (int64_t row = 0; row < runs->count && list; row++)
         if (runs->state[row] != SF_SWEEP_OPEN)
@@ -340,7 +340,7 @@ static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine,
 
 sf_status sf_sweep_campaign_run(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs,
                                 sf_error *err) {
-    SF_OWNED int64_t *row = sf_alloc(err, (unsigned long)engine->piece, sizeof *row, "the runs at work");
+    SF_OWNED int64_t *row = sf_alloc(err, engine->piece, sizeof *row, "the runs at work");
     bool turned = false;
     if (row && take_over(c, runs, &turned, err) == SF_OK) {
         if (write_table(c, runs, turned, err) == SF_OK && probe(c, engine, runs, err) == SF_OK &&

@@ -210,7 +210,7 @@ static double size_of(const char *folder, const char *name) {
 
 /* Measures the cost by the median of wall_s x threads; 0: no run is done. */
 static sf_status measure(const sf_runs *r, double *seconds, int64_t *done, sf_error *err) {
-    SF_OWNED double *value = sf_alloc(err, (unsigned long)r->count, sizeof *value, "run times");
+    SF_OWNED double *value = sf_alloc(err, r->count, sizeof *value, "run times");
     size_t wall = sf_runs_figure("wall_s"), threads = sf_runs_figure("threads"), n = 0;
     for (int64_t row = 0; row < r->count && value; row++) {
         const double *place = sf_runs_place(r, row);

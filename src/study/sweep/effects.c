@@ -183,7 +183,7 @@ double sf_quadratic_at(const sf_quadratic *s, const double *x) {
 
 /* Ranks of the numbers, equal numbers the same group as long as there are few. */
 static sf_status group_numbers(const sf_factor *f, int64_t rows, sf_groups *g, sf_error *err) {
-    SF_OWNED size_t *order = sf_alloc(err, (unsigned long)rows, sizeof *order, "groups");
+    SF_OWNED size_t *order = sf_alloc(err, rows, sizeof *order, "groups");
     SF_TRY(err->status);
     gsl_sort_index(order, f->value, 1, (size_t)rows);
     int64_t distinct = 1;
@@ -198,8 +198,8 @@ static sf_status group_numbers(const sf_factor *f, int64_t rows, sf_groups *g, s
 }
 
 static sf_status find_middles(const sf_factor *f, int64_t rows, sf_groups *g, sf_error *err) {
-    SF_OWNED int64_t *number = sf_alloc(err, (unsigned long)g->count, sizeof *number, "groups");
-    g->middle = sf_alloc(err, (unsigned long)g->count, sizeof *g->middle, "groups");
+    SF_OWNED int64_t *number = sf_alloc(err, g->count, sizeof *number, "groups");
+    g->middle = sf_alloc(err, g->count, sizeof *g->middle, "groups");
     for (int64_t k = 0; k < rows && err->status == SF_OK; k++) {
         g->middle[g->of_row[k]] += f->value[k];
         number[g->of_row[k]]++;
@@ -212,8 +212,7 @@ static sf_status find_middles(const sf_factor *f, int64_t rows, sf_groups *g, sf
 sf_status sf_groups_make(const sf_plan *p, int factor, sf_groups *g, sf_error *err) {
     const sf_factor *f = &p->factor[factor];
     int64_t rows = p->block[p->block_of[factor]].rows;
-    *g = (sf_groups){.count = f->count,
-                     .of_row = sf_alloc(err, (unsigned long)rows, sizeof(int64_t), "groups")};
+    *g = (sf_groups){.count = f->count, .of_row = sf_alloc(err, rows, sizeof(int64_t), "groups")};
     for (int64_t k = 0; k < rows && g->of_row && f->words; k++)
         g->of_row[k] = (int64_t)f->value[k];
     if (err->status == SF_OK && !f->words)
@@ -234,7 +233,7 @@ static int64_t combination(const sf_block *b, int64_t row) {
 /* [combinations] those of which a run does not count; of a plan of one block none. */
 static bool *find_gaps(const sf_runs *r, const sf_block *b, int figure, sf_effect *e, sf_error *err) {
     int64_t count = r->count / b->rows;
-    bool *gap = sf_alloc(err, (unsigned long)count, sizeof *gap, "combinations");
+    bool *gap = sf_alloc(err, count, sizeof *gap, "combinations");
     if (!gap || count == 1)
         return gap;
     for (int64_t row = 0; row < r->count; row++)
@@ -322,8 +321,8 @@ sf_status sf_effect_measure(const sf_runs *r, int factor, int figure, sf_effect 
     if (sf_effect_is_scatter(r->plan, factor) || sf_effect_is_by_surface(r->plan, factor))
         return SF_OK;
     SF_TRY(sf_groups_make(r->plan, factor, &g, err));
-    SF_OWNED double *mean = sf_alloc(err, (unsigned long)g.count, sizeof *mean, "means");
-    SF_OWNED int64_t *number = sf_alloc(err, (unsigned long)g.count, sizeof *number, "means");
+    SF_OWNED double *mean = sf_alloc(err, g.count, sizeof *mean, "means");
+    SF_OWNED int64_t *number = sf_alloc(err, g.count, sizeof *number, "means");
     SF_OWNED bool *gap = find_gaps(r, b, figure, e, err);
     SF_TRY(err->status);
     find_means(r, b, gap, &g, figure, mean, number);
@@ -418,9 +417,8 @@ sf_status sf_probabilities_count(const sf_runs *r, sf_probabilities *p, sf_error
     *p = (sf_probabilities){.cells = count_cells(plan)};
     if (p->cells == 0)
         return SF_OK;
-    p->cell = sf_alloc(err, (unsigned long)p->cells, (unsigned long)plan->figure_count * sizeof *p->cell,
-                       "probabilities");
-    p->row = sf_alloc(err, (unsigned long)p->cells, sizeof *p->row, "probabilities");
+    p->cell = sf_alloc(err, p->cells, (unsigned long)plan->figure_count * sizeof *p->cell, "probabilities");
+    p->row = sf_alloc(err, p->cells, sizeof *p->row, "probabilities");
     for (int64_t row = r->count - 1; row >= 0 && err->status == SF_OK; row--) {
         int64_t cell = cell_of(plan, row);
         p->row[cell] = row;

@@ -63,8 +63,7 @@ static sf_status take_quantity(reading *r, const config_setting_t *s, const char
     double si = 0;
     char own[SF_FACTOR_UNIT_SIZE];
     if (!r->begun && !find_kind(r->config->units, text, &kind, &si))
-        return sf_config_refuse(r->config, s, err, "%s: \"%s\" has no unit that is known", r->factor->key,
-                                text);
+        return sf_config_refuse(r->config, s, err, "%s: unknown unit in \"%s\"", r->factor->key, text);
     if (!r->begun && begin_unit(r, s, unit, kind, err) != SF_OK)
         return err->status;
     if (!*r->factor->unit)
@@ -91,7 +90,7 @@ static sf_status take_number(reading *r, const config_setting_t *s, double *out,
                               : sf_config_refuse(r->config, s, err, "%s is not finite", r->factor->key);
     }
     if (!unit)
-        return sf_config_refuse(r->config, s, err, "%s: a number is expected, with its unit as a text",
+        return sf_config_refuse(r->config, s, err, "%s: expected a number, with its unit as a text",
                                 r->factor->key);
     return take_quantity(r, s, text, number, unit, out, err);
 }
@@ -113,10 +112,10 @@ static sf_status make_levels(sf_factor *f, int64_t count, bool words, sf_error *
     f->words = words;
     f->count = count;
     if (words) {
-        f->text = sf_alloc(err, (unsigned long)count, sizeof *f->text, "levels");
-        f->label = sf_alloc(err, (unsigned long)count, sizeof *f->label, "levels");
+        f->text = sf_alloc(err, count, sizeof *f->text, "levels");
+        f->label = sf_alloc(err, count, sizeof *f->label, "levels");
     } else {
-        f->number = sf_alloc(err, (unsigned long)count, sizeof *f->number, "levels");
+        f->number = sf_alloc(err, count, sizeof *f->number, "levels");
     }
     return err->status;
 }
@@ -251,7 +250,7 @@ static sf_status read_range(reading *r, const config_setting_t *first, sf_error 
     SF_TRY(sf_config_choice(r->config, r->group, "spacing", "linear|log", &logarithmic, err));
     SF_TRY(make_levels(f, (int64_t)count, false, err));
     if (logarithmic && !(from > 0 && to > 0))
-        return sf_config_refuse(r->config, first, err, "%s: a logarithmic range needs values above zero",
+        return sf_config_refuse(r->config, first, err, "%s: a logarithmic range needs values above 0",
                                 f->key);
     for (int64_t k = 0; k < f->count; k++) {
         double s = (double)k / (double)(f->count - 1);
@@ -314,11 +313,11 @@ static const char *uniform_fault(const sf_factor *f) {
 }
 
 static const char *normal_fault(const sf_factor *f) {
-    return f->b > 0 ? NULL : "the deviation must be above zero";
+    return f->b > 0 ? NULL : "the deviation must be above 0";
 }
 
 static const char *lognormal_fault(const sf_factor *f) {
-    return !(f->b > 0) ? normal_fault(f) : f->a > 0 ? NULL : "the median must be above zero";
+    return !(f->b > 0) ? normal_fault(f) : f->a > 0 ? NULL : "the median must be above 0";
 }
 
 struct sf_distribution {
@@ -418,7 +417,7 @@ static sf_status read_head(reading *r, sf_error *err) {
     SF_TRY(sf_config_text(r->config, r->group, "key", true, &key, err));
     SF_TRY(sf_config_text(r->config, r->group, "name", false, &name, err));
     if (strlen(key) >= sizeof f->key || strpbrk(key, "= \t\"@") || (name && strlen(name) >= sizeof f->name))
-        return sf_config_refuse(r->config, r->group, err, "\"%.80s\" is no key of a case", key);
+        return sf_config_refuse(r->config, r->group, err, "unknown key \"%.80s\" of a case", key);
     snprintf(f->key, sizeof f->key, "%s", key);
     snprintf(f->name, sizeof f->name, "%s", name ? name : key);
     return SF_OK;

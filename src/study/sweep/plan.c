@@ -31,8 +31,7 @@ static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) 
 static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
     double shift[SF_SOBOL_DIMENSIONS] = {0};
     if (d > SF_SOBOL_DIMENSIONS)
-        return SF_REFUSE(err, "the Sobol' sequence has at most %d coordinates, not %d", SF_SOBOL_DIMENSIONS,
-                         d);
+        return SF_REFUSE(err, "%d coordinates of a Sobol' sequence" SF_AT_MOST("%d"), d, SF_SOBOL_DIMENSIONS);
     gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
     if (!q)
         return SF_NO_MEMORY(err, "the Sobol' sequence");
@@ -51,7 +50,7 @@ static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error 
 
 /* One stratum of each coordinate for each point, shuffled; the place within it at random. */
 static sf_status latin(gsl_rng *rng, int d, int64_t count, double *u, sf_error *err) {
-    SF_OWNED int64_t *stratum = sf_alloc(err, (unsigned long)count, sizeof *stratum, "strata");
+    SF_OWNED int64_t *stratum = sf_alloc(err, count, sizeof *stratum, "strata");
     for (int i = 0; i < d && stratum; i++) {
         for (int64_t k = 0; k < count; k++)
             stratum[k] = k;
@@ -63,8 +62,7 @@ static sf_status latin(gsl_rng *rng, int d, int64_t count, double *u, sf_error *
 }
 
 static sf_status saltelli(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
-    SF_OWNED double *both =
-        sf_alloc(err, (unsigned long)count, 2 * (unsigned long)d * sizeof *both, "samples");
+    SF_OWNED double *both = sf_alloc(err, count, 2 * (unsigned long)d * sizeof *both, "samples");
     if (both && sobol(2 * d, count, seed, both, err) == SF_OK)
         for (int64_t k = 0; k < count; k++)
             for (int block = 0; block < d + 2; block++) {
@@ -152,7 +150,7 @@ static void number_words(sf_factor *f) {
 }
 
 static sf_status copy_levels(sf_factor *f, sf_error *err) {
-    f->value = sf_alloc(err, (unsigned long)f->count, sizeof *f->value, "the values of a factor");
+    f->value = sf_alloc(err, f->count, sizeof *f->value, "the values of a factor");
     SF_TRY(err->status);
     for (int64_t k = 0; k < f->count && !f->words; k++)
         f->value[k] = f->number[k];
@@ -198,7 +196,7 @@ static sf_status spread(const double *u, sf_plan *p, const sf_block *b, sf_error
     int d = p->factor_count - b->first;
     for (int i = 0; i < d; i++) {
         sf_factor *f = &p->factor[b->first + i];
-        f->value = sf_alloc(err, (unsigned long)b->rows, sizeof *f->value, "the values of a factor");
+        f->value = sf_alloc(err, b->rows, sizeof *f->value, "the values of a factor");
         for (int64_t k = 0; k < b->rows && f->value; k++)
             f->value[k] = sf_factor_quantile(f, u[k * d + i]);
     }
@@ -210,7 +208,7 @@ static sf_status draw(const sf_config *config, const config_setting_t *group, sf
     int d = p->factor_count - b->first;
     sf_error inner = SF_ERROR_INIT;
     b->rows = sf_sample_rows(b->method, d, b->samples);
-    SF_OWNED double *u = sf_alloc(err, (unsigned long)b->rows, (unsigned long)d * sizeof *u, "samples");
+    SF_OWNED double *u = sf_alloc(err, b->rows, (unsigned long)d * sizeof *u, "samples");
     if (u && sf_sample(b->method, d, b->samples, b->seed, u, &inner) != SF_OK)
         sf_config_refuse(config, group, err, "%s", inner.text);
     else if (u)
@@ -271,8 +269,8 @@ static sf_status multiply(const sf_config *config, const config_setting_t *list,
                                 "the plan has %.0f runs, more than %d: give --yes if it is meant", product,
                                 SF_SWEEP_ROWS);
     if (product > MOST_SAMPLES)
-        return sf_config_refuse(config, list, err, "the plan has %.3g runs: more than %d cannot be planned",
-                                product, MOST_SAMPLES);
+        return sf_config_refuse(config, list, err, "the plan has %.3g runs" SF_AT_MOST("%d"), product,
+                                MOST_SAMPLES);
     for (int k = p->block_count - 1; k >= 0; k--) {
         p->block[k].stride = p->rows;
         p->rows *= p->block[k].rows;
@@ -351,10 +349,11 @@ static sf_status add_figure(const sf_config *config, const config_setting_t *s, 
                             double accuracy, sf_plan *p, sf_error *err) {
     const sf_figure *figure = sf_figure_find(key);
     if (!figure || figure->row.type == SF_ROW_TEXT)
-        return sf_config_refuse(config, s, err, "\"%.80s\" is no figure of summary.json (docs/formats.md)",
-                                key);
+        return sf_config_refuse(config, s, err,
+                                "unknown figure \"%.80s\" of summary.json (docs/formats.md lists them)", key);
     if (p->figure_count == SF_SWEEP_FIGURES)
-        return sf_config_refuse(config, s, err, "at most %d figures", SF_SWEEP_FIGURES);
+        return sf_config_refuse(config, s, err, "%d figures" SF_AT_MOST("%d"), p->figure_count + 1,
+                                SF_SWEEP_FIGURES);
     p->figure[p->figure_count++] = (sf_sweep_limit){figure->row.key, limit, accuracy};
     if ((accuracy > 0) != (p->figure[0].accuracy > 0))
         return sf_config_refuse(
@@ -573,7 +572,7 @@ static sf_status refuse_double(const sf_factor *f, const uint64_t *key, int64_t 
 static sf_status check_words(const sf_plan *p, int factor, uint64_t *hash, sf_error *err) {
     const sf_factor *f = &p->factor[factor];
     const sf_block *b = &p->block[p->block_of[factor]];
-    SF_OWNED uint64_t *key = sf_alloc(err, (unsigned long)f->count, sizeof *key, "keys");
+    SF_OWNED uint64_t *key = sf_alloc(err, f->count, sizeof *key, "keys");
     for (int64_t k = 0; k < f->count && err->status == SF_OK; k++) {
         int64_t row = 0;
         while (row < b->rows && f->value[row] != (double)k)

@@ -245,7 +245,7 @@ sf_status sf_runs_write(const sf_runs *r, const char *path, uint64_t *hash, sf_e
     for (int64_t row = 0; row < r->count; row++)
         put_row(&csv, r, row);
     if (fflush(file) != 0)
-        SF_FAIL(err, SF_ERR_IO, "writing %s failed (disk full?)", path);
+        SF_FAIL(err, SF_ERR_IO, SF_NOT_WRITTEN, path);
     else /* under the partial name, before another program knows the file */
         sf_plain_hash(out.partial, "table of the runs", SF_PLAIN_ANY, hash, err);
     return sf_replace_close(&out, err);

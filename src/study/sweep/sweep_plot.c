@@ -159,8 +159,8 @@ static sf_status put_factor_panel(sf_chart *chart, const sf_analysis *a, int fig
     SF_OWNED_BY(sf_groups_free) sf_groups groups = {0};
     sf_panel *panel = sf_chart_panel(chart);
     SF_TRY(sf_groups_make(p, factor, &groups, err));
-    SF_OWNED double *sum = sf_alloc(err, (unsigned long)groups.count, sizeof *sum, "a picture");
-    SF_OWNED double *number = sf_alloc(err, (unsigned long)groups.count, sizeof *number, "a picture");
+    SF_OWNED double *sum = sf_alloc(err, groups.count, sizeof *sum, "a picture");
+    SF_OWNED double *number = sf_alloc(err, groups.count, sizeof *number, "a picture");
     label_factor(&panel->x, &p->factor[factor]);
     sf_axis_label(&panel->y, "%s", limit->figure);
     panel->key = key && s->factor >= 0 ? SF_KEY_ABOVE : SF_KEY_NONE;

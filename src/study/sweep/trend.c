@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/adaptive.h"
 
-#include "model/flight.h"
 #include <gsl/gsl_multifit.h>
 
 enum { MOST_DROPS = 64, LEVELS = 8 };

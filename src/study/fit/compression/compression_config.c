@@ -25,7 +25,7 @@ static sf_status is_form_asked(const sf_config *file, sf_config_item *root, bool
     *asked = strcmp(name, FREE_FORM) != 0;
     if (*asked && (!form || !form->stress))
         return sf_config_refuse(file, config_setting_get_member(root, "curve_form"), err,
-                                "curve_form is \"%.80s\": free or one of %s is expected, but not table", name,
+                                "curve_form is \"%.80s\"; expected free or one of %s, but not table", name,
                                 sf_curve_form_words());
     return SF_OK;
 }
@@ -97,7 +97,8 @@ static sf_status read_unknowns(const sf_config *file, sf_config_item *root, sf_f
     if (list && !config_setting_is_array(list) && !config_setting_is_list(list))
         return sf_config_refuse(file, list, err, "unknown must be a list: unknown = ( \"E\", \"s0\" )");
     if (list && config_setting_length(list) > SF_FORM_UNKNOWNS - 4)
-        return sf_config_refuse(file, list, err, "unknown has more than %d parameters", SF_FORM_UNKNOWNS - 4);
+        return sf_config_refuse(file, list, err, "unknown has %d entries" SF_AT_MOST("%d"),
+                                config_setting_length(list), SF_FORM_UNKNOWNS - 4);
     for (int k = 0; list && k < config_setting_length(list); k++) {
         const char *name = config_setting_get_string_elem(list, k);
         sf_foam_parameter p = name ? sf_parameter_find(name) : SF_PARAMETER_COUNT;
@@ -302,7 +303,7 @@ static sf_status read_rate(const sf_config *file, sf_config_item *entry, double 
     if (!text || sf_units_parse(file->units, text, SF_SPEED, &speed, &no_speed) != SF_OK)
         return sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, rate, err);
     if (!(speed > 0))
-        return sf_config_refuse(file, setting, err, "rate is %s; the speed must be above 0", text);
+        return sf_config_refuse(file, setting, err, "rate: a speed of %s" SF_NOT_ABOVE_0, text);
     if (!(thickness > 0))
         return sf_config_refuse(file, setting, err,
                                 "rate is a speed (%s): give the specimen's thickness, for example specimen = "
@@ -355,7 +356,7 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, bool pr
             SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
                     config_setting_source_line(entry));
         if (temperature > 0 && !(temperature >= 100 && temperature <= 600)) /* as pad.temperature */
-            sf_config_refuse(file, entry, err, "temperature is %g K, outside 100 to 600 K", temperature);
+            sf_config_refuse(file, entry, err, "temperature" SF_OUTSIDE("%g K", "100", "600 K"), temperature);
         test.temperature = temperature;
         if (err->status != SF_OK)
             return err->status;
@@ -501,7 +502,7 @@ static sf_status check_together(const char *path, const sf_compression_config *c
     for (int i = 0; i < c->test[c->middle].loading; i++)
         below += c->test[c->middle].strain[i] <= c->modulus_range;
     if (below < 4)
-        return SF_REFUSE(err, "%s: %d points below the strain %g (E_range) while loading; E needs at least 4",
+        return SF_REFUSE(err, "%s: %d points below the strain %g (E_range) while loading" SF_AT_LEAST("4"),
                          c->test[c->middle].path, below, c->modulus_range);
     if (c->test_count == 1 && c->rate_model != SF_RATE_AUTO && c->rate_model != SF_RATE_NONE)
         return SF_REFUSE(err, "%s: the rate model \"%s\" needs tests at two rates; there is one test", path,

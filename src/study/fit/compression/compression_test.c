@@ -285,7 +285,7 @@ static sf_status check_row(const sf_compression_test *t, int i, const table_term
                          t->path, t->line[i], terms->name[0], written, 100 * strain);
     if (strain < -STRAIN_ZERO)
         return SF_REFUSE(err,
-                         "%s:%d: %s %g is negative; compression must be positive (invert = \"...\" in the "
+                         "%s:%d: %s %g is negative; compression is positive (invert = \"...\" in the "
                          "file that names the test changes the sign)",
                          t->path, t->line[i], terms->name[0], written);
     return SF_OK;
@@ -403,7 +403,7 @@ static sf_status split_branches(sf_compression_test *t, const table_terms *terms
 static sf_status check_size(const sf_compression_test *t, sf_error *err) {
     int unloading = t->count - t->loading;
     if (t->loading < SF_COMPRESSION_LOADING_POINTS)
-        return SF_REFUSE(err, "%s: %d points of loading; a test needs at least %d", t->path, t->loading,
+        return SF_REFUSE(err, "%s: %d points of loading" SF_AT_LEAST("%d"), t->path, t->loading,
                          SF_COMPRESSION_LOADING_POINTS);
     if (unloading > 0 && unloading < SF_COMPRESSION_UNLOADING_POINTS)
         return SF_REFUSE(err,
@@ -431,7 +431,7 @@ static sf_status check_sign(sf_compression_test *t, const table_terms *terms, sf
     for (int i = 0; i < t->count; i++)
         if (t->stress[i] < -STRESS_ZERO * size)
             return SF_REFUSE(err,
-                             "%s:%d: %s %g is negative, beyond the scatter about zero; compression must be "
+                             "%s:%d: %s %g is negative, beyond the scatter about zero; compression is "
                              "positive (invert = \"...\" in the file that names the test changes the sign)",
                              t->path, t->line[i], terms->name[1], t->stress[i] / terms->scale[1]);
     return SF_OK;

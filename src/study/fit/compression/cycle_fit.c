@@ -125,7 +125,7 @@ sf_status sf_cycle_records_read(const sf_config *file, sf_config_item *root, sf_
         SF_TRY(read_record(file, group, &c->cycles[c->record_count++], err));
         for (int j = 0; j < k; j++)
             if (is_same_record(&c->cycles[j], &c->cycles[k]))
-                return sf_config_refuse(file, group, err, "cycles: the record %s is there already",
+                return sf_config_refuse(file, group, err, "cycles: the record %s is given twice",
                                         c->cycles[j].path);
     }
     return SF_OK;
@@ -267,7 +267,7 @@ static void take_errors(const problem *p, const gsl_vector *x, const gsl_matrix 
 /* Compares a record with the fitted law. */
 static sf_status follow_record(const sf_cycle_record *r, const sf_foam_card *card, sf_cycle_result *c,
                                sf_error *err) {
-    c->stress = sf_alloc(err, (unsigned long)r->count, sizeof *c->stress, "cycles");
+    c->stress = sf_alloc(err, r->count, sizeof *c->stress, "cycles");
     if (err->status != SF_OK || follow(r, card, r->count, c->stress, err) != SF_OK)
         return err->status;
     for (int k = 0; k < 2 * r->cycles; k++)
@@ -351,7 +351,7 @@ sf_status sf_cycle_fit_run(sf_form_fit *fit, sf_error *err) {
         return SF_OK;
     if (!fit->has_unloading)
         return SF_REFUSE(err, "%s: a test without unloading has no memory", c->cycles[0].path);
-    p.stress = sf_alloc(err, (unsigned long)longest, sizeof *p.stress, "cycles");
+    p.stress = sf_alloc(err, longest, sizeof *p.stress, "cycles");
     SF_TRY(err->status);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     size_t size = (size_t)(c->form.unknown_count + HYSTERESIS + p.memory);

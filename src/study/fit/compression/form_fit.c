@@ -118,7 +118,7 @@ static sf_status init_problem(const sf_compression_config *config, problem *p, s
     *p = (problem){.config = config, .request = &config->form, .fall_weight = FALL_WEIGHT[0]};
     for (int k = 0; k < config->test_count; k++)
         p->points += config->test[k].loading;
-    p->strain = sf_alloc(err, 3 * (unsigned long)p->points, sizeof *p->strain, "form fit");
+    p->strain = sf_alloc(err, 3 * p->points, sizeof *p->strain, "form fit");
     SF_TRY(err->status);
     p->stress = p->strain + p->points;
     p->reduced = p->stress + p->points;
@@ -288,7 +288,7 @@ static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, cons
     double peak, energy;
     bool back = fit->has_unloading && t->count > t->loading;
     free(out->stress);
-    out->stress = sf_alloc(err, (unsigned long)t->count, sizeof(double), "test");
+    out->stress = sf_alloc(err, t->count, sizeof(double), "test");
     SF_TRY(err->status);
     loading_at(curve, t->largest_strain, &peak);
     for (int i = 0; i < t->count; i++) {

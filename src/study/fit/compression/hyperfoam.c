@@ -49,7 +49,7 @@ sf_status sf_hyperfoam_request_asked(const sf_config *file, sf_config_item *root
 static sf_status check_lateral(const sf_table_point *p, sf_error *err) {
     if (p->value[0] >= 1 || p->value[1] <= -1 || p->value[1] >= 1)
         return SF_REFUSE(err,
-                         "%s:%d: strain %s and lateral strain %s: both must be between -1 and 1; columns in "
+                         "%s:%d: strain %s and lateral strain %s: one is outside -1 to 1; columns in "
                          "percent are named strain_percent and lateral_strain_percent",
                          p->path, p->line, p->text[0], p->text[1]);
     return SF_OK;
@@ -291,7 +291,7 @@ static sf_status fit_unloading(const sf_compression_test *t, fitted *fit, sf_err
     sf_hyperfoam foam = sf_hyperfoam_build(&fit->card);
     int count = t->count - t->loading;
     double lateral = 0, peak = 0;
-    SF_OWNED double *loading = sf_alloc(err, 2 * (unsigned long)count, sizeof *loading, "unloading");
+    SF_OWNED double *loading = sf_alloc(err, 2 * count, sizeof *loading, "unloading");
     SF_TRY(err->status);
     sf_unloading_points points = {count,           t->stress + t->loading, loading, NULL,
                                   loading + count, t->largest_stress,      false,   1};

@@ -79,7 +79,7 @@ static int derivatives(const gsl_vector *x, void *context, gsl_matrix *out) {
 static double search(const sf_compression_model *model, bool unloading, gsl_vector *x, gsl_matrix *covariance,
                      sf_error *err) {
     size_t n = (size_t)points_of(model->data, unloading), p = count_of(model, unloading);
-    SF_OWNED double *stress = sf_alloc(err, (unsigned long)model->data->count, sizeof *stress, "stresses");
+    SF_OWNED double *stress = sf_alloc(err, model->data->count, sizeof *stress, "stresses");
     SF_MATRIX *change = sf_matrix((size_t)model->data->count, x->size, err);
     problem context = {model, unloading, x, stress, change};
     gsl_multifit_nlinear_fdf fdf = {.f = deviations, .df = derivatives, .n = n, .p = p, .params = &context};
@@ -237,7 +237,7 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
 
 static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e, sf_error *err) {
     SF_OWNED double *gradient =
-        sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
+        sf_alloc(err, fit->model.parameter_count, sizeof *gradient, "parameter gradients");
     SF_TRY(err->status);
     e->present = true;
     e->value = sf_compression_exponent(&fit->model, fit->parameters, gradient);
@@ -325,7 +325,7 @@ static void place_table(sf_compression_fit *fit) {
 
 static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
     SF_OWNED double *gradient =
-        sf_alloc(err, (unsigned long)fit->model.parameter_count, sizeof *gradient, "parameter gradients");
+        sf_alloc(err, fit->model.parameter_count, sizeof *gradient, "parameter gradients");
     SF_TRY(err->status);
     sf_rate_model rate = fit->model.form.rate;
     fit->rate_count = rate == SF_RATE_LOG || rate == SF_RATE_CURVES ? fit->data.config->test_count : 1;
@@ -488,7 +488,7 @@ static sf_status weigh_by_law(sf_compression_fit *fit, sf_error *err) {
 static sf_status finish(sf_compression_fit *fit, sf_error *err) {
     const sf_compression_config *c = fit->data.config;
     fit->parameters = sf_vector((size_t)fit->model.parameter_count, err);
-    fit->stress = sf_alloc(err, (unsigned long)fit->data.count, sizeof *fit->stress, "fitted stresses");
+    fit->stress = sf_alloc(err, fit->data.count, sizeof *fit->stress, "fitted stresses");
     SF_TRY(err->status);
     bool unloads = count_of(&fit->model, true) > 0;
     SF_TRY(search_loading(&fit->model, fit->parameters, &fit->side[0].chi2, err));

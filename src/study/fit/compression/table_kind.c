@@ -55,7 +55,7 @@ static sf_foam_card card_of_test(const sf_table_result *r, int k, int64_t ptr[2]
 
 static sf_status compare_card(sf_table_result *r, sf_error *err) {
     const sf_compression_data *d = &r->fit.data;
-    SF_OWNED double *stress = sf_alloc(err, (unsigned long)d->count, sizeof *stress, "stresses of the card");
+    SF_OWNED double *stress = sf_alloc(err, d->count, sizeof *stress, "stresses of the card");
     SF_TRY(err->status);
     for (int k = 0, first = 0; k < d->config->test_count; k++) {
         const sf_compression_test *t = &d->config->test[k];

@@ -93,7 +93,7 @@ static void add_states(const sf_drop_inference *in, const double *column, int wi
 
 static sf_status take_quantiles(weighted *w, int count, const double *probability, double *value,
                                 sf_error *err) {
-    SF_OWNED size_t *order = sf_alloc(err, (unsigned long)w->count, sizeof *order, "samples");
+    SF_OWNED size_t *order = sf_alloc(err, w->count, sizeof *order, "samples");
     double all = 0;
     SF_TRY(err->status);
     gsl_sort_index(order, w->value, 1, (size_t)w->count);
@@ -117,7 +117,7 @@ static void free_weighted(weighted *w) {
 
 /* Returns room for `most` samples; release it with free_weighted. */
 static weighted make_weighted(int most, sf_error *err) {
-    double *value = sf_alloc(err, 2 * (unsigned long)most, sizeof *value, "samples");
+    double *value = sf_alloc(err, 2 * most, sizeof *value, "samples");
     return (weighted){.value = value, .weight = value + most};
 }
 

@@ -132,26 +132,27 @@ static sf_status write_curve(const strain_bin *bin, const sf_staging *output, sf
     return sf_csv_close(&csv, err);
 }
 
+/* A block of gnuplot for each drop, which its comments begin. */
 static sf_status write_drops(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
-    FILE *f = sf_staging_open(output, "fit-drops.csv", err);
-    SF_TRY(err->status);
-    fputs("# one block per drop: time after the run's start (ms), acceleration (g)\n", f);
+    sf_csv csv;
+    SF_TRY(sf_csv_open(&csv, output, "fit-drops.csv", err));
+    fputs("# one block per drop: time after the run's start (ms), acceleration (g)\n", csv.file);
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_series *s = &fit->simulated[d].curve;
         const sf_fit_drop *drop = &fit->input->drop[d];
-        fprintf(f, "\n\n# %s\n", drop->name);
+        fprintf(csv.file, "\n\n# %s\n", drop->name);
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
             if (!sf_drop_shows(fit, d, kind))
                 continue;
-            fprintf(f, "# %s:", sf_drop_kind_get(kind)->key);
+            fprintf(csv.file, "# %s:", sf_drop_kind_get(kind)->key);
             if (!isnan(drop->value[kind]))
-                fprintf(f, " measured %.6g,", drop->value[kind]);
-            fprintf(f, " simulated %.6g\n", sf_drop_response(fit, d, kind));
+                fprintf(csv.file, " measured %.6g,", drop->value[kind]);
+            fprintf(csv.file, " simulated %.6g\n", sf_drop_response(fit, d, kind));
         }
         for (int64_t k = 0; k < s->count; k += 10)
-            fprintf(f, "%.6g,%.6g\n", 1e3 * s->time[k], s->value[k]);
+            SF_CSV_PRINT_LINE(&csv, "%.6g,%.6g", 1e3 * s->time[k], s->value[k]);
     }
-    return sf_staging_close(f, "fit-drops.csv", err);
+    return sf_csv_close(&csv, err);
 }
 
 /* ---- the picture ---- */

@@ -346,8 +346,8 @@ static sf_status differentiate_predictions(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
     int first = fit->row[fit->measured_drops], last = fit->row[in->drop_count];
     double u[SF_MAPPING_MAX_PARAMETERS];
-    SF_OWNED double *high = sf_alloc(err, (unsigned long)last, sizeof *high, "responses"),
-                    *low = sf_alloc(err, (unsigned long)last, sizeof *low, "responses");
+    SF_OWNED double *high = sf_alloc(err, last, sizeof *high, "responses"),
+                    *low = sf_alloc(err, last, sizeof *low, "responses");
     for (int j = 0; j < in->unknown_count && err->status == SF_OK; j++) {
         memcpy(u, fit->result.u, sizeof u);
         u[j] += step;

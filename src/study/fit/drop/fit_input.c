@@ -33,10 +33,11 @@ static sf_status read_coarse(const sf_config *config, sf_config_item *root, sf_f
         for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
             allowed = allowed || strncmp(in->coarse[k], groups[g], strlen(groups[g])) == 0;
         if (!allowed)
-            return sf_config_refuse(config, config_setting_get_elem(list, (unsigned)k), err,
-                                    "coarse_set: \"%.80s\" is no key of geometry, pad or solver: the first "
-                                    "iterations have a coarser mesh, and nothing else",
-                                    in->coarse[k]);
+            return sf_config_refuse(
+                config, config_setting_get_elem(list, (unsigned)k), err,
+                "coarse_set: \"%.80s\" is not a key of geometry, pad or solver: the first "
+                "iterations have a coarser mesh, and nothing else",
+                in->coarse[k]);
     }
     return SF_OK;
 }
@@ -149,7 +150,7 @@ static sf_status read_material(const sf_config *config, sf_config_item *root, sf
     in->form.curve = sf_curve_form_find(form);
     if (!in->form.curve)
         return sf_config_refuse(config, config_setting_get_member(model, curve_key(root, model)), err,
-                                "%s is \"%.80s\": one of %s is expected", curve_key(root, model), form,
+                                "%s is \"%.80s\"; expected one of %s", curve_key(root, model), form,
                                 sf_curve_form_words());
     if (strpbrk(name, "/\"'\\\n\r") || strncmp(name, "fit", 3) == 0)
         return sf_config_refuse(
@@ -204,7 +205,7 @@ static sf_status check_used(const sf_config *config, sf_config_item *holder, sf_
         return SF_OK;
     if (list && holder == root)
         return sf_config_refuse(config, item, err, "start: %s is a parameter of none of the forms", name);
-    return sf_config_refuse(config, item, err, "start: %s is no parameter of %s = \"%s\"", name,
+    return sf_config_refuse(config, item, err, "start: %s is not a parameter of %s = \"%s\"", name,
                             list ? "curve" : "curve_form", in->form.curve->name);
 }
 
@@ -219,7 +220,7 @@ static sf_status read_start(const sf_config *config, sf_config_item *holder, sf_
         sf_config_item *item = config_setting_get_elem(group, (unsigned)k);
         sf_foam_parameter p = sf_parameter_find(config_setting_name(item));
         if (p == SF_PARAMETER_COUNT)
-            return sf_config_refuse(config, item, err, "\"%.80s\" is no parameter of the foam",
+            return sf_config_refuse(config, item, err, "unknown parameter \"%.80s\" of the foam",
                                     config_setting_name(item));
         SF_TRY(check_used(config, holder, item, in, p, err));
         SF_TRY(sf_parameter_read(config, group, p, &in->start[p], err));
@@ -284,9 +285,8 @@ static sf_status put_unknown(const sf_config *config, sf_config_item *where, sf_
                              sf_foam_parameter p, sf_error *err) {
     int k = in->unknown_count;
     if (k == SF_FIT_MAX_UNKNOWNS)
-        return sf_config_refuse(config, where, err,
-                                "%s would be one more than %d unknown parameters, which is the most",
-                                sf_parameter_get(p)->name, SF_FIT_MAX_UNKNOWNS);
+        return sf_config_refuse(config, where, err, "%s would be unknown number %d" SF_AT_MOST("%d"),
+                                sf_parameter_get(p)->name, k + 1, SF_FIT_MAX_UNKNOWNS);
     const sf_parameter_info *about = sf_parameter_get(p);
     if (!(in->start[p] >= about->low && in->start[p] <= about->high))
         return sf_config_refuse(config, where, err,
@@ -307,13 +307,13 @@ static sf_status read_unknown(const sf_config *config, sf_config_item *entry, sf
     SF_TRY(sf_config_text(config, entry, "name", true, &name, err));
     sf_foam_parameter p = sf_parameter_find(name);
     if (p == SF_PARAMETER_COUNT)
-        return sf_config_refuse(config, entry, err, "\"%.80s\" is no parameter of the foam", name);
+        return sf_config_refuse(config, entry, err, "unknown parameter \"%.80s\" of the foam", name);
     if (!sf_curve_form_uses(in->form.curve, p))
-        return sf_config_refuse(config, entry, err, "%s is no parameter of curve_form = \"%s\"", name,
+        return sf_config_refuse(config, entry, err, "%s is not a parameter of curve_form = \"%s\"", name,
                                 in->form.curve->name);
     for (int k = 0; k < in->unknown_count; k++)
         if (in->unknown[k] == p)
-            return sf_config_refuse(config, entry, err, "%s is unknown twice", name);
+            return sf_config_refuse(config, entry, err, "unknown: %s is given twice", name);
     SF_TRY(check_term(config, entry, model_of(config_root_setting(&config->config), in), p, name, err));
     if (p == SF_PARAMETER_RATE_FACTOR)
         sf_foam_form_start_rate(in->start);

@@ -116,7 +116,7 @@ static bool find_residual(const sf_drop_inference *in, const double *u, double *
 
 static sf_status list_data(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
-    in->data_row = sf_alloc(err, (unsigned long)responses_of(fit), sizeof *in->data_row, "data");
+    in->data_row = sf_alloc(err, responses_of(fit), sizeof *in->data_row, "data");
     for (int k = 0; k < fit->row[fit->measured_drops] && err->status == SF_OK; k++)
         if (!isinf(fit->sd[k]))
             in->data_row[in->data++] = k;
@@ -147,7 +147,7 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     int n = responses_of(fit), measured = fit->row[fit->measured_drops];
     double full[SF_MAPPING_MAX_PARAMETERS];
     SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
-    in->offset = sf_alloc(err, (unsigned long)n, sizeof(double), "responses");
+    in->offset = sf_alloc(err, n, sizeof(double), "responses");
     fit_parameters(in, fit->result.u, full);
     SF_TRY(err->status);
     SF_TRY(sf_drop_fit_card(fit->input, full, &card, err));
@@ -155,7 +155,7 @@ static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     for (int k = 0; k < n; k++)
         in->offset[k] = k < measured ? fit->result.offset[k] : fit->y[k] - in->offset[k];
     SF_TRY(err->status);
-    SF_OWNED double *given = sf_alloc(err, (unsigned long)n, sizeof *given, "responses");
+    SF_OWNED double *given = sf_alloc(err, n, sizeof *given, "responses");
     for (int d = 0; d < fit->measured_drops && err->status == SF_OK && !fit->speeds_fitted; d++) {
         sf_error failure = SF_ERROR_INIT; /* the columns may collapse at this speed */
         if (fit->speed[d] >= 0 && sf_drop_fit_respond(fit, d, d + 1, &card, NULL, given, &failure) == SF_OK)
@@ -301,7 +301,7 @@ static double prior_norm(const sf_fit_input *input) {
 
 static sf_status prepare(sf_drop_inference *in, bool leave_one_out, sf_error *err) {
     if (in->parameters > SF_POSTERIOR_MOST)
-        return SF_REFUSE(err, "%d unknown parameters: at most %d can be sampled",
+        return SF_REFUSE(err, "%d unknown parameters to be sampled" SF_AT_MOST("%d"),
                          in->fit->input->unknown_count, SF_POSTERIOR_MOST - 2);
     in->prior_norm = prior_norm(in->fit->input);
     SF_TRY(list_data(in, err));
@@ -357,7 +357,7 @@ static double split(const void *context, const double *u, const double *residual
     double few[256], *own = few, sum = log_prior(in, u);
     sf_error err = SF_ERROR_INIT;
     if (in->data > 128)
-        own = sf_alloc(&err, 2 * (unsigned long)in->data, sizeof *own, "data");
+        own = sf_alloc(&err, 2 * in->data, sizeof *own, "data");
     for (int d = 0; conditional && d < in->fit->measured_drops; d++)
         conditional[d] = 0;
     if (own && isfinite(sum) && (residual || respond_residual(in, u, own)))
@@ -387,7 +387,7 @@ bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64
     sf_error err = SF_ERROR_INIT;
     double x[SF_DISCREPANCY_MOST];
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
-    SF_OWNED double *residual = sf_alloc(&err, (unsigned long)in->data, sizeof *residual, "data");
+    SF_OWNED double *residual = sf_alloc(&err, in->data, sizeof *residual, "data");
     SF_RANDOM *random = gsl_rng_alloc(gsl_rng_taus2);
     if (!residual || !random || !find_residual(in, u, residual))
         return false;
@@ -408,7 +408,7 @@ static void observe(const void *context, const double *u, uint64_t seed, double 
     double delta[PLACES], own[SF_FIT_MAX_DROPS * SF_FIT_SAMPLES];
     sf_response_error error;
     sf_error err = SF_ERROR_INIT;
-    SF_OWNED double *y = sf_alloc(&err, (unsigned long)responses_of(fit), sizeof *y, "responses");
+    SF_OWNED double *y = sf_alloc(&err, responses_of(fit), sizeof *y, "responses");
     bool known = y && !sf_process_stopped() && sf_drop_inference_draw(in, u, seed, delta, &error, own) &&
                  respond(in, u, in->steep ? delta : NULL, fit->measured_drops, fit->input->drop_count, y,
                          &err) == SF_OK;

@@ -173,7 +173,7 @@ static sf_status take_test(const sf_config *config, sf_config_item *entry,
         return sf_config_refuse(
             config, config_setting_get_member(entry, "file"), err,
             "%s: loading from a strain of %.3g to %.3g holds %d of the points %g apart that are "
-            "compared; at least %d are needed",
+            "compared" SF_AT_LEAST("%d"),
             source->path, read.strain[0], read.largest_strain, test->loading, GRID, LEAST_POINTS);
     joint->rows += test->count;
     joint->test_count++;
@@ -213,8 +213,7 @@ static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *e
     SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count > SF_JOINT_POINTS)
-        SF_REFUSE(err, "%s: %lld points; at most %d are taken", path, (long long)table.count,
-                  SF_JOINT_POINTS);
+        SF_REFUSE(err, "%s: %lld points" SF_AT_MOST("%d"), path, (long long)table.count, SF_JOINT_POINTS);
     for (int64_t k = 0; k < table.count && err->status == SF_OK; k++) {
         if (!(table.value[0][k] > 0 && table.value[1][k] > 1))
             SF_REFUSE(err,
@@ -246,7 +245,7 @@ static sf_status read_points(const sf_config *config, sf_config_item *list, sf_j
         double s = config_setting_get_float_elem(pair, 0), g = config_setting_get_float_elem(pair, 1);
         if (!(s > 0 && g > 1))
             return sf_config_refuse(config, pair, err,
-                                    "[%g, %g]: numbers with a point are expected, the static stress above 0 "
+                                    "[%g, %g]: expected numbers with a point, the static stress above 0 "
                                     "kPa and the peak above 1 g",
                                     s, g);
         out->static_stress[k] = 1e3 * s;

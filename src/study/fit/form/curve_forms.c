@@ -57,13 +57,15 @@ static sf_gas_curve gas_curve(const double *value, double solid) {
 /* SF_ERR_NUMERIC: no rising curve of initial slope E. */
 static sf_status check_gas_curve(sf_gas_curve c, sf_error *err) {
     if (!(c.solid >= 0 && c.solid < MOST_SOLID))
-        return SF_FAIL(err, SF_ERR_NUMERIC, "the solid fraction %g is not between 0 and %g: that is no foam",
-                       c.solid, MOST_SOLID);
-    if (!(c.pressure / (1 - c.solid) < c.modulus && c.exponent > 1))
         return SF_FAIL(err, SF_ERR_NUMERIC,
-                       "p0 = %g Pa is not below E = %g Pa, or m = %g not above 1: no rising curve of initial "
-                       "slope E",
-                       c.pressure, c.modulus, c.exponent);
+                       "the solid fraction" SF_OUTSIDE("%g", "0", "%g") ": that is no foam", c.solid,
+                       MOST_SOLID);
+    if (!(c.pressure / (1 - c.solid) < c.modulus && c.exponent > 1))
+        return SF_FAIL(
+            err, SF_ERR_NUMERIC,
+            "p0 = %g Pa is not below E = %g Pa, or m = %g is not above 1: no rising curve of initial "
+            "slope E",
+            c.pressure, c.modulus, c.exponent);
     return SF_OK;
 }
 
@@ -155,11 +157,11 @@ static sf_status rusch_check(const double *value, sf_error *err) {
            end = value[SF_PARAMETER_RUSCH_END], limit = pole_of_solid(value);
     if (!(m > 0 && m < 1 && n > 1))
         return SF_FAIL(err, SF_ERR_NUMERIC,
-                       "rusch_m = %g is not between 0 and 1, or rusch_n = %g not above 1: no curve with a "
+                       "rusch_m is %g, outside 0 to 1, or rusch_n = %g is not above 1: no curve with a "
                        "plateau",
                        m, n);
     if (!(end > 0 && end < limit))
-        return SF_FAIL(err, SF_ERR_NUMERIC, "rusch_end = %g is not between 0 and the pole of the curve, %g",
+        return SF_FAIL(err, SF_ERR_NUMERIC, "rusch_end" SF_OUTSIDE("%g", "0", "the pole of the curve, %g"),
                        end, limit);
     return SF_OK;
 }

@@ -95,10 +95,10 @@ sf_status sf_form_curves_alloc(int64_t count, int64_t points, sf_law_curves *cur
     *curves = (sf_law_curves){
         .curve_count = count,
         .curve_points = points,
-        .curve_rate = sf_alloc(err, (unsigned long)count, sizeof(double), "curves"),
-        .curve_ptr = sf_alloc(err, (unsigned long)count + 1, sizeof(int64_t), "curves"),
-        .curve_strain = sf_alloc(err, (unsigned long)points, sizeof(double), "curves"),
-        .curve_stress = sf_alloc(err, (unsigned long)points, sizeof(double), "curves"),
+        .curve_rate = sf_alloc(err, count, sizeof(double), "curves"),
+        .curve_ptr = sf_alloc(err, count + 1, sizeof(int64_t), "curves"),
+        .curve_strain = sf_alloc(err, points, sizeof(double), "curves"),
+        .curve_stress = sf_alloc(err, points, sizeof(double), "curves"),
     };
     for (int64_t k = 1; k <= count && err->status == SF_OK; k++)
         curves->curve_ptr[k] = k * (points / count);

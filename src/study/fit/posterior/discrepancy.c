@@ -94,7 +94,8 @@ sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const
                                const double *effect, const double *base, sf_discrepancy *d, sf_error *err) {
     *d = (sf_discrepancy){.data = data, .bins = bins, .effects = effects, .latent = bins + effects};
     if (d->latent > SF_DISCREPANCY_MOST)
-        return SF_REFUSE(err, "%d errors of the responses: at most %d", effects, SF_DISCREPANCY_MOST - bins);
+        return SF_REFUSE(err, "%d errors of the responses" SF_AT_MOST("%d"), effects,
+                         SF_DISCREPANCY_MOST - bins);
     d->root = sf_alloc(err, (unsigned long)(bins * bins), sizeof(double), "a discrepancy");
     d->gram = sf_alloc(err, (unsigned long)(d->latent * d->latent), sizeof(double), "a discrepancy");
     d->base_root = sf_alloc(err, (unsigned long)(data * data), sizeof(double), "a discrepancy");

@@ -25,8 +25,8 @@ sf_status sf_evidence_estimate(const sf_target *target, const sf_mixture *mixtur
                                sf_evidence *e, sf_error *err) {
     int n = target->parameters;
     *e = (sf_evidence){.draws = draws};
-    SF_OWNED double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws"),
-                    *weight = sf_alloc(err, (unsigned long)draws, sizeof *weight, "draws");
+    SF_OWNED double *u = sf_alloc(err, draws * n, sizeof *u, "draws"),
+                    *weight = sf_alloc(err, draws, sizeof *weight, "draws");
     SF_RANDOM *random = sf_random(sf_seed_of(seed, 0), err);
     SF_TRY(err->status);
     for (int k = 0; k < draws; k++)
@@ -77,8 +77,8 @@ double sf_pareto_smooth(int count, double *weight, sf_error *err) {
     int tail = (int)fmin(0.2 * count, 3 * sqrt(count));
     if (tail < LEAST)
         return INFINITY;
-    SF_OWNED size_t *order = sf_alloc(err, (unsigned long)count, sizeof *order, "weights");
-    SF_OWNED double *x = sf_alloc(err, (unsigned long)tail, sizeof *x, "weights");
+    SF_OWNED size_t *order = sf_alloc(err, count, sizeof *order, "weights");
+    SF_OWNED double *x = sf_alloc(err, tail, sizeof *x, "weights");
     if (!order || !x)
         return INFINITY;
     gsl_sort_index(order, weight, 1, (size_t)count);
@@ -160,7 +160,7 @@ static bool respond(const void *context, const double *u, double *y) {
 
 /* log p(y_g | others, u) of every sample: [samples][groups]. */
 static double *split_all(const sf_grouped *g, const double *sample, int count, sf_error *err) {
-    double *all = sf_alloc(err, (unsigned long)(count * g->groups), sizeof *all, "leave-one-out densities");
+    double *all = sf_alloc(err, count * g->groups, sizeof *all, "leave-one-out densities");
     if (all) {
 #pragma omp parallel for schedule(dynamic, 8)
         for (int s = 0; s < count; s++)
@@ -172,7 +172,7 @@ static double *split_all(const sf_grouped *g, const double *sample, int count, s
 /* By weights 1 / p(y_g | others, u); `scratch` [count]. */
 static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
                        sf_error *err) {
-    SF_OWNED double *sum = sf_alloc(err, (unsigned long)count, sizeof *sum, "weights");
+    SF_OWNED double *sum = sf_alloc(err, count, sizeof *sum, "weights");
     SF_TRY(err->status);
     for (int s = 0; s < count; s++)
         scratch[s] = -all[s * groups + g];
@@ -231,9 +231,9 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
     static const double FREEDOM = 5;
     int n = chains->parameters, draws = options->draws;
     sf_mixture m;
-    *w = (wide){.weight = sf_alloc(err, (unsigned long)draws, sizeof(double), "draws"),
-                .conditional = sf_alloc(err, (unsigned long)(draws * g->groups), sizeof(double), "draws")};
-    SF_OWNED double *u = sf_alloc(err, (unsigned long)(draws * n), sizeof *u, "draws");
+    *w = (wide){.weight = sf_alloc(err, draws, sizeof(double), "draws"),
+                .conditional = sf_alloc(err, draws * g->groups, sizeof(double), "draws")};
+    SF_OWNED double *u = sf_alloc(err, draws * n, sizeof *u, "draws");
     SF_RANDOM *random = sf_random(sf_seed_of(options->chains.seed, 700), err);
     SF_TRY(err->status);
     SF_TRY(sf_mixture_fit(n, chains->chains * chains->kept, chains->sample, FREEDOM, &m, err));
@@ -258,7 +258,7 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
 /* Estimates log p(group | others) by the weights, and sets `out->drawn` if enough draws count. */
 static sf_status take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out,
                            sf_error *err) {
-    SF_OWNED double *others = sf_alloc(err, (unsigned long)w->count, sizeof *others, "draws");
+    SF_OWNED double *others = sf_alloc(err, w->count, sizeof *others, "draws");
     double size;
     SF_TRY(err->status);
     for (int k = 0; k < w->count; k++)
@@ -275,10 +275,10 @@ sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const s
     int count = chains->chains * chains->kept;
     SF_OWNED_BY(free_wide) wide w = {0};
     if (g->groups > MOST_GROUPS)
-        return SF_REFUSE(err, "%d groups of data: at most %d are left out one by one", g->groups,
+        return SF_REFUSE(err, "%d groups of data to be left out one by one" SF_AT_MOST("%d"), g->groups,
                          MOST_GROUPS);
     SF_OWNED double *all = split_all(g, chains->sample, count, err),
-                    *scratch = sf_alloc(err, (unsigned long)count, sizeof *scratch, "weights");
+                    *scratch = sf_alloc(err, count, sizeof *scratch, "weights");
     for (int k = 0; k < g->groups && err->status == SF_OK; k++) {
         out[k] = (sf_left_out){.converged = false};
         if (weigh(all, g->groups, k, count, scratch, &out[k], err) != SF_OK || out[k].converged)

@@ -95,7 +95,7 @@ static sf_status set_scale(const sf_mixture *m, const double *scale, sf_mixture_
 sf_status sf_mixture_single(int n, const double *centre, const double *scale, double freedom, sf_mixture *m,
                             sf_error *err) {
     if (n < 1 || n > N)
-        return SF_REFUSE(err, "%d parameters: 1 to %d are expected", n, N);
+        return SF_REFUSE(err, "the number of parameters" SF_OUTSIDE("%d", "1", "%d"), n, N);
     *m = (sf_mixture){.parameters = n, .parts = 1, .freedom = freedom};
     m->part[0].weight = 1;
     memcpy(m->part[0].centre, centre, (size_t)n * sizeof *centre);
@@ -165,7 +165,7 @@ static sf_status find_axis(samples *s, sf_error *err) {
 
 /* First shares: equal slices along the axis. */
 static sf_status slice(const samples *s, int parts, sf_error *err) {
-    SF_OWNED double *sorted = sf_alloc(err, (unsigned long)s->count, sizeof *sorted, "samples");
+    SF_OWNED double *sorted = sf_alloc(err, s->count, sizeof *sorted, "samples");
     SF_TRY(err->status);
     memcpy(sorted, s->position, (size_t)s->count * sizeof *sorted);
     gsl_sort(sorted, 1, (size_t)s->count);
@@ -253,7 +253,7 @@ sf_status sf_mixture_fit(int n, int count, const double *u, double freedom, sf_m
     if (n < 1 || n > N || count < 2 * (n + 1))
         return SF_FAIL(err, SF_ERR_NUMERIC, "%d samples are too few to describe %d parameters", count, n);
     SF_OWNED double *share = sf_alloc(err, (unsigned long)count * SF_MIXTURE_MOST, sizeof *share, "samples"),
-                    *position = sf_alloc(err, (unsigned long)count, sizeof *position, "samples");
+                    *position = sf_alloc(err, count, sizeof *position, "samples");
     SF_TRY(err->status);
     samples all = {.n = n, .count = count, .u = u, .share = share, .position = position}, half = all;
     int parts = 1;
