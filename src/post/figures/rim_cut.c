@@ -57,9 +57,9 @@ static sf_status faces_find(const sf_results *r, const double *u, faces *f, sf_e
     return f->count > 0 ? sf_grid_build(&f->grid, f->count, f->centre, f->radius, err) : SF_OK;
 }
 
-/* Depth (m) of the point x of a triangle of the missile, of the normal n, behind the nearest face that looks
- * against it; 0: it is not in the foam. It is inside if the nearest face of any direction says so: of those
- * equally near the one that looks most straight at it. */
+/* Depth (m) of the point x of a triangle of missile or support, of the normal n, behind the nearest face that
+ * looks against it; 0: it is not in the foam. It is inside if the nearest face of any direction says so: of
+ * those equally near the one that looks most straight at it. */
 static double depth_at(const faces *f, const double x[3], const double n[3], double most, int64_t *face) {
     for (double reach = f->least; reach < most; reach *= 2) {
         double nearest = INFINITY, straight = 0, depth = INFINITY;
@@ -89,33 +89,44 @@ static double depth_at(const faces *f, const double x[3], const double n[3], dou
     return 0;
 }
 
-sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, const double *displacement,
-                             sf_rim_cut *cut, sf_error *err) {
+/* Measures the vertices and edges of a body's triangles; head: the missile moves with it, NULL: at rest. */
+static void measure_body(const sf_results *r, const faces *f, const sf_frame_head *head, int64_t triangles,
+                         const int32_t *triangle, const double *position, sf_rim_cut *cut) {
     enum { MOST = 200 }; /* points along an edge */
-    SF_OWNED_BY(faces_free) faces f = {0};
-    *cut = (sf_rim_cut){0};
-    SF_TRY(faces_find(r, displacement, &f, err));
-    for (int64_t k = 0; f.count > 0 && k < 3 * r->surface_triangle_count; k++) {
+    for (int64_t k = 0; k < 3 * triangles; k++) {
         double x[3][3], normal[3];
-        for (int c = 0; c < 3; c++) /* the edge from x[0] to x[1] */
-            sf_results_place(
-                r, head, &r->surface_position[3 * (int64_t)r->surface_triangle[k - k % 3 + (k + c) % 3]],
-                x[c]);
+        for (int c = 0; c < 3; c++) { /* the edge from x[0] to x[1] */
+            const double *rest = &position[3 * (int64_t)triangle[k - k % 3 + (k + c) % 3]];
+            memcpy(x[c], rest, sizeof x[c]);
+            if (head)
+                sf_results_place(r, head, rest, x[c]);
+        }
         sf_triangle_normal(x[0], x[1], x[2], normal);
-        double parts = fmin(MOST, ceil(sf_distance3(x[0], x[1]) / f.least));
+        double parts = fmin(MOST, ceil(sf_distance3(x[0], x[1]) / f->least));
         for (double part = 0; part < parts; part++) {
             double at[3];
             bool near = true;
             int64_t face = 0;
             for (int c = 0; c < 3; c++) {
                 at[c] = x[0][c] + part / parts * (x[1][c] - x[0][c]);
-                near = near && at[c] > f.low[c] && at[c] < f.high[c];
+                near = near && at[c] > f->low[c] && at[c] < f->high[c];
             }
-            double depth = near ? depth_at(&f, at, normal, r->thickness, &face) : 0;
+            double depth = near ? depth_at(f, at, normal, r->thickness, &face) : 0;
             if (depth > cut->depth)
-                memcpy(cut->place, &r->position[3 * (int64_t)f.node[3 * face]], sizeof cut->place);
+                memcpy(cut->place, &r->position[3 * (int64_t)f->node[3 * face]], sizeof cut->place);
             cut->depth = fmax(cut->depth, depth);
         }
     }
+}
+
+sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, const double *displacement,
+                             sf_rim_cut *cut, sf_error *err) {
+    SF_OWNED_BY(faces_free) faces f = {0};
+    *cut = (sf_rim_cut){0};
+    SF_TRY(faces_find(r, displacement, &f, err));
+    if (f.count == 0)
+        return SF_OK;
+    measure_body(r, &f, head, r->surface_triangle_count, r->surface_triangle, r->surface_position, cut);
+    measure_body(r, &f, NULL, r->support_triangle_count, r->support_triangle, r->support_position, cut);
     return SF_OK;
 }

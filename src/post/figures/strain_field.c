@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/strain_field.h"
 
+#include "model/cells.h"
 #include <gsl/gsl_sort.h>
 #include <string.h>
 
@@ -24,14 +25,13 @@ static void list_cells(const sf_results *r, node_cells *n) {
             n->cell[n->first[r->cell_node[k] + 1]++] = c;
 }
 
-/* Appends the neighbours' values of a node in its layer to the `count` values in room; room: NULL counts
- * only.
- */
-static int64_t gather(const sf_results *r, const node_cells *n, int64_t node, const double *value,
-                      int64_t count, double *room) {
+/* Appends the values of a node's neighbours in its layer, `among` those marked unless it is NULL, to the
+ * `count` values in room; room: NULL counts only. */
+static int64_t gather(const sf_results *r, const node_cells *n, int64_t node, const bool *among,
+                      const double *value, int64_t count, double *room) {
     for (int64_t k = n->first[node]; k < n->first[node + 1]; k++)
         for (int64_t j = r->cell_ptr[n->cell[k]]; j < r->cell_ptr[n->cell[k] + 1]; j++) {
-            if (r->cell_node[j] == node)
+            if (r->cell_node[j] == node || (among && !among[r->cell_node[j]]))
                 continue;
             if (room)
                 room[count] = value[r->cell_node[j]];
@@ -103,58 +103,112 @@ typedef struct collapse_search {
     const double *compression, *displacement;
     node_cells cells;
     int64_t *next; /* [node_count] as of ring_copies; NULL: one material; owned */
+    bool *wall;    /* [node_count] as of mark_walls; owned */
     double *room;  /* for the neighbours of a node and of its copies; owned */
 } collapse_search;
+
+/* Marks the nodes of walls: of free faces outside symmetry planes that are not pressed from outside, by the
+ * missile or by the ground, where they have no way down. NULL without these fields, or on failure. */
+static bool *mark_walls(const sf_results *r, const double *displacement, const double *pressure,
+                        sf_error *err) {
+    SF_OWNED int32_t *face = NULL;
+    int64_t count = 0;
+    if (!displacement || !pressure || sf_skin_triangles(&SF_CELLS_OF(r), &count, &face, NULL, err) != SF_OK)
+        return NULL;
+    bool *wall = sf_alloc(err, (unsigned long)r->node_count, sizeof *wall, "nodes of walls");
+    for (int64_t k = 0; wall && k < 3 * count; k += 3) {
+        double off[2] = {0};
+        int pressed = 0;
+        for (int c = 0; c < 3; c++) {
+            int64_t n = face[k + c];
+            pressed += pressure[n] > 0 || fabs(displacement[3 * n + 2]) < SLIP * r->thickness;
+            for (int axis = 0; axis < 2; axis++)
+                off[axis] += fabs(r->position[3 * n + axis] - r->symmetry_place[axis]);
+        }
+        bool mirrored = off[0] < SLIP * r->thickness || off[1] < SLIP * r->thickness;
+        for (int c = 0; c < 3 && pressed < 3 && !mirrored; c++)
+            wall[face[k + c]] = true;
+    }
+    return wall;
+}
 
 static int64_t most_neighbours(const collapse_search *s) {
     int64_t most = 0;
     for (int64_t i = 0; i < s->r->node_count; i++) {
-        int64_t count = gather(s->r, &s->cells, i, NULL, 0, NULL);
+        int64_t count = gather(s->r, &s->cells, i, NULL, NULL, 0, NULL);
         for (int64_t j = s->next ? s->next[i] : i; j != i; j = s->next[j])
-            count = gather(s->r, &s->cells, j, NULL, count, NULL);
+            count = gather(s->r, &s->cells, j, NULL, NULL, count, NULL);
         most = count > most ? count : most;
     }
     return most;
 }
 
 /* Compression of a node above its neighbours, in its layer or in all that are tied there, whichever is less:
- * at a tied interface either side may be the one that carries. */
+ * at a tied interface either side may be the one that carries. Of a wall that bends the whole surface is
+ * strained more than what lies behind it, so that a node of it counts by what it exceeds along the wall. */
 static double excess_of(const collapse_search *s, int64_t node) {
     const double *value = s->compression;
-    int64_t own = gather(s->r, &s->cells, node, value, 0, s->room), all = own;
+    int64_t own = gather(s->r, &s->cells, node, NULL, value, 0, s->room), all = own;
     if (own == 0)
         return 0;
     for (int64_t j = s->next ? s->next[node] : node; j != node; j = s->next[j])
         if (is_together(s->r, s->displacement, node, j))
-            all = gather(s->r, &s->cells, j, value, all, s->room);
+            all = gather(s->r, &s->cells, j, NULL, value, all, s->room);
     double usual = median(s->room, all); /* sorts the values of all */
     if (all > own) {
-        gather(s->r, &s->cells, node, value, 0, s->room);
+        gather(s->r, &s->cells, node, NULL, value, 0, s->room);
         usual = fmax(usual, median(s->room, own));
+    }
+    if (s->wall && s->wall[node] && !(s->next && s->next[node] != node)) {
+        int64_t along = gather(s->r, &s->cells, node, s->wall, value, 0, s->room);
+        usual = along > 0 ? fmax(usual, median(s->room, along)) : usual;
     }
     return value[node] - usual;
 }
 
-sf_status sf_strain_field_collapse(const sf_results *r, const double *compression, const double *displacement,
-                                   double *collapse, sf_error *err) {
+/* Returns the excess that nodes with SF_COLLAPSE_SHARE of the foam's energy reach or exceed; without energies
+ * that of a single node. */
+static double sustained_excess(const sf_results *r, const double *excess, const double *energy_density,
+                               sf_error *err) {
+    SF_OWNED size_t *order = sf_alloc(err, (unsigned long)r->node_count, sizeof *order, "excess of nodes");
+    double all = 0, held = 0;
+    if (!order || r->node_count == 0)
+        return 0;
+    gsl_sort_index(order, excess, 1, (size_t)r->node_count);
+    for (int64_t i = 0; energy_density && i < r->node_count; i++)
+        all += r->volume[i] * energy_density[i];
+    int64_t k = r->node_count - 1;
+    for (; k > 0 && all > 0; k--) {
+        held += r->volume[order[k]] * energy_density[order[k]];
+        if (held >= SF_COLLAPSE_SHARE * all)
+            break;
+    }
+    return fmax(0, excess[order[k]]);
+}
+
+sf_status sf_strain_field_collapse(const sf_results *r, const sf_peak_fields *at, double *collapse,
+                                   sf_error *err) {
     collapse_search s = {
         .r = r,
-        .compression = compression,
-        .displacement = displacement,
+        .compression = at->compression,
+        .displacement = at->displacement,
         .cells = {
             .first = sf_alloc(err, (unsigned long)r->node_count + 2, sizeof *s.cells.first, "cells of nodes"),
             .cell = sf_alloc(err, (unsigned long)r->cell_nnz, sizeof *s.cells.cell, "cells of nodes")}};
+    SF_OWNED double *excess = sf_alloc(err, (unsigned long)r->node_count, sizeof *excess, "excess of nodes");
     *collapse = 0;
     if (err->status == SF_OK) {
         list_cells(r, &s.cells);
-        s.next = r->layer_count > 1 && displacement ? ring_copies(r, err) : NULL;
+        s.next = r->layer_count > 1 && at->displacement ? ring_copies(r, err) : NULL;
+        s.wall = mark_walls(r, at->displacement, at->pressure, err);
     }
     if (err->status == SF_OK)
         s.room = sf_alloc(err, (unsigned long)most_neighbours(&s), sizeof *s.room, "neighbours of a node");
     for (int64_t i = 0; err->status == SF_OK && i < r->node_count; i++)
-        if (compression[i] > *collapse)
-            *collapse = fmax(*collapse, excess_of(&s, i));
-    SF_FREE(s.room, s.next, s.cells.first, s.cells.cell);
+        excess[i] = at->compression[i] > 0 ? excess_of(&s, i) : 0;
+    if (err->status == SF_OK)
+        *collapse = sustained_excess(r, excess, at->energy_density, err);
+    SF_FREE(s.room, s.next, s.wall, s.cells.first, s.cells.cell);
     return err->status;
 }
 

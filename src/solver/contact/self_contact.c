@@ -7,8 +7,8 @@
 
 /* Partners of a node: a facet, or one of these. */
 enum { NOTHING = SF_NO_CANDIDATE, FIRST_PLANE = -2 }; /* plane k: FIRST_PLANE - k */
-/* The sweeps of a step, and those where centroids or edges take part, whose rows depend on those of nodes. */
-enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 60, MORE_SWEEPS = 240 };
+/* The sweeps of a step at most, and those where centroids take part: rows that depend on those of nodes. */
+enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 1000, CENTROID_SWEEPS = 240 };
 static const double OVER = 1.6;     /* over-relaxation of the latter */
 static const double DEEPEST = 0.5;  /* of the spacing: no deeper does it go on */
 static const double RETURN = 0.1;   /* m s-1: no faster is a depth taken back */
@@ -451,7 +451,7 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
             continue;
         add_pair(m, skin, s, w);
         if (p >= skin->nodes) {
-            w->sweeps = MORE_SWEEPS;
+            w->sweeps = CENTROID_SWEEPS;
             w->relaxation = OVER;
         }
     }
@@ -460,7 +460,6 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
 /* Adds the pairs of edges. */
 static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
     int64_t count = sf_touch_edges(skin, s, RETURN * s->dt, &w->pair[w->count]);
-    w->sweeps = count > 0 ? MORE_SWEEPS : w->sweeps;
     for (int64_t k = 0; k < count; k++) {
         sf_touch *q = &w->pair[w->count];
         q->friction = friction_of(m, skin, q->node, q->facet);
