@@ -299,20 +299,20 @@ void sf_support_warn(const sf_model *m, const sf_sink *sink, sf_error *err) {
     static const double LONG = 1.5, NEAR = 2; /* spacings of a node of the pad */
     const triangles s = supports_of(m);
     SF_OWNED sf_half_edge *edge = s.count > 0 ? sf_half_edges(s.count, s.node, err) : NULL;
-    double most = LONG, least = least_spacing(m), point[3];
+    double most = LONG, point[3];
     int64_t at = -1;
     int feature;
     for (int64_t k = 0, end; edge && k < 3 * s.count; k = end) {
         const double *a = &s.position[3 * (int64_t)edge[k].low], *b = &s.position[3 * (int64_t)edge[k].high];
         double length = sf_distance3(a, b);
         end = sf_half_edges_end(edge, k, 3 * s.count); /* a sharp edge has nodes of its own on each side */
-        for (int64_t i = 0; end - k == 1 && length > most * least && i < m->node_count; i++) {
+        for (int64_t i = 0; end - k == 1 && i < m->node_count; i++) {
             sf_triangle_nearest(a, b, b, &m->position[3 * i], point, &feature);
-            if (length <= most * m->spacing[i] ||
-                sf_distance3(point, &m->position[3 * i]) > NEAR * m->spacing[i])
-                continue;
-            most = length / m->spacing[i];
-            at = i;
+            if (length > most * m->spacing[i] &&
+                sf_distance3(point, &m->position[3 * i]) < NEAR * m->spacing[i]) {
+                most = length / m->spacing[i];
+                at = i;
+            }
         }
     }
     if (at >= 0)

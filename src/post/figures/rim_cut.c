@@ -23,18 +23,15 @@ static void faces_free(faces *f) {
 
 /* Adds a face unless it lies in a symmetry plane. */
 static void add_face(const sf_results *r, const int32_t node[3], faces *f) {
-    double *centre = &f->centre[3 * f->count], *radius = &f->radius[f->count], off[3] = {0};
+    double *centre = &f->centre[3 * f->count], *radius = &f->radius[f->count];
     memmove(&f->node[3 * f->count], node, 3 * sizeof *node);
     memset(centre, 0, 3 * sizeof *centre);
     *radius = 0;
-    for (int k = 0; k < 9; k++) {
-        int64_t at = 3 * (int64_t)node[k / 3] + k % 3;
-        centre[k % 3] += f->x[at] / 3;
-        off[k % 3] += k % 3 < 2 ? fabs(r->position[at] - r->symmetry_place[k % 3]) : 0;
-    }
+    for (int k = 0; k < 9; k++)
+        centre[k % 3] += f->x[3 * (int64_t)node[k / 3] + k % 3] / 3;
     for (int k = 0; k < 3; k++)
         *radius = fmax(*radius, sf_distance3(centre, &f->x[3 * (int64_t)node[k]]));
-    if (off[0] < 1e-6 * r->thickness || off[1] < 1e-6 * r->thickness)
+    if (sf_face_is_mirrored(r, node))
         return;
     f->least = fmin(f->least, *radius);
     f->count++;
@@ -93,7 +90,7 @@ static double depth_at(const faces *f, const double x[3], const double n[3], dou
 static void measure_body(const sf_results *r, const faces *f, const sf_frame_head *head, int64_t triangles,
                          const int32_t *triangle, const double *position, sf_rim_cut *cut) {
     enum { MOST = 200 }; /* points along an edge */
-    for (int64_t k = 0; k < 3 * triangles; k++) {
+    for (int64_t k = 0; f->count > 0 && k < 3 * triangles; k++) {
         double x[3][3], normal[3];
         for (int c = 0; c < 3; c++) { /* the edge from x[0] to x[1] */
             const double *rest = &position[3 * (int64_t)triangle[k - k % 3 + (k + c) % 3]];
@@ -124,8 +121,6 @@ sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, con
     SF_OWNED_BY(faces_free) faces f = {0};
     *cut = (sf_rim_cut){0};
     SF_TRY(faces_find(r, displacement, &f, err));
-    if (f.count == 0)
-        return SF_OK;
     measure_body(r, &f, head, r->surface_triangle_count, r->surface_triangle, r->surface_position, cut);
     measure_body(r, &f, NULL, r->support_triangle_count, r->support_triangle, r->support_position, cut);
     return SF_OK;

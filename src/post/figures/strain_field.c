@@ -100,34 +100,36 @@ static double median(double *value, int64_t count) {
 
 typedef struct collapse_search {
     const sf_results *r;
-    const double *compression, *displacement;
+    const sf_peak_fields *at;
     node_cells cells;
     int64_t *next; /* [node_count] as of ring_copies; NULL: one material; owned */
     bool *wall;    /* [node_count] as of mark_walls; owned */
     double *room;  /* for the neighbours of a node and of its copies; owned */
 } collapse_search;
 
+bool sf_face_is_mirrored(const sf_results *r, const int32_t node[3]) {
+    double off[2] = {0};
+    for (int k = 0; k < 6; k++)
+        off[k % 2] += fabs(r->position[3 * (int64_t)node[k / 2] + k % 2] - r->symmetry_place[k % 2]);
+    return off[0] < SLIP * r->thickness || off[1] < SLIP * r->thickness;
+}
+
 /* Marks the nodes of walls: of free faces outside symmetry planes that are not pressed from outside, by the
  * missile or by the ground, where they have no way down. NULL without these fields, or on failure. */
-static bool *mark_walls(const sf_results *r, const double *displacement, const double *pressure,
-                        sf_error *err) {
+static bool *mark_walls(const sf_results *r, const sf_peak_fields *at, sf_error *err) {
     SF_OWNED int32_t *face = NULL;
     int64_t count = 0;
-    if (!displacement || !pressure || sf_skin_triangles(&SF_CELLS_OF(r), &count, &face, NULL, err) != SF_OK)
+    if (!at->displacement || !at->pressure ||
+        sf_skin_triangles(&SF_CELLS_OF(r), &count, &face, NULL, err) != SF_OK)
         return NULL;
     bool *wall = sf_alloc(err, (unsigned long)r->node_count, sizeof *wall, "nodes of walls");
-    for (int64_t k = 0; wall && k < 3 * count; k += 3) {
-        double off[2] = {0};
+    for (int32_t *n = face; wall && n < face + 3 * count; n += 3) {
         int pressed = 0;
-        for (int c = 0; c < 3; c++) {
-            int64_t n = face[k + c];
-            pressed += pressure[n] > 0 || fabs(displacement[3 * n + 2]) < SLIP * r->thickness;
-            for (int axis = 0; axis < 2; axis++)
-                off[axis] += fabs(r->position[3 * n + axis] - r->symmetry_place[axis]);
-        }
-        bool mirrored = off[0] < SLIP * r->thickness || off[1] < SLIP * r->thickness;
-        for (int c = 0; c < 3 && pressed < 3 && !mirrored; c++)
-            wall[face[k + c]] = true;
+        for (int c = 0; c < 3; c++)
+            pressed +=
+                at->pressure[n[c]] > 0 || fabs(at->displacement[3 * (int64_t)n[c] + 2]) < SLIP * r->thickness;
+        for (int c = 0; c < 3 && pressed < 3 && !sf_face_is_mirrored(r, n); c++)
+            wall[n[c]] = true;
     }
     return wall;
 }
@@ -144,15 +146,15 @@ static int64_t most_neighbours(const collapse_search *s) {
 }
 
 /* Compression of a node above its neighbours, in its layer or in all that are tied there, whichever is less:
- * at a tied interface either side may be the one that carries. Of a wall that bends the whole surface is
- * strained more than what lies behind it, so that a node of it counts by what it exceeds along the wall. */
+ * at a tied interface either side may be the one that carries. The surface of a wall that bends is strained
+ * more than what lies behind it: a node of it is compared along the wall, too. */
 static double excess_of(const collapse_search *s, int64_t node) {
-    const double *value = s->compression;
+    const double *value = s->at->compression;
     int64_t own = gather(s->r, &s->cells, node, NULL, value, 0, s->room), all = own;
     if (own == 0)
         return 0;
     for (int64_t j = s->next ? s->next[node] : node; j != node; j = s->next[j])
-        if (is_together(s->r, s->displacement, node, j))
+        if (is_together(s->r, s->at->displacement, node, j))
             all = gather(s->r, &s->cells, j, NULL, value, all, s->room);
     double usual = median(s->room, all); /* sorts the values of all */
     if (all > own) {
@@ -178,11 +180,9 @@ static double sustained_excess(const sf_results *r, const double *excess, const 
     for (int64_t i = 0; energy_density && i < r->node_count; i++)
         all += r->volume[i] * energy_density[i];
     int64_t k = r->node_count - 1;
-    for (; k > 0 && all > 0; k--) {
-        held += r->volume[order[k]] * energy_density[order[k]];
-        if (held >= SF_COLLAPSE_SHARE * all)
-            break;
-    }
+    while (k > 0 && all > 0 &&
+           (held += r->volume[order[k]] * energy_density[order[k]]) < SF_COLLAPSE_SHARE * all)
+        k--;
     return fmax(0, excess[order[k]]);
 }
 
@@ -190,8 +190,7 @@ sf_status sf_strain_field_collapse(const sf_results *r, const sf_peak_fields *at
                                    sf_error *err) {
     collapse_search s = {
         .r = r,
-        .compression = at->compression,
-        .displacement = at->displacement,
+        .at = at,
         .cells = {
             .first = sf_alloc(err, (unsigned long)r->node_count + 2, sizeof *s.cells.first, "cells of nodes"),
             .cell = sf_alloc(err, (unsigned long)r->cell_nnz, sizeof *s.cells.cell, "cells of nodes")}};
@@ -200,7 +199,7 @@ sf_status sf_strain_field_collapse(const sf_results *r, const sf_peak_fields *at
     if (err->status == SF_OK) {
         list_cells(r, &s.cells);
         s.next = r->layer_count > 1 && at->displacement ? ring_copies(r, err) : NULL;
-        s.wall = mark_walls(r, at->displacement, at->pressure, err);
+        s.wall = mark_walls(r, at, err);
     }
     if (err->status == SF_OK)
         s.room = sf_alloc(err, (unsigned long)most_neighbours(&s), sizeof *s.room, "neighbours of a node");

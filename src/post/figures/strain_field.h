@@ -12,8 +12,8 @@ typedef struct sf_peak_fields {
     const double *energy_density; /* [node_count] J m-3; NULL: a single node counts */
 } sf_peak_fields;
 
-/* The part of the foam's energy that the nodes must hold which collapse: at a notch of the pad the strain has
- * no bound, and one node there, which carries nothing, exceeds its neighbours the more the finer the mesh. */
+/* Part of the foam's energy in the nodes that collapse: one node at a notch, which carries nothing, exceeds
+ * its neighbours the more the finer the mesh. */
 #define SF_COLLAPSE_SHARE 0.005
 
 /* Excess of a node's compression over the median of its neighbours, the nodes that share a cell with it,
@@ -23,11 +23,13 @@ typedef struct sf_peak_fields {
  *
  * At a tied interface of a pad of layers, whose nodes at one place have moved together, the excess is the
  * less of that over the neighbours in the node's own layer and that over those in all layers there: a layer
- * that its stiffer or softer partner carries along does not collapse. A node of a free wall, that neither the
- * missile nor the ground presses, likewise has the less of that and that over its neighbours on free walls:
- * the surface of a wall that bends is strained more than its inside. */
+ * that its stiffer or softer partner carries along does not collapse. Likewise of a node of a free wall,
+ * which neither the missile nor the ground presses, and its neighbours on free walls: a wall that bends. */
 sf_status sf_strain_field_collapse(const sf_results *results, const sf_peak_fields *peak, double *collapse,
                                    sf_error *err);
+
+/* True if the three nodes lie in a symmetry plane. */
+bool sf_face_is_mirrored(const sf_results *results, const int32_t node[3]);
 
 /* Share, of the energy of the foam, of the nodes whose compression exceeds `strain`; 0 without energy.
  * energy_density: [node_count] J m-3. */

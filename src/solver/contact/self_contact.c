@@ -314,8 +314,7 @@ typedef struct solve {
     double *mobility;  /* kg-1 */
     double (*step)[3]; /* m */
     double (*edge_force)[3]; /* N */
-    int sweeps;        /* at most */
-    double relaxation; /* -, of the normal forces */
+    bool centroids;          /* take part: over-relaxation of the normal forces */
     double shift;      /* s2, dt times the distance of the half steps */
     sf_touch passed;   /* a pair whose node has passed through the facet; node -1: there is none */
 } solve;
@@ -329,7 +328,7 @@ static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, co
     for (int r = 0; r < 3; r++)
         moved[r] = w->step[a][r] + w->shift * moved[r];
     double across = sf_dot3(moved, pair->normal), old = sf_dot3(q, pair->normal),
-           p = fmax(0, old - w->relaxation * (pair->gap + across) / mobility), size = 0;
+           p = fmax(0, old - (w->centroids ? OVER : 1) * (pair->gap + across) / mobility), size = 0;
     for (int r = 0; r < 3; r++) {
         next[r] = friction > 0 && p > 0
                       ? q[r] - old * pair->normal[r] - (moved[r] - across * pair->normal[r]) / mobility
@@ -350,7 +349,7 @@ static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, co
 
 static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w) {
     double change = 0, largest = 0;
-    for (int sweep = 0; sweep < w->sweeps; sweep++) {
+    for (int sweep = 0; sweep < (w->centroids ? CENTROID_SWEEPS : MAX_SWEEPS); sweep++) {
         change = largest = 0;
         for (int64_t a = 0; a < w->count; a++) {
             int64_t k = sweep % 2 ? w->count - 1 - a : a;
@@ -450,10 +449,7 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         if (!acts(skin, p, found->facet))
             continue;
         add_pair(m, skin, s, w);
-        if (p >= skin->nodes) {
-            w->sweeps = CENTROID_SWEEPS;
-            w->relaxation = OVER;
-        }
+        w->centroids = w->centroids || p >= skin->nodes;
     }
 }
 
@@ -522,8 +518,6 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
                .mobility = sf_alloc(err, most, sizeof *w.mobility, "pairs in contact"),
                .step = sf_alloc(err, most, sizeof *w.step, "pairs in contact"),
                .edge_force = sf_alloc(err, edges, sizeof *w.edge_force, "pairs in contact"),
-               .sweeps = MAX_SWEEPS,
-               .relaxation = 1,
                .passed.node = -1};
     if (err->status == SF_OK)
         find_pairs(m, skin, s, &w);
