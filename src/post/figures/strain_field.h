@@ -13,7 +13,7 @@ typedef struct sf_peak_fields {
 } sf_peak_fields;
 
 /* Part of the foam's energy in the nodes that collapse: one node at a notch, which carries nothing, exceeds
- * its neighbours the more the finer the mesh. */
+ * its neighbours on any mesh. */
 #define SF_COLLAPSE_SHARE 0.005
 
 /* Excess of a node's compression over the median of its neighbours, the nodes that share a cell with it,
