@@ -220,6 +220,42 @@ static void a_slot_closes_onto_its_mirror_image(void **state) {
     assert_true(open.base < 0.5 * whole.base);
 }
 
+/* A kerb below the middle of a pad; its edges lie between two rows of the pad's nodes. */
+static const char KERB[] =
+    "SetFactory(\"OpenCASCADE\");\nDefineConstant[ size = 30 ];\nBox(1) = {-17.5,-300,-60,35,600,60};\n"
+    "Delete{ Volume{:}; } Physical Surface(\"support\") = Surface{:};\n"
+    "Mesh.MeshSizeMin = size; Mesh.MeshSizeMax = size;\n";
+
+/* With 30 mm between the nodes of its edges the pad of 10 mm sinks onto them, and bears a third less. That is
+ * told before the run and in the verdict; with 5 mm both are silent. */
+static void edges_of_a_support_that_cut_into_the_foam_are_told(void **state) {
+    const program_place *p = *state;
+    double a_max[2], depth[2];
+    use_example(p, "eva50-v4.5");
+    program_write_text(p, "geo/kerb.geo", KERB);
+    for (int fine = 0; fine < 2; fine++) {
+        program_result r = program_run(
+            p, "pre",
+            "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 --set missile.velocity='\"3 m/s\"' "
+            "--set geometry.parameters.side=200.0 --set geometry.parameters.zone_side=140.0 " COARSE_PAD
+                SUPPORT("kerb") "--set support.parameters='{ size = %d; }'",
+            fine ? 5 : 30);
+        assert_int_equal(r.code, 0);
+        assert_int_equal(strstr(r.err, "an edge of a support has nodes 30 mm apart") != NULL, !fine);
+        program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
+        program_succeed(p, "post", "r.h5 -o out --force");
+        a_max[fine] = program_file_number(p, "out/summary.json", "a_max_g");
+        depth[fine] = program_file_number(p, "out/summary.json", "rim_depth_mm");
+        r = program_shell(p,
+                          "grep -q 'depth of missile or support in faces, between nodes .* (not to be used' "
+                          "out/summary.json");
+        assert_int_equal(r.code == 0, !fine);
+    }
+    print_message("a_max %.2f and %.2f g, edges %.2f and %.2f mm in the faces\n", a_max[0], a_max[1],
+                  depth[0], depth[1]);
+    assert_true(depth[0] > 0.2 * 50 && depth[1] < 0.05 * 50 && a_max[0] < 0.75 * a_max[1]);
+}
+
 static void refuse(const program_place *p, const char *words, const char *sentence) {
     program_result r = program_run(p, "pre", "case.cfg -o bad.h5 --force --set pad.mesh_error_limit=10 %s%s",
                                    COARSE_PAD, words);
@@ -303,6 +339,7 @@ int main(void) {
         cmocka_unit_test(a_support_moves_with_its_case),
         cmocka_unit_test(a_post_in_a_tube_acts_as_glue_does),
         cmocka_unit_test(a_slot_closes_onto_its_mirror_image),
+        cmocka_unit_test(edges_of_a_support_that_cut_into_the_foam_are_told),
         cmocka_unit_test(wrong_supports_are_refused),
         cmocka_unit_test(the_missile_stops_at_a_support),
     };

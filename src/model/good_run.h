@@ -49,8 +49,8 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
       "`energy_beyond_data`", "there the material's curve is extrapolated, and with it the peak")                       \
     X(anvil, 0.9, 0.95, 1, SF_AS_NUMBER, "indentation over the thickness", "`max_mean_strain`",                           \
       "the missile reaches the anvil; its stiffness is not in the model")                                              \
-    X(rim, 0.05, 0.2, 0, SF_AS_PERCENT, "depth of the missile in faces, between nodes", "`rim_depth_mm` / `thickness_mm`", \
-      "contact acts at the nodes: the foam beside a rim of the missile that the mesh does not resolve is not pressed") \
+    X(rim, 0.05, 0.2, 0, SF_AS_PERCENT, "depth of missile or support in faces, between nodes", "`rim_depth_mm` / `thickness_mm`", \
+      "contact acts at the nodes: the foam beside a rim of missile or support that the mesh does not resolve is not pressed") \
     X(below_anvil, 0.01, 0.2, 1, SF_AS_PERCENT, "foam below the anvil", "`below_anvil_mm` / `thickness_mm`", \
       "the anvil acts on the surfaces of `pad.fixed` only: other foam passes through it and is too soft") \
     X(notes, 0, INFINITY, 0, SF_AS_NUMBER, "notes of the programs", "number of `notes` that do not only repeat `ending`",                                  \

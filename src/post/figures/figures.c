@@ -285,7 +285,8 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
         f->layers = sf_layer_figures_compute(r, NULL, NULL, err);
         return err->status;
     }
-    int fields = SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY | SF_FIELD_DISPLACEMENT;
+    int fields = SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY | SF_FIELD_DISPLACEMENT |
+                 SF_FIELD_CONTACT_PRESSURE;
     if (sf_frame_read_fields(r, &r->peak, fields, &peak, &problem) != SF_OK)
         return sf_results_ended_well(r) ? SF_FAIL(err, problem.status, "%s", problem.text) : SF_OK;
     const double *compression = peak.field[SF_FRAME_LARGEST_COMPRESSION],
@@ -298,8 +299,9 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
         for (int k = 0; k < r->layer_count; k++)
             f->energy_beyond_data += f->layers[k].energy_share * f->layers[k].energy_beyond_data;
     }
+    const sf_peak_fields at = {compression, moved, peak.field[SF_FRAME_CONTACT_PRESSURE], energy};
     if (compression)
-        sf_strain_field_collapse(r, compression, moved, &f->local_collapse, err);
+        sf_strain_field_collapse(r, &at, &f->local_collapse, err);
     if (moved && err->status == SF_OK)
         sf_rim_cut_measure(r, &r->peak, moved, &f->cut, err);
     return err->status;

@@ -3,6 +3,7 @@
 #include "base/sets.h"
 #include "model/cells.h"
 
+#include "model/cells.h"
 #include <gsl/gsl_sort.h>
 #include <string.h>
 
@@ -26,14 +27,13 @@ static void list_cells(const sf_results *r, node_cells *n) {
             n->cell[n->first[r->cell_node[k] + 1]++] = c;
 }
 
-/* Appends the neighbours' values of a node in its layer to the `count` values in room; room: NULL counts
- * only.
- */
-static int64_t gather(const sf_results *r, const node_cells *n, int64_t node, const double *value,
-                      int64_t count, double *room) {
+/* Appends the values of a node's neighbours in its layer, `among` those marked unless it is NULL, to the
+ * `count` values in room; room: NULL counts only. */
+static int64_t gather(const sf_results *r, const node_cells *n, int64_t node, const bool *among,
+                      const double *value, int64_t count, double *room) {
     for (int64_t k = n->first[node]; k < n->first[node + 1]; k++)
         for (int64_t j = r->cell_ptr[n->cell[k]]; j < r->cell_ptr[n->cell[k] + 1]; j++) {
-            if (r->cell_node[j] == node)
+            if (r->cell_node[j] == node || (among && !among[r->cell_node[j]]))
                 continue;
             if (room)
                 room[count] = value[r->cell_node[j]];
@@ -102,60 +102,113 @@ static double median(double *value, int64_t count) {
 
 typedef struct collapse_search {
     const sf_results *r;
-    const double *compression, *displacement;
+    const sf_peak_fields *at;
     node_cells cells;
     int64_t *next; /* [node_count] as of ring_copies; NULL: one material; owned */
+    bool *wall;    /* [node_count] as of mark_walls; owned */
     double *room;  /* for the neighbours of a node and of its copies; owned */
 } collapse_search;
+
+bool sf_face_is_mirrored(const sf_results *r, const int32_t node[3]) {
+    double off[2] = {0};
+    for (int k = 0; k < 6; k++)
+        off[k % 2] += fabs(r->position[3 * (int64_t)node[k / 2] + k % 2] - r->symmetry_place[k % 2]);
+    return off[0] < SLIP * r->thickness || off[1] < SLIP * r->thickness;
+}
+
+/* Marks the nodes of walls: of free faces outside symmetry planes that are not pressed from outside, by the
+ * missile or by the ground, where they have no way down. NULL without these fields, or on failure. */
+static bool *mark_walls(const sf_results *r, const sf_peak_fields *at, sf_error *err) {
+    SF_OWNED int32_t *face = NULL;
+    int64_t count = 0;
+    if (!at->displacement || !at->pressure ||
+        sf_skin_triangles(&SF_CELLS_OF(r), &count, &face, NULL, err) != SF_OK)
+        return NULL;
+    bool *wall = sf_alloc(err, r->node_count, sizeof *wall, "nodes of walls");
+    for (int32_t *n = face; wall && n < face + 3 * count; n += 3) {
+        int pressed = 0;
+        for (int c = 0; c < 3; c++)
+            pressed +=
+                at->pressure[n[c]] > 0 || fabs(at->displacement[3 * (int64_t)n[c] + 2]) < SLIP * r->thickness;
+        for (int c = 0; c < 3 && pressed < 3 && !sf_face_is_mirrored(r, n); c++)
+            wall[n[c]] = true;
+    }
+    return wall;
+}
 
 static int64_t most_neighbours(const collapse_search *s) {
     int64_t most = 0;
     for (int64_t i = 0; i < s->r->node_count; i++) {
-        int64_t count = gather(s->r, &s->cells, i, NULL, 0, NULL);
+        int64_t count = gather(s->r, &s->cells, i, NULL, NULL, 0, NULL);
         for (int64_t j = s->next ? s->next[i] : i; j != i; j = s->next[j])
-            count = gather(s->r, &s->cells, j, NULL, count, NULL);
+            count = gather(s->r, &s->cells, j, NULL, NULL, count, NULL);
         most = count > most ? count : most;
     }
     return most;
 }
 
 /* Compression of a node above its neighbours, in its layer or in all that are tied there, whichever is less:
- * at a tied interface either side may be the one that carries. */
+ * at a tied interface either side may be the one that carries. The surface of a wall that bends is strained
+ * more than what lies behind it: a node of it is compared along the wall, too. */
 static double excess_of(const collapse_search *s, int64_t node) {
-    const double *value = s->compression;
-    int64_t own = gather(s->r, &s->cells, node, value, 0, s->room), all = own;
+    const double *value = s->at->compression;
+    int64_t own = gather(s->r, &s->cells, node, NULL, value, 0, s->room), all = own;
     if (own == 0)
         return 0;
     for (int64_t j = s->next ? s->next[node] : node; j != node; j = s->next[j])
-        if (is_together(s->r, s->displacement, node, j))
-            all = gather(s->r, &s->cells, j, value, all, s->room);
+        if (is_together(s->r, s->at->displacement, node, j))
+            all = gather(s->r, &s->cells, j, NULL, value, all, s->room);
     double usual = median(s->room, all); /* sorts the values of all */
     if (all > own) {
-        gather(s->r, &s->cells, node, value, 0, s->room);
+        gather(s->r, &s->cells, node, NULL, value, 0, s->room);
         usual = fmax(usual, median(s->room, own));
+    }
+    if (s->wall && s->wall[node] && !(s->next && s->next[node] != node)) {
+        int64_t along = gather(s->r, &s->cells, node, s->wall, value, 0, s->room);
+        usual = along > 0 ? fmax(usual, median(s->room, along)) : usual;
     }
     return value[node] - usual;
 }
 
-sf_status sf_strain_field_collapse(const sf_results *r, const double *compression, const double *displacement,
-                                   double *collapse, sf_error *err) {
+/* Returns the excess that nodes with SF_COLLAPSE_SHARE of the foam's energy reach or exceed; without energies
+ * that of a single node. */
+static double sustained_excess(const sf_results *r, const double *excess, const double *energy_density,
+                               sf_error *err) {
+    SF_OWNED size_t *order = sf_alloc(err, r->node_count, sizeof *order, "excess of nodes");
+    double all = 0, held = 0;
+    if (!order || r->node_count == 0)
+        return 0;
+    gsl_sort_index(order, excess, 1, (size_t)r->node_count);
+    for (int64_t i = 0; energy_density && i < r->node_count; i++)
+        all += r->volume[i] * energy_density[i];
+    int64_t k = r->node_count - 1;
+    while (k > 0 && all > 0 &&
+           (held += r->volume[order[k]] * energy_density[order[k]]) < SF_COLLAPSE_SHARE * all)
+        k--;
+    return fmax(0, excess[order[k]]);
+}
+
+sf_status sf_strain_field_collapse(const sf_results *r, const sf_peak_fields *at, double *collapse,
+                                   sf_error *err) {
     collapse_search s = {
         .r = r,
-        .compression = compression,
-        .displacement = displacement,
+        .at = at,
         .cells = {.first = sf_alloc(err, r->node_count + 2, sizeof *s.cells.first, "cells of nodes"),
                   .cell = sf_alloc(err, r->cell_nnz, sizeof *s.cells.cell, "cells of nodes")}};
+    SF_OWNED double *excess = sf_alloc(err, r->node_count, sizeof *excess, "excess of nodes");
     *collapse = 0;
     if (err->status == SF_OK) {
         list_cells(r, &s.cells);
-        s.next = r->layer_count > 1 && displacement ? ring_copies(r, err) : NULL;
+        s.next = r->layer_count > 1 && at->displacement ? ring_copies(r, err) : NULL;
+        s.wall = mark_walls(r, at, err);
     }
     if (err->status == SF_OK)
-        s.room = sf_alloc(err, (unsigned long)most_neighbours(&s), sizeof *s.room, "neighbours of a node");
+        s.room = sf_alloc(err, most_neighbours(&s), sizeof *s.room, "neighbours of a node");
     for (int64_t i = 0; err->status == SF_OK && i < r->node_count; i++)
-        if (compression[i] > *collapse)
-            *collapse = fmax(*collapse, excess_of(&s, i));
-    SF_FREE(s.room, s.next, s.cells.first, s.cells.cell);
+        excess[i] = at->compression[i] > 0 ? excess_of(&s, i) : 0;
+    if (err->status == SF_OK)
+        *collapse = sustained_excess(r, excess, at->energy_density, err);
+    SF_FREE(s.room, s.next, s.wall, s.cells.first, s.cells.cell);
     return err->status;
 }
 
@@ -302,18 +355,15 @@ static void faces_free(faces *f) {
 
 /* Adds a face unless it lies in a symmetry plane. */
 static void add_face(const sf_results *r, const int32_t node[3], faces *f) {
-    double *centre = &f->centre[3 * f->count], *radius = &f->radius[f->count], off[3] = {0};
+    double *centre = &f->centre[3 * f->count], *radius = &f->radius[f->count];
     memmove(&f->node[3 * f->count], node, 3 * sizeof *node);
     memset(centre, 0, 3 * sizeof *centre);
     *radius = 0;
-    for (int k = 0; k < 9; k++) {
-        int64_t at = 3 * (int64_t)node[k / 3] + k % 3;
-        centre[k % 3] += f->x[at] / 3;
-        off[k % 3] += k % 3 < 2 ? fabs(r->position[at] - r->symmetry_place[k % 3]) : 0;
-    }
+    for (int k = 0; k < 9; k++)
+        centre[k % 3] += f->x[3 * (int64_t)node[k / 3] + k % 3] / 3;
     for (int k = 0; k < 3; k++)
         *radius = fmax(*radius, sf_distance3(centre, &f->x[3 * (int64_t)node[k]]));
-    if (off[0] < 1e-6 * r->thickness || off[1] < 1e-6 * r->thickness)
+    if (sf_face_is_mirrored(r, node))
         return;
     f->least = fmin(f->least, *radius);
     f->count++;
@@ -336,9 +386,9 @@ static sf_status faces_find(const sf_results *r, const double *u, faces *f, sf_e
     return f->count > 0 ? sf_grid_build(&f->grid, f->count, f->centre, f->radius, err) : SF_OK;
 }
 
-/* Depth (m) of the point x of a triangle of the missile, of the normal n, behind the nearest face that looks
- * against it; 0: it is not in the foam. It is inside if the nearest face of any direction says so: of those
- * equally near the one that looks most straight at it. */
+/* Depth (m) of the point x of a triangle of missile or support, of the normal n, behind the nearest face that
+ * looks against it; 0: it is not in the foam. It is inside if the nearest face of any direction says so: of
+ * those equally near the one that looks most straight at it. */
 static double depth_at(const faces *f, const double x[3], const double n[3], double most, int64_t *face) {
     for (double reach = f->least; reach < most; reach *= 2) {
         double nearest = INFINITY, straight = 0, depth = INFINITY;
@@ -368,33 +418,42 @@ static double depth_at(const faces *f, const double x[3], const double n[3], dou
     return 0;
 }
 
-sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, const double *displacement,
-                             sf_rim_cut *cut, sf_error *err) {
+/* Measures the vertices and edges of a body's triangles; head: the missile moves with it, NULL: at rest. */
+static void measure_body(const sf_results *r, const faces *f, const sf_frame_head *head, int64_t triangles,
+                         const int32_t *triangle, const double *position, sf_rim_cut *cut) {
     enum { MOST = 200 }; /* points along an edge */
-    SF_OWNED_BY(faces_free) faces f = {0};
-    *cut = (sf_rim_cut){0};
-    SF_TRY(faces_find(r, displacement, &f, err));
-    for (int64_t k = 0; f.count > 0 && k < 3 * r->surface_triangle_count; k++) {
+    for (int64_t k = 0; f->count > 0 && k < 3 * triangles; k++) {
         double x[3][3], normal[3];
-        for (int c = 0; c < 3; c++) /* the edge from x[0] to x[1] */
-            sf_results_place(r, head,
-                             &r->surface_position[3 * (int64_t)r->surface_triangle[k - k % 3 + (k + c) % 3]],
-                             x[c]);
+        for (int c = 0; c < 3; c++) { /* the edge from x[0] to x[1] */
+            const double *rest = &position[3 * (int64_t)triangle[k - k % 3 + (k + c) % 3]];
+            memcpy(x[c], rest, sizeof x[c]);
+            if (head)
+                sf_results_place(r, head, rest, x[c]);
+        }
         sf_triangle_normal(x[0], x[1], x[2], normal);
-        double parts = fmin(MOST, ceil(sf_distance3(x[0], x[1]) / f.least));
+        double parts = fmin(MOST, ceil(sf_distance3(x[0], x[1]) / f->least));
         for (double part = 0; part < parts; part++) {
             double at[3];
             bool near = true;
             int64_t face = 0;
             for (int c = 0; c < 3; c++) {
                 at[c] = x[0][c] + part / parts * (x[1][c] - x[0][c]);
-                near = near && at[c] > f.low[c] && at[c] < f.high[c];
+                near = near && at[c] > f->low[c] && at[c] < f->high[c];
             }
-            double depth = near ? depth_at(&f, at, normal, r->thickness, &face) : 0;
+            double depth = near ? depth_at(f, at, normal, r->thickness, &face) : 0;
             if (depth > cut->depth)
-                memcpy(cut->place, &r->position[3 * (int64_t)f.node[3 * face]], sizeof cut->place);
+                memcpy(cut->place, &r->position[3 * (int64_t)f->node[3 * face]], sizeof cut->place);
             cut->depth = fmax(cut->depth, depth);
         }
     }
+}
+
+sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, const double *displacement,
+                             sf_rim_cut *cut, sf_error *err) {
+    SF_OWNED_BY(faces_free) faces f = {0};
+    *cut = (sf_rim_cut){0};
+    SF_TRY(faces_find(r, displacement, &f, err));
+    measure_body(r, &f, head, r->surface_triangle_count, r->surface_triangle, r->surface_position, cut);
+    measure_body(r, &f, NULL, r->support_triangle_count, r->support_triangle, r->support_position, cut);
     return SF_OK;
 }

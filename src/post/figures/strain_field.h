@@ -4,30 +4,46 @@
 #include "post/results/results.h"
 #include "report/row.h"
 
-/* Largest excess of a node's compression (1 - smallest principal stretch) over the median of its neighbours,
- * the nodes that share a cell with it, counted once per cell. Where the strain is smooth it is small, below a
- * missile in a pad of any thickness, and so it is along a straight edge of the loaded area; single nodes,
- * rows or layers that collapse alone stand out. A node without cells has no excess.
+/* Fields at the nodes at the peak; each may be NULL but the compression. */
+typedef struct sf_peak_fields {
+    const double *compression;    /* [node_count] 1 - smallest principal stretch */
+    const double *displacement;   /* [node_count][3] m; NULL: own layers only */
+    const double *pressure;       /* [node_count] Pa, of the missile; NULL: no walls */
+    const double *energy_density; /* [node_count] J m-3; NULL: a single node counts */
+} sf_peak_fields;
+
+/* Part of the foam's energy in the nodes that collapse: one node at a notch, which carries nothing, exceeds
+ * its neighbours on any mesh. */
+#define SF_COLLAPSE_SHARE 0.005
+
+/* Excess of a node's compression over the median of its neighbours, the nodes that share a cell with it,
+ * counted once per cell: the largest that nodes with SF_COLLAPSE_SHARE of the energy reach. Where the strain
+ * is smooth it is small, below a missile in a pad of any thickness, and so it is along a straight edge of the
+ * loaded area; nodes, rows or layers that collapse alone stand out. A node without cells has no excess.
  *
  * At a tied interface of a pad of layers, whose nodes at one place have moved together, the excess is the
  * less of that over the neighbours in the node's own layer and that over those in all layers there: a layer
- * that its stiffer or softer partner carries along does not collapse. compression: [node_count];
- * displacement: [node_count][3] m, or NULL: own layers only. */
-sf_status sf_strain_field_collapse(const sf_results *results, const double *compression,
-                                   const double *displacement, double *collapse, sf_error *err);
+ * that its stiffer or softer partner carries along does not collapse. Likewise of a node of a free wall,
+ * which neither the missile nor the ground presses, and its neighbours on free walls: a wall that bends. */
+sf_status sf_strain_field_collapse(const sf_results *results, const sf_peak_fields *peak, double *collapse,
+                                   sf_error *err);
+
+/* True if the three nodes lie in a symmetry plane. */
+bool sf_face_is_mirrored(const sf_results *results, const int32_t node[3]);
 
 /* Share, of the energy of the foam, of the nodes whose compression exceeds `strain`; 0 without energy.
  * energy_density: [node_count] J m-3. */
 double sf_strain_field_energy_beyond(const sf_results *results, const double *compression,
                                      const double *energy_density, double strain);
 
-/* The depth of the missile's surface in the foam between the nodes, at which the contact acts. */
+/* The depth of the surface of missile or supports in the foam between the nodes, at which the contact acts.
+ */
 typedef struct sf_rim_cut {
     double depth;    /* m, behind the nearest free face that looks against it */
     double place[3]; /* m, of a node of that face at rest */
 } sf_rim_cut;
 
-/* Measures it at the vertices and along the edges of the missile's triangles; displacement: [node_count][3]
+/* Measures it at the vertices and along the edges of their triangles; displacement: [node_count][3]
  * m. */
 sf_status sf_rim_cut_measure(const sf_results *results, const sf_frame_head *head, const double *displacement,
                              sf_rim_cut *cut, sf_error *err);

@@ -7,8 +7,8 @@
 
 /* Partners of a node: a facet, or one of these. */
 enum { NOTHING = SF_NO_CANDIDATE, FIRST_PLANE = -2 }; /* plane k: FIRST_PLANE - k */
-/* The sweeps of a step, and those where centroids or edges take part, whose rows depend on those of nodes. */
-enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 60, MORE_SWEEPS = 240 };
+/* The sweeps of a step at most, and those where centroids take part: rows that depend on those of nodes. */
+enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 1000, CENTROID_SWEEPS = 240 };
 static const double OVER = 1.6;     /* over-relaxation of the latter */
 static const double DEEPEST = 0.5;  /* of the spacing: no deeper does it go on */
 static const double RETURN = 0.1;   /* m s-1: no faster is a depth taken back */
@@ -314,8 +314,7 @@ typedef struct solve {
     double *mobility;  /* kg-1 */
     double (*step)[3]; /* m */
     double (*edge_force)[3]; /* N */
-    int sweeps;        /* at most */
-    double relaxation; /* -, of the normal forces */
+    bool centroids;          /* take part: over-relaxation of the normal forces */
     double shift;      /* s2, dt times the distance of the half steps */
     sf_touch passed;   /* a pair whose node has passed through the facet; node -1: there is none */
 } solve;
@@ -329,7 +328,7 @@ static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, co
     for (int r = 0; r < 3; r++)
         moved[r] = w->step[a][r] + w->shift * moved[r];
     double across = sf_dot3(moved, pair->normal), old = sf_dot3(q, pair->normal),
-           p = fmax(0, old - w->relaxation * (pair->gap + across) / mobility), size = 0;
+           p = fmax(0, old - (w->centroids ? OVER : 1) * (pair->gap + across) / mobility), size = 0;
     for (int r = 0; r < 3; r++) {
         next[r] = friction > 0 && p > 0
                       ? q[r] - old * pair->normal[r] - (moved[r] - across * pair->normal[r]) / mobility
@@ -350,7 +349,7 @@ static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, co
 
 static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w) {
     double change = 0, largest = 0;
-    for (int sweep = 0; sweep < w->sweeps; sweep++) {
+    for (int sweep = 0; sweep < (w->centroids ? CENTROID_SWEEPS : MAX_SWEEPS); sweep++) {
         change = largest = 0;
         for (int64_t a = 0; a < w->count; a++) {
             int64_t k = sweep % 2 ? w->count - 1 - a : a;
@@ -450,17 +449,13 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         if (!acts(skin, p, found->facet))
             continue;
         add_pair(m, skin, s, w);
-        if (p >= skin->nodes) {
-            w->sweeps = MORE_SWEEPS;
-            w->relaxation = OVER;
-        }
+        w->centroids = w->centroids || p >= skin->nodes;
     }
 }
 
 /* Adds the pairs of edges. */
 static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
     int64_t count = sf_touch_edges(skin, s, RETURN * s->dt, &w->pair[w->count]);
-    w->sweeps = count > 0 ? MORE_SWEEPS : w->sweeps;
     for (int64_t k = 0; k < count; k++) {
         sf_touch *q = &w->pair[w->count];
         q->friction = friction_of(m, skin, q->node, q->facet);
@@ -523,8 +518,6 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
                .mobility = sf_alloc(err, most, sizeof *w.mobility, "pairs in contact"),
                .step = sf_alloc(err, most, sizeof *w.step, "pairs in contact"),
                .edge_force = sf_alloc(err, edges, sizeof *w.edge_force, "pairs in contact"),
-               .sweeps = MAX_SWEEPS,
-               .relaxation = 1,
                .passed.node = -1};
     if (err->status == SF_OK)
         find_pairs(m, skin, s, &w);
