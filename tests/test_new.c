@@ -80,7 +80,8 @@ static void refusals_leave_nothing(void **state) {
         const char *part;
     } cases[] = {
         {"full", 2, "full exists and is not empty"},
-        {"x --from nothing", 2, "no example \"nothing\"; the examples are channels, compression, cored, "},
+        {"x --from nothing", 2,
+         "unknown example \"nothing\"; the examples are channels, compression, cored, "},
         {"x --from fit", 2, "no example \"fit\""},
         {"x --from no/case.cfg", 2, "no/case.cfg"},
         {"no/such/x", 3, "No such file or directory"},

@@ -174,7 +174,7 @@ typedef struct sf_state {
                                  up; arrays of other points are not up to date */
     int64_t contact_near_count;
 
-    /* Contact of the skin with itself (contact/self_contact.h); by point of the skin, only a pad with one has
+    /* Contact of the skin with itself (contact/contact.h); by point of the skin, only a pad with one has
      * these. */
     double *self_position;   /* [skin][3] m, physical, now; of nodes in self_near, as the next two */
     double *self_motion;     /* [skin][3] m, its last step */

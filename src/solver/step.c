@@ -3,7 +3,6 @@
 
 #include "base/mat3.h"
 #include "solver/contact/contact.h"
-#include "solver/contact/self_contact.h"
 
 /* Steps between measurements of |G v|, and between looks for foam that passed through something. */
 enum { RESIDUAL_INTERVAL = 16, PASSAGE_INTERVAL = 16 };
@@ -103,7 +102,7 @@ static const char *find_passed(const sf_model *m, const sf_state *s, const doubl
 }
 
 /* Fails where foam has passed through the anvil or a symmetry plane; faces of the foam and supports:
- * contact/self_contact.h. */
+ * contact/contact.h. */
 static sf_status check_passed(const sf_model *m, const sf_state *s, sf_error *err) {
     double low[3], high[3], plane[3];
     sf_box3(m->node_count, m->position, low, high);

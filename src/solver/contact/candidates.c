@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/contact/candidates.h"
+#include "solver/contact/touch.h"
 
 #include "base/sets.h"
 #include "base/mat3.h"

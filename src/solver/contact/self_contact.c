@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/contact/self_contact.h"
+#include "solver/contact/contact.h"
 
 #include "base/mat3.h"
-#include "solver/contact/candidates.h"
 #include "solver/contact/touch.h"
 
 /* Partners of a node: a facet, or one of these. */

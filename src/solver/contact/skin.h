@@ -3,7 +3,7 @@
 #include "solver/contact/contact_rows.h"
 
 /* The faces of the pad that may touch the pad itself, the anvil, a symmetry plane or the rigid support, with
- * those of the support behind them, as the solver needs them (solver/contact/self_contact.h). */
+ * those of the support behind them, as the solver needs them (solver/contact/contact.h). */
 
 /* A plane that stops the pad: that of the anvil, and those of symmetry, beyond which its mirror image is. */
 enum { SF_SKIN_ANVIL, SF_SKIN_SYMMETRY_X, SF_SKIN_SYMMETRY_Y, SF_SKIN_PLANES };

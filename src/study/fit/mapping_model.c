@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/mapping_model.h"
+#include "study/fit/space_mapping.h"
 
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_blas.h>

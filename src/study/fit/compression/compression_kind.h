@@ -48,3 +48,8 @@ double sf_hyperfoam_free_stress(const sf_hyperfoam *foam, double strain, double 
 /* Runs `softfall-fit compression FIT.cfg -o DIR` and returns the exit code; argv[0] is the name of the
  * program. */
 int sf_fit_compression_main(int argc, char **argv);
+
+/* The functions of a kind by their usual names. */
+#define SF_COMPRESSION_PARTS                                                                                 \
+    .outputs = outputs, .run = run, .material = material_of, .describe = describe, .points = put_points,     \
+    .json = put_json, .warn = warn

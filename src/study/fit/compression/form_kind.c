@@ -271,12 +271,6 @@ static void put_json(sf_json *json, const void *place, const char *path) {
 const sf_compression_kind sf_compression_form_kind = {.label = "",
                                                       .files =
                                                           "material.cfg, material.csv, fit.json, fit.csv",
-                                                      .outputs = outputs,
                                                       .size = sizeof(sf_form_fit),
-                                                      .run = run,
                                                       .free = release,
-                                                      .material = material_of,
-                                                      .describe = describe,
-                                                      .points = put_points,
-                                                      .json = put_json,
-                                                      .warn = warn};
+                                                      SF_COMPRESSION_PARTS};

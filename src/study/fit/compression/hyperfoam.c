@@ -503,11 +503,5 @@ static void put_json(sf_json *json, const void *place, const char *path) {
 static const char *const outputs[] = {"fit.csv", "fit.json", "material.cfg", NULL};
 const sf_compression_kind sf_compression_hyperfoam = {.label = "hyperfoam",
                                                       .files = "material.cfg, fit.json, fit.csv",
-                                                      .outputs = outputs,
                                                       .size = sizeof(fitted),
-                                                      .run = run,
-                                                      .material = material_of,
-                                                      .describe = describe,
-                                                      .points = put_points,
-                                                      .json = put_json,
-                                                      .warn = warn};
+                                                      SF_COMPRESSION_PARTS};

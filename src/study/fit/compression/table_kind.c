@@ -446,13 +446,7 @@ static void put_json(sf_json *json, const void *place, const char *path) {
 
 const sf_compression_kind sf_compression_tables = {
     .files = "material.cfg and its curves, report.html, fit.png, fit.json, fit.csv, loading_curve.csv",
-    .outputs = outputs,
     .size = sizeof(sf_table_result),
-    .run = run,
     .free = release,
-    .material = material_of,
-    .describe = describe,
-    .points = put_points,
-    .json = put_json,
     .more = write_more,
-    .warn = warn};
+    SF_COMPRESSION_PARTS};
