@@ -17,7 +17,7 @@ DefineConstant[
 ];
 
 If (side <= 0 || diameter <= 0 || spacing <= 0)
-  Error("channels.geo: side, diameter and spacing must be positive");
+  Error("channels.geo: side, diameter and spacing must be above 0");
 EndIf
 If (channels < 1 || channels != Round(channels))
   Error("channels.geo: channels = %g must be 1, 2, 3, ...", channels);

@@ -17,7 +17,7 @@ DefineConstant[
 ];
 
 If (side <= 0 || thickness <= 0 || hole_diameter <= 0 || spacing <= 0)
-  Error("cored.geo: side, thickness, hole_diameter and spacing must be positive");
+  Error("cored.geo: side, thickness, hole_diameter and spacing must be above 0");
 EndIf
 If (holes < 1 || holes != Round(holes))
   Error("cored.geo: holes = %g must be 1, 2, 3, ...", holes);

@@ -10,7 +10,7 @@ DefineConstant[
 ];
 
 If (side <= 0 || spacing <= 0)
-  Error("cube.geo: side and spacing must be positive");
+  Error("cube.geo: side and spacing must be above 0");
 EndIf
 
 b = side / 2;

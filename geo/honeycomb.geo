@@ -15,7 +15,7 @@ DefineConstant[
 ];
 
 If (side <= 0 || thickness <= 0 || hole <= 0 || wall <= 0 || spacing <= 0)
-  Error("honeycomb.geo: side, thickness, hole, wall and spacing must be positive");
+  Error("honeycomb.geo: side, thickness, hole, wall and spacing must be above 0");
 EndIf
 b = side / 2;
 If (hole / 2 + 2 * wall >= b)

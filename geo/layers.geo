@@ -19,7 +19,7 @@ DefineConstant[
 ];
 
 If (side <= 0 || zone_side <= 0 || lower <= 0 || upper < 0 || cover < 0 || fine_spacing <= 0 || outer_spacing <= 0)
-  Error("layers.geo: lengths must be positive; upper and cover may be 0");
+  Error("layers.geo: lengths must be above 0; upper and cover may be 0");
 EndIf
 If (zone_side > side)
   Error("layers.geo: zone_side = %g is larger than side = %g", zone_side, side);

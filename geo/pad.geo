@@ -18,7 +18,7 @@ DefineConstant[
 ];
 
 If (thickness <= 0 || fine_spacing <= 0 || outer_spacing <= 0 || zone_side <= 0)
-  Error("pad.geo: thickness, zone_side, fine_spacing and outer_spacing must be positive");
+  Error("pad.geo: thickness, zone_side, fine_spacing and outer_spacing must be above 0");
 EndIf
 If (zone_side + 2 * fine_spacing > side)
   Error("pad.geo: zone_side = %g leaves less than one fine spacing up to side = %g", zone_side, side);

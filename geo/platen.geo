@@ -10,7 +10,7 @@ DefineConstant[
 ];
 
 If (side <= 0 || thickness <= 0)
-  Error("platen.geo: side and thickness must be positive");
+  Error("platen.geo: side and thickness must be above 0");
 EndIf
 
 b = side / 2;

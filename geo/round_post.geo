@@ -10,7 +10,7 @@ DefineConstant[
 ];
 
 If (diameter <= 0 || length <= 0 || element_size <= 0)
-  Error("round_post.geo: diameter, length and element_size must be positive");
+  Error("round_post.geo: diameter, length and element_size must be above 0");
 EndIf
 
 Cylinder(1) = {0, -length / 2, 0, 0, length, 0, diameter / 2};

@@ -13,7 +13,7 @@ DefineConstant[
 ];
 
 If (side <= 0 || depth <= 0 || hole < 0 || hole >= side || element_size <= 0)
-  Error("slab.geo: side, depth and element_size must be positive, the hole must be smaller than the side");
+  Error("slab.geo: side, depth and element_size must be above 0, the hole must be smaller than the side");
 EndIf
 
 Box(1) = {-side / 2, -side / 2, -depth, side, side, depth};

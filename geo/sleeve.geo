@@ -14,7 +14,7 @@ DefineConstant[
 ];
 
 If (post <= 0 || thickness <= 0 || length <= 0 || spacing <= 0)
-  Error("sleeve.geo: post, thickness, length and spacing must be positive");
+  Error("sleeve.geo: post, thickness, length and spacing must be above 0");
 EndIf
 
 r = post / 2;

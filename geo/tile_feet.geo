@@ -15,7 +15,7 @@ DefineConstant[
 ];
 
 If (foot <= 0 || foot_height <= 0 || plate <= 0 || spacing <= 0)
-  Error("tile_feet.geo: foot, foot_height, plate and spacing must be positive");
+  Error("tile_feet.geo: foot, foot_height, plate and spacing must be above 0");
 EndIf
 If (squares < 1 || squares != Round(squares))
   Error("tile_feet.geo: squares = %g must be 1, 2, 3, ...", squares);

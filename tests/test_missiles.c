@@ -190,8 +190,8 @@ static void wrong_parameters_are_refused(void **state) {
         const char *part;
     } rows[] = {
         {0, "edge_radius", 60, "must be less than the thickness"},
-        {1, "length", 0, "must be positive"},
-        {2, "width", -1, "must be positive"},
+        {1, "length", 0, "must be above 0"},
+        {2, "width", -1, "must be above 0"},
         {3, "length", 40, "must be more than the diameter"},
     };
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {

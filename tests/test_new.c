@@ -82,7 +82,7 @@ static void refusals_leave_nothing(void **state) {
         {"full", 2, "full exists and is not empty"},
         {"x --from nothing", 2,
          "unknown example \"nothing\"; the examples are channels, compression, cored, "},
-        {"x --from fit", 2, "no example \"fit\""},
+        {"x --from fit", 2, "unknown example \"fit\""},
         {"x --from no/case.cfg", 2, "no/case.cfg"},
         {"no/such/x", 3, "No such file or directory"},
         {"x --set missile.velocity=fast", 2, "missile.velocity"},

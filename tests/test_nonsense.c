@@ -187,9 +187,9 @@ static void curves_and_motions(void **state) {
 
 static void geometries(void **state) {
     static const nonsense rows[] = {
-        {"--set geometry.parameters.thickness=0.0", {"pad.geo", "thickness", "must be positive"}},
-        {"--set geometry.parameters.thickness=-50.0", {"pad.geo", "thickness", "must be positive"}},
-        {"--set geometry.parameters.fine_spacing=0.0", {"pad.geo", "fine_spacing", "must be positive"}},
+        {"--set geometry.parameters.thickness=0.0", {"pad.geo", "thickness", "must be above 0"}},
+        {"--set geometry.parameters.thickness=-50.0", {"pad.geo", "thickness", "must be above 0"}},
+        {"--set geometry.parameters.fine_spacing=0.0", {"pad.geo", "fine_spacing", "must be above 0"}},
         {"--set geometry.length_unit=nm",
          {"pad is 5e-08 m thick", "1e-06 to 1000 m", "geometry.length_unit"}},
         {"--set missile.mass='1 mg'", {"missile.mass", "1e-06 kg", "the heaviest node"}},

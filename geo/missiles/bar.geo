@@ -17,7 +17,7 @@ DefineConstant[
 radius = diameter / 2;
 half = length / 2 - radius; // of the cylinder between the ends
 If (diameter <= 0 || element_size <= 0)
-  Error("bar.geo: diameter and element_size must be positive");
+  Error("bar.geo: diameter and element_size must be above 0");
 EndIf
 If (half <= 0)
   Error("bar.geo: length = %g must be more than the diameter", length);

@@ -15,7 +15,7 @@ DefineConstant[
 ];
 
 If (diameter <= 0 || length <= 0 || element_size <= 0)
-  Error("cylinder.geo: diameter, length and element_size must be positive");
+  Error("cylinder.geo: diameter, length and element_size must be above 0");
 EndIf
 If (quarter != 0 && tilt != 0)
   Error("cylinder.geo: a missile that is turned has no quarter model");

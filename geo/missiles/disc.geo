@@ -17,7 +17,7 @@ DefineConstant[
 
 radius = diameter / 2;
 If (edge_radius <= 0 || element_size <= 0)
-  Error("disc.geo: edge_radius and element_size must be positive");
+  Error("disc.geo: edge_radius and element_size must be above 0");
 EndIf
 If (edge_radius >= thickness || edge_radius >= radius)
   Error("disc.geo: edge_radius = %g must be less than the thickness and than the radius", edge_radius);

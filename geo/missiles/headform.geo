@@ -19,7 +19,7 @@ DefineConstant[
 ];
 
 If (length <= 0 || width <= 0 || height <= 0 || element_size <= 0)
-  Error("headform.geo: length, width, height and element_size must be positive");
+  Error("headform.geo: length, width, height and element_size must be above 0");
 EndIf
 If (quarter != 0 && tilt != 0)
   Error("headform.geo: a missile that is turned has no quarter model");

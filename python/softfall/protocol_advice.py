@@ -32,7 +32,7 @@ def _question(p: Protocol, required: float, bound: float | None) -> advice.Quest
     decides = p.kind == "pass" or not math.isnan(required)
     chosen = bound if bound is not None else 0.05 if decides else 0.1
     if not 0 < chosen < 0.5:
-        raise InputError(f"--bound={chosen:g} is not between 0 and 0.5")
+        raise InputError(f"--bound={chosen:g} is outside 0 to 0.5")
     heights = p.heights if p.kind == "pass" else ()
     return advice.Question((p.limit_of("a_max_g"), p.limit_of("hic")), heights, required, chosen)
 

@@ -48,7 +48,7 @@ def refine(case: Case, figures: Sequence[str] = ("a_max_g", "hic"), spacings: Se
     `Case.run`. Drops that are there are not run again. A drop that is "do not use" is an InputError: its figures cannot be refined.
     """
     if not 1.2 <= ratio <= 4:
-        raise InputError(f"ratio: {ratio:g} is not between 1.2 and 4")
+        raise InputError(f"ratio: {ratio:g} is outside 1.2 to 4")
     case.require_single("a refinement")
     coarser = {key: ratio * float(case[key]) for key in spacings if key in case and case[key] is not None}
     if not coarser:

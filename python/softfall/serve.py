@@ -145,7 +145,7 @@ def make(o: argparse.Namespace) -> Server:
     """Returns the server of a command line (python/softfall-serve.in); a wrong one is an Error or a KeyError."""
     for name, least, most in (("port", 0, 65535), ("jobs", 1, 64)):
         if not least <= getattr(o, name) <= most:
-            raise InputError(f"--{name} {getattr(o, name)} is not between {least} and {most}")
+            raise InputError(f"--{name} {getattr(o, name)} is outside {least} to {most}")
     for text in o.set:
         if "=" not in text:
             raise InputError(f"--set {text}: KEY=VALUE is expected")

@@ -367,7 +367,7 @@ def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
 @pytest.mark.parametrize("arguments, said", [
     (["--advise"], "--advise needs --pad=CASE and --posterior=FOLDER"),
     (["--required", "1.5 m"], "--required and --bound belong to --advise"),
-    (["--advise", "--posterior", str(POSTERIOR), "--bound", "0.7"], "is not between 0 and 0.5"),
+    (["--advise", "--posterior", str(POSTERIOR), "--bound", "0.7"], "is outside 0 to 0.5"),
     (["--advise", "--posterior", str(POSTERIOR), "--required", "1.5"], "is no length"),
     (["--advise", "--posterior", "nowhere"], "nowhere"),
 ])

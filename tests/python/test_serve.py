@@ -169,8 +169,8 @@ def test_wrong_command_lines_end_with_a_sentence(here):
         return result.returncode, result.stderr
     good = ["pad/case.cfg", "--input=missile.velocity [m/s]", "--output=hic"]
     assert says("nowhere.cfg", *good[1:]) == (2, f"softfall-serve: the file {here}/nowhere.cfg cannot be read: No such file or directory\n")
-    assert says(*good, "--port=99999") == (2, "softfall-serve: --port 99999 is not between 0 and 65535\n")
-    assert says(*good, "--jobs=0") == (2, "softfall-serve: --jobs 0 is not between 1 and 64\n")
+    assert says(*good, "--port=99999") == (2, "softfall-serve: --port 99999 is outside 0 to 65535\n")
+    assert says(*good, "--jobs=0") == (2, "softfall-serve: --jobs 0 is outside 1 to 64\n")
     assert says(*good, "--set=missile.mass") == (2, "softfall-serve: --set missile.mass: KEY=VALUE is expected\n")
     assert says(*good, "--option=missile.mas") == (2, "softfall-serve: --option missile.mas: there is no such key of the case\n")
     assert says(good[0], "--input=missile.velocit", "--output=hic")[0] == 2 and says("pad/case.cfg")[0] == 2

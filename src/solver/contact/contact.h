@@ -20,7 +20,7 @@ void sf_contact_solve(const sf_model *model, const sf_operators *operators, sf_s
 
 /* Contact of the pad's skin with itself, its mirror image, the plane of the anvil and the rigid support:
  * every node of the skin against the faces of the skin before it, by multipliers as the missile's contact has
- * them (contact.h; theory, section "Contact of the pad with itself"). Without these forces the gap of node
+ * them (above; theory, section "Contact of the pad with itself"). Without these forces the gap of node
  * and face at the next time would be g; the forces q on the node, and -q shared among the face's nodes, are
  * those for which no gap is negative, none pulls, and Coulomb's law holds. They act at one place in one
  * direction, so that momentum and angular momentum hold. A node touches a face only if it comes from outside:
