@@ -233,8 +233,8 @@ static sf_status noisy_simulate(void *context, const double *u, double *y, sf_er
 }
 
 /* Data that contradict each other leave a minimum with large residuals, at the end of a valley along the
- * second parameter, whose gradient over a difference of 0.1 is lost in the noise. The search finds it, with
- * few exceptions, and says so: it neither stops in the valley nor calls itself not converged there. */
+ * second parameter, whose gradient over a difference of 0.1 is lost in the noise. The search finds it, and
+ * says so: it neither stops in the valley nor calls itself not converged there. */
 static void a_search_finds_the_end_of_a_valley_with_noise(void **state) {
     (void)state;
     enum { PHASES = 200 };

@@ -378,7 +378,7 @@ def test_a_least_window_that_matters_in_a_search_is_told():
 
 def test_messages_name_the_protocol_and_not_the_plan_that_is_written(case, tmp_path):
     text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
-    for old, new, said in (('key = "max_indentation_mm"', 'key = "gaddd"', r'mine.toml, on \S+case.cfg: "gaddd" is no figure'),
+    for old, new, said in (('key = "max_indentation_mm"', 'key = "gaddd"', r'mine.toml, on \S+case.cfg: unknown figure "gaddd"'),
                            ('# keys = { "missile.friction" = 0.3 }  ', 'keys = { "missile.frictio" = 0.3 } #', r'mine.toml: missile, on \S+case.cfg: missile.frictio=0.3: unknown key')):
         assert old in text
         (tmp_path / "mine.toml").write_text(text.replace(old, new))

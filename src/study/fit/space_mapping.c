@@ -12,6 +12,7 @@
  * 1, and the size of the Jacobian. */
 static const double NOISE = 0.002, CURVATURE[2] = {0.05, 1}, SLOPE[2] = {0.3, 3};
 
+static const double MOST_MISS = 10; /* root of the misfit per degree of freedom: no minimum that counts */
 enum { MOST_IDLE = 5 };                  /* steps in a row that gain nothing: the phase ends */
 static const double LEAST_RADIUS = 0.02; /* of the trust region: shorter steps only tell the noise */
 /* Between simulations for a derivative; the prior's standard deviation, if that is less. */
@@ -44,9 +45,10 @@ static int collect_information(const sf_mapping_problem *p, const double *jacobi
     return data;
 }
 
-/* True if the residuals contradict the stated standard deviations (chi-squared, 5 %). */
+/* True if the residuals contradict the stated standard deviations (chi-squared, 5 %): without a degree of
+ * freedom, too, when there should be no residual. */
 static bool contradicts(const sf_mapping_result *r) {
-    return r->freedom > 0.5 && gsl_cdf_chisq_Q(r->misfit, r->freedom) < 0.05;
+    return gsl_cdf_chisq_Q(r->misfit, fmax(1, r->freedom)) < 0.05;
 }
 
 /* Covariance with the stated standard deviations of the data, or with those times the scale that the misfit
@@ -62,7 +64,7 @@ static sf_status estimate(const sf_mapping_problem *p, bool scaled, sf_mapping_r
         for (size_t k = 0; k < n; k++)
             effective += gsl_matrix_get(a, j, k) * gsl_matrix_get(c, k, j);
     r->freedom = data - effective;
-    r->scale = scaled && contradicts(r) ? sqrt(r->misfit / r->freedom) : 1;
+    r->scale = scaled && contradicts(r) ? sqrt(r->misfit / fmax(1, r->freedom)) : 1;
     invert_information(p, a, r->scale, c);
     for (size_t j = 0; j < n; j++)
         for (size_t k = 0; k < n; k++)
@@ -388,8 +390,7 @@ static sf_status leave_surrogate(search *s, sf_error *err) {
         s->trial.u[j] += sf_mapping_inside(p, j, s->best.u[j] + step) == s->best.u[j] + step ? step : -step;
         SF_TRY(try_point(s, err));
         if (isinf(s->trial.objective)) { /* the other side may do */
-            double other = 2 * s->best.u[j] - s->trial.u[j];
-            s->trial.u[j] = sf_mapping_inside(p, j, other);
+            s->trial.u[j] = sf_mapping_inside(p, j, 2 * s->best.u[j] - s->trial.u[j]);
             s->result->iterations++;
             SF_TRY(try_point(s, err));
         }
@@ -468,10 +469,12 @@ static sf_status iterate(search *s, sf_error *err) {
         }
         settled = settled || (idle >= MOST_IDLE && is_flat(s, err));
         SF_TRY(err->status);
-        r->reason = settled && !is_bound(p, s->best.y) ? NULL
-                    : settled                          ? "a drop stands at the bound of what can be used"
-                    : idle >= MOST_IDLE                ? "no proposed step lowers the objective"
-                                                       : "the limit of simulations came first";
+        r->reason = settled && is_bound(p, s->best.y) ? "a drop stands at the bound of what can be used"
+                    : r->misfit > pow(MOST_MISS, 2) * fmax(1, r->freedom)
+                        ? "the data are missed by ten times their standard deviations"
+                    : settled           ? NULL
+                    : idle >= MOST_IDLE ? "no proposed step lowers the objective"
+                                        : "the limit of simulations came first";
         r->converged = !r->reason;
         if (settled || idle >= MOST_IDLE || r->iterations >= p->max_iterations)
             break;

@@ -69,7 +69,7 @@ typedef struct sf_mapping_result {
     double objective; /* misfit and prior */
     double freedom;   /* number of data less the effective number of parameters that they determine */
     double scale;     /* factor on the data's standard deviations in `covariance`: sqrt(misfit / freedom) if
-                         chi-squared contradicts them (5 %), else 1 */
+                         chi-squared contradicts them (5 %), else 1; at least one degree of freedom */
     double gain;      /* by which y_c says that the objective could still fall */
     int iterations;
     bool converged;

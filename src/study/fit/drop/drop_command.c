@@ -143,8 +143,8 @@ static sf_status warn(const sf_sink *sink, const models *all, sf_error *err) {
         }
     if (open > 0)
         SF_FAIL(err, SF_ERR_NUMERIC,
-                "%d of %d fits did not converge: the files are written, but the values are no minimum; start "
-                "nearer to the foam, or leave out what contradicts",
+                "%d of %d fits did not converge: the files are written, but their values are not to be used; "
+                "start nearer to the foam, or leave out what contradicts",
                 open, all->count);
     return err->status;
 }

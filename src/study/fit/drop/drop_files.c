@@ -10,7 +10,7 @@
 #include "study/material_file.h"
 
 double sf_drop_half_width(const sf_drop_fit *fit) {
-    return fit->result.scale > 1 ? gsl_cdf_tdist_Pinv(0.975, fit->result.freedom)
+    return fit->result.scale > 1 ? gsl_cdf_tdist_Pinv(0.975, fmax(1, fit->result.freedom))
                                  : gsl_cdf_ugaussian_Pinv(0.975);
 }
 
