@@ -5,7 +5,7 @@ their spacings (docs/verification.md, "Two meshes for one answer").
 
     PYTHONPATH=build/lib/python3/dist-packages tools/refine_study.py [EXAMPLE...]
 
-Each example runs at its own spacings, twice and four times as large, or, where that is refused, 1.5 and 2.25 times (some five
+EVA: with the foam of examples/materials/eva35.cfg. Each example runs at its own spacings, twice and four times as large, or, where that is refused, 1.5 and 2.25 times (some eight
 minutes of processor time for all). The programs are
 those in build/bin, or in $SF_BIN_DIR; drops are kept below out/refine.
 """
@@ -17,14 +17,16 @@ import warnings
 import softfall
 from softfall.refinement import SPACINGS, extrapolate
 
-EXAMPLES = ("eva50-v4.5", "flat-disc", "layers", "cored", "post", "honeycomb", "channels", "tile-feet", "mat-cover", "wall", "headform-oblique")
+EXAMPLES = ("eva50-v4.5", "flat-disc", "layers", "cored", "post", "honeycomb", "channels", "tile-feet", "mat-cover", "wall", "headform-oblique",
+            "channels, EVA", "tile-feet, EVA")
 FIGURES = ("a_max_g", "hic")
 
 
 @functools.lru_cache(maxsize=None)
 def drop(example, factor):
     """Figures of an example with its spacings times `factor`, or the sentence of a refusal."""
-    case = softfall.Case("examples/%s/case.cfg" % example)
+    name, foam = example.split(",")[0], "," in example
+    case = softfall.Case("examples/%s/case.cfg" % name, {"material": "@examples/materials/eva35.cfg", "geometry.parameters.spacing": "5.0"} if foam else {})
     case["pad.mesh_error_limit"] = 1.0
     for key in SPACINGS:
         if key in case and case[key] is not None:
