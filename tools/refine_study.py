@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks softfall.refine on drops of different shape: the value that a pair of coarse meshes gives against that of the pair of half
-their spacings (docs/verification.md, "Two meshes for one answer").
+their spacings (docs/python.md, "Two meshes for one answer").
 
     PYTHONPATH=build/lib/python3/dist-packages tools/refine_study.py [EXAMPLE...]
 
