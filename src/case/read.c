@@ -337,8 +337,7 @@ static sf_status check_support(const sf_case_reader *reader, const config_settin
     return SF_OK;
 }
 
-/* Reads an item of a list, of the settings `group` (NULL: absent), by the rows of the keys from `first` on.
- */
+/* Reads an item of a list, of the settings `group` (NULL: absent), by the rows of keys from `first` on. */
 static sf_status read_item(sf_case_reader *reader, size_t first, const config_setting_t *group,
                            sf_error *err) {
     const sf_key *key = reader->keys.key;

@@ -88,8 +88,7 @@ void sf_foam_point_rest(const void *numbers, double pause, double (*history)[SF_
 /* sf_law.softening of such numbers. */
 double sf_foam_point_softening(const void *numbers, double (*history)[SF_LANES], int lane);
 
-/* The members of sf_law that all foam laws have in common; they name functions and lists of the law's file.
- */
+/* The members of sf_law that foam laws have in common; they name functions and lists of the law's file. */
 #define SF_FOAM_LAW(card)                                                                                    \
     .card_size = sizeof(card), .parameter = parameters,                                                      \
     .parameter_count = sizeof parameters / sizeof parameters[0], .density = offsetof(card, density),         \

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The shapes of the cells of the background mesh, as places in a cell's vertex list, and the skin of a mesh.
- */
+/* The shapes of the cells of the background mesh, as places in a cell's vertex list; the skin of a mesh. */
 #pragma once
 #include "base/error.h"
 #include <stdint.h>

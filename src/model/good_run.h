@@ -39,8 +39,8 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
     X(coarse, 0.01, INFINITY, 0, SF_AS_NUMBER, "mean strain above the largest local one",                                    \
       "-`local_strain_excess`, at least 0",                                                                            \
       "the mesh is too coarse to show the strain below the missile")                                                   \
-    X(local_collapse, 0.1, 0.3, 0, SF_AS_NUMBER, "strain of a node above its neighbours", "`local_collapse`",                \
-      "single nodes collapse or carry the missile alone: the foam is unstable or the mesh too coarse")                  \
+    X(local_collapse, 0.1, 0.3, 0, SF_AS_NUMBER, "strain of nodes above their neighbours", "`local_collapse`",                \
+      "nodes with 0.5 % of the energy collapse or carry the missile alone: the foam is unstable or the mesh too coarse")                  \
     X(mesh, 0.03, 0.25, 1, SF_AS_PERCENT, "expected error of a_max from the mesh",                                          \
       "`/model/expected_mesh_error` of results.h5", "the spacing under the missile is too coarse for its pad")         \
     X(slit, 0, INFINITY, 0, SF_AS_PERCENT, "nodes at a slit, hole or gap narrower than their supports",                     \

@@ -535,9 +535,10 @@ void sf_support_warn(const sf_model *m, const sf_sink *sink, sf_error *err) {
         double length = sf_distance3(a, b);
         end = sf_half_edges_end(edge, k, 3 * s.count); /* a sharp edge has nodes of its own on each side */
         for (int64_t i = 0; end - k == 1 && i < m->node_count; i++) {
+            if (!(length > most * m->spacing[i]))
+                continue;
             sf_triangle_nearest(a, b, b, &m->position[3 * i], point, &feature);
-            if (length > most * m->spacing[i] &&
-                sf_distance3(point, &m->position[3 * i]) < NEAR * m->spacing[i]) {
+            if (sf_distance3(point, &m->position[3 * i]) < NEAR * m->spacing[i]) {
                 most = length / m->spacing[i];
                 at = i;
             }

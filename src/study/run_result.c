@@ -91,8 +91,7 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
     return finish_result(path, out, err);
 }
 
-/* Reads one drop, of which `figures_only` are wanted: from its record, without the results, if there is one.
- */
+/* Reads one drop, of which `figures_only` are wanted: from its record alone, if there is one. */
 static sf_status read_drop(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err) {
     SF_OWNED_BY(sf_run_record_free) sf_run_record record = {0};
     if (!figures_only || !sf_run_record_read(at->figures, at->results, &record))

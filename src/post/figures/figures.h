@@ -85,7 +85,7 @@
       .name = "largest local strain", .format = "%.3f") \
     X(NUMBER, max_local_strain_time, "max_local_strain_time_ms", 1e3, "its time") \
     X(NUMBER, local_strain_excess, "local_strain_excess", 1, "max_local_strain - max_mean_strain") \
-    X(NUMBER, local_collapse, "local_collapse", 1, "excess of a node's compression over the median of its neighbours (nodes of a common cell; of a node on a free wall those on free walls, if less), at /peak: the largest that nodes with 0.5 % of the foam's energy reach") \
+    X(NUMBER, local_collapse, "local_collapse", 1, "excess of a node's compression over the median of its neighbours (nodes of a common cell; of a node on a steep free face those on such faces, if less), at /peak: the largest that nodes with 0.5 % of the foam's energy reach") \
     X(NUMBER, energy_beyond_data, "energy_beyond_data", 1, "share of the foam's energy, at /peak, in nodes compressed beyond `informed_strain`, each by that of its layer") \
     X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F") \
     X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point") \

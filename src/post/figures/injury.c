@@ -5,8 +5,7 @@
 
 #include <math.h>
 
-/* Intervals of the search grid, pairs of the first coarse scan per side, relative gap that ends the search.
- */
+/* Intervals of the search grid, pairs of the first coarse scan per side, relative gap that ends it. */
 enum { GRID_INTERVALS = 4096, SCAN_POINTS = 256, MAX_LEVELS = 40, MAX_SWEEPS = 400 };
 #define SEARCH_GAP 1e-9
 

@@ -10,6 +10,7 @@
 /* ---- strain over the pad ---- */
 
 static const double SLIP = 1e-6; /* of the thickness: none */
+static const double STEEP = 0.7; /* at most of a wall's normal is vertical */
 
 /* The cells of each node: those of node n are cell[first[n]] to cell[first[n + 1] - 1]. */
 typedef struct node_cells {
@@ -116,21 +117,21 @@ bool sf_face_is_mirrored(const sf_results *r, const int32_t node[3]) {
     return off[0] < SLIP * r->thickness || off[1] < SLIP * r->thickness;
 }
 
-/* Marks the nodes of walls: of free faces outside symmetry planes that are not pressed from outside, by the
- * missile or by the ground, where they have no way down. NULL without these fields, or on failure. */
+/* Marks the nodes of walls: of steep free faces outside symmetry planes that the missile does not press as a
+ * whole. NULL without these fields, or on failure. */
 static bool *mark_walls(const sf_results *r, const sf_peak_fields *at, sf_error *err) {
     SF_OWNED int32_t *face = NULL;
     int64_t count = 0;
-    if (!at->displacement || !at->pressure ||
-        sf_skin_triangles(&SF_CELLS_OF(r), &count, &face, NULL, err) != SF_OK)
+    if (!at->pressure || sf_skin_triangles(&SF_CELLS_OF(r), &count, &face, NULL, err) != SF_OK)
         return NULL;
     bool *wall = sf_alloc(err, r->node_count, sizeof *wall, "nodes of walls");
     for (int32_t *n = face; wall && n < face + 3 * count; n += 3) {
-        int pressed = 0;
-        for (int c = 0; c < 3; c++)
-            pressed +=
-                at->pressure[n[c]] > 0 || fabs(at->displacement[3 * (int64_t)n[c] + 2]) < SLIP * r->thickness;
-        for (int c = 0; c < 3 && pressed < 3 && !sf_face_is_mirrored(r, n); c++)
+        double a[3];
+        const double *x = r->position;
+        sf_triangle_normal(x + 3 * (int64_t)n[0], x + 3 * (int64_t)n[1], x + 3 * (int64_t)n[2], a);
+        bool is_free = at->pressure[n[0]] <= 0 || at->pressure[n[1]] <= 0 || at->pressure[n[2]] <= 0;
+        bool is_wall = is_free && fabs(a[2]) < STEEP * sqrt(sf_dot3(a, a)) && !sf_face_is_mirrored(r, n);
+        for (int c = 0; c < 3 && is_wall; c++)
             wall[n[c]] = true;
     }
     return wall;

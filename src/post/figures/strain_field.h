@@ -23,8 +23,8 @@ typedef struct sf_peak_fields {
  *
  * At a tied interface of a pad of layers, whose nodes at one place have moved together, the excess is the
  * less of that over the neighbours in the node's own layer and that over those in all layers there: a layer
- * that its stiffer or softer partner carries along does not collapse. Likewise of a node of a free wall,
- * which neither the missile nor the ground presses, and its neighbours on free walls: a wall that bends. */
+ * that its stiffer or softer partner carries along does not collapse. Likewise of a node of a wall, a steep
+ * free face that the missile does not press, and its neighbours on walls: a wall that bends. */
 sf_status sf_strain_field_collapse(const sf_results *results, const sf_peak_fields *peak, double *collapse,
                                    sf_error *err);
 
@@ -36,8 +36,7 @@ bool sf_face_is_mirrored(const sf_results *results, const int32_t node[3]);
 double sf_strain_field_energy_beyond(const sf_results *results, const double *compression,
                                      const double *energy_density, double strain);
 
-/* The depth of the surface of missile or supports in the foam between the nodes, at which the contact acts.
- */
+/* The depth of the surface of missile or supports in the foam between the nodes, where contact acts. */
 typedef struct sf_rim_cut {
     double depth;    /* m, behind the nearest free face that looks against it */
     double place[3]; /* m, of a node of that face at rest */

@@ -157,8 +157,7 @@ static sf_status fit_quadratic(const double *height, const double *value, sf_cfh
     return err->status;
 }
 
-/* Distance from the fit's centre at which it rises through ln(limit); NaN if there is none among its points.
- */
+/* Distance from the fit's centre at which it rises through ln(limit); NaN: there is none in its points. */
 static double rising_root(const sf_cfh_fit *fit, const double *height, double limit) {
     double low = log(height[fit->first]) - fit->centre, root[2];
     double high = log(height[fit->first + fit->count - 1]) - fit->centre;

@@ -354,8 +354,7 @@ static sf_status advance(search *s, double expected, double *radius, int *idle, 
     return regress_matrix(s, err);
 }
 
-/* True if the surrogate is the simulation, as of a fit without drops: nothing is wrong with its derivatives.
- */
+/* True if the surrogate is the simulation, as of a fit without drops: its derivatives are right. */
 static bool is_exact(const search *s) {
     double largest = 0;
     for (int i = 0; i < s->problem->responses; i++)
@@ -469,9 +468,9 @@ static sf_status iterate(search *s, sf_error *err) {
         }
         settled = settled || (idle >= MOST_IDLE && is_flat(s, err));
         SF_TRY(err->status);
+        bool misses = !is_exact(s) && r->misfit > pow(MOST_MISS, 2) * fmax(1, r->freedom);
         r->reason = settled && is_bound(p, s->best.y) ? "a drop stands at the bound of what can be used"
-                    : r->misfit > pow(MOST_MISS, 2) * fmax(1, r->freedom)
-                        ? "the data are missed by ten times their standard deviations"
+                    : settled && misses ? "the data are missed by ten times their standard deviations"
                     : settled           ? NULL
                     : idle >= MOST_IDLE ? "no proposed step lowers the objective"
                                         : "the limit of simulations came first";

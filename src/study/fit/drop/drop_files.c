@@ -244,7 +244,7 @@ static void put_provenance(FILE *f, const sf_drop_fit *fit, const sf_drop_averag
     fprintf(f, "Identified by softfall-fit drop %s from %s; everything else is that of its start material.\n",
             SF_VERSION, input_path);
     if (!fit->result.converged)
-        fprintf(f, "NOT CONVERGED: %s. These values are no minimum.\n", fit->result.reason);
+        fprintf(f, "NOT CONVERGED: %s. These values are not to be used.\n", fit->result.reason);
     if (average)
         sf_inference_comment(f, average);
     sf_drop_chain_print(f, fit);

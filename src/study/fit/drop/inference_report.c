@@ -228,7 +228,7 @@ static void put_failures(FILE *f, const sf_drop_average *a) {
     for (int m = 0; m < a->models; m++) {
         const sf_drop_fit *fit = a->model[m]->fit;
         if (!fit->result.converged)
-            sf_html_banner(f, "bad", "a model did not converge", "%s: %s. Its values are no minimum.",
+            sf_html_banner(f, "bad", "a model did not converge", "%s: %s. Its values are not to be used.",
                            label_of(a, m), fit->result.reason);
         for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
             if (*fit->simulated[d].failure)
