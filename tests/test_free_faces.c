@@ -239,6 +239,12 @@ static void edges_that_cross_carry_each_other(void **state) {
     print_message("nodes on the crossing: force %.3f N at 3 mm, penetration %.2g mm, %.2g mm up to 4.5 mm\n",
                   largest(p, "base_reaction_N", 3), deep, largest(p, "penetration_mm", 5));
     assert_true(deep < 0.01 * 5 && largest(p, "energy_error_1", 5) < 1e-3);
+    figures_of_roofs(p, "--set geometry.parameters.n=10 --set pad.self_friction=0.5");
+    print_message("with friction: %.3g J rubbed off; angular momentum error %.1e\n",
+                  largest(p, "energy_friction_J", 5), largest(p, "angular_momentum_error_1", 5));
+    assert_true(largest(p, "energy_friction_J", 5) > 0 && largest(p, "energy_error_1", 5) < 1e-3);
+    assert_true(largest(p, "momentum_error_space_1", 5) < 1e-12 &&
+                largest(p, "angular_momentum_error_1", 5) < 1e-12);
 }
 
 /* Ridges in the planes of a half and a quarter, of faces that fall away by 60 degrees: they carry as those of

@@ -271,16 +271,24 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, sf_t
 
 /* ---- forces ---- */
 
+/* Leans of a pair with friction; what is rigid takes any moment up. */
+static void lean(const sf_skin *skin, const sf_state *s, sf_touch *q) {
+    if (q->facet >= 0 && q->friction > 0 && !sf_skin_is_rigid(skin, q->node) &&
+        !sf_skin_is_rigid(skin, skin->facet[3 * q->facet]))
+        sf_touch_lean(s, &skin->facet[3 * q->facet], q);
+}
+
 /* Adds the row of the pair over the coefficients, times `q`, to `out`; `accelerate`: over the masses. */
 static void scatter(const sf_model *m, const sf_skin *skin, const sf_touch *pair, const double q[3],
                     bool accelerate, double *out) {
     for (int k = 0; k < pair->parts; k++) {
         int64_t p = pair->part[k];
+        double along = sf_dot3(pair->lean[k], q);
         for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1]; e++) {
             int64_t i = skin->rows.node[e];
-            double phi = pair->share[k] * skin->rows.value[e] / (accelerate ? m->mass[i] : 1);
+            double phi = skin->rows.value[e] / (accelerate ? m->mass[i] : 1);
             for (int r = 0; r < 3; r++)
-                out[3 * i + r] += phi * q[r];
+                out[3 * i + r] += phi * (pair->share[k] * q[r] + along * pair->normal[r]);
         }
     }
 }
@@ -290,9 +298,13 @@ static void gather(const sf_skin *skin, const sf_touch *pair, const double *fiel
     memset(out, 0, 3 * sizeof *out);
     for (int k = 0; k < pair->parts; k++) {
         int64_t p = pair->part[k];
+        double own[3] = {0};
         for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1]; e++)
             for (int r = 0; r < 3; r++)
-                out[r] += pair->share[k] * skin->rows.value[e] * field[3 * (int64_t)skin->rows.node[e] + r];
+                own[r] += skin->rows.value[e] * field[3 * (int64_t)skin->rows.node[e] + r];
+        double along = sf_dot3(own, pair->normal);
+        for (int r = 0; r < 3; r++)
+            out[r] += pair->share[k] * own[r] + pair->lean[k][r] * along;
     }
 }
 
@@ -400,9 +412,11 @@ static sf_touch last_pair(const sf_model *m, const sf_skin *skin, sf_state *s, i
         q.normal[skin->plane[FIRST_PLANE - q.facet].axis] = 1;
     } else {
         facet_normal(skin, s, q.facet, q.normal);
-        double size = sqrt(sf_dot3(q.normal, q.normal));
-        for (int r = 0; r < 3; r++)
-            q.normal[r] /= size > 0 ? size : 1;
+        double apart[3];
+        sf_unit3(q.normal);
+        sf_touch_relative(&q, s->self_position, apart);
+        q.gap = sf_dot3(apart, q.normal);
+        lean(skin, s, &q);
     }
     return q;
 }
@@ -447,6 +461,7 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         memcpy(&s->self_weight[4 * p], found->weight, sizeof found->weight);
         if (!acts(skin, p, found->facet))
             continue;
+        lean(skin, s, found);
         add_pair(m, skin, s, w);
         w->centroids = w->centroids || p >= skin->nodes;
     }
@@ -459,6 +474,9 @@ static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         sf_touch *q = &w->pair[w->count];
         q->friction = friction_of(m, skin, q->node, q->facet);
         q->force = w->edge_force[k];
+        const int32_t corner[3] = {q->part[0], q->part[1], q->part[q->share[3] < -0.5 ? 2 : 3]};
+        if (q->friction > 0)
+            sf_touch_lean(s, corner, q);
         add_pair(m, skin, s, w);
     }
 }

@@ -11,9 +11,12 @@ static const double SLOPE = 0.01; /* least sine by which the faces at an edge fa
 
 void sf_touch_relative(const sf_touch *q, const double *field, double out[3]) {
     memset(out, 0, 3 * sizeof *out);
-    for (int k = 0; k < q->parts; k++)
+    for (int k = 0; k < q->parts; k++) {
+        const double *own = &field[3 * (int64_t)q->part[k]];
+        double along = sf_dot3(own, q->normal);
         for (int r = 0; r < 3; r++)
-            out[r] += q->share[k] * field[3 * (int64_t)q->part[k] + r];
+            out[r] += q->share[k] * own[r] + q->lean[k][r] * along;
+    }
 }
 
 void sf_touch_drop_traces(double weight[4]) {
@@ -33,6 +36,33 @@ void sf_touch_drop_traces(double weight[4]) {
 static void subtract(const sf_state *s, int32_t a, int32_t b, double out[3]) {
     for (int r = 0; r < 3; r++)
         out[r] = s->self_position[3 * (int64_t)a + r] - s->self_position[3 * (int64_t)b + r];
+}
+
+/* The lean of the pair's node `node`, which becomes a part if it is none yet. */
+static void set_lean(sf_touch *q, int32_t node, const double lean[3]) {
+    int k = 0;
+    while (k < q->parts && q->part[k] != node)
+        k++;
+    q->part[k] = node;
+    q->parts += k == q->parts;
+    memcpy(q->lean[k], lean, sizeof q->lean[k]);
+}
+
+/* The lean of a node is gap times the gradient of its share, as a weight of the triangle n, less the part
+ * that answers forces along the normal. */
+void sf_touch_lean(const sf_state *s, const int32_t n[3], sf_touch *q) {
+    double side[3][3], own[3], lean[3];
+    for (int k = 0; k < 3; k++)
+        subtract(s, n[(k + 2) % 3], n[(k + 1) % 3], side[k]);
+    sf_cross3(side[0], side[1], own);
+    double square = sf_dot3(own, own), across = sf_dot3(own, q->normal);
+    for (int k = 0; k < 3 && square > 0; k++) {
+        sf_cross3(own, side[k], lean);
+        double back = sf_dot3(lean, q->normal) / across;
+        for (int r = 0; r < 3; r++)
+            lean[r] = q->gap / square * (lean[r] - back * own[r]);
+        set_lean(q, n[k], lean);
+    }
 }
 
 /* 1 or -1 if both faces at an edge fall away from the plane through it, against n or -n; 0 otherwise. */

@@ -12,6 +12,7 @@ typedef struct sf_touch {
     int parts;           /* the nodes of both, with their shares of the force */
     int32_t part[7];
     double share[7];
+    double lean[7][3]; /* a force q acts on a part as share q + (lean . q) normal: zeros without friction */
     double normal[3]; /* outward from the facet */
     double gap;       /* m, now; of a depth the part that the step takes back */
     double friction;  /* -, Coulomb coefficient */
@@ -20,6 +21,11 @@ typedef struct sf_touch {
 
 /* Displacement of the point relative to its partner, of a field over the skin. */
 void sf_touch_relative(const sf_touch *pair, const double *field, double out[3]);
+
+/* Friction acts on the point and on its partner `gap` apart along the normal. This gives three nodes of the
+ * pair, which are on no line, the leans by which forces along the normal take up that moment: then angular
+ * momentum holds, and the relative motion is that of one place. Needs parts, normal and gap. */
+void sf_touch_lean(const sf_state *state, const int32_t node[3], sf_touch *pair);
 
 /* Weights that are rounding cost as much as others: they become zero, and the sum stays one. */
 void sf_touch_drop_traces(double weight[4]);
