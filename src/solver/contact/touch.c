@@ -5,8 +5,8 @@
 
 static const double DEEPEST = 0.1;  /* of the spacing: deeper edges lie on the far sides of a thin part */
 static const double CROSSING = 0.2; /* least sine of the angle between two edges */
-static const double ROUNDING =
-    1e-9;                         /* of an edge that begins in a symmetry plane, where another crosses it */
+static const double BEYOND = 0.01; /* of an edge: it goes on beyond its ends, so that where two edges of a
+                                      notch meet both act */
 static const double SLOPE = 0.01; /* least sine by which the faces at an edge fall away from the other edge */
 
 void sf_touch_relative(const sf_touch *q, const double *field, double out[3]) {
@@ -115,8 +115,8 @@ static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64
     double there = sf_dot3(moment, n) / square;
     sf_unit3(n);
     int side = falls_away(s, c, n);
-    double from = skin->held[a[0]] ? -ROUNDING : 0, there_from = skin->held[c[0]] ? -ROUNDING : 0;
-    if (at < from || at > 1 || there < there_from || there > 1 || side == 0 || falls_away(s, a, n) != -side)
+    if (fabs(at - 0.5) > 0.5 + BEYOND || fabs(there - 0.5) > 0.5 + BEYOND || side == 0 ||
+        falls_away(s, a, n) != -side)
         return false;
     *out = (sf_touch){.node = a[at > 0.5],
                       .facet = skin->ring[skin->ring_ptr[c[0]]],
