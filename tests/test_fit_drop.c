@@ -376,6 +376,33 @@ static void the_mount_of_the_accelerometer_is_found(void **state) {
     program_tear_down(&place);
 }
 
+/* The numbers of a drop jump with the frequency of a mount that rings: from a prior on the other side of the
+ * jumps the search finds it none the less. */
+static void a_mount_that_rings_is_found_from_afar(void **state) {
+    (void)state;
+    program_place place;
+    char text[1024];
+    program_set_up(&place);
+    fit_fixture_put_case(&place);
+    program_succeed(&place, "pre", "case.cfg -o m.h5");
+    program_succeed(&place, "solve", "m.h5 -o r.h5");
+    program_succeed(&place, "post", "r.h5 -o post --mount 'f = 240 Hz, damping = 0.05'");
+    snprintf(text, sizeof text,
+             "material = \"start.cfg\"; curve_form = \"table\"; posterior = false;\n"
+             "unknown = ( { name = \"stress_scale\"; } );\n"
+             "mount = \"f = 160 Hz, damping = 0.05\"; mount_frequency_sd = 0.3;\n"
+             "drops = ( { name = \"a\"; case = \"case.cfg\"; curve = \"post/history.csv\"; "
+             "curve_column = \"acceleration_cfc1000_g\"; curve_sd = 0.005; } );\n");
+    program_write_text(&place, "fit.cfg", text);
+    program_result r = program_succeed(&place, "fit", "drop fit.cfg -o out -t 1");
+    assert_non_null(strstr(r.out, "from a mount of "));
+    const char *told = strstr(r.out, "\nConverged");
+    assert_non_null(told);
+    assert_relative(number_after(told, "accelerometer's mount: frequency "), 240, 0.01);
+    assert_relative(number_after(told, "stress_scale"), 1, 0.01);
+    program_tear_down(&place);
+}
+
 /* Damping and coupling are found as well, alone and all three at once, from priors beside them. */
 static void damping_and_coupling_of_the_accelerometer_are_found(void **state) {
     (void)state;
@@ -453,6 +480,7 @@ int main(void) {
         cmocka_unit_test(a_predicted_drop_scatters),
         cmocka_unit_test(an_unknown_speed_is_found_and_simulated),
         cmocka_unit_test(the_mount_of_the_accelerometer_is_found),
+        cmocka_unit_test(a_mount_that_rings_is_found_from_afar),
         cmocka_unit_test(damping_and_coupling_of_the_accelerometer_are_found),
         cmocka_unit_test(a_second_fit_in_the_folder_is_refused),
     };

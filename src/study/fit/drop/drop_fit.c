@@ -79,6 +79,7 @@ static sf_status take_drop(sf_drop_fit *fit, int d, sf_runner_result *result, do
         .energy_error = result->energy_error,
         .scatter = {sf_runner_figure(result, "a_max_scatter"), sf_runner_figure(result, "hic_scatter")},
         .grade = result->grade,
+        .figures = figures,
         .curve = result->curve};
     snprintf(last->verdict, sizeof last->verdict, "%s", result->verdict);
     result->curve = (sf_series){0};
@@ -391,13 +392,92 @@ static sf_status finish(sf_drop_fit *fit, sf_error *err) {
     return SF_OK;
 }
 
+/* ---- the search ---- */
+
+/* Objective of the simulated drops, read through the mount of `u`; INFINITY where that has no figures.
+ * `y` [responses] has those of the joint data. */
+static double cost_of_mount(const sf_drop_fit *fit, const sf_mapping_problem *p, const double *u, double *y) {
+    const sf_signal_chain chain = sf_drop_fit_chain(fit, u);
+    sf_error failure = SF_ERROR_INIT;
+    double sum = 0;
+    for (int d = 0; d < fit->measured_drops; d++)
+        if (sf_drop_fit_read(&fit->input->drop[d], &chain, &fit->simulated[d].figures,
+                             &fit->simulated[d].curve, "", "", &y[fit->row[d]], &failure) != SF_OK)
+            return INFINITY;
+    for (int i = 0; i < p->responses; i++)
+        sum += pow(sf_mapping_residual(p, p->sd, y, i), 2);
+    for (int j = 0; j < p->parameters; j++)
+        sum += pow((u[j] - p->prior[j]) / p->prior_sd[j], 2);
+    return sum;
+}
+
+/* The mount of `u` becomes that of a grid over its prior through which the drops with the foam of `u` have
+ * the lowest objective, `least`. No drop is simulated for it. */
+static sf_status choose_mount(sf_drop_fit *fit, const sf_mapping_problem *p, double *u, double *least,
+                              sf_error *err) {
+    enum { FREQUENCIES = 25, DAMPINGS = 4 };            /* to each side */
+    static const double FREQUENCY = 0.1, DAMPING = 0.5; /* standard deviations */
+    double place[SF_MAPPING_MAX_PARAMETERS];
+    SF_OWNED double *y = sf_alloc(err, p->responses, sizeof *y, "responses");
+    *least = INFINITY;
+    SF_TRY(err->status);
+    SF_TRY(simulate(fit, u, y, err));
+    memcpy(place, u, sizeof place);
+    for (int k = -FREQUENCIES; k <= FREQUENCIES; k++)
+        for (int l = -DAMPINGS; l <= DAMPINGS; l++) {
+            const double at[] = {k * FREQUENCY, l * DAMPING};
+            for (int part = 0; part < 2; part++)
+                if (fit->chain[part] >= 0)
+                    place[fit->chain[part]] = at[part] * fit->input->chain_sd[part];
+            double cost = cost_of_mount(fit, p, place, y);
+            if (cost < *least) {
+                *least = cost;
+                memcpy(u, place, sizeof place);
+            }
+        }
+    return SF_OK;
+}
+
+/* The window of HIC and the objective jump with the frequency of a mount that rings, and a search along
+ * slopes stays on its side. So the foam is first fitted without a mount that is unknown; then the mount is
+ * chosen on a grid and both are fitted, again as long as the grid has a mount with a lower objective. */
+static sf_status find_minimum(sf_drop_fit *fit, const sf_mapping_problem *problem, sf_mapping_result *result,
+                              sf_error *err) {
+    enum { ROUNDS = 6 };
+    bool rings = fit->measured_drops > 0 && (fit->chain[0] >= 0 || fit->chain[1] >= 0);
+    if (!rings || fit->earlier || problem->first_point)
+        return sf_mapping_solve(problem, result, err);
+    double start[SF_MAPPING_MAX_PARAMETERS], lowest = INFINITY, least;
+    fit->rigid = true;
+    sf_mapping_solve(problem, result, err);
+    fit->rigid = false;
+    for (int round = 0, before; round < ROUNDS && err->status == SF_OK; round++) {
+        sf_mapping_problem nearer = *problem;
+        nearer.start = start;
+        nearer.wide = false;
+        memcpy(start, result->u, sizeof start);
+        if (choose_mount(fit, problem, start, &least, err) != SF_OK || !(least < lowest - TOLERANCE))
+            break;
+        const sf_signal_chain chain = sf_drop_fit_chain(fit, start);
+        if (fit->log)
+            fprintf(fit->log, "from a mount of %.4g Hz with a damping of %.3g: objective %.4g\n",
+                    chain.mount_frequency, chain.mount_damping, least);
+        before = result->iterations;
+        sf_mapping_free(result);
+        sf_mapping_solve(&nearer, result, err);
+        result->iterations += before;
+        lowest = result->objective;
+    }
+    return err->status;
+}
+
 /* The coarse drops cost little and differ from the drops by a correction that hardly changes with the foam:
  * the fit through them tells `problem` where to begin. If they cannot be used it begins at the start. */
 static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_mapping_result *coarse,
                               sf_error *err) {
     sf_error failure = SF_ERROR_INIT;
     fit->coarse = true;
-    sf_mapping_solve(problem, coarse, &failure);
+    find_minimum(fit, problem, coarse, &failure);
     fit->coarse = false;
     fit->iteration = 0;
     if (failure.status == SF_OK) {
@@ -419,20 +499,24 @@ static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_
 
 sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     const sf_fit_input *in = fit->input;
-    double start[SF_MAPPING_MAX_PARAMETERS] = {0}, prior_sd[SF_MAPPING_MAX_PARAMETERS],
-           low[SF_MAPPING_MAX_PARAMETERS], high[SF_MAPPING_MAX_PARAMETERS];
+    double prior[SF_MAPPING_MAX_PARAMETERS] = {0}, start[SF_MAPPING_MAX_PARAMETERS],
+           prior_sd[SF_MAPPING_MAX_PARAMETERS], low[SF_MAPPING_MAX_PARAMETERS],
+           high[SF_MAPPING_MAX_PARAMETERS];
     SF_TRY(sf_drop_fit_list(fit, err));
     if (fit->earlier)
         memcpy(fit->columns, fit->earlier->columns, sizeof fit->columns);
     for (int k = 0; k < fit->parameters; k++)
         sf_drop_fit_bounds(in, k, &low[k], &high[k]);
     for (int k = 0; k < in->unknown_count; k++) {
-        start[k] = log(in->prior[k]);
+        prior[k] = log(in->prior[k]);
         prior_sd[k] = in->prior_sd[k];
     }
+    memcpy(start, prior, sizeof start);
     for (int k = 0; k < SF_SIGNAL_CHAIN; k++)
-        if (fit->chain[k] >= 0)
+        if (fit->chain[k] >= 0) {
             prior_sd[fit->chain[k]] = in->chain_sd[k];
+            start[fit->chain[k]] = fit->earlier ? fit->earlier->result.u[fit->earlier->chain[k]] : 0;
+        }
     for (int d = 0; d < in->drop_count; d++)
         if (fit->speed[d] >= 0)
             prior_sd[fit->speed[d]] = in->drop[d].speed_sd;
@@ -441,7 +525,7 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
     sf_mapping_problem problem = {.parameters = fit->parameters,
                                   .responses = fit->row[fit->measured_drops],
                                   .start = start,
-                                  .prior = start,
+                                  .prior = prior,
                                   .prior_sd = prior_sd,
                                   .low = low,
                                   .high = high,
@@ -458,7 +542,7 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
                                   .progress = report_progress};
     if (in->coarse_count > 0 && !fit->earlier)
         begin_coarse(fit, &problem, &coarse, err);
-    if (err->status == SF_OK && sf_mapping_solve(&problem, &fit->result, err) == SF_OK &&
+    if (err->status == SF_OK && find_minimum(fit, &problem, &fit->result, err) == SF_OK &&
         finish(fit, err) == SF_OK && leave_one_out(fit, &problem, err) == SF_OK &&
         bound_curve(fit, err) == SF_OK && locate_information(fit, err) == SF_ERR_NUMERIC &&
         fit->result.linear)

@@ -174,7 +174,8 @@ typedef struct sf_fit_simulated {
     /* of a predicted drop whose simulation ended without a result that may be used: why; its responses are
      * NaN. Empty: none */
     char failure[512];
-    sf_series curve; /* s, g; owned */
+    sf_columns_figures figures; /* of the missile, not through the chain */
+    sf_series curve;            /* s, g; owned */
 } sf_fit_simulated;
 
 typedef struct sf_drop_fit {
@@ -202,6 +203,7 @@ typedef struct sf_drop_fit {
     bool borrowed[SF_FIT_MAX_DROPS]; /* columns of the coarse drop, until the drop itself was simulated */
     sf_fit_simulated simulated[SF_FIT_MAX_DROPS];
     bool coarse;                        /* now: the drops have the input's coarse_set */
+    bool rigid;                         /* now: a mount that is unknown is left out */
     sf_signal_chain chain_now;          /* through which the simulated drops are read */
     double speed_now[SF_FIT_MAX_DROPS]; /* factor on the drop's speed in its simulation; 0: as given */
     bool speeds_fitted; /* `y` and `simulated` have the speeds of the fit, as the given ones have no result */

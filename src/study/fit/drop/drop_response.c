@@ -66,6 +66,7 @@ sf_signal_chain sf_drop_fit_chain(const sf_drop_fit *fit, const double *u) {
             number[k] *= exp(u[fit->chain[k]]);
     memcpy(&chain, number, sizeof number);
     chain.mount_damping = fmin(chain.mount_damping, 0.999);
+    chain.mount_frequency *= !fit->rigid;
     return chain;
 }
 
@@ -221,7 +222,7 @@ static uint64_t hash_columns(uint64_t hash, const sf_columns *c) {
 
 /* Key of the responses of drops `first` to `last` - 1; 0 without a memory. */
 static uint64_t key_of(const sf_drop_fit *fit, int first, int last, int bin, const double *u) {
-    const int which[] = {first, last, bin, fit->parameters};
+    const int which[] = {first, last, bin, fit->parameters, fit->rigid};
     if (!fit->memory)
         return 0;
     uint64_t hash = sf_hash_identity(fit->inputs, which, sizeof which);
