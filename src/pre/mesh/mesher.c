@@ -218,8 +218,7 @@ static char *parameter_text(const sf_geo_source *source) {
             fprintf(out, "Geometry.OCCTargetUnit = \"%s\";\n", targets[k].name);
     for (int k = 0; out && k < source->parameter_count; k++) {
         const sf_geo_parameter *p = &source->parameter[k];
-        bool scaled = source->spacing_factor > 0 && strstr(p->name, "spacing");
-        fprintf(out, "%s = %.17g;\n", p->name, p->value * (scaled ? source->spacing_factor : 1));
+        fprintf(out, "%s = %.17g;\n", p->name, p->value);
     }
     if (out)
         fclose(out);
@@ -515,13 +514,15 @@ static void end(conversation *c) {
 sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *limits, sf_meshed *out,
                         sf_error *err) {
     const char *unconfined = getenv("SOFTFALL_UNCONFINED");
-    conversation c = {.source = source,
+    sf_geo_source scaled;
+    conversation c = {.source = &scaled,
                       .limits = limits,
                       .seconds = limits->seconds > 0 ? limits->seconds : SF_MESHER_SECONDS,
                       .bytes = sf_memory_available(),
                       .confined = !unconfined || strcmp(unconfined, "1") != 0};
-    char *parameters = parameter_text(source);
     memset(out, 0, sizeof *out);
+    SF_TRY(sf_geo_parameters_scale(source, &scaled, err));
+    char *parameters = parameter_text(&scaled);
     if (!parameters)
         SF_NO_MEMORY(err, "the parameters of %s", source->path);
     c.broker.parameters = parameters;

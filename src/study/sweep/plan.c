@@ -4,88 +4,11 @@
 #include "base/hash.h"
 #include "io/plain_file.h"
 #include "pre/mesh/geo_parameters.h"
-#include "study/fit/posterior/mixture.h"
-#include <gsl/gsl_qrng.h>
-#include <gsl/gsl_randist.h>
 #include <gsl/gsl_statistics.h>
 
 enum { MOST_SAMPLES = 100000000, REFINE_CHANGES = 2 };
 static const double COARSE_PART = 0.5; /* of the accuracies: their error is a part of that of the rows */
 #define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"
-
-/* ---- samples ---- */
-
-int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
-    return method == SF_SAMPLING_SALTELLI ? count * (d + 2) : count;
-}
-
-static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
-    SF_RANDOM *rng = sf_random(seed, err);
-    for (int i = 0; rng && i < d; i++)
-        shift[i] = gsl_rng_uniform_pos(rng);
-    return err->status;
-}
-
-/* The sequence, or, with another seed than 1, moved as a whole (modulo 1; Cranley and Patterson 1976,
- * doi:10.1137/0713071): each coordinate is as evenly spread, at other points. */
-static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
-    double shift[SF_SOBOL_DIMENSIONS] = {0};
-    if (d > SF_SOBOL_DIMENSIONS)
-        return SF_REFUSE(err, "%d coordinates of a Sobol' sequence" SF_AT_MOST("%d"), d, SF_SOBOL_DIMENSIONS);
-    gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
-    if (!q)
-        return SF_NO_MEMORY(err, "the Sobol' sequence");
-    if (seed != 1)
-        draw_shift(d, seed, shift, err);
-    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
-        gsl_qrng_get(q, u + k * d);
-        for (int i = 0; i < d; i++) {
-            double x = u[k * d + i] + shift[i];
-            u[k * d + i] = x > 1 ? x - 1 : x < 1 ? x : 0.5; /* 1 is no quantile */
-        }
-    }
-    gsl_qrng_free(q);
-    return err->status;
-}
-
-/* One stratum of each coordinate for each point, shuffled; the place within it at random. */
-static sf_status latin(gsl_rng *rng, int d, int64_t count, double *u, sf_error *err) {
-    SF_OWNED int64_t *stratum = sf_alloc(err, count, sizeof *stratum, "strata");
-    for (int i = 0; i < d && stratum; i++) {
-        for (int64_t k = 0; k < count; k++)
-            stratum[k] = k;
-        gsl_ran_shuffle(rng, stratum, (size_t)count, sizeof *stratum);
-        for (int64_t k = 0; k < count; k++)
-            u[k * d + i] = ((double)stratum[k] + gsl_rng_uniform_pos(rng)) / (double)count;
-    }
-    return err->status;
-}
-
-static sf_status saltelli(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
-    SF_OWNED double *both = sf_alloc(err, count, 2 * (unsigned long)d * sizeof *both, "samples");
-    if (both && sobol(2 * d, count, seed, both, err) == SF_OK)
-        for (int64_t k = 0; k < count; k++)
-            for (int block = 0; block < d + 2; block++) {
-                double *row = u + (block * count + k) * d;
-                memcpy(row, both + 2 * k * d + (block == 1 ? d : 0), (size_t)d * sizeof *row);
-                if (block >= 2)
-                    row[block - 2] = both[2 * k * d + d + block - 2];
-            }
-    return err->status;
-}
-
-sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
-    if (method == SF_SAMPLING_SOBOL)
-        return sobol(d, count, seed, u, err);
-    if (method == SF_SAMPLING_SALTELLI)
-        return saltelli(d, count, seed, u, err);
-    SF_RANDOM *rng = sf_random(seed, err);
-    if (rng && method == SF_SAMPLING_LATIN)
-        latin(rng, d, count, u, err);
-    for (int64_t k = 0; rng && method != SF_SAMPLING_LATIN && k < count * d; k++)
-        u[k] = gsl_rng_uniform_pos(rng);
-    return err->status;
-}
 
 /* ---- blocks ---- */
 
@@ -299,19 +222,13 @@ static void key_of(const char *set, char *key, size_t size) {
     snprintf(key, size, "%.*s", (int)strcspn(set, " \t="), set);
 }
 
-/* Appends the overrides of the list `name`, "set" or "coarse". */
-static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
-    const config_setting_t *list = config_lookup(&config->config, name),
-                           *refine = config_lookup(&config->config, "refine"), *place = list ? list : refine;
-    int line = place ? (int)config_setting_source_line(place) : 0, first = p->set_count;
-    int most = SF_RUNNER_OVERRIDES - (refine ? REFINE_CHANGES : 0);
-    const char *file = sf_case_source_find(&config->source, line, &line);
-    snprintf(p->set_where, sizeof p->set_where, "%.480s:%d", file, line);
-    SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
-    if (p->set_count + p->factor_count > most)
-        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name, most);
+/* Refuses the overrides from `first` on, those of the key `name`, that change what is not theirs. */
+static sf_status check_set(const sf_config *config, const char *name, int first, const sf_plan *p,
+                           sf_error *err) {
+    const config_setting_t *list = config_lookup(&config->config, name);
     for (int k = first; k < p->set_count; k++) {
-        const config_setting_t *s = config_setting_get_elem(list, (unsigned)(k - first));
+        const config_setting_t *s =
+            config_setting_is_aggregate(list) ? config_setting_get_elem(list, (unsigned)(k - first)) : list;
         char key[SF_FACTOR_KEY_SIZE];
         key_of(p->set[k], key, sizeof key);
         if (sf_runner_sets_key(key))
@@ -322,6 +239,25 @@ static sf_status read_set(const sf_config *config, const char *name, sf_plan *p,
                                         p->factor[f].where);
     }
     return SF_OK;
+}
+
+/* Writes "file:line". */
+static void find_place(const sf_config *config, const config_setting_t *s, char where[SF_FACTOR_WHERE_SIZE]) {
+    int line = s ? (int)config_setting_source_line(s) : 0;
+    const char *file = sf_case_source_find(&config->source, line, &line);
+    snprintf(where, SF_FACTOR_WHERE_SIZE, "%.480s:%d", file, line);
+}
+
+/* Appends the overrides of the list `name`, "set" or "coarse". */
+static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
+    const config_setting_t *list = config_lookup(&config->config, name),
+                           *refine = config_lookup(&config->config, "refine");
+    int first = p->set_count, most = SF_RUNNER_OVERRIDES - (refine ? REFINE_CHANGES : 0);
+    find_place(config, list, p->set_where);
+    SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
+    if (p->set_count + p->factor_count > most)
+        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name, most);
+    return check_set(config, name, first, p, err);
 }
 
 /* Reads `refine`, and appends what it changes in the coarse drops: the spacings, and the largest expected
@@ -339,10 +275,11 @@ static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, s
         return sf_config_refuse(config, s, err,
                                 "refine: a row that is predicted has no mesh: leave out the accuracies");
     p->refine = p->coarse = !coarse;
+    find_place(config, s, p->refine_where);
     for (int k = 0; k < REFINE_CHANGES && coarse; k++)
         if (!(p->set[p->set_count++] = strdup(changes[k])))
             return SF_NO_MEMORY(err, "the plan %s", p->path);
-    return SF_OK;
+    return coarse ? check_set(config, "refine", p->set_count - REFINE_CHANGES, p, err) : SF_OK;
 }
 
 static sf_status add_figure(const sf_config *config, const config_setting_t *s, const char *key, double limit,
@@ -532,13 +469,16 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
         SF_REFUSE(&inner, "series.drops = %g: only first drops are %s out", c.drops,
                   p->refine ? "refined; leave `refine`" : "predicted; leave `accuracy`");
     if (inner.status == SF_OK && p->refine && c.pad.spacing_factor != 1)
-        SF_REFUSE(&inner, "geometry.spacing_factor is that of the coarse drops of `refine`: leave it out");
+        return SF_REFUSE(err, "%s: refine sets geometry.spacing_factor, for the coarse drops: leave it out",
+                         p->refine_where);
     if (inner.status == SF_OK)
         sf_campaign_key(&c, own, &inner);
     *hash = sf_hash_bytes(*hash, own, sizeof *own);
     *hash = c.counted > 1 ? sf_hash_bytes(*hash, &c.counted, sizeof c.counted) : *hash;
     if (inner.status == SF_OK)
         return SF_OK;
+    if (!p->refine && *p->refine_where) /* the rows without it were checked before */
+        return SF_FAIL(err, inner.status, "%s: refine: %.900s", p->refine_where, inner.text);
     return SF_FAIL(err, inner.status, "%s: %.900s", is_of_set(p, inner.text) ? p->set_where : f->where,
                    inner.text);
 }

@@ -130,6 +130,7 @@ typedef struct sf_plan {
     char set_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of their last list, for sentences */
     bool coarse; /* coarse drops are asked for, by which the rows are predicted or, if `refine`, refined */
     bool refine;
+    char refine_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of the key, of its coarse drops too; "": none */
     int factor_count, block_count;
     sf_factor factor[SF_SWEEP_FACTORS];
     int block_of[SF_SWEEP_FACTORS];
