@@ -106,7 +106,7 @@ static void plans_that_cannot_be_refined_are_refused(void **state) {
         {SET(", \"series.drops=2\", \"series.interval=\\\"60 s\\\"\"") REFINE,
          "only first drops are refined; leave `refine` out"},
         {SET(", \"geometry.spacing_factor=0.5\"") REFINE,
-         "wrong.cfg:3: refine sets geometry.spacing_factor, for the coarse drops: leave it out"},
+         "wrong.cfg:3: geometry.spacing_factor is set by `refine`, for the coarse drops: leave it out"},
         {SET(", \"geometry.parameters.thickness=30.0\"") REFINE,
          "refine: with 2 times its spacings the first row has no model: the nodal spacing under the missile is"},
         {SET(", \"geometry.parameters.thickness=30.0\", \"pad.mesh_error_limit=9.0\"") REFINE,
@@ -134,14 +134,14 @@ static void assert_refused(const program_place *p, const char *sed, const char *
 
 static void keys_of_refine_are_its_own(void **state) {
     const program_place *p = *state;
-    assert_refused(p, MORE("pad.mesh_error_limit"),
-                   "wrong.cfg:3: refine: pad.mesh_error_limit is a factor, at wrong.cfg:5");
-    assert_refused(p, MORE("geometry.spacing_factor"),
-                   "wrong.cfg:3: refine sets geometry.spacing_factor, for the coarse drops: leave it out");
-    assert_refused(p, "s|^factors = (|&{key = \"geometry.spacing_factor\"; values = [1.0];},|",
-                   "wrong.cfg:3: refine: geometry.spacing_factor is a factor, at wrong.cfg:5");
+    assert_refused(
+        p, MORE("pad.mesh_error_limit"),
+        "wrong.cfg:5: pad.mesh_error_limit is set by `refine`, for the coarse drops: leave it out");
+    assert_refused(
+        p, MORE("geometry.spacing_factor"),
+        "wrong.cfg:5: geometry.spacing_factor is set by `refine`, for the coarse drops: leave it out");
     program_shell(p, "sed 's|^geometry: {|&spacing_factor = 0.5;|' case.cfg > scaled.cfg");
-    assert_refused(p, "s|case.cfg|scaled.cfg|", "wrong.cfg:3: refine sets geometry.spacing_factor");
+    assert_refused(p, "s|case.cfg|scaled.cfg|", "wrong.cfg:3: geometry.spacing_factor is set by `refine`");
 }
 
 /* The lines of softfall-pre that tell the mesh. */
@@ -175,11 +175,10 @@ static void spacings_of_the_geometry_are_doubled_too(void **state) {
 static void spacings_that_cannot_be_doubled_are_refused(void **state) {
     static const char *const wrong[][2] = {
         {"s/outer_spacing = {10,/outer_spacing = {2 * 5,/",
-         "wrong.cfg:3: refine: ./own.geo: geometry.spacing_factor "
-         "cannot multiply \"outer_spacing\": neither geometry.parameters nor a DefineConstant of this file gives it a number"},
-        {"1i cell_spacing = 5;", "cannot multiply \"cell_spacing\""},
-        {"s/fine_spacing/fine/g; s/outer_spacing/outer/g",
-         "wrong.cfg:3: refine: ./own.geo: geometry.spacing_factor has nothing to multiply"}};
+         "wrong.cfg:3: refine: ./own.geo: geometry.spacing_factor needs a number, in geometry.parameters or in a "
+         "DefineConstant of this file, for outer_spacing"},
+        {"1i cell_spacing = 5;", "for cell_spacing"},
+        {"s/fine_spacing/fine/g; s/outer_spacing/outer/g", "for a parameter with \"spacing\" in its name"}};
     const program_place *p = *state;
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
         program_shell(p, "sed '%s' '%s' > own.geo", wrong[k][0], fixture_source("geo/pad.geo"));
@@ -187,9 +186,9 @@ static void spacings_that_cannot_be_doubled_are_refused(void **state) {
     }
     program_shell(p, "cp '%s' part.geo; echo 'Include \"part.geo\";' > own.geo",
                   fixture_source("geo/pad.geo"));
-    assert_refused(p, "s/case.cfg/left.cfg/; s/^set.*//",
-                   "refine: with 2 times its spacings the first row has no model: "
-                   "./own.geo: geometry.spacing_factor cannot multiply \"fine_spacing\"");
+    assert_refused(
+        p, "s/case.cfg/left.cfg/; s/^set.*//",
+        "refine: with 2 times its spacings the first row has no model: ./own.geo: geometry.spacing_factor needs a number, in geometry.parameters or in a DefineConstant of this file, for fine_spacing");
 }
 
 /* ---- pairs ---- */

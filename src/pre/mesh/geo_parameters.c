@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "io/plain_file.h"
+#include "pre/mesh/mesher_protocol.h"
 
 static const char *skip_blank(const char *p) {
     for (;;) {
@@ -62,7 +63,7 @@ typedef struct name_list {
 static double read_number(const char *text, const char *ends) {
     double value;
     const char *p = skip_blank(text);
-    p = *p == '=' ? skip_blank(p + 1) : p;
+    p = *p == '=' ? skip_blank(p + 1) : "";
     p = sf_decimal_read(*p == '{' ? skip_blank(p + 1) : p, &value);
     p = p ? skip_blank(p) : "";
     return *p && strchr(ends, *p) ? value : NAN;
@@ -106,10 +107,9 @@ static bool is_spacing(const char *name) {
 
 static void scan(const char *text, name_list *list) {
     for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; t.kind != SF_GEO_END;) {
-        char name[SF_CASE_NAME_SIZE] = "";
+        char name[SF_CASE_NAME_SIZE];
         t = sf_geo_token_next(&text);
-        if (t.kind == SF_GEO_WORD)
-            snprintf(name, sizeof name, "%.*s", (int)t.length, t.begin);
+        snprintf(name, sizeof name, "%.*s", t.kind == SF_GEO_WORD ? (int)t.length : 0, t.begin);
         list->others |= strcmp(name, "Include") == 0 || strcmp(name, "Merge") == 0;
         if (strcmp(name, "DefineConstant") == 0)
             read_constants(&text, list);
@@ -151,7 +151,7 @@ static bool is_scaled(const sf_geo_source *source) {
     return source->spacing_factor > 0 && source->spacing_factor != 1;
 }
 
-/* Refuses a factor that not all spacings of the list follow, or none. */
+/* Refuses a factor that a spacing of the list does not follow, or that has none. */
 static sf_status refuse_unscaled(const sf_geo_source *source, const name_list *list, sf_error *err) {
     const char *open = *list->fixed ? list->fixed : NULL;
     bool any = false;
@@ -161,41 +161,16 @@ static sf_status refuse_unscaled(const sf_geo_source *source, const name_list *l
         if (is_spacing(name) && !has_name(source->parameter_count, source->parameter, name))
             open = name;
     }
-    if (!open && !any)
-        return SF_REFUSE(err,
-                         "%s: geometry.spacing_factor has nothing to multiply: no DefineConstant parameter "
-                         "has \"spacing\" in its name",
-                         source->path);
-    return !open
-               ? SF_OK
-               : SF_REFUSE(err,
-                           "%s: geometry.spacing_factor cannot multiply \"%s\": neither geometry.parameters "
-                           "nor a DefineConstant of this file gives it a number",
-                           source->path, open);
-}
-
-static sf_status check_names(const sf_geo_source *source, const name_list *list, sf_error *err) {
-    SF_TRY(refuse_missing(source, list, err));
-    return is_scaled(source) ? refuse_unscaled(source, list, err) : SF_OK;
-}
-
-sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
-                                  sf_error *err) {
-    if (source->parameter_count == 0 && !is_scaled(source))
+    if (!is_scaled(source) || (any && !open))
         return SF_OK;
-    SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
-    SF_TRY(err->status);
-    for (size_t k = 0; complete && k < read->count; k++)
-        if (read->file[k].is_text)
-            scan(read->file[k].text, list);
-    if (!complete)
-        SF_TRY(scan_file(source, list, err));
-    return check_names(source, list, err);
+    return SF_REFUSE(err,
+                     "%s: geometry.spacing_factor needs a number, in geometry.parameters or in a "
+                     "DefineConstant of this file, for %s",
+                     source->path, open ? open : "a parameter with \"spacing\" in its name");
 }
 
 static bool is_geo(const sf_geo_source *source) {
-    const char *ending = source->path ? strrchr(source->path, '.') : NULL;
-    return ending && strcmp(ending, ".geo") == 0;
+    return source->path && sf_mesher_has_suffix(source->path, ".geo");
 }
 
 sf_status sf_geo_parameters_scale(const sf_geo_source *source, sf_geo_source *scaled, sf_error *err) {
@@ -215,13 +190,21 @@ sf_status sf_geo_parameters_scale(const sf_geo_source *source, sf_geo_source *sc
     return SF_OK;
 }
 
-sf_status sf_geo_parameters_check_alone(const sf_geo_source *source, sf_error *err) {
+sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
+                                  sf_error *err) {
     sf_geo_source scaled;
-    if (!is_geo(source) || (source->parameter_count == 0 && !is_scaled(source)))
+    if ((source->parameter_count == 0 && !is_scaled(source)) || (!read && !is_geo(source)))
         return SF_OK;
     SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
     SF_TRY(err->status);
+    for (size_t k = 0; complete && k < read->count; k++)
+        if (read->file[k].is_text)
+            scan(read->file[k].text, list);
+    if (!complete)
+        SF_TRY(scan_file(source, list, err));
+    if (!read && list->others)
+        return SF_OK;
     SF_TRY(sf_geo_parameters_scale(source, &scaled, err));
-    SF_TRY(scan_file(source, list, err));
-    return list->others ? SF_OK : check_names(&scaled, list, err);
+    SF_TRY(refuse_missing(&scaled, list, err));
+    return refuse_unscaled(&scaled, list, err);
 }

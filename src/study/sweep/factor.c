@@ -414,9 +414,7 @@ static void list_keys(const factor_kind *kind, bool sampled, char names[NAMES_SI
 static sf_status read_head(reading *r, sf_error *err) {
     const char *key = NULL, *name = NULL;
     sf_factor *f = r->factor;
-    int line = (int)config_setting_source_line(r->group);
-    const char *path = sf_case_source_find(&r->config->source, line, &line);
-    snprintf(f->where, sizeof f->where, "%.480s:%d", path, line);
+    sf_config_place(r->config, r->group, f->where, sizeof f->where);
     SF_TRY(sf_config_text(r->config, r->group, "key", true, &key, err));
     SF_TRY(sf_config_text(r->config, r->group, "name", false, &name, err));
     if (strlen(key) >= sizeof f->key || strpbrk(key, "= \t\"@") || (name && strlen(name) >= sizeof f->name))

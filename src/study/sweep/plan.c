@@ -6,6 +6,9 @@
 #include "pre/mesh/geo_parameters.h"
 #include <gsl/gsl_statistics.h>
 
+#define SPACING_FACTOR "geometry.spacing_factor"
+#define ERROR_LIMIT "pad.mesh_error_limit"
+#define IS_OF_REFINE " is set by `refine`, for the coarse drops: leave it out"
 enum { MOST_SAMPLES = 100000000, REFINE_CHANGES = 2 };
 static const double COARSE_PART = 0.5; /* of the accuracies: their error is a part of that of the rows */
 #define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"
@@ -34,6 +37,9 @@ static sf_status add_factor(const sf_config *config, const config_setting_t *gro
                                 f->name);
     if (sf_runner_sets_key(f->key))
         return sf_config_refuse(config, group, err, SETS_ITSELF, f->key);
+    if (config_lookup(&config->config, "refine") &&
+        (strcmp(f->key, SPACING_FACTOR) == 0 || strcmp(f->key, ERROR_LIMIT) == 0))
+        return sf_config_refuse(config, group, err, "%s" IS_OF_REFINE, f->key);
     for (int k = 0; k < p->factor_count - 1; k++) {
         const sf_factor *other = &p->factor[k];
         if (strcmp(other->key, f->key) == 0)
@@ -222,13 +228,17 @@ static void key_of(const char *set, char *key, size_t size) {
     snprintf(key, size, "%.*s", (int)strcspn(set, " \t="), set);
 }
 
-/* Refuses the overrides from `first` on, those of the key `name`, that change what is not theirs. */
-static sf_status check_set(const sf_config *config, const char *name, int first, const sf_plan *p,
-                           sf_error *err) {
+/* Appends the overrides of the list `name`, "set" or "coarse". */
+static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
     const config_setting_t *list = config_lookup(&config->config, name);
+    int first = p->set_count;
+    int most = SF_RUNNER_OVERRIDES - (config_lookup(&config->config, "refine") ? REFINE_CHANGES : 0);
+    sf_config_place(config, list, p->set_where, sizeof p->set_where);
+    SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
+    if (p->set_count + p->factor_count > most)
+        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name, most);
     for (int k = first; k < p->set_count; k++) {
-        const config_setting_t *s =
-            config_setting_is_aggregate(list) ? config_setting_get_elem(list, (unsigned)(k - first)) : list;
+        const config_setting_t *s = config_setting_get_elem(list, (unsigned)(k - first));
         char key[SF_FACTOR_KEY_SIZE];
         key_of(p->set[k], key, sizeof key);
         if (sf_runner_sets_key(key))
@@ -241,30 +251,10 @@ static sf_status check_set(const sf_config *config, const char *name, int first,
     return SF_OK;
 }
 
-/* Writes "file:line". */
-static void find_place(const sf_config *config, const config_setting_t *s, char where[SF_FACTOR_WHERE_SIZE]) {
-    int line = s ? (int)config_setting_source_line(s) : 0;
-    const char *file = sf_case_source_find(&config->source, line, &line);
-    snprintf(where, SF_FACTOR_WHERE_SIZE, "%.480s:%d", file, line);
-}
-
-/* Appends the overrides of the list `name`, "set" or "coarse". */
-static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
-    const config_setting_t *list = config_lookup(&config->config, name),
-                           *refine = config_lookup(&config->config, "refine");
-    int first = p->set_count, most = SF_RUNNER_OVERRIDES - (refine ? REFINE_CHANGES : 0);
-    find_place(config, list, p->set_where);
-    SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
-    if (p->set_count + p->factor_count > most)
-        return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name, most);
-    return check_set(config, name, first, p, err);
-}
-
 /* Reads `refine`, and appends what it changes in the coarse drops: the spacings, and the largest expected
  * error of a_max, that of two spacings across the thickness (SF_MESH_ERROR_THICKNESS). */
 static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, sf_error *err) {
-    static const char *const changes[REFINE_CHANGES] = {"geometry.spacing_factor=2",
-                                                        "pad.mesh_error_limit=0.125"};
+    static const char *const changes[REFINE_CHANGES] = {SPACING_FACTOR "=2", ERROR_LIMIT "=0.125"};
     const config_setting_t *s = config_lookup(&config->config, "refine");
     int method = 0;
     if (!s)
@@ -275,11 +265,11 @@ static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, s
         return sf_config_refuse(config, s, err,
                                 "refine: a row that is predicted has no mesh: leave out the accuracies");
     p->refine = p->coarse = !coarse;
-    find_place(config, s, p->refine_where);
+    sf_config_place(config, s, p->refine_where, sizeof p->refine_where);
     for (int k = 0; k < REFINE_CHANGES && coarse; k++)
         if (!(p->set[p->set_count++] = strdup(changes[k])))
             return SF_NO_MEMORY(err, "the plan %s", p->path);
-    return coarse ? check_set(config, "refine", p->set_count - REFINE_CHANGES, p, err) : SF_OK;
+    return SF_OK;
 }
 
 static sf_status add_figure(const sf_config *config, const config_setting_t *s, const char *key, double limit,
@@ -387,7 +377,8 @@ static void set_override(const sf_plan *p, int k, char *text) {
         snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%s", set);
 }
 
-int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE]) {
+int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE],
+                      const char **list) {
     int count = 0;
     for (int groups = 1; groups >= 0; groups--) {
         for (int f = 0; f < p->factor_count; f++)
@@ -397,6 +388,8 @@ int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERR
         for (int k = 0; groups && k < p->set_count; k++)
             set_override(p, k, text[count++]);
     }
+    for (int k = 0; k < count && list; k++)
+        list[k] = text[k];
     return count;
 }
 
@@ -434,10 +427,7 @@ const sf_block *sf_plan_saltelli(const sf_plan *p) {
 sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_error *err) {
     char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
     const char *list[SF_RUNNER_OVERRIDES];
-    int count = sf_plan_overrides(plan, row, text);
-    for (int k = 0; k < count; k++)
-        list[k] = text[k];
-    return sf_case_read(plan->case_path, count, list, NULL, c, err);
+    return sf_case_read(plan->case_path, sf_plan_overrides(plan, row, text, list), list, NULL, c, err);
 }
 
 /* True if an entry of `set` alone gives this sentence. */
@@ -464,13 +454,12 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     *own = 0;
     sf_sweep_read_case(p, row, &c, &inner);
     for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
-        sf_geo_parameters_check_alone(sf_campaign_geometry(&c, k), &inner);
+        sf_geo_parameters_check(sf_campaign_geometry(&c, k), NULL, false, &inner);
     if (inner.status == SF_OK && c.drops > 1 && (sf_plan_is_adaptive(p) || p->refine))
         SF_REFUSE(&inner, "series.drops = %g: only first drops are %s out", c.drops,
                   p->refine ? "refined; leave `refine`" : "predicted; leave `accuracy`");
     if (inner.status == SF_OK && p->refine && c.pad.spacing_factor != 1)
-        return SF_REFUSE(err, "%s: refine sets geometry.spacing_factor, for the coarse drops: leave it out",
-                         p->refine_where);
+        return SF_REFUSE(err, "%s: " SPACING_FACTOR IS_OF_REFINE, p->refine_where);
     if (inner.status == SF_OK)
         sf_campaign_key(&c, own, &inner);
     *hash = sf_hash_bytes(*hash, own, sizeof *own);
@@ -525,11 +514,10 @@ static sf_status check_words(const sf_plan *p, int factor, uint64_t *hash, sf_er
 
 sf_status sf_sweep_check_inputs(const sf_plan *p, uint64_t *hash, sf_error *err) {
     *hash = SF_HASH_START;
-    for (int f = 0; f < p->factor_count && err->status == SF_OK; f++) {
+    for (int f = 0; f < p->factor_count && err->status == SF_OK; f++)
         if (p->factor[f].words)
             check_words(p, f, hash, err);
         else
             check_extremes(p, f, hash, err);
-    }
     return err->status;
 }
