@@ -105,7 +105,8 @@ static void plans_that_cannot_be_refined_are_refused(void **state) {
          "coarse drops are for plans that predict rows"},
         {SET(", \"series.drops=2\", \"series.interval=\\\"60 s\\\"\"") REFINE,
          "only first drops are refined; leave `refine` out"},
-        {SET(", \"geometry.spacing_factor=0.5\"") REFINE, "is that of the coarse drops of `refine`"},
+        {SET(", \"geometry.spacing_factor=0.5\"") REFINE,
+         "wrong.cfg:3: geometry.spacing_factor is set by `refine`, for the coarse drops: leave it out"},
         {SET(", \"geometry.parameters.thickness=30.0\"") REFINE,
          "refine: with 2 times its spacings the first row has no model: the nodal spacing under the missile is"},
         {SET(", \"geometry.parameters.thickness=30.0\", \"pad.mesh_error_limit=9.0\"") REFINE,
@@ -117,15 +118,77 @@ static void plans_that_cannot_be_refined_are_refused(void **state) {
         if (r.code == 0 || !strstr(r.err, wrong[k][1]))
             fail_msg("%d, not \"%s\": %s", r.code, wrong[k][1], r.err);
     }
-    program_shell(p, "sed 's/fine_spacing/fine/g; s/outer_spacing/outer/g' '%s' > own.geo",
-                  fixture_source("geo/pad.geo"));
-    program_shell(
-        p, "sed 's/fine_spacing/fine/; s/outer_spacing/outer/; s|\"[^\"]*/pad.geo|\"own.geo|' case.cfg > "
-           "own.cfg; sed 's/case.cfg/own.cfg/; s/^set.*//' plan.cfg > wrong.cfg");
-    program_result r = program_run(p, "sweep", "wrong.cfg -o wrong --dry-run");
-    if (!strstr(r.err, "wrong.cfg:3: ") || !strstr(r.err, "geometry.parameters gives no spacing to multiply"))
-        fail_msg("%s", r.err);
     assert_int_equal(program_shell(p, "test -e wrong").code, 1);
+}
+
+/* Runs softfall-sweep on the plan after the change of `sed`, and asserts that it is refused with these words.
+ */
+static void assert_refused(const program_place *p, const char *sed, const char *words) {
+    program_shell(p, "sed '%s' plan.cfg > wrong.cfg", sed);
+    program_result r = program_run(p, "sweep", "wrong.cfg -o wrong --dry-run");
+    if (r.code == 0 || !strstr(r.err, words))
+        fail_msg("%s: %d, not \"%s\": %s", sed, r.code, words, r.err);
+}
+
+#define MORE(key) "s|^factors = (|&{key = \"" key "\"; values = [1.0, 1.5];},|"
+
+static void keys_of_refine_are_its_own(void **state) {
+    const program_place *p = *state;
+    assert_refused(
+        p, MORE("pad.mesh_error_limit"),
+        "wrong.cfg:5: pad.mesh_error_limit is set by `refine`, for the coarse drops: leave it out");
+    assert_refused(
+        p, MORE("geometry.spacing_factor"),
+        "wrong.cfg:5: geometry.spacing_factor is set by `refine`, for the coarse drops: leave it out");
+    program_shell(p, "sed 's|^geometry: {|&spacing_factor = 0.5;|' case.cfg > scaled.cfg");
+    assert_refused(p, "s|case.cfg|scaled.cfg|", "wrong.cfg:3: geometry.spacing_factor is set by `refine`");
+}
+
+/* The lines of softfall-pre that tell the mesh. */
+static void write_mesh(const program_place *p, const char *name, const char *arguments) {
+    program_result r = program_succeed(p, "pre", "%s -o %s.h5 --force", arguments, name);
+    program_write_text(p, name, r.out);
+    program_shell(p, "grep -E '^(nodes|cells|nodal spacing|mesh hash) ' %s > %s.mesh", name, name);
+    assert_int_equal(program_shell(p, "test $(wc -l < %s.mesh) = 4", name).code, 0);
+}
+
+/* `left.cfg` leaves both spacings to own.geo, `half.cfg` one of them. */
+static void spacings_of_the_geometry_are_doubled_too(void **state) {
+    const program_place *p = *state;
+    program_shell(
+        p,
+        "cp '%s' own.geo; sed 's|\"[^\"]*/pad.geo|\"own.geo|; s/ outer_spacing[^;]*;//' case.cfg > half.cfg; "
+        "sed 's/ fine_spacing[^;]*;//' half.cfg > left.cfg",
+        fixture_source("geo/pad.geo"));
+    assert_int_equal(program_shell(p, "grep -q spacing left.cfg").code, 1);
+    write_mesh(p, "given",
+               "case.cfg --set geometry.parameters.fine_spacing=10.0 "
+               "--set geometry.parameters.outer_spacing=20.0");
+    write_mesh(p, "half", "half.cfg --set geometry.spacing_factor=2");
+    write_mesh(p, "left", "left.cfg --set geometry.spacing_factor=2");
+    write_mesh(p, "plain", "left.cfg");
+    assert_int_equal(program_shell(p, "cmp given.mesh half.mesh && cmp given.mesh left.mesh").code, 0);
+    assert_int_equal(program_shell(p, "cmp -s given.mesh plain.mesh").code, 1);
+}
+
+/* Goes on from the files of the test before. */
+static void spacings_that_cannot_be_doubled_are_refused(void **state) {
+    static const char *const wrong[][2] = {
+        {"s/outer_spacing = {10,/outer_spacing = {2 * 5,/",
+         "wrong.cfg:3: refine: ./own.geo: geometry.spacing_factor needs a number, in geometry.parameters or in a "
+         "DefineConstant of this file, for outer_spacing"},
+        {"1i cell_spacing = 5;", "for cell_spacing"},
+        {"s/fine_spacing/fine/g; s/outer_spacing/outer/g", "for a parameter with \"spacing\" in its name"}};
+    const program_place *p = *state;
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        program_shell(p, "sed '%s' '%s' > own.geo", wrong[k][0], fixture_source("geo/pad.geo"));
+        assert_refused(p, "s/case.cfg/left.cfg/; s/^set.*//", wrong[k][1]);
+    }
+    program_shell(p, "cp '%s' part.geo; echo 'Include \"part.geo\";' > own.geo",
+                  fixture_source("geo/pad.geo"));
+    assert_refused(
+        p, "s/case.cfg/left.cfg/; s/^set.*//",
+        "refine: with 2 times its spacings the first row has no model: ./own.geo: geometry.spacing_factor needs a number, in geometry.parameters or in a DefineConstant of this file, for fine_spacing");
 }
 
 /* ---- pairs ---- */
@@ -186,6 +249,9 @@ int main(void) {
         cmocka_unit_test(both_meshes_resume),
         cmocka_unit_test(a_folder_of_other_coarse_drops_is_refused),
         cmocka_unit_test(plans_that_cannot_be_refined_are_refused),
+        cmocka_unit_test(keys_of_refine_are_its_own),
+        cmocka_unit_test(spacings_of_the_geometry_are_doubled_too),
+        cmocka_unit_test(spacings_that_cannot_be_doubled_are_refused),
         cmocka_unit_test(pairs_that_tell_no_value_have_a_note),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);

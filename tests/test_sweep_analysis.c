@@ -144,7 +144,7 @@ static void a_word_that_a_zip_repeats_is_one_level(void **state) {
     assert_int_equal(done.plan.factor[1].count, 3);
     for (int64_t row = 0; row < 6; row++)
         assert_int_equal((int)sf_plan_value(&done.plan, 1, row), level[row]);
-    sf_plan_overrides(&done.plan, 5, text);
+    sf_plan_overrides(&done.plan, 5, text, NULL);
     assert_string_equal(text[1], "pad.base=\"resting\"");
     /* of a_max: glued 100, 100, 200; smooth 100 + 1/3, 200 + 1/3; resting 200 + 2/3 */
     assert_relative(done.a.effect[0][1].low, 400.0 / 3, 1e-8);

@@ -44,7 +44,7 @@ static void the_last_block_is_the_fastest_and_zipped_lists_go_together(void **st
         assert_close(sf_plan_value(&plan, 1, row), 40 + 10 * (double)(row % 3), 0);
         assert_int_equal((int)sf_plan_value(&plan, 2, row), row % 3);
     }
-    assert_int_equal(sf_plan_overrides(&plan, 5, text), 3);
+    assert_int_equal(sf_plan_overrides(&plan, 5, text, NULL), 3);
     assert_string_equal(text[0], "missile.velocity=\"5 m/s\"");
     assert_string_equal(text[1], "geometry.parameters.thickness=60");
     assert_string_equal(text[2], "pad.base=\"resting\"");
@@ -64,7 +64,7 @@ static void a_material_comes_before_its_keys_and_ranges_hold_both_ends(void **st
     assert_close(sf_plan_value(&plan, 0, 0), 0.01, 1e-15);
     assert_close(sf_plan_value(&plan, 0, 1), 0.1, 1e-15);
     assert_close(sf_plan_value(&plan, 0, 2), 1, 1e-15);
-    assert_int_equal(sf_plan_overrides(&plan, 1, text), 2);
+    assert_int_equal(sf_plan_overrides(&plan, 1, text, NULL), 2);
     assert_ptr_equal(strstr(text[0], "material=@/"), text[0]);
     assert_string_equal(text[1], "material.HU=0.1");
     sf_plan_free(&plan);
@@ -284,7 +284,7 @@ static void draws_are_taken_from_the_whole_posterior(void **state) {
     sweep_read_plan(p, "{ key = \"material\"; posterior = \"ten\"; draws = 4; }", &plan);
     assert_int_equal(plan.rows, 4);
     for (int64_t row = 0; row < 4; row++) {
-        assert_int_equal(sf_plan_overrides(&plan, row, text), 1);
+        assert_int_equal(sf_plan_overrides(&plan, row, text, NULL), 1);
         assert_non_null(strstr(text[0], expected[row]));
     }
     sf_plan_free(&plan);
@@ -303,7 +303,7 @@ static void a_vector_with_whole_and_fractional_numbers_is_a_value(void **state) 
         *state,
         "{ key = \"missile.direction\"; values = ([0.0, 0.0, -1.0], [0.1, 0.0, -1.0], (0, 0.2, -1)); }",
         &plan);
-    sf_plan_overrides(&plan, 1, text);
+    sf_plan_overrides(&plan, 1, text, NULL);
     assert_string_equal(text[0], "missile.direction=[0.1, 0.0, -1.0]");
     sf_factor_text(&plan.factor[0], 1, text[0], sizeof text[0]);
     assert_string_equal(text[0], "[0.1, 0, -1]"); /* in tables as before */
@@ -325,7 +325,7 @@ static void a_file_of_set_is_relative_to_the_plan(void **state) {
                     "{ key = \"missile.velocity\"; values = [\"4 m/s\"]; } );"
                     "set = ( \"pad.base=glued\", \"material=@foam.cfg\"",
                     &plan);
-    assert_int_equal(sf_plan_overrides(&plan, 0, text), 3);
+    assert_int_equal(sf_plan_overrides(&plan, 0, text, NULL), 3);
     snprintf(expected, sizeof expected, "material=@%s/foam.cfg", p->folder);
     assert_string_equal(text[0], "pad.base=glued");
     assert_string_equal(text[1], expected);

@@ -15,7 +15,7 @@ import sys
 import warnings
 
 import softfall
-from softfall.refinement import SPACINGS, extrapolate
+from softfall.refinement import SPACING_FACTOR, extrapolate
 
 EXAMPLES = ("eva50-v4.5", "flat-disc", "layers", "cored", "post", "honeycomb", "channels", "tile-feet", "mat-cover", "wall", "headform-oblique",
             "channels, EVA", "tile-feet, EVA")
@@ -28,9 +28,7 @@ def drop(example, factor):
     name, foam = example.split(",")[0], "," in example
     case = softfall.Case("examples/%s/case.cfg" % name, {"material": "@examples/materials/eva35.cfg", "geometry.parameters.spacing": "5.0"} if foam else {})
     case["pad.mesh_error_limit"] = 1.0
-    for key in SPACINGS:
-        if key in case and case[key] is not None:
-            case[key] = factor * float(case[key])
+    case[SPACING_FACTOR] = float(factor)
     try:
         made = case.run(output="out/refine/%s-%g" % (example, factor), force=True)
     except softfall.Error as error:

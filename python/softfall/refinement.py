@@ -10,7 +10,7 @@ from .case import Case
 from .drop import Drop
 from .errors import InputError
 
-SPACINGS = ("geometry.parameters.fine_spacing", "geometry.parameters.outer_spacing", "geometry.parameters.spacing")
+SPACING_FACTOR = "geometry.spacing_factor"
 
 
 class Refined(NamedTuple):
@@ -40,17 +40,18 @@ def extrapolate(fine: float, coarse: float, ratio: float = 2.0, cells: float = m
     return Refined(*library.refine(fine, coarse, ratio, cells), fine, coarse)
 
 
-def refine(case: Case, figures: Sequence[str] = ("a_max_g", "hic"), spacings: Sequence[str] = SPACINGS, ratio: float = 2.0,
+def refine(case: Case, figures: Sequence[str] = ("a_max_g", "hic"), spacings: Sequence[str] = (), ratio: float = 2.0,
            **options: Any) -> Refinement:
     """Runs the case as it is and with its spacings times `ratio`, and extrapolates the figures.
 
-    `spacings`: the keys of the case that hold its spacings, numbers; those that it does not have are passed over. `options` are those of
-    `Case.run`. Drops that are there are not run again. A drop that is "do not use" is an InputError: its figures cannot be refined.
+    `spacings`: the keys of the case that hold its spacings, numbers, if `geometry.spacing_factor` does not reach them: it multiplies all
+    parameters of the pad's geometry with "spacing" in their names, also those that the case does not give. Keys that the case does not have
+    are passed over. `options` are those of `Case.run`. Drops that are there are not run again. A drop that is "do not use" is an InputError: its figures cannot be refined.
     """
     if not 1.2 <= ratio <= 4:
         raise InputError(f"ratio: {ratio:g} is outside 1.2 to 4")
     case.require_single("a refinement")
-    coarser = {key: ratio * float(case[key]) for key in spacings if key in case and case[key] is not None}
+    coarser = {key: ratio * float(case[key]) for key in spacings or [SPACING_FACTOR] if key in case and case[key] is not None}
     if not coarser:
         raise InputError(f"the case has none of the spacings {', '.join(spacings)}")
     other = case.copy()

@@ -26,7 +26,7 @@ static const sf_key keys[] = {
     {"geometry", "parameters", SF_KEY_PARAMETERS, "", AT(pad),
      "values for the DefineConstant parameters of `file`, in its own units"},
     {"geometry", "spacing_factor", SF_KEY_NUMBER, "1", AT(pad.spacing_factor),
-     "multiplies all `parameters` with \"spacing\" in their names: 2 for a mesh twice as coarse", .low = 0.1, .high = 10},
+     "multiplies all DefineConstant parameters of `file` with \"spacing\" in their names, also those that `parameters` does not give: 2 for a mesh twice as coarse", .low = 0.1, .high = 10},
     {"geometry", "missile_parameters", SF_KEY_PARAMETERS, "", AT(missile),
      "the same for `missile_file`"},
     {"geometry", "time_limit", SF_KEY_QUANTITY, "\"600 s\"", AT(mesh_time_limit),

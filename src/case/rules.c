@@ -373,11 +373,6 @@ sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
     if (!reader->layers && sf_case_check_card(reader, err) != SF_OK)
         return err->status;
     SF_TRY(check_layers(reader, err));
-    bool spaced = c->pad.spacing_factor == 1;
-    for (int k = 0; k < c->pad.parameter_count; k++)
-        spaced |= strstr(c->pad.parameter[k].name, "spacing") != NULL;
-    if (!spaced)
-        return REFUSE("geometry.spacing_factor", "geometry.parameters gives no spacing to multiply");
     if (!c->missile.path && c->missile.parameter_count > 0)
         return REFUSE_AT(
             "geometry.missile_parameters",

@@ -6,15 +6,20 @@
 #include <math.h>
 #include <string.h>
 
+void sf_config_place(const sf_config *config, const config_setting_t *setting, char *text, size_t size) {
+    int line = setting ? (int)config_setting_source_line(setting) : 0;
+    const char *path = line > 0 ? sf_case_source_find(&config->source, line, &line) : config->path;
+    int length = snprintf(text, size, "%.480s", path);
+    if (line > 0)
+        snprintf(text + length, size - (size_t)length, ":%d", line);
+}
+
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
                            const char *format, ...) {
-    char sentence[768];
+    char sentence[768], place[512];
     SF_PRINT_INTO(sentence, format);
-    int line = setting ? (int)config_setting_source_line(setting) : 0;
-    if (line == 0)
-        return SF_REFUSE(err, "%s: %s", config->path, sentence);
-    const char *path = sf_case_source_find(&config->source, line, &line);
-    return SF_REFUSE(err, "%s:%d: %s", path, line, sentence);
+    sf_config_place(config, setting, place, sizeof place);
+    return SF_REFUSE(err, "%s: %s", place, sentence);
 }
 
 sf_status sf_config_open(const char *path, sf_config *config, sf_error *err) {
@@ -167,10 +172,8 @@ sf_status sf_config_choice(const sf_config *config, const config_setting_t *grou
 }
 
 void sf_config_path(const sf_config *config, const char *name, char path[PATH_MAX]) {
-    if (*name == '/')
-        snprintf(path, PATH_MAX, "%s", name);
-    else
-        snprintf(path, PATH_MAX, "%s/%s", config->folder, name);
+    bool below = *name != '/';
+    snprintf(path, PATH_MAX, "%s%s%s", below ? config->folder : "", below ? "/" : "", name);
 }
 
 sf_status sf_config_file(const sf_config *config, const config_setting_t *group, const char *name,

@@ -61,6 +61,8 @@ sf_status sf_config_list(const sf_config *config, const config_setting_t *group,
 sf_status sf_config_overrides(const sf_config *config, const char *name, int most, char **text, int *count,
                               sf_error *err);
 
+/* Writes "file:line" of the setting, or "file" of NULL. */
+void sf_config_place(const sf_config *config, const config_setting_t *setting, char *text, size_t size);
 /* Records SF_ERR_INPUT: "file:line: sentence". */
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
                            const char *format, ...) __attribute__((format(printf, 4, 5)));

@@ -489,3 +489,12 @@ def test_a_case_is_refined_by_its_two_drops(case, slow):
         softfall.refine(case, spacings=["geometry.parameters.nothing"])
     with pytest.raises(softfall.InputError, match="ratio: 9"):
         softfall.refine(case, ratio=9)
+
+
+def test_spacings_that_the_case_leaves_to_the_geometry_are_coarser_too(case):
+    text = case.path.read_text()
+    left = case.path.with_name("left.cfg")
+    left.write_text(re.sub(r" outer_spacing = [^;]*;", "", text.replace("fine_spacing = 20", "fine_spacing = 10")))
+    assert "outer_spacing" in text and "outer_spacing" not in left.read_text()
+    case.update({"geometry.parameters.fine_spacing": 20.0, "geometry.parameters.outer_spacing": 20.0})  # 10 in pad.geo
+    assert softfall.refine(softfall.Case(left)).coarse.figures["cells"] == case.run().figures["cells"]

@@ -46,19 +46,17 @@ int sf_broker_memory(const char *text, size_t size) {
     size_t done = 0;
     while (file >= 0 && done < size) {
         ssize_t written = write(file, text + done, size - done);
-        if (written < 0 && errno != EINTR) {
-            close(file);
-            return -1;
-        }
+        if (written < 0 && errno != EINTR)
+            break;
         done += written > 0 ? (size_t)written : 0;
     }
-    if (file >= 0 &&
-        (fcntl(file, F_ADD_SEALS, F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0 ||
-         lseek(file, 0, SEEK_SET) != 0)) {
+    if (file >= 0 && done == size &&
+        fcntl(file, F_ADD_SEALS, F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) == 0 &&
+        lseek(file, 0, SEEK_SET) == 0)
+        return file;
+    if (file >= 0)
         close(file);
-        return -1;
-    }
-    return file;
+    return -1;
 }
 
 /* gmsh drops all but the first statement of a last line without its end. */

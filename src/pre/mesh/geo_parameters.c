@@ -2,9 +2,11 @@
 #include "pre/mesh/geo_parameters.h"
 
 #include <ctype.h>
+#include <math.h>
 
 #include "base/text.h"
 #include "io/plain_file.h"
+#include "pre/mesh/mesher_protocol.h"
 
 static const char *skip_blank(const char *p) {
     for (;;) {
@@ -49,16 +51,33 @@ bool sf_geo_token_is(sf_geo_token t, const char *text) {
 
 enum { MAX_NAMES = 256 };
 
+/* The constants of texts with their defaults; NaN: a default is no plain number. */
 typedef struct name_list {
     int count;
-    char name[MAX_NAMES][SF_CASE_NAME_SIZE];
+    sf_geo_parameter at[MAX_NAMES];
+    char fixed[SF_CASE_NAME_SIZE]; /* a spacing that a text sets to a number itself; "" */
+    bool others;                   /* a text reads other files */
 } name_list;
 
-static void add_name(name_list *list, sf_geo_token t) {
+/* Returns the plain number behind "=" or "= {" that one of the marks `ends` follows; NaN: there is none. */
+static double read_number(const char *text, const char *ends) {
+    double value;
+    const char *p = skip_blank(text);
+    p = *p == '=' ? skip_blank(p + 1) : "";
+    p = sf_decimal_read(*p == '{' ? skip_blank(p + 1) : p, &value);
+    p = p ? skip_blank(p) : "";
+    return *p && strchr(ends, *p) ? value : NAN;
+}
+
+static void add_name(name_list *list, sf_geo_token t, const char *text) {
     if (t.length >= SF_CASE_NAME_SIZE || list->count == MAX_NAMES)
         return;
-    memcpy(list->name[list->count], t.begin, t.length);
-    list->name[list->count++][t.length] = '\0';
+    sf_geo_parameter *out = &list->at[list->count++];
+    snprintf(out->name, sizeof out->name, "%.*s", (int)t.length, t.begin);
+    out->value = read_number(text, ",}])");
+    for (sf_geo_parameter *p = list->at; p < out; p++)
+        if (strcmp(p->name, out->name) == 0 && p->value != out->value)
+            p->value = out->value = NAN; /* which one holds is known to gmsh alone */
 }
 
 /* After DefineConstant: names at the outermost level of its brackets, each at the beginning of an item. */
@@ -76,80 +95,116 @@ static void read_constants(const char **text, name_list *list) {
         } else if (t.kind == SF_GEO_MARK && *t.begin == ',') {
             expecting = depth == 1;
         } else if (t.kind == SF_GEO_WORD && expecting && depth == 1) {
-            add_name(list, t);
+            add_name(list, t, *text);
             expecting = false;
         }
     } while (depth > 0);
 }
 
+static bool is_spacing(const char *name) {
+    return strstr(name, "spacing") != NULL;
+}
+
 static void scan(const char *text, name_list *list) {
     for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; t.kind != SF_GEO_END;) {
+        char name[SF_CASE_NAME_SIZE];
         t = sf_geo_token_next(&text);
-        if (t.kind == SF_GEO_WORD && sf_geo_token_is(t, "DefineConstant"))
+        snprintf(name, sizeof name, "%.*s", t.kind == SF_GEO_WORD ? (int)t.length : 0, t.begin);
+        list->others |= strcmp(name, "Include") == 0 || strcmp(name, "Merge") == 0;
+        if (strcmp(name, "DefineConstant") == 0)
             read_constants(&text, list);
+        else if (is_spacing(name) && isfinite(read_number(text, ";")))
+            memcpy(list->fixed, name, sizeof name);
     }
 }
 
-static bool has_name(const name_list *list, const char *name) {
-    for (int k = 0; k < list->count; k++)
-        if (strcmp(list->name[k], name) == 0)
-            return true;
-    return false;
+/* Adds the names in the file of the geometry. */
+static sf_status scan_file(const sf_geo_source *source, name_list *list, sf_error *err) {
+    SF_OWNED char *text = NULL;
+    SF_TRY(sf_plain_read(source->path, "geometry", SF_PLAIN_ANY, &text, NULL, err));
+    scan(text, list);
+    return SF_OK;
 }
 
-/* The names in all texts; in the named file alone if the list is not complete. */
-static sf_status collect(const sf_geo_source *source, const sf_broker *read, bool complete, name_list *list,
-                         sf_error *err) {
-    SF_OWNED char *text = NULL;
-    for (size_t k = 0; complete && k < read->count; k++)
-        if (read->file[k].is_text)
-            scan(read->file[k].text, list);
-    if (!complete && sf_plain_read(source->path, "geometry", SF_PLAIN_ANY, &text, NULL, err) == SF_OK)
-        scan(text, list);
-    return err->status;
+static bool has_name(int count, const sf_geo_parameter *list, const char *name) {
+    for (int k = 0; k < count; k++)
+        if (strcmp(list[k].name, name) == 0)
+            return true;
+    return false;
 }
 
 /* Refuses the first parameter that is not in the list. */
 static sf_status refuse_missing(const sf_geo_source *source, const name_list *list, sf_error *err) {
     for (int k = 0; k < source->parameter_count; k++) {
-        if (has_name(list, source->parameter[k].name))
+        if (has_name(list->count, list->at, source->parameter[k].name))
             continue;
         char names[640] = "";
         for (int i = 0; i < list->count; i++)
-            sf_text_add(names, sizeof names, "%s%s", i ? ", " : "", list->name[i]);
+            sf_text_add(names, sizeof names, "%s%s", i ? ", " : "", list->at[i].name);
         return SF_REFUSE(err, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
                          source->path, source->parameter[k].name, list->count ? names : "none");
     }
     return SF_OK;
 }
 
+static bool is_scaled(const sf_geo_source *source) {
+    return source->spacing_factor > 0 && source->spacing_factor != 1;
+}
+
+/* Refuses a factor that a spacing of the list does not follow, or that has none. */
+static sf_status refuse_unscaled(const sf_geo_source *source, const name_list *list, sf_error *err) {
+    const char *open = *list->fixed ? list->fixed : NULL;
+    bool any = false;
+    for (int k = 0; k < list->count && !open; k++) {
+        const char *name = list->at[k].name;
+        any |= is_spacing(name);
+        if (is_spacing(name) && !has_name(source->parameter_count, source->parameter, name))
+            open = name;
+    }
+    if (!is_scaled(source) || (any && !open))
+        return SF_OK;
+    return SF_REFUSE(err,
+                     "%s: geometry.spacing_factor needs a number, in geometry.parameters or in a "
+                     "DefineConstant of this file, for %s",
+                     source->path, open ? open : "a parameter with \"spacing\" in its name");
+}
+
+static bool is_geo(const sf_geo_source *source) {
+    return source->path && sf_mesher_has_suffix(source->path, ".geo");
+}
+
+sf_status sf_geo_parameters_scale(const sf_geo_source *source, sf_geo_source *scaled, sf_error *err) {
+    *scaled = *source;
+    if (!is_geo(source) || !is_scaled(source))
+        return SF_OK; /* only a .geo file has parameters */
+    SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
+    SF_TRY(err->status);
+    SF_TRY(scan_file(source, list, err));
+    for (int k = 0; k < list->count && scaled->parameter_count < SF_CASE_MAX_PARAMETERS; k++)
+        if (is_spacing(list->at[k].name) && isfinite(list->at[k].value) &&
+            !has_name(scaled->parameter_count, scaled->parameter, list->at[k].name))
+            scaled->parameter[scaled->parameter_count++] = list->at[k];
+    for (int k = 0; k < scaled->parameter_count; k++)
+        if (is_spacing(scaled->parameter[k].name))
+            scaled->parameter[k].value *= source->spacing_factor;
+    return SF_OK;
+}
+
 sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
                                   sf_error *err) {
-    if (source->parameter_count == 0)
+    sf_geo_source scaled;
+    if ((source->parameter_count == 0 && !is_scaled(source)) || (!read && !is_geo(source)))
         return SF_OK;
     SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
-    if (list && collect(source, read, complete, list, err) == SF_OK)
-        refuse_missing(source, list, err);
-    return err->status;
-}
-
-static bool reads_others(const char *text) {
-    for (sf_geo_token t = sf_geo_token_next(&text); t.kind != SF_GEO_END; t = sf_geo_token_next(&text))
-        if (t.kind == SF_GEO_WORD && (sf_geo_token_is(t, "Include") || sf_geo_token_is(t, "Merge")))
-            return true;
-    return false;
-}
-
-sf_status sf_geo_parameters_check_alone(const sf_geo_source *source, sf_error *err) {
-    const char *ending = source->path ? strrchr(source->path, '.') : NULL;
-    SF_OWNED char *text = NULL;
-    if (source->parameter_count == 0 || !ending || strcmp(ending, ".geo") != 0)
+    SF_TRY(err->status);
+    for (size_t k = 0; complete && k < read->count; k++)
+        if (read->file[k].is_text)
+            scan(read->file[k].text, list);
+    if (!complete)
+        SF_TRY(scan_file(source, list, err));
+    if (!read && list->others)
         return SF_OK;
-    SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
-    if (list && sf_plain_read(source->path, "geometry", SF_PLAIN_ANY, &text, NULL, err) == SF_OK &&
-        !reads_others(text)) {
-        scan(text, list);
-        refuse_missing(source, list, err);
-    }
-    return err->status;
+    SF_TRY(sf_geo_parameters_scale(source, &scaled, err));
+    SF_TRY(refuse_missing(&scaled, list, err));
+    return refuse_unscaled(&scaled, list, err);
 }

@@ -19,12 +19,13 @@ sf_geo_token sf_geo_token_next(const char **text);
 /* True if it is that word or mark, or the content of a text in quotes. */
 bool sf_geo_token_is(sf_geo_token token, const char *text);
 
+/* Multiplies the spacings of the source, the parameters with "spacing" in their names, by its factor: those
+ * that it gives, and those that it leaves to defaults which are plain numbers of its .geo file. */
+sf_status sf_geo_parameters_scale(const sf_geo_source *source, sf_geo_source *scaled, sf_error *err);
+
 /* Refuses a parameter of the source that no DefineConstant of the texts that the geometry read defines; the
- * sentence lists those that exist. `complete`: `read` holds all of them; else the named file is read here,
- * and the others are not. */
+ * sentence lists those that exist. Refuses a factor that a spacing does not follow, or that has none, too.
+ * `complete`: `read` holds all texts; else the named file is read here, and the others are not. `read` NULL:
+ * nothing is meshed yet, and only of .geo files that include and merge no other anything is said. */
 sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
                                   sf_error *err);
-
-/* The same before anything is meshed, for a .geo file that includes and merges no other: it defines all that
- * there is. Of every other geometry nothing is said. */
-sf_status sf_geo_parameters_check_alone(const sf_geo_source *source, sf_error *err);

@@ -90,12 +90,12 @@ static bool find_key(const sf_geo_source *source, uint64_t *key) {
     *key = sf_hash_bytes(SF_HASH_START, content, sizeof content);
     *key = sf_hash_bytes(*key, name, strlen(name) + 1);
     *key = sf_hash_bytes(*key, &source->unit, sizeof source->unit);
-    *key = sf_hash_bytes(*key, &source->spacing_factor, sizeof source->spacing_factor);
     for (int k = 0; k < source->parameter_count; k++) {
         const sf_geo_parameter *p = &source->parameter[k];
         *key = sf_hash_bytes(*key, p->name, strlen(p->name) + 1);
         *key = sf_hash_bytes(*key, &p->value, sizeof p->value);
     }
+    *key = sf_hash_bytes(*key, &source->spacing_factor, sizeof source->spacing_factor);
     return true;
 }
 

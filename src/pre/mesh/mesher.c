@@ -216,11 +216,8 @@ static char *parameter_text(const sf_geo_source *source) {
     for (size_t k = 0; out && k < sizeof targets / sizeof *targets; k++)
         if (fabs(source->unit / targets[k].size - 1) < 1e-9)
             fprintf(out, "Geometry.OCCTargetUnit = \"%s\";\n", targets[k].name);
-    for (int k = 0; out && k < source->parameter_count; k++) {
-        const sf_geo_parameter *p = &source->parameter[k];
-        bool scaled = source->spacing_factor > 0 && strstr(p->name, "spacing");
-        fprintf(out, "%s = %.17g;\n", p->name, p->value * (scaled ? source->spacing_factor : 1));
-    }
+    for (int k = 0; out && k < source->parameter_count; k++)
+        fprintf(out, "%s = %.17g;\n", source->parameter[k].name, source->parameter[k].value);
     if (out)
         fclose(out);
     if (c) {
@@ -302,8 +299,6 @@ static bool hear_message(conversation *c, sf_error *err) {
         break;
     case SF_ASK_NO_FILTER:
         c->no_filter = ask.detail > 0 ? ask.detail : EINVAL;
-        break;
-    default:
         break;
     }
     return true;
@@ -410,8 +405,10 @@ static void converse(conversation *c, sf_error *err) {
 /* ---- what became of it ---- */
 
 /* Adds the forbidden actions of the geometry to the message when gmsh fails. */
-static sf_status fail(const conversation *c, const char *what, sf_error *err) {
-    char more[700] = "";
+__attribute__((format(printf, 3, 4))) static sf_status fail(const conversation *c, sf_error *err,
+                                                            const char *format, ...) {
+    char what[sizeof err->text], more[700] = "";
+    SF_PRINT_INTO(what, format);
     if (*c->broker.written)
         snprintf(more, sizeof more, "; it tried to write %s, which a geometry may not", c->broker.written);
     else if (*c->broker.refused)
@@ -420,7 +417,6 @@ static sf_status fail(const conversation *c, const char *what, sf_error *err) {
 }
 
 static sf_status judge_ending(const conversation *c, sf_error *err) {
-    char what[LINE_SIZE + 200];
     int signal_number = WIFSIGNALED(c->status) ? WTERMSIG(c->status) : 0;
     const char *line = *c->error_line                          ? c->error_line
                        : strncmp(c->last_line, "Info", 4) == 0 ? ""
@@ -436,30 +432,23 @@ static sf_status judge_ending(const conversation *c, sf_error *err) {
         signal_number == SIGTERM)
         return SF_FAIL(err, SF_INTERRUPTED, "%s: interrupted (%s) while gmsh was at work", c->source->path,
                        strsignal(signal_number));
-    if (c->memory || strstr(c->last_line, "bad_alloc")) {
-        snprintf(what, sizeof what,
-                 "gmsh asked for more than the %.3g GB of memory that are available: take a coarser mesh, "
-                 "or set SOFTFALL_MEMORY_MB",
-                 1e-9 * c->bytes);
-        return fail(c, what, err);
-    }
-    if (c->late || signal_number == SIGXCPU) {
-        snprintf(what, sizeof what,
-                 "gmsh took more than %g s of processor time: raise geometry.time_limit, or take a coarser "
-                 "mesh",
-                 c->seconds);
-        return fail(c, what, err);
-    }
-    if (c->waits)
-        snprintf(what, sizeof what, "gmsh waits without working");
-    else if (c->lingers)
-        snprintf(what, sizeof what, "gmsh closed its pipes, but did not end");
-    else if (signal_number)
-        snprintf(what, sizeof what, "gmsh crashed (%s)%s%s", strsignal(signal_number), *line ? ": " : "",
-                 line);
-    else
-        snprintf(what, sizeof what, "gmsh ended without a mesh%s%s", *line ? ": " : "", line);
-    return fail(c, what, err);
+    if (c->memory || strstr(c->last_line, "bad_alloc"))
+        return fail(c, err,
+                    "gmsh asked for more than the %.3g GB of memory that are available: take a coarser mesh, "
+                    "or set SOFTFALL_MEMORY_MB",
+                    1e-9 * c->bytes);
+    if (c->late || signal_number == SIGXCPU)
+        return fail(
+            c, err,
+            "gmsh took more than %g s of processor time: raise geometry.time_limit, or take a coarser "
+            "mesh",
+            c->seconds);
+    if (c->waits || c->lingers)
+        return fail(c, err,
+                    c->waits ? "gmsh waits without working" : "gmsh closed its pipes, but did not end");
+    if (signal_number)
+        return fail(c, err, "gmsh crashed (%s)%s%s", strsignal(signal_number), *line ? ": " : "", line);
+    return fail(c, err, "gmsh ended without a mesh%s%s", *line ? ": " : "", line);
 }
 
 static sf_status judge(conversation *c, sf_meshed *out, sf_error *err) {
@@ -468,12 +457,7 @@ static sf_status judge(conversation *c, sf_meshed *out, sf_error *err) {
     if (!ended || c->program || c->memory || c->late || c->waits || c->no_filter || c->size == 0)
         return judge_ending(c, err);
     SF_TRY(sf_geo_data_read(c->stream, c->size, c->source->path, &out->data, err));
-    if (*out->data.error) {
-        char what[sizeof out->data.error + 8];
-        snprintf(what, sizeof what, "gmsh, %s", out->data.error);
-        return fail(c, what, err);
-    }
-    return SF_OK;
+    return *out->data.error ? fail(c, err, "gmsh, %s", out->data.error) : SF_OK;
 }
 
 static void send_request(const conversation *c, sf_error *err) {
@@ -515,13 +499,15 @@ static void end(conversation *c) {
 sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *limits, sf_meshed *out,
                         sf_error *err) {
     const char *unconfined = getenv("SOFTFALL_UNCONFINED");
+    sf_geo_source scaled;
     conversation c = {.source = source,
                       .limits = limits,
                       .seconds = limits->seconds > 0 ? limits->seconds : SF_MESHER_SECONDS,
                       .bytes = sf_memory_available(),
                       .confined = !unconfined || strcmp(unconfined, "1") != 0};
-    char *parameters = parameter_text(source);
     memset(out, 0, sizeof *out);
+    SF_TRY(sf_geo_parameters_scale(source, &scaled, err));
+    SF_OWNED char *parameters = parameter_text(&scaled);
     if (!parameters)
         SF_NO_MEMORY(err, "the parameters of %s", source->path);
     c.broker.parameters = parameters;
@@ -535,7 +521,6 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
         end(&c);
         judge(&c, out, err);
     }
-    free(parameters);
     c.broker.parameters = NULL;
     out->stream = c.stream;
     out->size = c.size;

@@ -21,13 +21,10 @@ typedef struct piece {
 
 static sf_status take_overrides(const sf_plan *plan, int64_t row, sf_runner_drop *d, sf_error *err) {
     char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
-    int count = sf_plan_overrides(plan, row, text);
-    for (int i = 0; i < count && err->status == SF_OK; i++) {
-        d->overrides[i] = strdup(text[i]);
-        if (!d->overrides[i])
+    int count = sf_plan_overrides(plan, row, text, NULL);
+    for (int i = 0; i < count && err->status == SF_OK; i++)
+        if (!(d->overrides[d->override_count++] = strdup(text[i])))
             SF_NO_MEMORY(err, "the drops");
-        d->override_count = i + 1;
-    }
     return err->status;
 }
 

@@ -4,8 +4,11 @@
 #include "case/keys.h"
 #include "base/text.h"
 #include "io/plain_file.h"
+#include "study/fit/posterior/mixture.h"
 #include "study/material_file.h"
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_qrng.h>
+#include <gsl/gsl_randist.h>
 #include <unistd.h>
 
 enum { MOST_LEVELS = 1000000, MOST_DRAWS = 1000, DRAW_PATH = PATH_MAX + 32, NAMES_SIZE = 256 };
@@ -411,9 +414,7 @@ static void list_keys(const factor_kind *kind, bool sampled, char names[NAMES_SI
 static sf_status read_head(reading *r, sf_error *err) {
     const char *key = NULL, *name = NULL;
     sf_factor *f = r->factor;
-    int line = (int)config_setting_source_line(r->group);
-    const char *path = sf_case_source_find(&r->config->source, line, &line);
-    snprintf(f->where, sizeof f->where, "%.480s:%d", path, line);
+    sf_config_place(r->config, r->group, f->where, sizeof f->where);
     SF_TRY(sf_config_text(r->config, r->group, "key", true, &key, err));
     SF_TRY(sf_config_text(r->config, r->group, "name", false, &name, err));
     if (strlen(key) >= sizeof f->key || strpbrk(key, "= \t\"@") || (name && strlen(name) >= sizeof f->name))
@@ -511,3 +512,77 @@ void sf_factor_distribution_text(const sf_factor *f, char *text, size_t size) {
     snprintf(text, size, f->distribution->phrase, f->a, f->b, f->unit);
 }
 #pragma GCC diagnostic pop
+
+/* ---- samples ---- */
+
+int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
+    return method == SF_SAMPLING_SALTELLI ? count * (d + 2) : count;
+}
+
+static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
+    SF_RANDOM *rng = sf_random(seed, err);
+    for (int i = 0; rng && i < d; i++)
+        shift[i] = gsl_rng_uniform_pos(rng);
+    return err->status;
+}
+
+/* The sequence, or, with another seed than 1, moved as a whole (modulo 1; Cranley and Patterson 1976,
+ * doi:10.1137/0713071): each coordinate is as evenly spread, at other points. */
+static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
+    double shift[SF_SOBOL_DIMENSIONS] = {0};
+    if (d > SF_SOBOL_DIMENSIONS)
+        return SF_REFUSE(err, "%d coordinates of a Sobol' sequence" SF_AT_MOST("%d"), d, SF_SOBOL_DIMENSIONS);
+    gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
+    if (!q)
+        return SF_NO_MEMORY(err, "the Sobol' sequence");
+    if (seed != 1)
+        draw_shift(d, seed, shift, err);
+    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
+        gsl_qrng_get(q, u + k * d);
+        for (int i = 0; i < d; i++) {
+            double x = u[k * d + i] + shift[i];
+            u[k * d + i] = x > 1 ? x - 1 : x < 1 ? x : 0.5; /* 1 is no quantile */
+        }
+    }
+    gsl_qrng_free(q);
+    return err->status;
+}
+
+/* One stratum of each coordinate for each point, shuffled; the place within it at random. */
+static sf_status latin(gsl_rng *rng, int d, int64_t count, double *u, sf_error *err) {
+    SF_OWNED int64_t *stratum = sf_alloc(err, count, sizeof *stratum, "strata");
+    for (int i = 0; i < d && stratum; i++) {
+        for (int64_t k = 0; k < count; k++)
+            stratum[k] = k;
+        gsl_ran_shuffle(rng, stratum, (size_t)count, sizeof *stratum);
+        for (int64_t k = 0; k < count; k++)
+            u[k * d + i] = ((double)stratum[k] + gsl_rng_uniform_pos(rng)) / (double)count;
+    }
+    return err->status;
+}
+
+static sf_status saltelli(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
+    SF_OWNED double *both = sf_alloc(err, count, 2 * (unsigned long)d * sizeof *both, "samples");
+    if (both && sobol(2 * d, count, seed, both, err) == SF_OK)
+        for (int64_t k = 0; k < count; k++)
+            for (int block = 0; block < d + 2; block++) {
+                double *row = u + (block * count + k) * d;
+                memcpy(row, both + 2 * k * d + (block == 1 ? d : 0), (size_t)d * sizeof *row);
+                if (block >= 2)
+                    row[block - 2] = both[2 * k * d + d + block - 2];
+            }
+    return err->status;
+}
+
+sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
+    if (method == SF_SAMPLING_SOBOL)
+        return sobol(d, count, seed, u, err);
+    if (method == SF_SAMPLING_SALTELLI)
+        return saltelli(d, count, seed, u, err);
+    SF_RANDOM *rng = sf_random(seed, err);
+    if (rng && method == SF_SAMPLING_LATIN)
+        latin(rng, d, count, u, err);
+    for (int64_t k = 0; rng && method != SF_SAMPLING_LATIN && k < count * d; k++)
+        u[k] = gsl_rng_uniform_pos(rng);
+    return err->status;
+}

@@ -4,88 +4,14 @@
 #include "base/hash.h"
 #include "io/plain_file.h"
 #include "pre/mesh/geo_parameters.h"
-#include "study/fit/posterior/mixture.h"
-#include <gsl/gsl_qrng.h>
-#include <gsl/gsl_randist.h>
 #include <gsl/gsl_statistics.h>
 
+#define SPACING_FACTOR "geometry.spacing_factor"
+#define ERROR_LIMIT "pad.mesh_error_limit"
+#define IS_OF_REFINE " is set by `refine`, for the coarse drops: leave it out"
 enum { MOST_SAMPLES = 100000000, REFINE_CHANGES = 2 };
 static const double COARSE_PART = 0.5; /* of the accuracies: their error is a part of that of the rows */
 #define SETS_ITSELF "%s has no effect in a campaign, which keeps the curve of a run and none of its fields"
-
-/* ---- samples ---- */
-
-int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
-    return method == SF_SAMPLING_SALTELLI ? count * (d + 2) : count;
-}
-
-static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
-    SF_RANDOM *rng = sf_random(seed, err);
-    for (int i = 0; rng && i < d; i++)
-        shift[i] = gsl_rng_uniform_pos(rng);
-    return err->status;
-}
-
-/* The sequence, or, with another seed than 1, moved as a whole (modulo 1; Cranley and Patterson 1976,
- * doi:10.1137/0713071): each coordinate is as evenly spread, at other points. */
-static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
-    double shift[SF_SOBOL_DIMENSIONS] = {0};
-    if (d > SF_SOBOL_DIMENSIONS)
-        return SF_REFUSE(err, "%d coordinates of a Sobol' sequence" SF_AT_MOST("%d"), d, SF_SOBOL_DIMENSIONS);
-    gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
-    if (!q)
-        return SF_NO_MEMORY(err, "the Sobol' sequence");
-    if (seed != 1)
-        draw_shift(d, seed, shift, err);
-    for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
-        gsl_qrng_get(q, u + k * d);
-        for (int i = 0; i < d; i++) {
-            double x = u[k * d + i] + shift[i];
-            u[k * d + i] = x > 1 ? x - 1 : x < 1 ? x : 0.5; /* 1 is no quantile */
-        }
-    }
-    gsl_qrng_free(q);
-    return err->status;
-}
-
-/* One stratum of each coordinate for each point, shuffled; the place within it at random. */
-static sf_status latin(gsl_rng *rng, int d, int64_t count, double *u, sf_error *err) {
-    SF_OWNED int64_t *stratum = sf_alloc(err, count, sizeof *stratum, "strata");
-    for (int i = 0; i < d && stratum; i++) {
-        for (int64_t k = 0; k < count; k++)
-            stratum[k] = k;
-        gsl_ran_shuffle(rng, stratum, (size_t)count, sizeof *stratum);
-        for (int64_t k = 0; k < count; k++)
-            u[k * d + i] = ((double)stratum[k] + gsl_rng_uniform_pos(rng)) / (double)count;
-    }
-    return err->status;
-}
-
-static sf_status saltelli(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
-    SF_OWNED double *both = sf_alloc(err, count, 2 * (unsigned long)d * sizeof *both, "samples");
-    if (both && sobol(2 * d, count, seed, both, err) == SF_OK)
-        for (int64_t k = 0; k < count; k++)
-            for (int block = 0; block < d + 2; block++) {
-                double *row = u + (block * count + k) * d;
-                memcpy(row, both + 2 * k * d + (block == 1 ? d : 0), (size_t)d * sizeof *row);
-                if (block >= 2)
-                    row[block - 2] = both[2 * k * d + d + block - 2];
-            }
-    return err->status;
-}
-
-sf_status sf_sample(sf_sampling method, int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
-    if (method == SF_SAMPLING_SOBOL)
-        return sobol(d, count, seed, u, err);
-    if (method == SF_SAMPLING_SALTELLI)
-        return saltelli(d, count, seed, u, err);
-    SF_RANDOM *rng = sf_random(seed, err);
-    if (rng && method == SF_SAMPLING_LATIN)
-        latin(rng, d, count, u, err);
-    for (int64_t k = 0; rng && method != SF_SAMPLING_LATIN && k < count * d; k++)
-        u[k] = gsl_rng_uniform_pos(rng);
-    return err->status;
-}
 
 /* ---- blocks ---- */
 
@@ -111,6 +37,9 @@ static sf_status add_factor(const sf_config *config, const config_setting_t *gro
                                 f->name);
     if (sf_runner_sets_key(f->key))
         return sf_config_refuse(config, group, err, SETS_ITSELF, f->key);
+    if (config_lookup(&config->config, "refine") &&
+        (strcmp(f->key, SPACING_FACTOR) == 0 || strcmp(f->key, ERROR_LIMIT) == 0))
+        return sf_config_refuse(config, group, err, "%s" IS_OF_REFINE, f->key);
     for (int k = 0; k < p->factor_count - 1; k++) {
         const sf_factor *other = &p->factor[k];
         if (strcmp(other->key, f->key) == 0)
@@ -301,12 +230,10 @@ static void key_of(const char *set, char *key, size_t size) {
 
 /* Appends the overrides of the list `name`, "set" or "coarse". */
 static sf_status read_set(const sf_config *config, const char *name, sf_plan *p, sf_error *err) {
-    const config_setting_t *list = config_lookup(&config->config, name),
-                           *refine = config_lookup(&config->config, "refine"), *place = list ? list : refine;
-    int line = place ? (int)config_setting_source_line(place) : 0, first = p->set_count;
-    int most = SF_RUNNER_OVERRIDES - (refine ? REFINE_CHANGES : 0);
-    const char *file = sf_case_source_find(&config->source, line, &line);
-    snprintf(p->set_where, sizeof p->set_where, "%.480s:%d", file, line);
+    const config_setting_t *list = config_lookup(&config->config, name);
+    int first = p->set_count;
+    int most = SF_RUNNER_OVERRIDES - (config_lookup(&config->config, "refine") ? REFINE_CHANGES : 0);
+    sf_config_place(config, list, p->set_where, sizeof p->set_where);
     SF_TRY(sf_config_overrides(config, name, SF_RUNNER_OVERRIDES - first, p->set, &p->set_count, err));
     if (p->set_count + p->factor_count > most)
         return sf_config_refuse(config, list, err, "%s and the factors change more than %d keys", name, most);
@@ -327,8 +254,7 @@ static sf_status read_set(const sf_config *config, const char *name, sf_plan *p,
 /* Reads `refine`, and appends what it changes in the coarse drops: the spacings, and the largest expected
  * error of a_max, that of two spacings across the thickness (SF_MESH_ERROR_THICKNESS). */
 static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, sf_error *err) {
-    static const char *const changes[REFINE_CHANGES] = {"geometry.spacing_factor=2",
-                                                        "pad.mesh_error_limit=0.125"};
+    static const char *const changes[REFINE_CHANGES] = {SPACING_FACTOR "=2", ERROR_LIMIT "=0.125"};
     const config_setting_t *s = config_lookup(&config->config, "refine");
     int method = 0;
     if (!s)
@@ -339,6 +265,7 @@ static sf_status read_refine(const sf_config *config, bool coarse, sf_plan *p, s
         return sf_config_refuse(config, s, err,
                                 "refine: a row that is predicted has no mesh: leave out the accuracies");
     p->refine = p->coarse = !coarse;
+    sf_config_place(config, s, p->refine_where, sizeof p->refine_where);
     for (int k = 0; k < REFINE_CHANGES && coarse; k++)
         if (!(p->set[p->set_count++] = strdup(changes[k])))
             return SF_NO_MEMORY(err, "the plan %s", p->path);
@@ -450,7 +377,8 @@ static void set_override(const sf_plan *p, int k, char *text) {
         snprintf(text, SF_SWEEP_OVERRIDE_SIZE, "%s", set);
 }
 
-int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE]) {
+int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE],
+                      const char **list) {
     int count = 0;
     for (int groups = 1; groups >= 0; groups--) {
         for (int f = 0; f < p->factor_count; f++)
@@ -460,6 +388,8 @@ int sf_plan_overrides(const sf_plan *p, int64_t row, char (*text)[SF_SWEEP_OVERR
         for (int k = 0; groups && k < p->set_count; k++)
             set_override(p, k, text[count++]);
     }
+    for (int k = 0; k < count && list; k++)
+        list[k] = text[k];
     return count;
 }
 
@@ -497,10 +427,7 @@ const sf_block *sf_plan_saltelli(const sf_plan *p) {
 sf_status sf_sweep_read_case(const sf_plan *plan, int64_t row, sf_case *c, sf_error *err) {
     char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
     const char *list[SF_RUNNER_OVERRIDES];
-    int count = sf_plan_overrides(plan, row, text);
-    for (int k = 0; k < count; k++)
-        list[k] = text[k];
-    return sf_case_read(plan->case_path, count, list, NULL, c, err);
+    return sf_case_read(plan->case_path, sf_plan_overrides(plan, row, text, list), list, NULL, c, err);
 }
 
 /* True if an entry of `set` alone gives this sentence. */
@@ -527,18 +454,20 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     *own = 0;
     sf_sweep_read_case(p, row, &c, &inner);
     for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
-        sf_geo_parameters_check_alone(sf_campaign_geometry(&c, k), &inner);
+        sf_geo_parameters_check(sf_campaign_geometry(&c, k), NULL, false, &inner);
     if (inner.status == SF_OK && c.drops > 1 && (sf_plan_is_adaptive(p) || p->refine))
         SF_REFUSE(&inner, "series.drops = %g: only first drops are %s out", c.drops,
                   p->refine ? "refined; leave `refine`" : "predicted; leave `accuracy`");
     if (inner.status == SF_OK && p->refine && c.pad.spacing_factor != 1)
-        SF_REFUSE(&inner, "geometry.spacing_factor is that of the coarse drops of `refine`: leave it out");
+        return SF_REFUSE(err, "%s: " SPACING_FACTOR IS_OF_REFINE, p->refine_where);
     if (inner.status == SF_OK)
         sf_campaign_key(&c, own, &inner);
     *hash = sf_hash_bytes(*hash, own, sizeof *own);
     *hash = c.counted > 1 ? sf_hash_bytes(*hash, &c.counted, sizeof c.counted) : *hash;
     if (inner.status == SF_OK)
         return SF_OK;
+    if (!p->refine && *p->refine_where) /* the rows without it were checked before */
+        return SF_FAIL(err, inner.status, "%s: refine: %.900s", p->refine_where, inner.text);
     return SF_FAIL(err, inner.status, "%s: %.900s", is_of_set(p, inner.text) ? p->set_where : f->where,
                    inner.text);
 }
@@ -585,11 +514,10 @@ static sf_status check_words(const sf_plan *p, int factor, uint64_t *hash, sf_er
 
 sf_status sf_sweep_check_inputs(const sf_plan *p, uint64_t *hash, sf_error *err) {
     *hash = SF_HASH_START;
-    for (int f = 0; f < p->factor_count && err->status == SF_OK; f++) {
+    for (int f = 0; f < p->factor_count && err->status == SF_OK; f++)
         if (p->factor[f].words)
             check_words(p, f, hash, err);
         else
             check_extremes(p, f, hash, err);
-    }
     return err->status;
 }

@@ -130,6 +130,7 @@ typedef struct sf_plan {
     char set_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of their last list, for sentences */
     bool coarse; /* coarse drops are asked for, by which the rows are predicted or, if `refine`, refined */
     bool refine;
+    char refine_where[SF_FACTOR_WHERE_SIZE]; /* "file:line" of the key, of its coarse drops too; "": none */
     int factor_count, block_count;
     sf_factor factor[SF_SWEEP_FACTORS];
     int block_of[SF_SWEEP_FACTORS];
@@ -149,8 +150,10 @@ void sf_plan_free(sf_plan *plan);
 /* The value of a factor in a row: a number in its unit, or the index of a word. */
 double sf_plan_value(const sf_plan *plan, int factor, int64_t row);
 
-/* The overrides of a row in the order in which they apply, and their number; text [SF_RUNNER_OVERRIDES]. */
-int sf_plan_overrides(const sf_plan *plan, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE]);
+/* The overrides of a row in the order in which they apply, and their number; text and list
+ * [SF_RUNNER_OVERRIDES]. `list`: their addresses; may be NULL. */
+int sf_plan_overrides(const sf_plan *plan, int64_t row, char (*text)[SF_SWEEP_OVERRIDE_SIZE],
+                      const char **list);
 
 /* A hash of the rows: of keys, units and values. */
 uint64_t sf_plan_hash(const sf_plan *plan);

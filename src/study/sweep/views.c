@@ -92,9 +92,7 @@ static sf_status make_view(const sf_plan *p, const char *parent, int threads, sf
     const char *overrides[SF_RUNNER_OVERRIDES];
     sf_run_folder at;
     sf_error failure = SF_ERROR_INIT, unreported = SF_ERROR_INIT;
-    int count = sf_plan_overrides(p, v->row, text);
-    for (int k = 0; k < count; k++)
-        overrides[k] = text[k];
+    int count = sf_plan_overrides(p, v->row, text, overrides);
     if (sf_run_folder_name(parent, SF_SWEEP_LABEL, p->case_path, count, overrides, &at, &failure) == SF_OK)
         sf_run_folder_simulate(&at, p->case_path, count, overrides, threads, &failure);
     if (failure.status == SF_OK || (failure.status == SF_ERR_NUMERIC && sf_replace_exists(at.results))) {
