@@ -28,12 +28,9 @@ static sf_status make_folder(const sf_plan *plan, int64_t row, const char *runs,
                              sf_error *err) {
     char text[SF_RUNNER_OVERRIDES][SF_SWEEP_OVERRIDE_SIZE];
     sf_run_folder at;
-    sf_runner_drop drop = {.label = SF_SWEEP_LABEL,
-                           .case_path = plan->case_path,
-                           .override_count = sf_plan_overrides(plan, row, text)};
+    sf_runner_drop drop = {.label = SF_SWEEP_LABEL, .case_path = plan->case_path};
     uint64_t key = 0;
-    for (int k = 0; k < drop.override_count; k++)
-        drop.overrides[k] = text[k];
+    drop.override_count = sf_plan_overrides(plan, row, text, drop.overrides);
     if (sf_runner_key(&(sf_runner){.folder = runs}, &drop, &key, err) != SF_OK)
         return err->status;
     sf_run_folder_name_key(runs, SF_SWEEP_LABEL, key, &at);
