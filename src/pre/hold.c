@@ -19,10 +19,6 @@ typedef struct body_list {
 
 /* [cell_count] the lowest cell of each one's body; owned by the caller. */
 static int64_t *join_cells(const sf_model *m, sf_error *err) {
-    const sf_mesh cells = {.cell_count = m->cell_count,
-                           .cell_type = m->cell_type,
-                           .cell_ptr = m->cell_ptr,
-                           .cell_node = m->cell_node};
     int64_t count = 0;
     SF_OWNED sf_cell_face *face = NULL;
     SF_OWNED int64_t *place = sf_sets_alone(m->node_count, "parts of the pad", err);
@@ -30,7 +26,8 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; place && k < m->tie_count; k++)
         if (m->tie_mask[k] == ALL)
             sf_sets_join(place, m->tie_node[k], m->tie_other[k]);
-    if (place && parent && (face = sf_mesh_faces(&cells, place, &count, err))) {
+    if (place && parent &&
+        (face = sf_cell_faces(&SF_CELLS_OF(m), place, sf_cell_face_compare, &count, err))) {
         for (int64_t k = 1; k < count; k++)
             if (memcmp(face[k].key, face[k - 1].key, sizeof face[k].key) == 0)
                 sf_sets_join(parent, face[k].cell, face[k - 1].cell);
@@ -395,8 +392,7 @@ sf_status sf_hold_warn_apart(const sf_model *m, const sf_sink *sink, sf_error *e
     SF_TRY(err->status);
     int64_t apart = 0, first = 0;
     for (int64_t k = 0; k <= b.count; k++)
-        for (int r = 0; r < 3; r++)
-            body[k].high[r] = -(body[k].low[r] = INFINITY);
+        sf_box3(0, NULL, body[k].low, body[k].high);
     for (int64_t i = 0; i < m->node_count; i++)
         widen(&body[b.node[i]], &m->position[3 * i], m->missile.direction, 0);
     for (int64_t i = 0; i < m->surface_node_count; i++)

@@ -249,7 +249,7 @@ static const double *corner(const triangles *s, int64_t t, int k) {
 
 /* Normal of a triangle, of twice its area; to its unit vector with `unit`. */
 static void find_normal(const triangles *s, int64_t t, bool unit, double out[3]) {
-    sf_triangle_normal(corner(s, t, 0), corner(s, t, 1), corner(s, t, 2), out);
+    sf_face_normal(s->position, &s->node[3 * t], out);
     if (unit)
         sf_unit3(out);
 }
