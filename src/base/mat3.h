@@ -152,9 +152,7 @@ void sf_rigid_angular_velocity(const double inertia[6], const double q[4], const
                                double omega[3]);
 /* R I^-1 R^T (kg-1 m-2), like the inertia. */
 void sf_rigid_mobility(const double inertia[6], const double q[4], double mobility[6]);
-/* I omega, both in the body's axes. */
-void sf_rigid_momentum(const double inertia[6], const double omega[3], double momentum[3]);
-/* A symmetric matrix times a vector. */
+/* A symmetric matrix times a vector: of an inertia I omega, both in the body's axes. */
 void sf_rigid_product(const double matrix[6], const double v[3], double out[3]);
 
 /* The turn (sf_rotation_advance), in space, of a body without torque in `dt` (s): the implicit midpoint rule

@@ -423,7 +423,7 @@ void sf_flight_orientation(const sf_missile_card *card, double before, double qu
     quaternion[1] = quaternion[2] = quaternion[3] = 0;
     if (!(rate * before > 0))
         return;
-    sf_rigid_momentum(card->inertia, card->angular_velocity, spin);
+    sf_rigid_product(card->inertia, card->angular_velocity, spin);
     for (long k = 0; k < steps; k++) {
         double turn[3], next[4];
         sf_rigid_turn(card->inertia, quaternion, spin, -before / (double)steps, turn);

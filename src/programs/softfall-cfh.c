@@ -42,10 +42,10 @@ static sf_status read_override(const char *option, const char *text, void *value
     return SF_OK;
 }
 
-static sf_status parse_height(const sf_units *units, const char *option, const char *text, double *height,
-                              sf_error *err) {
+static sf_status read_height(const char *option, const char *text, void *value, sf_error *err) {
+    double *height = value;
     sf_error reason = SF_ERROR_INIT;
-    if (sf_units_parse(units, text, SF_LENGTH, height, &reason) != SF_OK)
+    if (sf_units_read(text, SF_LENGTH, height, &reason) != SF_OK)
         return SF_FAIL(err, reason.status, "%s: %.900s", option, reason.text);
     if (!(*height >= LOWEST_HEIGHT && *height <= GREATEST_HEIGHT))
         return SF_REFUSE(err, "%s: the drop height" SF_OUTSIDE("%s", "1 cm", "%g m"), option, text,
@@ -53,22 +53,19 @@ static sf_status parse_height(const sf_units *units, const char *option, const c
     return SF_OK;
 }
 
-static sf_status read_height(const char *option, const char *text, void *height, sf_error *err) {
-    sf_units *units = NULL;
-    if (sf_units_open(&units, err) == SF_OK)
-        parse_height(units, option, text, height, err);
-    sf_units_close(&units);
-    return err->status;
-}
-
-static sf_status parse_list(const sf_units *units, const char *option, char *list, options *o,
-                            sf_error *err) {
+static sf_status read_heights(const char *option, const char *text, void *values, sf_error *err) {
+    options *o = values;
+    SF_OWNED char *copy = strdup(text);
+    char *list = copy;
     const char *item;
+    o->list_count = 0;
+    if (!copy)
+        SF_NO_MEMORY(err, "%s", option);
     while (err->status == SF_OK && (item = strsep(&list, ",")) != NULL) {
         if (o->list_count == SF_CFH_MAX_POINTS)
             return SF_REFUSE(err, "%s: %d heights" SF_AT_MOST("%d"), option, SF_CFH_MAX_POINTS + 1,
                              SF_CFH_MAX_POINTS);
-        parse_height(units, option, item + strspn(item, " \t"), &o->list[o->list_count++], err);
+        read_height(option, item + strspn(item, " \t"), &o->list[o->list_count++], err);
     }
     if (err->status == SF_OK && o->list_count < SF_CFH_MIN_POINTS)
         SF_REFUSE(err, "%s: %d heights" SF_AT_LEAST("%d"), option, o->list_count, SF_CFH_MIN_POINTS);
@@ -76,19 +73,6 @@ static sf_status parse_list(const sf_units *units, const char *option, char *lis
     for (int k = 1; k < o->list_count; k++)
         if (o->list[k] < o->list[k - 1] * (1 + 1e-6))
             SF_REFUSE(err, "%s: %g m is given twice", option, o->list[k]);
-    return err->status;
-}
-
-static sf_status read_heights(const char *option, const char *text, void *values, sf_error *err) {
-    options *o = values;
-    sf_units *units = NULL;
-    SF_OWNED char *copy = strdup(text);
-    o->list_count = 0;
-    if (!copy)
-        SF_NO_MEMORY(err, "%s", option);
-    else if (sf_units_open(&units, err) == SF_OK)
-        parse_list(units, option, copy, o, err);
-    sf_units_close(&units);
     return err->status;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/figures.h"
 
+#include "base/text.h"
 #include "base/units.h"
 #include <string.h>
 
@@ -506,12 +507,11 @@ static void name_acceleration(sf_figures *f) {
                                       : "resultant acceleration of the centre of mass as an accelerometer reads it"
         : f->kinematic ? "kinematic deceleration"
                        : "acceleration as an accelerometer reads it";
-    size_t size = sizeof f->passed, used = 0;
     if (f->chain.mount_frequency > 0)
-        used = (size_t)snprintf(f->passed, size, ", on a mount of %.4g Hz (damping %.3g)",
-                                f->chain.mount_frequency, f->chain.mount_damping);
+        sf_text_add(f->passed, sizeof f->passed, ", on a mount of %.4g Hz (damping %.3g)",
+                    f->chain.mount_frequency, f->chain.mount_damping);
     if (f->chain.coupling > 0)
-        snprintf(f->passed + used, size - used, ", with a coupling of %.4g s", f->chain.coupling);
+        sf_text_add(f->passed, sizeof f->passed, ", with a coupling of %.4g s", f->chain.coupling);
 }
 
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *f, sf_error *err) {
