@@ -19,10 +19,10 @@
     { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true, false }
 #define LATER_SCALAR(member, type, path, units, text)                                                        \
     { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true, true }
-#define F64 SF_MODEL_F64
-#define I32 SF_MODEL_I32
-#define I64 SF_MODEL_I64
-#define U8 SF_MODEL_U8
+#define F64 SF_H5_F64
+#define I32 SF_H5_I32
+#define I64 SF_H5_I64
+#define U8 SF_H5_U8
 
 static const sf_model_field fields[] = {
     SCALAR(node_count, I64, "/cloud/count", "1", "number of nodes"),
