@@ -325,8 +325,7 @@ sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_err
 }
 
 void sf_overrides_free(sf_overrides *o) {
-    for (int k = 0; k < o->count; k++)
-        free(o->text[k]);
+    sf_free_all((size_t)o->count, o->text);
     *o = (sf_overrides){0};
 }
 

@@ -34,10 +34,7 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
         for (int64_t c = 0; c < m->cell_count; c++)
             parent[c] = sf_sets_find(parent, c);
     }
-    if (err->status == SF_OK)
-        return parent;
-    free(parent);
-    return NULL;
+    return sf_keep(parent, err);
 }
 
 /* Bodies in the order of their first nodes; b->cell holds the lowest cells and becomes the numbers. `number`
@@ -64,10 +61,9 @@ static void number_bodies(const sf_model *m, int32_t *number, body_list *b) {
 }
 
 static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
-    unsigned long cells = (unsigned long)m->cell_count;
-    SF_OWNED int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
+    SF_OWNED int32_t *number = sf_alloc(err, m->cell_count, sizeof *number, "parts of the pad");
     b->node = sf_alloc(err, m->node_count, sizeof *b->node, "parts of the pad");
-    b->first = sf_alloc(err, cells, sizeof *b->first, "parts of the pad");
+    b->first = sf_alloc(err, m->cell_count, sizeof *b->first, "parts of the pad");
     if (err->status == SF_OK && (b->cell = join_cells(m, err)))
         number_bodies(m, number, b);
     return err->status;

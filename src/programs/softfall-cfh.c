@@ -76,10 +76,6 @@ static sf_status read_heights(const char *option, const char *text, void *values
     return err->status;
 }
 
-static sf_status read_checks(const char *option, const char *text, void *checks, sf_error *err) {
-    return sf_program_read_whole(option, text, 0, SF_CFH_CHECKS, checks, err);
-}
-
 /* Refuses options that contradict each other. */
 static sf_status check_options(const options *o, sf_error *err) {
     if (o->checks_given && !o->posterior)
@@ -118,7 +114,7 @@ static const sf_option known[] = {
      "draws of the foam, draw-001.cfg ..., as softfall-fit drop writes them: gives the interval of the height",
      .member = AT(posterior), .group = 4},
     {"check-drops", 0, "N", "simulate N of the draws to check the columns that stand for them (default 5)",
-     .member = AT(checks), .read = read_checks, .group = 4, .noted = AT(checks_given)},
+     .member = AT(checks), .high = SF_CFH_CHECKS, .group = 4, .noted = AT(checks_given)},
     {0},
 };
 
@@ -261,9 +257,8 @@ static sf_status find_interval(sf_study *study, const setting *s, const sf_cfh_s
         return SF_OK;
     }
     omp_set_num_threads(study->threads);
-    printf("%d draws of %s as columns, then at most %d of them simulated\n", s->draws.count, o->posterior,
-           o->checks);
-    fflush(stdout);
+    sf_log_print(stdout, "%d draws of %s as columns, then at most %d of them simulated\n", s->draws.count,
+                 o->posterior, o->checks);
     if (sf_cfh_spread_build(series->pad, &s->draws, &s->law, report->points, report->result,
                             report->plan->limit, spread, &problem) == SF_ERR_NUMERIC) {
         snprintf(report->no_interval, sizeof report->no_interval, "%s", problem.text);
@@ -290,10 +285,9 @@ static sf_status simulate(sf_study *study, const setting *s, sf_cfh_report *repo
     sf_cfh_pad pad = {.mesh_error = NAN};
     const sf_cfh_series series = {report->plan, report->rig, &base, report->foams,
                                   o->posterior ? &pad : NULL};
-    printf("%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
-           o->list_count ? o->list_count : SF_CFH_MAX_POINTS, study->runs,
-           report->rig->pairs ? "on the rig" : "of free fall");
-    fflush(stdout);
+    sf_log_print(stdout, "%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
+                 o->list_count ? o->list_count : SF_CFH_MAX_POINTS, study->runs,
+                 report->rig->pairs ? "on the rig" : "of free fall");
     SF_TRY(sf_cfh_simulate(&series, &study->runner, points, &report->ending, err));
     sf_cfh_evaluate(points, report->plan->limit, result);
     return find_interval(study, s, &series, report, spread, err);

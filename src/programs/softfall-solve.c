@@ -44,7 +44,7 @@ static sf_status read_on_failure(const char *option, const char *text, void *rem
 static const sf_option list[] = {
     {"output", 'o', "RESULTS", "results file to write (HDF5)", .member = offsetof(options, output)},
     {"threads", 't', "N", "OpenMP threads (default: all processors, or OMP_NUM_THREADS)",
-     .member = offsetof(options, threads), .read = sf_program_read_threads},
+     .member = offsetof(options, threads), .low = 1, .high = SF_MOST_THREADS},
     {"force", 'f', NULL, "replace an existing results file", .member = offsetof(options, force)},
     {"restart", 0, "RESULTS",
      "resume RESULTS from RESULTS.restart, bit for bit as if uninterrupted; MODEL only if it has been moved",

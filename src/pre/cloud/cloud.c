@@ -164,7 +164,6 @@ static bool take(const sf_stored *found, int64_t nodes, double *support, sf_doma
         out->figures = h.figures;
     } else {
         sf_domains_free(out);
-        memset(out, 0, sizeof *out);
     }
     return whole;
 }

@@ -367,7 +367,6 @@ sf_status sf_layers_hold(const sf_layers *l, uint8_t *mask, uint8_t *base, sf_mo
         m->tie_other[m->tie_count] = t->other;
         m->tie_mask[m->tie_count++] = open;
     }
-    for (int c = 0; c < 3; c++)
-        free(parent[c]);
+    sf_free_all(3, parent);
     return err->status;
 }

@@ -8,8 +8,7 @@
 void sf_raw_mesh_free(sf_raw_mesh *raw) {
     SF_FREE(raw->tag, raw->xyz, raw->cell_type, raw->cell_chosen, raw->cell_node, raw->face_group,
             raw->face_part, raw->face_node);
-    for (int g = 0; g < raw->group_count; g++)
-        free(raw->group_name[g]);
+    sf_free_all((size_t)raw->group_count, raw->group_name);
     free(raw->group_name);
     memset(raw, 0, sizeof *raw);
 }

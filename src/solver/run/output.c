@@ -110,8 +110,7 @@ static sf_status create_results(const char *path, const sf_model *m, const sf_h5
         sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK &&
         write_layers(m, *file, err) == SF_OK)
         return SF_OK;
-    sf_error ignored = SF_ERROR_INIT;
-    sf_h5_close(file, &ignored);
+    sf_h5_drop(file);
     return err->status;
 }
 
