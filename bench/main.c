@@ -57,8 +57,7 @@ static double resident_bytes(void) {
 
 /* Bytes of the model's arrays. What meshing leaves behind in the heap does not count. */
 static double model_bytes(const sf_model *m) {
-    static const double size[] = {
-        [SF_MODEL_F64] = 8, [SF_MODEL_I32] = 4, [SF_MODEL_I64] = 8, [SF_MODEL_U8] = 1};
+    static const double size[] = {[SF_H5_F64] = 8, [SF_H5_I32] = 4, [SF_H5_I64] = 8, [SF_H5_U8] = 1};
     const char *base = (const char *)m;
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);

@@ -104,7 +104,7 @@ static const char *count_path(size_t offset) {
 
 static void put_model(FILE *f) {
     static const char *const types[] = {
-        [SF_MODEL_F64] = "f64", [SF_MODEL_I32] = "i32", [SF_MODEL_I64] = "i64", [SF_MODEL_U8] = "u8"};
+        [SF_H5_F64] = "f64", [SF_H5_I32] = "i32", [SF_H5_I64] = "i64", [SF_H5_U8] = "u8"};
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);
     fputs("| dataset | type | shape | units | meaning |\n|---|---|---|---|---|\n", f);

@@ -24,7 +24,7 @@ typedef struct rotor {
 static rotor make_rotor(const double inertia[6], const double omega[3]) {
     rotor r = {.q = {1, 0, 0, 0}};
     memcpy(r.inertia, inertia, sizeof r.inertia);
-    sf_rigid_momentum(inertia, omega, r.spin);
+    sf_rigid_product(inertia, omega, r.spin);
     return r;
 }
 

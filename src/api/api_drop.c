@@ -360,7 +360,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .impact_y = m->missile.impact_known ? m->missile.impact[1] : NAN,
                       .missile_mass = m->missile.mass,
                       .missile_speed = m->missile.speed,
-                      .gravity_along = sf_missile_free_fall(m),
+                      .gravity_along = sf_flight_pull(&m->missile),
                       .kinematic = m->run.kinematic != 0,
                       .driven = sf_missile_is_driven(m),
                       .history = d->recorder.history};

@@ -108,8 +108,7 @@ softfall_status softfall_record_read(const char *path, const char *const *option
         softfall_record_free(*out);
         *out = NULL;
     }
-    for (int k = 0; k < s.count; k++)
-        free(s.texts[k]);
+    sf_free_all((size_t)s.count, s.texts);
     return softfall_return(&err, error);
 }
 

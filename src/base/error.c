@@ -66,9 +66,26 @@ void sf_release(void *pointer) {
     free(block);
 }
 
-void sf_free_all(size_t count, void *pointers[]) {
-    for (size_t k = 0; k < count; k++)
-        free(pointers[k]);
+void *sf_keep(void *block, const sf_error *err) {
+    if (err->status == SF_OK)
+        return block;
+    free(block);
+    return NULL;
+}
+
+void sf_free_all(size_t count, void *pointers) {
+    for (size_t k = 0; k < count && pointers; k++)
+        sf_release((char *)pointers + k * sizeof(void *));
+}
+
+void sf_log_print(FILE *log, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    if (log) {
+        vfprintf(log, format, arguments);
+        fflush(log);
+    }
+    va_end(arguments);
 }
 
 void sf_sink_tell(const sf_sink *sink, sf_severity severity, const char *format, ...) {

@@ -76,9 +76,14 @@ void sf_error_clean(char *sentence);
 /* Calls free() with the pointer at this address. */
 void sf_release(void *pointer);
 
+/* Returns the block (from malloc); frees it and returns NULL after a failure. */
+void *sf_keep(void *block, const sf_error *err);
+
 /* Calls free() with each of several pointers. */
 #define SF_FREE(...) sf_free_all(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *), (void *[]){__VA_ARGS__})
-void sf_free_all(size_t count, void *pointers[]);
+
+/* The same with an array of pointers; NULL: there is none. */
+void sf_free_all(size_t count, void *pointers);
 
 /* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
  * them with free(). The count may be of any integer type; `count * size` is checked for overflow; zero bytes
@@ -113,6 +118,9 @@ typedef struct sf_sink {
     void (*tell)(void *user, sf_severity severity, const char *sentence);
     void *user; /* borrowed */
 } sf_sink;
+
+/* Prints to a log, at once; NULL: there is none. */
+void sf_log_print(FILE *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Gives the sink a sentence of at most 1023 bytes; control characters become blanks. NULL: the sentence is
  * dropped. */

@@ -23,10 +23,6 @@ static void invert(const double a[6], double inverse[6]) {
     inverse[5] = xz / determinant;
 }
 
-void sf_rigid_momentum(const double inertia[6], const double omega[3], double momentum[3]) {
-    sf_rigid_product(inertia, omega, momentum);
-}
-
 void sf_rigid_angular_velocity(const double inertia[6], const double q[4], const double momentum[3],
                                double omega[3]) {
     double inverse[6], body[3];

@@ -25,16 +25,20 @@ static inline double sf_distance3(const double a[3], const double b[3]) {
                 (a[2] - b[2]) * (a[2] - b[2]));
 }
 
+/* Widens the box from `low` to `high`, so that it holds x. */
+static inline void sf_box3_add(const double x[3], double low[3], double high[3]) {
+    for (int k = 0; k < 3; k++) {
+        low[k] = fmin(low[k], x[k]);
+        high[k] = fmax(high[k], x[k]);
+    }
+}
+
 /* The smallest and the largest coordinates of `count` points; INFINITY and -INFINITY without any. */
 static inline void sf_box3(int64_t count, const double *position, double low[3], double high[3]) {
-    for (int k = 0; k < 3; k++) {
-        low[k] = INFINITY;
-        high[k] = -INFINITY;
-    }
-    for (int64_t i = 0; i < 3 * count; i++) {
-        low[i % 3] = fmin(low[i % 3], position[i]);
-        high[i % 3] = fmax(high[i % 3], position[i]);
-    }
+    for (int k = 0; k < 3; k++)
+        high[k] = -(low[k] = INFINITY);
+    for (int64_t i = 0; i < count; i++)
+        sf_box3_add(&position[3 * i], low, high);
 }
 
 /* Makes a vector one of unit length; zero stays zero. */
@@ -148,9 +152,7 @@ void sf_rigid_angular_velocity(const double inertia[6], const double q[4], const
                                double omega[3]);
 /* R I^-1 R^T (kg-1 m-2), like the inertia. */
 void sf_rigid_mobility(const double inertia[6], const double q[4], double mobility[6]);
-/* I omega, both in the body's axes. */
-void sf_rigid_momentum(const double inertia[6], const double omega[3], double momentum[3]);
-/* A symmetric matrix times a vector. */
+/* A symmetric matrix times a vector: of an inertia I omega, both in the body's axes. */
 void sf_rigid_product(const double matrix[6], const double v[3], double out[3]);
 
 /* The turn (sf_rotation_advance), in space, of a body without torque in `dt` (s): the implicit midpoint rule
@@ -164,12 +166,17 @@ static inline void sf_corners(const double *position, const int32_t node[3], con
         out[k] = &position[3 * (int64_t)node[k]];
 }
 
-/* Normal of a triangle, of twice its area. */
+/* Normal of a triangle, of twice its area; by its corners, or by their numbers. */
 static inline void sf_triangle_normal(const double *a, const double *b, const double *c, double out[3]) {
     double u[3], v[3];
     sf_sub3(b, a, u);
     sf_sub3(c, a, v);
     sf_cross3(u, v, out);
+}
+static inline void sf_face_normal(const double *position, const int32_t node[3], double out[3]) {
+    const double *x[3];
+    sf_corners(position, node, x);
+    sf_triangle_normal(x[0], x[1], x[2], out);
 }
 
 /* Finds the point of a triangle that is nearest to x (Ericson 2005, section 5.1.5). `feature`: where it lies,

@@ -234,6 +234,10 @@ static void take_option(const sf_option *o, char *values, const char *text, sf_e
         *(bool *)(values + o->noted) = true;
     if (o->read)
         o->read(name, text, values + o->member, err);
+    else if (o->high > 0 && !sf_whole_is(text, o->low, o->high, (int *)(values + o->member)))
+        SF_REFUSE(err, "%s %s: expected a whole number from %d to %d", name, text, o->low, o->high);
+    else if (o->high > 0)
+        return;
     else if (o->argument)
         *(const char **)(values + o->member) = text;
     else
@@ -290,17 +294,6 @@ sf_status sf_command_parse(const sf_command *c, int argc, char **argv, sf_error 
     if (argp_parse(&known, argc, argv, 0, NULL, &p) != 0)
         return SF_REFUSE(err, "the command line cannot be read");
     return err->status;
-}
-
-sf_status sf_program_read_whole(const char *option, const char *text, int low, int high, int *out,
-                                sf_error *err) {
-    if (!sf_whole_is(text, low, high, out))
-        return SF_REFUSE(err, "%s %s: expected a whole number from %d to %d", option, text, low, high);
-    return SF_OK;
-}
-
-sf_status sf_program_read_threads(const char *option, const char *text, void *threads, sf_error *err) {
-    return sf_program_read_whole(option, text, 1, SF_MOST_THREADS, threads, err);
 }
 
 sf_status sf_program_read_limit(const char *option, const char *text, void *limit, sf_error *err) {

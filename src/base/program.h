@@ -28,6 +28,7 @@ typedef struct sf_option {
     const char *meaning;    /* for --help */
     size_t member;          /* offset of the member in the values */
     sf_option_reader *read; /* NULL: a flag is set (bool), a text is borrowed (const char *) */
+    int low, high;          /* of a whole number (int), which has no reader; high 0: it is none */
     int group;              /* of --help */
     size_t noted;           /* offset of a bool that is set if the option is given; 0: none */
     bool is_optional;       /* the argument may be missing */
@@ -59,13 +60,8 @@ typedef struct sf_option_texts {
     const char *text[64];
 } sf_option_texts;
 
-/* Readers. A number of threads (int), 1 to SF_MOST_THREADS; a limit (double), a finite number above 0; a text
- * behind those before it (sf_option_texts). */
-sf_option_reader sf_program_read_threads, sf_program_read_limit, sf_program_read_texts;
-
-/* For the readers of whole numbers within bounds. */
-sf_status sf_program_read_whole(const char *option, const char *text, int low, int high, int *out,
-                                sf_error *err);
+/* Readers. A limit (double), a finite number above 0; a text behind those before it (sf_option_texts). */
+sf_option_reader sf_program_read_limit, sf_program_read_texts;
 
 /* Prints "program: sentence" (and the source line when SOFTFALL_DEBUG is set in the environment) to stderr. A
  * standard output that could not be written counts as a failure. Returns the process exit code that belongs

@@ -417,6 +417,14 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     return status;
 }
 
+sf_status sf_units_read(const char *text, sf_quantity kind, double *si, sf_error *err) {
+    sf_units *units = NULL;
+    if (sf_units_open(&units, err) == SF_OK)
+        sf_units_parse(units, text, kind, si, err);
+    sf_units_close(&units);
+    return err->status;
+}
+
 static void print_names(FILE *file, const char *names, const char *prefixes) {
     for (const char *at = names; *at;) {
         size_t length = strcspn(at, "|");

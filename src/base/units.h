@@ -55,6 +55,9 @@ void sf_units_let_go(void);
 sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity kind, double *si,
                          sf_error *err);
 
+/* The same by a system of its own. */
+sf_status sf_units_read(const char *text, sf_quantity kind, double *si, sf_error *err);
+
 /* "a speed", "m s-1" and "4.5 m/s"; static storage. */
 const char *sf_quantity_phrase(sf_quantity kind);
 const char *sf_quantity_unit(sf_quantity kind);

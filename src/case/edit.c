@@ -117,17 +117,13 @@ static void put_quoted(const char *text, FILE *out) {
 /* Returns the value in libconfig syntax as the text that it means; from malloc, NULL if it is no text. `one`
  * receives whether it is one value of libconfig syntax. */
 static char *text_of(const char *value, size_t length, bool *one) {
-    config_t scratch;
+    SF_OWNED_BY(config_destroy) config_t scratch;
+    SF_OWNED char *line = NULL;
     const char *text = NULL;
-    char *line = NULL, *out = NULL;
     config_init(&scratch);
     *one = asprintf(&line, "value = %.*s;", (int)length, value) >= 0 && config_read_string(&scratch, line) &&
            config_setting_length(scratch.root) == 1;
-    if (*one && config_lookup_string(&scratch, "value", &text))
-        out = strdup(text);
-    free(line);
-    config_destroy(&scratch);
-    return out;
+    return *one && config_lookup_string(&scratch, "value", &text) ? strdup(text) : NULL;
 }
 
 sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const sf_edit_settings *files,
@@ -241,22 +237,20 @@ static sf_status add(char **text, const sf_edit_settings *settings, char *path, 
 }
 
 sf_status sf_case_edit_set(char **text, const char *path, const char *set, sf_error *err) {
-    char key[SF_EDIT_PATH_SIZE] = "", *value = NULL, *folder = sf_case_folder_of(path, err);
+    SF_OWNED char *value = NULL, *folder = sf_case_folder_of(path, err);
+    char key[SF_EDIT_PATH_SIZE] = "";
     const char *file = sf_case_override_file(set), *equals = strchr(set, '=');
     size_t size = 0;
     sf_edit_settings settings = {0};
     sscanf(set, " %255[^= \t]", key);
     FILE *out = folder ? open_memstream(&value, &size) : NULL;
-    if (!out) {
-        free(folder);
+    if (!out)
         return no_memory(err);
-    }
     if (file)
         put_file(file, out, err);
     else
         put_value(key, equals + 1 + strspn(equals + 1, " \t"), folder, out, err);
     fclose(out);
-    free(folder);
     if (err->status == SF_OK && sf_case_edit_find(*text, false, &settings, err) == SF_OK) {
         const sf_edit_setting *s = find_path(&settings, key);
         if (s) {
@@ -266,6 +260,6 @@ sf_status sf_case_edit_set(char **text, const char *path, const char *set, sf_er
             value = NULL;
         }
     }
-    SF_FREE(value, settings.setting);
+    free(settings.setting);
     return err->status;
 }

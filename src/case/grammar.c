@@ -413,10 +413,7 @@ static char *load(walk *w, const char *path, int count, const char *const *overr
     }
     if (!sf_text_close(w->out, &text))
         no_memory(path, err);
-    if (err->status == SF_OK)
-        return text;
-    free(text);
-    return NULL;
+    return sf_keep(text, err);
 }
 
 char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,

@@ -167,9 +167,9 @@ static config_setting_t *enter_group(config_setting_t *parent, const char *name,
 /* Puts the settings of the file `path` in place of everything in the group `name`. */
 static sf_status replace_group(config_t *config, const char *name, const char *path, const char *text,
                                sf_error *err) {
-    config_t scratch;
+    SF_OWNED_BY(config_destroy) config_t scratch;
     config_init(&scratch);
-    sf_case_source lines = {0};
+    SF_OWNED_BY(sf_case_source_free) sf_case_source lines = {0};
     SF_OWNED char *whole = sf_case_load_text(path, 0, NULL, &lines, err);
     if (whole) {
         const copy_source source = {.source = &lines};
@@ -194,8 +194,6 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
                 SF_REFUSE(err, "--set %s: \"%s\" is not a valid group", text, name);
         }
     }
-    config_destroy(&scratch);
-    sf_case_source_free(&lines);
     return err->status;
 }
 

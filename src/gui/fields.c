@@ -93,15 +93,11 @@ static int find_branch(const char *group) {
     return -1;
 }
 
-static sf_field *find(const sf_fields *fields, const char *key) {
+sf_field *sf_fields_find(const sf_fields *fields, const char *key) {
     for (int k = 0; k < fields->count; k++)
         if (strcmp(fields->field[k].key, key) == 0)
             return (sf_field *)&fields->field[k];
     return NULL;
-}
-
-const sf_field *sf_fields_find(const sf_fields *fields, const char *key) {
-    return find(fields, key);
 }
 
 /* ---- from the table of keys ---- */
@@ -153,7 +149,7 @@ static void add_material(sf_fields *fields) {
 static void keep_changes(const sf_fields *before, sf_fields *fields) {
     for (int k = 0; k < fields->count; k++) {
         sf_field *f = &fields->field[k];
-        const sf_field *old = find(before, f->key);
+        const sf_field *old = sf_fields_find(before, f->key);
         if (old && strcmp(old->now, old->given) != 0)
             memcpy(f->now, old->now, sizeof f->now);
     }
@@ -279,7 +275,7 @@ void sf_fields_take(sf_fields *fields, bool *case_changed, bool *geometry_change
 }
 
 bool sf_fields_enter(const sf_fields *fields, const char *key, const char *text) {
-    const sf_field *f = find(fields, key);
+    const sf_field *f = sf_fields_find(fields, key);
     if (!f)
         return false;
     sf_field entered = *f; /* sf_fields_take notices the change, as of a user's */
@@ -329,8 +325,7 @@ sf_status sf_fields_overrides(const sf_fields *fields, sf_overrides *out, sf_err
 }
 
 void sf_overrides_free(sf_overrides *o) {
-    for (int k = 0; k < o->count; k++)
-        free(o->text[k]);
+    sf_free_all((size_t)o->count, o->text);
     *o = (sf_overrides){0};
 }
 

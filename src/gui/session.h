@@ -82,7 +82,7 @@ void sf_fields_take_defaults(sf_fields *fields);
 void sf_fields_take(sf_fields *fields, bool *case_changed, bool *geometry_changed);
 /* Puts `text` into the entry of that key, as a user does; false: there is none. */
 bool sf_fields_enter(const sf_fields *fields, const char *key, const char *text);
-const sf_field *sf_fields_find(const sf_fields *fields, const char *key);
+sf_field *sf_fields_find(const sf_fields *fields, const char *key);
 
 /* The overrides; release with sf_overrides_free, also on failure. SF_ERR_INPUT: too many, or
  * parameters of both geometries in one entry of the tree. */

@@ -67,7 +67,7 @@ static char data_separator(const csv *file, const char *line) {
     for (const char *s = SEPARATORS; *s && !found; s++) {
         sf_table_cells cells;
         double number;
-        char *copy = strdup(line);
+        SF_OWNED char *copy = strdup(line);
         if (!copy)
             return 0;
         sf_table_split(copy, *s, false, &cells);
@@ -75,7 +75,6 @@ static char data_separator(const csv *file, const char *line) {
                     sf_table_number(cells.cell[0], &number) &&
                     (cells.count < 2 || sf_table_number(cells.cell[1], &number));
         found = data ? *s : 0;
-        free(copy);
     }
     return found;
 }
@@ -192,21 +191,20 @@ static sf_status take_heading(csv *file, const sf_table_layout *layouts, int cou
         return SF_REFUSE(err, "%s \"%.200s\": %s", option, text,
                          file->heading.found < 0 ? "names no columns" : file->heading.problem);
     file->layout = &layouts[*which];
-    char *copy;
     for (int lines = 0; lines < PREAMBLE; lines++) {
         const char *line = at;
+        SF_OWNED char *copy = sf_table_line_copy(&at);
         sf_table_heading own;
         sf_table_cells cells;
         char separator = 0;
         int other;
-        if (!(copy = sf_table_line_copy(&at)))
+        if (!copy)
             break;
         file->separator = sf_table_line_is_empty(copy) ? 0 : data_separator(file, copy);
         if (!file->separator && !sf_table_line_is_empty(copy))
             try_line(file, copy, at, layouts, count, &other, &own, &separator, err);
         if (file->separator)
             sf_table_split(copy, file->separator, false, &cells);
-        free(copy);
         if (separator && is_good(&own))
             return SF_REFUSE(err, "%s:%d: the file has a heading of its own: leave %s out", file->path,
                              file->line + 1, option);

@@ -347,13 +347,9 @@ static double data_end(const void *card) {
 }
 
 static double limit_strain(const void *card) {
-    sf_curve curve;
+    SF_OWNED_BY(sf_curve_free) sf_curve curve = {0};
     sf_error err = SF_ERROR_INIT;
-    double limit = 1;
-    if (sf_curve_build(card, 0, &curve, &err) == SF_OK)
-        limit = curve.beyond.limit;
-    sf_curve_free(&curve);
-    return limit;
+    return sf_curve_build(card, 0, &curve, &err) == SF_OK ? curve.beyond.limit : 1;
 }
 
 static double informed_strain(const void *card) {

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/cells.h"
 
+#include "base/sets.h"
 #include "model/model.h"
+#include <gsl/gsl_sort.h>
 
 /* clang-format off */
 static const sf_cell_shape shapes[] = {
@@ -41,46 +43,37 @@ const sf_cell_shape *sf_cell_shape_of(int type) {
     return type >= SF_CELL_TETRAHEDRON && type <= SF_CELL_HEXAHEDRON ? &shapes[type] : NULL;
 }
 
-void sf_face_sort(int32_t node[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && node[j] < node[j - 1]; j--) {
-            int32_t swap = node[j];
-            node[j] = node[j - 1];
-            node[j - 1] = swap;
+sf_cell_face *sf_cell_faces(const sf_cells *c, int64_t *place, int (*compare)(const void *, const void *),
+                            int64_t *count, sf_error *err) {
+    *count = 0;
+    for (int64_t k = 0; k < c->cell_count; k++)
+        *count += shapes[c->type[k]].faces;
+    sf_cell_face *list = sf_alloc(err, *count, sizeof *list, "cell faces"), *face = list;
+    for (int64_t k = 0; list && k < c->cell_count; k++) {
+        const sf_cell_shape *shape = &shapes[c->type[k]];
+        for (int f = 0; f < shape->faces; f++, face++) {
+            *face = (sf_cell_face){{-1, -1, -1, -1}, (int32_t)k, (int8_t)f};
+            for (int p = 0; p < sf_cell_face_size(shape, f); p++) {
+                int32_t node = c->node[c->ptr[k] + shape->face[f][p]];
+                face->key[p] = place ? (int32_t)sf_sets_find(place, node) : node;
+            }
+            gsl_sort_int(face->key, 1, 4);
         }
+    }
+    if (list)
+        qsort(list, (size_t)*count, sizeof *list, compare);
+    return list;
 }
 
 /* ---- the skin ---- */
 
-/* A face of a cell: its nodes around it, and ascending. */
-typedef struct face {
-    int32_t node[4], sorted[4]; /* -1 in the fourth place of a triangle, in the first of the sorted ones */
-} face;
-
 /* The order is that of the bytes: the triangles of model.h5, and with them the bits of a run, follow it. */
 static int by_nodes(const void *a, const void *b) {
-    return memcmp(((const face *)a)->sorted, ((const face *)b)->sorted, sizeof((const face *)a)->sorted);
-}
-
-/* Returns the number of faces of all cells; writes them unless `out` is NULL. */
-static int64_t list_faces(const sf_cells *c, face *out) {
-    int64_t count = 0;
-    for (int64_t k = 0; k < c->cell_count; k++) {
-        const sf_cell_shape *shape = &shapes[c->type[k]];
-        for (int f = 0; f < shape->faces && out; f++) {
-            face *to = &out[count + f];
-            for (int v = 0; v < 4; v++)
-                to->node[v] = shape->face[f][v] < 0 ? -1 : c->node[c->ptr[k] + shape->face[f][v]];
-            memcpy(to->sorted, to->node, sizeof to->sorted);
-            sf_face_sort(to->sorted);
-        }
-        count += shape->faces;
-    }
-    return count;
+    return memcmp(((const sf_cell_face *)a)->key, ((const sf_cell_face *)b)->key, 4 * sizeof(int32_t));
 }
 
 /* Keeps the faces that are alone among sorted ones; returns how many. */
-static int64_t keep_single(face *list, int64_t count) {
+static int64_t keep_single(sf_cell_face *list, int64_t count) {
     int64_t kept = 0;
     for (int64_t k = 0, next; k < count; k = next) {
         for (next = k + 1; next < count && by_nodes(&list[k], &list[next]) == 0; next++)
@@ -91,33 +84,37 @@ static int64_t keep_single(face *list, int64_t count) {
     return kept;
 }
 
+/* Node `v` of a face, around it; -1: the fourth of a triangle. */
+static int32_t node_of(const sf_cells *c, const sf_cell_face *face, int64_t v) {
+    int corner = shapes[c->type[face->cell]].face[face->local][v];
+    return corner < 0 ? -1 : c->node[c->ptr[face->cell] + corner];
+}
+
 /* Numbers the nodes of the faces in the order of the mesh. */
-static sf_status number_nodes(const sf_cells *c, const face *list, sf_skin_faces *s, sf_error *err) {
+static sf_status number_nodes(const sf_cells *c, const sf_cell_face *list, sf_skin_faces *s, sf_error *err) {
     SF_OWNED int32_t *place = sf_alloc(err, c->node_count, sizeof *place, "the pad's skin");
     s->node = sf_alloc(err, c->node_count, sizeof *s->node, "the pad's skin");
     s->face = sf_alloc(err, s->face_count, sizeof *s->face, "the pad's skin");
     for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++)
-        if (list[k / 4].node[k % 4] >= 0)
-            place[list[k / 4].node[k % 4]] = 1;
+        if (node_of(c, &list[k / 4], k % 4) >= 0)
+            place[node_of(c, &list[k / 4], k % 4)] = 1;
     for (int64_t i = 0; err->status == SF_OK && i < c->node_count; i++)
         if (place[i]) {
             place[i] = (int32_t)s->node_count;
             s->node[s->node_count++] = i;
         }
     for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++) {
-        int32_t node = list[k / 4].node[k % 4];
+        int32_t node = node_of(c, &list[k / 4], k % 4);
         s->face[k / 4][k % 4] = node < 0 ? -1 : place[node];
     }
     return err->status;
 }
 
 sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err) {
-    int64_t count = list_faces(c, NULL);
-    SF_OWNED face *list = sf_alloc(err, count, sizeof *list, "the pad's faces");
+    int64_t count;
+    SF_OWNED sf_cell_face *list = sf_cell_faces(c, NULL, by_nodes, &count, err);
     *s = (sf_skin_faces){0};
     SF_TRY(err->status);
-    list_faces(c, list);
-    qsort(list, (size_t)count, sizeof *list, by_nodes);
     s->face_count = keep_single(list, count);
     return number_nodes(c, list, s, err);
 }

@@ -26,9 +26,6 @@ static inline int sf_cell_face_size(const sf_cell_shape *shape, int face) {
     return shape->face[face][3] < 0 ? 3 : 4;
 }
 
-/* Sorts the nodes of a face (-1: the fourth of a triangle). */
-void sf_face_sort(int32_t node[4]);
-
 /* A mesh, borrowed. */
 typedef struct sf_cells {
     int64_t node_count, cell_count;
@@ -37,6 +34,19 @@ typedef struct sf_cells {
     const int64_t *ptr;
     const int32_t *node;
 } sf_cells;
+
+/* A face of a cell. */
+typedef struct sf_cell_face {
+    int32_t key[4]; /* its nodes, ascending; the first is -1 for a triangle */
+    int32_t cell;
+    int8_t local; /* its place among the faces of the cell */
+} sf_cell_face;
+
+/* The `*count` faces of all cells, in the order of `compare` (qsort). `place` (base/sets.h): nodes of one set
+ * count as one; NULL: each is alone. Owned by the caller; NULL: out of memory. */
+sf_cell_face *sf_cell_faces(const sf_cells *cells, int64_t *place,
+                            int (*compare)(const void *one, const void *other), int64_t *count,
+                            sf_error *err);
 
 /* The faces that belong to one cell only and the nodes on them. */
 typedef struct sf_skin_faces {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/columns.h"
 
+#include "base/error.h"
 #include "model/good_run.h"
-#include <stdlib.h>
 #include <string.h>
 
 const sf_frame_field_info *sf_frame_field_get(sf_frame_field field) {
@@ -47,8 +47,7 @@ const sf_drop_kind_info *sf_drop_kind_get(int kind) {
 }
 
 void sf_history_free(sf_history *h) {
-    for (int k = 0; k < SF_HISTORY_COUNT; k++)
-        free(h->column[k]);
+    sf_free_all(SF_HISTORY_COUNT, h->column);
     memset(h, 0, sizeof *h);
 }
 

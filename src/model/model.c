@@ -19,10 +19,10 @@
     { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true, false }
 #define LATER_SCALAR(member, type, path, units, text)                                                        \
     { offsetof(sf_model, member), type, SIZE_MAX, 0, 1, path, units, text, true, true }
-#define F64 SF_MODEL_F64
-#define I32 SF_MODEL_I32
-#define I64 SF_MODEL_I64
-#define U8 SF_MODEL_U8
+#define F64 SF_H5_F64
+#define I32 SF_H5_I32
+#define I64 SF_H5_I64
+#define U8 SF_H5_U8
 
 static const sf_model_field fields[] = {
     SCALAR(node_count, I64, "/cloud/count", "1", "number of nodes"),
@@ -423,7 +423,7 @@ void sf_flight_orientation(const sf_missile_card *card, double before, double qu
     quaternion[1] = quaternion[2] = quaternion[3] = 0;
     if (!(rate * before > 0))
         return;
-    sf_rigid_momentum(card->inertia, card->angular_velocity, spin);
+    sf_rigid_product(card->inertia, card->angular_velocity, spin);
     for (long k = 0; k < steps; k++) {
         double turn[3], next[4];
         sf_rigid_turn(card->inertia, quaternion, spin, -before / (double)steps, turn);

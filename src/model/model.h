@@ -316,10 +316,9 @@ sf_status sf_model_check(const sf_model *model, sf_error *err);
 
 /* One array or scalar of the model, but for its materials. The table drives reading, writing, checking and
  * release. */
-typedef enum sf_model_type { SF_MODEL_F64, SF_MODEL_I32, SF_MODEL_I64, SF_MODEL_U8 } sf_model_type;
 typedef struct sf_model_field {
     size_t offset;      /* of the member in sf_model: a pointer (arrays) or the value itself (scalars) */
-    sf_model_type type; /* of one item; scalars are F64 or I64 */
+    sf_h5_type type;    /* of one item; scalars are F64 or I64 */
     size_t rows_offset; /* of the int64_t member that counts the rows; SIZE_MAX for a scalar */
     int rows_extra;     /* 1 for CSR pointers */
     int columns;        /* 1 or more */

@@ -40,7 +40,7 @@ static sf_status check_finite(const sf_model *model, sf_error *err) {
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);
     for (size_t k = 0; k < count; k++) {
-        if (field[k].type != SF_MODEL_F64)
+        if (field[k].type != SF_H5_F64)
             continue;
         const char *base = (const char *)model;
         bool scalar = field[k].rows_offset == SIZE_MAX;
@@ -178,9 +178,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         SF_TRY(check_bound("interval of a series (s)", m->series_interval[k], 1e-3, 1e7, err));
     if (m->symmetry_factor == 3)
         return SF_FAIL(err, SF_ERR_MODEL, "the symmetry factor is 3; 1, 2 and 4 are possible");
-    double length = 0;
-    for (int c = 0; c < 3; c++)
-        length += m->missile.direction[c] * m->missile.direction[c];
+    double length = sf_dot3(m->missile.direction, m->missile.direction);
     if (fabs(length - 1) > 1e-9)
         return SF_FAIL(err, SF_ERR_MODEL, "missile direction has length %g, expected 1", sqrt(length));
     double down = sf_dot3(m->missile.down, m->missile.down);
@@ -295,10 +293,7 @@ static sf_status check_edges(const sf_model *m, sf_error *err) {
     for (int64_t i = 0; i < m->node_count; i++)
         for (int64_t k = m->edge_ptr[i]; k < m->edge_ptr[i + 1]; k++) {
             int64_t j = m->edge_node[k];
-            double square = 0;
-            for (int c = 0; c < 3; c++)
-                square += pow(m->position[3 * j + c] - m->position[3 * i + c], 2);
-            if (!(square > 0))
+            if (!(sf_distance3(&m->position[3 * j], &m->position[3 * i]) > 0))
                 return SF_FAIL(err, SF_ERR_MODEL, "edge from node %lld to node %lld has no length",
                                (long long)i, (long long)j);
             if (!has_edge(m, j, i))
@@ -371,8 +366,8 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
     return check_mesh(m, err);
 }
 
-static size_t item_size(sf_model_type type) {
-    return type == SF_MODEL_U8 ? 1 : type == SF_MODEL_I32 ? 4 : 8;
+static size_t item_size(sf_h5_type type) {
+    return type == SF_H5_U8 ? 1 : type == SF_H5_I32 ? 4 : 8;
 }
 
 static uint64_t hash_of(const sf_model *model) {

@@ -5,35 +5,23 @@
 #include "material/laws.h"
 #include <unistd.h>
 
-static sf_h5_type h5_type(sf_model_type type) {
-    switch (type) {
-    case SF_MODEL_I32:
-        return SF_H5_I32;
-    case SF_MODEL_I64:
-        return SF_H5_I64;
-    case SF_MODEL_U8:
-        return SF_H5_U8;
-    default:
-        return SF_H5_F64;
-    }
+/* Writes a member of the model, or of a law's curves, as the dataset `path`. */
+static sf_status write_field(sf_h5 *h5, const char *path, const sf_model_field *field, const void *record,
+                             sf_error *err) {
+    const sf_h5_info info = {path, field->units, field->description};
+    const char *base = record, *member = base + field->offset;
+    if (field->rows_offset == SIZE_MAX)
+        return sf_h5_write(h5, &info, field->type, 0, NULL, member, err);
+    const int64_t dims[2] = {*(const int64_t *)(base + field->rows_offset) + field->rows_extra,
+                             field->columns};
+    return sf_h5_write(h5, &info, field->type, field->columns > 1 ? 2 : 1, dims, *(void *const *)member, err);
 }
 
 static sf_status write_fields(sf_h5 *h5, const sf_model *model, sf_error *err) {
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);
-    const char *base = (const char *)model;
-    for (size_t k = 0; k < count && err->status == SF_OK; k++) {
-        sf_h5_info info = {field[k].path, field[k].units, field[k].description};
-        const char *member = base + field[k].offset;
-        if (field[k].rows_offset == SIZE_MAX) {
-            sf_h5_write(h5, &info, h5_type(field[k].type), 0, NULL, member, err);
-            continue;
-        }
-        int64_t dims[2] = {*(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra,
-                           field[k].columns};
-        sf_h5_write(h5, &info, h5_type(field[k].type), field[k].columns > 1 ? 2 : 1, dims,
-                    *(void *const *)member, err);
-    }
+    for (size_t k = 0; k < count && err->status == SF_OK; k++)
+        write_field(h5, field[k].path, &field[k], model, err);
     return err->status;
 }
 
@@ -48,16 +36,11 @@ static void name_parameter(int64_t index, const sf_parameter *p, char path[PATH_
              group ? "_" : "", p->key);
 }
 
-/* The arrays of curves, in the order of sf_law_curves; the counts come first. */
-typedef struct curve_field {
-    const char *name, *units, *description;
-    sf_h5_type type;
-    size_t offset, rows_offset; /* rows SIZE_MAX: a scalar */
-    int rows_extra;
-} curve_field;
+/* The arrays of curves, in the order of sf_law_curves; the counts come first. Their paths begin in the group
+ * of the material. */
 #define CURVE(member, type, rows, extra, units, text)                                                        \
-    { #member, units, text, type, offsetof(sf_law_curves, member), rows, extra }
-static const curve_field curve_fields[] = {
+    { offsetof(sf_law_curves, member), type, rows, extra, 1, #member, units, text, false, false }
+static const sf_model_field curve_fields[] = {
     CURVE(curve_count, SF_H5_I64, SIZE_MAX, 0, "1", "number of compression curves"),
     CURVE(curve_points, SF_H5_I64, SIZE_MAX, 0, "1", "number of points of all curves"),
     CURVE(curve_rate, SF_H5_F64, offsetof(sf_law_curves, curve_count), 0, "s-1", "strain rate of each curve"),
@@ -86,13 +69,8 @@ static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, 
                     (const char *)m->card + p->offset, err);
     }
     for (int k = 0; k < CURVE_FIELDS && curves && err->status == SF_OK; k++) {
-        const curve_field *f = &curve_fields[k];
-        const char *base = (const char *)curves;
-        bool scalar = f->rows_offset == SIZE_MAX;
-        int64_t rows = scalar ? 0 : *(const int64_t *)(base + f->rows_offset) + f->rows_extra;
-        snprintf(path, sizeof path, "/material/%lld/%s", (long long)index, f->name);
-        sf_h5_write(h5, &(sf_h5_info){path, f->units, f->description}, f->type, !scalar, &rows,
-                    scalar ? base + f->offset : *(const void *const *)(base + f->offset), err);
+        snprintf(path, sizeof path, "/material/%lld/%s", (long long)index, curve_fields[k].path);
+        write_field(h5, path, &curve_fields[k], curves, err);
     }
     return err->status;
 }
@@ -104,23 +82,35 @@ static sf_status read_scalar(const sf_h5 *h5, const char *path, sf_h5_type type,
     return SF_OK;
 }
 
+/* Reads a member of the model, or of a law's curves, from the dataset `path`. */
+static sf_status read_field(const sf_h5 *h5, const char *path, const sf_model_field *field, void *record,
+                            sf_error *err) {
+    char *base = record;
+    void *data = NULL;
+    bool absent = field->optional && !sf_h5_exists(h5, path);
+    if (field->rows_offset == SIZE_MAX)
+        return absent ? SF_OK : read_scalar(h5, path, field->type, base + field->offset, err);
+    int64_t rows = *(const int64_t *)(base + field->rows_offset);
+    if (rows < 0 || rows > INT64_MAX / 2)
+        return SF_FAIL(err, SF_ERR_MODEL, "%s: its count" SF_OUTSIDE("%lld", "0", "%lld"), path,
+                       (long long)rows, (long long)(INT64_MAX / 2));
+    if (absent && rows == 0)
+        return SF_OK;
+    if (absent)
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "%s is missing: an older version made this model; make it anew with softfall-pre",
+                       path);
+    int64_t dims[2] = {rows + field->rows_extra, field->columns};
+    sf_status status = sf_h5_read(h5, path, field->type, field->columns > 1 ? 2 : 1, dims, &data, err);
+    *(void **)(base + field->offset) = data;
+    return status;
+}
+
 static sf_status read_curves(const sf_h5 *h5, sf_law_curves *curves, int64_t index, sf_error *err) {
-    char path[PATH_SIZE], *base = (char *)curves;
+    char path[PATH_SIZE];
     for (int k = 0; k < CURVE_FIELDS && err->status == SF_OK; k++) {
-        const curve_field *f = &curve_fields[k];
-        snprintf(path, sizeof path, "/material/%lld/%s", (long long)index, f->name);
-        if (f->rows_offset == SIZE_MAX) {
-            read_scalar(h5, path, f->type, base + f->offset, err);
-            continue;
-        }
-        int64_t rows = *(const int64_t *)(base + f->rows_offset);
-        void *data = NULL;
-        if (rows < 0 || rows > INT64_MAX / 2)
-            return SF_FAIL(err, SF_ERR_MODEL, "%s: its count" SF_OUTSIDE("%lld", "0", "%lld"), path,
-                           (long long)rows, (long long)(INT64_MAX / 2));
-        rows += f->rows_extra;
-        sf_h5_read(h5, path, f->type, 1, &rows, &data, err);
-        *(void **)(base + f->offset) = data;
+        snprintf(path, sizeof path, "/material/%lld/%s", (long long)index, curve_fields[k].path);
+        read_field(h5, path, &curve_fields[k], curves, err);
     }
     return err->status;
 }
@@ -207,32 +197,6 @@ sf_status sf_model_write(const char *path, const sf_model *model, const sf_prove
     return err->status;
 }
 
-static sf_status read_field(const sf_h5 *h5, const sf_model_field *field, sf_model *model, sf_error *err) {
-    char *base = (char *)model;
-    void *data = NULL;
-    bool absent = field->optional && !sf_h5_exists(h5, field->path);
-    if (field->rows_offset == SIZE_MAX) {
-        if (absent)
-            return SF_OK;
-        return read_scalar(h5, field->path, h5_type(field->type), base + field->offset, err);
-    }
-    int64_t rows = *(const int64_t *)(base + field->rows_offset);
-    if (rows < 0 || rows > INT64_MAX / 2)
-        return SF_FAIL(err, SF_ERR_MODEL, "%s: its count" SF_OUTSIDE("%lld", "0", "%lld"), field->path,
-                       (long long)rows, (long long)(INT64_MAX / 2));
-    if (absent && rows == 0)
-        return SF_OK;
-    if (absent)
-        return SF_FAIL(err, SF_ERR_MODEL,
-                       "%s is missing: an older version made this model; make it anew with softfall-pre",
-                       field->path);
-    int64_t dims[2] = {rows + field->rows_extra, field->columns};
-    sf_status status =
-        sf_h5_read(h5, field->path, h5_type(field->type), field->columns > 1 ? 2 : 1, dims, &data, err);
-    *(void **)(base + field->offset) = data;
-    return status;
-}
-
 sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_error *err) {
     sf_h5 *h5 = NULL;
     sf_error inner = SF_ERROR_INIT;
@@ -242,7 +206,7 @@ sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_erro
     SF_TRY(sf_h5_open(path, &h5, err));
     sf_status status = sf_provenance_check(h5, path, "softfall-model", &inner);
     for (size_t k = 0; k < count && status == SF_OK; k++)
-        status = read_field(h5, &field[k], model, &inner);
+        status = read_field(h5, field[k].path, &field[k], model, &inner);
     if (status == SF_OK)
         status = read_materials(h5, model, &inner);
     if (status == SF_OK)

@@ -103,7 +103,7 @@ static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double c
     double length = sf_material_length(material, m->spacing[critical]), sum = 0,
            start = fmin(m->run.step_limit, m->run.step_safety * first);
     sf_law_batch batch;
-    sf_material_law law;
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
     SF_TRY(sf_material_law_build(material, &law, err));
     memset(&batch, 0, sizeof batch);
     sf_material_point_stretch(batch.f, 1);
@@ -117,7 +117,6 @@ static sf_status estimate_slowdown(const sf_model *m, int64_t critical, double c
         sum += start / fmin(m->run.step_limit, m->run.step_safety * own);
     }
     *slowdown = sum / STEPS;
-    sf_material_law_free(&law);
     return SF_OK;
 }
 

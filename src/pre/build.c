@@ -109,38 +109,27 @@ static double volume_of(const sf_mesh *mesh) {
     return sum;
 }
 
-static void report_invariants(const sf_invariants *v, sf_invariants *worst) {
-    worst->unity = fmax(worst->unity, v->unity);
-    worst->linear = fmax(worst->linear, v->linear);
-    worst->volume = fmax(worst->volume, v->volume);
-    worst->telescope = fmax(worst->telescope, v->telescope);
-    worst->shape = fmax(worst->shape, v->shape);
-}
-
 /* Spacing, supports, domains and masses of a layer, whose nodes begin at number `first`; the dual's edges
  * move. `volume`: m3, of the mesh. */
 static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dual, double volume,
                              const sf_material *material, int64_t first, sf_model *m, sf_build_report *report,
                              sf_error *err) {
-    sf_domains domains = {0};
-    sf_invariants invariants;
+    SF_OWNED_BY(sf_domains_free) sf_domains domains = {0};
     int64_t n = mesh->node_count;
     double *spacing = m->spacing + first, *support = m->support + first;
     sf_cloud_spacing(mesh, dual, spacing);
     for (int64_t i = 0; i < n; i++)
         support[i] = c->support_ratio * spacing[i];
     if (sf_domain_store_build(c->store, mesh, dual, c->condition_limit, support, &domains, err) == SF_OK &&
-        sf_invariants_measure(mesh, dual, &domains, spacing, volume, &invariants, err) == SF_OK &&
-        sf_invariants_check(&invariants, err) == SF_OK) {
+        sf_invariants_measure(mesh, dual, &domains, spacing, volume, &report->invariants, err) == SF_OK &&
+        sf_invariants_check(&report->invariants, err) == SF_OK) {
         for (int64_t i = 0; i < n; i++)
             m->mass[first + i] = sf_material_density(material) * domains.volume[i];
-        report_invariants(&invariants, &report->invariants);
         domains.figures.hidden_count =
             c->layer_count > 1 ? 0 : domains.figures.hidden_count; /* report_gaps */
         report_domains(&domains.figures, &report->domains);
         take_domains(&domains, dual, first, n, m, err);
     }
-    sf_domains_free(&domains);
     return err->status;
 }
 
@@ -185,12 +174,11 @@ static sf_status build_contact(const sf_case *c, const sf_mesh *mesh, const sf_d
 
 /* Arrays over the nodes. */
 static sf_status alloc_cloud(sf_model *m, int64_t count, double **contact_area, sf_error *err) {
-    unsigned long n = (unsigned long)count;
-    m->spacing = sf_alloc(err, n, sizeof *m->spacing, "spacing");
-    m->support = sf_alloc(err, n, sizeof *m->support, "supports");
-    m->mass = sf_alloc(err, n, sizeof *m->mass, "masses");
-    m->node_material = sf_alloc(err, n, 1, "materials of the nodes");
-    *contact_area = sf_alloc(err, n, sizeof **contact_area, "areas");
+    m->spacing = sf_alloc(err, count, sizeof *m->spacing, "spacing");
+    m->support = sf_alloc(err, count, sizeof *m->support, "supports");
+    m->mass = sf_alloc(err, count, sizeof *m->mass, "masses");
+    m->node_material = sf_alloc(err, count, 1, "materials of the nodes");
+    *contact_area = sf_alloc(err, count, sizeof **contact_area, "areas");
     return err->status;
 }
 
@@ -267,10 +255,7 @@ static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const
     for (int32_t i = 0; point && list && i < (int32_t)m->node_count; i++)
         if (point[i])
             list[(*count)++] = i;
-    if (err->status == SF_OK)
-        return list;
-    free(list);
-    return NULL;
+    return sf_keep(list, err);
 }
 
 /* Likewise of the resting nodes, 1 in `rest`. */

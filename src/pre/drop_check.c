@@ -176,12 +176,13 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
     if (!sf_missile_turns(m) || !(rate * flight > 0))
         return SF_OK;
     sf_surface surface = sf_surface_of_missile(m);
-    surface.position = sf_alloc(err, 3 * surface.node_count, sizeof *surface.position, "missile's flight");
+    SF_OWNED double *position = sf_alloc(err, 3 * surface.node_count, sizeof *position, "missile's flight");
+    surface.position = position;
     card.shape = SF_SHAPE_SURFACE;
     for (int k = 1; k <= POSES && err->status == SF_OK; k++) {
         double before = flight * k / POSES, distance = 0;
         sf_error miss = SF_ERROR_INIT;
-        move_surface(m, before, surface.position);
+        move_surface(m, before, position);
         if (sf_missile_distance(&surface, &card, m->position, m->contact_count, m->contact_node, &distance,
                                 &miss) == SF_OK &&
             distance < -TOUCHING * m->thickness)
@@ -191,7 +192,6 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
                       "it first touches the pad",
                       -1e3 * distance, 1e3 * before);
     }
-    free(surface.position);
     return err->status;
 }
 

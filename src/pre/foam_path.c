@@ -66,10 +66,8 @@ static void find_centroid(const sf_model *m, const triangle *t, double out[3]) {
 
 /* The cosine between the triangle's outward normal and the missile's direction. */
 static double facing(const sf_model *m, const triangle *t) {
-    const double *x[3];
     double normal[3];
-    sf_corners(m->position, t->node, x);
-    sf_triangle_normal(x[0], x[1], x[2], normal);
+    sf_face_normal(m->position, t->node, normal);
     return sf_dot3(normal, m->missile.direction) / sqrt(sf_dot3(normal, normal));
 }
 

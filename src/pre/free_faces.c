@@ -316,8 +316,7 @@ void sf_membrane_weigh(sf_model *m) {
     for (int64_t t = 0; t < m->membrane_count; t++) {
         const int32_t *node = &m->membrane_triangle[3 * t];
         double normal[3];
-        sf_triangle_normal(&m->position[3 * (int64_t)node[0]], &m->position[3 * (int64_t)node[1]],
-                           &m->position[3 * (int64_t)node[2]], normal);
+        sf_face_normal(m->position, node, normal);
         for (int k = 0; k < 3; k++)
             m->mass[node[k]] += area * m->membrane_share[t] * sqrt(sf_dot3(normal, normal)) / 6;
     }

@@ -19,10 +19,6 @@ typedef struct body_list {
 
 /* [cell_count] the lowest cell of each one's body; owned by the caller. */
 static int64_t *join_cells(const sf_model *m, sf_error *err) {
-    const sf_mesh cells = {.cell_count = m->cell_count,
-                           .cell_type = m->cell_type,
-                           .cell_ptr = m->cell_ptr,
-                           .cell_node = m->cell_node};
     int64_t count = 0;
     SF_OWNED sf_cell_face *face = NULL;
     SF_OWNED int64_t *place = sf_sets_alone(m->node_count, "parts of the pad", err);
@@ -30,17 +26,15 @@ static int64_t *join_cells(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; place && k < m->tie_count; k++)
         if (m->tie_mask[k] == ALL)
             sf_sets_join(place, m->tie_node[k], m->tie_other[k]);
-    if (place && parent && (face = sf_mesh_faces(&cells, place, &count, err))) {
+    if (place && parent &&
+        (face = sf_cell_faces(&SF_CELLS_OF(m), place, sf_cell_face_compare, &count, err))) {
         for (int64_t k = 1; k < count; k++)
             if (memcmp(face[k].key, face[k - 1].key, sizeof face[k].key) == 0)
                 sf_sets_join(parent, face[k].cell, face[k - 1].cell);
         for (int64_t c = 0; c < m->cell_count; c++)
             parent[c] = sf_sets_find(parent, c);
     }
-    if (err->status == SF_OK)
-        return parent;
-    free(parent);
-    return NULL;
+    return sf_keep(parent, err);
 }
 
 /* Bodies in the order of their first nodes; b->cell holds the lowest cells and becomes the numbers. `number`
@@ -67,10 +61,9 @@ static void number_bodies(const sf_model *m, int32_t *number, body_list *b) {
 }
 
 static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
-    unsigned long cells = (unsigned long)m->cell_count;
-    SF_OWNED int32_t *number = sf_alloc(err, cells, sizeof *number, "parts of the pad");
+    SF_OWNED int32_t *number = sf_alloc(err, m->cell_count, sizeof *number, "parts of the pad");
     b->node = sf_alloc(err, m->node_count, sizeof *b->node, "parts of the pad");
-    b->first = sf_alloc(err, cells, sizeof *b->first, "parts of the pad");
+    b->first = sf_alloc(err, m->cell_count, sizeof *b->first, "parts of the pad");
     if (err->status == SF_OK && (b->cell = join_cells(m, err)))
         number_bodies(m, number, b);
     return err->status;
@@ -395,8 +388,7 @@ sf_status sf_hold_warn_apart(const sf_model *m, const sf_sink *sink, sf_error *e
     SF_TRY(err->status);
     int64_t apart = 0, first = 0;
     for (int64_t k = 0; k <= b.count; k++)
-        for (int r = 0; r < 3; r++)
-            body[k].high[r] = -(body[k].low[r] = INFINITY);
+        sf_box3(0, NULL, body[k].low, body[k].high);
     for (int64_t i = 0; i < m->node_count; i++)
         widen(&body[b.node[i]], &m->position[3 * i], m->missile.direction, 0);
     for (int64_t i = 0; i < m->surface_node_count; i++)

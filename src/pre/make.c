@@ -53,7 +53,7 @@ static sf_status read_supports(sf_gmsh *session, const sf_case *c, sf_mesh *mesh
 static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
                                sf_surface support[SF_SUPPORTS], char libraries[SF_LIBRARIES_SIZE],
                                const sf_sink *sink, sf_error *err) {
-    sf_gmsh *session = NULL;
+    SF_OWNED_BY(sf_gmsh_end) sf_gmsh *session = NULL;
     if (sf_gmsh_begin(&session, err) == SF_OK) {
         session->store = c->store;
         session->limits = (sf_mesher_limits){c->mesh_time_limit, sink};
@@ -71,7 +71,6 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
         SF_NO_MEMORY(err, "the files of a geometry");
     if (session)
         snprintf(libraries, SF_LIBRARIES_SIZE, "gmsh %s, HDF5 %s", session->version, sf_h5_version());
-    sf_gmsh_end(&session);
     return err->status;
 }
 

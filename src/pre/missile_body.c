@@ -234,15 +234,10 @@ static bool has_bottom(const sf_missile_card *card) {
 }
 
 static void find_box(const sf_surface *s, double most, double low[3], double high[3]) {
-    for (int c = 0; c < 3; c++) {
-        low[c] = INFINITY;
-        high[c] = -INFINITY;
-    }
+    sf_box3(0, NULL, low, high);
     for (int64_t k = 0; k < s->node_count; k++)
-        for (int c = 0; c < 3 && s->position[3 * k + 2] <= most; c++) {
-            low[c] = fmin(low[c], s->position[3 * k + c]);
-            high[c] = fmax(high[c], s->position[3 * k + c]);
-        }
+        if (s->position[3 * k + 2] <= most)
+            sf_box3_add(&s->position[3 * k], low, high);
 }
 
 /* Area centroid, in x and y, of the triangles that lie at the bottom; false: there is none. */

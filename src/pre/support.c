@@ -2,16 +2,15 @@
 #include "pre/steps.h"
 
 #include "base/mat3.h"
+#include "base/text.h"
 
 const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {
     const sf_node_set *set = sf_mesh_find_set(mesh, name);
     if (set)
         return set;
     char known[512] = "";
-    size_t used = 0;
-    for (int k = 0; k < mesh->set_count && used < sizeof known; k++)
-        used +=
-            (size_t)snprintf(known + used, sizeof known - used, "%s\"%s\"", k ? ", " : "", mesh->set[k].name);
+    for (int k = 0; k < mesh->set_count; k++)
+        sf_text_add(known, sizeof known, "%s\"%s\"", k ? ", " : "", mesh->set[k].name);
     SF_REFUSE(err, "%s names the surface group \"%s\", which the pad does not have; it has %s", key, name,
               mesh->set_count ? known : "none");
     return NULL;
@@ -249,7 +248,7 @@ static const double *corner(const triangles *s, int64_t t, int k) {
 
 /* Normal of a triangle, of twice its area; to its unit vector with `unit`. */
 static void find_normal(const triangles *s, int64_t t, bool unit, double out[3]) {
-    sf_triangle_normal(corner(s, t, 0), corner(s, t, 1), corner(s, t, 2), out);
+    sf_face_normal(s->position, &s->node[3 * t], out);
     if (unit)
         sf_unit3(out);
 }

@@ -17,7 +17,7 @@ static const sf_option known[] = {
     {"group", 'g', "GROUP", "simulate the drops of this group that are not there",
      .member = offsetof(options, group)},
     {"threads", 't', "N", "drops side by side, one thread each (default 1)",
-     .member = offsetof(options, threads), .read = sf_program_read_threads},
+     .member = offsetof(options, threads), .low = 1, .high = SF_MOST_THREADS},
     {0},
 };
 

@@ -42,10 +42,10 @@ static sf_status read_override(const char *option, const char *text, void *value
     return SF_OK;
 }
 
-static sf_status parse_height(const sf_units *units, const char *option, const char *text, double *height,
-                              sf_error *err) {
+static sf_status read_height(const char *option, const char *text, void *value, sf_error *err) {
+    double *height = value;
     sf_error reason = SF_ERROR_INIT;
-    if (sf_units_parse(units, text, SF_LENGTH, height, &reason) != SF_OK)
+    if (sf_units_read(text, SF_LENGTH, height, &reason) != SF_OK)
         return SF_FAIL(err, reason.status, "%s: %.900s", option, reason.text);
     if (!(*height >= LOWEST_HEIGHT && *height <= GREATEST_HEIGHT))
         return SF_REFUSE(err, "%s: the drop height" SF_OUTSIDE("%s", "1 cm", "%g m"), option, text,
@@ -53,22 +53,19 @@ static sf_status parse_height(const sf_units *units, const char *option, const c
     return SF_OK;
 }
 
-static sf_status read_height(const char *option, const char *text, void *height, sf_error *err) {
-    sf_units *units = NULL;
-    if (sf_units_open(&units, err) == SF_OK)
-        parse_height(units, option, text, height, err);
-    sf_units_close(&units);
-    return err->status;
-}
-
-static sf_status parse_list(const sf_units *units, const char *option, char *list, options *o,
-                            sf_error *err) {
+static sf_status read_heights(const char *option, const char *text, void *values, sf_error *err) {
+    options *o = values;
+    SF_OWNED char *copy = strdup(text);
+    char *list = copy;
     const char *item;
+    o->list_count = 0;
+    if (!copy)
+        SF_NO_MEMORY(err, "%s", option);
     while (err->status == SF_OK && (item = strsep(&list, ",")) != NULL) {
         if (o->list_count == SF_CFH_MAX_POINTS)
             return SF_REFUSE(err, "%s: %d heights" SF_AT_MOST("%d"), option, SF_CFH_MAX_POINTS + 1,
                              SF_CFH_MAX_POINTS);
-        parse_height(units, option, item + strspn(item, " \t"), &o->list[o->list_count++], err);
+        read_height(option, item + strspn(item, " \t"), &o->list[o->list_count++], err);
     }
     if (err->status == SF_OK && o->list_count < SF_CFH_MIN_POINTS)
         SF_REFUSE(err, "%s: %d heights" SF_AT_LEAST("%d"), option, o->list_count, SF_CFH_MIN_POINTS);
@@ -77,23 +74,6 @@ static sf_status parse_list(const sf_units *units, const char *option, char *lis
         if (o->list[k] < o->list[k - 1] * (1 + 1e-6))
             SF_REFUSE(err, "%s: %g m is given twice", option, o->list[k]);
     return err->status;
-}
-
-static sf_status read_heights(const char *option, const char *text, void *values, sf_error *err) {
-    options *o = values;
-    sf_units *units = NULL;
-    SF_OWNED char *copy = strdup(text);
-    o->list_count = 0;
-    if (!copy)
-        SF_NO_MEMORY(err, "%s", option);
-    else if (sf_units_open(&units, err) == SF_OK)
-        parse_list(units, option, copy, o, err);
-    sf_units_close(&units);
-    return err->status;
-}
-
-static sf_status read_checks(const char *option, const char *text, void *checks, sf_error *err) {
-    return sf_program_read_whole(option, text, 0, SF_CFH_CHECKS, checks, err);
 }
 
 /* Refuses options that contradict each other. */
@@ -134,7 +114,7 @@ static const sf_option known[] = {
      "draws of the foam, draw-001.cfg ..., as softfall-fit drop writes them: gives the interval of the height",
      .member = AT(posterior), .group = 4},
     {"check-drops", 0, "N", "simulate N of the draws to check the columns that stand for them (default 5)",
-     .member = AT(checks), .read = read_checks, .group = 4, .noted = AT(checks_given)},
+     .member = AT(checks), .high = SF_CFH_CHECKS, .group = 4, .noted = AT(checks_given)},
     {0},
 };
 
@@ -277,9 +257,8 @@ static sf_status find_interval(sf_study *study, const setting *s, const sf_cfh_s
         return SF_OK;
     }
     omp_set_num_threads(study->threads);
-    printf("%d draws of %s as columns, then at most %d of them simulated\n", s->draws.count, o->posterior,
-           o->checks);
-    fflush(stdout);
+    sf_log_print(stdout, "%d draws of %s as columns, then at most %d of them simulated\n", s->draws.count,
+                 o->posterior, o->checks);
     if (sf_cfh_spread_build(series->pad, &s->draws, &s->law, report->points, report->result,
                             report->plan->limit, spread, &problem) == SF_ERR_NUMERIC) {
         snprintf(report->no_interval, sizeof report->no_interval, "%s", problem.text);
@@ -306,10 +285,9 @@ static sf_status simulate(sf_study *study, const setting *s, sf_cfh_report *repo
     sf_cfh_pad pad = {.mesh_error = NAN};
     const sf_cfh_series series = {report->plan, report->rig, &base, report->foams,
                                   o->posterior ? &pad : NULL};
-    printf("%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
-           o->list_count ? o->list_count : SF_CFH_MAX_POINTS, study->runs,
-           report->rig->pairs ? "on the rig" : "of free fall");
-    fflush(stdout);
+    sf_log_print(stdout, "%s %d drops, kept in %s; heights %s\n", o->list_count ? "The" : "At most",
+                 o->list_count ? o->list_count : SF_CFH_MAX_POINTS, study->runs,
+                 report->rig->pairs ? "on the rig" : "of free fall");
     SF_TRY(sf_cfh_simulate(&series, &study->runner, points, &report->ending, err));
     sf_cfh_evaluate(points, report->plan->limit, result);
     return find_interval(study, s, &series, report, spread, err);

@@ -124,7 +124,7 @@ typedef struct options {
 
 static const sf_option list[] = {
     {"threads", 't', "N", "OpenMP threads of softfall-solve (default: all processors, or OMP_NUM_THREADS)",
-     .member = offsetof(options, threads), .read = sf_program_read_threads},
+     .member = offsetof(options, threads), .low = 1, .high = SF_MOST_THREADS},
     {"script", 0, "FILE", "do what the lines of FILE say, as a user would (docs/window.md)",
      .member = offsetof(options, script)},
     {0},

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-new DIR [--from EXAMPLE]: a case in a folder of its own. */
 #include "base/program.h"
+#include "base/text.h"
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "study/case_folder.h"
@@ -20,8 +21,7 @@ typedef struct example_list {
 } example_list;
 
 static void free_examples(example_list *e) {
-    for (int k = 0; k < e->count; k++)
-        free(e->entry[k]);
+    sf_free_all((size_t)e->count, e->entry);
     SF_FREE(e->entry, e->folder);
 }
 
@@ -69,11 +69,10 @@ static sf_status print_examples(const example_list *e, sf_error *err) {
 static sf_status find_case(const example_list *e, const char *name, char path[PATH_MAX], sf_error *err) {
     char names[700] = "";
     for (int k = 0; k < e->count; k++) {
-        size_t used = strlen(names);
         write_path(e, k, path);
         if (strcmp(e->entry[k]->d_name, name) == 0)
             return SF_OK;
-        snprintf(names + used, sizeof names - used, "%s%s", k ? ", " : "", e->entry[k]->d_name);
+        sf_text_add(names, sizeof names, "%s%s", k ? ", " : "", e->entry[k]->d_name);
     }
     return SF_REFUSE(err, "unknown example \"%.80s\"; the examples are %s", name, names);
 }

@@ -29,11 +29,8 @@ typedef struct options {
 /* A positive time with its unit. */
 static sf_status read_time(const char *option, const char *text, void *time, sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
-    sf_units *units = NULL;
-    if (sf_units_open(&units, &inner) == SF_OK &&
-        sf_units_parse(units, text, SF_TIME, time, &inner) == SF_OK && !(*(double *)time > 0))
+    if (sf_units_read(text, SF_TIME, time, &inner) == SF_OK && !(*(double *)time > 0))
         SF_REFUSE(&inner, "\"%s\"" SF_NOT_ABOVE_0, text);
-    sf_units_close(&units);
     return inner.status != SF_OK ? SF_FAIL(err, inner.status, "%s: %s", option, inner.text) : SF_OK;
 }
 
@@ -47,7 +44,7 @@ static sf_status read_on_failure(const char *option, const char *text, void *rem
 static const sf_option list[] = {
     {"output", 'o', "RESULTS", "results file to write (HDF5)", .member = offsetof(options, output)},
     {"threads", 't', "N", "OpenMP threads (default: all processors, or OMP_NUM_THREADS)",
-     .member = offsetof(options, threads), .read = sf_program_read_threads},
+     .member = offsetof(options, threads), .low = 1, .high = SF_MOST_THREADS},
     {"force", 'f', NULL, "replace an existing results file", .member = offsetof(options, force)},
     {"restart", 0, "RESULTS",
      "resume RESULTS from RESULTS.restart, bit for bit as if uninterrupted; MODEL only if it has been moved",

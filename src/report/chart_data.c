@@ -27,8 +27,7 @@ sf_chart *sf_chart_new(const char *name, int width, int height, sf_error *err) {
 }
 
 static void free_axis(sf_axis *axis) {
-    for (int k = 0; k < axis->word_count; k++)
-        free(axis->word[k]);
+    sf_free_all((size_t)axis->word_count, axis->word);
     free(axis->word);
 }
 
@@ -38,8 +37,7 @@ void sf_chart_free(sf_chart *chart) {
     for (size_t k = 0; k < chart->panel_count; k++) {
         sf_chart_panel_data *p = chart->panel[k];
         for (size_t s = 0; s < p->series_count; s++) {
-            for (size_t i = 0; p->series[s]->text && i < p->series[s]->count; i++)
-                free(p->series[s]->text[i]);
+            sf_free_all(p->series[s]->count, p->series[s]->text);
             SF_FREE(p->series[s]->text, p->series[s]->value, p->series[s]);
         }
         SF_FREE(p->series, p->mark);

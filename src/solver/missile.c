@@ -3,10 +3,6 @@
 
 #include "base/mat3.h"
 
-double sf_missile_free_fall(const sf_model *m) {
-    return sf_flight_pull(&m->missile);
-}
-
 static double mobility(const sf_model *m) {
     return sf_missile_is_driven(m) ? 0 : sf_model_whole(m) / m->missile.mass;
 }
@@ -46,7 +42,7 @@ static void begin_turning(const sf_model *m, sf_missile *missile) {
     if (flight > 0)
         sf_flight_displacement(card, flight, missile->translation);
     sf_flight_orientation(card, flight, missile->quaternion);
-    sf_rigid_momentum(card->inertia, card->angular_velocity, missile->spin);
+    sf_rigid_product(card->inertia, card->angular_velocity, missile->spin);
     memcpy(missile->spin_now, missile->spin, sizeof missile->spin);
     missile->radius = find_radius(m);
     missile->lowest = find_lowest(m, card->centre, identity);
@@ -188,14 +184,10 @@ sf_missile_response sf_missile_predict(const sf_model *m, const sf_missile *miss
     double dt_v = 0.5 * (dt_old + dt);
     sf_missile_response response = {.direction = m->missile.direction, .mobility = mobility(m)};
     response.travel = sf_missile_is_driven(m) ? sf_motion_displacement(m, time + dt) - missile->displacement
-                                              : dt * (missile->velocity + dt_v * sf_missile_free_fall(m));
+                                              : dt * (missile->velocity + dt_v * sf_flight_pull(&m->missile));
     if (sf_missile_turns(m))
         predict_turning(m, missile, dt, dt_v, &response);
     return response;
-}
-
-static void response_arm(const sf_missile_response *response, const double x[3], double arm[3]) {
-    sf_sub3(x, response->centre, arm);
 }
 
 void sf_missile_free_motion(const sf_missile_response *response, const double x[3], double out[3]) {
@@ -205,7 +197,7 @@ void sf_missile_free_motion(const sf_missile_response *response, const double x[
         scale(response->travel, response->direction, out);
         return;
     }
-    response_arm(response, x, arm);
+    sf_sub3(x, response->centre, arm);
     sf_rotation_advance(upright, response->turn, turn);
     sf_rotate(turn, arm, after);
     for (int r = 0; r < 3; r++)
@@ -236,7 +228,7 @@ bool sf_missile_gap_ahead(const sf_model *m, const sf_missile *missile, const sf
 
 static void load_turning(sf_missile_response *response, const double x[3], const double force[3]) {
     double arm[3], moment[3];
-    response_arm(response, x, arm);
+    sf_sub3(x, response->centre, arm);
     sf_cross3(arm, force, moment);
     for (int r = 0; r < 3; r++) {
         response->force[r] += force[r];
@@ -267,7 +259,7 @@ void sf_missile_recoil(const sf_missile_response *response, const double x[3], d
         scale(response->mobility * response->load, response->direction, out);
         return;
     }
-    response_arm(response, x, arm);
+    sf_sub3(x, response->centre, arm);
     sf_rigid_product(response->angular, response->moment, angular);
     sf_cross3(angular, arm, out);
     for (int r = 0; r < 3; r++)
@@ -280,7 +272,7 @@ double sf_missile_mobility(const sf_missile_response *response, const double x[3
         double lean = sf_dot3(n, response->direction);
         return response->mobility * lean * lean;
     }
-    response_arm(response, x, arm);
+    sf_sub3(x, response->centre, arm);
     sf_cross3(arm, n, lever);
     sf_rigid_product(response->angular, lever, angular);
     return response->mobility + sf_dot3(lever, angular);
@@ -290,7 +282,7 @@ double sf_missile_looseness(const sf_missile_response *response, const double x[
     double arm[3];
     if (!response->turns)
         return 0;
-    response_arm(response, x, arm);
+    sf_sub3(x, response->centre, arm);
     return response->mobility + sf_dot3(arm, arm) * sf_sym3_largest(response->angular);
 }
 
@@ -335,7 +327,7 @@ void sf_missile_accelerate(const sf_model *m, sf_missile *missile) {
     missile->acceleration =
         sf_missile_is_driven(m)
             ? 0
-            : sf_missile_free_fall(m) + mobility(m) * sf_dot3(missile->force, m->missile.direction);
+            : sf_flight_pull(&m->missile) + mobility(m) * sf_dot3(missile->force, m->missile.direction);
     double gravity[3];
     sf_flight_gravity(&m->missile, gravity);
     for (int r = 0; r < 3 && sf_missile_turns(m); r++)
@@ -393,7 +385,7 @@ double sf_missile_mass(const sf_model *m) {
 }
 
 double sf_missile_weight(const sf_model *m) {
-    return sf_missile_mass(m) * sf_missile_free_fall(m);
+    return sf_missile_mass(m) * sf_flight_pull(&m->missile);
 }
 
 double sf_missile_along(const sf_model *m, const double vector[3]) {
@@ -474,15 +466,11 @@ double sf_missile_contact_force(const sf_model *m, const sf_missile *missile) {
     return -sf_missile_along(m, missile->force);
 }
 
-static double lowest_now(const sf_model *m, const sf_missile *missile) {
+double sf_missile_depth(const sf_model *m, const sf_missile *missile) {
     double centre[3];
     find_centre(m, missile, centre);
-    return find_lowest(m, centre, missile->quaternion);
-}
-
-double sf_missile_depth(const sf_model *m, const sf_missile *missile) {
     if (sf_missile_turns(m))
-        return missile->lowest - lowest_now(m, missile) - m->missile.clearance;
+        return missile->lowest - find_lowest(m, centre, missile->quaternion) - m->missile.clearance;
     return sf_missile_card_depth(&m->missile, missile->displacement);
 }
 

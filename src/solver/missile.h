@@ -155,8 +155,6 @@ double sf_missile_gravity_work(const sf_model *model, const sf_missile *missile)
 /* Work (J), in the last step, of a force (N) at the missile's material point at x. */
 double sf_missile_work(const sf_model *model, const sf_missile *missile, const double x[3],
                        const double force[3]);
-/* Acceleration (m s-2) in free flight, along. */
-double sf_missile_free_fall(const sf_model *model);
 /* Specific force (m s-2) against the direction, the force of the pad over the mass: the reading of an
  * accelerometer in the missile, 0 in free flight. 0 of a driven missile. */
 double sf_missile_reading(const sf_model *model, const sf_missile *missile);

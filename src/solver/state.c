@@ -119,13 +119,12 @@ static sf_status start_driven(const sf_model *m, sf_state *s, sf_error *err) {
         mass += m->mass[i];
     for (int64_t k = 0; k < m->material_count; k++) {
         double part = 0;
-        sf_material_law law;
+        SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
         SF_TRY(sf_material_law_build(&m->material[k], &law, err));
         for (int64_t i = 0; i < m->node_count; i++)
             part += m->node_material[i] == k ? m->mass[i] : 0;
         work += LEAST_WORK * law.law->energy(law.numbers, depth / m->thickness) * part /
                 sf_material_density(&m->material[k]);
-        sf_material_law_free(&law);
     }
     s->ledger.reference = 0.5 * mass * motion.speed * motion.speed + work;
     s->ledger.momentum_reference = mass * motion.speed;

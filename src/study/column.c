@@ -6,19 +6,16 @@
 enum { PARTS = 4 }; /* a triangle is cut into PARTS^2, so that large ones spread over the gaps they have */
 
 typedef struct outline {
-    double low[2], high[2]; /* m, of the pad from above */
+    double low[3], high[3]; /* m, of the pad */
     double lowest;          /* m, z of the missile's lowest point */
 } outline;
 
 static outline find_outline(const sf_results *r) {
-    outline o = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY};
-    for (int64_t i = 0; i < r->node_count; i++)
-        for (int c = 0; c < 2; c++) {
-            o.low[c] = fmin(o.low[c], r->position[3 * i + c]);
-            o.high[c] = fmax(o.high[c], r->position[3 * i + c]);
-        }
-    for (int64_t i = 0; i < r->surface_node_count; i++)
-        o.lowest = fmin(o.lowest, r->surface_position[3 * i + 2]);
+    outline o;
+    double low[3], high[3];
+    sf_box3(r->node_count, r->position, o.low, o.high);
+    sf_box3(r->surface_node_count, r->surface_position, low, high);
+    o.lowest = low[2];
     return o;
 }
 
@@ -165,19 +162,10 @@ static double end_of_contact(flight *f, double dt) {
     return f->time - (above > 0 ? fmin(dt, above / -f->speed) : 0.5 * dt);
 }
 
-/* Room for one more point. */
-static sf_status put_point(const flight *f, int64_t *room, sf_series *curve, sf_error *err) {
-    if (curve->count == *room) {
-        sf_series more;
-        int64_t n = curve->count;
-        SF_TRY(sf_series_create(2 * n, &more, err));
-        memcpy(more.time, curve->time, (size_t)n * sizeof *more.time);
-        memcpy(more.value, curve->value, (size_t)n * sizeof *more.value);
-        sf_series_free(curve);
-        *curve = more;
-        *room = 2 * n;
-        curve->count = n;
-    }
+static sf_status put_point(const flight *f, sf_series *curve, sf_error *err) {
+    size_t n = (size_t)curve->count;
+    if (!sf_grow(&curve->time, n, sizeof *curve->time) || !sf_grow(&curve->value, n, sizeof *curve->value))
+        return SF_NO_MEMORY(err, "a curve");
     curve->time[curve->count] = f->time;
     curve->value[curve->count++] = f->force / f->columns->mass / SF_STANDARD_GRAVITY;
     return SF_OK;
@@ -193,11 +181,11 @@ void sf_columns_scale(const sf_columns_figures *f, double y[SF_COLUMNS_LOGARITHM
 }
 
 /* A drop on the points as they are. */
-static sf_status drop(flight *f, int64_t *room, sf_series *curve, sf_columns_figures *out, sf_error *err) {
+static sf_status drop(flight *f, sf_series *curve, sf_columns_figures *out, sf_error *err) {
     flight before;
     out->v_rebound = out->contact_time = NAN;
     curve->count = 0;
-    while (put_point(f, room, curve, err) == SF_OK && !has_left(f) && f->time < LONGEST) {
+    while (put_point(f, curve, err) == SF_OK && !has_left(f) && f->time < LONGEST) {
         if (f->speed < 0)
             before = *f;
         SF_TRY(advance(f, err));
@@ -214,9 +202,8 @@ sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law,
                           sf_columns_figures *out, sf_error *err) {
     const flight start = {.columns = columns, .law = law, .speed = columns->speed, .step = FIRST_STEP};
     flight f = start;
-    int64_t room = 512;
-    SF_TRY(sf_series_create(room, curve, err));
-    for (int k = 0; k < columns->before && drop(&f, &room, curve, out, err) == SF_OK; k++) {
+    *curve = (sf_series){0};
+    for (int k = 0; k < columns->before && drop(&f, curve, out, err) == SF_OK; k++) {
         flight next = start;
         for (int c = 0; c < columns->count; c++) {
             next.point[c] = f.point[c];
@@ -224,7 +211,7 @@ sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law,
         }
         f = next;
     }
-    if (err->status != SF_OK || drop(&f, &room, curve, out, err) != SF_OK)
+    if (err->status != SF_OK || drop(&f, curve, out, err) != SF_OK)
         sf_series_free(curve);
     return err->status;
 }

@@ -185,11 +185,10 @@ const sf_geo_source *sf_campaign_geometry(const sf_case *c, int k) {
 
 char *sf_campaign_geometry_list(const char *path, const char *text) {
     sf_error none = SF_ERROR_INIT;
-    sf_h5 *file = NULL;
+    SF_OWNED_BY(sf_h5_drop) sf_h5 *file = NULL;
     char *files = NULL;
     if (sf_h5_open(path, &file, &none) == SF_OK && sf_h5_exists(file, text))
         sf_h5_read_text(file, text, &files, &none);
-    sf_h5_close(&file, &none);
     return files;
 }
 
@@ -274,13 +273,12 @@ static bool is_recorded(const sf_run_folder *at) {
 
 static bool is_drop_finished(const sf_run_folder *at) {
     sf_error none = SF_ERROR_INIT;
-    sf_results r;
+    SF_OWNED_BY(sf_results_close) sf_results r = {0};
     if (is_recorded(at))
         return true;
     if (access(at->results, R_OK) != 0 || sf_results_open(at->results, &r, &none) != SF_OK)
         return false;
     bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;
-    sf_results_close(&r);
     return finished && is_geometry_same(at, at->results, "/provenance/model/geometry_files", false);
 }
 

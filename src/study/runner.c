@@ -134,9 +134,8 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
 /* By the process that simulated the drop, so that nobody reads the results of many drops one by one. */
 static void record(const sf_run_folder *at) {
     sf_error none = SF_ERROR_INIT;
-    sf_runner_result result = {0};
-    if (sf_runner_read(at, false, &result, &none) == SF_OK)
-        sf_runner_result_free(&result);
+    SF_OWNED_BY(sf_runner_result_free) sf_runner_result result = {0};
+    sf_runner_read(at, false, &result, &none);
 }
 
 static sf_status simulate(void *context, int index, sf_error *err) {
@@ -235,9 +234,9 @@ static int count_abreast(const sf_runner *runner, int pending) {
 /* The time that is left at the pace so far. */
 static void tell_pace(const batch *b, int ended) {
     double spent = sf_process_now() - b->start, left = spent / ended * (b->pending_count - ended);
-    fprintf(b->runner->log, "  %d of %d drops, %d failed, %.3g drops per hour, %d h %02d min to go\n", ended,
-            b->pending_count, b->failed, 3600 * ended / spent, (int)(left / 3600), (int)fmod(left / 60, 60));
-    fflush(b->runner->log);
+    sf_log_print(b->runner->log, "  %d of %d drops, %d failed, %.3g drops per hour, %d h %02d min to go\n",
+                 ended, b->pending_count, b->failed, 3600 * ended / spent, (int)(left / 3600),
+                 (int)fmod(left / 60, 60));
 }
 
 /* A line every ten seconds. */
@@ -348,11 +347,8 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
             if (k == 0 || strcmp(m.run[k].group, m.run[k - 1].group) != 0)
                 sf_folder_remove_file(outcome);
         }
-        if (runner->log) {
-            fprintf(runner->log, "  %d drops in jobs of %d by snakemake; its words are in %s\n",
-                    b->pending_count, size, log);
-            fflush(runner->log);
-        }
+        sf_log_print(runner->log, "  %d drops in jobs of %d by snakemake; its words are in %s\n",
+                     b->pending_count, size, log);
         elsewhere watched = {b, &m, path};
         b->start = sf_process_now();
         stat(log, &before);
@@ -391,20 +387,17 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
     sf_run_counted_text(r->drops, at.counted, result->counted, sizeof result->counted);
     result->reused = r->reused;
     *(r->reused ? &runner->reused : &runner->simulated) += 1;
-    if (runner->log) {
-        fprintf(runner->log, "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s%s%s\n",
-                drop->label, result->v0, result->a_max_g, result->hic, result->max_local_strain,
-                *result->counted ? "  " : "", result->counted, result->reused ? "  (was there)" : "");
-        fflush(runner->log);
-    }
+    sf_log_print(runner->log,
+                 "  %-24s %7.4g m/s  a_max %7.2f g  HIC %7.1f  largest local strain %.3f%s%s%s\n",
+                 drop->label, result->v0, result->a_max_g, result->hic, result->max_local_strain,
+                 *result->counted ? "  " : "", result->counted, result->reused ? "  (was there)" : "");
     return SF_OK;
 }
 
 /* `b` holds runner, count and drop; its requests are the caller's to free. */
 static sf_status run_held(batch *b, sf_error *failure, sf_error *err) {
-    unsigned long n = (unsigned long)b->count;
-    b->request = sf_alloc(err, n, sizeof *b->request, "drops");
-    b->pending = sf_alloc(err, n, sizeof *b->pending, "drops");
+    b->request = sf_alloc(err, b->count, sizeof *b->request, "drops");
+    b->pending = sf_alloc(err, b->count, sizeof *b->pending, "drops");
     for (int k = 0; k < b->count; k++)
         failure[k] = (sf_error)SF_ERROR_INIT;
     if (err->status == SF_OK)
@@ -426,25 +419,19 @@ static sf_status run_held(batch *b, sf_error *failure, sf_error *err) {
     return err->status;
 }
 
-static sf_status run_batch(batch *b, sf_error *failure, sf_error *err) {
-    if (sf_units_hold(err) == SF_OK) {
-        run_held(b, failure, err);
-        sf_units_let_go();
-    }
-    free(b->pending);
-    return err->status;
-}
-
 sf_status sf_runner_run_each(sf_runner *runner, int count, const sf_runner_drop *drop,
                              sf_runner_result *result, sf_error *failure, sf_error *err) {
     batch b = {.runner = runner, .count = count, .drop = drop};
     if (result)
         memset(result, 0, (size_t)count * sizeof *result);
-    run_batch(&b, failure, err);
+    if (sf_units_hold(err) == SF_OK) {
+        run_held(&b, failure, err);
+        sf_units_let_go();
+    }
     for (int k = 0; k < count && result && err->status == SF_OK; k++)
         if (failure[k].status == SF_OK)
             take_result(runner, &drop[k], &b.request[k], &result[k], &failure[k]);
-    free(b.request);
+    SF_FREE(b.request, b.pending);
     return err->status;
 }
 

@@ -10,14 +10,6 @@
 
 enum { LAST_GROUP = 9 };
 
-static sf_status read_per_job(const char *option, const char *text, void *per_job, sf_error *err) {
-    return sf_program_read_whole(option, text, 1, 100000, per_job, err);
-}
-
-static sf_status read_jobs(const char *option, const char *text, void *jobs, sf_error *err) {
-    return sf_program_read_whole(option, text, 1, SF_PROCESS_JOBS, jobs, err);
-}
-
 static const sf_option common[] = {
     {"output", 'o', "DIR", "write everything there (required); drops stay in DIR/runs",
      .member = offsetof(sf_study, directory)},
@@ -29,11 +21,11 @@ static const sf_option common[] = {
 
 static const sf_option batches[] = {
     {"threads", 't', "N", "threads of all drops together (default: every processor, or OMP_NUM_THREADS)",
-     .member = offsetof(sf_study, threads), .read = sf_program_read_threads, .group = LAST_GROUP},
+     .member = offsetof(sf_study, threads), .low = 1, .high = SF_MOST_THREADS, .group = LAST_GROUP},
     {"jobs", 'j', "N",
      "drops side by side, 64 at most, each with at least one thread (default: as many as threads); the same "
      "results",
-     .member = offsetof(sf_study, jobs), .read = read_jobs, .group = LAST_GROUP},
+     .member = offsetof(sf_study, jobs), .low = 1, .high = SF_PROCESS_JOBS, .group = LAST_GROUP},
     {"engine", 0, "NAME", "what runs the drops: local (default) or snakemake",
      .member = offsetof(sf_study, engine.name), .group = LAST_GROUP},
     {"profile", 0, "PROFILE",
@@ -42,7 +34,7 @@ static const sf_option batches[] = {
     {"per-job", 0, "N",
      "with --engine snakemake: drops of a job (default 1; of softfall-sweep as many as take three minutes, "
      "within bounds)",
-     .member = offsetof(sf_study, engine.per_job), .read = read_per_job, .group = LAST_GROUP},
+     .member = offsetof(sf_study, engine.per_job), .low = 1, .high = 100000, .group = LAST_GROUP},
     {"retry", 0, NULL, "simulate drops again that failed earlier", .member = offsetof(sf_study, engine.retry),
      .group = LAST_GROUP},
     {0},
@@ -121,8 +113,7 @@ void sf_study_close(const sf_study *s, const char *files, const char *warning) {
     if (s->runner.folder)
         printf("%lld drops simulated, %lld were there\n", (long long)s->runner.simulated,
                (long long)s->runner.reused);
-    printf("Written: %s/%s\n", s->directory, files);
-    fflush(stdout);
+    sf_log_print(stdout, "Written: %s/%s\n", s->directory, files);
     if (*warning)
         sf_sink_tell(&s->sink, SF_WARNING, "%s", warning);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/figures.h"
 
+#include "base/text.h"
 #include "base/units.h"
 #include <string.h>
 
@@ -403,17 +404,11 @@ static const double LATER = 0.005; /* of the lock-up strain */
 static const double SHARPER = 0.8; /* of the mean's change over the peak's, as the top grows sharper */
 static const double ROUND = 0.5;   /* q over p: the middle of a pad is compressed more evenly than columns */
 
-/* The first row from `first` on in which the missile has slowed down to this speed; -1: none. */
-static int64_t row_of_speed(const sf_history *h, int64_t first, double speed) {
+/* The first row from `first` on in which a column has risen (`sign` 1) or fallen (-1) to this value; -1:
+ * none. */
+static int64_t row_of(const sf_history *h, const double *column, double sign, int64_t first, double value) {
     for (int64_t i = first; i < h->rows; i++)
-        if (h->velocity[i] <= speed)
-            return i;
-    return -1;
-}
-
-static int64_t row_of_indentation(const sf_history *h, int64_t first, double indentation) {
-    for (int64_t i = first; i < h->rows; i++)
-        if (h->indentation[i] >= indentation)
+        if (sign * column[i] >= sign * value)
             return i;
     return -1;
 }
@@ -422,8 +417,8 @@ static int64_t row_of_indentation(const sf_history *h, int64_t first, double ind
 static double steepest(const sf_history *h, int64_t first) {
     double growth = NAN;
     for (size_t k = 0; k < sizeof secants / sizeof *secants; k++) {
-        int64_t from = row_of_speed(h, first, secants[k][0] * h->velocity[first]),
-                to = row_of_speed(h, first, secants[k][1] * h->velocity[first]);
+        int64_t from = row_of(h, h->velocity, -1, first, secants[k][0] * h->velocity[first]),
+                to = row_of(h, h->velocity, -1, first, secants[k][1] * h->velocity[first]);
         if (from < 0 || to <= from || !(h->contact_force[from] > 0) ||
             !(h->indentation[to] > h->indentation[from]))
             continue;
@@ -453,7 +448,7 @@ static void estimate_lock_up(const sf_results *r, int64_t first, int64_t deepest
     const sf_history *h = &r->history;
     double room = r->lock_up - r->lock_begin, shift = LATER * r->thickness, bend = 0, energy = 0, w = 0,
            largest = h->contact_force[sf_history_row_of_largest(h, h->contact_force)];
-    int64_t begin = row_of_indentation(h, first, r->lock_begin * r->thickness);
+    int64_t begin = row_of(h, h->indentation, 1, first, r->lock_begin * r->thickness);
     f->a_max_by_lock_up = f->hic_by_lock_up = isfinite(room) ? 0 : NAN;
     if (begin < 0 || !(room > 0))
         return;
@@ -478,7 +473,7 @@ static void estimate_edge(const sf_results *r, sf_figures *f) {
     while (first + 1 < h->rows && !(h->contact_nodes[first + 1] > 0))
         first++;
     int64_t deepest = sf_history_row_of_largest(h, h->indentation),
-            half = row_of_indentation(h, first, 0.5 * h->indentation[deepest]);
+            half = row_of(h, h->indentation, 1, first, 0.5 * h->indentation[deepest]);
     double growth = steepest(h, first);
     if (half < 0 || isnan(growth) || !(h->contact_area[half] > 0))
         return;
@@ -506,12 +501,11 @@ static void name_acceleration(sf_figures *f) {
                                       : "resultant acceleration of the centre of mass as an accelerometer reads it"
         : f->kinematic ? "kinematic deceleration"
                        : "acceleration as an accelerometer reads it";
-    size_t size = sizeof f->passed, used = 0;
     if (f->chain.mount_frequency > 0)
-        used = (size_t)snprintf(f->passed, size, ", on a mount of %.4g Hz (damping %.3g)",
-                                f->chain.mount_frequency, f->chain.mount_damping);
+        sf_text_add(f->passed, sizeof f->passed, ", on a mount of %.4g Hz (damping %.3g)",
+                    f->chain.mount_frequency, f->chain.mount_damping);
     if (f->chain.coupling > 0)
-        snprintf(f->passed + used, size - used, ", with a coupling of %.4g s", f->chain.coupling);
+        sf_text_add(f->passed, sizeof f->passed, ", with a coupling of %.4g s", f->chain.coupling);
 }
 
 sf_status sf_figures_compute(const sf_results *results, double cfc, sf_figures *f, sf_error *err) {

@@ -3,6 +3,7 @@
 
 #include "base/sets.h"
 
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 
 /* Intervals of the search grid, pairs of the first coarse scan per side, relative gap that ends it. */
@@ -291,11 +292,8 @@ static double time_above(const sf_series *curve, double limit, int contiguous) {
 }
 
 double sf_injury_clip(const sf_series *curve, double duration, int contiguous) {
-    double low = INFINITY, high = -INFINITY;
-    for (int64_t i = 0; i < curve->count; i++) {
-        low = fmin(low, curve->value[i]);
-        high = fmax(high, curve->value[i]);
-    }
+    double low, high;
+    gsl_stats_minmax(&low, &high, curve->value, 1, (size_t)curve->count);
     double slack = duration * 1e-12; /* rounding of summed intervals */
     if (time_above(curve, low, contiguous) < duration - slack)
         return NAN;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/compare.h"
 
+#include "base/text.h"
 #include <gsl/gsl_sort.h>
 #include <string.h>
 
@@ -32,10 +33,7 @@ static sf_status record_open(const sf_series *raw, const sf_series *curve, recor
     *r = (record){.raw = raw, .curve = curve};
     r->median = sf_alloc(err, n, sizeof(double), "medians of the record");
     r->work = sf_alloc(err, n, sizeof(double), "medians of the record");
-    if (err->status != SF_OK) {
-        record_free(r);
-        return err->status;
-    }
+    SF_TRY(err->status);
     for (int64_t i = 0; i < n; i++) {
         int64_t half = i < 2 ? i : n - 1 - i < 2 ? n - 1 - i : 2;
         r->median[i] = median_of(&raw->value[i - half], 2 * half + 1, r->work);
@@ -197,7 +195,7 @@ static const sf_check rules[SF_RECORD_CHECKS] = {SF_GOOD_RECORD(ROW)};
 
 sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double other,
                           sf_record_verdict *verdict, sf_error *err) {
-    record r;
+    SF_OWNED_BY(record_free) record r = {0};
     *verdict = (sf_record_verdict){0};
     SF_TRY(record_open(raw, curve, &r, err));
     for (int k = 0; k < SF_RECORD_CHECKS; k++) {
@@ -216,16 +214,14 @@ sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double o
                      100 * (row->grade == SF_GRADE_DO_NOT_USE ? row->use_bound : row->bound));
         verdict->grade = row->grade > verdict->grade ? row->grade : verdict->grade;
     }
-    record_free(&r);
     return SF_OK;
 }
 
 sf_status sf_record_offset(const sf_series *raw, const sf_series *axis, double *offset, sf_error *err) {
-    record r;
+    SF_OWNED_BY(record_free) record r = {0};
     *offset = NAN;
     SF_TRY(record_open(raw, raw, &r, err));
     *offset = base_before(&r, axis);
-    record_free(&r);
     return SF_OK;
 }
 
@@ -233,17 +229,15 @@ sf_status sf_record_find_impacts(const sf_series *raw, sf_record_impact impact[S
                                  sf_error *err) {
     static const double HIGH = 0.2;   /* of the highest */
     static const double APART = 5e-3; /* s */
-    record r;
+    SF_OWNED_BY(record_free) record r = {0};
     *count = 0;
     SF_TRY(record_open(raw, raw, &r, err));
     bool inside = false;
     double left = raw->time[0], lowest = 0;
     for (int64_t i = 0; i < raw->count; i++)
         lowest = fmin(lowest, r.median[i]);
-    if (-lowest > r.peak) { /* an inverted channel: its overshoot is no impact */
-        record_free(&r);
+    if (-lowest > r.peak) /* an inverted channel: its overshoot is no impact */
         return SF_OK;
-    }
     for (int64_t i = 0; i < raw->count && r.peak > 0; i++) {
         sf_record_impact *now = &impact[*count - 1];
         bool rises = !inside && r.median[i] > HIGH * r.peak,
@@ -270,16 +264,14 @@ sf_status sf_record_find_impacts(const sf_series *raw, sf_record_impact impact[S
     }
     if (*count > 0)
         impact[*count - 1].end = raw->time[raw->count - 1];
-    record_free(&r);
     return SF_OK;
 }
 
 void sf_record_line(const sf_record_verdict *verdict, char *text, size_t size) {
-    size_t used = (size_t)snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
     int found = 0;
+    snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
     for (int grade = SF_GRADE_DO_NOT_USE; grade > SF_GRADE_VALID; grade--)
-        for (int k = 0; k < SF_RECORD_CHECKS && used < size; k++)
+        for (int k = 0; k < SF_RECORD_CHECKS; k++)
             if (verdict->rows[k].grade == (sf_grade)grade)
-                used += (size_t)snprintf(text + used, size - used, "%s%s", found++ ? "; " : ": ",
-                                         verdict->rows[k].text);
+                sf_text_add(text, size, "%s%s", found++ ? "; " : ": ", verdict->rows[k].text);
 }

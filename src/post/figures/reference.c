@@ -33,17 +33,14 @@ sf_status sf_reference_parse_sensitivity(const char *text, double *sensitivity, 
     size_t length = strlen(text);
     bool per_g = length > 2 && length < 64 && strcmp(text + length - 2, "/g") == 0;
     char volts[64];
-    sf_units *units;
-    SF_TRY(sf_units_open(&units, err));
     snprintf(volts, sizeof volts, "%.*s", (int)(length - 2), per_g ? text : "");
-    if (per_g && sf_units_parse(units, volts, SF_VOLTAGE, sensitivity, err) == SF_OK)
-        *sensitivity /= SF_STANDARD_GRAVITY;
-    else if (!per_g)
-        sf_units_parse(units, text, SF_SENSITIVITY, sensitivity, err);
-    sf_units_close(&units);
-    if (err->status == SF_OK && !(*sensitivity > 0))
-        SF_REFUSE(err, "the sensitivity %s is not above 0 (--reference-invert changes a sign)", text);
-    return err->status;
+    SF_TRY(sf_units_read(per_g ? volts : text, per_g ? SF_VOLTAGE : SF_SENSITIVITY, sensitivity, err));
+    *sensitivity /= per_g ? SF_STANDARD_GRAVITY : 1;
+    return *sensitivity > 0 ? SF_OK
+                            : SF_REFUSE(err,
+                                        "the sensitivity %s is not above 0 (--reference-invert changes a "
+                                        "sign)",
+                                        text);
 }
 
 sf_status sf_reference_parse_rate(const char *text, double *rate, sf_error *err) {
@@ -405,11 +402,9 @@ static sf_status make(record *r, sf_reference *reference, sf_error *err) {
 }
 
 sf_status sf_reference_read(const sf_reference_options *options, sf_reference *reference, sf_error *err) {
-    record r = {.options = options};
+    SF_OWNED_BY(record_free) record r = {.options = options};
     *reference = (sf_reference){0};
-    make(&r, reference, err);
-    record_free(&r);
-    if (err->status != SF_OK)
+    if (make(&r, reference, err) != SF_OK)
         sf_reference_free(reference);
     return err->status;
 }

@@ -277,11 +277,8 @@ sf_status sf_signal_parse_mount(const char *text, sf_signal_chain *chain, sf_err
 
 sf_status sf_signal_parse_coupling(const char *text, sf_signal_chain *chain, sf_error *err) {
     static const double LEAST = 1e-3, MOST = 1e3; /* s */
-    sf_units *units;
-    SF_TRY(sf_units_open(&units, err));
-    sf_units_parse(units, text, SF_TIME, &chain->coupling, err);
-    sf_units_close(&units);
-    if (err->status == SF_OK && !(chain->coupling >= LEAST && chain->coupling <= MOST))
-        SF_REFUSE(err, "the time constant" SF_OUTSIDE("%s", "1 ms", "1000 s"), text);
-    return err->status;
+    SF_TRY(sf_units_read(text, SF_TIME, &chain->coupling, err));
+    if (!(chain->coupling >= LEAST && chain->coupling <= MOST))
+        return SF_REFUSE(err, "the time constant" SF_OUTSIDE("%s", "1 ms", "1000 s"), text);
+    return SF_OK;
 }

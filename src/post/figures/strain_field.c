@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/strain_field.h"
-#include "base/sets.h"
-#include "model/cells.h"
 
+#include "base/sets.h"
 #include "model/cells.h"
 #include <gsl/gsl_sort.h>
 #include <string.h>
@@ -110,7 +109,8 @@ typedef struct collapse_search {
     double *room;  /* for the neighbours of a node and of its copies; owned */
 } collapse_search;
 
-bool sf_face_is_mirrored(const sf_results *r, const int32_t node[3]) {
+/* True if the three nodes lie in a symmetry plane. */
+static bool is_mirrored(const sf_results *r, const int32_t node[3]) {
     double off[2] = {0};
     for (int k = 0; k < 6; k++)
         off[k % 2] += fabs(r->position[3 * (int64_t)node[k / 2] + k % 2] - r->symmetry_place[k % 2]);
@@ -127,10 +127,9 @@ static bool *mark_walls(const sf_results *r, const sf_peak_fields *at, sf_error 
     bool *wall = sf_alloc(err, r->node_count, sizeof *wall, "nodes of walls");
     for (int32_t *n = face; wall && n < face + 3 * count; n += 3) {
         double a[3];
-        const double *x = r->position;
-        sf_triangle_normal(x + 3 * (int64_t)n[0], x + 3 * (int64_t)n[1], x + 3 * (int64_t)n[2], a);
+        sf_face_normal(r->position, n, a);
         bool is_free = at->pressure[n[0]] <= 0 || at->pressure[n[1]] <= 0 || at->pressure[n[2]] <= 0;
-        bool is_wall = is_free && fabs(a[2]) < STEEP * sqrt(sf_dot3(a, a)) && !sf_face_is_mirrored(r, n);
+        bool is_wall = is_free && fabs(a[2]) < STEEP * sqrt(sf_dot3(a, a)) && !is_mirrored(r, n);
         for (int c = 0; c < 3 && is_wall; c++)
             wall[n[c]] = true;
     }
@@ -364,7 +363,7 @@ static void add_face(const sf_results *r, const int32_t node[3], faces *f) {
         centre[k % 3] += f->x[3 * (int64_t)node[k / 3] + k % 3] / 3;
     for (int k = 0; k < 3; k++)
         *radius = fmax(*radius, sf_distance3(centre, &f->x[3 * (int64_t)node[k]]));
-    if (sf_face_is_mirrored(r, node))
+    if (is_mirrored(r, node))
         return;
     f->least = fmin(f->least, *radius);
     f->count++;
@@ -398,8 +397,7 @@ static double depth_at(const faces *f, const double x[3], const double n[3], dou
             const double *c[3];
             double point[3], normal[3];
             int feature;
-            for (int a = 0; a < 3; a++)
-                c[a] = &f->x[3 * (int64_t)f->node[3 * (int64_t)f->found[k] + a]];
+            sf_corners(f->x, &f->node[3 * (int64_t)f->found[k]], c);
             sf_triangle_nearest(c[0], c[1], c[2], x, point, &feature);
             sf_triangle_normal(c[0], c[1], c[2], normal);
             sf_unit3(normal);

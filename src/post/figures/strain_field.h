@@ -28,9 +28,6 @@ typedef struct sf_peak_fields {
 sf_status sf_strain_field_collapse(const sf_results *results, const sf_peak_fields *peak, double *collapse,
                                    sf_error *err);
 
-/* True if the three nodes lie in a symmetry plane. */
-bool sf_face_is_mirrored(const sf_results *results, const int32_t node[3]);
-
 /* Share, of the energy of the foam, of the nodes whose compression exceeds `strain`; 0 without energy.
  * energy_density: [node_count] J m-3. */
 double sf_strain_field_energy_beyond(const sf_results *results, const double *compression,

@@ -559,7 +559,6 @@ sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *h
 }
 
 void sf_frame_free(sf_frame *frame) {
-    for (int f = 0; f < SF_FRAME_FIELDS; f++)
-        free(frame->field[f]);
+    sf_free_all(SF_FRAME_FIELDS, frame->field);
     *frame = (sf_frame){0};
 }

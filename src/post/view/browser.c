@@ -354,8 +354,7 @@ static sf_status write_page(page *p, const sf_staging *output, const char *text,
     fwrite(text, 1, (size_t)(mark - text), p->json.file);
     write_facts(p, err);
     fputs(mark + 2, p->json.file);
-    sf_error ignored = SF_ERROR_INIT;
-    sf_staging_close(p->json.file, PAGE, err->status == SF_OK ? err : &ignored);
+    sf_staging_close(p->json.file, PAGE, err);
     return err->status;
 }
 

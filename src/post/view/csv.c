@@ -112,16 +112,13 @@ static void offer_tetrahedron(const sf_results *r, const int32_t *cell, const in
 static void locate_stations(const sf_results *r, const double axis[2], double bottom, double top,
                             sf_section_point *station) {
     for (int s = 0; s < SF_SECTION_STATIONS; s++)
-        station[s].fit = -INFINITY;
+        station[s] = (sf_section_point){.fit = -INFINITY};
     for (int64_t c = 0; c < r->cell_count; c++) {
         const int32_t *cell = &r->cell_node[r->cell_ptr[c]];
-        double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-        for (int64_t v = 0; v < r->cell_ptr[c + 1] - r->cell_ptr[c]; v++) {
-            for (int k = 0; k < 3; k++) {
-                low[k] = fmin(low[k], r->position[3 * (int64_t)cell[v] + k]);
-                high[k] = fmax(high[k], r->position[3 * (int64_t)cell[v] + k]);
-            }
-        }
+        double low[3], high[3];
+        sf_box3(0, NULL, low, high);
+        for (int64_t v = 0; v < r->cell_ptr[c + 1] - r->cell_ptr[c]; v++)
+            sf_box3_add(&r->position[3 * (int64_t)cell[v]], low, high);
         double slack = 1e-6 * (high[2] - low[2]);
         if (axis[0] < low[0] - slack || axis[0] > high[0] + slack || axis[1] < low[1] - slack ||
             axis[1] > high[1] + slack)
@@ -140,8 +137,6 @@ double sf_section_stations(const sf_results *r, sf_section_point station[SF_SECT
     double axis[2], low[3], high[3];
     sf_box3(r->node_count, r->position, low, high);
     sf_axis_find(r, axis);
-    for (int s = 0; s < SF_SECTION_STATIONS; s++)
-        station[s] = (sf_section_point){0};
     locate_stations(r, axis, low[2], high[2], station);
     return high[2];
 }

@@ -362,9 +362,8 @@ static sf_status run(overlay *o, sf_error *err) {
         return err->status;
     if (o->series)
         print_series(o);
-    printf("Written: %s/report.html, compare.csv%s\n", o->directory,
-           *warning ? "" : ", compare.png (compare.gp)");
-    fflush(stdout);
+    sf_log_print(stdout, "Written: %s/report.html, compare.csv%s\n", o->directory,
+                 *warning ? "" : ", compare.png (compare.gp)");
     const sf_sink sink = sf_program_sink("softfall-post");
     if (*warning)
         sf_sink_tell(&sink, SF_WARNING, "%s", warning);

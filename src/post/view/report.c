@@ -451,8 +451,7 @@ static void put_version(const page *p, sf_html_table *table, const char *title, 
         sf_html_fact(table, title, "%s (%s), %s", text[0], text[1], text[2]);
     else
         sf_html_fact(table, title, "not recorded in this file");
-    for (int k = 0; k < 3; k++)
-        free(text[k]);
+    sf_free_all(3, text);
 }
 
 static void put_command(const page *p) {
@@ -539,7 +538,7 @@ static sf_status write_page(page *p, const sf_staging *output, sf_error *err) {
 
 sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_error *err) {
     const sf_summary *s = report->summary;
-    sf_report_pictures pictures = {0};
+    SF_OWNED_BY(sf_report_pictures_free) sf_report_pictures pictures = {0};
     page p = {.report = report,
               .results = s->results,
               .figures = s->figures,
@@ -551,7 +550,6 @@ sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_
         SF_NO_MEMORY(err, "report.html");
     else if (sf_report_pictures_make(output, s->results, s->figures, &pictures, err) == SF_OK)
         write_page(&p, output, err);
-    sf_report_pictures_free(&pictures);
     SF_FREE(p.case_text, p.parameters);
     return err->status;
 }

@@ -118,8 +118,8 @@ static char *draw_pad(const sf_cut *cut, const instant *peak, char *text, size_t
 }
 
 char *sf_report_picture_before(const sf_results *r, char *text, size_t size, sf_error *err) {
-    sf_frame frame = {0};
-    sf_cut cut = {0};
+    SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
+    SF_OWNED_BY(sf_cut_free) sf_cut cut = {0};
     char *svg = NULL;
     if (r->frame_count == 0 || r->frames[0].time > 0 || !sf_h5_exists(r->file, "/frames/000000/softening") ||
         sf_frame_read(r, &r->frames[0], &frame, err) != SF_OK || !frame.field[SF_FRAME_DISPLACEMENT] ||
@@ -138,8 +138,6 @@ char *sf_report_picture_before(const sf_results *r, char *text, size_t size, sf_
             sf_text_add(text, size, " Its permanent set is %.3g mm deep at the impact point.", 1e3 * r->set);
         svg = sf_picture_draw(&cut, &picture, 1, &style, err);
     }
-    sf_cut_free(&cut);
-    sf_frame_free(&frame);
     return svg;
 }
 
@@ -285,7 +283,7 @@ static sf_status draw_energies(const sf_staging *output, const sf_history *h, co
 sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *results,
                                   const sf_figures *figures, sf_report_pictures *p, sf_error *err) {
     instant list[SF_INSTANTS] = {0};
-    sf_cut cut = {0};
+    SF_OWNED_BY(sf_cut_free) sf_cut cut = {0};
     *p = (sf_report_pictures){0};
     read_instants(results, &figures->raw, list);
     p->before = sf_report_picture_before(results, p->before_text, sizeof p->before_text, err);
@@ -301,7 +299,6 @@ sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *re
                       sizeof p->energies_text, err);
     for (int k = 0; k < SF_INSTANTS; k++)
         sf_frame_free(&list[k].frame);
-    sf_cut_free(&cut);
     return err->status;
 }
 

@@ -41,10 +41,9 @@ static bool is_among_frames(const sf_results *r, const sf_frame_head *head) {
 
 sf_status sf_shown_find(const sf_results *r, sf_shown *s, sf_error *err) {
     bool peak = r->frame_count > 0 && r->has_peak && !is_among_frames(r, &r->peak);
-    unsigned long room = (unsigned long)r->frame_count + 1;
     *s = (sf_shown){.peak = -1};
-    s->head = sf_alloc(err, room, sizeof *s->head, "the frames for ParaView");
-    s->fields = sf_alloc(err, room, sizeof *s->fields, "the fields of the frames");
+    s->head = sf_alloc(err, r->frame_count + 1, sizeof *s->head, "the frames for ParaView");
+    s->fields = sf_alloc(err, r->frame_count + 1, sizeof *s->fields, "the fields of the frames");
     for (int64_t k = 0; k <= r->frame_count && err->status == SF_OK; k++) {
         if (peak && s->peak < 0 && (k == r->frame_count || r->peak.time < r->frames[k].time)) {
             s->peak = s->count;
@@ -269,14 +268,13 @@ static sf_status write_frames(const store *s, sf_results *r, sf_shown *shown, sf
 static sf_status write_data(const char *path, sf_results *r, const sf_xdmf_options *options, sf_shown *shown,
                             sf_error *err) {
     const sf_provenance provenance = {.program = "softfall-post", .command_line = options->command_line};
-    sf_error ignored = SF_ERROR_INIT;
     store s = {.results = r, .full = options->full};
     SF_TRY(sf_h5_create(path, &s.file, err));
     if (sf_provenance_write(s.file, "softfall-paraview", &provenance, err) == SF_OK &&
         write_topology(&s, err) == SF_OK && write_materials(&s, err) == SF_OK &&
         write_supports(&s, err) == SF_OK)
         write_frames(&s, r, shown, err);
-    sf_h5_close(&s.file, err->status == SF_OK ? err : &ignored);
+    sf_h5_close(&s.file, err);
     return err->status;
 }
 

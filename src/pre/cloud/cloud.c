@@ -28,15 +28,14 @@ static uint64_t spread(uint64_t x) {
 
 sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
     int64_t n = mesh->node_count;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, extent = 0;
+    double low[3], high[3], extent = 0;
     SF_OWNED keyed_node *order = sf_alloc(err, n, sizeof *order, "node order");
     SF_OWNED int32_t *rank = sf_alloc(err, n, sizeof *rank, "node order");
     SF_OWNED double *moved = sf_alloc(err, 3 * n, sizeof *moved, "node order");
     SF_TRY(err->status);
-    for (int64_t k = 0; k < 3 * n; k++)
-        low[k % 3] = fmin(low[k % 3], mesh->position[k]);
-    for (int64_t k = 0; k < 3 * n; k++)
-        extent = fmax(extent, mesh->position[k] - low[k % 3]);
+    sf_box3(n, mesh->position, low, high);
+    for (int c = 0; c < 3; c++)
+        extent = fmax(extent, high[c] - low[c]);
     for (int64_t i = 0; i < n; i++) {
         order[i].node = (int32_t)i;
         for (int c = 0; c < 3; c++)
@@ -165,7 +164,6 @@ static bool take(const sf_stored *found, int64_t nodes, double *support, sf_doma
         out->figures = h.figures;
     } else {
         sf_domains_free(out);
-        memset(out, 0, sizeof *out);
     }
     return whole;
 }

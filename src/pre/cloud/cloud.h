@@ -92,7 +92,8 @@ typedef struct sf_invariants {
     double shape;     /* largest |sum phi - 1| and |sum phi X - X| / h at the nodes */
 } sf_invariants;
 
-/* Measures them. `volume` is the mesh volume (m3), `spacing` [n] the nodal spacing. */
+/* Widens `out`, zeros at first, by them. `volume` is the mesh volume (m3), `spacing` [n] the nodal spacing.
+ */
 sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *domains,
                                 const double *spacing, double volume, sf_invariants *out, sf_error *err);
 

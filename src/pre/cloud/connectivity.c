@@ -2,17 +2,11 @@
 #include "pre/cloud/cloud.h"
 
 #include "base/mat3.h"
+#include <gsl/gsl_sort.h>
 
 #define ADVICE                                                                                                 \
     "fuse the volumes, so that their meshes share nodes and faces (in gmsh BooleanUnion, BooleanFragments or " \
     "Coherence)"
-
-static void mean_of(const sf_mesh *mesh, const int32_t *node, int64_t count, double out[3]) {
-    out[0] = out[1] = out[2] = 0;
-    for (int64_t k = 0; k < count; k++)
-        for (int c = 0; c < 3; c++)
-            out[c] += mesh->position[3 * (int64_t)node[k] + c] / (double)count;
-}
 
 /* ---- cells in each other ---- */
 
@@ -47,9 +41,9 @@ static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p
         if (surface[i])
             p->node[p->nodes++] = i;
     for (; p->count < p->nodes; p->count++)
-        mean_of(mesh, &p->node[p->count], 1, &p->position[3 * p->count]);
+        sf_mesh_middle(mesh, &p->node[p->count], 1, &p->position[3 * p->count]);
     for (int64_t f = 0; f < dual->face_count; f++, p->count++)
-        mean_of(mesh, dual->face[f].node, dual->face[f].size, &p->position[3 * p->count]);
+        sf_mesh_middle(mesh, dual->face[f].node, dual->face[f].size, &p->position[3 * p->count]);
     return err->status;
 }
 
@@ -97,8 +91,8 @@ static bool has_node(const sf_mesh *mesh, int64_t cell, int32_t node) {
 static sf_status check_cell(const sf_mesh *mesh, const sf_grid *grid, const probes *p, int64_t cell,
                             sf_error *err) {
     double centre[3], radius = 0;
-    mean_of(mesh, &mesh->cell_node[mesh->cell_ptr[cell]], mesh->cell_ptr[cell + 1] - mesh->cell_ptr[cell],
-            centre);
+    sf_mesh_middle(mesh, &mesh->cell_node[mesh->cell_ptr[cell]],
+                   mesh->cell_ptr[cell + 1] - mesh->cell_ptr[cell], centre);
     for (int64_t k = mesh->cell_ptr[cell]; k < mesh->cell_ptr[cell + 1]; k++)
         radius = fmax(radius, sf_distance3(&mesh->position[3 * (int64_t)mesh->cell_node[k]], centre));
     int64_t count = sf_grid_gather(grid, centre, (1 - DEPTH) * radius, p->count, p->near);
@@ -132,7 +126,8 @@ static sf_status check_overlap(const sf_mesh *mesh, const sf_dual *dual, sf_erro
 /* The smallest of several parts, with its place. */
 static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *err) {
     int64_t parts = 0, least = 0;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    sf_box3(0, NULL, low, high);
     SF_OWNED int64_t *cells = sf_alloc(err, mesh->cell_count, sizeof *cells, "connected cells");
     SF_TRY(err->status);
     for (int64_t c = 0; c < mesh->cell_count; c++)
@@ -143,19 +138,15 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
     }
     for (int64_t c = 0; c < mesh->cell_count; c++)
         for (int64_t k = mesh->cell_ptr[c]; sf_sets_find(parent, c) == least && k < mesh->cell_ptr[c + 1];
-             k++) {
-            const double *x = &mesh->position[3 * (int64_t)mesh->cell_node[k]];
-            for (int i = 0; i < 3; i++) {
-                low[i] = fmin(low[i], 1e3 * x[i]);
-                high[i] = fmax(high[i], 1e3 * x[i]);
-            }
-        }
+             k++)
+            sf_box3_add(&mesh->position[3 * (int64_t)mesh->cell_node[k]], low, high);
     SF_REFUSE(
         err,
         "the pad is in %lld parts that share no faces of cells: the smallest, of %lld cells, lies between (%.4g, "
         "%.4g, %.4g) and (%.4g, %.4g, %.4g) mm: " ADVICE
         ", or let them be bodies that touch each other (pad.separate = true)",
-        (long long)parts, (long long)cells[least], low[0], low[1], low[2], high[0], high[1], high[2]);
+        (long long)parts, (long long)cells[least], 1e3 * low[0], 1e3 * low[1], 1e3 * low[2], 1e3 * high[0],
+        1e3 * high[1], 1e3 * high[2]);
     return err->status;
 }
 
@@ -216,19 +207,16 @@ sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, bool s
 
 static const double IN_PLANE = 1e-9; /* of the group's extent */
 
-typedef struct face_key {
-    int32_t node[4]; /* ascending; the first is -1 for a triangle */
-} face_key;
-
-static int compare_key(const void *a, const void *b) {
-    return sf_face_compare(((const face_key *)a)->node, ((const face_key *)b)->node);
-}
-
-/* The faces of one cell and those of two, each ascending; owned. */
+/* The faces of one cell and those of two, each ascending, by their ascending nodes (the first is -1 for a
+ * triangle); owned. */
 typedef struct face_lists {
     int64_t outer_count, inner_count;
-    face_key *outer, *inner;
+    int32_t (*outer)[4], (*inner)[4];
 } face_lists;
+
+static void free_lists(face_lists *lists) {
+    SF_FREE(lists->outer, lists->inner);
+}
 
 static sf_status list_faces(const sf_dual *dual, face_lists *lists, sf_error *err) {
     lists->outer_count = dual->face_count;
@@ -236,20 +224,20 @@ static sf_status list_faces(const sf_dual *dual, face_lists *lists, sf_error *er
     lists->outer = sf_alloc(err, dual->face_count, sizeof *lists->outer, "boundary faces");
     lists->inner = sf_alloc(err, dual->inner_count, sizeof *lists->inner, "inner faces");
     for (int64_t f = 0; lists->outer && f < dual->face_count; f++) {
-        memcpy(lists->outer[f].node, dual->face[f].node, sizeof dual->face[f].node);
-        sf_face_sort(lists->outer[f].node);
+        memcpy(lists->outer[f], dual->face[f].node, sizeof dual->face[f].node);
+        gsl_sort_int(lists->outer[f], 1, 4);
     }
     for (int64_t f = 0; lists->inner && f < dual->inner_count; f++)
-        memcpy(lists->inner[f].node, dual->inner[f].node, sizeof dual->inner[f].node);
+        memcpy(lists->inner[f], dual->inner[f].node, sizeof dual->inner[f].node);
     if (err->status == SF_OK) {
-        qsort(lists->outer, (size_t)lists->outer_count, sizeof *lists->outer, compare_key);
-        qsort(lists->inner, (size_t)lists->inner_count, sizeof *lists->inner, compare_key);
+        qsort(lists->outer, (size_t)lists->outer_count, sizeof *lists->outer, sf_face_compare);
+        qsort(lists->inner, (size_t)lists->inner_count, sizeof *lists->inner, sf_face_compare);
     }
     return err->status;
 }
 
-static bool has(const face_key *list, int64_t count, const void *key) {
-    return bsearch(key, list, (size_t)count, sizeof *list, compare_key) != NULL;
+static bool has(int32_t (*list)[4], int64_t count, const int32_t *key) {
+    return bsearch(key, list, (size_t)count, sizeof *list, sf_face_compare) != NULL;
 }
 
 static const double *place_of(const sf_mesh *mesh, const int32_t *node) {
@@ -296,14 +284,12 @@ static sf_status check_faces(const sf_case *c, const sf_mesh *mesh, const face_l
 
 /* The plane x or y = place of a set; false if it has none. */
 static bool find_plane(const sf_mesh *mesh, const sf_node_set *set, int *axis, double *place, double *slack) {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, extent = 0;
+    double low[3], high[3], extent = 0;
+    sf_box3(0, NULL, low, high);
     for (int64_t k = 0; k < set->count; k++)
-        for (int i = 0; i < 3; i++) {
-            double x = mesh->position[3 * (int64_t)set->node[k] + i];
-            low[i] = fmin(low[i], x);
-            high[i] = fmax(high[i], x);
-            extent = fmax(extent, high[i] - low[i]);
-        }
+        sf_box3_add(&mesh->position[3 * (int64_t)set->node[k]], low, high);
+    for (int i = 0; i < 3; i++)
+        extent = fmax(extent, high[i] - low[i]);
     *slack = IN_PLANE * extent;
     *axis = high[0] - low[0] <= *slack ? 0 : 1;
     *place = low[*axis];
@@ -351,7 +337,7 @@ sf_status sf_group_check(const sf_case *c, const sf_mesh *mesh, const sf_dual *d
                 {"pad.fixed", c->fixed_count, c->fixed_group, true},
                 {"pad.sliding", c->sliding_count, c->sliding_group, true},
                 {"pad.symmetry", c->symmetry_count, c->symmetry_group, false}};
-    face_lists lists = {0};
+    SF_OWNED_BY(free_lists) face_lists lists = {0};
     list_faces(dual, &lists, err);
     for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
         for (int g = 0; g < list[k].count && err->status == SF_OK; g++) {
@@ -362,6 +348,5 @@ sf_status sf_group_check(const sf_case *c, const sf_mesh *mesh, const sf_dual *d
                 list[k].name == c->symmetry_group)
                 check_plane(c, mesh, dual, set, err);
         }
-    SF_FREE(lists.outer, lists.inner);
     return err->status;
 }

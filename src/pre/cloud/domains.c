@@ -214,21 +214,16 @@ static sf_status look_around(builder *b, const double *support, sf_error *err) {
 }
 
 static sf_status integrate_with_growth(builder *b, double *support, sf_error *err) {
-    const double *first = NULL;
     int64_t n = b->mesh->node_count;
-    SF_OWNED double *start = sf_alloc(err, n, sizeof *start, "supports");
+    SF_OWNED double *first = sf_alloc(err, n, sizeof *first, "supports");
     SF_TRY(err->status);
-    memcpy(start, support, (size_t)n * sizeof *start);
-    first = start;
-    for (int round = 0;; round++) {
+    memcpy(first, support, (size_t)n * sizeof *first);
+    for (int round = 0; err->status == SF_OK; round++) {
         memset(b->poor, 0, (size_t)n);
-        if (look_around(b, support, err) != SF_OK)
-            break;
-        bool again = integrate_all(b, err);
-        if (err->status != SF_OK || !again)
+        if (look_around(b, support, err) != SF_OK || !integrate_all(b, err) || err->status != SF_OK)
             break;
         clear_edges(b);
-        for (int64_t i = 0; i < n; i++) {
+        for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
             if (b->poor[i] && round == MAX_ENLARGEMENTS) {
                 const double *x = &b->mesh->position[3 * i];
                 SF_FAIL(err, SF_ERR_MODEL,
@@ -236,13 +231,10 @@ static sf_status integrate_with_growth(builder *b, double *support, sf_error *er
                         "although the support was enlarged %.2f times: the cloud is too flat or too sparse "
                         "there",
                         x[0], x[1], x[2], b->condition_limit, support[i] / first[i]);
-                break;
-            }
-            if (b->poor[i])
+            } else if (b->poor[i]) {
                 support[i] *= ENLARGEMENT;
+            }
         }
-        if (err->status != SF_OK)
-            break;
     }
     b->out->figures.largest_enlargement = 1;
     for (int64_t i = 0; i < n; i++) {
@@ -393,27 +385,27 @@ static void finish_row(row_sum *row, double volume, int32_t *node, double *gradi
 
 /* Two passes over the rows: lengths first, then entries. */
 static sf_status assemble_rows(builder *b, sf_error *err) {
-    int64_t n = b->mesh->node_count, *corner = NULL;
+    int64_t n = b->mesh->node_count;
     sf_domains *out = b->out;
-    SF_OWNED int64_t *corner_ptr = list_corners(b, &corner, err);
-    row_sum row = {sf_alloc(err, n, sizeof *row.slot, "row"), 0, sf_alloc(err, n, sizeof *row.node, "row"),
-                   sf_alloc(err, 3 * n, sizeof *row.sum, "row")};
+    SF_OWNED int64_t *corner = NULL, *corner_ptr = list_corners(b, &corner, err);
+    SF_OWNED int32_t *slot = sf_alloc(err, n, sizeof *slot, "row"),
+                     *node = sf_alloc(err, n, sizeof *node, "row");
+    SF_OWNED double *sum = sf_alloc(err, 3 * n, sizeof *sum, "row");
+    row_sum row = {slot, 0, node, sum};
     out->volume = sf_alloc(err, n, sizeof *out->volume, "volumes");
     out->ptr = sf_alloc(err, n + 1, sizeof *out->ptr, "domains");
-    if (err->status != SF_OK)
-        goto done;
+    SF_TRY(err->status);
     for (int64_t i = 0; i < n; i++)
-        row.slot[i] = -1;
+        slot[i] = -1;
     for (int64_t i = 0; i < n; i++) {
         domain_row(b, corner_ptr, corner, i, &row, &out->volume[i]);
         finish_row(&row, 1, NULL, NULL);
         out->ptr[i + 1] = out->ptr[i] + row.count;
         if (!(out->volume[i] > 0)) {
             const double *x = &b->mesh->position[3 * i];
-            SF_FAIL(err, SF_ERR_MODEL,
-                    "the smoothing domain of the node at (%.6g, %.6g, %.6g) m has volume %.3g m3", x[0], x[1],
-                    x[2], out->volume[i]);
-            goto done;
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "the smoothing domain of the node at (%.6g, %.6g, %.6g) m has volume %.3g m3",
+                           x[0], x[1], x[2], out->volume[i]);
         }
     }
     out->node = sf_alloc(err, out->ptr[n], sizeof *out->node, "domains");
@@ -422,8 +414,6 @@ static sf_status assemble_rows(builder *b, sf_error *err) {
         domain_row(b, corner_ptr, corner, i, &row, &out->volume[i]);
         finish_row(&row, out->volume[i], &out->node[out->ptr[i]], &out->b[3 * out->ptr[i]]);
     }
-done:
-    SF_FREE(corner, row.slot, row.node, row.sum);
     return err->status;
 }
 
@@ -531,7 +521,6 @@ static void measure_shape(const sf_mesh *mesh, const sf_domains *d, int64_t i, d
 sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *d,
                                 const double *spacing, double volume, sf_invariants *out, sf_error *err) {
     int64_t n = mesh->node_count;
-    *out = (sf_invariants){0};
     SF_OWNED double *balance = sf_alloc(err, 3 * n, sizeof *balance, "invariants");
     double total = 0;
     SF_TRY(err->status);
@@ -546,7 +535,7 @@ sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const 
     }
     for (int64_t k = 0; k < 3 * n; k++)
         out->telescope = fmax(out->telescope, fabs(balance[k]) / (spacing[k / 3] * spacing[k / 3]));
-    out->volume = fabs(total / volume - 1);
+    out->volume = fmax(out->volume, fabs(total / volume - 1));
     return SF_OK;
 }
 

@@ -88,7 +88,7 @@ static sf_status add_inner(const sf_mesh *mesh, const sf_cell_face *raw, sf_dual
 /* Faces sorted by their vertices: alone = boundary, pairs = interior. */
 static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t count, k;
-    SF_OWNED sf_cell_face *raw = sf_mesh_faces(mesh, NULL, &count, err);
+    SF_OWNED sf_cell_face *raw = sf_cell_faces(&SF_CELLS_OF(mesh), NULL, sf_cell_face_compare, &count, err);
     dual->face = sf_alloc(err, count, sizeof *dual->face, "boundary faces");
     dual->inner = sf_alloc(err, (unsigned long)count / 2, sizeof *dual->inner, "inner faces");
     SF_TRY(err->status);

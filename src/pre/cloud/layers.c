@@ -95,8 +95,7 @@ static void list_interfaces(const sf_case *c, const pair_table *pairs, sf_interf
 static uint8_t normal_component(const sf_mesh *mesh, const sf_inner_face *face) {
     const int32_t *node = &face->node[face->node[0] < 0];
     double n[3];
-    sf_triangle_normal(&mesh->position[3 * (int64_t)node[0]], &mesh->position[3 * (int64_t)node[1]],
-                       &mesh->position[3 * (int64_t)node[2]], n);
+    sf_face_normal(mesh->position, node, n);
     double length = sqrt(sf_dot3(n, n));
     for (int k = 0; k < 3; k++)
         if (hypot(n[(k + 1) % 3], n[(k + 2) % 3]) <= ALONG_AXIS * length)
@@ -368,7 +367,6 @@ sf_status sf_layers_hold(const sf_layers *l, uint8_t *mask, uint8_t *base, sf_mo
         m->tie_other[m->tie_count] = t->other;
         m->tie_mask[m->tie_count++] = open;
     }
-    for (int c = 0; c < 3; c++)
-        free(parent[c]);
+    sf_free_all(3, parent);
     return err->status;
 }

@@ -188,22 +188,11 @@ static sf_status find_group(const sf_gmsh *session, int dimension, const char *n
 
 /* softfall's code and the vertex count of gmsh's linear element types; 0 for every other type. */
 static int cell_code(int gmsh_type, int *vertices) {
-    switch (gmsh_type) {
-    case 4:
-        *vertices = 4;
-        return SF_CELL_TETRAHEDRON;
-    case 5:
-        *vertices = 8;
-        return SF_CELL_HEXAHEDRON;
-    case 6:
-        *vertices = 6;
-        return SF_CELL_PRISM;
-    case 7:
-        *vertices = 5;
-        return SF_CELL_PYRAMID;
-    default:
-        return 0;
-    }
+    static const int codes[] = {
+        [4] = SF_CELL_TETRAHEDRON, SF_CELL_HEXAHEDRON, SF_CELL_PRISM, SF_CELL_PYRAMID};
+    int code = gmsh_type >= 0 && gmsh_type <= 7 ? codes[gmsh_type] : 0;
+    *vertices = code ? sf_cell_shape_of(code)->vertices : 0;
+    return code;
 }
 
 /* The destination of the elements of one entity. */

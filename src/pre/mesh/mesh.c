@@ -6,39 +6,25 @@
 
 enum { MAX_VERTICES = 8 };
 
-int sf_face_compare(const int32_t a[4], const int32_t b[4]) {
+int sf_face_compare(const void *one, const void *other) {
+    const int32_t *a = one, *b = other;
     for (int k = 0; k < 4; k++)
         if (a[k] != b[k])
             return a[k] < b[k] ? -1 : 1;
     return 0;
 }
 
-static int compare_faces(const void *a, const void *b) {
+int sf_cell_face_compare(const void *a, const void *b) {
     const sf_cell_face *x = a, *y = b;
     int keys = sf_face_compare(x->key, y->key);
-    return keys ? keys : (x->cell > y->cell) - (x->cell < y->cell);
+    return keys ? keys : SF_ORDER(x->cell, y->cell);
 }
 
-sf_cell_face *sf_mesh_faces(const sf_mesh *mesh, int64_t *place, int64_t *count, sf_error *err) {
-    *count = 0;
-    for (int64_t c = 0; c < mesh->cell_count; c++)
-        *count += sf_cell_shape_of(mesh->cell_type[c])->faces;
-    sf_cell_face *list = sf_alloc(err, (unsigned long)*count, sizeof *list, "cell faces"), *face = list;
-    for (int64_t c = 0; list && c < mesh->cell_count; c++) {
-        const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[c]);
-        const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
-        for (int f = 0; f < shape->faces; f++, face++) {
-            *face = (sf_cell_face){{-1, -1, -1, -1}, (int32_t)c, (int8_t)f};
-            for (int p = 0; p < sf_cell_face_size(shape, f); p++) {
-                int32_t node = v[shape->face[f][p]];
-                face->key[p] = place ? (int32_t)sf_sets_find(place, node) : node;
-            }
-            sf_face_sort(face->key);
-        }
-    }
-    if (list)
-        qsort(list, (size_t)*count, sizeof *list, compare_faces);
-    return list;
+void sf_mesh_middle(const sf_mesh *mesh, const int32_t *node, int64_t count, double out[3]) {
+    out[0] = out[1] = out[2] = 0;
+    for (int64_t k = 0; k < count; k++)
+        for (int c = 0; c < 3; c++)
+            out[c] += mesh->position[3 * (int64_t)node[k] + c] / (double)count;
 }
 
 void sf_mesh_free(sf_mesh *mesh) {
@@ -119,12 +105,8 @@ static void corner_range(const sf_mesh *mesh, int64_t cell, double *low, double 
 }
 
 static void centroid(const sf_mesh *mesh, int64_t cell, double c[3]) {
-    int64_t begin = mesh->cell_ptr[cell], end = mesh->cell_ptr[cell + 1];
-    for (int i = 0; i < 3; i++) {
-        c[i] = 0.0;
-        for (int64_t k = begin; k < end; k++)
-            c[i] += mesh->position[3 * (int64_t)mesh->cell_node[k] + i] / (double)(end - begin);
-    }
+    int64_t begin = mesh->cell_ptr[cell];
+    sf_mesh_middle(mesh, &mesh->cell_node[begin], mesh->cell_ptr[cell + 1] - begin, c);
 }
 
 int64_t sf_mesh_orient(sf_mesh *mesh) {

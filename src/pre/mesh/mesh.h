@@ -3,9 +3,6 @@
 #include "model/cells.h"
 #include "model/model.h"
 
-/* Compares sorted faces (sf_face_sort). */
-int sf_face_compare(const int32_t a[4], const int32_t b[4]);
-
 /* The background mesh of the pad and the missile's surface, as read from a geometry: metres, nodes renumbered
  * from 0 in gmsh's order without orphans. Everything is owned by the struct. */
 
@@ -52,16 +49,11 @@ typedef struct sf_mesh {
 
 void sf_mesh_free(sf_mesh *mesh);
 
-/* A face of a cell. */
-typedef struct sf_cell_face {
-    int32_t key[4]; /* its nodes, ascending; the first is -1 for a triangle */
-    int32_t cell;
-    int8_t local; /* its place among the faces of the cell */
-} sf_cell_face;
-
-/* The `*count` faces of all cells, by their keys and then their cells. `place` (base/sets.h): nodes of one
- * set count as one; NULL: each is alone. Owned by the caller; NULL: out of memory. */
-sf_cell_face *sf_mesh_faces(const sf_mesh *mesh, int64_t *place, int64_t *count, sf_error *err);
+/* For qsort: faces by their ascending nodes (int32_t[4]); of sf_cell_face, by these and then their cells. */
+int sf_face_compare(const void *one, const void *other);
+int sf_cell_face_compare(const void *one, const void *other);
+/* The middle of nodes, m. */
+void sf_mesh_middle(const sf_mesh *mesh, const int32_t *node, int64_t count, double out[3]);
 void sf_surface_free(sf_surface *surface);
 
 /* Finds a set by name; NULL if there is none. */
@@ -119,11 +111,12 @@ typedef struct sf_tag_index {
 sf_tag_index *sf_raw_mesh_index(const sf_raw_mesh *raw, sf_error *err);
 /* Place of a tag in `raw->tag`; SIZE_MAX if there is no such node. */
 size_t sf_raw_mesh_find(const sf_raw_mesh *raw, const sf_tag_index *index, size_t tag);
+/* The place itself, in the geometry's unit; NULL. */
+const double *sf_raw_mesh_place(const sf_raw_mesh *raw, const sf_tag_index *index, size_t tag);
 /* The ascending tags of a face of a cell, 0 in front of those of a triangle. */
 void sf_raw_cell_face(const sf_raw_mesh *raw, size_t cell, int face, size_t tag[SF_RAW_FACE]);
-/* The tags of a face in ascending order, and the order of two such faces: below, equal to or above 0. */
-void sf_raw_face_sort(size_t tag[SF_RAW_FACE]);
-int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]);
+/* The order of two faces by such tags, with which they begin; for qsort. */
+int sf_raw_face_compare(const void *one, const void *other);
 
 /* The chosen cells with the nodes they use, in the order of `tag`, and for each group the nodes of its faces
  * that belong wholly to those cells (groups without such faces give no set). `layers`: groups asked for. On

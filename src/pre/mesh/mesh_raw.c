@@ -3,12 +3,12 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
+#include <gsl/gsl_sort.h>
 
 void sf_raw_mesh_free(sf_raw_mesh *raw) {
     SF_FREE(raw->tag, raw->xyz, raw->cell_type, raw->cell_chosen, raw->cell_node, raw->face_group,
             raw->face_part, raw->face_node);
-    for (int g = 0; g < raw->group_count; g++)
-        free(raw->group_name[g]);
+    sf_free_all((size_t)raw->group_count, raw->group_name);
     free(raw->group_name);
     memset(raw, 0, sizeof *raw);
 }
@@ -61,20 +61,17 @@ size_t sf_raw_mesh_find(const sf_raw_mesh *raw, const sf_tag_index *index, size_
     return found ? found->place : SIZE_MAX;
 }
 
+const double *sf_raw_mesh_place(const sf_raw_mesh *raw, const sf_tag_index *index, size_t tag) {
+    size_t place = sf_raw_mesh_find(raw, index, tag);
+    return place != SIZE_MAX ? raw->xyz + 3 * place : NULL;
+}
+
 static int cell_vertices(const sf_raw_mesh *raw, size_t cell) {
     return sf_cell_shape_of(raw->cell_type[cell])->vertices;
 }
 
-void sf_raw_face_sort(size_t tag[SF_RAW_FACE]) {
-    for (int i = 1; i < SF_RAW_FACE; i++)
-        for (int j = i; j > 0 && tag[j] < tag[j - 1]; j--) {
-            size_t swap = tag[j];
-            tag[j] = tag[j - 1];
-            tag[j - 1] = swap;
-        }
-}
-
-int sf_raw_face_compare(const size_t a[SF_RAW_FACE], const size_t b[SF_RAW_FACE]) {
+int sf_raw_face_compare(const void *one, const void *other) {
+    const size_t *a = one, *b = other;
     for (int i = 0; i < SF_RAW_FACE; i++)
         if (a[i] != b[i])
             return a[i] < b[i] ? -1 : 1;
@@ -85,7 +82,7 @@ void sf_raw_cell_face(const sf_raw_mesh *raw, size_t cell, int face, size_t tag[
     const int *vertex = sf_cell_shape_of(raw->cell_type[cell])->face[face];
     for (int a = 0; a < SF_RAW_FACE; a++)
         tag[a] = vertex[a] < 0 ? 0 : raw->cell_node[SF_RAW_CELL * cell + (size_t)vertex[a]];
-    sf_raw_face_sort(tag);
+    gsl_sort_ulong(tag, 1, SF_RAW_FACE);
 }
 
 /* 3 or 4. */
@@ -174,7 +171,7 @@ static int64_t mark_group(const sf_raw_mesh *raw, const sf_tag_index *index, con
             marked += !mark[node[a]];
             mark[node[a]] = 1;
         }
-        sf_face_sort(node);
+        gsl_sort_int(node, 1, SF_RAW_FACE);
         if (whole)
             memcpy(&set->face[SF_RAW_FACE * set->face_count++], node, sizeof node);
     }
@@ -242,10 +239,6 @@ typedef struct face_key {
     double centre[3]; /* of the cell behind */
 } face_key;
 
-static int compare_key(const void *a, const void *b) {
-    return sf_raw_face_compare(((const face_key *)a)->tag, ((const face_key *)b)->tag);
-}
-
 /* Shared by the steps below. */
 typedef struct surface_builder {
     const sf_raw_mesh *raw;
@@ -256,8 +249,7 @@ typedef struct surface_builder {
 } surface_builder;
 
 static const double *node_position(const surface_builder *b, size_t tag) {
-    size_t place = sf_raw_mesh_find(b->raw, b->nodes, tag);
-    return place != SIZE_MAX ? b->raw->xyz + 3 * place : NULL;
+    return sf_raw_mesh_place(b->raw, b->nodes, tag);
 }
 
 static sf_status prepare(surface_builder *b, sf_error *err) {
@@ -273,10 +265,10 @@ static sf_status prepare(surface_builder *b, sf_error *err) {
             if (b->keys[f].tag[a] != 0 && !node_position(b, b->keys[f].tag[a]))
                 return SF_REFUSE(err, "a face uses node %zu, which the mesh does not have",
                                  b->keys[f].tag[a]);
-        sf_raw_face_sort(b->keys[f].tag);
+        gsl_sort_ulong(b->keys[f].tag, 1, SF_RAW_FACE);
         b->keys[f].face = f;
     }
-    qsort(b->keys, raw->face_count, sizeof *b->keys, compare_key);
+    qsort(b->keys, raw->face_count, sizeof *b->keys, sf_raw_face_compare);
     return SF_OK;
 }
 
@@ -297,9 +289,9 @@ static sf_status match_cells(surface_builder *b, sf_error *err) {
         const sf_cell_shape *shape = sf_cell_shape_of(raw->cell_type[k]);
         const size_t *node = raw->cell_node + SF_RAW_CELL * k;
         for (int f = 0; f < shape->faces; f++) {
-            face_key wanted = {0};
-            sf_raw_cell_face(raw, k, f, wanted.tag);
-            face_key *found = bsearch(&wanted, b->keys, raw->face_count, sizeof *b->keys, compare_key);
+            size_t wanted[SF_RAW_FACE];
+            sf_raw_cell_face(raw, k, f, wanted);
+            face_key *found = bsearch(wanted, b->keys, raw->face_count, sizeof *b->keys, sf_raw_face_compare);
             if (!found)
                 continue;
             average(b, node, shape->vertices, found->centre);

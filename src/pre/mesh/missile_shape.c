@@ -2,6 +2,7 @@
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>
+#include <gsl/gsl_sort.h>
 
 #include "base/mat3.h"
 #include "base/sets.h"
@@ -40,7 +41,7 @@ static const double *vertex(const sf_surface *s, int64_t triangle, int corner) {
 }
 
 static void area_vector(const sf_surface *s, int64_t t, double area[3]) {
-    sf_triangle_normal(vertex(s, t, 0), vertex(s, t, 1), vertex(s, t, 2), area);
+    sf_face_normal(s->position, &s->triangle[3 * t], area);
     for (int c = 0; c < 3; c++)
         area[c] *= 0.5;
 }
@@ -155,12 +156,6 @@ typedef struct cell_face {
     int face;
 } cell_face;
 
-static int compare_face(const void *a, const void *b) {
-    const cell_face *p = a, *q = b;
-    int tags = sf_raw_face_compare(p->tag, q->tag);
-    return tags ? tags : (p->cell > q->cell) - (p->cell < q->cell);
-}
-
 typedef struct hull_builder {
     const sf_raw_mesh *raw;
     sf_tag_index *nodes;
@@ -184,7 +179,7 @@ static sf_status list_faces(hull_builder *b, sf_error *err) {
             sf_raw_cell_face(raw, k, f, face->tag);
         }
     }
-    qsort(b->list, b->count, sizeof *b->list, compare_face);
+    qsort(b->list, b->count, sizeof *b->list, sf_raw_face_compare);
     return SF_OK;
 }
 
@@ -201,18 +196,12 @@ static void find_cells(hull_builder *b) {
         if (sf_raw_face_compare(b->list[i - 1].tag, b->list[i].tag) == 0)
             sf_sets_join(b->parent, (int64_t)b->list[i].cell, (int64_t)b->list[i - 1].cell);
     for (size_t f = 0; f < raw->face_count; f++) {
-        size_t wanted[SF_RAW_FACE], low = 0, high = b->count;
+        size_t wanted[SF_RAW_FACE];
         memcpy(wanted, raw->face_node + SF_RAW_FACE * f, sizeof wanted);
-        sf_raw_face_sort(wanted);
-        while (low < high) {
-            size_t middle = (low + high) / 2;
-            if (sf_raw_face_compare(b->list[middle].tag, wanted) < 0)
-                low = middle + 1;
-            else
-                high = middle;
-        }
-        if (low < b->count && sf_raw_face_compare(b->list[low].tag, wanted) == 0)
-            b->ours[sf_sets_find(b->parent, (int64_t)b->list[low].cell)] = 1;
+        gsl_sort_ulong(wanted, 1, SF_RAW_FACE);
+        const cell_face *found = bsearch(wanted, b->list, b->count, sizeof *b->list, sf_raw_face_compare);
+        if (found)
+            b->ours[sf_sets_find(b->parent, (int64_t)found->cell)] = 1;
     }
 }
 
@@ -221,8 +210,7 @@ static bool is_hull(const hull_builder *b, size_t i) {
 }
 
 static const double *place_of(const hull_builder *b, size_t tag) {
-    size_t place = sf_raw_mesh_find(b->raw, b->nodes, tag);
-    return place != SIZE_MAX ? &b->raw->xyz[3 * place] : NULL;
+    return sf_raw_mesh_place(b->raw, b->nodes, tag);
 }
 
 /* True if the face, in the order of its topology, faces away from its cell. */
@@ -240,7 +228,7 @@ static bool faces_outwards(const hull_builder *b, const cell_face *f, const size
     return sf_triple3(out, u, v) > 0;
 }
 
-static void add_face(const hull_builder *b, const cell_face *f, int32_t *number, sf_surface *s) {
+static void add_face(const hull_builder *b, const cell_face *f, sf_surface *s) {
     const sf_cell_shape *shape = sf_cell_shape_of(b->raw->cell_type[f->cell]);
     int size = sf_cell_face_size(shape, f->face);
     size_t node[SF_RAW_FACE] = {0};
@@ -251,7 +239,7 @@ static void add_face(const hull_builder *b, const cell_face *f, int32_t *number,
         const size_t corner[3] = {node[0], node[t + (outwards ? 1 : 2)], node[t + (outwards ? 2 : 1)]};
         for (int a = 0; a < 3; a++)
             s->hull_triangle[3 * s->hull_triangle_count + a] =
-                number[sf_raw_mesh_find(b->raw, b->nodes, corner[a])];
+                (int32_t)sf_raw_mesh_find(b->raw, b->nodes, corner[a]);
         s->hull_triangle_count++;
     }
 }
@@ -270,18 +258,15 @@ static sf_status write_hull(const hull_builder *b, double unit, sf_surface *s, s
     size_t most = 0;
     for (size_t i = 0; i < b->count; i++)
         most += is_hull(b, i) ? 2 : 0;
-    SF_OWNED int32_t *number = sf_alloc(err, raw->node_count, sizeof *number, "nodes of the missile");
     s->hull_position = sf_alloc(err, 3 * raw->node_count, sizeof(double), "nodes of the missile");
     s->hull_triangle = sf_alloc(err, 3 * most, sizeof(int32_t), "surface of the missile");
     SF_TRY(err->status);
     s->hull_node_count = (int64_t)raw->node_count;
-    for (size_t n = 0; n < raw->node_count; n++)
-        number[n] = (int32_t)n;
     for (size_t n = 0; n < 3 * raw->node_count; n++)
         s->hull_position[n] = unit * raw->xyz[n];
     for (size_t i = 0; i < b->count; i++)
         if (is_hull(b, i))
-            add_face(b, &b->list[i], number, s);
+            add_face(b, &b->list[i], s);
     return err->status;
 }
 
@@ -344,8 +329,8 @@ sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], dou
     *radius = scale * sqrt(square);
     *deviation = 0;
     for (int64_t i = 0; i < n; i++) {
-        const double *p = &surface->position[3 * i];
-        double r[3] = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
+        double r[3];
+        sf_sub3(&surface->position[3 * i], centre, r);
         *deviation = fmax(*deviation, fabs(sqrt(sf_dot3(r, r)) / *radius - 1));
     }
 done:
@@ -401,11 +386,10 @@ sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_c
     card->shape = SF_SHAPE_SPHERE;
     card->sphere_radius = radius;
     card->sphere_cap_cosine = 1;
-    for (int c = 0; c < 3; c++)
-        card->sphere_centre[c] = centre[c];
+    memcpy(card->sphere_centre, centre, sizeof centre);
     for (int64_t i = 0; i < surface->node_count; i++) {
-        const double *p = &surface->position[3 * i];
-        double r[3] = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
+        double r[3];
+        sf_sub3(&surface->position[3 * i], centre, r);
         card->sphere_cap_cosine = fmin(card->sphere_cap_cosine, sf_dot3(r, card->direction) / radius);
     }
     return SF_OK;

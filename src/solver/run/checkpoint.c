@@ -132,8 +132,9 @@ sf_status sf_checkpoint_read(const sf_checkpoint *c, const sf_model *m, const sf
 /* The earlier run must have come to its end, and the missile off the pad. */
 static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, const char *path,
                               sf_error *err) {
-    char *status = NULL;
-    int64_t *touching = NULL, one = 1;
+    SF_OWNED char *status = NULL;
+    SF_OWNED int64_t *touching = NULL;
+    int64_t one = 1;
     if (!sf_h5_exists(results, "/summary/status"))
         return SF_REFUSE(err, "%s has not ended: --restart %s ends it", path, path);
     if (sf_h5_read_text(results, "/summary/status", &status, err) == SF_OK &&
@@ -144,7 +145,6 @@ static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, con
                   "%s ended \"%.80s\" with %lld points in contact: a pad goes on only after the missile has "
                   "left it",
                   path, status, (long long)*touching);
-    SF_FREE(status, touching);
     return err->status;
 }
 

@@ -6,17 +6,12 @@
 
 enum { SLAB = 64 * SF_LANES }; /* nodes: more would be felt in the memory of a run */
 
-static double determinant(const double *f) {
-    return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
-           f[2] * (f[3] * f[7] - f[4] * f[6]);
-}
-
 /* sigma = P F^T / J of one domain, with the stabilisation's couple taken out of the stored stress. */
 static void take_stress(const sf_model *m, const sf_state *s, const sf_pair_sums *pairs, int64_t i,
                         double sigma[9], double *mises) {
     double p[9];
     const double *f = &s->f[9 * i];
-    double j = determinant(f), square = 0, mean;
+    double j = sf_triple3(f, f + 3, f + 6), square = 0, mean;
     for (int k = 0; k < 9; k++)
         p[k] = (s->stress[9 * i + k] - pairs->couple[i % SF_GROUP][k % 3][k / 3]) / m->volume[i];
     for (int r = 0; r < 3; r++)

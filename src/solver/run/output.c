@@ -22,7 +22,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     double pull[3], lock_begin;
     const double lock_up = sf_model_lock_up(m, &lock_begin);
     sf_flight_gravity(&m->missile, pull);
-    const double gravity = sf_missile_free_fall(m), density = sf_model_density(m);
+    const double gravity = sf_flight_pull(&m->missile), density = sf_model_density(m);
     const double plane[2] = {find_plane(m, 0), find_plane(m, 1)};
     const double radius = m->missile.shape == SF_SHAPE_SPHERE ? m->missile.sphere_radius : 0;
     const struct {
@@ -110,8 +110,7 @@ static sf_status create_results(const char *path, const sf_model *m, const sf_h5
         sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK &&
         write_layers(m, *file, err) == SF_OK)
         return SF_OK;
-    sf_error ignored = SF_ERROR_INIT;
-    sf_h5_close(file, &ignored);
+    sf_h5_drop(file);
     return err->status;
 }
 

@@ -245,13 +245,12 @@ static void take_coarse(const sf_sweep_adaptive *a, int target, int64_t row, dou
 }
 
 static sf_status expect_coarse(sf_sweep_adaptive *a, sf_error *err) {
-    unsigned long n = (unsigned long)a->plan->rows;
     int most = 0, targets = a->plan->figure_count + WATCHED;
     for (int t = 0; t < targets; t++)
         most = a->coarse->model[t].count > most ? a->coarse->model[t].count : most;
     SF_OWNED double *room = sf_alloc(err, most + 1, sizeof *room, "predictions");
-    a->base = sf_alloc(err, n, TARGETS * sizeof *a->base, "coarse rows");
-    a->doubt = sf_alloc(err, n, TARGETS * sizeof *a->doubt, "coarse rows");
+    a->base = sf_alloc(err, a->plan->rows, TARGETS * sizeof *a->base, "coarse rows");
+    a->doubt = sf_alloc(err, a->plan->rows, TARGETS * sizeof *a->doubt, "coarse rows");
     for (int64_t row = 0; row < a->plan->rows && err->status == SF_OK; row++)
         for (int t = 0; t < targets; t++)
             take_coarse(a, t, row, room);
@@ -268,10 +267,8 @@ static sf_status expect(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err
         SF_TRY(sf_sweep_trend_learn(runs, a->drops, &a->trend, err));
     }
     a->expected = sf_alloc(err, runs->count, SF_TRENDS * sizeof *a->expected, "columns of the rows");
-    if (a->log && runs->count > MANY_ROWS) {
-        fprintf(a->log, "  %lld rows are read, and their columns computed\n", (long long)runs->count);
-        fflush(a->log);
-    }
+    if (runs->count > MANY_ROWS)
+        sf_log_print(a->log, "  %lld rows are read, and their columns computed\n", (long long)runs->count);
     for (int64_t row = 0; row < runs->count && err->status == SF_OK; row++) {
         if (sf_process_stopped())
             return SF_FAIL(err, SF_INTERRUPTED, "interrupted");
@@ -502,11 +499,11 @@ static int choose_round(sf_sweep_adaptive *a, const sf_runs *runs, int most, int
             break;
         n = choose_needed(a, count, row, o, wanted, next, &target, err);
     }
-    if (a->log && n > 0 && err->status == SF_OK) {
+    if (n > 0 && err->status == SF_OK) {
         int k = target - a->plan->figure_count;
-        fprintf(a->log, "%lld of %lld rows simulated; %d more to know %s of the others\n", (long long)ended,
-                (long long)runs->count, n, k < 0 ? a->plan->figure[target].figure : watched[k].what);
-        fflush(a->log);
+        sf_log_print(a->log, "%lld of %lld rows simulated; %d more to know %s of the others\n",
+                     (long long)ended, (long long)runs->count, n,
+                     k < 0 ? a->plan->figure[target].figure : watched[k].what);
     }
     return n;
 }
@@ -566,10 +563,7 @@ sf_sweep_adaptive *sf_sweep_adaptive_new(const sf_plan *plan, const char *drops,
     list_inputs(a);
     a->checks = count_checks(plan);
     a->check = sf_analysis_pick(plan->rows, a->checks, err);
-    if (a->check)
-        return a;
-    free(a);
-    return NULL;
+    return sf_keep(a, err);
 }
 
 void sf_sweep_adaptive_correct(sf_sweep_adaptive *a, const sf_sweep_adaptive *coarse, const sf_runs *runs) {

@@ -185,10 +185,7 @@ bool *sf_analysis_pick(int64_t count, int64_t most, sf_error *err) {
         pick[k] = picked < most && is_drawn(random, most - picked, count - k);
         picked += pick[k];
     }
-    if (err->status == SF_OK)
-        return pick;
-    free(pick);
-    return NULL;
+    return sf_keep(pick, err);
 }
 
 static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {

@@ -259,9 +259,8 @@ static sf_status probe(const sf_sweep_campaign *c, const sf_sweep_engine *engine
     if (!changed)
         return err->status;
     open_ended(runs);
-    if (c->log)
-        fputs("  a file of the geometry or a result has changed since: every run is looked at again\n",
-              c->log);
+    sf_log_print(c->log,
+                 "  a file of the geometry or a result has changed since: every run is looked at again\n");
     return save(c, runs, true, err);
 }
 
@@ -308,11 +307,8 @@ static int next_piece(const sf_runs *runs, int64_t *from, int most, int64_t *row
 static void tell_progress(const sf_sweep_campaign *c, int64_t begun, int64_t done, int64_t open,
                           double start) {
     double spent = sf_process_now() - start, left = spent / (double)done * (double)(open - done);
-    if (c->log) {
-        fprintf(c->log, "%lld of %lld runs; %.0f s so far, about %.0f s to go\n", (long long)(begun + done),
-                (long long)(begun + open), spent, left);
-        fflush(c->log);
-    }
+    sf_log_print(c->log, "%lld of %lld runs; %.0f s so far, about %.0f s to go\n", (long long)(begun + done),
+                 (long long)(begun + open), spent, left);
 }
 
 static sf_status work(const sf_sweep_campaign *c, const sf_sweep_engine *engine, sf_runs *runs, int64_t *row,

@@ -29,11 +29,10 @@ static sf_status take_overrides(const sf_plan *plan, int64_t row, sf_runner_drop
 }
 
 static sf_status begin_piece(piece *p, const sf_plan *plan, int count, const int64_t *row, sf_error *err) {
-    unsigned long n = (unsigned long)count;
     *p = (piece){.count = count,
-                 .drop = sf_alloc(err, n, sizeof *p->drop, "drops"),
-                 .result = sf_alloc(err, n, sizeof *p->result, "drops"),
-                 .failure = sf_alloc(err, n, sizeof *p->failure, "drops")};
+                 .drop = sf_alloc(err, count, sizeof *p->drop, "drops"),
+                 .result = sf_alloc(err, count, sizeof *p->result, "drops"),
+                 .failure = sf_alloc(err, count, sizeof *p->failure, "drops")};
     for (int k = 0; k < count && err->status == SF_OK; k++) {
         p->drop[k] = (sf_runner_drop){.label = SF_SWEEP_LABEL, .case_path = plan->case_path};
         take_overrides(plan, row[k], &p->drop[k], err);

@@ -151,7 +151,7 @@ static char *print_word(const config_setting_t *s, bool plain) {
         print_fractions(out, s);
     else if (out)
         sf_case_print_setting(out, s);
-    return out && fclose(out) == 0 ? text : NULL;
+    return sf_text_close(out, &text);
 }
 
 static sf_status take_word(reading *r, const config_setting_t *s, int64_t k, sf_error *err) {
@@ -466,12 +466,8 @@ sf_status sf_factor_read(const sf_config *config, const config_setting_t *group,
 }
 
 void sf_factor_free(sf_factor *f) {
-    for (int64_t k = 0; k < f->count && f->words; k++) {
-        if (f->text)
-            free(f->text[k]);
-        if (f->label)
-            free(f->label[k]);
-    }
+    sf_free_all((size_t)f->count, f->text);
+    sf_free_all((size_t)f->count, f->label);
     SF_FREE(f->text, f->label, f->number, f->value);
     *f = (sf_factor){0};
 }

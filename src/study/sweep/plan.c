@@ -2,6 +2,7 @@
 #include "study/sweep/plan.h"
 
 #include "base/hash.h"
+#include "base/text.h"
 #include "io/plain_file.h"
 #include "pre/mesh/geo_parameters.h"
 #include <gsl/gsl_statistics.h>
@@ -17,11 +18,7 @@ static const double COARSE_PART = 0.5; /* of the accuracies: their error is a pa
 
 /* True if the table has a column of this name beside the factors. */
 static bool is_column(const char *name) {
-    static const char *const columns[] = {"id", "run_status", "grade", "message", "folder"};
-    for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++)
-        if (strcmp(name, columns[k]) == 0)
-            return true;
-    return sf_figure_find(name) != NULL;
+    return sf_word_find("id|run_status|grade|message|folder", name) >= 0 || sf_figure_find(name);
 }
 
 static sf_status add_factor(const sf_config *config, const config_setting_t *group, bool sampled, sf_plan *p,
@@ -349,8 +346,7 @@ sf_status sf_plan_read(const char *path, bool huge, bool coarse, sf_plan *p, sf_
 void sf_plan_free(sf_plan *p) {
     for (int k = 0; k < p->factor_count; k++)
         sf_factor_free(&p->factor[k]);
-    for (int k = 0; k < p->set_count; k++)
-        free(p->set[k]);
+    sf_free_all((size_t)p->set_count, p->set);
     SF_FREE(p->folder, p->case_path, p->title);
     *p = (sf_plan){0};
 }

@@ -12,29 +12,25 @@ static const char *const states[] = {[SF_SWEEP_OPEN] = "open",
                                      [SF_SWEEP_PREDICTED] = "predicted"};
 
 sf_status sf_runs_create(const sf_plan *plan, sf_runs *r, sf_error *err) {
-    unsigned long n = (unsigned long)plan->rows;
     *r = (sf_runs){.plan = plan, .count = plan->rows};
     for (int k = 0; k < plan->figure_count; k++)
         r->column[k] = sf_runs_figure(plan->figure[k].figure);
-    r->state = sf_alloc(err, n, 1, "the runs");
-    r->grade = sf_alloc(err, n, 1, "the runs");
-    r->folder = sf_alloc(err, n, sizeof *r->folder, "the runs");
-    r->message = sf_alloc(err, n, sizeof *r->message, "the runs");
-    r->value = sf_alloc(err, n, SF_FIGURE_TOTAL * sizeof *r->value, "the figures of the runs");
+    r->state = sf_alloc(err, plan->rows, 1, "the runs");
+    r->grade = sf_alloc(err, plan->rows, 1, "the runs");
+    r->folder = sf_alloc(err, plan->rows, sizeof *r->folder, "the runs");
+    r->message = sf_alloc(err, plan->rows, sizeof *r->message, "the runs");
+    r->value = sf_alloc(err, plan->rows, SF_FIGURE_TOTAL * sizeof *r->value, "the figures of the runs");
     if (sf_plan_is_adaptive(plan))
-        r->half = sf_alloc(err, n, (unsigned long)plan->figure_count * sizeof *r->half, "predictions");
+        r->half =
+            sf_alloc(err, plan->rows, (unsigned long)plan->figure_count * sizeof *r->half, "predictions");
     for (int64_t k = 0; r->value && k < r->count * SF_FIGURE_TOTAL; k++)
         r->value[k] = NAN;
     return err->status;
 }
 
 void sf_runs_free(sf_runs *r) {
-    for (int64_t k = 0; k < r->count; k++) {
-        if (r->folder)
-            free(r->folder[k]);
-        if (r->message)
-            free(r->message[k]);
-    }
+    sf_free_all((size_t)r->count, r->folder);
+    sf_free_all((size_t)r->count, r->message);
     SF_FREE(r->state, r->grade, r->folder, r->message, r->value, r->half);
     *r = (sf_runs){0};
 }

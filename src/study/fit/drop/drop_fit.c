@@ -94,12 +94,11 @@ static void find_columns_early(sf_drop_fit *fit, int d, const char *material) {
                               .override_count = 2,
                               .overrides = {"solver.end_time=2 ms", "series.drops=1"}};
     sf_runner quiet = *fit->runner;
-    sf_runner_result result = {0};
+    SF_OWNED_BY(sf_runner_result_free) sf_runner_result result = {0};
     sf_error none = SF_ERROR_INIT;
     quiet.log = NULL;
     if (sf_runner_run(&quiet, &request, &result, &none) == SF_OK)
         find_columns(result.path, &fit->input->drop[d], &fit->columns[d], &none);
-    sf_runner_result_free(&result);
 }
 
 /* A predicted drop without a figure, and why. */
@@ -118,10 +117,7 @@ static void mark_failure(sf_drop_fit *fit, int d, const char *sentence, const ch
         snprintf(s->verdict, sizeof s->verdict, "%.400s", sentence);
     for (int k = fit->row[d]; k < fit->row[d + 1]; k++)
         y[k] = NAN;
-    if (fit->log) {
-        fprintf(fit->log, "  %-24s no prediction by simulation: %s\n", fit->input->drop[d].name, sentence);
-        fflush(fit->log);
-    }
+    sf_log_print(fit->log, "  %-24s no prediction by simulation: %s\n", fit->input->drop[d].name, sentence);
 }
 
 /* The drops of a series are simulated once, in one folder: that of its first entry. */
@@ -490,10 +486,7 @@ static sf_status begin_coarse(sf_drop_fit *fit, sf_mapping_problem *problem, sf_
     }
     if (failure.status != SF_ERR_NUMERIC && failure.status != SF_ERR_MODEL)
         return SF_FAIL(err, failure.status, "coarse_set: %.800s", failure.text);
-    if (fit->log) {
-        fprintf(fit->log, "coarse_set is left out, its drops cannot be used: %s\n", failure.text);
-        fflush(fit->log);
-    }
+    sf_log_print(fit->log, "coarse_set is left out, its drops cannot be used: %s\n", failure.text);
     return SF_OK;
 }
 
@@ -521,7 +514,7 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
         if (fit->speed[d] >= 0)
             prior_sd[fit->speed[d]] = in->drop[d].speed_sd;
     const bool exact = fit->measured_drops == 0;
-    sf_mapping_result coarse = {0};
+    SF_OWNED_BY(sf_mapping_free) sf_mapping_result coarse = {0};
     sf_mapping_problem problem = {.parameters = fit->parameters,
                                   .responses = fit->row[fit->measured_drops],
                                   .start = start,
@@ -547,7 +540,6 @@ sf_status sf_drop_fit_run(sf_drop_fit *fit, sf_error *err) {
         bound_curve(fit, err) == SF_OK && locate_information(fit, err) == SF_ERR_NUMERIC &&
         fit->result.linear)
         *err = (sf_error)SF_ERROR_INIT; /* the columns collapse where the drops do not */
-    sf_mapping_free(&coarse);
     return err->status;
 }
 

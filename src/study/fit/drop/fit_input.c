@@ -503,8 +503,7 @@ sf_status sf_fit_input_read(const char *path, int model, sf_fit_input *in, sf_er
 void sf_fit_input_free(sf_fit_input *in) {
     for (int k = 0; k < in->drop_count; k++)
         sf_drop_input_free(&in->drop[k]);
-    for (int k = 0; k < in->coarse_count; k++)
-        free(in->coarse[k]);
+    sf_free_all((size_t)in->coarse_count, in->coarse);
     sf_foam_card_free(&in->form.base);
     SF_FREE(in->material_path, in->text);
     *in = (sf_fit_input){0};
