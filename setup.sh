@@ -8,7 +8,7 @@ usage() {
 usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
 
   demo     build, then run examples/eva50-v4.5 through all three programs into out/eva50-v4.5, and
-           again with twice its spacings for the error of the mesh
+           its drop on its own spacings and on twice these for the error of the mesh
   test     build, then run the tests (all but the slow ones)
   slow     build, then run the slow tests
   build    build only: the programs are in build/bin
@@ -97,7 +97,7 @@ build_programs() {
 # that hold both.
 refine() {
     echo
-    echo "The figures for ever finer meshes (± their error), from this drop and one with twice its spacings:"
+    echo "The figures for ever finer meshes (± their error), from this drop on its own spacings and on twice these:"
     build/bin/softfall-sweep "$1" -o "$2" --jobs 1 --threads "$(processors)" >"$2.log" ||
         fail "softfall-sweep failed: see above and $2.log"
     grep -A 1 '^  run .*±' "$2.log" || fail "$2.log has no row of refined figures"

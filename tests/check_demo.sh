@@ -43,6 +43,8 @@ demo second
 grep -q 'are up to date' "$place/second" || fail "a second call computes: $(cat "$place/second")"
 [ "$(figures second)" = "$(figures first)" ] || fail "a second call prints other figures: $(cat "$place/second")"
 rm "$place/out/eva50-v4.5/refined.txt" # as after an interruption
+demo interrupted
+! grep -q 'are up to date' "$place/interrupted" || fail "half a demo stands for a whole one"
 sed -i 's/thickness = 50.0/thickness = 55.0/' "$place/examples/eva50-v4.5/case.cfg"
 demo third
 demo fourth --force

@@ -167,7 +167,12 @@ static void spacings_of_the_geometry_are_doubled_too(void **state) {
     write_mesh(p, "half", "half.cfg --set geometry.spacing_factor=2");
     write_mesh(p, "left", "left.cfg --set geometry.spacing_factor=2");
     write_mesh(p, "plain", "left.cfg");
-    assert_int_equal(program_shell(p, "cmp given.mesh half.mesh && cmp given.mesh left.mesh").code, 0);
+    program_shell(p, "echo 'half_spacing = 0.5*fine_spacing;' >> own.geo"); /* follows one that is doubled */
+    write_mesh(p, "derived", "left.cfg --set geometry.spacing_factor=2");
+    assert_int_equal(program_shell(p, "cmp given.mesh half.mesh && cmp given.mesh left.mesh && "
+                                      "cmp given.mesh derived.mesh")
+                         .code,
+                     0);
     assert_int_equal(program_shell(p, "cmp -s given.mesh plain.mesh").code, 1);
 }
 
@@ -178,6 +183,8 @@ static void spacings_that_cannot_be_doubled_are_refused(void **state) {
          "wrong.cfg:3: refine: ./own.geo: geometry.spacing_factor needs a number, in geometry.parameters or in a "
          "DefineConstant of this file, for outer_spacing"},
         {"1i cell_spacing = 5;", "for cell_spacing"},
+        {"1i cell_spacing = 5*mm; // spacing", "for cell_spacing"},
+        {"1i cell_spacing = DefineNumber[5, Name \"Pad/spacing\"];", "for cell_spacing"},
         {"s/fine_spacing/fine/g; s/outer_spacing/outer/g", "for a parameter with \"spacing\" in its name"}};
     const program_place *p = *state;
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {

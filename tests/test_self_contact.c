@@ -104,7 +104,7 @@ static void a_cut_block_is_as_stiff_as_the_whole_one(void **state) {
     assert_relative(rough.force, whole.force, 0.005);
     assert_true(cut.penetration < 0.01 * 5 && cut.energy_error < 1e-3);
     assert_true(cut.momentum < 1e-12 && cut.angular < 1e-12);
-    assert_true(rough.momentum < 1e-12 && rough.angular < 1e-12); /* friction acts across the gap */
+    assert_true(rough.momentum < 1e-12 && rough.angular < 1e-12);
     double place[3];
     passes_through(p, "another face of the foam", place);
     assert_true(place[0] < 36 && fabs(place[2] - 20) < 0.2);

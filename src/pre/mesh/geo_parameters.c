@@ -55,18 +55,18 @@ enum { MAX_NAMES = 256 };
 typedef struct name_list {
     int count;
     sf_geo_parameter at[MAX_NAMES];
-    char fixed[SF_CASE_NAME_SIZE]; /* a spacing that a text sets to a number itself; "" */
+    char fixed[SF_CASE_NAME_SIZE]; /* a spacing that a text sets, by no other one; "" */
     bool others;                   /* a text reads other files */
 } name_list;
 
-/* Returns the plain number behind "=" or "= {" that one of the marks `ends` follows; NaN: there is none. */
-static double read_number(const char *text, const char *ends) {
+/* Returns the plain number behind "=" or "= {" that is all of a default; NaN: there is none. */
+static double read_number(const char *text) {
     double value;
     const char *p = skip_blank(text);
     p = *p == '=' ? skip_blank(p + 1) : "";
     p = sf_decimal_read(*p == '{' ? skip_blank(p + 1) : p, &value);
     p = p ? skip_blank(p) : "";
-    return *p && strchr(ends, *p) ? value : NAN;
+    return *p && strchr(",}])", *p) ? value : NAN;
 }
 
 static void add_name(name_list *list, sf_geo_token t, const char *text) {
@@ -74,7 +74,7 @@ static void add_name(name_list *list, sf_geo_token t, const char *text) {
         return;
     sf_geo_parameter *out = &list->at[list->count++];
     snprintf(out->name, sizeof out->name, "%.*s", (int)t.length, t.begin);
-    out->value = read_number(text, ",}])");
+    out->value = read_number(text);
     for (sf_geo_parameter *p = list->at; p < out; p++)
         if (strcmp(p->name, out->name) == 0 && p->value != out->value)
             p->value = out->value = NAN; /* which one holds is known to gmsh alone */
@@ -105,6 +105,21 @@ static bool is_spacing(const char *name) {
     return strstr(name, "spacing") != NULL;
 }
 
+/* True if a name is assigned a value that follows no spacing of DefineConstant; `text` is behind the name. */
+static bool is_set_alone(const char *text) {
+    sf_geo_token t = sf_geo_token_next(&text);
+    if (!sf_geo_token_is(t, "=") || *text == '=')
+        return false;
+    do {
+        char word[SF_CASE_NAME_SIZE];
+        t = sf_geo_token_next(&text);
+        snprintf(word, sizeof word, "%.*s", t.kind == SF_GEO_WORD ? (int)t.length : 0, t.begin);
+        if (is_spacing(word))
+            return false;
+    } while (t.kind != SF_GEO_END && !sf_geo_token_is(t, ";"));
+    return true;
+}
+
 static void scan(const char *text, name_list *list) {
     for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; t.kind != SF_GEO_END;) {
         char name[SF_CASE_NAME_SIZE];
@@ -113,7 +128,7 @@ static void scan(const char *text, name_list *list) {
         list->others |= strcmp(name, "Include") == 0 || strcmp(name, "Merge") == 0;
         if (strcmp(name, "DefineConstant") == 0)
             read_constants(&text, list);
-        else if (is_spacing(name) && isfinite(read_number(text, ";")))
+        else if (is_spacing(name) && is_set_alone(text))
             memcpy(list->fixed, name, sizeof name);
     }
 }
@@ -193,6 +208,9 @@ sf_status sf_geo_parameters_scale(const sf_geo_source *source, sf_geo_source *sc
 sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
                                   sf_error *err) {
     sf_geo_source scaled;
+    if (is_scaled(source) && !is_geo(source))
+        return SF_REFUSE(err, "%s: geometry.spacing_factor multiplies spacings of a .geo file only",
+                         source->path);
     if ((source->parameter_count == 0 && !is_scaled(source)) || (!read && !is_geo(source)))
         return SF_OK;
     SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");

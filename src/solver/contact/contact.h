@@ -22,9 +22,10 @@ void sf_contact_solve(const sf_model *model, const sf_operators *operators, sf_s
  * every node of the skin against the faces of the skin before it, by multipliers as the missile's contact has
  * them (above; theory, section "Contact of the pad with itself"). Without these forces the gap of node
  * and face at the next time would be g; the forces q on the node, and -q shared among the face's nodes, are
- * those for which no gap is negative, none pulls, and Coulomb's law holds. They act at one place in one
- * direction, so that momentum and angular momentum hold. A node touches a face only if it comes from outside:
- * one that lies deeper behind a face than it may, as behind the other side of a thin wall, does not see it.
+ * those for which no gap is negative, none pulls, and Coulomb's law holds. Momentum and angular momentum
+ * hold: those along the normal are on one line, and sf_touch_lean takes up the moment of friction. A node
+ * touches a face only if it comes from outside: one that lies deeper behind a face than it may, as behind the
+ * other side of a thin wall, does not see it.
  */
 
 /* Finds the forces of this step, adds them to state->force, and the work lost since the last step to the

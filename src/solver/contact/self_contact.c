@@ -308,7 +308,8 @@ static void gather(const sf_skin *skin, const sf_touch *pair, const double *fiel
     }
 }
 
-/* Acceleration of the pair's node relative to its partner by a unit force; `push` is zero, and left so. */
+/* Acceleration of the pair's node relative to its partner by a unit force along x, which differs little from
+ * those along y and z; `push` is zero, and left so. */
 static double mobility_of(const sf_model *m, const sf_skin *skin, const sf_touch *pair, double *push) {
     static const double unit[3] = {1, 0, 0}, back[3] = {-1, 0, 0};
     double out[3];
@@ -402,7 +403,8 @@ static double friction_of(const sf_model *m, const sf_skin *skin, int64_t p, int
     return m->skin_friction;
 }
 
-/* The pair of node p in the last step; its normal is that of the present. */
+/* The pair of node p in the last step; normal and lean are those of the present: the work that they tell of
+ * the last forces has an error of the order of their change. */
 static sf_touch last_pair(const sf_model *m, const sf_skin *skin, sf_state *s, int64_t p) {
     sf_touch q = {.node = p, .facet = (int64_t)s->self_partner[p], .force = &s->self_force[3 * p]};
     q.friction = friction_of(m, skin, p, q.facet);

@@ -408,19 +408,23 @@ static double cost_of_mount(const sf_drop_fit *fit, const sf_mapping_problem *p,
 }
 
 /* The mount of `u` becomes that of a grid over its prior through which the drops with the foam of `u` have
- * the lowest objective, `least`. No drop is simulated for it. */
+ * the lowest objective, `least`; INFINITY: through none they have figures. Only drops that the runner has not
+ * kept are simulated. */
 static sf_status choose_mount(sf_drop_fit *fit, const sf_mapping_problem *p, double *u, double *least,
                               sf_error *err) {
-    enum { FREQUENCIES = 25, DAMPINGS = 4 };            /* to each side */
     static const double FREQUENCY = 0.1, DAMPING = 0.5; /* standard deviations */
+    const int frequencies = fit->chain[0] >= 0 ? 25 : 0, dampings = fit->chain[1] >= 0 ? 4 : 0; /* a side */
     double place[SF_MAPPING_MAX_PARAMETERS];
     SF_OWNED double *y = sf_alloc(err, p->responses, sizeof *y, "responses");
     *least = INFINITY;
     SF_TRY(err->status);
-    SF_TRY(simulate(fit, u, y, err));
+    fit->rigid = true; /* not through a mount that may give no figures */
+    simulate(fit, u, y, err);
+    fit->rigid = false;
+    SF_TRY(err->status);
     memcpy(place, u, sizeof place);
-    for (int k = -FREQUENCIES; k <= FREQUENCIES; k++)
-        for (int l = -DAMPINGS; l <= DAMPINGS; l++) {
+    for (int k = -frequencies; k <= frequencies; k++)
+        for (int l = -dampings; l <= dampings; l++) {
             const double at[] = {k * FREQUENCY, l * DAMPING};
             for (int part = 0; part < 2; part++)
                 if (fit->chain[part] >= 0)
@@ -444,26 +448,35 @@ static sf_status find_minimum(sf_drop_fit *fit, const sf_mapping_problem *proble
     if (!rings || fit->earlier || problem->first_point)
         return sf_mapping_solve(problem, result, err);
     double start[SF_MAPPING_MAX_PARAMETERS], lowest = INFINITY, least;
+    sf_mapping_problem nearer = *problem;
+    sf_error failure = SF_ERROR_INIT;
+    nearer.start = start;
+    nearer.wide = false;
     fit->rigid = true;
     sf_mapping_solve(problem, result, err);
     fit->rigid = false;
-    for (int round = 0, before; round < ROUNDS && err->status == SF_OK; round++) {
-        sf_mapping_problem nearer = *problem;
-        nearer.start = start;
-        nearer.wide = false;
+    for (int round = 0; round < ROUNDS && err->status == SF_OK; round++) {
+        sf_mapping_result next = {0};
         memcpy(start, result->u, sizeof start);
         if (choose_mount(fit, problem, start, &least, err) != SF_OK || !(least < lowest - TOLERANCE))
             break;
         const sf_signal_chain chain = sf_drop_fit_chain(fit, start);
-        if (fit->log)
-            fprintf(fit->log, "from a mount of %.4g Hz with a damping of %.3g: objective %.4g\n",
-                    chain.mount_frequency, chain.mount_damping, least);
-        before = result->iterations;
+        sf_log_print(fit->log, "from a mount of %.4g Hz with a damping of %.3g: objective %.4g\n",
+                     chain.mount_frequency, chain.mount_damping, least);
+        if (sf_mapping_solve(&nearer, &next, &failure) != SF_OK) {
+            sf_mapping_free(&next);
+            break;
+        }
+        next.iterations += result->iterations;
+        lowest = next.objective;
         sf_mapping_free(result);
-        sf_mapping_solve(&nearer, result, err);
-        result->iterations += before;
-        lowest = result->objective;
+        *result = next;
     }
+    if (err->status == SF_OK && failure.status != SF_OK &&
+        (isinf(lowest) || failure.status != SF_ERR_NUMERIC)) /* else the last round has the result */
+        return SF_FAIL(err, failure.status, "%s", failure.text);
+    if (err->status == SF_OK && isinf(lowest))
+        return SF_FAIL(err, SF_ERR_NUMERIC, "through no mount of its prior do the drops have their figures");
     return err->status;
 }
 
