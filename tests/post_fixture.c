@@ -220,8 +220,8 @@ sf_status fixture_write(const char *path, const fixture_options *o, sf_error *er
     remove(path);
     if (sf_h5_create(path, &file, err) != SF_OK)
         return err->status;
-    sf_h5_set_attribute(file, "/", "format", o->format ? o->format : "softfall-results", err);
-    sf_h5_set_attribute_i64(file, "/", "format_version", SF_FORMAT_VERSION, err);
+    sf_h5_set_attribute(file, "format", o->format ? o->format : "softfall-results", err);
+    sf_h5_set_attribute_i64(file, "format_version", SF_FORMAT_VERSION, err);
     put_model(file, &c, o, err);
     if (o->informed_strain > 0)
         put_scalar(file, "/model/informed_strain", o->informed_strain, err);

@@ -377,9 +377,9 @@ static void files_of_newer_formats_or_without_content_are_refused(void **state) 
         bool model = k < 2, newer = k % 2;
         remove(program_path(p, "odd.h5"));
         assert_int_equal(sf_h5_create(program_path(p, "odd.h5"), &file, &err), SF_OK);
-        sf_h5_set_attribute(file, "/", "format", model ? "softfall-model" : "softfall-results", &err);
-        sf_h5_set_attribute_i64(file, "/", "format_version",
-                                newer ? SF_FORMAT_VERSION + 1 : SF_FORMAT_VERSION, &err);
+        sf_h5_set_attribute(file, "format", model ? "softfall-model" : "softfall-results", &err);
+        sf_h5_set_attribute_i64(file, "format_version", newer ? SF_FORMAT_VERSION + 1 : SF_FORMAT_VERSION,
+                                &err);
         sf_h5_close(&file, &err);
         assert_int_equal(err.status, SF_OK);
         program_result result =

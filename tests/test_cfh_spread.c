@@ -245,8 +245,8 @@ static void response_errors_give_the_interval(void **state) {
     assert_relative(whole->high, h * exp(-outermost), 3e-3);
     assert_relative(foam->high, h, 1e-3);
     assert_relative(foam->low, h, 1e-3);
-    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_RESPONSE, SF_CFH_FIRST), 1, 1e-9);
-    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_FOAM, SF_CFH_FIRST), 0, 1e-9);
+    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_RESPONSE), 1, 1e-9);
+    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_FOAM), 0, 1e-9);
     sf_cfh_spread_free(&s);
 
     give_responses(&draws, 0, own);
@@ -265,9 +265,9 @@ static void response_errors_give_the_interval(void **state) {
     double response = hypot(shared, own), mesh = SF_CFH_MESH_HIC * SF_CFH_MESH_SIZE * pad.mesh_error,
            share = response * response / (response * response + mesh * mesh), sum = 0;
     assert_close(log(both->high / both->low), 2 * 1.96 * response / slope, 0.1 * 2 * 1.96 * response / slope);
-    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_RESPONSE, SF_CFH_FIRST), share, 0.12);
+    assert_close(sf_cfh_spread_share(&s, SF_CFH_PART_RESPONSE), share, 0.12);
     for (int part = 0; part < SF_CFH_PARTS; part++)
-        sum += sf_cfh_spread_share(&s, (sf_cfh_part)part, SF_CFH_FIRST);
+        sum += sf_cfh_spread_share(&s, (sf_cfh_part)part);
     assert_close(sum, 1, 1e-12);
     sf_cfh_spread_free(&s);
     sf_cfh_draws_free(&draws);

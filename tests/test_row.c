@@ -104,11 +104,11 @@ static void text_tables_align_by_characters(void **state) {
 static void html_table_has_a_column_for_each_name(void **state) {
     (void)state;
     page p;
-    sf_rows_html_table(open_page(&p), "", (sf_rows){declared, 3},
-                       (sf_records){&undefined, sizeof undefined, 1});
-    assert_page(&p, "<table><thead><tr><th class=\"r\">peak (g)</th><th class=\"r\">share (%)</th>"
-                    "<th class=\"r\">rows</th></tr></thead><tbody>\n<tr><td class=\"r\">–</td>"
-                    "<td class=\"r\">–</td><td class=\"r\">–</td></tr>\n</tbody></table>\n");
+    sf_rows_html_table(open_page(&p), (sf_rows){declared, 3}, (sf_records){&undefined, sizeof undefined, 1});
+    assert_page(
+        &p, "<table class=\"dense\"><thead><tr><th class=\"r\">peak (g)</th><th class=\"r\">share (%)</th>"
+            "<th class=\"r\">rows</th></tr></thead><tbody>\n<tr><td class=\"r\">–</td>"
+            "<td class=\"r\">–</td><td class=\"r\">–</td></tr>\n</tbody></table>\n");
 }
 
 static void numbers_are_those_of_the_key(void **state) {

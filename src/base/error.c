@@ -49,6 +49,14 @@ void *sf_allocate(sf_error *err, unsigned long count, unsigned long size, const 
     return block;
 }
 
+sf_status sf_alloc_all(sf_error *err, const char *what, size_t rooms, const sf_room *room) {
+    for (size_t k = 0; k < rooms; k++) {
+        void *block = sf_allocate(err, room[k].count, room[k].size, what);
+        memcpy(room[k].pointer, &block, sizeof block);
+    }
+    return err->status;
+}
+
 bool sf_grow(void *array, size_t count, size_t size) {
     void *block, *more;
     memcpy(&block, array, sizeof block);
@@ -76,6 +84,11 @@ void *sf_keep(void *block, const sf_error *err) {
 void sf_free_all(size_t count, void *pointers) {
     for (size_t k = 0; k < count && pointers; k++)
         sf_release((char *)pointers + k * sizeof(void *));
+}
+
+void sf_clear(void *record, size_t size, size_t count, void *pointers) {
+    sf_free_all(count, pointers);
+    memset(record, 0, size);
 }
 
 void sf_log_print(FILE *log, const char *format, ...) {

@@ -35,6 +35,9 @@ typedef struct sf_error {
 #define SF_ERROR_INIT                                                                                        \
     { SF_OK, "", 0, "" }
 
+/* In place of `err`: nobody reads the failure. */
+#define SF_IGNORED (&(sf_error)SF_ERROR_INIT)
+
 /* Records a failure (unless one is recorded already) and returns the recorded status. */
 #define SF_FAIL(err, status, ...) sf_error_set((err), (status), __FILE__, __LINE__, __VA_ARGS__)
 
@@ -85,16 +88,51 @@ void *sf_keep(void *block, const sf_error *err);
 /* The same with an array of pointers; NULL: there is none. */
 void sf_free_all(size_t count, void *pointers);
 
+/* Calls free() with pointers of a record, and fills the record with zeros: SF_CLEAR(curve, curve->strain); */
+#define SF_CLEAR(record, ...)                                                                                \
+    sf_clear(record, sizeof *(record), sizeof((void *[]){__VA_ARGS__}) / sizeof(void *),                     \
+             (void *[]){__VA_ARGS__})
+void sf_clear(void *record, size_t size, size_t count, void *pointers);
+
 /* malloc/calloc/realloc that record SF_ERR_MEMORY. Blocks of sf_alloc are zeroed and 64-byte aligned; release
  * them with free(). The count may be of any integer type; `count * size` is checked for overflow; zero bytes
  * give a valid block. */
 void *sf_allocate(sf_error *err, unsigned long count, unsigned long size, const char *what);
 #define sf_alloc(err, count, size, what) sf_allocate(err, (unsigned long)(count), size, what)
 
+/* Declares an array that the block owns; leaves the function where there is no memory for it, or after an
+ * earlier failure: SF_OWN(double, mass, node_count, "masses", err); */
+#define SF_OWN(type, name, count, what, err)                                                                 \
+    SF_OWNED type *name = sf_alloc(err, count, sizeof *name, what);                                          \
+    SF_TRY((err)->status)
+
+/* Several blocks of one name: SF_ALLOC_ALL(err, "curve", SF_ROOM(c->strain, n), SF_ROOM(c->stress, n)).
+ * Returns the status of `err`; a pointer without a block is NULL. */
+typedef struct sf_room {
+    void *pointer; /* its address */
+    unsigned long count, size;
+} sf_room;
+sf_status sf_alloc_all(sf_error *err, const char *what, size_t rooms, const sf_room *room);
+#define SF_ROOM(pointer, count) ((sf_room){&(pointer), (unsigned long)(count), sizeof *(pointer)})
+#define SF_ALLOC_ALL(err, what, ...)                                                                         \
+    sf_alloc_all(err, what, sizeof((sf_room[]){__VA_ARGS__}) / sizeof(sf_room), (sf_room[]){__VA_ARGS__})
+
 /* Makes room for one more element behind `count` elements of `size` bytes. `array` is the address of a
  * pointer that is NULL at first and that only this function changes. False: out of memory, and nothing has
  * changed. */
 bool sf_grow(void *array, size_t count, size_t size);
+
+/* Declares an array of characters and prints into it: SF_PRINTED(path, 64, "%s/%d", folder, k); */
+#define SF_PRINTED(name, size, ...)                                                                          \
+    char name[size];                                                                                         \
+    snprintf(name, sizeof(name), __VA_ARGS__)
+
+/* Declares `text` and `size`, and `stream`, which writes them; NULL: no memory. sf_text_close (text.h) ends
+ * it. */
+#define SF_TEXT_STREAM(stream, text, size)                                                                   \
+    char *text = NULL;                                                                                       \
+    size_t size = 0;                                                                                         \
+    FILE *stream = open_memstream(&text, &size)
 
 /* In a function with the parameters `format, ...`: prints them into the array `text`. */
 #define SF_PRINT_INTO(text, format)                                                                          \

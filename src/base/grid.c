@@ -31,8 +31,7 @@ sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, co
         grid->bins[c] = (int64_t)((high[c] - low[c]) / grid->width) + 1;
     }
     int64_t bins = grid->bins[0] * grid->bins[1] * grid->bins[2];
-    grid->start = sf_alloc(err, bins + 2, sizeof *grid->start, "neighbour grid");
-    grid->node = sf_alloc(err, count, sizeof *grid->node, "neighbour grid");
+    SF_ALLOC_ALL(err, "neighbour grid", SF_ROOM(grid->start, bins + 2), SF_ROOM(grid->node, count));
     if (err->status != SF_OK) {
         sf_grid_free(grid);
         return err->status;
@@ -47,8 +46,7 @@ sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, co
 }
 
 void sf_grid_free(sf_grid *grid) {
-    SF_FREE(grid->start, grid->node);
-    *grid = (sf_grid){0};
+    SF_CLEAR(grid, grid->start, grid->node);
 }
 
 int64_t sf_grid_gather(const sf_grid *grid, const double centre[3], double radius, int64_t limit,

@@ -228,8 +228,7 @@ static int key_of(const sf_option *option, int list, int index) {
 
 /* Reads an option into its member. */
 static void take_option(const sf_option *o, char *values, const char *text, sf_error *err) {
-    char name[64];
-    snprintf(name, sizeof name, "--%s", o->name);
+    SF_PRINTED(name, 64, "--%s", o->name);
     if (o->noted)
         *(bool *)(values + o->noted) = true;
     if (o->read)

@@ -32,6 +32,13 @@ static inline void sf_sets_join(int64_t *parent, int64_t a, int64_t b) {
 /* The order of two numbers, for functions of qsort: -1, 0 or 1. */
 #define SF_ORDER(x, y) (((x) > (y)) - ((x) < (y)))
 
+/* Defines such a function for records of `type`, by one member and then by another. */
+#define SF_ORDER_BY(function, type, first, second)                                                           \
+    static int function(const void *a, const void *b) {                                                      \
+        const type *x = a, *y = b;                                                                           \
+        return x->first != y->first ? SF_ORDER(x->first, y->first) : SF_ORDER(x->second, y->second);         \
+    }
+
 /* Compares two numbers of type int32_t, for qsort. */
 static inline int sf_by_number(const void *a, const void *b) {
     return SF_ORDER(*(const int32_t *)a, *(const int32_t *)b);

@@ -22,7 +22,9 @@ static size_t not_finite(const char *text) {
 
 const char *sf_decimal_read(const char *text, double *value) {
     const char *at = text + (*text == '+' || *text == '-');
+    double ignored;
     size_t word = not_finite(at);
+    value = value ? value : &ignored;
     if (word > 0) {
         *value = NAN;
         return at + word;

@@ -8,7 +8,7 @@
 
 /* The number at `text`, [+-] digits [. digits] [e [+-] digits] with at least one digit, and what follows it;
  * NULL if there is none (hexadecimal). "nan" and "inf", and numbers that are too large, give a value that is
- * not finite. */
+ * not finite. `value` may be NULL. */
 const char *sf_decimal_read(const char *text, double *value);
 
 /* True if the whole text is one finite number. */

@@ -137,8 +137,7 @@ static bool read_name(reader *r, char name[NAME]) {
     name[used] = '\0';
     if (is_name(name))
         return true;
-    char shown[NAME + 24];
-    snprintf(shown, sizeof shown, "%.*s", (int)(r->at - from), from);
+    SF_PRINTED(shown, NAME + 24, "%.*s", (int)(r->at - from), from);
     return used > 0 ? fail(r, "unknown unit \"%.24s\" (softfall-pre --keys lists them)", shown)
            : isdigit((unsigned char)*r->at) ? fail(r, "a second number \"%.24s\" follows", r->at)
                                             : fail(r, "a unit's name is missing before \"%.24s\"", r->at);
@@ -395,8 +394,7 @@ sf_status sf_units_parse(const sf_units *units, const char *text, sf_quantity ki
     bool fits = snprintf(name, sizeof name, "%s", rest) < (int)sizeof name;
     for (size_t end = strlen(name); end > 0 && strchr(" \t", name[end - 1]);)
         name[--end] = '\0';
-    double fraction;
-    if (*name == ',' && sf_decimal_read(name + 1, &fraction))
+    if (*name == ',' && sf_decimal_read(name + 1, NULL))
         return SF_REFUSE(err, "\"%s\" has a decimal comma; write a decimal point, for example \"%s\"", text,
                          want->example);
     if (name[0] == '\0')

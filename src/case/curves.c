@@ -27,8 +27,7 @@ sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
 }
 
 void sf_case_curve_free(sf_case_curve *curve) {
-    SF_FREE(curve->strain, curve->stress);
-    memset(curve, 0, sizeof *curve);
+    SF_CLEAR(curve, curve->strain, curve->stress);
 }
 
 static sf_status check_point(const sf_table_point *p, sf_error *err) {
@@ -60,9 +59,8 @@ static sf_status take_points(const sf_table *table, sf_case_curve *curve, sf_err
     size_t points = (size_t)table->count, before = table->value[0][0] > 0.0;
     curve->extended = before > 0;
     curve->count = (int64_t)(points + before);
-    curve->strain = sf_alloc(err, points + before, sizeof *curve->strain, "the curve");
-    curve->stress = sf_alloc(err, points + before, sizeof *curve->stress, "the curve");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "the curve", SF_ROOM(curve->strain, points + before),
+                        SF_ROOM(curve->stress, points + before)));
     memcpy(curve->strain + before, table->value[0], points * sizeof *curve->strain);
     memcpy(curve->stress + before, table->value[1], points * sizeof *curve->stress);
     return SF_OK;

@@ -89,13 +89,12 @@ static bool is_wide(const char *word) {
 static sf_status read_word(cursor *c) {
     char word[64];
     const char *from = c->at;
-    double value;
     while (c->at < c->end && is_word(*c->at))
         c->at++;
     int length = snprintf(word, sizeof word, "%.*s", (int)(c->at - from), from);
     if (isalpha((unsigned char)*word) || *word == '*' || *word == '_')
         return SF_OK;
-    const char *rest = sf_decimal_read(word, &value);
+    const char *rest = sf_decimal_read(word, NULL);
     if (length >= (int)sizeof word || (!is_whole(word) && (!rest || *rest)))
         return REFUSE(c, "\"%.63s\" is not a number", word);
     if (is_whole(word) && is_wide(word))
@@ -259,8 +258,7 @@ const char *sf_case_override_file(const char *text) {
 void sf_case_source_free(sf_case_source *source) {
     for (int k = 0; k < source->count; k++)
         free(source->piece[k].path);
-    free(source->piece);
-    *source = (sf_case_source){0};
+    SF_CLEAR(source, source->piece);
 }
 
 const char *sf_case_source_find(const sf_case_source *source, int line, int *file_line) {

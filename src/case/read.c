@@ -151,9 +151,7 @@ static void tell_value(const sf_case_reader *reader, const sf_key *key, const co
 
 static void list_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                        const char *detail, const char *origin) {
-    SF_OWNED char *text = NULL;
-    size_t size = 0;
-    FILE *value = open_memstream(&text, &size);
+    SF_OWNED SF_TEXT_STREAM(value, text, size);
     if (!value)
         return;
     if (setting)
@@ -262,8 +260,7 @@ static void complete(const sf_case_reader *reader, sf_case *c) {
 
 /* The law, on which the other keys of the material depend, and its card. */
 static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
-    char path[SF_CASE_GROUP_SIZE];
-    snprintf(path, sizeof path, "%s.law", reader->material_group);
+    SF_PRINTED(path, SF_CASE_GROUP_SIZE, "%s.law", reader->material_group);
     const config_setting_t *setting = config_lookup(&reader->config, path);
     const char *name = setting ? config_setting_get_string(setting) : NULL;
     const sf_law *law = setting ? (name ? sf_law_find(name) : NULL) : sf_law_get(0);
@@ -284,8 +281,7 @@ static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
 /* The material of one layer, by the same keys as those of `material`. */
 static sf_status read_layer(const sf_case_reader *reader, const config_setting_t *setting,
                             sf_material *material, sf_error *err) {
-    SF_OWNED sf_case_reader *own = sf_alloc(err, 1, sizeof *own, "a layer's material");
-    SF_TRY(err->status);
+    SF_OWN(sf_case_reader, own, 1, "a layer's material", err);
     *own = *reader;
     own->layers = NULL;
     own->material_only = true;
@@ -522,12 +518,11 @@ sf_status sf_case_read_material(const char *path, sf_material *material, sf_erro
 }
 
 void sf_case_free(sf_case *c) {
-    SF_FREE(c->path, c->text, c->parameters, c->geometry_files, c->pad.path, c->missile.path);
     for (int k = 0; k < SF_SUPPORTS; k++)
         free(c->support[k].source.path);
     sf_material_free(&c->material);
     for (int k = 0; c->layer && k < c->layer_count; k++)
         sf_material_free(&c->layer[k]);
-    SF_FREE(c->layer, c->motion_time, c->motion_displacement);
-    memset(c, 0, sizeof *c);
+    SF_CLEAR(c, c->path, c->text, c->parameters, c->geometry_files, c->pad.path, c->missile.path, c->layer,
+             c->motion_time, c->motion_displacement);
 }

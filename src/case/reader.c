@@ -201,8 +201,7 @@ sf_status sf_case_override(config_t *config, const char *text, sf_error *err) {
     const char *equals = strchr(text, '=');
     const char *first_dot = strchr(text, '.');
     if (sf_case_override_file(text)) {
-        char name[SF_CASE_NAME_SIZE];
-        snprintf(name, sizeof name, "%.*s", (int)(equals - text), text);
+        SF_PRINTED(name, SF_CASE_NAME_SIZE, "%.*s", (int)(equals - text), text);
         return replace_group(config, name, sf_case_override_file(text), text, err);
     }
     if (!equals || !first_dot || first_dot > equals)

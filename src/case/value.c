@@ -98,13 +98,11 @@ static sf_status read_quantity(const slot *s) {
 static sf_status read_unit(const slot *s) {
     double *value = s->at;
     const char *text = config_setting_get_string(s->setting);
-    char one[SF_CASE_NAME_SIZE];
-    sf_error inner = SF_ERROR_INIT;
     if (!text)
         return REFUSE(s, "the value is %s; expected a unit of length, for example \"mm\"",
                       type_phrase(s->setting));
-    snprintf(one, sizeof one, "1 %s", text);
-    if (sf_units_parse(s->reader->units, one, SF_LENGTH, value, &inner) != SF_OK)
+    SF_PRINTED(one, SF_CASE_NAME_SIZE, "1 %s", text);
+    if (sf_units_parse(s->reader->units, one, SF_LENGTH, value, SF_IGNORED) != SF_OK)
         return REFUSE(s, "\"%s\" is not a unit of length, for example \"mm\"", text);
     snprintf(s->detail, s->size, "%.12g m", *value);
     return SF_OK;
@@ -467,8 +465,7 @@ static sf_status read_kind(sf_case_reader *reader, const config_setting_t *group
 }
 
 sf_status sf_case_read_response_error(sf_case_reader *reader, sf_error *err) {
-    char path[SF_CASE_GROUP_SIZE];
-    snprintf(path, sizeof path, "%s." SF_RESPONSE_ERROR, reader->material_group);
+    SF_PRINTED(path, SF_CASE_GROUP_SIZE, "%s." SF_RESPONSE_ERROR, reader->material_group);
     const config_setting_t *group = config_lookup(&reader->config, path);
     if (!group || check_names(reader, group, path, err) != SF_OK)
         return err->status;

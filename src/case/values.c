@@ -149,8 +149,7 @@ void sf_case_print_keys(FILE *file) {
 
 /* The key "group.name" of that length; NULL if there is none. */
 static const sf_key *key_at(const sf_key_list *list, const char *path, size_t length) {
-    char group[SF_KEY_GROUP_SIZE];
-    snprintf(group, sizeof group, "%.*s", (int)length, path);
+    SF_PRINTED(group, SF_KEY_GROUP_SIZE, "%.*s", (int)length, path);
     char *dot = strrchr(group, '.');
     if (!dot)
         return NULL;
@@ -160,11 +159,10 @@ static const sf_key *key_at(const sf_key_list *list, const char *path, size_t le
 
 bool sf_case_key_is_file(const char *path) {
     sf_key_list list;
-    char text[SF_KEY_GROUP_SIZE];
     const char *layer = strncmp(path, "materials.", 10) == 0 ? strchr(path + 10, '.') : NULL;
     if (strncmp(path, "supports.", 9) == 0)
         return strcmp(strrchr(path, '.'), ".file") == 0;
-    snprintf(text, sizeof text, "%s%s", layer ? "material" : "", layer ? layer : path);
+    SF_PRINTED(text, SF_KEY_GROUP_SIZE, "%s%s", layer ? "material" : "", layer ? layer : path);
     size_t length = strlen(text), entry = length > 5 && strcmp(text + length - 5, ".file") == 0 ? 5 : 0;
     for (int law = 0; sf_law_get(law); law++) {
         sf_case_list_keys(sf_law_get(law), &list);

@@ -47,20 +47,18 @@ static void read_included(const char *path, const char *text, sf_geo_names *name
     int above = (int)(sf_path_name(path) - path);
     for (sf_geo_token t = sf_geo_token_next(&text); t.kind != SF_GEO_END; t = sf_geo_token_next(&text)) {
         char included[PATH_MAX];
-        sf_error none = SF_ERROR_INIT;
         int folder = t.kind == SF_GEO_TEXT && t.begin[0] != '/' ? above : 0;
         if (is(&last, "Include") && t.kind == SF_GEO_TEXT && depth < DEEPEST &&
             snprintf(included, sizeof included, "%.*s%.*s", folder, path, (int)t.length, t.begin) <
                 (int)sizeof included)
-            read_depth(included, names, depth + 1, &none);
+            read_depth(included, names, depth + 1, SF_IGNORED);
         last = t;
     }
 }
 
 static sf_status read_depth(const char *path, sf_geo_names *names, int depth, sf_error *err) {
     SF_OWNED char *text = NULL;
-    size_t size = 0;
-    SF_TRY(sf_plain_read(path, "geometry", LARGEST, &text, &size, err));
+    SF_TRY(sf_plain_read(path, "geometry", LARGEST, &text, NULL, err));
     sf_geo_names_scan(text, names);
     read_included(path, text, names, depth);
     return SF_OK;
@@ -217,8 +215,7 @@ void sf_fields_take_defaults(sf_fields *fields) {
 
 static void show(const sf_field *f) {
     const char *dot = strchr(f->key, '.');
-    char group[SF_FIELD_KEY_SIZE];
-    snprintf(group, sizeof group, "%.*s", dot ? (int)(dot - f->key) : 0, f->key);
+    SF_PRINTED(group, SF_FIELD_KEY_SIZE, "%.*s", dot ? (int)(dot - f->key) : 0, f->key);
     int branch = find_branch(group);
     if (f->of_geometry) {
         if (*f->now)

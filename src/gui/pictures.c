@@ -89,10 +89,8 @@ static sf_status take_missile(const missile_surface *m, sf_shape *s, sf_error *e
     int parts = m->radius > 0 ? 4 : 1;
     int64_t pieces = m->triangles * parts * parts, most = 2 * pieces + m->fixed;
     double low[3], high[3];
-    s->missile.position = sf_alloc(err, 9 * most, sizeof(double), "the missile's picture");
-    s->missile_position = sf_alloc(err, 9 * most, sizeof(double), "the missile's picture");
-    s->missile.face = sf_alloc(err, 4 * most, sizeof *s->missile.face, "the missile's picture");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "the missile's picture", SF_ROOM(s->missile.position, 9 * most),
+                        SF_ROOM(s->missile_position, 9 * most), SF_ROOM(s->missile.face, 4 * most)));
     double *to = s->missile_position;
     for (int64_t t = 0; t < m->triangles; t++)
         for (int i = 0; i < parts; i++)
@@ -151,9 +149,8 @@ sf_status sf_shape_of_results(const sf_results *r, double unit, sf_shape *s, sf_
 }
 
 void sf_shape_free(sf_shape *s) {
-    SF_FREE(s->pad.position, s->pad.face, s->pad_node, s->missile.position, s->missile.face,
-            s->missile_position);
-    *s = (sf_shape){0};
+    SF_CLEAR(s, s->pad.position, s->pad.face, s->pad_node, s->missile.position, s->missile.face,
+             s->missile_position);
 }
 
 static void gather(const sf_shape *s, const sf_frame *fields, sf_shape_frame *out) {
@@ -167,8 +164,7 @@ static void gather(const sf_shape *s, const sf_frame *fields, sf_shape_frame *ou
 }
 
 static void free_shape_frame(sf_shape_frame *f) {
-    SF_FREE(f->pad, f->stress, f->missile);
-    *f = (sf_shape_frame){0};
+    SF_CLEAR(f, f->pad, f->stress, f->missile);
 }
 
 static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const sf_frame_head *head,
@@ -176,8 +172,8 @@ static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const 
     SF_OWNED_BY(sf_frame_free) sf_frame fields = {{0}};
     *out = (sf_shape_frame){0};
     SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err));
-    out->pad = sf_alloc(err, 3 * s->pad.node_count, sizeof(double), "a frame");
-    out->missile = sf_alloc(err, 3 * s->missile.node_count, sizeof(double), "a frame");
+    SF_ALLOC_ALL(err, "a frame", SF_ROOM(out->pad, 3 * s->pad.node_count),
+                 SF_ROOM(out->missile, 3 * s->missile.node_count));
     if (fields.field[SF_FRAME_VON_MISES])
         out->stress = sf_alloc(err, s->pad.node_count, sizeof(double), "a frame");
     if (err->status == SF_OK)
@@ -285,14 +281,13 @@ static const char *limit_colour(const sf_limit *limit) {
 
 /* The digits are those that summary.json has, and more than a reader needs. */
 static void show_limits(const sf_figures *f, const sf_verdict *v) {
-    char text[80], help[200];
     if (v->limit_count < SF_LIMITS)
         return;
-    snprintf(text, sizeof text, "%.9g g (limit %g g)", f->injury.a_max_g, v->limits[0].bound);
+    SF_PRINTED(text, 80, "%.9g g (limit %g g)", f->injury.a_max_g, v->limits[0].bound);
     put(A_MAX, text, sf_limit_phrase(&v->limits[0]), limit_colour(&v->limits[0]));
     snprintf(text, sizeof text, "%.9g (limit %g)", f->injury.hic.value, v->limits[1].bound);
-    snprintf(help, sizeof help, "%s; window %.2f to %.2f ms", sf_limit_phrase(&v->limits[1]),
-             1e3 * f->injury.hic.t1, 1e3 * f->injury.hic.t2);
+    SF_PRINTED(help, 200, "%s; window %.2f to %.2f ms", sf_limit_phrase(&v->limits[1]),
+               1e3 * f->injury.hic.t1, 1e3 * f->injury.hic.t2);
     put(HIC, text, help, limit_colour(&v->limits[1]));
 }
 
@@ -348,9 +343,8 @@ static void plot(const char *title, int64_t count, const double *time, const dou
 static void plot_outcome(const sf_results *r) {
     const sf_history *h = &r->history;
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
-    sf_error none = SF_ERROR_INIT;
     char title[64];
-    if (sf_figures_compute(r, FILTER, &f, &none) == SF_OK) {
+    if (sf_figures_compute(r, FILTER, &f, SF_IGNORED) == SF_OK) {
         snprintf(title, sizeof title, "%s%sacceleration, CFC %d [g]", f.turns ? "resultant " : "",
                  f.kinematic ? "kinematic " : "", FILTER);
         plot(title, f.filtered.count, f.filtered.time, f.filtered.value, 1);

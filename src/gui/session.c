@@ -89,8 +89,7 @@ static sf_status add_geometry(const char *path, const char *group, const sf_geo_
 /* Reads the case anew. */
 static sf_status read_case(sf_session *s, sf_error *err) {
     sf_case fresh;
-    SF_OWNED sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
-    SF_TRY(err->status);
+    SF_OWN(sf_fields, before, 1, "fields", err);
     *before = s->fields;
     if (sf_fields_read(s->case_path, NULL, &s->fields, &fresh, err) == SF_OK) {
         sf_case_free(&s->case_file);
@@ -127,9 +126,8 @@ static void show_finished(sf_session *s);
  * it. */
 static void wrap_geometry(sf_session *s, bool reread) {
     char *wrap = s->pictures.opened;
-    sf_error none = SF_ERROR_INIT;
     if (s->case_file.pad.path && (reread || !sf_replace_exists(wrap)) &&
-        sf_cache_find(s->cache, sizeof s->cache, &none) == SF_OK)
+        sf_cache_find(s->cache, sizeof s->cache, SF_IGNORED) == SF_OK)
         sf_cache_wrap(s->cache, s->case_file.pad.path, wrap, sizeof s->pictures.opened);
     if (*wrap)
         sf_watch_add(&s->watch, wrap);
@@ -224,10 +222,9 @@ static sf_status open_log(sf_session *s, sf_error *err) {
 }
 
 static void read_log(const sf_session *s, char **text) {
-    sf_error none = SF_ERROR_INIT;
     *text = NULL;
     sf_plain_clear();
-    sf_plain_read(s->at.log, NULL, SF_PLAIN_TEXT, text, NULL, &none);
+    sf_plain_read(s->at.log, NULL, SF_PLAIN_TEXT, text, NULL, SF_IGNORED);
 }
 
 static sf_status start_pre(sf_session *s, sf_error *err) {
@@ -295,7 +292,6 @@ static void tell_not_started(sf_session *s, const char *sentence) {
 /* Starts the program of the activity that begins. */
 static void start(sf_session *s) {
     sf_error err = SF_ERROR_INIT;
-    char text[160];
     switch (s->activity) {
     case SF_MESHING:
     case SF_PREPARING:
@@ -315,8 +311,8 @@ static void start(sf_session *s) {
     default:
         return;
     }
-    snprintf(text, sizeof text, "%s ...%s", sf_activity_name(s->activity),
-             s->activity == SF_RUNNING && s->resuming ? " (from the checkpoint)" : "");
+    SF_PRINTED(text, 160, "%s ...%s", sf_activity_name(s->activity),
+               s->activity == SF_RUNNING && s->resuming ? " (from the checkpoint)" : "");
     if (err.status == SF_OK)
         tell(s, false, text);
     else
@@ -326,8 +322,7 @@ static void start(sf_session *s) {
 /* A finished run of the same values is shown at once. */
 static void show_finished(sf_session *s) {
     SF_OWNED_BY(sf_overrides_free) sf_overrides o = {0};
-    sf_error none = SF_ERROR_INIT;
-    bool finished = name_run(s, &o, &none) == SF_OK && sf_run_folder_is_finished(&s->at);
+    bool finished = name_run(s, &o, SF_IGNORED) == SF_OK && sf_run_folder_is_finished(&s->at);
     if (!finished) {
         s->at.path[0] = '\0';
         return;
@@ -473,9 +468,8 @@ static bool has_product(const sf_session *s, const char *name, char path[PRODUCT
 
 /* Writes that path, and tells the user if the file does not exist. */
 static bool find_product(sf_session *s, const char *name, char path[PRODUCT]) {
-    char text[160];
     bool found = has_product(s, name, path);
-    snprintf(text, sizeof text, "there is no %s yet: Run makes it", name);
+    SF_PRINTED(text, 160, "there is no %s yet: Run makes it", name);
     if (!found)
         tell(s, true, text);
     return found;
@@ -510,11 +504,9 @@ static void open_paraview(sf_session *s) {
  * read, as they are now. */
 static bool is_shown(sf_session *s) {
     SF_OWNED_BY(sf_overrides_free) sf_overrides o = {0};
-    sf_error none = SF_ERROR_INIT;
-    char shown[PATH_MAX];
-    snprintf(shown, sizeof shown, "%s", s->at.path);
+    SF_PRINTED(shown, PATH_MAX, "%s", s->at.path);
     sf_plain_clear();
-    return name_run(s, &o, &none) == SF_OK && strcmp(s->at.path, shown) == 0 &&
+    return name_run(s, &o, SF_IGNORED) == SF_OK && strcmp(s->at.path, shown) == 0 &&
            sf_run_folder_is_finished(&s->at);
 }
 

@@ -215,10 +215,9 @@ bool sf_store_find(const char *folder, const char *kind, uint64_t key, sf_stored
     char path[SF_PATH_SIZE], *text = NULL;
     size_t size = 0;
     head h;
-    sf_error none = SF_ERROR_INIT;
     *out = (sf_stored){0};
     if (!name_file(folder, kind, key, path) || !sf_replace_exists(path) ||
-        sf_plain_read(path, NULL, SF_STORE_MOST, &text, &size, &none) != SF_OK)
+        sf_plain_read(path, NULL, SF_STORE_MOST, &text, &size, SF_IGNORED) != SF_OK)
         return false;
     if (size >= sizeof h) {
         memcpy(&h, text, sizeof h);

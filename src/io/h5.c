@@ -92,8 +92,7 @@ sf_status sf_h5_close(sf_h5 **file, sf_error *err) {
 }
 
 void sf_h5_drop(sf_h5 **file) {
-    sf_error ignored = SF_ERROR_INIT;
-    sf_h5_close(file, &ignored);
+    sf_h5_close(file, SF_IGNORED);
 }
 
 enum { OBJECT_SIZE = 512 };

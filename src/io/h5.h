@@ -74,17 +74,17 @@ sf_status sf_h5_rows_end(sf_h5_rows *rows, sf_error *err);
  * within the file's; data in other files and filters (compression) are refused. */
 sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
                      void **data, sf_error *err);
+/* A scalar of SF_H5_F64 or SF_H5_I64. */
+sf_status sf_h5_read_one(const sf_h5 *file, const char *path, sf_h5_type type, void *value, sf_error *err);
 sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err);
 /* One string of fixed length. `*text` is NUL-terminated, from malloc, owned by the caller. */
 sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_error *err);
 
-/* Attributes of an existing group or dataset ("/" for the file). */
-sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text,
-                              sf_error *err);
+/* Attributes: written to the file itself, read of an existing group or dataset ("/" for the file). */
+sf_status sf_h5_set_attribute(sf_h5 *file, const char *name, const char *text, sf_error *err);
+sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *name, int64_t value, sf_error *err);
 sf_status sf_h5_get_attribute(const sf_h5 *file, const char *object, const char *name, char *text,
                               size_t size, sf_error *err);
-sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value,
-                                  sf_error *err);
 sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const char *name, int64_t *value,
                                   sf_error *err);
 

@@ -276,11 +276,15 @@ sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int r
     return read_items(file, path, set, type, rank, dims, data, err);
 }
 
-sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err) {
+sf_status sf_h5_read_one(const sf_h5 *file, const char *path, sf_h5_type type, void *value, sf_error *err) {
     SF_OWNED void *data = NULL;
-    SF_TRY(sf_h5_read(file, path, SF_H5_F64, 0, NULL, &data, err));
-    *value = *(double *)data;
+    SF_TRY(sf_h5_read(file, path, type, 0, NULL, &data, err));
+    memcpy(value, data, 8);
     return SF_OK;
+}
+
+sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err) {
+    return sf_h5_read_one(file, path, SF_H5_F64, value, err);
 }
 
 /* Room for one fixed-length string of at most `limit` bytes, NULL if the type or the space is anything else;
@@ -305,23 +309,12 @@ sf_status sf_h5_read_text(const sf_h5 *file, const char *path, char **text, sf_e
     return SF_OK;
 }
 
-static sf_status set_attribute(sf_h5 *file, const char *object, const char *name, hid_t type,
-                               const void *value, sf_error *err) {
-    KEPT hid_t id = H5Oopen(file->id, object, H5P_DEFAULT);
-    if (id < 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s has no object %s", file->path, object);
-    return put_attribute(file, id, name, type, value, err);
+sf_status sf_h5_set_attribute(sf_h5 *file, const char *name, const char *text, sf_error *err) {
+    return string_attribute(file, file->id, name, text, err);
 }
 
-sf_status sf_h5_set_attribute(sf_h5 *file, const char *object, const char *name, const char *text,
-                              sf_error *err) {
-    KEPT hid_t type = text_type(text);
-    return set_attribute(file, object, name, type, text, err);
-}
-
-sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *object, const char *name, int64_t value,
-                                  sf_error *err) {
-    return set_attribute(file, object, name, H5T_NATIVE_INT64, &value, err);
+sf_status sf_h5_set_attribute_i64(sf_h5 *file, const char *name, int64_t value, sf_error *err) {
+    return put_attribute(file, file->id, name, H5T_NATIVE_INT64, &value, err);
 }
 
 static sf_status open_attribute(const sf_h5 *file, const char *object, const char *name, hid_t *id,
@@ -430,9 +423,8 @@ const char *sf_h5_version(void) {
 sf_status sf_members_write(sf_h5 *file, const char *group, const sf_member *member, size_t count,
                            const void *base, sf_error *err) {
     for (size_t k = 0; k < count && err->status == SF_OK; k++) {
-        char path[128];
         int64_t items = member[k].count;
-        snprintf(path, sizeof path, "%s/%s", group, member[k].name);
+        SF_PRINTED(path, 128, "%s/%s", group, member[k].name);
         sf_h5_info info = {path, member[k].units, member[k].description};
         sf_h5_write(file, &info, member[k].type, 1, &items, (const char *)base + member[k].offset, err);
     }
@@ -442,10 +434,9 @@ sf_status sf_members_write(sf_h5 *file, const char *group, const sf_member *memb
 sf_status sf_members_read(const sf_h5 *file, const char *group, const sf_member *member, size_t count,
                           void *base, sf_error *err) {
     for (size_t k = 0; k < count && err->status == SF_OK; k++) {
-        char path[128];
         SF_OWNED void *data = NULL;
         int64_t items = member[k].count;
-        snprintf(path, sizeof path, "%s/%s", group, member[k].name);
+        SF_PRINTED(path, 128, "%s/%s", group, member[k].name);
         if (sf_h5_read(file, path, member[k].type, 1, &items, &data, err) == SF_OK)
             memcpy((char *)base + member[k].offset, data, (size_t)items * 8);
     }

@@ -33,11 +33,9 @@ static bool append(sf_plain_record record) {
     return true;
 }
 
-static sf_status enter(const char *path, const struct stat *info, const uint64_t *hash, sf_error *err) {
-    const sf_plain_record record = {
-        path, info->st_dev, info->st_ino, (uint64_t)info->st_size, hash ? *hash : 0, hash != NULL};
+static sf_status enter(const char *path, const struct stat *info, sf_error *err) {
     pthread_mutex_lock(&list.lock);
-    bool done = append(record);
+    bool done = append((sf_plain_record){path, info->st_dev, info->st_ino});
     pthread_mutex_unlock(&list.lock);
     return done ? SF_OK : SF_NO_MEMORY(err, "the path %s", path);
 }
@@ -154,7 +152,7 @@ static sf_status pass(const char *path, const char *what, int *handle, struct st
 sf_status sf_plain_open(const char *path, const char *what, int *handle, uint64_t *size, sf_error *err) {
     struct stat info;
     SF_TRY(pass(path, what, handle, &info, err));
-    if (enter(path, &info, NULL, err) != SF_OK) {
+    if (enter(path, &info, err) != SF_OK) {
         close(*handle);
         *handle = -1;
         return err->status;
@@ -233,7 +231,7 @@ static sf_status read_all(reading *r, const struct stat *before, sf_error *err) 
         return fail_reading(r->path, r->what, SF_ERR_IO, err);
     if (!is_same(before, &after) || r->length != (uint64_t)after.st_size)
         return SF_FAIL(err, SF_ERR_IO, NAMED " changed while it was read", NAME(r->what, r->path));
-    return enter(r->path, before, &r->hash, err);
+    return enter(r->path, before, err);
 }
 
 static sf_status take(reading *r, sf_error *err) {

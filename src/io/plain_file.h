@@ -23,7 +23,7 @@
 #define SF_PLAIN_ANY UINT64_MAX
 
 /* The whole content, at most `largest` bytes. `*text` ends with a zero byte that `*size` does not count; from
- * malloc, owned by the caller, NULL on failure. `size` may be NULL. Registered with its hash. */
+ * malloc, owned by the caller, NULL on failure. `size` may be NULL. Registered. */
 sf_status sf_plain_read(const char *path, const char *what, uint64_t largest, char **text, size_t *size,
                         sf_error *err);
 
@@ -37,19 +37,17 @@ sf_status sf_plain_hash(const char *path, const char *what, uint64_t largest, ui
 sf_status sf_plain_hash_kept(const char *path, uint64_t *hash, sf_error *err);
 
 /* Opens for reading (O_CLOEXEC), for a reader that needs the descriptor. `*handle` is owned by the caller
- * (close), -1 on failure; `size` may be NULL. Registered without a hash. */
+ * (close), -1 on failure; `size` may be NULL. Registered. */
 sf_status sf_plain_open(const char *path, const char *what, int *handle, uint64_t *size, sf_error *err);
 
-/* Opens and closes: the sentence for a file that will be read later, here or in another process. Registered
- * without a hash. */
+/* Opens and closes: the sentence for a file that will be read later, here or in another process. Registered.
+ */
 sf_status sf_plain_check(const char *path, const char *what, sf_error *err);
 
 /* A file that was read. */
 typedef struct sf_plain_record {
     const char *path; /* as it was named; owned by the register */
-    uint64_t device, inode, size;
-    uint64_t hash; /* of the content, as sf_plain_hash */
-    bool hashed;   /* the content was read, by sf_plain_read or sf_plain_hash */
+    uint64_t device, inode;
 } sf_plain_record;
 
 /* The number of entries, in the order of reading; a file that is read twice has two. The entries from a count

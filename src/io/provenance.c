@@ -6,8 +6,8 @@
 #include <time.h>
 
 sf_status sf_provenance_mark(sf_h5 *file, const char *format, sf_error *err) {
-    SF_TRY(sf_h5_set_attribute(file, "/", "format", format, err));
-    return sf_h5_set_attribute_i64(file, "/", "format_version", SF_FORMAT_VERSION, err);
+    SF_TRY(sf_h5_set_attribute(file, "format", format, err));
+    return sf_h5_set_attribute_i64(file, "format_version", SF_FORMAT_VERSION, err);
 }
 
 sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenance *p, sf_error *err) {
@@ -47,8 +47,7 @@ sf_status sf_provenance_write(sf_h5 *file, const char *format, const sf_provenan
 sf_status sf_provenance_check(const sf_h5 *file, const char *path, const char *format, sf_error *err) {
     char found[64];
     int64_t version = 0;
-    sf_error quiet = SF_ERROR_INIT;
-    if (sf_h5_get_attribute(file, "/", "format", found, sizeof found, &quiet) != SF_OK)
+    if (sf_h5_get_attribute(file, "/", "format", found, sizeof found, SF_IGNORED) != SF_OK)
         return SF_FAIL(err, SF_ERR_IO, "%s is an HDF5 file, but not a %s file", path, format);
     if (strcmp(found, format) != 0)
         return SF_FAIL(err, SF_ERR_IO, "%s is a %s file, expected a %s file", path, found, format);
@@ -76,9 +75,7 @@ sf_status sf_provenance_copy(const sf_h5 *from, sf_h5 *to, sf_error *err) {
 }
 
 char *sf_command_line(int argc, char *const *argv) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
+    SF_TEXT_STREAM(stream, text, size);
     if (!stream)
         return NULL;
     for (int k = 0; k < argc; k++) {

@@ -130,14 +130,12 @@ sf_status sf_staging_close(FILE *file, const char *name, sf_error *err) {
 }
 
 bool sf_staging_has(const sf_staging *output, const char *name) {
-    sf_error ignored = SF_ERROR_INIT;
-    SF_OWNED char *path = join(output->aside ? output->aside : output->directory, name, &ignored);
+    SF_OWNED char *path = join(output->aside ? output->aside : output->directory, name, SF_IGNORED);
     return path && sf_replace_exists(path);
 }
 
 void sf_staging_remove(const sf_staging *output, const char *name) {
-    sf_error ignored = SF_ERROR_INIT;
-    SF_OWNED char *path = sf_staging_path(output, name, &ignored);
+    SF_OWNED char *path = sf_staging_path(output, name, SF_IGNORED);
     if (path)
         unlink(path);
 }
@@ -169,8 +167,7 @@ void sf_staging_end(sf_staging *output) {
         remove_flat(AT_FDCWD, output->aside);
     if (output->created)
         rmdir(output->directory);
-    SF_FREE(output->aside, output->directory);
-    *output = (sf_staging){0};
+    SF_CLEAR(output, output->aside, output->directory);
 }
 
 /* ---- a new folder of folders ---- */
@@ -249,8 +246,7 @@ static sf_status note(sf_tree *tree, const char *name, size_t length, sf_error *
 static sf_status make_folders(sf_tree *tree, const char *name, sf_error *err) {
     char path[PATH_MAX];
     for (const char *slash = strchr(name, '/'); slash; slash = strchr(slash + 1, '/')) {
-        char folder[PATH_MAX];
-        snprintf(folder, sizeof folder, "%.*s", (int)(slash - name), name);
+        SF_PRINTED(folder, PATH_MAX, "%.*s", (int)(slash - name), name);
         if (is_made(tree, folder))
             continue;
         SF_TRY(path_in(tree->aside, folder, path, err));
@@ -315,6 +311,5 @@ void sf_tree_end(sf_tree *tree) {
     }
     if (tree->aside)
         rmdir(tree->aside);
-    SF_FREE(tree->made, tree->aside, tree->path);
-    *tree = (sf_tree){0};
+    SF_CLEAR(tree, tree->made, tree->aside, tree->path);
 }

@@ -32,8 +32,7 @@ typedef struct csv {
 } csv;
 
 void sf_table_free(sf_table *table) {
-    SF_FREE(table->value[0], table->value[1], table->line);
-    memset(table, 0, sizeof *table);
+    SF_CLEAR(table, table->value[0], table->value[1], table->line);
 }
 
 /* ---- lines ---- */
@@ -66,14 +65,13 @@ static char data_separator(const csv *file, const char *line) {
     char found = 0;
     for (const char *s = SEPARATORS; *s && !found; s++) {
         sf_table_cells cells;
-        double number;
         SF_OWNED char *copy = strdup(line);
         if (!copy)
             return 0;
         sf_table_split(copy, *s, false, &cells);
         bool data = cells.count > !file->layout->counted && cells.count <= SF_TABLE_COLUMNS &&
-                    sf_table_number(cells.cell[0], &number) &&
-                    (cells.count < 2 || sf_table_number(cells.cell[1], &number));
+                    sf_table_number(cells.cell[0], NULL) &&
+                    (cells.count < 2 || sf_table_number(cells.cell[1], NULL));
         found = data ? *s : 0;
     }
     return found;
@@ -169,8 +167,7 @@ static sf_status find_heading(csv *file, const sf_table_layout *layouts, int cou
             file->separator = heading.columns == 1 ? ';' : file->separator;
             return SF_OK;
         }
-        double number;
-        if (lines == 1 && heading.found <= 0 && (data || sf_table_number(line, &number)))
+        if (lines == 1 && heading.found <= 0 && (data || sf_table_number(line, NULL)))
             return refuse_headless(file, err);
         any_data = any_data || data;
         if (heading.found > best.found || (heading.found == best.found && !any_data && !is_short(line))) {
@@ -288,10 +285,9 @@ static bool is_part(const char *cell, const char *chosen) {
 
 /* The cell of column `c` is a number, or the number of its row. */
 static bool holds_number(const csv *file, const sf_table_cells *cells, int c) {
-    double number;
     int place = file->heading.place[c];
     return place == SF_TABLE_ROW || (cells->count > place && cells->count <= SF_TABLE_COLUMNS &&
-                                     sf_table_number(cells->cell[place], &number));
+                                     sf_table_number(cells->cell[place], NULL));
 }
 
 /* Lists what the column holds, each text once, in the rows of the other chosen part; -1 if it numbers no

@@ -128,7 +128,8 @@ typedef struct sf_table_heading {
  * a heading split at blanks a unit in brackets belongs to the cell before it. */
 void sf_table_split(char *line, char separator, bool heading, sf_table_cells *cells);
 
-/* True if the cell is a number, with decimal point or comma; its value, which may be not finite. */
+/* True if the cell is a number, with decimal point or comma; its value, which may be not finite (NULL: none).
+ */
 bool sf_table_number(const char *cell, double *value);
 
 /* Reads `cells` as the heading of `layout`; `below`: the line under it, or NULL. `*units` is opened when it

@@ -116,8 +116,6 @@ typedef struct reading {
 
 /* SI value of one unit; 0 if the text is no unit of the kind. */
 static double unit_value(const reading *r, const char *text, int kind) {
-    char quantity[SF_TABLE_UNIT + 8];
-    sf_error inner = SF_ERROR_INIT;
     double value = 0;
     if (!*text || strlen(text) >= SF_TABLE_UNIT)
         return 0;
@@ -127,8 +125,8 @@ static double unit_value(const reading *r, const char *text, int kind) {
         return SF_STANDARD_GRAVITY;
     if (!*r->units && sf_units_open(r->units, r->err) != SF_OK)
         return 0;
-    snprintf(quantity, sizeof quantity, "1 %s", text);
-    return sf_units_parse(*r->units, quantity, (sf_quantity)kind, &value, &inner) == SF_OK ? value : 0;
+    SF_PRINTED(quantity, SF_TABLE_UNIT + 8, "1 %s", text);
+    return sf_units_parse(*r->units, quantity, (sf_quantity)kind, &value, SF_IGNORED) == SF_OK ? value : 0;
 }
 
 /* The text without brackets around it. */
@@ -150,8 +148,7 @@ typedef struct title {
 
 /* Cuts the name at `at` and takes the text from `after` on as its unit. */
 static bool cut(title *t, char *at, const char *after) {
-    char unit[SF_TABLE_TITLE];
-    snprintf(unit, sizeof unit, "%s", after);
+    SF_PRINTED(unit, SF_TABLE_TITLE, "%s", after);
     *at = '\0';
     strip_brackets(unit, t->unit, sizeof t->unit);
     char *name = trim(t->name);
@@ -181,8 +178,7 @@ static bool take_written_unit(title *t) {
 /* "acc_m_s2": what follows an underscore, its next one read as "/", if that is a unit of the kind. */
 static void take_suffix(const reading *r, int kind, title *t) {
     for (char *at = strchr(t->name, '_'); at; at = strchr(at + 1, '_')) {
-        char unit[SF_TABLE_TITLE];
-        snprintf(unit, sizeof unit, "%s", at + 1);
+        SF_PRINTED(unit, SF_TABLE_TITLE, "%s", at + 1);
         char *slash = strchr(unit, '_');
         if (slash)
             *slash = '/';
@@ -422,10 +418,9 @@ static void find_column(const reading *r, int c) {
 /* A line without a number that has as many cells as the heading at most: units, if they are. */
 static bool may_hold_units(const sf_table_cells *cells, const sf_table_cells *below) {
     bool any = false;
-    double number;
     for (int i = 0; below && i < below->count; i++) {
         any = any || below->cell[i][0];
-        if (sf_table_number(below->cell[i], &number))
+        if (sf_table_number(below->cell[i], NULL))
             return false;
     }
     return any && below->count <= cells->count;

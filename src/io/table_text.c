@@ -50,13 +50,12 @@ static const char *mme_value(const char *line, const char *key) {
 /* A channel in ISO-MME (ISO/TS 13499: a header of lines "key :value", then a sample a line) becomes a table
  * of time and channel, each sample in its own line. */
 static sf_status convert_mme(const char *path, const char *what, char **text, sf_error *err) {
-    char name[SF_TABLE_TITLE] = "channel", unit[SF_TABLE_UNIT] = "", *out = NULL, *next = NULL;
+    char name[SF_TABLE_TITLE] = "channel", unit[SF_TABLE_UNIT] = "", *next = NULL;
     double step = NAN, first = 0, said = NAN, number;
-    size_t size = 0;
     int64_t samples = 0;
     if (strncasecmp(*text, "Test object number", 18) != 0)
         return SF_OK;
-    FILE *table = open_memstream(&out, &size);
+    SF_TEXT_STREAM(table, out, size);
     if (!table)
         return SF_NO_MEMORY(err, "the %s %s", what, path);
     for (char *line = *text; line && *line; line = next) {

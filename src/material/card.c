@@ -11,16 +11,14 @@ sf_status sf_material_create(const sf_law *law, sf_material *material, sf_error 
 }
 
 void sf_law_curves_free(sf_law_curves *curves) {
-    SF_FREE(curves->curve_rate, curves->curve_ptr, curves->curve_strain, curves->curve_stress);
-    *curves = (sf_law_curves){0};
+    SF_CLEAR(curves, curves->curve_rate, curves->curve_ptr, curves->curve_strain, curves->curve_stress);
 }
 
 void sf_material_free(sf_material *material) {
     sf_law_curves *curves = material->card ? sf_material_curves(material) : NULL;
     if (curves)
         sf_law_curves_free(curves);
-    free(material->card);
-    *material = (sf_material){0};
+    SF_CLEAR(material, material->card);
 }
 
 sf_law_curves *sf_material_curves(const sf_material *material) {

@@ -179,8 +179,7 @@ sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curv
 }
 
 void sf_curve_free(sf_curve *curve) {
-    free(curve->piece);
-    *curve = (sf_curve){0};
+    SF_CLEAR(curve, curve->piece);
 }
 
 void sf_densification_evaluate(const sf_densification *law, double strain, double *stress, double *slope,

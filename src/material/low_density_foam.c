@@ -22,8 +22,7 @@ sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) 
 void sf_foam_free(sf_foam *foam) {
     for (int64_t k = 0; foam->curve && k < foam->curve_count; k++)
         sf_curve_free(&foam->curve[k]);
-    SF_FREE(foam->curve, foam->curve_rate);
-    *foam = (sf_foam){0};
+    SF_CLEAR(foam, foam->curve, foam->curve_rate);
 }
 
 static const double REST = 1e-6; /* strain below which a direction counts as at rest */
@@ -348,8 +347,7 @@ static double data_end(const void *card) {
 
 static double limit_strain(const void *card) {
     SF_OWNED_BY(sf_curve_free) sf_curve curve = {0};
-    sf_error err = SF_ERROR_INIT;
-    return sf_curve_build(card, 0, &curve, &err) == SF_OK ? curve.beyond.limit : 1;
+    return sf_curve_build(card, 0, &curve, SF_IGNORED) == SF_OK ? curve.beyond.limit : 1;
 }
 
 static double informed_strain(const void *card) {

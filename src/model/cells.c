@@ -93,8 +93,7 @@ static int32_t node_of(const sf_cells *c, const sf_cell_face *face, int64_t v) {
 /* Numbers the nodes of the faces in the order of the mesh. */
 static sf_status number_nodes(const sf_cells *c, const sf_cell_face *list, sf_skin_faces *s, sf_error *err) {
     SF_OWNED int32_t *place = sf_alloc(err, c->node_count, sizeof *place, "the pad's skin");
-    s->node = sf_alloc(err, c->node_count, sizeof *s->node, "the pad's skin");
-    s->face = sf_alloc(err, s->face_count, sizeof *s->face, "the pad's skin");
+    SF_ALLOC_ALL(err, "the pad's skin", SF_ROOM(s->node, c->node_count), SF_ROOM(s->face, s->face_count));
     for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++)
         if (node_of(c, &list[k / 4], k % 4) >= 0)
             place[node_of(c, &list[k / 4], k % 4)] = 1;
@@ -120,8 +119,7 @@ sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err)
 }
 
 void sf_skin_faces_free(sf_skin_faces *s) {
-    SF_FREE(s->face, s->node);
-    *s = (sf_skin_faces){0};
+    SF_CLEAR(s, s->face, s->node);
 }
 
 sf_status sf_skin_triangles(const sf_cells *cells, int64_t *triangles, int32_t **out, uint8_t **out_half,

@@ -293,11 +293,10 @@ sf_status sf_model_take_materials(sf_model *model, sf_material *material, int co
 void sf_model_free(sf_model *model) {
     for (int64_t k = 0; model->material && k < model->material_count; k++)
         sf_material_free(&model->material[k]);
-    SF_FREE(model->material, model->set);
     for (size_t k = 0; k < sizeof fields / sizeof fields[0]; k++)
         if (fields[k].rows_offset != SIZE_MAX)
             free(*(void **)((char *)model + fields[k].offset));
-    memset(model, 0, sizeof *model);
+    SF_CLEAR(model, model->material, model->set);
 }
 
 void sf_model_drop_mesh(sf_model *model) {

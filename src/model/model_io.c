@@ -51,9 +51,8 @@ static const sf_model_field curve_fields[] = {
 enum { CURVE_FIELDS = sizeof curve_fields / sizeof curve_fields[0] };
 
 static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, sf_error *err) {
-    char path[PATH_SIZE];
     const sf_law_curves *curves = sf_material_curves(m);
-    snprintf(path, sizeof path, "/material/%lld/law", (long long)index);
+    SF_PRINTED(path, PATH_SIZE, "/material/%lld/law", (long long)index);
     sf_h5_write_text(h5, &(sf_h5_info){path, "1", "law of the material"}, m->law->name, err);
     snprintf(path, sizeof path, "/material/%lld/name", (long long)index);
     if (*m->name && err->status == SF_OK)
@@ -75,13 +74,6 @@ static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, 
     return err->status;
 }
 
-static sf_status read_scalar(const sf_h5 *h5, const char *path, sf_h5_type type, void *to, sf_error *err) {
-    SF_OWNED void *data = NULL;
-    SF_TRY(sf_h5_read(h5, path, type, 0, NULL, &data, err));
-    memcpy(to, data, 8);
-    return SF_OK;
-}
-
 /* Reads a member of the model, or of a law's curves, from the dataset `path`. */
 static sf_status read_field(const sf_h5 *h5, const char *path, const sf_model_field *field, void *record,
                             sf_error *err) {
@@ -89,7 +81,7 @@ static sf_status read_field(const sf_h5 *h5, const char *path, const sf_model_fi
     void *data = NULL;
     bool absent = field->optional && !sf_h5_exists(h5, path);
     if (field->rows_offset == SIZE_MAX)
-        return absent ? SF_OK : read_scalar(h5, path, field->type, base + field->offset, err);
+        return absent ? SF_OK : sf_h5_read_one(h5, path, field->type, base + field->offset, err);
     int64_t rows = *(const int64_t *)(base + field->rows_offset);
     if (rows < 0 || rows > INT64_MAX / 2)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: its count" SF_OUTSIDE("%lld", "0", "%lld"), path,
@@ -118,9 +110,8 @@ static sf_status read_curves(const sf_h5 *h5, sf_law_curves *curves, int64_t ind
 /* The name of a layer; "" if there is none. */
 static sf_status read_material_name(const sf_h5 *h5, int64_t index, char name[SF_MATERIAL_NAME_SIZE],
                                     sf_error *err) {
-    char path[PATH_SIZE];
     SF_OWNED char *text = NULL;
-    snprintf(path, sizeof path, "/material/%lld/name", (long long)index);
+    SF_PRINTED(path, PATH_SIZE, "/material/%lld/name", (long long)index);
     if (!sf_h5_exists(h5, path))
         return SF_OK;
     if (sf_h5_read_text(h5, path, &text, err) == SF_OK &&
@@ -130,9 +121,8 @@ static sf_status read_material_name(const sf_h5 *h5, int64_t index, char name[SF
 }
 
 static sf_status read_material(const sf_h5 *h5, sf_material *m, int64_t index, sf_error *err) {
-    char path[PATH_SIZE];
     SF_OWNED char *name = NULL;
-    snprintf(path, sizeof path, "/material/%lld/law", (long long)index);
+    SF_PRINTED(path, PATH_SIZE, "/material/%lld/law", (long long)index);
     SF_TRY(sf_h5_read_text(h5, path, &name, err));
     const sf_law *law = sf_law_find(name);
     if (!law)
@@ -144,8 +134,8 @@ static sf_status read_material(const sf_h5 *h5, sf_material *m, int64_t index, s
         if (p->kind > SF_PARAMETER_CHOICE)
             continue;
         name_parameter(index, p, path);
-        read_scalar(h5, path, p->kind == SF_PARAMETER_CHOICE ? SF_H5_I64 : SF_H5_F64,
-                    (char *)m->card + p->offset, err);
+        sf_h5_read_one(h5, path, p->kind == SF_PARAMETER_CHOICE ? SF_H5_I64 : SF_H5_F64,
+                       (char *)m->card + p->offset, err);
     }
     sf_law_curves *curves = sf_material_curves(m);
     return curves && err->status == SF_OK ? read_curves(h5, curves, index, err) : err->status;
@@ -189,7 +179,7 @@ sf_status sf_model_write(const char *path, const sf_model *model, const sf_prove
         write_material(h5, &model->material[k], k, err);
     sf_model_hash(model, hash);
     if (err->status == SF_OK)
-        sf_h5_set_attribute(h5, "/", "content_hash", hash, err);
+        sf_h5_set_attribute(h5, "content_hash", hash, err);
     sf_h5_close(&h5, err);
     if (err->status == SF_OK)
         return sf_replace_commit(partial, path, err);

@@ -5,8 +5,7 @@
 #include "material/laws.h"
 
 sf_status sf_stability_constants(const sf_model *model, double *c, sf_error *err) {
-    SF_OWNED double *share = sf_alloc(err, model->node_count, sizeof *share, "stability constants");
-    SF_TRY(err->status);
+    SF_OWN(double, share, model->node_count, "stability constants", err);
     for (int64_t l = 0; l < model->node_count; l++)
         for (int64_t k = model->domain_ptr[l]; k < model->domain_ptr[l + 1]; k++) {
             const double *b = &model->domain_b[3 * k];
@@ -73,8 +72,7 @@ sf_status sf_stability_membrane(const sf_model *m, double *load, sf_error *err) 
 /* The bound on the step at rest. */
 static sf_status first_step(const sf_model *m, double *step, int64_t *critical, double *constant,
                             sf_error *err) {
-    SF_OWNED double *c = sf_alloc(err, m->node_count, sizeof *c, "stability constants");
-    SF_TRY(err->status);
+    SF_OWN(double, c, m->node_count, "stability constants", err);
     SF_TRY(sf_stability_constants(m, c, err));
     *step = INFINITY;
     for (int64_t i = 0; i < m->node_count; i++) {

@@ -288,12 +288,9 @@ static sf_status build_sets(const sf_case *c, const sf_mesh *mesh, const sf_laye
     const sf_node_set *set = sf_group_need(mesh, "pad.contact", c->contact_group, err);
     if (!set || !(contact = gather_contact(layers, m, set, contact_area, &points, err)))
         return err->status;
-    m->contact_node = sf_alloc(err, points, sizeof *m->contact_node, "contact points");
-    m->contact_area = sf_alloc(err, points, sizeof *m->contact_area, "contact points");
-    m->fixed_node = sf_alloc(err, m->fixed_count, sizeof *m->fixed_node, "constraints");
-    m->fixed_mask = sf_alloc(err, m->fixed_count, 1, "constraints");
-    m->fixed_base = sf_alloc(err, m->fixed_count, 1, "constraints");
-    SF_TRY(err->status);
+    SF_ALLOC_ALL(err, "contact points", SF_ROOM(m->contact_node, points), SF_ROOM(m->contact_area, points));
+    SF_TRY(SF_ALLOC_ALL(err, "constraints", SF_ROOM(m->fixed_node, m->fixed_count),
+                        SF_ROOM(m->fixed_mask, m->fixed_count), SF_ROOM(m->fixed_base, m->fixed_count)));
     /* A node that is held altogether cannot give way to the missile: it is no contact point. */
     for (int64_t k = 0; k < points; k++)
         if (mask[contact[k]] != (SF_FIX_X | SF_FIX_Y | SF_FIX_Z))
@@ -439,8 +436,7 @@ static sf_status take_series(const sf_case *c, sf_model *m, sf_error *err) {
     unsigned long count = c->drops > 1 ? (unsigned long)c->drops : 0;
     if (count == 0)
         return SF_OK;
-    m->series_interval = sf_alloc(err, count, sizeof *m->series_interval, "series");
-    m->series_model = sf_alloc(err, count, sizeof *m->series_model, "series");
+    SF_ALLOC_ALL(err, "series", SF_ROOM(m->series_interval, count), SF_ROOM(m->series_model, count));
     for (unsigned long k = 0; k < count && err->status == SF_OK; k++)
         m->series_interval[k] = c->drop[k].interval;
     m->series_count = (int64_t)count;

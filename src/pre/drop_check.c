@@ -181,10 +181,9 @@ static sf_status check_arrival(const sf_model *m, sf_error *err) {
     card.shape = SF_SHAPE_SURFACE;
     for (int k = 1; k <= POSES && err->status == SF_OK; k++) {
         double before = flight * k / POSES, distance = 0;
-        sf_error miss = SF_ERROR_INIT;
         move_surface(m, before, position);
         if (sf_missile_distance(&surface, &card, m->position, m->contact_count, m->contact_node, &distance,
-                                &miss) == SF_OK &&
+                                SF_IGNORED) == SF_OK &&
             distance < -TOUCHING * m->thickness)
             SF_REFUSE(err,
                       "missile.angular_velocity: the missile turns so fast that another part of it is %.3g "
@@ -429,9 +428,8 @@ static const double DENSEST = 23e3; /* kg m-3, of a metal */
 
 static void tell_density(const sf_model *m, const sf_sink *sink) {
     sf_solid solid;
-    sf_error open = SF_ERROR_INIT;
     if (sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
-                         m->surface_triangle, &solid, &open) == SF_OK &&
+                         m->surface_triangle, &solid, SF_IGNORED) == SF_OK &&
         m->missile.mass > DENSEST * solid.volume)
         sf_sink_tell(sink, SF_WARNING,
                      "missile.mass: %g kg in a body of %.4g cm3 is denser than any metal: is "

@@ -60,8 +60,7 @@ typedef struct faces {
 
 static void faces_free(faces *f) {
     sf_grid_free(&f->grid);
-    SF_FREE(f->node, f->half, f->shape, f->position, f->radius);
-    *f = (faces){0};
+    SF_CLEAR(f, f->node, f->half, f->shape, f->position, f->radius);
 }
 
 static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
@@ -69,9 +68,8 @@ static sf_status faces_find(const sf_model *m, faces *f, sf_error *err) {
     SF_OWNED uint8_t *mark = mark_nodes(m, err);
     *f = (faces){0};
     if (mark && sf_skin_triangles(&SF_CELLS_OF(m), &all, &f->node, &f->half, err) == SF_OK) {
-        f->shape = sf_alloc(err, all, sizeof *f->shape, "skin of the pad");
-        f->position = sf_alloc(err, 3 * all, sizeof(double), "skin of the pad");
-        f->radius = sf_alloc(err, all, sizeof(double), "skin of the pad");
+        SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(f->shape, all), SF_ROOM(f->position, 3 * all),
+                     SF_ROOM(f->radius, all));
     }
     for (int64_t i = 0; err->status == SF_OK && i < all; i++) {
         const shape s = shape_of(m, &f->node[3 * i]);
@@ -167,8 +165,8 @@ static sf_status find_touching(const sf_model *m, const faces *f, int64_t *first
 static sf_status take_pairs(const sf_case *c, sf_model *m, sf_error *err) {
     m->skin_friction = c->self_friction;
     m->skin_centroids = c->triangle_centroids && !m->skin_alone && sf_model_skin_triangles(m) > 0;
-    m->pair_layer = sf_alloc(err, 2 * SF_CASE_MAX_INTERFACES, 1, "friction of layers");
-    m->pair_friction = sf_alloc(err, SF_CASE_MAX_INTERFACES, sizeof *m->pair_friction, "friction of layers");
+    SF_ALLOC_ALL(err, "friction of layers", SF_ROOM(m->pair_layer, 2 * SF_CASE_MAX_INTERFACES),
+                 SF_ROOM(m->pair_friction, SF_CASE_MAX_INTERFACES));
     for (int k = 0; err->status == SF_OK && k < c->interface_count; k++) {
         const sf_case_interface *i = &c->interface[k];
         if (i->kind != SF_INTERFACE_LOOSE || i->friction == m->skin_friction)
@@ -301,8 +299,7 @@ sf_status sf_membrane_take(const sf_case *c, const sf_mesh *mesh, const sf_dual 
         return SF_OK;
     SF_OWNED uint8_t *taken = sf_alloc(err, dual->face_count, 1, "membrane");
     m->membrane = c->membrane_card;
-    m->membrane_triangle = sf_alloc(err, 3 * most, sizeof *m->membrane_triangle, "membrane");
-    m->membrane_share = sf_alloc(err, most, sizeof *m->membrane_share, "membrane");
+    SF_ALLOC_ALL(err, "membrane", SF_ROOM(m->membrane_triangle, 3 * most), SF_ROOM(m->membrane_share, most));
     for (int g = 0; g < c->membrane_count && err->status == SF_OK; g++) {
         const sf_node_set *set = sf_group_need(mesh, "membrane.faces", c->membrane_group[g], err);
         if (set)

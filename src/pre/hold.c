@@ -62,16 +62,14 @@ static void number_bodies(const sf_model *m, int32_t *number, body_list *b) {
 
 static sf_status find_parts(const sf_model *m, body_list *b, sf_error *err) {
     SF_OWNED int32_t *number = sf_alloc(err, m->cell_count, sizeof *number, "parts of the pad");
-    b->node = sf_alloc(err, m->node_count, sizeof *b->node, "parts of the pad");
-    b->first = sf_alloc(err, m->cell_count, sizeof *b->first, "parts of the pad");
+    SF_ALLOC_ALL(err, "parts of the pad", SF_ROOM(b->node, m->node_count), SF_ROOM(b->first, m->cell_count));
     if (err->status == SF_OK && (b->cell = join_cells(m, err)))
         number_bodies(m, number, b);
     return err->status;
 }
 
 static void free_bodies(body_list *b) {
-    SF_FREE(b->cell, b->node, b->first);
-    *b = (body_list){0};
+    SF_CLEAR(b, b->cell, b->node, b->first);
 }
 
 /* A pad of one material and without ties is one body. On failure `*b` is empty. */
@@ -81,9 +79,8 @@ static sf_status find_bodies(const sf_model *m, body_list *b, sf_error *err) {
         find_parts(m, b, err);
     } else {
         b->count = 1;
-        b->cell = sf_alloc(err, m->cell_count, sizeof *b->cell, "parts of the pad");
-        b->node = sf_alloc(err, m->node_count, sizeof *b->node, "parts of the pad");
-        b->first = sf_alloc(err, 1, sizeof *b->first, "parts of the pad");
+        SF_ALLOC_ALL(err, "parts of the pad", SF_ROOM(b->cell, m->cell_count),
+                     SF_ROOM(b->node, m->node_count), SF_ROOM(b->first, 1));
     }
     if (err->status != SF_OK)
         free_bodies(b);
@@ -384,8 +381,7 @@ sf_status sf_hold_warn_apart(const sf_model *m, const sf_sink *sink, sf_error *e
     SF_OWNED_BY(free_bodies) body_list b = {0};
     SF_TRY(find_parts(m, &b, err));
     SF_OWNED box *body = sf_alloc(err, b.count + 1, sizeof *body, "bodies of the pad");
-    SF_OWNED uint8_t *reached = sf_alloc(err, b.count + 1, 1, "bodies of the pad");
-    SF_TRY(err->status);
+    SF_OWN(uint8_t, reached, b.count + 1, "bodies of the pad", err);
     int64_t apart = 0, first = 0;
     for (int64_t k = 0; k <= b.count; k++)
         sf_box3(0, NULL, body[k].low, body[k].high);

@@ -286,8 +286,7 @@ static sf_status widest_gap(const sf_model *m, const double at[2], double *gap, 
     const bool plane[2] = {sf_symmetry_plane(m, 0, &place[0]), sf_symmetry_plane(m, 1, &place[1])};
     int64_t count = 0;
     bool at_node = false;
-    SF_OWNED double *angle = sf_alloc(err, 4 * m->contact_count, sizeof *angle, "impact point");
-    SF_TRY(err->status);
+    SF_OWN(double, angle, 4 * m->contact_count, "impact point", err);
     for (int image = 0; image < 4; image++) {
         if ((image & 1 && !plane[0]) || (image & 2 && !plane[1]))
             continue;

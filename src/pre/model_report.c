@@ -103,11 +103,10 @@ static double volume_of(const sf_model *m, const sf_build_report *r, int64_t k) 
 /* Prints the mass properties of a missile that is drawn whole and closed. */
 static void add_body(sf_model_report *out, const sf_model *m) {
     sf_solid solid;
-    sf_error open = SF_ERROR_INIT;
     double lowest[3];
     const sf_surface missile = sf_surface_of_missile(m);
     if (sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
-                         m->surface_triangle, &solid, &open) != SF_OK)
+                         m->surface_triangle, &solid, SF_IGNORED) != SF_OK)
         return;
     sf_impact_lowest(&missile, &m->missile, lowest);
     add(out, "missile_body", "missile body", "%.4g cm3, its centroid %.4g mm above its lowest point",
@@ -251,9 +250,7 @@ void sf_model_report_print(FILE *out, const sf_model_report *report) {
 }
 
 char *sf_model_report_text(const sf_model_report *report, sf_error *err) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    SF_TEXT_STREAM(out, text, size);
     for (int k = 0; out && k < report->count; k++)
         fprintf(out, "%s\t%s\t%s\n", report->line[k].key, report->line[k].name, report->line[k].value);
     if (!sf_text_close(out, &text))

@@ -214,9 +214,8 @@ sf_status sf_base_rest(const sf_case *c, const sf_base_marks *marks, sf_model *m
     }
     if (m->rest_count == 0)
         return SF_OK;
-    m->rest_node = sf_alloc(err, m->rest_count, sizeof *m->rest_node, "resting nodes");
-    m->rest_load = sf_alloc(err, m->rest_count, sizeof *m->rest_load, "resting nodes");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "resting nodes", SF_ROOM(m->rest_node, m->rest_count),
+                        SF_ROOM(m->rest_load, m->rest_count)));
     int64_t used = 0;
     for (int64_t i = 0; i < m->node_count; i++)
         if (marks->rest[i])
@@ -498,10 +497,9 @@ sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *m, sf
     if (count == 0 || sf_skin_triangles(&SF_CELLS_OF(m), &pad.count, &face, NULL, err) != SF_OK)
         return err->status;
     pad.node = face;
-    m->support_position = sf_alloc(err, 9 * count, sizeof *m->support_position, "support");
-    m->support_triangle = sf_alloc(err, 3 * count, sizeof *m->support_triangle, "support");
-    m->support_part = sf_alloc(err, count, sizeof *m->support_part, "support");
-    m->support_friction = sf_alloc(err, SF_SUPPORTS, sizeof *m->support_friction, "support");
+    SF_ALLOC_ALL(err, "support", SF_ROOM(m->support_position, 9 * count),
+                 SF_ROOM(m->support_triangle, 3 * count), SF_ROOM(m->support_part, count),
+                 SF_ROOM(m->support_friction, SF_SUPPORTS));
     for (int k = 0; k < mesh->support_count && err->status == SF_OK; k++)
         take(c, k, &mesh->support[k], &pad, m, err);
     return err->status;

@@ -5,9 +5,6 @@
 #include "base/program.h"
 #include "study/fit/compression/compression_kind.h"
 #include "study/fit/drop/drop_report.h"
-
-#include <argp.h>
-
 static const struct {
     const char *word;
     int (*run)(int argc, char **argv);

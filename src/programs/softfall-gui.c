@@ -19,8 +19,7 @@ typedef struct script_state {
 } script_state;
 
 static void close_script(script_state *s) {
-    free(s->text);
-    *s = (script_state){0};
+    SF_CLEAR(s, s->text);
 }
 
 /* "wait NAME [SECONDS]", NAME of an activity, or "wait N frames while running". */
@@ -143,8 +142,7 @@ static void live(sf_session *session, script_state *script, sf_error *err) {
 
 static sf_status run(const options *o, sf_error *err) {
     SF_OWNED_BY(close_script) script_state script = {0};
-    SF_OWNED sf_session *session = sf_alloc(err, 1, sizeof *session, "the window");
-    SF_TRY(err->status);
+    SF_OWN(sf_session, session, 1, "the window", err);
     if (o->script)
         SF_TRY(sf_plain_read(o->script, "script", SF_PLAIN_TEXT, &script.text, NULL, err));
     script.rest = script.text;

@@ -242,8 +242,7 @@ static void take_series(const sf_model *m, const char *path, series *all) {
 
 /* Refuses another model than that which the first of the series was made with. */
 static sf_status check_own(const series *all, int64_t k, const char hash[SF_MODEL_HASH_SIZE], sf_error *err) {
-    char own[SF_MODEL_HASH_SIZE];
-    snprintf(own, sizeof own, "%016llx", (unsigned long long)all->own[k - 1]);
+    SF_PRINTED(own, SF_MODEL_HASH_SIZE, "%016llx", (unsigned long long)all->own[k - 1]);
     if (all->own[k - 1] == 0 || strcmp(own, hash) == 0)
         return SF_OK;
     return SF_REFUSE(err, "%s is not the model of drop %lld that softfall-pre made with %s: hash %s, not %s",

@@ -171,10 +171,9 @@ enum { NAME_SIZE = 64 };
  * script stays and draws it later. */
 static void run(const sf_staging *output, const char *name, const char *ending, const char *program,
                 char *warning, size_t size) {
-    char script[NAME_SIZE], picture[NAME_SIZE], command[NAME_SIZE];
-    snprintf(script, sizeof script, "%s.gp", name);
-    snprintf(picture, sizeof picture, "%s.%s", name, ending);
-    snprintf(command, sizeof command, "gnuplot %s.gp", name);
+    SF_PRINTED(script, NAME_SIZE, "%s.gp", name);
+    SF_PRINTED(picture, NAME_SIZE, "%s.%s", name, ending);
+    SF_PRINTED(command, NAME_SIZE, "gnuplot %s.gp", name);
     warning[0] = '\0';
     const char *const arguments[] = {"gnuplot", "-c", script, ending, NULL};
     const sf_process gnuplot = {.arguments = arguments, .folder = output->aside};
@@ -277,12 +276,11 @@ sf_status sf_chart_write(sf_chart *chart, const sf_staging *output, char *warnin
 
 char *sf_chart_page(const sf_chart *chart, const sf_staging *output, const char *program, char *warning,
                     size_t size, sf_error *err) {
-    char script[NAME_SIZE];
     warning[0] = '\0';
     if (!chart || sf_chart_script(chart, output, err) != SF_OK)
         return NULL;
     char *svg = sf_chart_svg(output, chart->name, program, warning, size);
-    snprintf(script, sizeof script, "%s.gp", chart->name);
+    SF_PRINTED(script, NAME_SIZE, "%s.gp", chart->name);
     sf_staging_remove(output, script);
     return svg;
 }

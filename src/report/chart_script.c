@@ -317,9 +317,8 @@ static void put_panel(FILE *g, const sf_chart *c, size_t k) {
 }
 
 sf_status sf_chart_script(const sf_chart *c, const sf_staging *output, sf_error *err) {
-    char file[64];
     SF_TRY(err->status);
-    snprintf(file, sizeof file, "%s.gp", c->name);
+    SF_PRINTED(file, 64, "%s.gp", c->name);
     FILE *g = sf_staging_open(output, file, err);
     SF_TRY(err->status);
     put_head(g, c);

@@ -180,17 +180,16 @@ char *sf_html_png(const sf_staging *output, const char *name) {
     return is_read ? png_element((const unsigned char *)data, size) : NULL;
 }
 
-sf_html_table sf_html_table_begin(FILE *page, const char *kind, const char *columns) {
+sf_html_table sf_html_table_begin(FILE *page, const char *columns) {
     sf_html_table table = {.page = page};
-    fprintf(page, *kind ? "<table class=\"%s\">" : "<table>", kind);
+    fputs("<table class=\"dense\">", page);
     if (columns)
         fputs("<thead><tr>", page);
     for (int k = 0; columns; k++) {
-        char text[128];
         bool right = *columns == '>';
         columns += right;
         size_t length = strcspn(columns, "|");
-        snprintf(text, sizeof text, "%.*s", (int)length, columns);
+        SF_PRINTED(text, 128, "%.*s", (int)length, columns);
         table.right |= (unsigned)right << k;
         put_between(page, right ? "<th class=\"r\">" : "<th>", text, "</th>");
         columns = columns[length] ? columns + length + 1 : NULL;

@@ -60,10 +60,12 @@ typedef struct sf_html_table {
 } sf_html_table;
 
 /* `columns`: the headings between '|'; one that begins with '>' is of numbers, set right. NULL: no headings,
- * two columns of which the first is set as a heading. `kind`: "", or "dense". */
-sf_html_table sf_html_table_begin(FILE *page, const char *kind, const char *columns);
+ * two columns of which the first is set as a heading. */
+sf_html_table sf_html_table_begin(FILE *page, const char *columns);
 void sf_html_row(sf_html_table *table);
 void sf_html_cell(sf_html_table *table, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* A row, and its first cell. */
+#define SF_HTML_ROW(table, ...) (sf_html_row(table), sf_html_cell(table, __VA_ARGS__))
 /* The next cell has this as its hint. */
 void sf_html_hint(sf_html_table *table, const char *text);
 /* The value with so many digits after the point, or a dash if it is not finite. */

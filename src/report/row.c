@@ -87,6 +87,11 @@ void sf_json_bool(sf_json *json, const char *key, bool value) {
     fputs(value ? "true" : "false", json->file);
 }
 
+void sf_json_texts(sf_json *json, const sf_named_text *list) {
+    for (; (*list)[0]; list++)
+        sf_json_text(json, (*list)[0], (*list)[1]);
+}
+
 void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size) {
     begin(json, key);
     fputc('"', json->file);
@@ -306,9 +311,7 @@ static bool is_number(const sf_row *row) {
 
 /* Returns the headings as sf_html_table_begin takes them; owned by the caller, NULL without memory. */
 static char *table_headings(sf_rows rows) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    SF_TEXT_STREAM(out, text, size);
     bool first = true;
     for (size_t k = 0; out && k < rows.count; k++) {
         const sf_row *row = &rows.row[k];
@@ -324,9 +327,9 @@ static char *table_headings(sf_rows rows) {
     return text;
 }
 
-void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records) {
+void sf_rows_html_table(FILE *page, sf_rows rows, sf_records records) {
     SF_OWNED char *headings = table_headings(rows);
-    SF_HTML_TABLE table = sf_html_table_begin(page, kind, headings ? headings : "");
+    SF_HTML_TABLE table = sf_html_table_begin(page, headings ? headings : "");
     for (int64_t k = 0; k < records.count; k++) {
         sf_html_row(&table);
         for (size_t c = 0; c < rows.count; c++)

@@ -29,6 +29,11 @@ void sf_json_close(sf_json *json);
     __attribute__((unused)) SF_OWNED_BY(sf_json_end) sf_json *sf_scope_##line =                              \
         sf_json_open(json, key, bracket)
 void sf_json_end(sf_json **json);
+/* Declares a file of the staging directory and opens its object, or leaves the function. */
+#define SF_JSON_FILE(json, output, name, err)                                                                \
+    sf_json json = {.file = sf_staging_open(output, name, err)};                                             \
+    SF_TRY((err)->status);                                                                                   \
+    sf_json_open(&(json), NULL, '{')
 void sf_json_number(sf_json *json, const char *key, double value);
 /* Several numbers of the open object: SF_JSON_NUMBERS(json, {"low", low}, {"high", high}). Counts below 10^9,
  * too. */
@@ -42,6 +47,10 @@ void sf_json_numbers(sf_json *json, const sf_named *list); /* until a key is NUL
 void sf_json_integer(sf_json *json, const char *key, int64_t value);
 void sf_json_bool(sf_json *json, const char *key, bool value);
 void sf_json_text(sf_json *json, const char *key, const char *text); /* NULL: null */
+/* Several texts, as SF_JSON_NUMBERS: each is a key and its text. */
+typedef const char *sf_named_text[2];
+void sf_json_texts(sf_json *json, const sf_named_text *list); /* until a key is NULL */
+#define SF_JSON_TEXTS(json, ...) sf_json_texts(json, (const sf_named_text[]){__VA_ARGS__, {0}})
 void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size);
 
 /* Writes a CSV file, cell after cell. A number has nine digits; the cell of a number that is not finite stays
@@ -55,6 +64,10 @@ typedef struct sf_csv {
 /* Opens a file of the staging directory. sf_csv_close reports writes that failed. */
 sf_status sf_csv_open(sf_csv *csv, const sf_staging *output, const char *name, sf_error *err);
 sf_status sf_csv_close(sf_csv *csv, sf_error *err);
+/* Declares a CSV file and opens it, or leaves the function: SF_CSV_FILE(csv, output, "fit.csv", err); */
+#define SF_CSV_FILE(csv, output, name, err)                                                                  \
+    sf_csv csv;                                                                                              \
+    SF_TRY(sf_csv_open(&(csv), output, name, err))
 /* One cell, or several with commas between them, as they are; SF_CSV_PRINT_LINE also ends the line. */
 void sf_csv_print(sf_csv *csv, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A text, in quotes where it needs them, or always; NULL: an empty cell. What a spreadsheet would compute, as
@@ -139,9 +152,8 @@ void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records
 /* CSV: a line of the keys and a line for each record. */
 void sf_rows_csv(sf_csv *csv, sf_rows rows, sf_records records);
 
-/* HTML: a table with a column for each declaration that has a name, and a row for each record. `kind` as for
- * sf_html_table_begin. */
-void sf_rows_html_table(FILE *page, const char *kind, sf_rows rows, sf_records records);
+/* HTML: a table with a column for each declaration that has a name, and a row for each record. */
+void sf_rows_html_table(FILE *page, sf_rows rows, sf_records records);
 
 /* Text: a line "  name   value unit"; none without a name. */
 void sf_row_text(FILE *out, const sf_row *row, const void *record);

@@ -49,7 +49,6 @@ sf_status sf_operators_take(sf_model *m, sf_operators *op, sf_error *err) {
 void sf_operators_free(sf_operators *op) {
     for (int64_t k = 0; k < op->law_count; k++)
         sf_material_law_free(&op->law[k]);
-    free(op->law);
     sf_halo_free(&op->halo);
     sf_constraint_free(&op->constraint);
     sf_contact_rows_free(&op->rows);
@@ -58,7 +57,6 @@ void sf_operators_free(sf_operators *op) {
     sf_skin_free(&op->skin);
     sf_membrane_free(&op->membrane);
     sf_missile_surface_free(&op->surface);
-    free(op->stability);
     sf_pairs_free(&op->pairs);
-    memset(op, 0, sizeof *op);
+    SF_CLEAR(op, op->law, op->stability);
 }

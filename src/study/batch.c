@@ -145,12 +145,11 @@ sf_status sf_engine_run(const sf_runner_engine *engine, int processors, const ch
 
 void sf_engine_complaint(const char *log, size_t begin, char *out, size_t size) {
     static const char who[] = "sbatch: ";
-    sf_error ignored = SF_ERROR_INIT;
     SF_OWNED char *text = NULL;
     char *line;
     size_t length = 0;
     *out = '\0';
-    sf_plain_read(log, NULL, SF_PLAIN_TEXT, &text, &length, &ignored);
+    sf_plain_read(log, NULL, SF_PLAIN_TEXT, &text, &length, SF_IGNORED);
     for (char *rest = begin < length ? text + begin : NULL; (line = strsep(&rest, "\n"));)
         if (strncmp(line, who, strlen(who)) == 0)
             snprintf(out, size, " (%.300s)", line);
@@ -268,8 +267,7 @@ sf_status sf_manifest_read(const char *path, sf_manifest *m, sf_error *err) {
 }
 
 void sf_manifest_free(sf_manifest *m) {
-    SF_FREE(m->run, m->text);
-    *m = (sf_manifest){0};
+    SF_CLEAR(m, m->run, m->text);
 }
 
 int sf_manifest_group_end(const sf_manifest *m, int k) {
@@ -308,11 +306,11 @@ static void take_failure(const char *line, int count, const sf_manifest_run *run
 }
 
 int sf_manifest_read_outcome(const char *path, int count, const sf_manifest_run *run, sf_error *failure) {
-    sf_error none = SF_ERROR_INIT;
     SF_OWNED char *text = NULL;
     char *line;
     int lines = 0;
-    if (!sf_replace_exists(path) || sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
+    if (!sf_replace_exists(path) ||
+        sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, SF_IGNORED) != SF_OK)
         return -1;
     for (char *rest = text; (line = strsep(&rest, "\n")) && rest; lines++)
         take_failure(line, count, run, failure);

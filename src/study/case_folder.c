@@ -79,8 +79,7 @@ static sf_status copy_file(folder *f, const char *name, const char *path, const 
  * err says why not. From malloc. */
 static char *place_beside(const char *from, const char *name, sf_error *err) {
     static const char root[] = "/\001"; /* no folder's name */
-    char beside[PATH_SIZE];
-    snprintf(beside, sizeof beside, "%s/%.*s", root, (int)sf_path_folder_length(from), from);
+    SF_PRINTED(beside, PATH_SIZE, "%s/%.*s", root, (int)sf_path_folder_length(from), from);
     char *whole = *name == '/' ? NULL : sf_path_whole(beside, name, err);
     const char *below = whole ? sf_path_below(root, whole) : NULL;
     if (below)
@@ -147,10 +146,9 @@ static bool copy_reading(folder *f, const char *path, size_t common, const char 
                          sf_error *err) {
     for (int k = 0; k < f->read_count && err->status == SF_OK; k++) {
         const geometry_file *r = &f->read[k];
-        char name[PATH_SIZE];
         if (strcmp(r->geometry, path) != 0)
             continue;
-        snprintf(name, sizeof name, "%s%s%s", root, *root ? "/" : "", r->path + common + 1);
+        SF_PRINTED(name, PATH_SIZE, "%s%s%s", root, *root ? "/" : "", r->path + common + 1);
         const folder_file *other = find_name(f, name);
         if (other && strcmp(other->path, r->path) != 0)
             return false;
@@ -233,9 +231,7 @@ static const char *write_include(const part *p, const char *at, FILE *out, sf_er
 
 /* Writes the file whose text begins at `at`, with those that it names. */
 static void write_part(const part *p, const char *at, sf_error *err) {
-    SF_OWNED char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    SF_OWNED SF_TEXT_STREAM(out, text, size);
     for (bool open = out; open && err->status == SF_OK;) {
         const char *mark = strpbrk(at, SF_CASE_MARKS), *end = mark ? mark - 1 : at + strlen(at);
         sf_case_edit_write(p->f->text, (size_t)(at - p->f->text), (size_t)(end - p->f->text), &p->f->named,
@@ -255,9 +251,7 @@ static sf_status write_readme(folder *f, sf_error *err) {
     const sf_case_folder_request *q = f->request;
     const char *title = f->text + strspn(f->text, "# \t");
     int length = *f->text == '#' ? (int)strcspn(title, "\r\n") : 0;
-    SF_OWNED char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    SF_OWNED SF_TEXT_STREAM(out, text, size);
     if (!out)
         return SF_NO_MEMORY(err, "the README of %s", q->folder);
     if (length > 0)
@@ -338,10 +332,9 @@ static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) 
 
 /* The new folder is the same case, and needs no other. */
 static sf_status check(const folder *f, sf_error *err) {
-    char path[PATH_SIZE];
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
     sf_error inner = SF_ERROR_INIT;
-    snprintf(path, sizeof path, "%s/" CASE_NAME, f->tree.aside);
+    SF_PRINTED(path, PATH_SIZE, "%s/" CASE_NAME, f->tree.aside);
     if (sf_case_read(path, 0, NULL, NULL, &c, &inner) != SF_OK)
         return SF_FAIL(err, inner.status,
                        "%s cannot be given a folder of its own: there it would be refused (%s)",

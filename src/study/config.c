@@ -39,8 +39,7 @@ void sf_config_close(sf_config *config) {
     sf_units_close(&config->units);
     config_destroy(&config->config);
     sf_case_source_free(&config->source);
-    free(config->folder);
-    *config = (sf_config){0};
+    SF_CLEAR(config, config->folder);
 }
 
 /* "one, two, three" */

@@ -125,12 +125,11 @@ static void put_response_error(FILE *file, const sf_response_error *error) {
 
 sf_status sf_material_write(const char *folder, const char *name, const sf_material *material,
                             const sf_material_text *text, sf_error *err) {
-    char file_name[PATH_SIZE];
     sf_replacement out;
     const sf_law_curves *curves = sf_material_curves(material);
     for (int64_t k = 0; curves && k < curves->curve_count; k++)
         SF_TRY(write_curve(folder, name, curves, k, text, err));
-    snprintf(file_name, sizeof file_name, "%s.cfg", name);
+    SF_PRINTED(file_name, PATH_SIZE, "%s.cfg", name);
     FILE *file = open_file(folder, file_name, &out, err);
     SF_TRY(err->status);
     put_comment(file, text->title);
@@ -147,10 +146,9 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
 
 sf_status sf_material_write_checked(const char *folder, const char *name, const sf_material *material,
                                     const sf_material_text *text, sf_error *err) {
-    char path[PATH_SIZE];
     sf_error inner = SF_ERROR_INIT;
     SF_TRY(sf_material_write(folder, name, material, text, err));
-    snprintf(path, sizeof path, "%s/%s.cfg", folder, name);
+    SF_PRINTED(path, PATH_SIZE, "%s/%s.cfg", folder, name);
     const sf_law_curves *curves = sf_material_curves(material);
     for (int64_t k = 1; k < (text->temperatures ? curves->curve_count : 2) && inner.status == SF_OK; k++)
         sf_case_check_material(

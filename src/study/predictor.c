@@ -254,8 +254,7 @@ sf_status sf_predictor_fit(int inputs, const bool *word, int count, const double
 }
 
 void sf_predictor_free(sf_predictor *p) {
-    free(p->x);
-    *p = (sf_predictor){0};
+    SF_CLEAR(p, p->x);
 }
 
 /* ---- predictions ---- */

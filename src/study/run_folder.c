@@ -44,9 +44,8 @@ static void put_figures(FILE *out, const sf_results *r, const sf_figures *f) {
 
 /* Not synchronised with the disk: the end says whether it is whole. */
 static void keep(const char *path, const char *text, size_t length) {
-    sf_error none = SF_ERROR_INIT;
     sf_folder_remove_file(path);
-    FILE *file = sf_replace_create(path, &none);
+    FILE *file = sf_replace_create(path, SF_IGNORED);
     if (!file)
         return;
     fwrite(text, 1, length, file);
@@ -56,9 +55,8 @@ static void keep(const char *path, const char *text, size_t length) {
 
 void sf_run_record_write(const char *path, const char *results, const sf_results *r, const sf_figures *f,
                          sf_grade grade, const char *verdict, const char *geometry) {
-    char *text = NULL, of[80] = "";
-    size_t length = 0;
-    FILE *out = open_memstream(&text, &length);
+    char of[80] = "";
+    SF_TEXT_STREAM(out, text, length);
     if (!out)
         return;
     bool there = describe_results(results, of) && !strchr(verdict, '\n') && !strchr(r->status, '\n');
@@ -84,8 +82,7 @@ static bool is_whole(char *text, size_t length) {
 }
 
 static bool take_figures(char **rest, sf_run_record *out) {
-    sf_error none = SF_ERROR_INIT;
-    out->figure = sf_alloc(&none, SF_FIGURE_TOTAL, sizeof *out->figure, "figures");
+    out->figure = sf_alloc(SF_IGNORED, SF_FIGURE_TOTAL, sizeof *out->figure, "figures");
     for (size_t k = 0; out->figure && k < SF_FIGURE_TOTAL; k++) {
         char *end = NULL;
         const char *value =
@@ -115,17 +112,15 @@ static bool take(char *rest, const char *results, sf_run_record *out) {
 }
 
 bool sf_run_record_read(const char *path, const char *results, sf_run_record *out) {
-    sf_error none = SF_ERROR_INIT;
     size_t length = 0;
     *out = (sf_run_record){0};
     return sf_replace_exists(path) &&
-           sf_plain_read(path, NULL, SF_PLAIN_TEXT, &out->text, &length, &none) == SF_OK &&
+           sf_plain_read(path, NULL, SF_PLAIN_TEXT, &out->text, &length, SF_IGNORED) == SF_OK &&
            is_whole(out->text, length) && take(out->text, results, out);
 }
 
 void sf_run_record_free(sf_run_record *record) {
-    SF_FREE(record->figure, record->text);
-    *record = (sf_run_record){0};
+    SF_CLEAR(record, record->figure, record->text);
 }
 
 /* ---- the folder of a drop ---- */
@@ -272,11 +267,10 @@ static bool is_recorded(const sf_run_folder *at) {
 }
 
 static bool is_drop_finished(const sf_run_folder *at) {
-    sf_error none = SF_ERROR_INIT;
     SF_OWNED_BY(sf_results_close) sf_results r = {0};
     if (is_recorded(at))
         return true;
-    if (access(at->results, R_OK) != 0 || sf_results_open(at->results, &r, &none) != SF_OK)
+    if (access(at->results, R_OK) != 0 || sf_results_open(at->results, &r, SF_IGNORED) != SF_OK)
         return false;
     bool finished = strcmp(r.status, "finished") == 0 || strcmp(r.status, "rebound") == 0;
     return finished && is_geometry_same(at, at->results, "/provenance/model/geometry_files", false);
@@ -309,10 +303,9 @@ static void keep_failure(const sf_run_folder *at, const char *files, const sf_er
 }
 
 bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
-    sf_error none = SF_ERROR_INIT;
     SF_OWNED char *text = NULL;
     if (access(at->failed, R_OK) != 0 ||
-        sf_plain_read(at->failed, NULL, SF_PLAIN_TEXT, &text, NULL, &none) != SF_OK)
+        sf_plain_read(at->failed, NULL, SF_PLAIN_TEXT, &text, NULL, SF_IGNORED) != SF_OK)
         return false;
     char *rest = text, *status = strsep(&rest, "\n"), *sentence = rest ? strsep(&rest, "\n") : NULL;
     bool failed = rest && atoi(status) == SF_ERR_NUMERIC && are_files_same(at, rest);
@@ -323,11 +316,10 @@ bool sf_run_folder_has_failed(const sf_run_folder *at, sf_error *failure) {
 
 /* The last line of a log that says something, for an error's sentence. */
 static void last_line(const char *path, char *out, size_t size) {
-    sf_error ignored = SF_ERROR_INIT;
     SF_OWNED char *text = NULL;
     char *line;
     snprintf(out, size, "it said nothing");
-    sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &ignored);
+    sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, SF_IGNORED);
     for (char *rest = text; rest && (line = strsep(&rest, "\n"));)
         if (*line)
             snprintf(out, size, "%s", line);
@@ -365,8 +357,7 @@ bool sf_run_folder_is_running(const sf_run_folder *at) {
     bool locked = false;
     for (int k = 1; k <= at->drops && !locked; k++) {
         const sf_run_folder drop = sf_run_folder_of_drop(at, k);
-        char folder[SF_RUN_PATH_SIZE + 8];
-        snprintf(folder, sizeof folder, "%s.run", drop.results);
+        SF_PRINTED(folder, SF_RUN_PATH_SIZE + 8, "%s.run", drop.results);
         int handle = open(folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
         locked = handle >= 0 && flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
         if (handle >= 0)

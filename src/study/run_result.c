@@ -162,6 +162,5 @@ sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_r
 
 void sf_runner_result_free(sf_runner_result *result) {
     sf_series_free(&result->curve);
-    SF_FREE(result->path, result->figure, result->layer_strain);
-    *result = (sf_runner_result){0};
+    SF_CLEAR(result, result->path, result->figure, result->layer_strain);
 }

@@ -102,8 +102,7 @@ static bool is_readable(const sf_run_folder *at) {
     for (int k = 1; k <= at->drops && readable; k++) {
         const sf_run_folder drop = sf_run_folder_of_drop(at, k);
         SF_OWNED_BY(sf_results_close) sf_results r = {0};
-        sf_error none = SF_ERROR_INIT;
-        readable = sf_results_open(drop.results, &r, &none) == SF_OK;
+        readable = sf_results_open(drop.results, &r, SF_IGNORED) == SF_OK;
         if (!readable)
             sf_folder_remove_file(drop.figures);
     }
@@ -133,9 +132,8 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
 
 /* By the process that simulated the drop, so that nobody reads the results of many drops one by one. */
 static void record(const sf_run_folder *at) {
-    sf_error none = SF_ERROR_INIT;
     SF_OWNED_BY(sf_runner_result_free) sf_runner_result result = {0};
-    sf_runner_read(at, false, &result, &none);
+    sf_runner_read(at, false, &result, SF_IGNORED);
 }
 
 static sf_status simulate(void *context, int index, sf_error *err) {
@@ -396,8 +394,7 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
 
 /* `b` holds runner, count and drop; its requests are the caller's to free. */
 static sf_status run_held(batch *b, sf_error *failure, sf_error *err) {
-    b->request = sf_alloc(err, b->count, sizeof *b->request, "drops");
-    b->pending = sf_alloc(err, b->count, sizeof *b->pending, "drops");
+    SF_ALLOC_ALL(err, "drops", SF_ROOM(b->request, b->count), SF_ROOM(b->pending, b->count));
     for (int k = 0; k < b->count; k++)
         failure[k] = (sf_error)SF_ERROR_INIT;
     if (err->status == SF_OK)

@@ -50,9 +50,8 @@ static const char *find_fault(const sf_command *command) {
 
 static sf_status parse_command(int argc, char **argv, const sf_study_program *program, sf_study *study,
                                void *own, sf_error *err) {
-    char operands[64], second[96];
-    snprintf(operands, sizeof operands, "%s -o DIR", program->argument);
-    snprintf(second, sizeof second, "one %s at a time: \"%%s\" is one too many", program->argument);
+    SF_PRINTED(operands, 64, "%s -o DIR", program->argument);
+    SF_PRINTED(second, 96, "one %s at a time: \"%%s\" is one too many", program->argument);
     const sf_command command = {
         .program = program->name,
         .operands = operands,

@@ -147,9 +147,8 @@ sf_status sf_view_begin(sf_picture which, const char *title, const sf_body *body
 
 void sf_view_add(sf_picture which, int frame, double time, const sf_body *body, const double *displacement,
                  const double *value) {
-    sf_error err = SF_ERROR_INIT;
     size_t count = (size_t)body->node_count;
-    SF_OWNED size_t *tag = number_nodes(body, &err);
+    SF_OWNED size_t *tag = number_nodes(body, SF_IGNORED);
     if (tag && value)
         gmshViewAddHomogeneousModelData(VALUES + (int)which, frame, models[which], "NodeData", tag, count,
                                         (double *)value, count, time, 1, 0, &unasked);

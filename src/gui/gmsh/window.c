@@ -105,42 +105,38 @@ static int initialize(void) {
     return ierr;
 }
 
-/* gmsh by itself would leave options in the home folder, and a mesh and a database beside the geometry. */
-static void write_nothing(void) {
-    static const char *const off[] = {"General.SaveOptions",
-                                      "General.SaveSession",
-                                      "Solver.AutoSaveDatabase",
-                                      "Solver.AutoLoadDatabase",
-                                      "Solver.AutoArchiveOutputFiles",
-                                      "Solver.AutoMesh",
-                                      "General.AbortOnError",
-                                      "General.ExpertMode",
-                                      "Mesh.SaveAll"};
-    for (size_t k = 0; k < sizeof off / sizeof off[0]; k++)
-        set_gmsh_option(off[k], 0);
-    set_gmsh_option("Solver.AutoCheck", 1);
-}
-
-/* The side view, z upwards: a quarter turn about x. */
-static void look_from_the_side(void) {
-    set_gmsh_option("General.Trackball", 1);
-    set_gmsh_option("General.TrackballQuaternion0", 0.70710678);
-    set_gmsh_option("General.TrackballQuaternion1", 0);
-    set_gmsh_option("General.TrackballQuaternion2", 0);
-    set_gmsh_option("General.TrackballQuaternion3", 0.70710678);
-    set_gmsh_option("General.Orthographic", 1);
-}
+/* gmsh by itself would leave options in the home folder, and a mesh and a database beside the geometry; the
+ * view is that from the side, z upwards: a quarter turn about x. */
+static const struct {
+    const char *name;
+    double value;
+} options[] = {{"General.SaveOptions", 0},
+               {"General.SaveSession", 0},
+               {"Solver.AutoSaveDatabase", 0},
+               {"Solver.AutoLoadDatabase", 0},
+               {"Solver.AutoArchiveOutputFiles", 0},
+               {"Solver.AutoMesh", 0},
+               {"General.AbortOnError", 0},
+               {"General.ExpertMode", 0},
+               {"Mesh.SaveAll", 0},
+               {"Solver.AutoCheck", 1},
+               {"General.Trackball", 1},
+               {"General.TrackballQuaternion0", 0.70710678},
+               {"General.TrackballQuaternion1", 0},
+               {"General.TrackballQuaternion2", 0},
+               {"General.TrackballQuaternion3", 0.70710678},
+               {"General.Orthographic", 1},
+               {"General.Terminal", 0},
+               {"General.MenuWidth", 420},
+               {"General.GraphicsWidth", 1240},
+               {"General.GraphicsHeight", 900},
+               {"Geometry.PointSize", 0}};
 
 sf_status sf_window_start(sf_error *err) {
     if (initialize() != 0)
         return SF_FAIL(err, SF_ERR_LIBRARY, "gmsh cannot be started");
-    write_nothing();
-    look_from_the_side();
-    set_gmsh_option("General.Terminal", 0);
-    set_gmsh_option("General.MenuWidth", 420);
-    set_gmsh_option("General.GraphicsWidth", 1240);
-    set_gmsh_option("General.GraphicsHeight", 900);
-    set_gmsh_option("Geometry.PointSize", 0);
+    for (size_t k = 0; k < sizeof options / sizeof options[0]; k++)
+        set_gmsh_option(options[k].name, options[k].value);
     gmshOptionSetString("General.GraphicsFontEngine", "StringTexture",
                         &unasked); /* the other one drops blanks */
     return SF_OK;
@@ -280,8 +276,7 @@ static void put_words(sf_json *json, const char *words, bool labels) {
     int place = 0;
     for (const char *at = words; *at; place++) {
         size_t length = strcspn(at, "|");
-        char word[64];
-        snprintf(word, sizeof word, "%.*s", (int)length, at);
+        SF_PRINTED(word, 64, "%.*s", (int)length, at);
         sf_json_integer(json, labels ? word : NULL, place);
         at += length + (at[length] == '|');
     }
@@ -313,10 +308,8 @@ static void put_attributes(sf_json *json, const sf_entry *e) {
         sf_json_text(json, "Highlight", e->colour);
     if (e->closed)
         sf_json_text(json, "Closed", "1");
-    if (e->kind == SF_ENTRY_BUTTON) {
-        sf_json_text(json, "Macro", "Action");
-        sf_json_text(json, "Aspect", e->aspect ? e->aspect : "MiddleButton");
-    }
+    if (e->kind == SF_ENTRY_BUTTON)
+        SF_JSON_TEXTS(json, {"Macro", "Action"}, {"Aspect", "MiddleButton"});
 }
 
 static void send(const char *json) {
@@ -325,14 +318,12 @@ static void send(const char *json) {
 
 void sf_window_put(const sf_entry *e) {
     bool number = e->kind == SF_ENTRY_WORD || e->kind == SF_ENTRY_FLAG || e->kind == SF_ENTRY_NUMBER;
-    SF_OWNED char *text = NULL;
-    size_t size = 0;
-    sf_json json = {.file = open_memstream(&text, &size), .empty = true};
-    if (!json.file)
+    SF_OWNED SF_TEXT_STREAM(file, text, size);
+    sf_json json = {.file = file};
+    if (!file)
         return;
     sf_json_open(&json, NULL, '{');
-    sf_json_text(&json, "type", number ? "number" : "string");
-    sf_json_text(&json, "name", e->name);
+    SF_JSON_TEXTS(&json, {"type", number ? "number" : "string"}, {"name", e->name});
     if (e->help)
         sf_json_text(&json, "help", e->help);
     sf_json_bool(&json, "readOnly", e->kind == SF_ENTRY_SHOWN);
@@ -367,8 +358,7 @@ static void change(const char *name, const char *addition) {
 }
 
 void sf_window_colour_number(const char *name, const char *colour) {
-    char attributes[96];
-    snprintf(attributes, sizeof attributes, "\"attributes\":{\"Highlight\":\"%s\"}", colour ? colour : "");
+    SF_PRINTED(attributes, 96, "\"attributes\":{\"Highlight\":\"%s\"}", colour ? colour : "");
     change(name, attributes);
 }
 

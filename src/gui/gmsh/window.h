@@ -47,7 +47,6 @@ typedef struct sf_entry {
     const char *words;  /* of SF_ENTRY_WORD: "a|b" */
     const char *help;   /* shown beside the pointer; NULL: none */
     const char *colour; /* of the field, "LightGreen"; NULL: none */
-    const char *aspect; /* of a button: "LeftButton", "MiddleButton", "RightButton" */
     bool closed;        /* its branch begins closed */
 } sf_entry;
 

@@ -247,6 +247,5 @@ sf_status sf_compare_run(const sf_compare_options *options, const sf_series *mod
 void sf_comparison_free(sf_comparison *comparison) {
     sf_series_free(&comparison->measured);
     sf_series_free(&comparison->raw);
-    free(comparison->fits);
-    *comparison = (sf_comparison){0};
+    SF_CLEAR(comparison, comparison->fits);
 }

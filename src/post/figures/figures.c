@@ -558,8 +558,7 @@ sf_status sf_figures_compute_through(const sf_results *results, double cfc, cons
 void sf_figures_free(sf_figures *figures) {
     sf_series_free(&figures->raw);
     sf_series_free(&figures->filtered);
-    free(figures->layers);
-    *figures = (sf_figures){0};
+    SF_CLEAR(figures, figures->layers);
 }
 
 /* Orders over five spacings of the paper's drops are 1.1 to 1.9 (docs/verification.md, "Mesh study"). Two

@@ -24,16 +24,13 @@ static double median_of(const double *value, int64_t count, double *work) {
 }
 
 static void record_free(record *r) {
-    SF_FREE(r->median, r->work);
-    *r = (record){0};
+    SF_CLEAR(r, r->median, r->work);
 }
 
 static sf_status record_open(const sf_series *raw, const sf_series *curve, record *r, sf_error *err) {
     int64_t n = raw->count, top = 0;
     *r = (record){.raw = raw, .curve = curve};
-    r->median = sf_alloc(err, n, sizeof(double), "medians of the record");
-    r->work = sf_alloc(err, n, sizeof(double), "medians of the record");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "medians of the record", SF_ROOM(r->median, n), SF_ROOM(r->work, n)));
     for (int64_t i = 0; i < n; i++) {
         int64_t half = i < 2 ? i : n - 1 - i < 2 ? n - 1 - i : 2;
         r->median[i] = median_of(&raw->value[i - half], 2 * half + 1, r->work);

@@ -32,8 +32,7 @@ static void record_free(record *r) {
 sf_status sf_reference_parse_sensitivity(const char *text, double *sensitivity, sf_error *err) {
     size_t length = strlen(text);
     bool per_g = length > 2 && length < 64 && strcmp(text + length - 2, "/g") == 0;
-    char volts[64];
-    snprintf(volts, sizeof volts, "%.*s", (int)(length - 2), per_g ? text : "");
+    SF_PRINTED(volts, 64, "%.*s", (int)(length - 2), per_g ? text : "");
     SF_TRY(sf_units_read(per_g ? volts : text, per_g ? SF_VOLTAGE : SF_SENSITIVITY, sensitivity, err));
     *sensitivity /= per_g ? SF_STANDARD_GRAVITY : 1;
     return *sensitivity > 0 ? SF_OK
@@ -113,8 +112,7 @@ static sf_status read_column(const sf_reference_options *o, const char *column, 
     int which = 0;
     if (!(o->rate > 0))
         return sf_table_read(o->path, layouts, table, err);
-    sf_error inner = SF_ERROR_INIT;
-    if (sf_table_read(o->path, layouts, table, &inner) == SF_OK) {
+    if (sf_table_read(o->path, layouts, table, SF_IGNORED) == SF_OK) {
         sf_table_free(table);
         return SF_REFUSE(err, "%s has a column of time: leave its sampling rate out", o->path);
     }

@@ -20,8 +20,7 @@ sf_status sf_series_create(int64_t count, sf_series *series, sf_error *err) {
 }
 
 void sf_series_free(sf_series *series) {
-    SF_FREE(series->time, series->value);
-    *series = (sf_series){0};
+    SF_CLEAR(series, series->time, series->value);
 }
 
 sf_status sf_series_check(const sf_series *series, const char *name, sf_error *err) {

@@ -317,9 +317,8 @@ static double largest_slip(const sf_results *r, const double *displacement, cons
 
 sf_status sf_layers_note_slip(sf_results *r, sf_error *err) {
     SF_OWNED_BY(sf_frame_free) sf_frame peak = {0};
-    sf_error problem = SF_ERROR_INIT;
     if (r->layer_count == 0 || !r->has_peak ||
-        sf_frame_read_fields(r, &r->peak, SF_FIELD_DISPLACEMENT, &peak, &problem) != SF_OK)
+        sf_frame_read_fields(r, &r->peak, SF_FIELD_DISPLACEMENT, &peak, SF_IGNORED) != SF_OK)
         return SF_OK; /* the figures say what is damaged */
     SF_OWNED int64_t *order = order_by_place(r, err);
     int64_t at = 0;
@@ -372,11 +371,8 @@ static void add_face(const sf_results *r, const int32_t node[3], faces *f) {
 static sf_status faces_find(const sf_results *r, const double *u, faces *f, sf_error *err) {
     int64_t all = 0;
     SF_TRY(sf_skin_triangles(&SF_CELLS_OF(r), &all, &f->node, NULL, err));
-    f->x = sf_alloc(err, 3 * r->node_count, sizeof *f->x, "faces of the pad");
-    f->centre = sf_alloc(err, 3 * all, sizeof *f->centre, "faces of the pad");
-    f->radius = sf_alloc(err, all, sizeof *f->radius, "faces of the pad");
-    f->found = sf_alloc(err, all, sizeof *f->found, "faces of the pad");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "faces of the pad", SF_ROOM(f->x, 3 * r->node_count),
+                        SF_ROOM(f->centre, 3 * all), SF_ROOM(f->radius, all), SF_ROOM(f->found, all)));
     for (int64_t k = 0; k < 3 * r->node_count; k++)
         f->x[k] = r->position[k] + u[k];
     sf_box3(r->node_count, f->x, f->low, f->high);

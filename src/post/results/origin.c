@@ -6,9 +6,8 @@
 #include <string.h>
 
 char *sf_origin_text(const sf_results *results, const char *path) {
-    sf_error ignored = SF_ERROR_INIT;
     char *text = NULL;
-    if (sf_h5_exists(results->file, path) && sf_h5_read_text(results->file, path, &text, &ignored) == SF_OK)
+    if (sf_h5_exists(results->file, path) && sf_h5_read_text(results->file, path, &text, SF_IGNORED) == SF_OK)
         return text;
     return strdup("");
 }
@@ -85,8 +84,7 @@ bool sf_origin_find(const char *parameters, const char *name, sf_origin_key *key
 const char *const sf_origin_report_keys[SF_ORIGIN_REPORT_KEYS] = {"sample", "laboratory", "conditions"};
 
 bool sf_origin_find_report(const char *parameters, const char *name, sf_origin_key *key) {
-    char full[64];
-    snprintf(full, sizeof full, "report.%s", name);
+    SF_PRINTED(full, 64, "report.%s", name);
     return sf_origin_find(parameters, full, key) && key->given;
 }
 
@@ -104,9 +102,8 @@ static bool is_included(const char *begin, const char *end) {
 
 /* Comments from `line` on; `prefix` stands before each. Blank lines and others are passed over, or end it. */
 static char *collect(const char *line, const char *prefix, bool to_brace) {
-    char *text = NULL;
-    size_t size = 0, length, before = strlen(prefix);
-    FILE *out = open_memstream(&text, &size);
+    size_t length, before = strlen(prefix);
+    SF_TEXT_STREAM(out, text, size);
     if (!out)
         return NULL;
     for (; line && *line; line += length + (line[length] == '\n')) {
@@ -149,9 +146,8 @@ static const char *after_name(const char *text, const char *name) {
 }
 
 char *sf_origin_material(const char *case_text, const char *layer) {
-    char replacing[SF_ORIGIN_NAME_SIZE + 32];
-    snprintf(replacing, sizeof replacing, layer ? "# --set materials.%s=@" : "# --set material%s=@",
-             layer ? layer : "");
+    SF_PRINTED(replacing, SF_ORIGIN_NAME_SIZE + 32, layer ? "# --set materials.%s=@" : "# --set material%s=@",
+               layer ? layer : "");
     const char *replaced = after_last(case_text, replacing);
     if (replaced)
         return collect(replaced, "#     ", true);

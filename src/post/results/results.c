@@ -216,13 +216,6 @@ static sf_status read_array(const sf_results *r, const char *path, sf_h5_type ty
     return SF_OK;
 }
 
-static sf_status read_integer(const sf_results *r, const char *path, int64_t *value, sf_error *err) {
-    SF_OWNED void *data = NULL;
-    SF_TRY(sf_h5_read(r->file, path, SF_H5_I64, 0, NULL, &data, err));
-    *value = *(int64_t *)data;
-    return SF_OK;
-}
-
 static sf_status read_numbers(const sf_results *r, const char *path, int64_t count, double *numbers,
                               sf_error *err) {
     SF_OWNED double *data = NULL;
@@ -233,7 +226,7 @@ static sf_status read_numbers(const sf_results *r, const char *path, int64_t cou
 
 static sf_status read_flag(const sf_results *r, const char *path, bool *flag, sf_error *err) {
     int64_t value = 0;
-    read_integer(r, path, &value, err);
+    sf_h5_read_one(r->file, path, SF_H5_I64, &value, err);
     *flag = value != 0;
     return err->status;
 }
@@ -318,10 +311,9 @@ static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_er
                                      offsetof(sf_layer_sums, viscous), offsetof(sf_layer_sums, compression)};
     r->layer_sums = sf_alloc(err, r->layer_count, sizeof *r->layer_sums, "sums of layers");
     for (int k = 0; k < 4 && err->status == SF_OK; k++) {
-        char path[80];
         SF_OWNED double *value = NULL;
         int64_t count = r->layer_count;
-        snprintf(path, sizeof path, "%s/%s", head->group, names[k]);
+        SF_PRINTED(path, 80, "%s/%s", head->group, names[k]);
         if (read_array(r, path, SF_H5_F64, &count, 1, &value, err) != SF_OK)
             break;
         for (int64_t i = 0; i < count && check_finite(value, count, path, err) == SF_OK; i++)
@@ -350,7 +342,7 @@ static sf_status read_model(sf_results *r, sf_error *err) {
         SF_TRY(read_array(r, "/model/support_triangle", SF_H5_I32, &r->support_triangle_count, 3,
                           &r->support_triangle, err));
     }
-    SF_TRY(read_integer(r, "/model/symmetry_factor", &r->symmetry_factor, err));
+    SF_TRY(sf_h5_read_one(r->file, "/model/symmetry_factor", SF_H5_I64, &r->symmetry_factor, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/thickness", &r->thickness, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/density", &r->density, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/model/missile_mass", &r->missile_mass, err));
@@ -410,9 +402,9 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
     SF_OWNED char *status = NULL;
     SF_TRY(sf_h5_read_text(r->file, "/summary/status", &status, err));
     snprintf(r->status, sizeof r->status, "%s", status);
-    SF_TRY(read_integer(r, "/summary/steps", &r->steps, err));
-    SF_TRY(read_integer(r, "/summary/threads", &r->threads, err));
-    SF_TRY(read_integer(r, "/summary/interactions", &r->interactions, err));
+    SF_TRY(sf_h5_read_one(r->file, "/summary/steps", SF_H5_I64, &r->steps, err));
+    SF_TRY(sf_h5_read_one(r->file, "/summary/threads", SF_H5_I64, &r->threads, err));
+    SF_TRY(sf_h5_read_one(r->file, "/summary/interactions", SF_H5_I64, &r->interactions, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/summary/wall_time", &r->wall_time, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err));
     SF_TRY(read_optional(r, "/summary/given_back", &r->given_back, err));
@@ -429,8 +421,7 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
 static sf_status read_history(sf_results *r, sf_error *err) {
     int64_t rows[SF_HISTORY_COUNT];
     for (int c = 0; c < SF_HISTORY_COUNT; c++) {
-        char path[64];
-        snprintf(path, sizeof path, "/history/%s", sf_history_column_get(c)->name);
+        SF_PRINTED(path, 64, "/history/%s", sf_history_column_get(c)->name);
         rows[c] = -1;
         SF_TRY(read_array(r, path, SF_H5_F64, &rows[c], 1, &r->history.column[c], err));
     }
@@ -438,8 +429,7 @@ static sf_status read_history(sf_results *r, sf_error *err) {
 }
 
 static sf_status read_head(const sf_results *r, sf_frame_head *head, sf_error *err) {
-    char path[64];
-    snprintf(path, sizeof path, "%s/time", head->group);
+    SF_PRINTED(path, 64, "%s/time", head->group);
     SF_TRY(sf_h5_read_scalar(r->file, path, &head->time, err));
     snprintf(path, sizeof path, "%s/acceleration", head->group);
     SF_TRY(sf_h5_read_scalar(r->file, path, &head->acceleration, err));
@@ -516,13 +506,12 @@ sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) 
 
 void sf_results_close(sf_results *results) {
     sf_h5_drop(&results->file);
-    SF_FREE(results->position, results->volume, results->cell_type, results->cell_ptr, results->cell_node,
-            results->surface_position, results->surface_triangle, results->support_position,
-            results->support_triangle, results->node_layer, results->layer_name, results->layer_names,
-            results->layer_density, results->layer_informed, results->layer_sums);
     sf_history_free(&results->history);
-    free(results->frames);
-    *results = (sf_results){0};
+    SF_CLEAR(results, results->position, results->volume, results->cell_type, results->cell_ptr,
+             results->cell_node, results->surface_position, results->surface_triangle,
+             results->support_position, results->support_triangle, results->node_layer, results->layer_name,
+             results->layer_names, results->layer_density, results->layer_informed, results->layer_sums,
+             results->frames);
 }
 
 sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame,
@@ -535,8 +524,7 @@ sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *h
     *frame = (sf_frame){0};
     for (int f = 0; f < SF_FRAME_FIELDS; f++) {
         const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
-        char path[80];
-        snprintf(path, sizeof path, "%s/%s", head->group, info->name);
+        SF_PRINTED(path, 80, "%s/%s", head->group, info->name);
         if (!(fields >> f & 1))
             continue;
         if (!sf_h5_exists(results->file, path)) {

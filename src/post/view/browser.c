@@ -149,11 +149,9 @@ static void put_texts(page *p) {
     sf_report_title(p->results, title, sizeof title);
     snprintf(foot, sizeof foot, "softfall-post %s (%s), from %.160s; drawn by WebGL 2, without a library",
              SF_VERSION, SF_GIT_REVISION, p->report->summary->results_path);
-    sf_json_text(&p->json, "title", title);
-    sf_json_text(&p->json, "verdict", sf_verdict_phrase(verdict->grade));
-    sf_json_text(&p->json, "kind", sf_report_kind(verdict->grade));
-    sf_json_text(&p->json, "findings", sf_report_findings(verdict, line, sizeof line));
-    sf_json_text(&p->json, "foot", foot);
+    SF_JSON_TEXTS(&p->json, {"title", title}, {"verdict", sf_verdict_phrase(verdict->grade)},
+                  {"kind", sf_report_kind(verdict->grade)},
+                  {"findings", sf_report_findings(verdict, line, sizeof line)}, {"foot", foot});
 }
 
 static void put_notes(page *p, bool planes_known) {
@@ -193,8 +191,7 @@ static void put_scale(page *p) {
         if (!(p->made->fields >> colourings[k].field & 1))
             continue;
         SF_JSON_OBJECT(&p->json, NULL);
-        sf_json_text(&p->json, "name", colourings[k].name);
-        sf_json_text(&p->json, "unit", colourings[k].unit);
+        SF_JSON_TEXTS(&p->json, {"name", colourings[k].name}, {"unit", colourings[k].unit});
         sf_json_number(&p->json, "factor", colourings[k].factor);
         sf_json_bool(&p->json, "logarithmic", colourings[k].logarithmic);
     }
@@ -224,9 +221,8 @@ static void put_cells(page *p) {
     sf_json_close(&p->json);
     SF_JSON_OBJECT(&p->json, "tetrahedra");
     for (int type = SF_CELL_TETRAHEDRON; type <= SF_CELL_HEXAHEDRON; type++) {
-        char key[8];
         const sf_cell_shape *shape = sf_cell_shape_of(type);
-        snprintf(key, sizeof key, "%d", type);
+        SF_PRINTED(key, 8, "%d", type);
         SF_JSON_ARRAY(&p->json, key);
         for (int k = 0; k < 4 * shape->tetrahedra; k++)
             sf_json_integer(&p->json, NULL, shape->tetrahedron[k / 4][k % 4]);

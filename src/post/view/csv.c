@@ -5,8 +5,7 @@
 
 sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "history.csv", err));
+    SF_CSV_FILE(csv, output, "history.csv", err);
     const sf_history *h = &results->history;
     for (int c = 0; c < SF_HISTORY_COUNT; c++) {
         const sf_history_column *column = sf_history_column_get(c);
@@ -31,8 +30,7 @@ sf_status sf_csv_write_history(const sf_staging *output, const sf_results *resul
 
 sf_status sf_csv_write_acceleration(const sf_staging *output, const sf_figures *figures, sf_error *err) {
     const sf_series *curve = &figures->filtered;
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "acceleration.csv", err));
+    SF_CSV_FILE(csv, output, "acceleration.csv", err);
     SF_CSV_PRINT_LINE(&csv, "time_ms,acceleration_cfc%.0f_g", figures->cfc);
     for (int64_t i = 0; i < curve->count; i++)
         SF_CSV_LINE(&csv, curve->time[i] * 1e3, curve->value[i]);
@@ -41,8 +39,7 @@ sf_status sf_csv_write_acceleration(const sf_staging *output, const sf_figures *
 
 sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *results,
                                    const sf_figures *figures, sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "compression.csv", err));
+    SF_CSV_FILE(csv, output, "compression.csv", err);
     SF_CSV_PRINT_LINE(&csv, "time_ms,strain_1,stress_kPa,force_N");
     for (int64_t i = 0; i < results->history.rows; i++) {
         double force = results->history.contact_force[i];
@@ -56,8 +53,7 @@ sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *r
 sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *comparison,
                                  const sf_figures *figures, sf_error *err) {
     const sf_series *raw = &comparison->raw, *model = &figures->filtered;
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "reference.csv", err));
+    SF_CSV_FILE(csv, output, "reference.csv", err);
     SF_CSV_PRINT_LINE(&csv,
                       "time_ms,acceleration_measured_g,acceleration_cfc%.0f_g,acceleration_measured_raw_g",
                       figures->cfc);
@@ -226,8 +222,7 @@ sf_status sf_section_write(const sf_staging *output, const sf_results *results, 
         return SF_OK;
     if (sf_frame_read(results, head, &frame, err) != SF_OK || !frame.field[SF_FRAME_VON_MISES])
         return err->status;
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "section.csv", err));
+    SF_CSV_FILE(csv, output, "section.csv", err);
     SF_CSV_PRINT_LINE(
         &csv, "set,node,x_mm,y_mm,z_mm,depth_mm,displacement_x_mm,displacement_y_mm,displacement_z_mm,"
               "von_mises_kPa,stress_zz_kPa,largest_compression_1");

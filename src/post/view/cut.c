@@ -216,8 +216,7 @@ sf_status sf_cut_make(const sf_results *results, sf_cut *cut, sf_error *err) {
 }
 
 void sf_cut_free(sf_cut *cut) {
-    SF_FREE(cut->polygon, cut->line, cut->outline);
-    *cut = (sf_cut){0};
+    SF_CLEAR(cut, cut->polygon, cut->line, cut->outline);
 }
 
 /* ---- pictures of the cut ---- */
@@ -408,9 +407,8 @@ static void put_scale(const layout *l) {
         fputs("\"/>\n", l->svg);
     }
     for (int k = 0; k <= 4; k++) {
-        char text[32];
         double value = bound_of(l, k * BANDS / 4) * l->style->factor;
-        snprintf(text, sizeof text, value < 1000 ? "%.3g" : "%.0f", value);
+        SF_PRINTED(text, 32, value < 1000 ? "%.3g" : "%.0f", value);
         put_text(l->svg, left + k * SCALE_WIDTH / 4.0, top + BAR + FONT, "middle", text);
     }
     put_text(l->svg, left - 24, top + BAR, "end", l->style->label);
@@ -456,9 +454,8 @@ static void lay_out(layout *l, const sf_picture *pictures, int count) {
 
 char *sf_picture_draw(const sf_cut *cut, const sf_picture *pictures, int count, const sf_picture_style *style,
                       sf_error *err) {
-    char *text = NULL;
-    size_t size = 0;
-    layout l = {.cut = cut, .style = style, .svg = open_memstream(&text, &size)};
+    SF_TEXT_STREAM(svg, text, size);
+    layout l = {.cut = cut, .style = style, .svg = svg};
     if (!l.svg)
         return no_memory(err);
     lay_out(&l, pictures, count);

@@ -99,11 +99,8 @@ static sf_status read_run(overlay_run *r, sf_error *err) {
 
 /* A whole number of the summary; 0: the file does not say. */
 static sf_status read_count(const sf_h5 *file, const char *path, int64_t *value, sf_error *err) {
-    SF_OWNED int64_t *data = NULL;
     *value = 0;
-    if (sf_h5_exists(file, path) && sf_h5_read(file, path, SF_H5_I64, 0, NULL, (void **)&data, err) == SF_OK)
-        *value = *data;
-    return err->status;
+    return sf_h5_exists(file, path) ? sf_h5_read_one(file, path, SF_H5_I64, value, err) : err->status;
 }
 
 /* The files of a series whose first is given alone. */
@@ -167,8 +164,7 @@ static double series_mean(const overlay *o, int figure) {
 
 /* A row for each drop and one of the mean; growth is that over the first drop. */
 static sf_status write_series(const overlay *o, sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, &o->output, "series.csv", err));
+    SF_CSV_FILE(csv, &o->output, "series.csv", err);
     sf_csv_print(&csv, "drop,pause_s");
     for (int f = 0; f < OF_SERIES; f++)
         sf_csv_print(&csv, "%s,%s_growth", of_series[f], of_series[f]);
@@ -196,15 +192,14 @@ static sf_status write_series(const overlay *o, sf_error *err) {
 static void put_pads(FILE *page, const overlay *o) {
     for (int k = 1; k < o->count; k++) {
         char text[400];
-        sf_error why = SF_ERROR_INIT;
-        SF_OWNED char *svg = sf_report_picture_before(&o->run[k].results, text, sizeof text, &why);
+        SF_OWNED char *svg = sf_report_picture_before(&o->run[k].results, text, sizeof text, SF_IGNORED);
         sf_html_figure(page, svg, "Drop %d. %s", k + 1, text);
     }
 }
 
 static void put_series(FILE *page, const overlay *o) {
     sf_html_heading(page, "Drops of the series");
-    sf_html_table t = sf_html_table_begin(page, "dense", NULL);
+    sf_html_table t = sf_html_table_begin(page, NULL);
     sf_html_line(&t, "drop", "speed (m/s), place (mm)|a_max (g)|over the first|HIC|over the first");
     bool differ = false; /* in speed, mass or place */
     for (int k = 0; k <= o->count; k++) {
@@ -263,8 +258,7 @@ static void put_csv_row(sf_csv *csv, const overlay *o, const sf_figure *figure) 
 
 /* A row for each figure, a column for each run. */
 static sf_status write_csv(const overlay *o, sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, &o->output, "compare.csv", err));
+    SF_CSV_FILE(csv, &o->output, "compare.csv", err);
     sf_csv_print(&csv, "figure");
     for (int k = 0; k < o->count; k++)
         sf_csv_quoted(&csv, o->run[k].name);
@@ -299,18 +293,15 @@ static sf_status write_picture(const overlay *o, char *warning, size_t size, sf_
 }
 
 static void put_table(FILE *page, const overlay *o) {
-    SF_HTML_TABLE t = sf_html_table_begin(page, "dense", NULL);
-    sf_html_row(&t);
-    sf_html_cell(&t, "run");
+    SF_HTML_TABLE t = sf_html_table_begin(page, NULL);
+    SF_HTML_ROW(&t, "run");
     for (int k = 0; k < o->count; k++)
         sf_html_cell(&t, "%s", o->run[k].name);
-    sf_html_row(&t);
-    sf_html_cell(&t, "verdict");
+    SF_HTML_ROW(&t, "verdict");
     for (int k = 0; k < o->count; k++)
         sf_html_cell(&t, "%s", sf_verdict_phrase(o->run[k].verdict.grade));
     for (size_t f = 0; f < sizeof listed / sizeof listed[0]; f++) {
-        sf_html_row(&t);
-        sf_html_cell(&t, "%s", listed[f]);
+        SF_HTML_ROW(&t, "%s", listed[f]);
         for (int k = 0; k < o->count; k++) {
             double value =
                 sf_figure_number(sf_figure_find(listed[f]), &o->run[k].results, &o->run[k].figures);

@@ -17,22 +17,22 @@ static void tidy(char *value) {
     *end = '\0';
 }
 
-void sf_origin_put_key(sf_html_table *table, const char *parameters, const char *name, const char *title) {
-    sf_origin_key key;
-    if (!sf_origin_find(parameters, name, &key) || strcmp(key.value, "(absent)") == 0)
-        return;
-    tidy(key.value);
-    if (*key.value)
-        sf_html_fact(table, title, "%s", key.value);
+void sf_origin_put_keys(sf_html_table *table, const char *parameters, const sf_named_text *list) {
+    for (sf_origin_key key; (*list)[0]; list++) {
+        if (!sf_origin_find(parameters, (*list)[0], &key) || strcmp(key.value, "(absent)") == 0)
+            continue;
+        tidy(key.value);
+        if (*key.value)
+            sf_html_fact(table, (*list)[1], "%s", key.value);
+    }
 }
 
 /* The keys of the material that the case gives, and whether it says what its data inform. `group`: with its
  * point at the end. */
 static void put_given(FILE *page, const char *parameters, const char *group) {
     sf_origin_key key;
-    SF_HTML_TABLE table = sf_html_table_begin(page, "dense", NULL);
-    char informed[SF_ORIGIN_NAME_SIZE + 32];
-    snprintf(informed, sizeof informed, "%sinformed_strain", group);
+    SF_HTML_TABLE table = sf_html_table_begin(page, NULL);
+    SF_PRINTED(informed, SF_ORIGIN_NAME_SIZE + 32, "%sinformed_strain", group);
     if (sf_origin_find(parameters, informed, &key) && !key.given)
         sf_html_fact(&table, "informed_strain", "not given: the end of the curve is taken for it");
     while (sf_origin_next(&parameters, &key))
@@ -43,9 +43,9 @@ static void put_given(FILE *page, const char *parameters, const char *group) {
 /* `layer` NULL: of a pad of one material. */
 static void put_material(FILE *page, const char *case_text, const char *parameters, const char *layer) {
     SF_OWNED char *origin = sf_origin_material(case_text, layer);
-    char heading[SF_ORIGIN_NAME_SIZE + 32], group[SF_ORIGIN_NAME_SIZE + 16];
-    snprintf(heading, sizeof heading, "Material%s%s", layer ? " of the layer " : "", layer ? layer : "");
-    snprintf(group, sizeof group, "material%s%s.", layer ? "s." : "", layer ? layer : "");
+    SF_PRINTED(heading, SF_ORIGIN_NAME_SIZE + 32, "Material%s%s", layer ? " of the layer " : "",
+               layer ? layer : "");
+    SF_PRINTED(group, SF_ORIGIN_NAME_SIZE + 16, "material%s%s.", layer ? "s." : "", layer ? layer : "");
     SF_HTML_BLOCK(page, heading);
     SF_HTML_DIVISION(page, "columns narrow");
     put_given(page, parameters, group);
@@ -149,16 +149,12 @@ static void put_tiles(const page *p) {
 
 /* ---- what was dropped on what ---- */
 
-static void put_parameter(const page *p, sf_html_table *table, const char *name, const char *title) {
-    sf_origin_put_key(table, p->parameters, name, title);
-}
-
 static void put_missile(const page *p) {
     const sf_results *r = p->results;
     SF_HTML_BLOCK(p->file, "Missile");
-    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, NULL);
     if (r->driven) {
-        put_parameter(p, &table, "missile.motion", "prescribed motion");
+        SF_ORIGIN_PUT(&table, p->parameters, {"missile.motion", "prescribed motion"});
     } else {
         double height = r->missile_speed * r->missile_speed / (2 * SF_STANDARD_GRAVITY);
         sf_html_fact(&table, "mass", "%.4g kg, of the whole missile", r->missile_mass);
@@ -167,12 +163,12 @@ static void put_missile(const page *p) {
         sf_html_fact(&table, "kinetic energy", "%.4g J",
                      r->missile_mass * r->missile_speed * r->missile_speed / 2);
     }
-    put_parameter(p, &table, "geometry.missile_file", "shape");
-    put_parameter(p, &table, "geometry.missile_parameters", "its parameters");
+    SF_ORIGIN_PUT(&table, p->parameters, {"geometry.missile_file", "shape"},
+                  {"geometry.missile_parameters", "its parameters"});
     if (isfinite(r->impact_x) && isfinite(r->impact_y))
         sf_html_fact(&table, "impact point", "x = %.4g mm, y = %.4g mm", r->impact_x * 1e3,
                      r->impact_y * 1e3);
-    put_parameter(p, &table, "missile.friction", "friction on the pad");
+    SF_ORIGIN_PUT(&table, p->parameters, {"missile.friction", "friction on the pad"});
 }
 
 static void put_interfaces(const page *p, sf_html_table *table) {
@@ -194,7 +190,7 @@ static void put_interfaces(const page *p, sf_html_table *table) {
 static void put_pad(const page *p) {
     const sf_results *r = p->results;
     SF_HTML_BLOCK(p->file, "Pad");
-    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, NULL);
     sf_html_fact(&table, "thickness", "%.4g mm", r->thickness * 1e3);
     if (isfinite(r->set_largest))
         sf_html_fact(&table, "permanent set",
@@ -204,18 +200,16 @@ static void put_pad(const page *p) {
                  p->figures->area * 1e4);
     sf_html_fact(&table, "density", "%.4g kg/m³, undeformed%s", r->density,
                  r->layer_count > 0 ? ", mean of the layers" : "");
-    put_parameter(p, &table, "geometry.file", "shape");
-    put_parameter(p, &table, "geometry.parameters", "its parameters");
-    put_parameter(p, &table, "geometry.length_unit", "their unit");
-    put_parameter(p, &table, "pad.fixed", "surfaces of the base");
-    put_parameter(p, &table, "pad.sliding", "sliding surfaces");
-    put_parameter(p, &table, "pad.base", "base");
+    SF_ORIGIN_PUT(&table, p->parameters, {"geometry.file", "shape"},
+                  {"geometry.parameters", "its parameters"}, {"geometry.length_unit", "their unit"},
+                  {"pad.fixed", "surfaces of the base"}, {"pad.sliding", "sliding surfaces"},
+                  {"pad.base", "base"});
     if (r->history.anvil_nodes[0] > 0) {
-        put_parameter(p, &table, "pad.friction", "friction on the anvil");
-        put_parameter(p, &table, "pad.gravity", "gravity on the pad");
+        SF_ORIGIN_PUT(&table, p->parameters, {"pad.friction", "friction on the anvil"},
+                      {"pad.gravity", "gravity on the pad"});
     }
-    put_parameter(p, &table, "pad.sliding_interfaces", "sliding layers");
-    put_parameter(p, &table, "pad.loose_interfaces", "loose layers");
+    SF_ORIGIN_PUT(&table, p->parameters, {"pad.sliding_interfaces", "sliding layers"},
+                  {"pad.loose_interfaces", "loose layers"});
     put_interfaces(p, &table);
 }
 
@@ -227,7 +221,7 @@ static void put_test(const page *p) {
         count += sf_origin_find_report(p->parameters, sf_origin_report_keys[k], &key);
     if (count == 0)
         return;
-    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, NULL);
     for (int k = 0; k < SF_ORIGIN_REPORT_KEYS; k++)
         if (sf_origin_find_report(p->parameters, sf_origin_report_keys[k], &key))
             sf_html_fact(&table, sf_origin_report_keys[k], "%s", key.value);
@@ -325,8 +319,7 @@ static void put_check(sf_html_table *table, const sf_check *c) {
 
 static void put_checks(const page *p) {
     SF_HTML_BLOCK(p->file, "Checks of the run");
-    sf_html_table table =
-        sf_html_table_begin(p->file, "dense", "check|>value|>good up to|>usable up to|finding");
+    sf_html_table table = sf_html_table_begin(p->file, "check|>value|>good up to|>usable up to|finding");
     for (int k = 0; k < p->verdict->count; k++)
         put_check(&table, &p->verdict->rows[k]);
     sf_html_table_end(&table);
@@ -366,7 +359,7 @@ static void put_columns(const page *p, const sf_figure *figure, size_t count, si
     size_t next = 0;
     SF_HTML_DIVISION(p->file, "columns ");
     for (size_t c = 0; c < COLUMNS; c++) {
-        SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", "figure|>value");
+        SF_HTML_TABLE table = sf_html_table_begin(p->file, "figure|>value");
         for (size_t put = 0; next < count && put < (defined + COLUMNS - 1) / COLUMNS; next++)
             if (is_defined(p, &figure[next])) {
                 put_figure(p, &table, &figure[next]);
@@ -400,7 +393,7 @@ static void put_comparison(const page *p) {
     sf_record_line(&c->record, line, sizeof line);
     sf_html_banner(p->file, sf_report_kind(c->record.grade),
                    c->record.grade == SF_GRADE_DO_NOT_USE ? "comparison not usable" : "record", "%s.", line);
-    sf_rows_html_table(p->file, "dense", sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
+    sf_rows_html_table(p->file, sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
 }
 
 /* "864 hexahedra, 744 pyramids" */
@@ -468,7 +461,7 @@ static void put_command(const page *p) {
 
 static void put_versions(const page *p) {
     SF_HTML_BLOCK(p->file, "Mesh and versions");
-    SF_HTML_TABLE table = sf_html_table_begin(p->file, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(p->file, NULL);
     put_mesh(p, &table);
     put_version(p, &table, "softfall-pre", "/provenance/model");
     put_version(p, &table, "softfall-solve", "/provenance");
@@ -490,7 +483,7 @@ static void put_layers(const page *p) {
     if (!layers)
         return;
     SF_HTML_BLOCK(p->file, "Layers");
-    sf_rows_html_table(p->file, "dense", sf_layer_figure_rows(),
+    sf_rows_html_table(p->file, sf_layer_figure_rows(),
                        (sf_records){layers, sizeof *layers, p->results->layer_count});
     sf_html_note(p->file,
                  "Absorbed: stored, lost and viscous energy in the last frame. Beyond its data: in nodes "

@@ -164,7 +164,9 @@ void sf_summary_print(FILE *out, const sf_summary *summary);
 void sf_origin_put_material(FILE *page, const char *case_text, const char *parameters);
 
 /* A row with the value of a key, without the brackets of the case's syntax; none if the key is absent. */
-void sf_origin_put_key(sf_html_table *table, const char *parameters, const char *name, const char *title);
+void sf_origin_put_keys(sf_html_table *table, const char *parameters, const sf_named_text *list);
+#define SF_ORIGIN_PUT(table, parameters, ...)                                                                \
+    sf_origin_put_keys(table, parameters, (const sf_named_text[]){__VA_ARGS__, {0}})
 
 /* The pages of a drop share its title, the findings (why the verdict is not "valid"; `line` has
  * SF_VERDICT_LINE_SIZE bytes) and the kind of sf_html_banner. */

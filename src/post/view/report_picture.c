@@ -68,11 +68,11 @@ static void read_instants(const sf_results *r, const sf_series *raw, instant lis
         return;
     double reach = 0.3 * (list[1].wanted - list[0].wanted);
     for (int k = 0; k < SF_INSTANTS; k++) {
-        sf_error ignored = SF_ERROR_INIT;
         const sf_frame_head *head = isnan(list[k].wanted) ? NULL : nearest(r, list[k].wanted, reach);
         if (k == 1 && r->has_peak)
             head = &r->peak;
-        if (!head || sf_frame_read(r, head, &list[k].frame, &ignored) != SF_OK || !has_fields(&list[k].frame))
+        if (!head || sf_frame_read(r, head, &list[k].frame, SF_IGNORED) != SF_OK ||
+            !has_fields(&list[k].frame))
             continue;
         list[k].head = head;
         name_instant(r, raw, &list[k], moments[k]);
@@ -303,6 +303,5 @@ sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *re
 }
 
 void sf_report_pictures_free(sf_report_pictures *p) {
-    SF_FREE(p->before, p->pad, p->instants, p->profile, p->force, p->energies);
-    *p = (sf_report_pictures){0};
+    SF_CLEAR(p, p->before, p->pad, p->instants, p->profile, p->force, p->energies);
 }

@@ -113,17 +113,12 @@ static void put_comparison(sf_json *json, const char *path, const sf_comparison 
 }
 
 sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_error *err) {
-    FILE *file = sf_staging_open(output, "summary.json", err);
-    SF_TRY(err->status);
-    sf_json json = {.file = file};
-    sf_json_open(&json, NULL, '{');
-    sf_json_text(&json, "program", "softfall-post " SF_VERSION);
-    sf_json_text(&json, "results", s->results_path);
-    sf_json_text(&json, "caution", caution);
+    SF_JSON_FILE(json, output, "summary.json", err);
+    SF_JSON_TEXTS(&json, {"program", "softfall-post " SF_VERSION}, {"results", s->results_path},
+                  {"caution", caution});
     put_test(&json, s->results);
     put_verdict(&json, s->verdict);
-    char acceleration[256];
-    snprintf(acceleration, sizeof acceleration, "%s%s", s->figures->acceleration, s->figures->passed);
+    SF_PRINTED(acceleration, 256, "%s%s", s->figures->acceleration, s->figures->passed);
     sf_json_text(&json, "acceleration", acceleration);
     put_figures(&json, s);
     if (s->figures->layers)
@@ -131,7 +126,7 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
     if (s->comparison)
         put_comparison(&json, s->reference_path, s->comparison);
     sf_json_close(&json);
-    return sf_staging_close(file, "summary.json", err);
+    return sf_staging_close(json.file, "summary.json", err);
 }
 
 /* ---- the printed table ---- */
@@ -155,8 +150,7 @@ static const char *const common_keys[] = {
 
 /* Returns the end of the window of a figure (ms), `which` "t1" or "t2"; NaN: the figure has no window. */
 static double window_end(const sf_summary *s, const char *key, const char *which) {
-    char name[64];
-    snprintf(name, sizeof name, "%s_%s_ms", key, which);
+    SF_PRINTED(name, 64, "%s_%s_ms", key, which);
     const sf_figure *figure = sf_figure_find(name);
     return figure ? sf_figure_number(figure, s->results, s->figures) : NAN;
 }

@@ -59,8 +59,7 @@ sf_status sf_shown_find(const sf_results *r, sf_shown *s, sf_error *err) {
 }
 
 void sf_shown_free(sf_shown *s) {
-    SF_FREE(s->head, s->fields);
-    *s = (sf_shown){0};
+    SF_CLEAR(s, s->head, s->fields);
 }
 
 /* ---- the file ---- */
@@ -105,8 +104,7 @@ static sf_status put_integers(const store *s, const char *path, const char *desc
 static sf_status write_topology(const store *s, sf_error *err) {
     const sf_results *r = s->results;
     int64_t length = r->cell_nnz + r->cell_count, k = 0;
-    SF_OWNED int32_t *mixed = sf_alloc(err, length, sizeof *mixed, "the topology");
-    SF_TRY(err->status);
+    SF_OWN(int32_t, mixed, length, "the topology", err);
     for (int64_t c = 0; c < r->cell_count; c++) {
         mixed[k++] = r->cell_type[c];
         for (int64_t v = r->cell_ptr[c]; v < r->cell_ptr[c + 1]; v++)
@@ -140,8 +138,7 @@ static sf_status write_materials(const store *s, sf_error *err) {
  * surface, `head`, by the missile's place. */
 static sf_status write_points(const store *s, const sf_h5_info *info, int64_t count, const double *position,
                               const double *displacement, const sf_frame_head *head, sf_error *err) {
-    SF_OWNED double *moved = sf_alloc(err, 3 * count, sizeof *moved, info->description);
-    SF_TRY(err->status);
+    SF_OWN(double, moved, 3 * count, info->description, err);
     for (int64_t i = 0; i < count; i++)
         if (head)
             sf_results_place(s->results, head, &position[3 * i], &moved[3 * i]);
@@ -173,8 +170,7 @@ static sf_status write_missile_arrays(const store *s, const sf_frame_head *head,
     SF_OWNED double *all = sf_alloc(err, 3 * n, sizeof *all, "arrays of the missile");
     for (int k = 0; k < missile_array_count(r) && err->status == SF_OK; k++) {
         const struct missile_array *a = &missile_arrays[k];
-        char path[96];
-        snprintf(path, sizeof path, "/frames/%06lld/%s", (long long)index, a->name);
+        SF_PRINTED(path, 96, "/frames/%06lld/%s", (long long)index, a->name);
         for (int64_t i = 0; i < n * a->components; i++)
             all[i] = value[k][i % a->components];
         put(s, &(sf_h5_info){path, a->units, a->description}, n, a->components, all, err);
@@ -194,8 +190,7 @@ static void note_largest(const sf_results *r, const sf_frame *frame, double larg
 static sf_status write_fields(const store *s, sf_frame *frame, int64_t index, sf_error *err) {
     for (int f = 0; f < SF_FRAME_FIELDS && err->status == SF_OK; f++) {
         const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
-        char path[96];
-        snprintf(path, sizeof path, "/frames/%06lld/%s", (long long)index, info->array);
+        SF_PRINTED(path, 96, "/frames/%06lld/%s", (long long)index, info->array);
         if (frame->field[f])
             put(s, &(sf_h5_info){path, info->units, info->description}, s->results->node_count,
                 info->components, frame->field[f], err);
@@ -206,8 +201,7 @@ static sf_status write_fields(const store *s, sf_frame *frame, int64_t index, sf
 static sf_status write_frame(const store *s, const sf_frame_head *head, sf_frame *frame, int64_t index,
                              sf_error *err) {
     const sf_results *r = s->results;
-    char path[96];
-    snprintf(path, sizeof path, "/frames/%06lld/pad_position", (long long)index);
+    SF_PRINTED(path, 96, "/frames/%06lld/pad_position", (long long)index);
     SF_TRY(write_points(s, &(sf_h5_info){path, "m", "positions of the pad's nodes, deformed"}, r->node_count,
                         r->position, frame->field[SF_FRAME_DISPLACEMENT], NULL, err));
     snprintf(path, sizeof path, "/frames/%06lld/missile_position", (long long)index);
@@ -233,8 +227,7 @@ static int fields_wanted(const sf_results *r, const sf_shown *shown, int64_t k) 
     if (shown->head[k] != &r->peak)
         return SF_FIELD_ALL;
     for (int f = 0; f < SF_FRAME_FIELDS; f++) {
-        char path[80];
-        snprintf(path, sizeof path, "%s/%s", group, sf_frame_field_get((sf_frame_field)f)->name);
+        SF_PRINTED(path, 80, "%s/%s", group, sf_frame_field_get((sf_frame_field)f)->name);
         fields |= sf_h5_exists(r->file, path) << f;
     }
     return fields;
@@ -439,12 +432,12 @@ static bool is_named(const char *directory, const char *data) {
          entry = readdir(listing)) {
         char path[SF_PATH_SIZE];
         SF_OWNED char *text = NULL;
-        sf_error unread = SF_ERROR_INIT;
         size_t length = strlen(entry->d_name);
         if (length < 5 || strcmp(entry->d_name + length - 5, ".xdmf") != 0)
             continue;
         named = snprintf(path, sizeof path, "%s/%s", directory, entry->d_name) >= (int)sizeof path ||
-                sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, &unread) != SF_OK || strstr(text, data);
+                sf_plain_read(path, NULL, SF_PLAIN_TEXT, &text, NULL, SF_IGNORED) != SF_OK ||
+                strstr(text, data);
     }
     if (listing)
         closedir(listing);
@@ -455,10 +448,9 @@ static bool is_named(const char *directory, const char *data) {
 static bool are_ours(const char *path, const char *name) {
     unsigned long long hash = 0;
     uint64_t found = 0;
-    sf_error unread = SF_ERROR_INIT;
     return strncmp(name, "pad-", 4) == 0 && strspn(name + 4, "0123456789abcdef") == 16 &&
            strcmp(name + 20, ".h5") == 0 && sscanf(name + 4, "%16llx", &hash) == 1 &&
-           sf_plain_hash(path, NULL, SF_PLAIN_ANY, &found, &unread) == SF_OK && found == hash;
+           sf_plain_hash(path, NULL, SF_PLAIN_ANY, &found, SF_IGNORED) == SF_OK && found == hash;
 }
 
 void sf_xdmf_remove_old(const char *directory, const char *data) {

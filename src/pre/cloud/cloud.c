@@ -11,10 +11,7 @@ typedef struct keyed_node {
     int32_t node;
 } keyed_node;
 
-static int by_key(const void *a, const void *b) {
-    const keyed_node *x = a, *y = b;
-    return x->key != y->key ? SF_ORDER(x->key, y->key) : SF_ORDER(x->node, y->node);
-}
+SF_ORDER_BY(by_key, keyed_node, key, node)
 
 /* Spreads the low 21 bits of x to every third bit. */
 static uint64_t spread(uint64_t x) {
@@ -31,8 +28,7 @@ sf_status sf_cloud_reorder(sf_mesh *mesh, sf_error *err) {
     double low[3], high[3], extent = 0;
     SF_OWNED keyed_node *order = sf_alloc(err, n, sizeof *order, "node order");
     SF_OWNED int32_t *rank = sf_alloc(err, n, sizeof *rank, "node order");
-    SF_OWNED double *moved = sf_alloc(err, 3 * n, sizeof *moved, "node order");
-    SF_TRY(err->status);
+    SF_OWN(double, moved, 3 * n, "node order", err);
     sf_box3(n, mesh->position, low, high);
     for (int c = 0; c < 3; c++)
         extent = fmax(extent, high[c] - low[c]);
@@ -109,10 +105,9 @@ typedef struct numbers {
 
 /* False: this program cannot be read. */
 static bool find_key(const sf_mesh *mesh, double condition_limit, const double *support, uint64_t *key) {
-    sf_error none = SF_ERROR_INIT;
     uint64_t program = 0;
     size_t n = (size_t)mesh->node_count, cells = (size_t)mesh->cell_count;
-    if (sf_plain_hash("/proc/self/exe", NULL, SF_PLAIN_ANY, &program, &none) != SF_OK)
+    if (sf_plain_hash("/proc/self/exe", NULL, SF_PLAIN_ANY, &program, SF_IGNORED) != SF_OK)
         return false;
     *key = sf_hash_bytes(SF_HASH_START, &program, sizeof program);
     *key = sf_hash_bytes(*key, &condition_limit, sizeof condition_limit);

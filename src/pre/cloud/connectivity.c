@@ -30,10 +30,8 @@ static sf_status take_probes(const sf_mesh *mesh, const sf_dual *dual, probes *p
     unsigned long most = (unsigned long)(mesh->node_count + dual->face_count);
     SF_OWNED uint8_t *surface = sf_alloc(err, mesh->node_count, 1, "surface nodes");
     p->node = sf_alloc(err, mesh->node_count, sizeof *p->node, "surface nodes");
-    p->position = sf_alloc(err, 3 * most, sizeof *p->position, "surface points");
-    p->zero = sf_alloc(err, most, sizeof *p->zero, "surface points");
-    p->near = sf_alloc(err, most, sizeof *p->near, "surface points");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "surface points", SF_ROOM(p->position, 3 * most), SF_ROOM(p->zero, most),
+                        SF_ROOM(p->near, most)));
     for (int64_t f = 0; f < dual->face_count; f++)
         for (int k = 0; k < dual->face[f].size; k++)
             surface[dual->face[f].node[k]] = 1;
@@ -128,8 +126,7 @@ static sf_status refuse_parts(const sf_mesh *mesh, int64_t *parent, sf_error *er
     int64_t parts = 0, least = 0;
     double low[3], high[3];
     sf_box3(0, NULL, low, high);
-    SF_OWNED int64_t *cells = sf_alloc(err, mesh->cell_count, sizeof *cells, "connected cells");
-    SF_TRY(err->status);
+    SF_OWN(int64_t, cells, mesh->cell_count, "connected cells", err);
     for (int64_t c = 0; c < mesh->cell_count; c++)
         cells[sf_sets_find(parent, c)]++;
     for (int64_t c = 0; c < mesh->cell_count; c++) {
@@ -174,8 +171,7 @@ static int64_t corner(const sf_mesh *mesh, int64_t cell, int32_t node) {
 static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error *err) {
     int64_t corners = mesh->cell_ptr[mesh->cell_count];
     SF_OWNED int64_t *parent = sf_sets_alone(corners, "connected cells", err);
-    SF_OWNED int64_t *root = sf_alloc(err, mesh->node_count, sizeof *root, "connected cells");
-    SF_TRY(err->status);
+    SF_OWN(int64_t, root, mesh->node_count, "connected cells", err);
     for (int64_t f = 0; f < dual->inner_count; f++)
         for (int k = 0; k < 4; k++) {
             const sf_inner_face *face = &dual->inner[f];

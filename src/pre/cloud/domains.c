@@ -215,8 +215,7 @@ static sf_status look_around(builder *b, const double *support, sf_error *err) {
 
 static sf_status integrate_with_growth(builder *b, double *support, sf_error *err) {
     int64_t n = b->mesh->node_count;
-    SF_OWNED double *first = sf_alloc(err, n, sizeof *first, "supports");
-    SF_TRY(err->status);
+    SF_OWN(double, first, n, "supports", err);
     memcpy(first, support, (size_t)n * sizeof *first);
     for (int round = 0; err->status == SF_OK; round++) {
         memset(b->poor, 0, (size_t)n);
@@ -269,9 +268,8 @@ static sf_status shape_at_nodes(builder *b, sf_error *err) {
     int64_t n = b->mesh->node_count, capacity = 64 * n, used = 0;
     sf_domains *out = b->out;
     SF_OWNED workspace *w = calloc(1, sizeof *w);
-    out->phi_ptr = sf_alloc(err, n + 1, sizeof *out->phi_ptr, "shape functions");
-    out->phi_node = sf_alloc(err, capacity, sizeof *out->phi_node, "shape functions");
-    out->phi_value = sf_alloc(err, capacity, sizeof *out->phi_value, "shape functions");
+    SF_ALLOC_ALL(err, "shape functions", SF_ROOM(out->phi_ptr, n + 1), SF_ROOM(out->phi_node, capacity),
+                 SF_ROOM(out->phi_value, capacity));
     if (!w)
         SF_NO_MEMORY(err, "the shape functions at the nodes");
     for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
@@ -408,8 +406,7 @@ static sf_status assemble_rows(builder *b, sf_error *err) {
                            x[0], x[1], x[2], out->volume[i]);
         }
     }
-    out->node = sf_alloc(err, out->ptr[n], sizeof *out->node, "domains");
-    out->b = sf_alloc(err, 3 * out->ptr[n], sizeof *out->b, "domains");
+    SF_ALLOC_ALL(err, "domains", SF_ROOM(out->node, out->ptr[n]), SF_ROOM(out->b, 3 * out->ptr[n]));
     for (int64_t i = 0; i < n && err->status == SF_OK; i++) {
         domain_row(b, corner_ptr, corner, i, &row, &out->volume[i]);
         finish_row(&row, out->volume[i], &out->node[out->ptr[i]], &out->b[3 * out->ptr[i]]);
@@ -427,8 +424,7 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
                  .out = out};
     b.edge = sf_alloc(err, dual->edge_count, sizeof *b.edge, "edge integrals");
     b.poor = sf_alloc(err, mesh->node_count, sizeof *b.poor, "node marks");
-    b.edge_reach = sf_alloc(err, dual->edge_count, sizeof *b.edge_reach, "reaches");
-    b.reach = sf_alloc(err, mesh->node_count, sizeof *b.reach, "reaches");
+    SF_ALLOC_ALL(err, "reaches", SF_ROOM(b.edge_reach, dual->edge_count), SF_ROOM(b.reach, mesh->node_count));
     if (err->status == SF_OK)
         measure_reach(&b);
     if (err->status == SF_OK && integrate_with_growth(&b, support, err) == SF_OK &&
@@ -450,8 +446,7 @@ sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const d
                                sf_domains *out, sf_error *err) {
     memset(out, 0, sizeof *out);
     builder b = {.mesh = mesh, .dual = dual, .out = out};
-    b.edge_reach = sf_alloc(err, dual->edge_count, sizeof *b.edge_reach, "reaches");
-    b.reach = sf_alloc(err, mesh->node_count, sizeof *b.reach, "reaches");
+    SF_ALLOC_ALL(err, "reaches", SF_ROOM(b.edge_reach, dual->edge_count), SF_ROOM(b.reach, mesh->node_count));
     if (err->status == SF_OK) {
         measure_reach(&b);
         if (look_around(&b, support, err) == SF_OK)
@@ -464,8 +459,7 @@ sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const d
 }
 
 void sf_domains_free(sf_domains *d) {
-    SF_FREE(d->volume, d->ptr, d->node, d->b, d->phi_ptr, d->phi_node, d->phi_value);
-    memset(d, 0, sizeof *d);
+    SF_CLEAR(d, d->volume, d->ptr, d->node, d->b, d->phi_ptr, d->phi_node, d->phi_value);
 }
 
 static void sum_add(void *target, int32_t node, const double part[3]) {

@@ -19,8 +19,7 @@ static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
     int64_t count = 0, k = 0;
     for (int64_t c = 0; c < mesh->cell_count; c++)
         count += sf_cell_shape_of(mesh->cell_type[c])->edges;
-    SF_OWNED raw_edge *raw = sf_alloc(err, count, sizeof *raw, "cell edges");
-    SF_TRY(err->status);
+    SF_OWN(raw_edge, raw, count, "cell edges", err);
     for (int64_t c = 0; c < mesh->cell_count; c++) {
         const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[c]);
         const int32_t *v = &mesh->cell_node[mesh->cell_ptr[c]];
@@ -32,9 +31,8 @@ static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
     qsort(raw, (size_t)count, sizeof *raw, by_edge);
     for (k = 0; k < count; k++)
         dual->edge_count += k == 0 || raw[k].low != raw[k - 1].low || raw[k].high != raw[k - 1].high;
-    dual->edge = sf_alloc(err, 2 * dual->edge_count, sizeof *dual->edge, "edges");
-    dual->use_ptr = sf_alloc(err, dual->edge_count + 1, sizeof *dual->use_ptr, "edges");
-    dual->use = sf_alloc(err, count, sizeof *dual->use, "edges");
+    SF_ALLOC_ALL(err, "edges", SF_ROOM(dual->edge, 2 * dual->edge_count),
+                 SF_ROOM(dual->use_ptr, dual->edge_count + 1), SF_ROOM(dual->use, count));
     int64_t edge = -1;
     for (k = 0; k < count && err->status == SF_OK; k++) {
         if (k == 0 || raw[k].low != raw[k - 1].low || raw[k].high != raw[k - 1].high) {
@@ -114,10 +112,9 @@ static sf_status build_faces(const sf_mesh *mesh, sf_dual *dual, sf_error *err) 
 
 static sf_status build_adjacency(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
     int64_t n = mesh->node_count;
-    dual->edge_ptr = sf_alloc(err, n + 2, sizeof *dual->edge_ptr, "edge adjacency");
-    dual->edge_node = sf_alloc(err, 2 * dual->edge_count, sizeof *dual->edge_node, "edge adjacency");
-    dual->edge_id = sf_alloc(err, 2 * dual->edge_count, sizeof *dual->edge_id, "edge adjacency");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "edge adjacency", SF_ROOM(dual->edge_ptr, n + 2),
+                        SF_ROOM(dual->edge_node, 2 * dual->edge_count),
+                        SF_ROOM(dual->edge_id, 2 * dual->edge_count)));
     for (int64_t k = 0; k < 2 * dual->edge_count; k++)
         dual->edge_ptr[dual->edge[k] + 2]++;
     for (int64_t i = 0; i < n; i++)
@@ -142,9 +139,8 @@ sf_status sf_dual_build(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {
 }
 
 void sf_dual_free(sf_dual *dual) {
-    SF_FREE(dual->edge, dual->use_ptr, dual->use, dual->face, dual->inner, dual->edge_ptr, dual->edge_node,
-            dual->edge_id);
-    memset(dual, 0, sizeof *dual);
+    SF_CLEAR(dual, dual->edge, dual->use_ptr, dual->use, dual->face, dual->inner, dual->edge_ptr,
+             dual->edge_node, dual->edge_id);
 }
 
 static void triangle(const double a[3], const double b[3], const double c[3], sf_facet_triangle *out) {

@@ -24,8 +24,7 @@ static uint8_t *mark_layers(const sf_mesh *mesh, int count, sf_error *err) {
 
 static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layers *l, sf_error *err) {
     unsigned long n = (unsigned long)mesh->node_count;
-    l->first = sf_alloc(err, l->count + 1, sizeof *l->first, "layers");
-    l->copy_ptr = sf_alloc(err, n + 1, sizeof *l->copy_ptr, "layers");
+    SF_ALLOC_ALL(err, "layers", SF_ROOM(l->first, l->count + 1), SF_ROOM(l->copy_ptr, n + 1));
     for (int64_t k = 0; err->status == SF_OK && k < mesh->node_count * l->count; k++)
         l->first[k % l->count + 1] += used[k];
     for (int k = 0; err->status == SF_OK && k < l->count; k++)
@@ -33,8 +32,7 @@ static sf_status number_nodes(const sf_mesh *mesh, const uint8_t *used, sf_layer
     unsigned long all = err->status == SF_OK ? (unsigned long)l->first[l->count] : 0;
     if (all > INT32_MAX)
         return SF_REFUSE(err, "the layers have %lu nodes" SF_AT_MOST("%d"), all, INT32_MAX);
-    l->origin = sf_alloc(err, all, sizeof *l->origin, "layers");
-    l->copy = sf_alloc(err, all, sizeof *l->copy, "layers");
+    SF_ALLOC_ALL(err, "layers", SF_ROOM(l->origin, all), SF_ROOM(l->copy, all));
     SF_OWNED int64_t *next = sf_alloc(err, l->count, sizeof *next, "layers");
     int64_t copies = 0;
     if (err->status == SF_OK)
@@ -103,10 +101,7 @@ static uint8_t normal_component(const sf_mesh *mesh, const sf_inner_face *face) 
     return 0;
 }
 
-static int by_nodes(const void *a, const void *b) {
-    const sf_layer_tie *p = a, *q = b;
-    return p->node != q->node ? SF_ORDER(p->node, q->node) : SF_ORDER(p->other, q->other);
-}
+SF_ORDER_BY(by_nodes, sf_layer_tie, node, other)
 
 /* The ties of one face between two layers. */
 static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_face *face, pair_table *pairs,
@@ -181,8 +176,7 @@ sf_status sf_layers_build(const sf_case *c, const sf_mesh *mesh, const sf_dual *
 }
 
 void sf_layers_free(sf_layers *l) {
-    SF_FREE(l->first, l->origin, l->copy_ptr, l->copy, l->tie, l->together);
-    *l = (sf_layers){0};
+    SF_CLEAR(l, l->first, l->origin, l->copy_ptr, l->copy, l->tie, l->together);
 }
 
 /* ---- parts of the mesh ---- */
@@ -196,10 +190,8 @@ sf_status sf_layers_part(const sf_mesh *mesh, const sf_layers *l, int layer, sf_
             entries += mesh->cell_ptr[k + 1] - mesh->cell_ptr[k];
         }
     unsigned long cells = (unsigned long)part->cell_count;
-    part->position = sf_alloc(err, 3 * nodes, sizeof *part->position, "a layer");
-    part->cell_type = sf_alloc(err, cells, sizeof *part->cell_type, "a layer");
-    part->cell_ptr = sf_alloc(err, cells + 1, sizeof *part->cell_ptr, "a layer");
-    part->cell_node = sf_alloc(err, entries, sizeof *part->cell_node, "a layer");
+    SF_ALLOC_ALL(err, "a layer", SF_ROOM(part->position, 3 * nodes), SF_ROOM(part->cell_type, cells),
+                 SF_ROOM(part->cell_ptr, cells + 1), SF_ROOM(part->cell_node, entries));
     int64_t cell = 0, used = 0;
     for (int64_t i = 0; err->status == SF_OK && i < nodes; i++)
         memcpy(&part->position[3 * i], &mesh->position[3 * (int64_t)l->origin[l->first[layer] + i]],
@@ -355,9 +347,8 @@ sf_status sf_layers_hold(const sf_layers *l, uint8_t *mask, uint8_t *base, sf_mo
     spread_held(l, mask, base);
     for (int c = 0; c < 3; c++)
         parent[c] = sf_sets_alone(l->first[l->count], "ties between layers", err);
-    m->tie_node = sf_alloc(err, ties, sizeof *m->tie_node, "ties between layers");
-    m->tie_other = sf_alloc(err, ties, sizeof *m->tie_other, "ties between layers");
-    m->tie_mask = sf_alloc(err, ties, 1, "ties between layers");
+    SF_ALLOC_ALL(err, "ties between layers", SF_ROOM(m->tie_node, ties), SF_ROOM(m->tie_other, ties),
+                 SF_ROOM(m->tie_mask, ties));
     for (int64_t k = 0; k < l->tie_count && err->status == SF_OK; k++) {
         const sf_layer_tie *t = &l->tie[k];
         uint8_t open = join(t, mask[t->node], parent);

@@ -23,8 +23,7 @@ void sf_broker_free(sf_broker *b) {
             close(b->file[k].memory);
         SF_FREE(b->file[k].path, b->file[k].text);
     }
-    free(b->file);
-    *b = (sf_broker){0};
+    SF_CLEAR(b, b->file);
 }
 
 /* Some systems insist on MFD_NOEXEC_SEAL, which older ones do not know. */
@@ -132,8 +131,7 @@ static bool is_of_libraries(const char *path) {
 
 /* A reader with its own place in the file. Without /proc it gets a copy of its own, which counts. */
 static int reopen(sf_broker *b, const sf_broker_file *f) {
-    char path[40];
-    snprintf(path, sizeof path, "/proc/self/fd/%d", f->memory);
+    SF_PRINTED(path, 40, "/proc/self/fd/%d", f->memory);
     int file = open(path, O_RDONLY | O_CLOEXEC);
     if (file >= 0 || !f->text || b->bytes + f->size > b->most)
         return file;

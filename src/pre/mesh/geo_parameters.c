@@ -122,9 +122,8 @@ static bool is_set_alone(const char *text) {
 
 static void scan(const char *text, name_list *list) {
     for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; t.kind != SF_GEO_END;) {
-        char name[SF_CASE_NAME_SIZE];
         t = sf_geo_token_next(&text);
-        snprintf(name, sizeof name, "%.*s", t.kind == SF_GEO_WORD ? (int)t.length : 0, t.begin);
+        SF_PRINTED(name, SF_CASE_NAME_SIZE, "%.*s", t.kind == SF_GEO_WORD ? (int)t.length : 0, t.begin);
         list->others |= strcmp(name, "Include") == 0 || strcmp(name, "Merge") == 0;
         if (strcmp(name, "DefineConstant") == 0)
             read_constants(&text, list);
@@ -192,8 +191,7 @@ sf_status sf_geo_parameters_scale(const sf_geo_source *source, sf_geo_source *sc
     *scaled = *source;
     if (!is_geo(source) || !is_scaled(source))
         return SF_OK; /* only a .geo file has parameters */
-    SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
-    SF_TRY(err->status);
+    SF_OWN(name_list, list, 1, "parameter names", err);
     SF_TRY(scan_file(source, list, err));
     for (int k = 0; k < list->count && scaled->parameter_count < SF_CASE_MAX_PARAMETERS; k++)
         if (is_spacing(list->at[k].name) && isfinite(list->at[k].value) &&
@@ -213,8 +211,7 @@ sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *
                          source->path);
     if ((source->parameter_count == 0 && !is_scaled(source)) || (!read && !is_geo(source)))
         return SF_OK;
-    SF_OWNED name_list *list = sf_alloc(err, 1, sizeof *list, "parameter names");
-    SF_TRY(err->status);
+    SF_OWN(name_list, list, 1, "parameter names", err);
     for (size_t k = 0; complete && k < read->count; k++)
         if (read->file[k].is_text)
             scan(read->file[k].text, list);

@@ -44,9 +44,7 @@ static void list_file(FILE *out, uint64_t hash, const char *path, const char *ge
 /* The files that the open geometry read; from malloc. */
 static char *list_files(const sf_meshed *open, const char *geometry, sf_error *err) {
     const sf_broker *read = &open->broker;
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    SF_TEXT_STREAM(out, text, size);
     if (!out) {
         SF_NO_MEMORY(err, "the files of a geometry");
         return NULL;
@@ -119,10 +117,7 @@ typedef struct claim {
     const sf_geo_group *group;
 } claim;
 
-static int compare_claims(const void *a, const void *b) {
-    const claim *p = a, *q = b;
-    return p->entity != q->entity ? SF_ORDER(p->entity, q->entity) : SF_ORDER(p->group, q->group);
-}
+SF_ORDER_BY(compare_claims, claim, entity, group)
 
 static int compare_names(const void *a, const void *b) {
     const claim *p = a, *q = b;

@@ -28,17 +28,15 @@ void sf_mesh_middle(const sf_mesh *mesh, const int32_t *node, int64_t count, dou
 }
 
 void sf_mesh_free(sf_mesh *mesh) {
-    SF_FREE(mesh->position, mesh->cell_type, mesh->cell_ptr, mesh->cell_node, mesh->cell_layer);
     for (int s = 0; s < mesh->set_count; s++)
         SF_FREE(mesh->set[s].name, mesh->set[s].node, mesh->set[s].face);
-    free(mesh->set);
-    memset(mesh, 0, sizeof *mesh);
+    SF_CLEAR(mesh, mesh->position, mesh->cell_type, mesh->cell_ptr, mesh->cell_node, mesh->cell_layer,
+             mesh->set);
 }
 
 void sf_surface_free(sf_surface *surface) {
-    SF_FREE(surface->position, surface->triangle, surface->solid, surface->hull_position,
-            surface->hull_triangle);
-    memset(surface, 0, sizeof *surface);
+    SF_CLEAR(surface, surface->position, surface->triangle, surface->solid, surface->hull_position,
+             surface->hull_triangle);
 }
 
 const sf_node_set *sf_mesh_find_set(const sf_mesh *mesh, const char *name) {
@@ -142,10 +140,7 @@ typedef struct sorted_node {
     int64_t node;
 } sorted_node;
 
-static int compare_along(const void *a, const void *b) {
-    const sorted_node *p = a, *q = b;
-    return p->along != q->along ? SF_ORDER(p->along, q->along) : SF_ORDER(p->node, q->node);
-}
+SF_ORDER_BY(compare_along, sorted_node, along, node)
 
 /* Coinciding nodes are an invisible crack: a mesh of parts that were not joined. Near nodes are near along
  * any direction; along an oblique one few others are, unlike along an axis, where a lattice has whole
@@ -156,8 +151,7 @@ static sf_status check_coinciding(const sf_mesh *mesh, sf_error *err) {
     double low[3], high[3];
     sf_box3(mesh->node_count, mesh->position, low, high);
     double tolerance = SAME_POINT * hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
-    SF_OWNED sorted_node *order = sf_alloc(err, n, sizeof *order, "sorted nodes");
-    SF_TRY(err->status);
+    SF_OWN(sorted_node, order, n, "sorted nodes", err);
     for (size_t k = 0; k < n; k++) {
         const double *x = mesh->position + 3 * k;
         order[k] = (sorted_node){0.0, (int64_t)k};

@@ -6,11 +6,9 @@
 #include <gsl/gsl_sort.h>
 
 void sf_raw_mesh_free(sf_raw_mesh *raw) {
-    SF_FREE(raw->tag, raw->xyz, raw->cell_type, raw->cell_chosen, raw->cell_node, raw->face_group,
-            raw->face_part, raw->face_node);
     sf_free_all((size_t)raw->group_count, raw->group_name);
-    free(raw->group_name);
-    memset(raw, 0, sizeof *raw);
+    SF_CLEAR(raw, raw->tag, raw->xyz, raw->cell_type, raw->cell_chosen, raw->cell_node, raw->face_group,
+             raw->face_part, raw->face_node, raw->group_name);
 }
 
 sf_status sf_raw_mesh_add_cell(sf_raw_mesh *raw, int type, int chosen, const size_t *node, int count,

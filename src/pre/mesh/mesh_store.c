@@ -26,8 +26,8 @@ static bool join(const section *s, const char *name, size_t length, const char *
 static bool is_same(const section *s, uint64_t then, const char *name, size_t length) {
     char path[PATH_SIZE];
     uint64_t hash = 0;
-    sf_error none = SF_ERROR_INIT;
-    return join(s, name, length, "", path) && sf_plain_hash_kept(path, &hash, &none) == SF_OK && hash == then;
+    return join(s, name, length, "", path) && sf_plain_hash_kept(path, &hash, SF_IGNORED) == SF_OK &&
+           hash == then;
 }
 
 /* gmsh reads the file NAME.opt beside a geometry NAME, if there is one. */
@@ -118,7 +118,6 @@ static size_t padded(size_t length) {
 bool sf_mesh_store_find(const char *folder, const sf_geo_source *source, sf_meshed *out, char **files) {
     sf_stored found;
     uint64_t key, length;
-    sf_error none = SF_ERROR_INIT;
     *files = NULL;
     if (!folder || !find_key(source, &key) || !sf_store_find(folder, KIND, key, &found))
         return false;
@@ -127,8 +126,8 @@ bool sf_mesh_store_find(const char *folder, const sf_geo_source *source, sf_mesh
     if (found.size >= sizeof length && length < found.size && sizeof length + padded(length) < found.size &&
         text[length] == '\0' && are_files_same(source, text)) {
         size_t before = sizeof length + padded(length);
-        if (sf_geo_data_read(found.data + before, found.size - before, source->path, &out->data, &none) ==
-            SF_OK)
+        if (sf_geo_data_read(found.data + before, found.size - before, source->path, &out->data,
+                             SF_IGNORED) == SF_OK)
             *files = strdup(text);
     }
     if (*files) {

@@ -141,8 +141,7 @@ sf_status sf_geo_data_read(const void *data, size_t size, const char *file, sf_g
 void sf_geo_data_free(sf_geo_data *data) {
     for (size_t g = 0; g < data->group_count; g++)
         free(data->group[g].entity);
-    SF_FREE(data->group, data->block);
-    memset(data, 0, sizeof *data);
+    SF_CLEAR(data, data->group, data->block);
 }
 
 bool sf_geo_group_has(const sf_geo_group *group, int32_t entity) {

@@ -534,6 +534,5 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
 void sf_meshed_free(sf_meshed *meshed) {
     sf_geo_data_free(&meshed->data);
     sf_broker_free(&meshed->broker);
-    free(meshed->stream);
-    memset(meshed, 0, sizeof *meshed);
+    SF_CLEAR(meshed, meshed->stream);
 }

@@ -363,11 +363,10 @@ static bool covers_pole(const sf_surface *surface, const double centre[3], doubl
 
 sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_card *card, sf_error *err) {
     double centre[3], radius = 0, deviation = INFINITY;
-    sf_error quiet = SF_ERROR_INIT;
     card->shape = SF_SHAPE_SURFACE;
     if (rule == 2)
         return SF_OK;
-    sf_status status = sf_missile_fit_sphere(surface, centre, &radius, &deviation, &quiet);
+    sf_status status = sf_missile_fit_sphere(surface, centre, &radius, &deviation, SF_IGNORED);
     if (status != SF_OK || deviation > SPHERE_TOLERANCE) {
         if (rule == 1)
             return SF_FAIL(err, SF_ERR_MODEL,

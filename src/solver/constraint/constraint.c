@@ -123,11 +123,8 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
         entries += phi_count(m, c->row[r].node) + phi_count(m, c->row[r].other);
     unsigned long all = (unsigned long)entries, rows = (unsigned long)c->rows;
     SF_OWNED int32_t *place = sf_alloc(err, m->node_count, sizeof *place, "constraint lists");
-    c->row_ptr = sf_alloc(err, rows + 1, sizeof *c->row_ptr, "constraint lists");
-    c->row_place = sf_alloc(err, all, sizeof *c->row_place, "constraint lists");
-    c->row_phi = sf_alloc(err, all, sizeof *c->row_phi, "constraint lists");
-    c->node_row = sf_alloc(err, all, sizeof *c->node_row, "constraint lists");
-    c->node_phi = sf_alloc(err, all, sizeof *c->node_phi, "constraint lists");
+    SF_ALLOC_ALL(err, "constraint lists", SF_ROOM(c->row_ptr, rows + 1), SF_ROOM(c->row_place, all),
+                 SF_ROOM(c->row_phi, all), SF_ROOM(c->node_row, all), SF_ROOM(c->node_phi, all));
     entries = 0;
     for (int64_t r = 0; r < c->rows && err->status == SF_OK; r++) {
         entries = put_phi(m, c, c->row[r].node, 1, entries);
@@ -151,9 +148,8 @@ static sf_status gram_entries(const sf_model *m, const sf_constraint *c, sf_ldl_
         int64_t rows = c->node_ptr[t + 1] - c->node_ptr[t];
         pairs += rows * (rows + 1) / 2;
     }
-    a->row = sf_alloc(err, pairs, sizeof *a->row, "constraint matrix");
-    a->column = sf_alloc(err, pairs, sizeof *a->column, "constraint matrix");
-    a->value = sf_alloc(err, pairs, sizeof *a->value, "constraint matrix");
+    SF_ALLOC_ALL(err, "constraint matrix", SF_ROOM(a->row, pairs), SF_ROOM(a->column, pairs),
+                 SF_ROOM(a->value, pairs));
     for (int64_t t = 0; t < c->touched_count && err->status == SF_OK; t++)
         for (int64_t p = c->node_ptr[t]; p < c->node_ptr[t + 1]; p++)
             for (int64_t q = c->node_ptr[t]; q <= p; q++) {
@@ -179,9 +175,8 @@ static sf_status order_rows(sf_constraint *c, sf_error *err) {
 
 static sf_status build_work(const sf_model *m, sf_constraint *c, sf_error *err) {
     unsigned long touched = (unsigned long)c->touched_count;
-    c->lambda = sf_alloc(err, c->rows, sizeof *c->lambda, "constraint forces");
-    c->field = sf_alloc(err, touched, sizeof *c->field, "constraint forces");
-    c->mobility = sf_alloc(err, touched, sizeof *c->mobility, "constraint forces");
+    SF_ALLOC_ALL(err, "constraint forces", SF_ROOM(c->lambda, c->rows), SF_ROOM(c->field, touched),
+                 SF_ROOM(c->mobility, touched));
     for (int64_t t = 0; t < c->touched_count && err->status == SF_OK; t++)
         c->mobility[t] = 1 / m->mass[c->touched[t]];
     return err->status;
@@ -206,8 +201,7 @@ sf_status sf_constraint_build(const sf_model *m, sf_constraint *c, sf_error *err
 void sf_constraint_free(sf_constraint *c) {
     free_lists(c);
     sf_ldl_free(&c->factor);
-    SF_FREE(c->row, c->mobility, c->field, c->lambda);
-    memset(c, 0, sizeof *c);
+    SF_CLEAR(c, c->row, c->mobility, c->field, c->lambda);
 }
 
 /* lambda = G field in a batch of rows from `first`. */

@@ -20,10 +20,8 @@ static sf_status build_tree(const cholmod_factor *l, int64_t shared, tree *t, sf
     const SuiteSparse_long *p = l->p, *i = l->i, *nz = l->nz;
     unsigned long rows = (unsigned long)shared;
     t->rows = shared;
-    t->parent = sf_alloc(err, rows, sizeof *t->parent, "elimination tree");
-    t->below = sf_alloc(err, rows, sizeof *t->below, "elimination tree");
-    t->branch = sf_alloc(err, rows, sizeof *t->branch, "elimination tree");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "elimination tree", SF_ROOM(t->parent, rows), SF_ROOM(t->below, rows),
+                        SF_ROOM(t->branch, rows)));
     for (int64_t j = 0; j < t->rows; j++) {
         t->parent[j] = nz[j] > 1 && i[p[j] + 1] < shared ? i[p[j] + 1] : -1;
         t->below[j] += nz[j];
@@ -31,10 +29,6 @@ static sf_status build_tree(const cholmod_factor *l, int64_t shared, tree *t, sf
             t->below[t->parent[j]] += t->below[j];
     }
     return SF_OK;
-}
-
-static void free_tree(tree *t) {
-    SF_FREE(t->parent, t->below, t->branch);
 }
 
 /* Cuts the tree: the largest subtree gives its root to the trunk until it is no larger than its share, or the
@@ -306,14 +300,9 @@ static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
     f->rows = w->rows;
     SF_OWNED int64_t *place = sf_alloc(err, rows, sizeof *place, "factor of the constraints");
     SF_OWNED int64_t *source = sf_alloc(err, rows, sizeof *source, "factor of the constraints");
-    f->order = sf_alloc(err, rows, sizeof *f->order, "factor of the constraints");
-    f->column = sf_alloc(err, rows + 1, sizeof *f->column, "factor of the constraints");
-    f->trunk_from = sf_alloc(err, rows, sizeof *f->trunk_from, "factor of the constraints");
-    f->list = sf_alloc(err, rows, sizeof *f->list, "factor of the constraints");
-    f->place = sf_alloc(err, room, sizeof *f->place, "factor of the constraints");
-    f->value = sf_alloc(err, room, sizeof *f->value, "factor of the constraints");
-    f->inverse = sf_alloc(err, rows, sizeof *f->inverse, "factor of the constraints");
-    f->mask = sf_alloc(err, rows, sizeof *f->mask, "factor of the constraints");
+    SF_ALLOC_ALL(err, "factor of the constraints", SF_ROOM(f->order, rows), SF_ROOM(f->column, rows + 1),
+                 SF_ROOM(f->trunk_from, rows), SF_ROOM(f->list, rows), SF_ROOM(f->place, room),
+                 SF_ROOM(f->value, room), SF_ROOM(f->inverse, rows), SF_ROOM(f->mask, rows));
     if (err->status == SF_OK && build_tree(l, w->a->part[0], &t, err) == SF_OK) {
         cut_tree(&t);
         order_places(w, &t, f, place);
@@ -324,7 +313,7 @@ static sf_status take_factors(builder *w, sf_ldl *f, sf_error *err) {
         f->carried = sf_alloc(err, SF_LDL_BRANCHES * (rows - (unsigned long)f->branch[SF_LDL_BRANCHES]),
                               sizeof *f->carried, "factor of the constraints");
     }
-    free_tree(&t);
+    SF_FREE(t.parent, t.below, t.branch);
     return err->status;
 }
 
@@ -354,8 +343,8 @@ sf_status sf_ldl_build(const sf_ldl_entries *a, sf_ldl *f, sf_error *err) {
 }
 
 void sf_ldl_free(sf_ldl *f) {
-    SF_FREE(f->order, f->column, f->trunk_from, f->list, f->place, f->value, f->inverse, f->mask, f->carried);
-    memset(f, 0, sizeof *f);
+    SF_CLEAR(f, f->order, f->column, f->trunk_from, f->list, f->place, f->value, f->inverse, f->mask,
+             f->carried);
 }
 
 SF_KERNEL void sf_ldl_forward(const sf_ldl *f, int branch, sf_vec *x) {

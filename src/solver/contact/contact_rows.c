@@ -44,15 +44,10 @@ static sf_status join_alloc(const sf_model *m, joined *j, sf_error *err) {
         return SF_OK;
     for (int r = 0; r < COMPONENTS; r++)
         j->parent[r] = sf_sets_alone(m->node_count, "contact rows", err);
-    j->held = sf_alloc(err, n, 1, "contact rows");
-    j->next = sf_alloc(err, n, sizeof *j->next, "contact rows");
+    SF_ALLOC_ALL(err, "contact rows", SF_ROOM(j->held, n), SF_ROOM(j->next, n));
     if (err->status == SF_OK)
         join(m, j);
     return err->status;
-}
-
-static void join_free(joined *j) {
-    SF_FREE(j->parent[0], j->parent[1], j->parent[2], j->held, j->next);
 }
 
 /* True if nodes of one place move as one: each component is tied, or held in both. */
@@ -122,18 +117,17 @@ sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int3
             rows->ptr[c + 1] = put_row(m, &j, point[c], rows, rows->ptr[c]);
         if (pass == 1)
             break;
-        rows->node = sf_alloc(err, rows->ptr[points], sizeof *rows->node, "contact rows");
-        rows->value = sf_alloc(err, rows->ptr[points], sizeof *rows->value, "contact rows");
+        SF_ALLOC_ALL(err, "contact rows", SF_ROOM(rows->node, rows->ptr[points]),
+                     SF_ROOM(rows->value, rows->ptr[points]));
     }
-    join_free(&j);
+    SF_FREE(j.parent[0], j.parent[1], j.parent[2], j.held, j.next);
     if (err->status != SF_OK)
         sf_contact_rows_free(rows);
     return err->status;
 }
 
 void sf_contact_rows_free(sf_contact_rows *rows) {
-    SF_FREE(rows->ptr, rows->node, rows->value);
-    memset(rows, 0, sizeof *rows);
+    SF_CLEAR(rows, rows->ptr, rows->node, rows->value);
 }
 
 /* The contact points that each node supports: rows by node, entries in ascending contact point. */
@@ -145,10 +139,8 @@ typedef struct transposed {
 
 static sf_status transpose(const sf_model *m, const sf_contact_rows *rows, transposed *t, sf_error *err) {
     int64_t count = rows->ptr[sf_model_points(m)];
-    t->ptr = sf_alloc(err, m->node_count + 2, sizeof *t->ptr, "contact lists");
-    t->point = sf_alloc(err, count, sizeof *t->point, "contact lists");
-    t->phi = sf_alloc(err, count, sizeof *t->phi, "contact lists");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "contact lists", SF_ROOM(t->ptr, m->node_count + 2), SF_ROOM(t->point, count),
+                        SF_ROOM(t->phi, count)));
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t c = 0; c < sf_model_points(m); c++)
             for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++) {
@@ -205,8 +197,7 @@ sf_status sf_contact_gram_build(const sf_model *m, const sf_contact_rows *rows, 
     SF_OWNED double *dense = sf_alloc(err, count, sizeof *dense, "contact matrix");
     SF_OWNED int32_t *list = sf_alloc(err, count, sizeof *list, "contact matrix");
     SF_OWNED uint8_t *seen = sf_alloc(err, count, 1, "contact matrix");
-    gram->ptr = sf_alloc(err, count + 1, sizeof *gram->ptr, "contact matrix");
-    gram->diagonal = sf_alloc(err, count, sizeof *gram->diagonal, "contact matrix");
+    SF_ALLOC_ALL(err, "contact matrix", SF_ROOM(gram->ptr, count + 1), SF_ROOM(gram->diagonal, count));
     if (err->status != SF_OK || transpose(m, rows, &t, err) != SF_OK)
         goto done;
     for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
@@ -226,8 +217,8 @@ sf_status sf_contact_gram_build(const sf_model *m, const sf_contact_rows *rows, 
                 dense[list[k]] = 0;
         }
         if (pass == 0) {
-            gram->index = sf_alloc(err, gram->ptr[count], sizeof *gram->index, "contact matrix");
-            gram->value = sf_alloc(err, gram->ptr[count], sizeof *gram->value, "contact matrix");
+            SF_ALLOC_ALL(err, "contact matrix", SF_ROOM(gram->index, gram->ptr[count]),
+                         SF_ROOM(gram->value, gram->ptr[count]));
         }
     }
 done:
@@ -238,6 +229,5 @@ done:
 }
 
 void sf_contact_gram_free(sf_contact_gram *gram) {
-    SF_FREE(gram->ptr, gram->index, gram->value, gram->diagonal);
-    memset(gram, 0, sizeof *gram);
+    SF_CLEAR(gram, gram->ptr, gram->index, gram->value, gram->diagonal);
 }

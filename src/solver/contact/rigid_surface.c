@@ -10,11 +10,6 @@
  * about a symmetry plane. */
 static const double RIM_TILT = 0.2, RIM_WIDTH = 0.01;
 
-static void subtract(const double *a, const double *b, double out[3]) {
-    for (int k = 0; k < 3; k++)
-        out[k] = a[k] - b[k];
-}
-
 static const double *vertex(const sf_missile_surface *s, int64_t triangle, int corner) {
     return &s->position[3 * (int64_t)s->triangle[3 * triangle + corner]];
 }
@@ -26,8 +21,8 @@ static void build_normals(sf_missile_surface *s, int64_t triangles) {
         sf_triangle_normal(vertex(s, t, 0), vertex(s, t, 1), vertex(s, t, 2), &s->normal[3 * t]);
         sf_unit3(&s->normal[3 * t]);
         for (int corner = 0; corner < 3; corner++) {
-            subtract(vertex(s, t, (corner + 1) % 3), vertex(s, t, corner), u);
-            subtract(vertex(s, t, (corner + 2) % 3), vertex(s, t, corner), v);
+            sf_sub3(vertex(s, t, (corner + 1) % 3), vertex(s, t, corner), u);
+            sf_sub3(vertex(s, t, (corner + 2) % 3), vertex(s, t, corner), v);
             sf_unit3(u);
             sf_unit3(v);
             double angle = acos(fmax(-1, fmin(1, sf_dot3(u, v))));
@@ -107,11 +102,11 @@ sf_status sf_missile_surface_build(const sf_model *m, const double axis[3], sf_m
     s->triangle = m->surface_triangle;
     for (int64_t c = 0; c < m->contact_count; c++)
         s->reach = fmax(s->reach, m->spacing[m->contact_node[c]]);
-    s->normal = sf_alloc(err, 3 * triangles, sizeof *s->normal, "missile normals");
-    s->edge_normal = sf_alloc(err, 9 * triangles, sizeof *s->edge_normal, "missile normals");
-    s->vertex_normal = sf_alloc(err, 3 * m->surface_node_count, sizeof *s->vertex_normal, "missile normals");
-    s->rim_edge = sf_alloc(err, 3 * triangles, sizeof *s->rim_edge, "missile rim");
-    s->rim_vertex = sf_alloc(err, m->surface_node_count, sizeof *s->rim_vertex, "missile rim");
+    SF_ALLOC_ALL(err, "missile normals", SF_ROOM(s->normal, 3 * triangles),
+                 SF_ROOM(s->edge_normal, 9 * triangles),
+                 SF_ROOM(s->vertex_normal, 3 * m->surface_node_count));
+    SF_ALLOC_ALL(err, "missile rim", SF_ROOM(s->rim_edge, 3 * triangles),
+                 SF_ROOM(s->rim_vertex, m->surface_node_count));
     if (err->status == SF_OK) {
         build_normals(s, triangles);
         if (build_edge_normals(s, triangles, err) == SF_OK)
@@ -123,13 +118,12 @@ sf_status sf_missile_surface_build(const sf_model *m, const double axis[3], sf_m
 }
 
 void sf_missile_surface_free(sf_missile_surface *s) {
-    SF_FREE(s->normal, s->vertex_normal, s->edge_normal, s->rim_edge, s->rim_vertex, s->start, s->member);
-    memset(s, 0, sizeof *s);
+    SF_CLEAR(s, s->normal, s->vertex_normal, s->edge_normal, s->rim_edge, s->rim_vertex, s->start, s->member);
 }
 
 static bool sphere_gap(const sf_missile_surface *s, const double x[3], double *gap, double normal[3]) {
     double r[3];
-    subtract(x, s->centre, r);
+    sf_sub3(x, s->centre, r);
     double distance = sqrt(sf_dot3(r, r));
     if (!(distance > 0) || sf_dot3(r, s->axis) < (s->cap_cosine - 1e-9) * distance)
         return false;
@@ -167,7 +161,7 @@ static bool triangles_gap(const sf_missile_surface *s, const double x[3], double
         int feature;
         int64_t t = s->member[k];
         sf_triangle_nearest(vertex(s, t, 0), vertex(s, t, 1), vertex(s, t, 2), x, point, &feature);
-        subtract(x, point, r);
+        sf_sub3(x, point, r);
         if (sf_dot3(r, r) >= best)
             continue;
         best = sf_dot3(r, r);
@@ -195,7 +189,7 @@ static bool triangles_gap(const sf_missile_surface *s, const double x[3], double
 bool sf_missile_surface_near(const sf_missile_surface *s, const double x[3], double margin) {
     double r[3];
     if (s->shape == SF_SHAPE_SPHERE) {
-        subtract(x, s->centre, r);
+        sf_sub3(x, s->centre, r);
         return sf_dot3(r, r) <= (s->radius + margin) * (s->radius + margin);
     }
     margin += s->reach; /* as deep behind an open surface a point can be */
@@ -226,8 +220,7 @@ sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvi
         add_loads(m, rows, load);
     for (int64_t i = 0; load && i < m->node_count; i++)
         count += load[i] != 0;
-    anvil->node = sf_alloc(err, count, sizeof *anvil->node, "weight of the pad");
-    anvil->pull = sf_alloc(err, count, sizeof *anvil->pull, "weight of the pad");
+    SF_ALLOC_ALL(err, "weight of the pad", SF_ROOM(anvil->node, count), SF_ROOM(anvil->pull, count));
     for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
         if (load[i] != 0) {
             anvil->node[anvil->count] = (int32_t)i;
@@ -239,8 +232,7 @@ sf_status sf_anvil_build(const sf_model *m, const sf_contact_rows *rows, sf_anvi
 }
 
 void sf_anvil_free(sf_anvil *anvil) {
-    SF_FREE(anvil->node, anvil->pull);
-    memset(anvil, 0, sizeof *anvil);
+    SF_CLEAR(anvil, anvil->node, anvil->pull);
 }
 
 void sf_anvil_pull(const sf_anvil *anvil, double *force) {

@@ -8,8 +8,8 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
     unsigned long nodes = (unsigned long)(m->node_count + m->support_node_count);
     SF_OWNED int32_t *place = sf_alloc(err, nodes, sizeof *place, "skin of the pad");
     skin->facet_count = m->skin_count + m->support_triangle_count;
-    skin->node = sf_alloc(err, nodes, sizeof *skin->node, "skin of the pad");
-    skin->facet = sf_alloc(err, 3 * skin->facet_count, sizeof *skin->facet, "skin of the pad");
+    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->node, nodes),
+                 SF_ROOM(skin->facet, 3 * skin->facet_count));
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->skin_count; k++)
         place[m->skin_triangle[k]] = 1;
     for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
@@ -23,9 +23,8 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
         skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
     skin->nodes = skin->moving + m->support_node_count;
     skin->count = skin->nodes + sf_model_skin_centroids(m);
-    skin->own =
-        sf_alloc(err, (unsigned long)(skin->count - skin->nodes), sizeof *skin->own, "skin of the pad");
-    skin->half = sf_alloc(err, skin->facet_count, 1, "skin of the pad");
+    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->own, (unsigned long)(skin->count - skin->nodes)),
+                 SF_ROOM(skin->half, skin->facet_count));
     for (int64_t k = 1; err->status == SF_OK && k < m->skin_count; k++)
         if (sf_model_skin_is_quadrangle(m, k)) {
             skin->half[k - 1] = 1;
@@ -38,8 +37,8 @@ static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 static sf_status place_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
-    skin->rest = sf_alloc(err, 3 * skin->count, sizeof *skin->rest, "skin of the pad");
-    skin->size = sf_alloc(err, skin->count, sizeof *skin->size, "skin of the pad");
+    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->rest, 3 * skin->count),
+                 SF_ROOM(skin->size, skin->count));
     for (int64_t p = 0; err->status == SF_OK && p < skin->moving; p++) {
         memcpy(&skin->rest[3 * p], &m->position[3 * (int64_t)skin->node[p]], 3 * sizeof *skin->rest);
         skin->size[p] = m->spacing[skin->node[p]];
@@ -62,8 +61,7 @@ static sf_status place_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
 static sf_status list_rings(sf_skin *skin, sf_error *err) {
     int64_t corners = 3 * skin->facet_count;
     unsigned long all = (unsigned long)(corners + skin->count - skin->nodes);
-    skin->ring_ptr = sf_alloc(err, skin->count + 2, sizeof *skin->ring_ptr, "skin of the pad");
-    skin->ring = sf_alloc(err, all, sizeof *skin->ring, "skin of the pad");
+    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->ring_ptr, skin->count + 2), SF_ROOM(skin->ring, all));
     if (err->status != SF_OK)
         return err->status;
     for (int64_t k = 0; k < corners; k++)
@@ -123,10 +121,8 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
     enum { MOST_FACETS = 1000 };
     int64_t corners = 3 * skin->facet_count, sides = skin->count;
     SF_OWNED int64_t *parent = sf_sets_alone(corners, "skin of the pad", err);
-    skin->side = sf_alloc(err, corners, sizeof *skin->side, "skin of the pad");
-    skin->next_side =
-        sf_alloc(err, (unsigned long)(corners + sides), sizeof *skin->next_side, "skin of the pad");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->side, corners),
+                        SF_ROOM(skin->next_side, (unsigned long)(corners + sides))));
     memset(skin->next_side, -1, (size_t)(corners + sides) * sizeof *skin->next_side);
     memcpy(skin->side, skin->facet, (size_t)corners * sizeof *skin->side);
     for (int64_t p = 0; p < skin->moving; p++) {
@@ -157,8 +153,7 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
     static const double ON_PLANE = 1e-6; /* of the thickness */
     SF_OWNED uint8_t *mark = sf_alloc(err, m->node_count, 1, "skin of the pad");
-    skin->held = sf_alloc(err, skin->count, 1, "skin of the pad");
-    skin->rests = sf_alloc(err, skin->count, 1, "skin of the pad");
+    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->held, skin->count), SF_ROOM(skin->rests, skin->count));
     for (int64_t k = 0; err->status == SF_OK && k < m->fixed_count; k++)
         mark[m->fixed_node[k]] = m->fixed_mask[k];
     for (int64_t k = 0; err->status == SF_OK && k < m->rest_count; k++)
@@ -201,9 +196,8 @@ static bool take_edge(const sf_skin *skin, const sf_half_edge *half, int64_t cou
 /* Lists the sharp edges of the pad's facets, `count` of them, that are convex. */
 static sf_status list_edges(int64_t count, sf_skin *skin, sf_error *err) {
     SF_OWNED sf_half_edge *half = sf_half_edges(count, skin->facet, err);
-    skin->edge = sf_alloc(err, 12 * (unsigned long)count, sizeof *skin->edge, "skin of the pad");
-    skin->edge_of = sf_alloc(err, 3 * skin->facet_count, sizeof *skin->edge_of, "skin of the pad");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->edge, 12 * (unsigned long)count),
+                        SF_ROOM(skin->edge_of, 3 * skin->facet_count)));
     memset(skin->edge_of, -1, 3 * (size_t)skin->facet_count * sizeof *skin->edge_of);
     for (int64_t k = 0, end; k < 3 * count && !skin->watched; k = end) {
         end = sf_half_edges_end(half, k, 3 * count);
@@ -291,9 +285,8 @@ sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 void sf_skin_free(sf_skin *skin) {
-    SF_FREE(skin->node, skin->own, skin->side, skin->next_side, skin->edge, skin->edge_of, skin->rest,
-            skin->size, skin->passive, skin->facet, skin->half, skin->ring_ptr, skin->ring, skin->held,
-            skin->rests, skin->normal, skin->facet_normal);
     sf_contact_rows_free(&skin->rows);
-    *skin = (sf_skin){0};
+    SF_CLEAR(skin, skin->node, skin->own, skin->side, skin->next_side, skin->edge, skin->edge_of, skin->rest,
+             skin->size, skin->passive, skin->facet, skin->half, skin->ring_ptr, skin->ring, skin->held,
+             skin->rests, skin->normal, skin->facet_normal);
 }

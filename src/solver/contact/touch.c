@@ -34,8 +34,7 @@ void sf_touch_drop_traces(double weight[4]) {
 }
 
 static void subtract(const sf_state *s, int32_t a, int32_t b, double out[3]) {
-    for (int r = 0; r < 3; r++)
-        out[r] = s->self_position[3 * (int64_t)a + r] - s->self_position[3 * (int64_t)b + r];
+    sf_sub3(&s->self_position[3 * (int64_t)a], &s->self_position[3 * (int64_t)b], out);
 }
 
 /* The lean of the pair's node `node`, which becomes a part if it is none yet. */

@@ -52,9 +52,8 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
     h->group_count = (m->node_count + SF_GROUP - 1) / SF_GROUP;
     SF_OWNED uint8_t *seen = sf_alloc(err, n, 1, "group lists");
     SF_OWNED int32_t *place = sf_alloc(err, n, sizeof *place, "group lists");
-    h->ptr = sf_alloc(err, h->group_count + 1, sizeof *h->ptr, "group lists");
-    h->slot_ptr = sf_alloc(err, n + 1, sizeof *h->slot_ptr, "group lists");
-    h->local = sf_alloc(err, m->domain_nnz, sizeof *h->local, "group lists");
+    SF_ALLOC_ALL(err, "group lists", SF_ROOM(h->ptr, h->group_count + 1), SF_ROOM(h->slot_ptr, n + 1),
+                 SF_ROOM(h->local, m->domain_nnz));
     for (int64_t g = 0; g < h->group_count && err->status == SF_OK; g++) {
         int64_t count = list_others(m, g, seen, NULL);
         h->ptr[g + 1] = h->ptr[g] + count;
@@ -71,8 +70,7 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
                 (long long)h->ptr[h->group_count], INT32_MAX);
     if (err->status == SF_OK) {
         unsigned long total = (unsigned long)h->ptr[h->group_count];
-        h->node = sf_alloc(err, total, sizeof *h->node, "group lists");
-        h->slot = sf_alloc(err, total, sizeof *h->slot, "group lists");
+        SF_ALLOC_ALL(err, "group lists", SF_ROOM(h->node, total), SF_ROOM(h->slot, total));
         h->work = sf_alloc(err, 3 * total > SF_HALO_WORK * n ? 3 * total : SF_HALO_WORK * n, sizeof *h->work,
                            "group sums");
     }
@@ -88,8 +86,7 @@ sf_status sf_halo_build(const sf_model *m, sf_halo *h, sf_error *err) {
 }
 
 void sf_halo_free(sf_halo *h) {
-    SF_FREE(h->ptr, h->node, h->local, h->slot_ptr, h->slot, h->work);
-    memset(h, 0, sizeof *h);
+    SF_CLEAR(h, h->ptr, h->node, h->local, h->slot_ptr, h->slot, h->work);
 }
 
 static double weigh(const sf_model *m, int64_t i, int64_t j) {
@@ -144,17 +141,14 @@ sf_status sf_pairs_build(const sf_model *m, sf_pairs *p, sf_error *err) {
     int64_t groups = (m->node_count + SF_GROUP - 1) / SF_GROUP;
     unsigned long n = (unsigned long)m->node_count, ends = (unsigned long)groups + 1;
     memset(p, 0, sizeof *p);
-    p->inner_ptr = sf_alloc(err, ends, sizeof *p->inner_ptr, "stabilisation pairs");
-    p->outer_ptr = sf_alloc(err, ends, sizeof *p->outer_ptr, "stabilisation pairs");
-    p->inner_end = sf_alloc(err, n, sizeof *p->inner_end, "stabilisation pairs");
-    p->outer_end = sf_alloc(err, n, sizeof *p->outer_end, "stabilisation pairs");
+    SF_ALLOC_ALL(err, "stabilisation pairs", SF_ROOM(p->inner_ptr, ends), SF_ROOM(p->outer_ptr, ends),
+                 SF_ROOM(p->inner_end, n), SF_ROOM(p->outer_end, n));
     if (err->status == SF_OK && list_pairs(m, groups, p, err) == SF_OK) {
         unsigned long inner = (unsigned long)p->inner_ptr[groups],
                       outer = (unsigned long)p->outer_ptr[groups];
-        p->inner_place = sf_alloc(err, inner, sizeof *p->inner_place, "stabilisation pairs");
-        p->inner_weight = sf_alloc(err, inner, sizeof *p->inner_weight, "stabilisation pairs");
-        p->outer_weight = sf_alloc(err, outer, sizeof *p->outer_weight, "stabilisation pairs");
-        p->outer_node = sf_alloc(err, outer, sizeof *p->outer_node, "stabilisation pairs");
+        SF_ALLOC_ALL(err, "stabilisation pairs", SF_ROOM(p->inner_place, inner),
+                     SF_ROOM(p->inner_weight, inner), SF_ROOM(p->outer_weight, outer),
+                     SF_ROOM(p->outer_node, outer));
         if (err->status == SF_OK)
             list_pairs(m, groups, p, err);
     }
@@ -164,7 +158,6 @@ sf_status sf_pairs_build(const sf_model *m, sf_pairs *p, sf_error *err) {
 }
 
 void sf_pairs_free(sf_pairs *p) {
-    SF_FREE(p->inner_ptr, p->inner_end, p->inner_place, p->outer_ptr, p->outer_end, p->outer_node,
-            p->inner_weight, p->outer_weight);
-    memset(p, 0, sizeof *p);
+    SF_CLEAR(p, p->inner_ptr, p->inner_end, p->inner_place, p->outer_ptr, p->outer_end, p->outer_node,
+             p->inner_weight, p->outer_weight);
 }

@@ -66,9 +66,8 @@ sf_status sf_membrane_build(const sf_model *m, sf_membrane *b, sf_error *err) {
 }
 
 void sf_membrane_free(sf_membrane *b) {
-    SF_FREE(b->node, b->triangle, b->gradient, b->volume);
     sf_contact_rows_free(&b->rows);
-    *b = (sf_membrane){0};
+    SF_CLEAR(b, b->node, b->triangle, b->gradient, b->volume);
 }
 
 /* ---- forces ---- */

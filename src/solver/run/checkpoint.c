@@ -116,8 +116,7 @@ sf_status sf_checkpoint_open(const char *path, sf_checkpoint *c, sf_error *err) 
 
 void sf_checkpoint_close(sf_checkpoint *c) {
     sf_h5_drop(&c->file);
-    SF_FREE(c->path, c->model_path, c->model_hash, c->git_revision, c->compiler_flags);
-    memset(c, 0, sizeof *c);
+    SF_CLEAR(c, c->path, c->model_path, c->model_hash, c->git_revision, c->compiler_flags);
 }
 
 sf_status sf_checkpoint_read(const sf_checkpoint *c, const sf_model *m, const sf_output *o, sf_state *s,
@@ -154,8 +153,7 @@ static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type typ
     int64_t dims[2] = {m->node_count, columns};
     size_t bytes = (size_t)(m->node_count * columns) * (type == SF_H5_U8 ? 1 : 8);
     SF_OWNED void *data = NULL;
-    sf_error inner = SF_ERROR_INIT;
-    sf_status status = sf_h5_read(file, name, type, columns > 1 ? 2 : 1, dims, &data, &inner);
+    sf_status status = sf_h5_read(file, name, type, columns > 1 ? 2 : 1, dims, &data, SF_IGNORED);
     if (status != SF_OK || memcmp(data, mine, bytes) != 0)
         SF_REFUSE(
             err,
@@ -192,8 +190,7 @@ static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const 
 }
 
 static sf_status open_earlier(const sf_earlier *e, sf_checkpoint *c, sf_error *err) {
-    char path[SF_PATH_SIZE];
-    snprintf(path, sizeof path, "%.4000s.restart", e->results);
+    SF_PRINTED(path, SF_PATH_SIZE, "%.4000s.restart", e->results);
     if (access(path, F_OK) != 0)
         return SF_REFUSE(err,
                          "%s is not there: it holds the state of the pad of %s, which must run without "

@@ -128,8 +128,7 @@ static void take_field(const sf_model *m, const sf_operators *op, const sf_state
 static sf_status write_item(sf_h5 *file, const char *group, const char *name, const char *units,
                             const char *description, int rank, const int64_t *dims, const double *data,
                             sf_error *err) {
-    char path[128];
-    snprintf(path, sizeof path, "%s/%s", group, name);
+    SF_PRINTED(path, 128, "%s/%s", group, name);
     sf_h5_info info = {path, units, description};
     return sf_h5_write(file, &info, SF_H5_F64, rank, dims, data, err);
 }

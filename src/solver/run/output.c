@@ -144,10 +144,9 @@ sf_status sf_output_name(sf_output *o, const char *results, sf_error *err) {
 
 /* Base, peak or a frame, under its own name or as a partial file. */
 static bool is_name(const char *name) {
-    char whole[64];
     int length = (int)strcspn(name, "."), end = 0;
     long long index;
-    snprintf(whole, sizeof whole, "%.*s.h5", length, name);
+    SF_PRINTED(whole, 64, "%.*s.h5", length, name);
     bool known = strcmp(whole, BASE) == 0 || strcmp(whole, PEAK) == 0 ||
                  (sscanf(whole, "frame-%lld.h5%n", &index, &end) == 1 &&
                   end >= (int)strlen("frame-000000.h5") && whole[end] == '\0');
@@ -216,10 +215,9 @@ sf_status sf_output_start(const sf_output *o, bool keep, sf_error *err) {
 
 void sf_output_abandon(const sf_output *o) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
-    sf_error ignored = SF_ERROR_INIT;
     if (o->lock < 0)
         return;
-    if (place(o, BASE, path, partial, &ignored) == SF_OK)
+    if (place(o, BASE, path, partial, SF_IGNORED) == SF_OK)
         unlink(partial);
     sf_folder_leave(o->folder); /* stays if an earlier run has files in it */
 }
@@ -305,10 +303,9 @@ bool sf_output_is_due(const sf_output *o, int64_t rows) {
 /* One object of a file in the folder, linked or copied. */
 static sf_status take(const sf_output *o, bool copied, const char *name, const char *const *objects,
                       sf_h5 *file, sf_error *err) {
-    char path[NAME_SIZE];
     const char *slash = strrchr(o->folder, '/');
     sf_h5 *part = NULL;
-    snprintf(path, sizeof path, "%s/%s", copied ? o->folder : slash ? slash + 1 : o->folder, name);
+    SF_PRINTED(path, NAME_SIZE, "%s/%s", copied ? o->folder : slash ? slash + 1 : o->folder, name);
     if (copied && (sf_seal_check(path, true, err) != SF_OK || sf_h5_open_alone(path, &part, err) != SF_OK))
         return err->status;
     for (; *objects && err->status == SF_OK; objects++) {

@@ -157,8 +157,7 @@ sf_status sf_cfh_plot(const sf_staging *output, const sf_cfh_report *r, char *wa
 static void put_part(sf_html_table *table, const sf_cfh_interval *i, const sf_cfh_interval *each,
                      double share, const char *words, const char *more) {
     char text[64];
-    sf_html_row(table);
-    sf_html_cell(table, "%s%s", words, more);
+    SF_HTML_ROW(table, "%s%s", words, more);
     sf_html_line(table, NULL, "%.3f|%s|%.0f", i->median, sf_cfh_interval_text(i, text, sizeof text),
                  100 * share);
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
@@ -169,11 +168,11 @@ static void put_parts(FILE *page, const sf_cfh_spread *s, const sf_cfh_rig *rig)
     static const char *const words[SF_CFH_PARTS] = {
         "foam alone (the draws: parameters and curve)", "and the errors of the responses",
         "and the error of the mesh", "and the points about their fit", "and the columns' own error"};
-    sf_html_table table = sf_html_table_begin(
-        page, "dense", "95 % interval with|>median (m)|>critical height|>share (%)|>a_max|>HIC");
+    sf_html_table table =
+        sf_html_table_begin(page, "95 % interval with|>median (m)|>critical height|>share (%)|>a_max|>HIC");
     for (int part = 0; part < SF_CFH_PARTS; part++)
         put_part(&table, &s->part[part][SF_CFH_FIRST], s->part[part],
-                 sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST), words[part],
+                 sf_cfh_spread_share(s, (sf_cfh_part)part), words[part],
                  part == SF_CFH_PART_RESPONSE && !s->with_response ? ": not known, not in it" : "");
     const sf_cfh_interval *drop = s->part[SF_CFH_PARTS];
     put_part(
@@ -221,8 +220,7 @@ static void put_checks(FILE *page, const sf_cfh_spread *s) {
                   "interval does not hold their error.");
         return;
     }
-    sf_rows_html_table(page, "dense", sf_cfh_check_rows(),
-                       (sf_records){s->check, sizeof s->check[0], s->checks});
+    sf_rows_html_table(page, sf_cfh_check_rows(), (sf_records){s->check, sizeof s->check[0], s->checks});
     for (int k = 0; k < s->checks; k++)
         if (s->check[k].note[0])
             sf_html_paragraph(page, "Draw %d: %s.", s->check[k].draw + 1, s->check[k].note);
@@ -272,10 +270,9 @@ static void height_text(const sf_cfh_report *r, double scale, char *text, size_t
 }
 
 static void put_limit_tile(FILE *page, const sf_cfh_report *r, sf_cfh_criterion c) {
-    char title[48], value[48];
     const sf_cfh_crossing *crossing = &r->result->crossing[c];
-    snprintf(title, sizeof title, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
-    snprintf(value, sizeof value, isfinite(crossing->height) ? "at %.3f m" : "–", crossing->height);
+    SF_PRINTED(title, 48, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+    SF_PRINTED(value, 48, isfinite(crossing->height) ? "at %.3f m" : "–", crossing->height);
     sf_html_tile(page, "plain", title, value, sf_cfh_side_word(crossing));
 }
 
@@ -308,14 +305,13 @@ static void put_tiles(FILE *page, const sf_cfh_report *r) {
 
 static void put_criteria_table(FILE *page, const sf_cfh_report *r) {
     bool rig = r->rig->pairs > 0;
-    SF_HTML_TABLE table = sf_html_table_begin(page, "dense",
-                                              rig ? "limit|state|>height (m)|>95 % interval|>on the rig (m)"
-                                                  : "limit|state|>height (m)|>95 % interval");
+    SF_HTML_TABLE table =
+        sf_html_table_begin(page, rig ? "limit|state|>height (m)|>95 % interval|>on the rig (m)"
+                                      : "limit|state|>height (m)|>95 % interval");
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_crossing *crossing = &r->result->crossing[c];
         char text[64] = "not known";
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+        SF_HTML_ROW(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
         if (r->spread)
             sf_cfh_interval_text(sf_cfh_spread_whole(r->spread, (int)c), text, sizeof text);
         sf_html_line(&table, NULL, "%s|%.3f|%s", sf_cfh_side_word(crossing), crossing->height, text);
@@ -329,15 +325,13 @@ static void put_fit_table(FILE *page, const sf_cfh_report *r) {
     bool rig = r->rig->pairs > 0;
     sf_html_heading(page, "Fit of the simulated points");
     sf_html_table table = sf_html_table_begin(
-        page, "dense",
-        rig ? "limit|>points|>rms residual (%)|>interval of the fit (m)|>on the rig, with g_eff (m)"
-            : "limit|>points|>rms residual (%)|>interval of the fit (m)");
+        page, rig ? "limit|>points|>rms residual (%)|>interval of the fit (m)|>on the rig, with g_eff (m)"
+                  : "limit|>points|>rms residual (%)|>interval of the fit (m)");
     for (sf_cfh_criterion c = SF_CFH_A_MAX; c < SF_CFH_CRITERIA; c++) {
         const sf_cfh_crossing *crossing = &r->result->crossing[c];
         double margin = sf_cfh_rig_margin(r->rig, crossing->margin);
         double height = sf_cfh_rig_height(r->rig, crossing->height);
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
+        SF_HTML_ROW(&table, "%s %g%s", sf_cfh_name(c), r->plan->limit[c], sf_cfh_unit(c));
         sf_html_line(&table, NULL, "%d|%.2f|%.3f to %.3f%s", crossing->fit.count,
                      crossing->fit.count ? 100 * crossing->fit.rms : NAN, crossing->low, crossing->high,
                      crossing->bracketed ? ", the drops on both sides" : "");
@@ -368,16 +362,15 @@ static void put_notes(FILE *page, const sf_cfh_report *r) {
 
 static void put_bodies(FILE *page, const sf_cfh_report *r) {
     SF_HTML_BLOCK(page, "What falls on what");
-    SF_HTML_TABLE table = sf_html_table_begin(page, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(page, NULL);
     sf_html_fact(&table, "case", "%s", r->case_path);
     sf_html_fact(&table, "material", "%s", r->material ? r->material : "of the case");
     sf_html_fact(&table, "missile", "%g kg", r->mass);
     if (*r->counted)
         sf_html_fact(&table, "series on one pad", "each height is judged by %s", r->counted);
-    sf_origin_put_key(&table, r->parameters, "geometry.missile_file", "its shape");
-    sf_origin_put_key(&table, r->parameters, "geometry.missile_parameters", "its parameters");
-    sf_origin_put_key(&table, r->parameters, "geometry.file", "pad");
-    sf_origin_put_key(&table, r->parameters, "geometry.parameters", "its parameters");
+    SF_ORIGIN_PUT(&table, r->parameters, {"geometry.missile_file", "its shape"},
+                  {"geometry.missile_parameters", "its parameters"}, {"geometry.file", "pad"},
+                  {"geometry.parameters", "its parameters"});
     if (r->posterior)
         sf_html_fact(&table, "draws of the foam", "%s", r->posterior);
     if (r->rig_path)
@@ -404,7 +397,7 @@ static void put_drops(FILE *page, const sf_cfh_report *r) {
     if (r->spread)
         put_spread(page, r->spread, r->rig);
     sf_html_heading(page, "Simulated drops");
-    sf_rows_html_table(page, "dense", sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
+    sf_rows_html_table(page, sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
     sf_html_note(page,
                  "Heights are those of free fall, v² = 2 g h, unless they say otherwise. Residuals: "
                  "simulated value against the fit, ln(value) quadratic in ln(height); a dash: not in the "

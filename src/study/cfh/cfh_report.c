@@ -275,11 +275,10 @@ static const char *open_side(const sf_cfh_interval *i) {
 }
 
 void sf_cfh_put_interval_json(sf_json *json, const char *name, const sf_cfh_interval *i) {
-    char key[64];
     static const sf_cfh_interval none = {NAN, NAN, NAN, {NAN, NAN}};
     const char *open = open_side(i);
     i = i ? i : &none;
-    snprintf(key, sizeof key, "%s_low_m", name);
+    SF_PRINTED(key, 64, "%s_low_m", name);
     sf_json_number(json, key, isinf(i->low) ? i->end[1] : i->low > 0 ? i->low : NAN);
     snprintf(key, sizeof key, "%s_median_m", name);
     sf_json_number(json, key, i->median > 0 ? i->median : NAN);
@@ -307,7 +306,7 @@ static void put_spread_json(sf_json *json, const sf_cfh_spread *s) {
     sf_json_bool(json, "response_errors", s->with_response);
     sf_json_open(json, "shares", '{');
     for (int part = 0; part < SF_CFH_PARTS; part++)
-        sf_json_number(json, shares[part], sf_cfh_spread_share(s, (sf_cfh_part)part, SF_CFH_FIRST));
+        sf_json_number(json, shares[part], sf_cfh_spread_share(s, (sf_cfh_part)part));
     sf_json_close(json);
     sf_json_open(json, "columns_error", '{');
     SF_JSON_NUMBERS(json, {"degrees_of_freedom", s->freedom},
@@ -335,12 +334,11 @@ static void put_verdict(sf_json *json, const sf_cfh_report *r) {
     const sf_cfh_result *v = r->result;
     bool found = v->verdict == SF_CFH_FOUND, decided = found || v->verdict == SF_CFH_BELOW;
     SF_JSON_OBJECT(json, "critical_fall_height");
-    sf_json_text(json, "verdict", words[v->verdict]);
-    sf_json_text(json, "problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL);
-    sf_json_text(json, "deciding",
-                 !decided                                     ? NULL
-                 : isnan(v->lowest) && v->exceeding->on_anvil ? "anvil"
-                                                              : sf_cfh_name(v->deciding));
+    SF_JSON_TEXTS(json, {"verdict", words[v->verdict]},
+                  {"problem", v->verdict == SF_CFH_UNKNOWN ? v->problem.text : NULL},
+                  {"deciding", !decided                                     ? NULL
+                               : isnan(v->lowest) && v->exceeding->on_anvil ? "anvil"
+                                                                            : sf_cfh_name(v->deciding)});
     double height = found ? v->crossing[v->deciding].height : NAN;
     put_heights(json, r, height, SF_CFH_FIRST);
     SF_JSON_NUMBERS(json, {"speed_m_s", sf_cfh_speed(height)}, {"confidence", 0.95},
@@ -381,8 +379,7 @@ static void put_criteria(sf_json *json, const sf_cfh_report *r) {
 
 static void put_posterior(sf_json *json, const sf_cfh_report *r) {
     SF_JSON_OBJECT(json, "posterior");
-    sf_json_text(json, "folder", r->posterior);
-    sf_json_text(json, "no_interval", r->no_interval[0] ? r->no_interval : NULL);
+    SF_JSON_TEXTS(json, {"folder", r->posterior}, {"no_interval", r->no_interval[0] ? r->no_interval : NULL});
     if (r->spread)
         put_spread_json(json, r->spread);
 }
@@ -396,15 +393,9 @@ static double least_end(const sf_cfh_foams *foams) {
 
 sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf_error *err) {
     sf_cfh_point_row points[SF_CFH_MAX_POINTS];
-    FILE *file = sf_staging_open(output, "cfh.json", err);
-    SF_TRY(err->status);
-    sf_json json = {.file = file};
-    sf_json_open(&json, NULL, '{');
-    sf_json_text(&json, "program", "softfall-cfh " SF_VERSION);
-    sf_json_text(&json, "command_line", r->command_line);
-    sf_json_text(&json, "caution", sf_cfh_caution);
-    sf_json_text(&json, "case", r->case_path);
-    sf_json_text(&json, "material", r->material);
+    SF_JSON_FILE(json, output, "cfh.json", err);
+    SF_JSON_TEXTS(&json, {"program", "softfall-cfh " SF_VERSION}, {"command_line", r->command_line},
+                  {"caution", sf_cfh_caution}, {"case", r->case_path}, {"material", r->material});
     sf_json_number(&json, "missile_mass_kg", r->mass);
     sf_json_text(&json, "judged_by", *r->counted ? r->counted : NULL);
     sf_json_number(&json, "compression_table_end", least_end(r->foams));
@@ -419,7 +410,7 @@ sf_status sf_cfh_write_json(const sf_staging *output, const sf_cfh_report *r, sf
     put_criteria(&json, r);
     sf_rows_json_array(&json, "points", sf_cfh_point_rows(r), sf_cfh_point_records(r, points));
     sf_json_close(&json);
-    return sf_staging_close(file, "cfh.json", err);
+    return sf_staging_close(json.file, "cfh.json", err);
 }
 
 /* ---- cfh.csv ---- */
@@ -443,8 +434,7 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
     };
     sf_cfh_point_row points[SF_CFH_MAX_POINTS];
     sf_rows list = SF_ROWS(rows);
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "cfh.csv", err));
+    SF_CSV_FILE(csv, output, "cfh.csv", err);
     list.count -= r->rig->pairs == 0;
     sf_rows_csv(&csv, list, sf_cfh_point_records(r, points));
     return sf_csv_close(&csv, err);
@@ -453,8 +443,7 @@ sf_status sf_cfh_write_csv(const sf_staging *output, const sf_cfh_report *r, sf_
 #undef AT
 
 static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "cfh_band.csv", err));
+    SF_CSV_FILE(csv, output, "cfh_band.csv", err);
     SF_CSV_PRINT_LINE(&csv,
                       "height_m,a_max_low_g,a_max_median_g,a_max_high_g,hic_low_1,hic_median_1,hic_high_1,"
                       "a_max_scatter_1,hic_scatter_1");
@@ -468,8 +457,7 @@ static sf_status write_band(const sf_staging *output, const sf_cfh_spread *s, sf
 }
 
 static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "cfh_draws.csv", err));
+    SF_CSV_FILE(csv, output, "cfh_draws.csv", err);
     SF_CSV_PRINT_LINE(&csv,
                       "draw_1,height_m,a_max_height_m,hic_height_m,a_max_shared_1,hic_shared_1,a_max_sd_1,"
                       "hic_sd_1,a_max_columns_sd_1,hic_columns_sd_1");
@@ -491,8 +479,7 @@ static sf_status write_crossings(const sf_staging *output, const sf_cfh_spread *
 
 /* The corrected columns of each draw over the height, as far as they do not collapse. */
 static sf_status write_curves(const sf_staging *output, const sf_cfh_spread *s, sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "cfh_curves.csv", err));
+    SF_CSV_FILE(csv, output, "cfh_curves.csv", err);
     SF_CSV_PRINT_LINE(&csv, "draw_1,height_m,a_max_g,hic_1,a_max_columns_g,hic_columns_1");
     for (int d = 0; d < s->draws; d++)
         for (int k = 0; k < s->draw[d].reach; k++) {
@@ -530,7 +517,7 @@ static void put_checks(FILE *out, const sf_cfh_report *r) {
 static void put_shares(FILE *out, const sf_cfh_report *r) {
     double share[SF_CFH_PARTS];
     for (int part = 0; part < SF_CFH_PARTS && r->spread; part++)
-        share[part] = 100 * sf_cfh_spread_share(r->spread, (sf_cfh_part)part, SF_CFH_FIRST);
+        share[part] = 100 * sf_cfh_spread_share(r->spread, (sf_cfh_part)part);
     if (!r->spread || isnan(share[SF_CFH_PART_FOAM]))
         return;
     fprintf(out, "  of the interval (its squared length): foam %.0f %%, ", share[SF_CFH_PART_FOAM]);

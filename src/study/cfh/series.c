@@ -248,8 +248,7 @@ static sf_status read_draw(const char *case_path, int count, const char **list, 
                            sf_cfh_draw *draw, sf_error *err) {
     sf_case c;
     sf_error reason = SF_ERROR_INIT;
-    char material[PATH_MAX + 16];
-    snprintf(material, sizeof material, "material=@%s", draw->path);
+    SF_PRINTED(material, PATH_MAX + 16, "material=@%s", draw->path);
     list[0] = material;
     if (sf_case_read(case_path, count, list, NULL, &c, &reason) == SF_OK) {
         draw->material = c.material;
@@ -290,6 +289,5 @@ void sf_cfh_draws_free(sf_cfh_draws *draws) {
         sf_material_law_free(&draws->draw[k].law);
         sf_material_free(&draws->draw[k].material);
     }
-    free(draws->draw);
-    *draws = (sf_cfh_draws){0};
+    SF_CLEAR(draws, draws->draw);
 }

@@ -48,8 +48,7 @@ static sf_status drop_grid(const sf_cfh_spread *s, const sf_columns *pad, const 
 
 static sf_status drop_draws(sf_cfh_spread *s, const sf_columns *pad, const sf_cfh_draws *draws,
                             sf_error *err) {
-    SF_OWNED sf_error *errors = sf_alloc(err, s->draws, sizeof *errors, "draws");
-    SF_TRY(err->status);
+    SF_OWN(sf_error, errors, s->draws, "draws", err);
 #pragma omp parallel for schedule(dynamic)
     for (int d = 0; d < s->draws; d++) {
         errors[d] = (sf_error)SF_ERROR_INIT;
@@ -246,8 +245,7 @@ static sf_cfh_interval interval_of(double *values, int count) {
 }
 
 static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
-    SF_OWNED double *values = sf_alloc(err, s->draws, sizeof *values, "draws");
-    SF_TRY(err->status);
+    SF_OWN(double, values, s->draws, "draws", err);
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         for (int k = 0; k < s->grid; k++) {
             for (int d = 0; d < s->draws; d++)
@@ -292,8 +290,7 @@ sf_status sf_cfh_spread_build(const sf_cfh_pad *pad, const sf_cfh_draws *draws, 
 }
 
 void sf_cfh_spread_free(sf_cfh_spread *s) {
-    free(s->draw);
-    *s = (sf_cfh_spread){0};
+    SF_CLEAR(s, s->draw);
 }
 
 /* ---- checks ---- */
@@ -303,10 +300,7 @@ typedef struct place {
     int draw;
 } place;
 
-static int compare_places(const void *a, const void *b) {
-    const place *x = a, *y = b;
-    return x->height != y->height ? SF_ORDER(x->height, y->height) : SF_ORDER(x->draw, y->draw);
-}
+SF_ORDER_BY(compare_places, place, height, draw)
 
 void sf_cfh_spread_choose(sf_cfh_spread *s, int count, double grain) {
     place places[SF_CFH_MOST_DRAWS];
@@ -467,10 +461,10 @@ static double square_of(const sf_cfh_interval *i) {
     return i->low > 0 && isfinite(length) ? length * length : NAN;
 }
 
-double sf_cfh_spread_share(const sf_cfh_spread *s, sf_cfh_part part, int criterion) {
-    double whole = square_of(sf_cfh_spread_whole(s, criterion));
-    double before = part > 0 ? square_of(&s->part[part - 1][criterion]) : 0;
-    return whole > 0 ? (square_of(&s->part[part][criterion]) - before) / whole : NAN;
+double sf_cfh_spread_share(const sf_cfh_spread *s, sf_cfh_part part) {
+    double whole = square_of(sf_cfh_spread_whole(s, SF_CFH_FIRST));
+    double before = part > 0 ? square_of(&s->part[part - 1][SF_CFH_FIRST]) : 0;
+    return whole > 0 ? (square_of(&s->part[part][SF_CFH_FIRST]) - before) / whole : NAN;
 }
 
 const sf_cfh_interval *sf_cfh_spread_whole(const sf_cfh_spread *s, int criterion) {

@@ -164,7 +164,7 @@ double sf_cfh_columns_error(const sf_cfh_spread *spread, int criterion);
 
 /* The share of a part in the squared length of the whole interval of ln(height); the shares sum to 1. NaN: an
  * end is open, or the interval has no length. */
-double sf_cfh_spread_share(const sf_cfh_spread *spread, sf_cfh_part part, int criterion);
+double sf_cfh_spread_share(const sf_cfh_spread *spread, sf_cfh_part part);
 
 /* The whole interval of a criterion, or of SF_CFH_FIRST. */
 const sf_cfh_interval *sf_cfh_spread_whole(const sf_cfh_spread *spread, int criterion);

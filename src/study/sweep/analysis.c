@@ -196,8 +196,7 @@ static sf_status make_surface(sf_analysis *a, int figure, sf_error *err) {
     int64_t most = s->of < SF_SURFACE_ROWS ? s->of : SF_SURFACE_ROWS, left = s->of;
     SF_RANDOM *random = sf_random(SURFACE_SEED, err);
     SF_OWNED double *x = sf_alloc(err, most, (unsigned long)(d + offsets + 1) * sizeof *x, "a surface");
-    s->simulated = sf_alloc(err, most, sizeof(double), "a surface");
-    s->left_out = sf_alloc(err, most, sizeof(double), "a surface");
+    SF_ALLOC_ALL(err, "a surface", SF_ROOM(s->simulated, most), SF_ROOM(s->left_out, most));
     for (int64_t row = 0; row < a->runs->count && err->status == SF_OK; row++) {
         double value = sf_runs_value(a->runs, row, figure);
         if (isnan(value) || !is_drawn(random, most - s->rows, left--))

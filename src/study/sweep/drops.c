@@ -127,13 +127,12 @@ sf_sweep_engine sf_sweep_drops(sf_runner *runner, int jobs) {
 
 bool sf_sweep_series_text(const sf_plan *plan, char *text, size_t size) {
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
-    sf_error none = SF_ERROR_INIT;
     bool varies = false;
     for (int f = 0; f < plan->factor_count; f++)
         varies |= strcmp(plan->factor[f].key, "series.drops") == 0 ||
                   strcmp(plan->factor[f].key, "series.counted") == 0;
     *text = '\0';
-    if (sf_sweep_read_case(plan, 0, &c, &none) == SF_OK)
+    if (sf_sweep_read_case(plan, 0, &c, SF_IGNORED) == SF_OK)
         sf_run_counted_text((int)c.drops, c.counted, text, size);
     if (varies)
         snprintf(text, size, "the mean of the drops of series.counted");
@@ -156,8 +155,7 @@ static void put_drop(sf_csv *csv, int64_t row, int drop, const sf_run_folder *at
 
 sf_status sf_sweep_write_drops(const sf_staging *output, const sf_runs *r, const char *folder,
                                sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "drops.csv", err));
+    SF_CSV_FILE(csv, output, "drops.csv", err);
     sf_csv_print(&csv, "id,drop,counted,grade");
     sf_figure_csv_keys(&csv);
     sf_csv_end(&csv);
@@ -272,9 +270,8 @@ sf_status sf_sweep_cost_estimate(const sf_runs *r, int64_t open, const char *fol
 
 /* The file system of the folder, or of the nearest one above it that exists. */
 static double free_bytes(const char *folder) {
-    char path[PATH_MAX];
     struct statvfs info;
-    snprintf(path, sizeof path, "%s", folder);
+    SF_PRINTED(path, PATH_MAX, "%s", folder);
     while (statvfs(path, &info) != 0) {
         char *slash = strrchr(path, '/');
         if (strcmp(path, "/") == 0 || strcmp(path, ".") == 0)

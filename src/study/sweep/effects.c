@@ -183,8 +183,7 @@ double sf_quadratic_at(const sf_quadratic *s, const double *x) {
 
 /* Ranks of the numbers, equal numbers the same group as long as there are few. */
 static sf_status group_numbers(const sf_factor *f, int64_t rows, sf_groups *g, sf_error *err) {
-    SF_OWNED size_t *order = sf_alloc(err, rows, sizeof *order, "groups");
-    SF_TRY(err->status);
+    SF_OWN(size_t, order, rows, "groups", err);
     gsl_sort_index(order, f->value, 1, (size_t)rows);
     int64_t distinct = 1;
     for (int64_t k = 1; k < rows; k++)
@@ -221,8 +220,7 @@ sf_status sf_groups_make(const sf_plan *p, int factor, sf_groups *g, sf_error *e
 }
 
 void sf_groups_free(sf_groups *g) {
-    SF_FREE(g->of_row, g->middle);
-    *g = (sf_groups){0};
+    SF_CLEAR(g, g->of_row, g->middle);
 }
 
 /* The combination of all other blocks. */
@@ -433,6 +431,5 @@ sf_status sf_probabilities_count(const sf_runs *r, sf_probabilities *p, sf_error
 }
 
 void sf_probabilities_free(sf_probabilities *p) {
-    SF_FREE(p->cell, p->row);
-    *p = (sf_probabilities){0};
+    SF_CLEAR(p, p->cell, p->row);
 }

@@ -28,8 +28,7 @@ typedef struct reading {
 /* True if the text is a number with a unit of some kind. */
 static bool find_kind(const sf_units *units, const char *text, sf_quantity *kind, double *si) {
     for (int k = 0; k < SF_QUANTITY_COUNT; k++) {
-        sf_error none = SF_ERROR_INIT;
-        if (sf_units_parse(units, text, (sf_quantity)k, si, &none) == SF_OK) {
+        if (sf_units_parse(units, text, (sf_quantity)k, si, SF_IGNORED) == SF_OK) {
             *kind = (sf_quantity)k;
             return true;
         }
@@ -48,9 +47,8 @@ static void trim(const char *text, char *out, size_t size) {
 /* The unit of the first number decides. */
 static sf_status begin_unit(reading *r, const config_setting_t *s, const char *unit, sf_quantity kind,
                             sf_error *err) {
-    char one[SF_FACTOR_UNIT_SIZE + 4];
     trim(unit, r->factor->unit, sizeof r->factor->unit);
-    snprintf(one, sizeof one, "1 %s", r->factor->unit);
+    SF_PRINTED(one, SF_FACTOR_UNIT_SIZE + 4, "1 %s", r->factor->unit);
     r->kind = kind;
     r->begun = true;
     if (*r->factor->unit && sf_units_parse(r->config->units, one, kind, &r->scale, err) != SF_OK)
@@ -115,8 +113,7 @@ static sf_status make_levels(sf_factor *f, int64_t count, bool words, sf_error *
     f->words = words;
     f->count = count;
     if (words) {
-        f->text = sf_alloc(err, count, sizeof *f->text, "levels");
-        f->label = sf_alloc(err, count, sizeof *f->label, "levels");
+        SF_ALLOC_ALL(err, "levels", SF_ROOM(f->text, count), SF_ROOM(f->label, count));
     } else {
         f->number = sf_alloc(err, count, sizeof *f->number, "levels");
     }
@@ -133,8 +130,7 @@ static sf_status set_word(sf_factor *f, int64_t k, char *text, const char *label
 /* All with a point, as an array of libconfig has whole or fractional numbers, not both. */
 static void print_fractions(FILE *out, const config_setting_t *array) {
     for (int k = 0; k < config_setting_length(array); k++) {
-        char number[40];
-        snprintf(number, sizeof number, "%.12g", config_setting_get_float_elem(array, k));
+        SF_PRINTED(number, 40, "%.12g", config_setting_get_float_elem(array, k));
         fprintf(out, "%s%s%s", k ? ", " : "[", number, strpbrk(number, ".e") ? "" : ".0");
     }
     fputc(']', out);
@@ -143,10 +139,8 @@ static void print_fractions(FILE *out, const config_setting_t *array) {
 /* The setting in libconfig syntax, as --set takes it or, `plain`, as a table has it; from malloc, NULL
  * without memory. */
 static char *print_word(const config_setting_t *s, bool plain) {
-    char *text = NULL;
-    size_t size = 0;
     const config_setting_t *first = config_setting_is_array(s) ? config_setting_get_elem(s, 0) : NULL;
-    FILE *out = open_memstream(&text, &size);
+    SF_TEXT_STREAM(out, text, size);
     if (out && first && config_setting_type(first) == CONFIG_TYPE_FLOAT && !plain)
         print_fractions(out, s);
     else if (out)
@@ -468,8 +462,7 @@ sf_status sf_factor_read(const sf_config *config, const config_setting_t *group,
 void sf_factor_free(sf_factor *f) {
     sf_free_all((size_t)f->count, f->text);
     sf_free_all((size_t)f->count, f->label);
-    SF_FREE(f->text, f->label, f->number, f->value);
-    *f = (sf_factor){0};
+    SF_CLEAR(f, f->text, f->label, f->number, f->value);
 }
 
 double sf_factor_quantile(const sf_factor *f, double u) {

@@ -347,8 +347,7 @@ void sf_plan_free(sf_plan *p) {
     for (int k = 0; k < p->factor_count; k++)
         sf_factor_free(&p->factor[k]);
     sf_free_all((size_t)p->set_count, p->set);
-    SF_FREE(p->folder, p->case_path, p->title);
-    *p = (sf_plan){0};
+    SF_CLEAR(p, p->folder, p->case_path, p->title);
 }
 
 /* ---- rows ---- */

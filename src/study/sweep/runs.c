@@ -31,8 +31,7 @@ sf_status sf_runs_create(const sf_plan *plan, sf_runs *r, sf_error *err) {
 void sf_runs_free(sf_runs *r) {
     sf_free_all((size_t)r->count, r->folder);
     sf_free_all((size_t)r->count, r->message);
-    SF_FREE(r->state, r->grade, r->folder, r->message, r->value, r->half);
-    *r = (sf_runs){0};
+    SF_CLEAR(r, r->state, r->grade, r->folder, r->message, r->value, r->half);
 }
 
 double *sf_runs_place(const sf_runs *r, int64_t row) {
@@ -65,10 +64,9 @@ void sf_runs_take(sf_runs *r, int64_t row, const double *figure, const char *sta
 }
 
 static double to_nine_digits(double value) {
-    char text[32];
     if (!isfinite(value))
         return NAN;
-    snprintf(text, sizeof text, "%.9g", value);
+    SF_PRINTED(text, 32, "%.9g", value);
     return strtod(text, NULL);
 }
 
@@ -301,9 +299,7 @@ static sf_status take_row(sf_runs *r, int64_t row, char *line, sf_error *err) {
 
 /* The heading that belongs to the table; from malloc. */
 static char *own_heading(const sf_runs *r) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    SF_TEXT_STREAM(out, text, size);
     if (!out)
         return NULL;
     put_heading(&(sf_csv){.file = out}, r);

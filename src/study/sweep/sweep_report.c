@@ -66,10 +66,8 @@ static void json_factors(sf_json *j, const sf_plan *p) {
     for (int f = 0; f < p->factor_count; f++) {
         factor_text(p, f, text, sizeof text);
         SF_JSON_OBJECT(j, NULL);
-        sf_json_text(j, "key", p->factor[f].key);
-        sf_json_text(j, "name", p->factor[f].name);
-        sf_json_text(j, "unit", *p->factor[f].unit ? p->factor[f].unit : NULL);
-        sf_json_text(j, "values", text);
+        SF_JSON_TEXTS(j, {"key", p->factor[f].key}, {"name", p->factor[f].name},
+                      {"unit", *p->factor[f].unit ? p->factor[f].unit : NULL}, {"values", text});
         sf_json_bool(j, "uncertain", p->factor[f].uncertain);
     }
 }
@@ -160,13 +158,9 @@ static void json_refined(sf_json *j, const sf_runs *runs) {
 }
 
 sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r, sf_error *err) {
-    FILE *file = sf_staging_open(output, "sweep.json", err);
     const sf_analysis *a = r->analysis;
-    SF_TRY(err->status);
-    sf_json j = {.file = file};
-    sf_json_open(&j, NULL, '{');
-    sf_json_text(&j, "plan", r->plan->path);
-    sf_json_text(&j, "judged_by", *r->series ? r->series : NULL);
+    SF_JSON_FILE(j, output, "sweep.json", err);
+    SF_JSON_TEXTS(&j, {"plan", r->plan->path}, {"judged_by", *r->series ? r->series : NULL});
     SF_JSON_NUMBERS(&j, {"runs", (double)r->plan->rows}, {"done", (double)a->done},
                     {"failed", (double)a->failed}, {"open", (double)a->open},
                     {"predicted", (double)a->predicted}, {"do_not_use", (double)a->unusable});
@@ -192,18 +186,16 @@ sf_status sf_sweep_write_json(const sf_staging *output, const sf_sweep_report *r
     }
     sf_json_close(&j);
     sf_json_close(&j);
-    return sf_staging_close(file, "sweep.json", err);
+    return sf_staging_close(j.file, "sweep.json", err);
 }
 
 /* ---- report.html ---- */
 
 static void put_tiles(FILE *page, const sf_sweep_report *r) {
     const sf_analysis *a = r->analysis;
-    char value[64], remark[96];
     SF_HTML_DIVISION(page, "tiles");
-    snprintf(value, sizeof value, "%lld of %lld", a->done, r->plan->rows);
-    snprintf(remark, sizeof remark, "%lld predicted, %lld failed, %lld open", a->predicted, a->failed,
-             a->open);
+    SF_PRINTED(value, 64, "%lld of %lld", a->done, r->plan->rows);
+    SF_PRINTED(remark, 96, "%lld predicted, %lld failed, %lld open", a->predicted, a->failed, a->open);
     sf_html_tile(page, a->failed + a->open > 0 ? "fair" : "good", "runs done", value, remark);
     snprintf(value, sizeof value, "%lld", a->usable);
     snprintf(remark, sizeof remark, "%lld with remarks; %lld more are not to be used", a->remarks,
@@ -213,8 +205,7 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
         const sf_probability *c = &a->probability.cell[k];
         if (isnan(r->plan->figure[k].limit))
             continue;
-        char title[96];
-        snprintf(title, sizeof title, "P(%s < %g)", r->plan->figure[k].figure, r->plan->figure[k].limit);
+        SF_PRINTED(title, 96, "P(%s < %g)", r->plan->figure[k].figure, r->plan->figure[k].limit);
         snprintf(value, sizeof value, "%.3f", c->share);
         snprintf(remark, sizeof remark, "95 %% interval %.3f to %.3f", c->low, c->high);
         if (c->unknown > 0)
@@ -227,7 +218,7 @@ static void put_tiles(FILE *page, const sf_sweep_report *r) {
 static void put_factors(FILE *page, const sf_plan *p, const char *series) {
     char text[512];
     sf_html_heading(page, "Plan");
-    sf_html_table t = sf_html_table_begin(page, "dense", "factor|key of the case|values|role");
+    sf_html_table t = sf_html_table_begin(page, "factor|key of the case|values|role");
     for (int f = 0; f < p->factor_count; f++) {
         sf_html_row(&t);
         factor_text(p, f, text, sizeof text);
@@ -248,11 +239,10 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
     if (!sf_plan_is_adaptive(r->plan))
         return;
     sf_html_heading(page, "Predicted runs");
-    sf_html_table t = sf_html_table_begin(
-        page, "dense", "figure|>accuracy asked for|>widest half of a 95 % interval|>checks held");
+    sf_html_table t =
+        sf_html_table_begin(page, "figure|>accuracy asked for|>widest half of a 95 % interval|>checks held");
     for (int k = 0; k < r->plan->figure_count; k++) {
-        sf_html_row(&t);
-        sf_html_cell(&t, "%s", r->plan->figure[k].figure);
+        SF_HTML_ROW(&t, "%s", r->plan->figure[k].figure);
         sf_html_cell(&t, "%.3g %%", 100 * r->plan->figure[k].accuracy);
         sf_html_cell(&t, a->predicted > 0 ? "%.3g %%" : "–", 100 * a->widest[k]);
         sf_html_cell(&t, "%d of %d", r->runs->held[k], r->runs->checked[k]);
@@ -284,7 +274,7 @@ static sf_records list_pairs(const sf_runs *runs, sf_runs_pair *pair) {
 static void put_refined(FILE *page, const sf_runs *runs) {
     sf_runs_pair pair[LISTED];
     sf_html_heading(page, "Figures for ever finer meshes");
-    sf_rows_html_table(page, "dense", sf_runs_pair_rows, list_pairs(runs, pair));
+    sf_rows_html_table(page, sf_runs_pair_rows, list_pairs(runs, pair));
     sf_html_note(
         page,
         "Extrapolated from the drop of a row and one with %d times its spacings; runs.csv has all rows. All "
@@ -294,8 +284,7 @@ static void put_refined(FILE *page, const sf_runs *runs) {
 
 static void put_pictures(FILE *page, const sf_staging *output) {
     for (const sf_sweep_picture *p = sf_sweep_pictures(); p->name; p++) {
-        char script[64];
-        snprintf(script, sizeof script, "%s.gp", p->name);
+        SF_PRINTED(script, 64, "%s.gp", p->name);
         if (sf_staging_has(output, script))
             sf_chart_figure(page, output, p->name, "softfall-sweep", p->caption);
     }
@@ -338,7 +327,7 @@ static void put_probability(FILE *page, const sf_sweep_report *r) {
     if (!*columns)
         return;
     sf_html_heading(page, "Probability of staying below the limits");
-    sf_html_table t = sf_html_table_begin(page, "dense", columns);
+    sf_html_table t = sf_html_table_begin(page, columns);
     for (int64_t k = 0; k < q->cells && k < CELLS_LISTED; k++)
         put_probability_row(&t, r, k);
     sf_html_table_end(&t);
@@ -379,13 +368,11 @@ static void put_effects(FILE *page, const sf_sweep_report *r) {
     bool scatter = false;
     sf_html_heading(page, "Main effects");
     sf_html_table t = sf_html_table_begin(
-        page, "dense",
-        "figure|factor|>lowest mean|>highest mean|>at the least value|>at the greatest value|over");
+        page, "figure|factor|>lowest mean|>highest mean|>at the least value|>at the greatest value|over");
     for (int k = 0; k < r->plan->figure_count; k++)
         for (int f = 0; f < r->plan->factor_count; f++) {
             const sf_effect *e = &r->analysis->effect[k][f];
-            sf_html_row(&t);
-            sf_html_cell(&t, "%s", r->plan->figure[k].figure);
+            SF_HTML_ROW(&t, "%s", r->plan->figure[k].figure);
             sf_html_cell(&t, "%s", r->plan->factor[f].name);
             SF_HTML_NUMBERS(&t, 1, e->low, e->high, e->first, e->last);
             put_ground(&t, r->plan, f, e);
@@ -412,13 +399,12 @@ static void put_indices(FILE *page, const sf_sweep_report *r) {
     if (!a->with_indices)
         return;
     sf_html_heading(page, "Sobol' indices");
-    sf_html_table t = sf_html_table_begin(
-        page, "dense", "figure|factor|>first order|95 % interval|>total|95 % interval|>samples");
+    sf_html_table t =
+        sf_html_table_begin(page, "figure|factor|>first order|95 % interval|>total|95 % interval|>samples");
     for (int k = 0; k < r->plan->figure_count; k++)
         for (int f = 0; f < r->plan->factor_count; f++) {
             const sf_index *i = &a->index[k][f];
-            sf_html_row(&t);
-            sf_html_cell(&t, "%s", r->plan->figure[k].figure);
+            SF_HTML_ROW(&t, "%s", r->plan->figure[k].figure);
             sf_html_cell(&t, "%s", r->plan->factor[f].name);
             sf_html_line(&t, NULL, "%.3f|%.3f to %.3f|%.3f|%.3f to %.3f|%lld of %lld", i->first, i->first_low,
                          i->first_high, i->total, i->total_low, i->total_high, a->index_samples[k],
@@ -436,7 +422,7 @@ static void put_indices(FILE *page, const sf_sweep_report *r) {
 static void put_surfaces(FILE *page, const sf_sweep_report *r) {
     sf_html_heading(page, "Response surface");
     sf_html_table t = sf_html_table_begin(
-        page, "dense", "figure|>runs|>terms|>rms of the residuals|>rms error at runs left out|>Q²|remark");
+        page, "figure|>runs|>terms|>rms of the residuals|>rms error at runs left out|>Q²|remark");
     for (int k = 0; k < r->plan->figure_count; k++) {
         const sf_sweep_surface *s = &r->analysis->surface[k];
         sf_html_line(&t, r->plan->figure[k].figure, "%lld|%d|%.3f|%.3f|%.3f", (long long)s->rows,
@@ -459,14 +445,13 @@ static void put_failures(FILE *page, const sf_sweep_report *r) {
     if (a->failed + a->unusable == 0)
         return;
     sf_html_heading(page, "Runs that failed or are not to be used");
-    sf_html_table t = sf_html_table_begin(page, "dense", ">id|what|sentence");
+    sf_html_table t = sf_html_table_begin(page, ">id|what|sentence");
     for (long long row = 0; row < r->runs->count && listed < LISTED; row++) {
         bool failed = r->runs->state[row] == SF_SWEEP_FAILED;
         if (!failed && (r->runs->state[row] != SF_SWEEP_DONE || sf_runs_usable(r->runs, row)))
             continue;
         listed++;
-        sf_html_row(&t);
-        sf_html_cell(&t, "%lld", row + 1);
+        SF_HTML_ROW(&t, "%lld", row + 1);
         sf_html_cell(&t, "%s", failed ? "failed" : "do not use");
         sf_html_cell(&t, "%s", r->runs->message[row] ? r->runs->message[row] : "");
     }

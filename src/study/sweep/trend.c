@@ -162,8 +162,7 @@ static const char *find_problem(const sf_sweep_trend *t, const drop *list, int c
 
 bool sf_sweep_is_beyond_columns(const sf_plan *plan) {
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
-    sf_error refused = SF_ERROR_INIT;
-    return sf_sweep_read_case(plan, 0, &c, &refused) != SF_OK || c.layer_count > 0 || c.motion_count > 0;
+    return sf_sweep_read_case(plan, 0, &c, SF_IGNORED) != SF_OK || c.layer_count > 0 || c.motion_count > 0;
 }
 
 sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep_trend *t, sf_error *err) {

@@ -43,9 +43,7 @@ static void print_tests(FILE *out, const sf_compression_config *config) {
 
 static sf_status write_material(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
                                 const char *title, bool thermal, sf_error *err) {
-    SF_OWNED char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
+    SF_OWNED SF_TEXT_STREAM(out, text, size);
     if (out) {
         fputs("Identified by softfall-fit compression", out);
         kind->describe(out, fit, true);
@@ -62,15 +60,12 @@ static sf_status write_all(const sf_compression_job *job, const sf_compression_k
                            sf_error *err) {
     sf_staging *output = &study->output;
     SF_TRY(sf_staging_begin(job->directory, kind->outputs, study->force, output, err));
-    sf_csv points;
-    SF_TRY(sf_csv_open(&points, output, "fit.csv", err));
+    SF_CSV_FILE(points, output, "fit.csv", err);
     kind->points(&points, fit);
     SF_TRY(sf_csv_close(&points, err));
     if (kind->more)
         SF_TRY(kind->more(job, output, fit, warning, size, err));
-    sf_json json = {.file = sf_staging_open(output, "fit.json", err)};
-    SF_TRY(err->status);
-    sf_json_open(&json, NULL, '{');
+    SF_JSON_FILE(json, output, "fit.json", err);
     kind->json(&json, fit, job->path);
     sf_json_close(&json);
     SF_TRY(sf_staging_close(json.file, "fit.json", err));

@@ -298,9 +298,8 @@ static sf_status read_rate(const sf_config *file, sf_config_item *entry, double 
                            sf_error *err) {
     sf_config_item *setting = config_setting_get_member(entry, "rate");
     const char *text = setting ? config_setting_get_string(setting) : NULL;
-    sf_error no_speed = SF_ERROR_INIT;
     double speed = 0;
-    if (!text || sf_units_parse(file->units, text, SF_SPEED, &speed, &no_speed) != SF_OK)
+    if (!text || sf_units_parse(file->units, text, SF_SPEED, &speed, SF_IGNORED) != SF_OK)
         return sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, rate, err);
     if (!(speed > 0))
         return sf_config_refuse(file, setting, err, "rate: a speed of %s" SF_NOT_ABOVE_0, text);

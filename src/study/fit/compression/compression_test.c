@@ -13,8 +13,7 @@ static const double ABOVE = 0.05;       /* part by which unloading may lie above
 static const double TENSION = 0.05;     /* part of the largest stress that unloading may end below zero */
 
 void sf_compression_test_free(sf_compression_test *test) {
-    SF_FREE(test->path, test->strain, test->stress, test->line);
-    memset(test, 0, sizeof *test);
+    SF_CLEAR(test, test->path, test->strain, test->stress, test->line);
 }
 
 /* ---- cycle, rests and toe ---- */

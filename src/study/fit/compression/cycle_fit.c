@@ -132,8 +132,7 @@ sf_status sf_cycle_records_read(const sf_config *file, sf_config_item *root, sf_
 }
 
 void sf_cycle_record_free(sf_cycle_record *r) {
-    SF_FREE(r->path, r->time, r->strain, r->stress);
-    *r = (sf_cycle_record){0};
+    SF_CLEAR(r, r->path, r->time, r->strain, r->stress);
 }
 
 /* ---- the law along the record ---- */

@@ -252,8 +252,7 @@ static sf_status fit_all_unloading(sf_form_fit *fit, const sf_curve *curve, sf_e
     fit->has_unloading = count > 3;
     if (!fit->has_unloading)
         return SF_OK;
-    SF_OWNED double *all = sf_alloc(err, 4 * count, sizeof *all, "unloading");
-    SF_TRY(err->status);
+    SF_OWN(double, all, 4 * count, "unloading", err);
     u.measured = all;
     u.loading = u.measured + count;
     u.viscous = u.loading + count;
@@ -362,9 +361,8 @@ sf_status sf_form_fit_run(const sf_compression_config *config, sf_form_fit *fit,
 }
 
 void sf_form_fit_free(sf_form_fit *fit) {
-    for (int k = 0; k < SF_COMPRESSION_TESTS; k++) {
+    for (int k = 0; k < SF_COMPRESSION_TESTS; k++)
         SF_FREE(fit->test[k].stress, fit->predicted[k].stress);
-    }
     for (int k = 0; k < SF_CYCLE_RECORDS; k++)
         free(fit->cycles[k].stress);
     sf_foam_card_free(&fit->card);

@@ -210,8 +210,7 @@ static void json_unknowns(sf_json *json, const sf_form_fit *fit) {
     for (int k = 0; k < r->unknown_count; k++) {
         const sf_parameter_info *about = sf_parameter_get(r->unknown[k]);
         SF_JSON_OBJECT(json, NULL);
-        sf_json_text(json, "name", about->name);
-        sf_json_text(json, "unit", about->unit);
+        SF_JSON_TEXTS(json, {"name", about->name}, {"unit", about->unit});
         SF_JSON_NUMBERS(json, {"value", fit->value[r->unknown[k]] / about->per_unit},
                         {"relative_error", fit->error[k]});
         sf_json_bool(json, "at_bound", fit->at_bound[k]);
@@ -251,10 +250,8 @@ static void put_json(sf_json *json, const void *place, const char *path) {
     const sf_form_fit *fit = place;
     const sf_compression_config *c = fit->config;
     (void)path;
-    sf_json_text(json, "law", "low_density_foam");
-    sf_json_text(json, "name", c->name);
-    sf_json_text(json, "curve_form", c->form.form.curve->name);
-    sf_json_text(json, "rate_model", sf_form_rate_names[c->form.rate]);
+    SF_JSON_TEXTS(json, {"law", "low_density_foam"}, {"name", c->name},
+                  {"curve_form", c->form.form.curve->name}, {"rate_model", sf_form_rate_names[c->form.rate]});
     SF_JSON_NUMBERS(json, {"parameter_count", c->form.unknown_count}, {"loading_rms", fit->loading_rms});
     sf_json_bool(json, "describes_the_tests", !sf_form_fit_is_poor(fit));
     json_unknowns(json, fit);

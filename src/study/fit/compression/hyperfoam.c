@@ -141,8 +141,7 @@ sf_status sf_hyperfoam_request_read(const sf_config *file, sf_config_item *root,
 }
 
 void sf_hyperfoam_request_free(sf_hyperfoam_request *r) {
-    SF_FREE(r->lateral_at, r->lateral);
-    *r = (sf_hyperfoam_request){0};
+    SF_CLEAR(r, r->lateral_at, r->lateral);
 }
 
 /* ---- the fit ---- */
@@ -291,8 +290,7 @@ static sf_status fit_unloading(const sf_compression_test *t, fitted *fit, sf_err
     sf_hyperfoam foam = sf_hyperfoam_build(&fit->card);
     int count = t->count - t->loading;
     double lateral = 0, peak = 0;
-    SF_OWNED double *loading = sf_alloc(err, 2 * count, sizeof *loading, "unloading");
-    SF_TRY(err->status);
+    SF_OWN(double, loading, 2 * count, "unloading", err);
     sf_unloading_points points = {count,           t->stress + t->loading, loading, NULL,
                                   loading + count, t->largest_stress,      false,   1};
     sf_hyperfoam_free_stress(&foam, t->largest_strain, &lateral, &peak);
@@ -474,9 +472,7 @@ static void put_points(sf_csv *csv, const void *place) {
 static void put_json(sf_json *json, const void *place, const char *path) {
     const fitted *f = place;
     (void)path;
-    sf_json_text(json, "law", "hyperfoam");
-    sf_json_text(json, "name", f->config->name);
-    sf_json_text(json, "test", f->test->path);
+    SF_JSON_TEXTS(json, {"law", "hyperfoam"}, {"name", f->config->name}, {"test", f->test->path});
     SF_JSON_NUMBERS(json, {"rate_1_s", f->test->rate}, {"largest_strain", f->test->largest_strain});
     sf_json_open(json, "terms", '[');
     for (int k = 0; k < f->request->terms; k++) {

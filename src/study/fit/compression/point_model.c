@@ -68,9 +68,8 @@ sf_status sf_compression_data_init(const sf_compression_config *config, sf_compr
     for (int k = 0; k < config->test_count; k++)
         data->count += config->test[k].count;
     unsigned long n = (unsigned long)data->count;
-    data->test = sf_alloc(err, n, sizeof *data->test, "test points");
-    data->unloading = sf_alloc(err, n, sizeof *data->unloading, "test points");
-    data->strain = sf_alloc(err, 4 * n, sizeof *data->strain, "test points");
+    SF_ALLOC_ALL(err, "test points", SF_ROOM(data->test, n), SF_ROOM(data->unloading, n),
+                 SF_ROOM(data->strain, 4 * n));
     if (err->status == SF_OK) {
         data->stress = data->strain + n;
         data->smooth = data->stress + n;
@@ -84,9 +83,7 @@ sf_status sf_compression_data_init(const sf_compression_config *config, sf_compr
 }
 
 void sf_compression_data_free(sf_compression_data *data) {
-    SF_FREE(data->test, data->unloading);
-    free(data->strain); /* and all behind it */
-    *data = (sf_compression_data){0};
+    SF_CLEAR(data, data->test, data->unloading, data->strain /* and all behind it */);
 }
 
 static const double MAXWELL_STEP = 0.0025; /* of strain: the law is exact for a constant rate of the Green
@@ -478,8 +475,7 @@ sf_status sf_compression_model_init(const sf_compression_data *data, sf_compress
     model->curve_count = form.rate == SF_RATE_CURVES ? data->config->test_count : 1;
     SF_TRY(make_spline(model, err));
     unsigned long items = (unsigned long)data->count * (unsigned long)model->spline.count;
-    model->value_row = sf_alloc(err, items, sizeof *model->value_row, "spline rows");
-    model->area_row = sf_alloc(err, items, sizeof *model->area_row, "spline rows");
+    SF_ALLOC_ALL(err, "spline rows", SF_ROOM(model->value_row, items), SF_ROOM(model->area_row, items));
     if (err->status != SF_OK) {
         sf_compression_model_free(model);
         return err->status;
@@ -491,8 +487,7 @@ sf_status sf_compression_model_init(const sf_compression_data *data, sf_compress
 
 void sf_compression_model_free(sf_compression_model *model) {
     sf_spline_free(&model->spline);
-    SF_FREE(model->value_row, model->area_row);
-    *model = (sf_compression_model){0};
+    SF_CLEAR(model, model->value_row, model->area_row);
 }
 
 /* ---- where a search begins ---- */

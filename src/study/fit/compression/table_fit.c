@@ -236,9 +236,7 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
 }
 
 static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e, sf_error *err) {
-    SF_OWNED double *gradient =
-        sf_alloc(err, fit->model.parameter_count, sizeof *gradient, "parameter gradients");
-    SF_TRY(err->status);
+    SF_OWN(double, gradient, fit->model.parameter_count, "parameter gradients", err);
     e->present = true;
     e->value = sf_compression_exponent(&fit->model, fit->parameters, gradient);
     e->error = sf_compression_error(fit, gradient);
@@ -324,9 +322,7 @@ static void place_table(sf_compression_fit *fit) {
 }
 
 static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
-    SF_OWNED double *gradient =
-        sf_alloc(err, fit->model.parameter_count, sizeof *gradient, "parameter gradients");
-    SF_TRY(err->status);
+    SF_OWN(double, gradient, fit->model.parameter_count, "parameter gradients", err);
     sf_rate_model rate = fit->model.form.rate;
     fit->rate_count = rate == SF_RATE_LOG || rate == SF_RATE_CURVES ? fit->data.config->test_count : 1;
     place_table(fit);
@@ -536,10 +532,9 @@ sf_status sf_compression_fit_run(const sf_compression_config *config, sf_compres
 void sf_compression_fit_free(sf_compression_fit *fit) {
     gsl_vector_free(fit->parameters);
     gsl_matrix_free(fit->covariance);
-    free(fit->stress);
     sf_compression_model_free(&fit->model);
     sf_compression_data_free(&fit->data);
-    *fit = (sf_compression_fit){0};
+    SF_CLEAR(fit, fit->stress);
 }
 
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err) {

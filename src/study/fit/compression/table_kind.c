@@ -55,8 +55,7 @@ static sf_foam_card card_of_test(const sf_table_result *r, int k, int64_t ptr[2]
 
 static sf_status compare_card(sf_table_result *r, sf_error *err) {
     const sf_compression_data *d = &r->fit.data;
-    SF_OWNED double *stress = sf_alloc(err, d->count, sizeof *stress, "stresses of the card");
-    SF_TRY(err->status);
+    SF_OWN(double, stress, d->count, "stresses of the card", err);
     for (int k = 0, first = 0; k < d->config->test_count; k++) {
         const sf_compression_test *t = &d->config->test[k];
         int64_t ptr[2];
@@ -185,8 +184,7 @@ static void put_points(sf_csv *csv, const void *place) {
 static sf_status write_curves(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
     const sf_compression_test *test = fit->data.config->test;
     bool thermal = fit->data.config->thermal;
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "loading_curve.csv", err));
+    SF_CSV_FILE(csv, output, "loading_curve.csv", err);
     SF_CSV_PRINT_LINE(&csv, "# Loading curves of the fit with their %g %% intervals%s",
                       100 * fit->data.config->confidence, thermal ? "" : "; rate 0: one curve for all rates");
     SF_CSV_PRINT_LINE(&csv, "%s,strain,stress_kPa,low_kPa,high_kPa", thermal ? "temperature_K" : "rate_1_s");
@@ -350,15 +348,13 @@ static sf_status simulate(sf_table_result *r, const sf_compression_job *job, con
 /* Simulates the tests in DIR/simulation, which stays, and writes the curves. */
 static sf_status write_simulation(const sf_compression_job *job, const sf_staging *output, sf_table_result *r,
                                   sf_error *err) {
-    char folder[PATH_MAX];
     cube_test cube;
     if (!job->case_path)
         return SF_OK;
-    snprintf(folder, sizeof folder, "%s/simulation", output->directory);
+    SF_PRINTED(folder, PATH_MAX, "%s/simulation", output->directory);
     SF_TRY(sf_folder_own(folder, err));
     SF_TRY(check_specimen(r->fit.data.config, err));
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "simulation.csv", err));
+    SF_CSV_FILE(csv, output, "simulation.csv", err);
     SF_CSV_PRINT_LINE(&csv, "test,strain,cube_kPa,point_kPa");
     for (int k = 0; k < r->test_count && simulate(r, job, folder, k, &cube, err) == SF_OK; k++) {
         const sf_table_test *test = &r->test[k];
@@ -422,9 +418,8 @@ static void json_estimates(sf_json *json, const sf_compression_fit *fit) {
 
 static void put_json(sf_json *json, const void *place, const char *path) {
     const sf_table_result *r = place;
-    sf_json_text(json, "program", "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")");
-    sf_json_text(json, "input", path);
-    sf_json_text(json, "name", r->fit.data.config->name);
+    SF_JSON_TEXTS(json, {"program", "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")"},
+                  {"input", path}, {"name", r->fit.data.config->name});
     sf_rows_json_array(json, "tests", sf_table_test_rows(r),
                        (sf_records){r->test, sizeof r->test[0], r->test_count});
     json_choice(json, &r->fit);

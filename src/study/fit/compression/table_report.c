@@ -199,8 +199,7 @@ static void put_tests(FILE *out, const sf_table_result *r) {
     if (c->specimen.area > 0 && c->specimen.thickness > 0)
         sf_html_paragraph(out, "Specimen of %.5g mm², %.4g mm thick, %.4g kg/m³.", 1e6 * c->specimen.area,
                           1e3 * c->specimen.thickness, c->density);
-    sf_rows_html_table(out, "dense", sf_table_test_rows(r),
-                       (sf_records){r->test, sizeof r->test[0], r->test_count});
+    sf_rows_html_table(out, sf_table_test_rows(r), (sf_records){r->test, sizeof r->test[0], r->test_count});
     sf_html_note(
         out, "Deviation: root mean square of data less fit, over the scatter (1: nothing but scatter) and in "
              "percent of the stress (counted as a hundredth of the largest at least).");
@@ -209,11 +208,10 @@ static void put_tests(FILE *out, const sf_table_result *r) {
 }
 
 static void put_parameters(FILE *out, const sf_compression_fit *fit) {
-    char columns[96];
-    snprintf(columns, sizeof columns, "parameter|value|standard error|%g %% interval|note",
-             100 * fit->data.config->confidence);
+    SF_PRINTED(columns, 96, "parameter|value|standard error|%g %% interval|note",
+               100 * fit->data.config->confidence);
     SF_HTML_BLOCK(out, "Parameters");
-    sf_html_table table = sf_html_table_begin(out, "dense", columns);
+    sf_html_table table = sf_html_table_begin(out, columns);
     for (const sf_estimate *e = fit->estimate; e < fit->estimate + SF_ESTIMATES; e++) {
         sf_table_estimate shown = sf_table_estimate_of(e);
         if (e->present)
@@ -236,8 +234,7 @@ static bool put_candidates(FILE *out, const sf_candidate *c, int count, int chos
         lowest = c[k].tried ? fmin(lowest, c[k].bic) : lowest;
     if (isinf(lowest))
         return false;
-    SF_HTML_TABLE table =
-        sf_html_table_begin(out, "dense", "form|>parameters|>chi2|>BIC above the lowest|choice");
+    SF_HTML_TABLE table = sf_html_table_begin(out, "form|>parameters|>chi2|>BIC above the lowest|choice");
     for (int k = 0; k < count; k++)
         if (c[k].tried)
             sf_html_line(&table, phrase[k], "%d|%.6g|%.1f|%s", c[k].parameters, c[k].chi2, c[k].bic - lowest,
@@ -264,7 +261,7 @@ static void put_quality(FILE *out, const sf_table_result *r) {
     const sf_compression_fit *fit = &r->fit;
     char misfit[160];
     SF_HTML_BLOCK(out, "How good it is");
-    SF_HTML_TABLE table = sf_html_table_begin(out, "dense", NULL);
+    SF_HTML_TABLE table = sf_html_table_begin(out, NULL);
     sf_html_fact(&table, "scatter",
                  "%.3g kPa and %.3g %% of the stress, of the data about a free smooth curve",
                  1e-3 * fit->data.scatter.absolute, 100 * fit->data.scatter.relative);
@@ -284,7 +281,7 @@ static void put_simulation(FILE *out, const sf_table_result *r) {
     if (!r->simulated)
         return;
     SF_HTML_BLOCK(out, "The simulated test");
-    sf_rows_html_table(out, "dense", sf_table_simulation_rows,
+    sf_rows_html_table(out, sf_table_simulation_rows,
                        (sf_records){r->test, sizeof r->test[0], r->test_count});
     sf_html_note(out,
                  "A cube of the fitted material between platens (softfall-solve), in a time that runs faster "
@@ -330,9 +327,8 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
 sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging *output,
                                 const sf_table_result *r, char *warning, size_t size, sf_error *err) {
     const sf_compression_fit *fit = &r->fit;
-    char title[256];
     SF_TRY(write_picture(output, fit, warning, size, err));
-    snprintf(title, sizeof title, "%s: identification from compression tests", fit->data.config->name);
+    SF_PRINTED(title, 256, "%s: identification from compression tests", fit->data.config->name);
     FILE *out = sf_html_begin(output, title, job->path, err);
     SF_TRY(err->status);
     put_banner(out, fit);

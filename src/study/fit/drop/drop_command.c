@@ -107,8 +107,7 @@ static void clear_posterior(const char *folder) {
  * never stand beside another posterior. */
 static sf_status commit(const char *directory, const sf_drop_average *average, sf_staging *output,
                         sf_error *err) {
-    char folder[PATH_MAX];
-    snprintf(folder, sizeof folder, "%s/posterior", directory);
+    SF_PRINTED(folder, PATH_MAX, "%s/posterior", directory);
     SF_TRY(sf_folder_own(folder, err));
     clear_posterior(folder);
     if (sf_staging_commit(output, err) == SF_OK && average->models > 0)

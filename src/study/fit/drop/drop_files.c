@@ -123,8 +123,7 @@ static sf_status list_strain_bins(const sf_drop_fit *fit, strain_bin bin[SF_FIT_
 }
 
 static sf_status write_curve(const strain_bin *bin, const sf_staging *output, sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "fit-curve.csv", err));
+    SF_CSV_FILE(csv, output, "fit-curve.csv", err);
     SF_CSV_PRINT_LINE(&csv, "strain,stress_kPa,low95_kPa,high95_kPa,information");
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++)
         SF_CSV_PRINT_LINE(&csv, "%.3f,%.6g,%.6g,%.6g,%.6g", bin[b].strain, bin[b].stress, bin[b].low,
@@ -134,8 +133,7 @@ static sf_status write_curve(const strain_bin *bin, const sf_staging *output, sf
 
 /* A block of gnuplot for each drop, which its comments begin. */
 static sf_status write_drops(const sf_drop_fit *fit, const sf_staging *output, sf_error *err) {
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "fit-drops.csv", err));
+    SF_CSV_FILE(csv, output, "fit-drops.csv", err);
     fputs("# one block per drop: time after the run's start (ms), acceleration (g)\n", csv.file);
     for (int d = 0; d < fit->input->drop_count; d++) {
         const sf_series *s = &fit->simulated[d].curve;
@@ -156,14 +154,6 @@ static sf_status write_drops(const sf_drop_fit *fit, const sf_staging *output, s
 }
 
 /* ---- the picture ---- */
-
-static double peak_time_ms(const sf_series *curve) {
-    int64_t at = 0;
-    for (int64_t k = 1; k < curve->count; k++)
-        if (curve->value[k] > curve->value[at])
-            at = k;
-    return 1e3 * curve->time[at];
-}
 
 /* The loading curve with its interval, and which strains the drops see. */
 static void put_strain_panels(sf_chart *chart, const strain_bin *bin) {
@@ -219,9 +209,11 @@ static void put_drop_panel(sf_chart *chart, const sf_drop_fit *fit) {
             .kind = SF_SERIES_POINTS, .colour = "#404040", .shape = SF_POINT_CIRCLE, .size = 2, .width = 2},
         "measured peak");
     for (int d = 0; d < fit->measured_drops; d++)
-        if (!isnan(fit->input->drop[d].value[SF_FIT_A_MAX]))
-            sf_series_point(peaks, peak_time_ms(&fit->simulated[d].curve),
+        if (!isnan(fit->input->drop[d].value[SF_FIT_A_MAX])) {
+            const sf_series *curve = &fit->simulated[d].curve;
+            sf_series_point(peaks, 1e3 * curve->time[sf_series_peak(curve)],
                             fit->input->drop[d].value[SF_FIT_A_MAX]);
+        }
 }
 
 static sf_status write_picture(const sf_drop_fit *fit, const strain_bin *bin, const sf_staging *output,
@@ -279,11 +271,9 @@ static void put_provenance(FILE *f, const sf_drop_fit *fit, const sf_drop_averag
 
 static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *average,
                                 const char *input_path, const sf_staging *output, sf_error *err) {
-    SF_OWNED char *provenance = NULL;
-    size_t size = 0;
     SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     double low;
-    FILE *f = open_memstream(&provenance, &size);
+    SF_OWNED SF_TEXT_STREAM(f, provenance, size);
     if (f)
         put_provenance(f, fit, average, input_path);
     if (!f || fclose(f) != 0)

@@ -26,9 +26,8 @@ static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *
         return SF_REFUSE(err, "%s: a foam cannot be fitted to this record: %s", options->path, line);
     SF_TRY(sf_record_offset(&reference.raw, &reference.raw, &zero, err));
     SF_TRY(sf_contact_instant(curve, options->path, isnan(zero) ? 0 : zero, &contact, err));
-    drop->sample_time = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
-    drop->sample_value = sf_alloc(err, SF_FIT_CURVE_SAMPLES, sizeof(double), "samples");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "samples", SF_ROOM(drop->sample_time, SF_FIT_CURVE_SAMPLES),
+                        SF_ROOM(drop->sample_value, SF_FIT_CURVE_SAMPLES)));
     for (int64_t k = 0; k < curve->count; k++)
         peak = fmax(peak, curve->value[k]);
     for (int k = 1; contact + k * SAMPLE_INTERVAL <= curve->time[curve->count - 1]; k++) {
@@ -228,6 +227,5 @@ sf_status sf_drop_input_read(const sf_config *config, sf_config_item *group, boo
 }
 
 void sf_drop_input_free(sf_fit_drop *drop) {
-    SF_FREE(drop->case_path, drop->curve_path, drop->sample_time, drop->sample_value);
-    *drop = (sf_fit_drop){0};
+    SF_CLEAR(drop, drop->case_path, drop->curve_path, drop->sample_time, drop->sample_value);
 }

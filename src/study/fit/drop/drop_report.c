@@ -95,7 +95,7 @@ static void put_chain(FILE *f, const sf_drop_fit *fit) {
                       "Every simulated number of the drops on this page is what the accelerometer reads on "
                       "its mount and behind its high pass, not what the missile does. The drops share both.");
     SF_HTML_TABLE table =
-        sf_html_table_begin(f, "dense", "accelerometer|>given|>standard deviation (%)|>in the fit|>95 %");
+        sf_html_table_begin(f, "accelerometer|>given|>standard deviation (%)|>in the fit|>95 %");
     for (const sf_chain_shown *c = shown; c < shown + count; c++) {
         sf_html_line(&table, c->name, "%.4g%s%s|%.3g|%.4g%s%s", c->given, c->blank, c->unit, 100 * c->sd,
                      c->value, c->blank, c->unit);
@@ -117,8 +117,8 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
                  "The simulation with the identified material against the measurement, as the accelerometer "
                  "reads (F/m), CFC 1000. \"From the others\": the same drop left out of the fit and "
                  "predicted by the rest (corrected surrogate).");
-    SF_HTML_TABLE table = sf_html_table_begin(
-        f, "dense", "drop|quantity|>measured|>± %|>simulated|>difference|>from the others");
+    SF_HTML_TABLE table =
+        sf_html_table_begin(f, "drop|quantity|>measured|>± %|>simulated|>difference|>from the others");
     for (int d = 0; d < fit->measured_drops; d++)
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
             const sf_drop_kind_info *about = sf_drop_kind_get(kind);
@@ -134,7 +134,7 @@ static void put_drops(FILE *f, const sf_drop_fit *fit) {
                          difference(fit->without[row], measured));
         }
     sf_html_table_end(&table);
-    table = sf_html_table_begin(f, "dense", "drop|>curve RMSE (g)|>largest local strain|verdict");
+    table = sf_html_table_begin(f, "drop|>curve RMSE (g)|>largest local strain|verdict");
     for (int d = 0; d < fit->measured_drops; d++)
         sf_html_line(&table, fit->input->drop[d].name, "%.2f|%.3f|%s", sf_drop_curve_rmse(fit, d),
                      fit->simulated[d].max_local_strain, sf_verdict_phrase(fit->simulated[d].grade));
@@ -151,8 +151,7 @@ static void put_joint(FILE *f, const sf_drop_fit *fit) {
                  "The law at a material point, and as one column of foam under a flat mass. Deviations of a "
                  "test are root mean squares over its largest stress. Below rate_reference the law has no "
                  "effect of the rate.");
-    SF_HTML_TABLE table =
-        sf_html_table_begin(f, "dense", "test|>rate (1/s)|>± %|>loading|>unloading|>largest strain");
+    SF_HTML_TABLE table = sf_html_table_begin(f, "test|>rate (1/s)|>± %|>loading|>unloading|>largest strain");
     for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
         const sf_joint_test *test = &joint->test[t];
         sf_html_line(&table, test->name, "%.3g%s|%.1f|%.1f %%|%.3f|%.3f", test->rate,
@@ -161,7 +160,7 @@ static void put_joint(FILE *f, const sf_drop_fit *fit) {
     }
     sf_html_table_end(&table);
     table = sf_html_table_begin(
-        f, "dense", "cushion|>static stress (kPa)|>peak measured (g)|>± %|>of the foam (g)|>difference");
+        f, "cushion|>static stress (kPa)|>peak measured (g)|>± %|>of the foam (g)|>difference");
     for (int c = 0; c < joint->cushion_count; c++)
         for (int k = 0; k < joint->cushion[c].count; k++, y++) {
             const sf_joint_cushion *cushion = &joint->cushion[c];
@@ -197,8 +196,7 @@ static void put_speeds(FILE *f, const sf_drop_fit *fit) {
                       "the table above is simulated with %s ones.",
                       fit->speeds_fitted ? "the fitted" : "the given");
     SF_HTML_TABLE table = sf_html_table_begin(
-        f, "dense",
-        "drop|>given (m/s)|>standard deviation (%)|>in the fit (%)|>95 %|>a_max there (g)|>HIC there");
+        f, "drop|>given (m/s)|>standard deviation (%)|>in the fit (%)|>95 %|>a_max there (g)|>HIC there");
     for (int d = 0; d < fit->measured_drops; d++) {
         int k = fit->speed[d];
         if (k < 0)
@@ -222,7 +220,7 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
         "Drops that were not used. The 95 %% intervals are linearised and hold the uncertainty of this model's parameters and, of a_max and HIC, the scatter "
         "from drop to drop (missile.speed_scatter and pad.thickness_tolerance); that of the discretisation and of the model's form come on top.");
     sf_html_table table =
-        sf_html_table_begin(f, "dense", "drop|quantity|>predicted|>95 %|>largest local strain|verdict");
+        sf_html_table_begin(f, "drop|quantity|>predicted|>95 %|>largest local strain|verdict");
     for (int d = fit->measured_drops; d < in->drop_count; d++)
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
             const sf_drop_kind_info *about = sf_drop_kind_get(kind);
@@ -244,11 +242,10 @@ static void put_predictions(FILE *f, const sf_drop_fit *fit) {
 
 /* A heading for each unknown parameter after the first one, all of numbers. */
 static sf_html_table begin_matrix(FILE *f, const sf_fit_input *in, const char *first) {
-    char columns[1024];
-    snprintf(columns, sizeof columns, "%s", first);
+    SF_PRINTED(columns, 1024, "%s", first);
     for (int k = 0; k < in->unknown_count; k++)
         sf_text_add(columns, sizeof columns, "|>%s", sf_parameter_get(in->unknown[k])->name);
-    return sf_html_table_begin(f, "dense", columns);
+    return sf_html_table_begin(f, columns);
 }
 
 static void put_parameters(FILE *f, const sf_drop_fit *fit) {
@@ -258,11 +255,10 @@ static void put_parameters(FILE *f, const sf_drop_fit *fit) {
     sf_html_note(f, "95 %% intervals (of the logarithm, linearised). A parameter that keeps 90 %% or more of "
                     "its prior's width was hardly seen by the drops.");
     SF_HTML_TABLE table = sf_html_table_begin(
-        f, "dense", "parameter|>value|>95 %|>prior|>prior factor (1 sd)|>width left of the prior|meaning");
+        f, "parameter|>value|>95 %|>prior|>prior factor (1 sd)|>width left of the prior|meaning");
     for (int k = 0; k < in->unknown_count; k++) {
         sf_estimate_shown e = sf_drop_estimate(fit, k);
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s%s%s", e.about->name, *e.blank ? ", " : "", e.about->unit);
+        SF_HTML_ROW(&table, "%s%s%s", e.about->name, *e.blank ? ", " : "", e.about->unit);
         sf_html_line(&table, NULL, "%.4g|%.4g to %.4g|%.4g|%.2f|%.0f %%|%s", e.value, e.low, e.high,
                      in->prior[k] / e.per_unit, exp(in->prior_sd[k]), 100 * e.shrinkage,
                      e.about->description);
@@ -271,8 +267,7 @@ static void put_parameters(FILE *f, const sf_drop_fit *fit) {
     sf_html_paragraph(f, "Correlation of their logarithms:");
     table = begin_matrix(f, in, "");
     for (int j = 0; j < in->unknown_count; j++) {
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s", sf_parameter_get(in->unknown[j])->name);
+        SF_HTML_ROW(&table, "%s", sf_parameter_get(in->unknown[j])->name);
         for (int k = 0; k < in->unknown_count; k++)
             sf_html_cell(&table, "%+.2f",
                          r->covariance[j][k] / sqrt(r->covariance[j][j] * r->covariance[k][k]));
@@ -288,8 +283,7 @@ static void put_sensitivities(FILE *f, const sf_drop_fit *fit) {
         for (int kind = 0; kind < SF_FIT_SAMPLES; kind++) {
             if (!sf_drop_shows(fit, d, kind))
                 continue;
-            sf_html_row(&table);
-            sf_html_cell(&table, "%s, %s", in->drop[d].name, sf_drop_kind_get(kind)->name);
+            SF_HTML_ROW(&table, "%s, %s", in->drop[d].name, sf_drop_kind_get(kind)->name);
             for (int k = 0; k < in->unknown_count; k++)
                 sf_html_cell(&table, "%+.3f", fit->gradient[(fit->row[d] + kind) * fit->parameters + k]);
         }
@@ -304,7 +298,7 @@ static void put_curve(FILE *f, const sf_drop_fit *fit) {
                  "and the priors determine the curve.",
                  low, high);
     SF_HTML_TABLE table = sf_html_table_begin(
-        f, "dense", "strain|>part of the information|>standard deviation of the stress|>before the data");
+        f, "strain|>part of the information|>standard deviation of the stress|>before the data");
     for (int b = 0; b < SF_FIT_STRAIN_BINS; b++) {
         sf_html_row(&table);
         sf_html_line(&table, NULL, "%.2f to %.2f|%.1f %%|%.1f %%|%.0f %%", 0.05 * b, 0.05 * (b + 1),
@@ -315,8 +309,7 @@ static void put_curve(FILE *f, const sf_drop_fit *fit) {
 
 static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
                               const char *command, const sf_staging *output, sf_error *err) {
-    char title[256];
-    snprintf(title, sizeof title, "Identification from drops: %s", fit->input->material_name);
+    SF_PRINTED(title, 256, "Identification from drops: %s", fit->input->material_name);
     FILE *f = sf_html_begin(output, title, input_path, err);
     SF_TRY(err->status);
     put_banner(f, fit);
@@ -340,8 +333,7 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
 
 /* A number of a drop under "STEMmiddleSUFFIX". */
 static void json_stem(sf_json *j, const char *stem, const char *middle, const char *suffix, double value) {
-    char key[64];
-    snprintf(key, sizeof key, "%s%s%s", stem, middle, suffix);
+    SF_PRINTED(key, 64, "%s%s%s", stem, middle, suffix);
     sf_json_number(j, key, value);
 }
 
@@ -379,8 +371,7 @@ static void json_drops(sf_json *j, const sf_drop_fit *fit) {
         SF_JSON_NUMBERS(j, {"curve_rmse_g", sf_drop_curve_rmse(fit, d)},
                         {"max_local_strain", simulated->max_local_strain},
                         {"energy_error", simulated->energy_error});
-        sf_json_text(j, "grade", sf_verdict_phrase(simulated->grade));
-        sf_json_text(j, "verdict", simulated->verdict);
+        SF_JSON_TEXTS(j, {"grade", sf_verdict_phrase(simulated->grade)}, {"verdict", simulated->verdict});
         if (*simulated->failure)
             sf_json_text(j, "failure", simulated->failure);
     }
@@ -393,8 +384,7 @@ static void json_joint(sf_json *j, const sf_drop_fit *fit) {
     for (int t = 0; t < joint->test_count; y += joint->test[t++].count) {
         const sf_joint_test *test = &joint->test[t];
         SF_JSON_OBJECT(j, NULL);
-        sf_json_text(j, "name", test->name);
-        sf_json_text(j, "understood", test->interpretation);
+        SF_JSON_TEXTS(j, {"name", test->name}, {"understood", test->interpretation});
         sf_json_number(j, "rate_1_s", test->rate);
         sf_json_bool(j, "below_rate_reference", is_below_reference(fit, test));
         SF_JSON_NUMBERS(j, {"points", test->count}, {"loading_rms", sf_joint_rms(test, false, y)},
@@ -434,13 +424,9 @@ static void json_parameters(sf_json *j, const sf_drop_fit *fit) {
 
 static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
                             const sf_staging *output, sf_error *err) {
-    FILE *f = sf_staging_open(output, "fit.json", err);
-    SF_TRY(err->status);
-    sf_json j = {.file = f, .empty = true};
-    sf_json_open(&j, NULL, '{');
-    sf_json_text(&j, "program", "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")");
-    sf_json_text(&j, "input", input_path);
-    sf_json_text(&j, "input_text", fit->input->text);
+    SF_JSON_FILE(j, output, "fit.json", err);
+    SF_JSON_TEXTS(&j, {"program", "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")"},
+                  {"input", input_path}, {"input_text", fit->input->text});
     sf_json_bool(&j, "converged", fit->result.converged);
     if (fit->result.reason)
         sf_json_text(&j, "reason", fit->result.reason);
@@ -453,8 +439,8 @@ static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *avera
     if (average)
         sf_inference_json(&j, average, err);
     sf_json_close(&j);
-    fputc('\n', f);
-    return sf_staging_close(f, "fit.json", err);
+    fputc('\n', j.file);
+    return sf_staging_close(j.file, "fit.json", err);
 }
 
 sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,

@@ -179,9 +179,8 @@ sf_status sf_drop_fit_list(sf_drop_fit *fit, sf_error *err) {
     for (int d = 0; d < in->drop_count; d++)
         fit->speed[d] = in->drop[d].speed_sd > 0 ? fit->parameters++ : -1;
     unsigned long n = (unsigned long)fit->row[in->drop_count];
-    fit->gradient = sf_alloc(err, n * (unsigned long)fit->parameters, sizeof(double), "responses");
-    fit->y = sf_alloc(err, 6 * n, sizeof(double), "responses");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "responses", SF_ROOM(fit->gradient, n * (unsigned long)fit->parameters),
+                        SF_ROOM(fit->y, 6 * n)));
     fit->measured = fit->y + n;
     fit->sd = fit->measured + n;
     fit->without = fit->sd + n;
@@ -289,8 +288,7 @@ static size_t measure(const char *record, size_t left) {
 
 /* Opened and locked; -1 on failure. */
 static int open_locked(const char *path) {
-    sf_error none = SF_ERROR_INIT;
-    FILE *made = sf_replace_exists(path) ? NULL : sf_replace_create(path, &none);
+    FILE *made = sf_replace_exists(path) ? NULL : sf_replace_create(path, SF_IGNORED);
     if (made)
         fclose(made);
     int file = sf_replace_reopen(path);
@@ -346,8 +344,7 @@ void sf_fit_memory_add(sf_fit_memory *m, uint64_t key, size_t count, const doubl
     size_t length = sizeof(head) + count * sizeof *value, size = length + sizeof key;
     if (!m || m->file < 0 || size > LARGEST - m->end)
         return;
-    sf_error none = SF_ERROR_INIT;
-    SF_OWNED char *record = sf_alloc(&none, 1, size, "record");
+    SF_OWNED char *record = sf_alloc(SF_IGNORED, 1, size, "record");
     if (record) {
         const head h = {key, count};
         memcpy(record, &h, sizeof h);

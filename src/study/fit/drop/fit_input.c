@@ -142,7 +142,6 @@ static sf_status read_material(const sf_config *config, sf_config_item *root, sf
                                sf_error *err) {
     const char *form = "gas", *name = "material", *title = "Identified foam";
     sf_config_item *model = model_of(root, in);
-    char override[4096];
     SF_TRY(sf_config_text(config, model, curve_key(root, model), model != root, &form, err));
     SF_TRY(sf_config_text(config, root, "name", false, &name, err));
     SF_TRY(sf_config_text(config, root, "title", false, &title, err));
@@ -162,7 +161,7 @@ static sf_status read_material(const sf_config *config, sf_config_item *root, sf
                                 sizeof in->material_name - 1, sizeof in->title - 1);
     snprintf(in->material_name, sizeof in->material_name, "%s", name);
     snprintf(in->title, sizeof in->title, "%s", title);
-    snprintf(override, sizeof override, "material=@%s", in->material_path);
+    SF_PRINTED(override, 4096, "material=@%s", in->material_path);
     if (in->drop_count == 0) {
         SF_OWNED_BY(sf_material_free) sf_material material = {0};
         SF_TRY(sf_case_read_material(in->material_path, &material, err));
@@ -271,8 +270,7 @@ static sf_status check_terms(const sf_config *config, sf_config_item *model, sf_
     sf_config_item *group = config_setting_get_member(model, "start");
     for (int k = 0; group && k < config_setting_length(group); k++) {
         sf_config_item *item = config_setting_get_elem(group, (unsigned)k);
-        char what[64];
-        snprintf(what, sizeof what, "start: %s", config_setting_name(item));
+        SF_PRINTED(what, 64, "start: %s", config_setting_name(item));
         SF_TRY(check_term(config, item, model, sf_parameter_find(config_setting_name(item)), what, err));
     }
     return SF_OK;
@@ -505,6 +503,5 @@ void sf_fit_input_free(sf_fit_input *in) {
         sf_drop_input_free(&in->drop[k]);
     sf_free_all((size_t)in->coarse_count, in->coarse);
     sf_foam_card_free(&in->form.base);
-    SF_FREE(in->material_path, in->text);
-    *in = (sf_fit_input){0};
+    SF_CLEAR(in, in->material_path, in->text);
 }

@@ -187,9 +187,8 @@ static int row_of(const sf_drop_inference *in, int q) {
 static sf_status find_jacobian(sf_drop_inference *in, sf_error *err) {
     unsigned long n = (unsigned long)responses_of(in->fit);
     in->jacobian = sf_alloc(err, n * PLACES, sizeof(double), "responses");
-    SF_OWNED double *high = sf_alloc(err, n * PLACES, sizeof *high, "responses"),
-                    *low = sf_alloc(err, n * PLACES, sizeof *low, "responses");
-    SF_TRY(err->status);
+    SF_OWN(double, high, n *PLACES, "responses", err);
+    SF_OWN(double, low, n *PLACES, "responses", err);
     sf_error failure[PLACES];
 #pragma omp parallel for schedule(dynamic)
     for (int b = 0; b < PLACES; b++) {
@@ -355,9 +354,8 @@ static bool respond_residual(const void *context, const double *u, double *resid
 static double split(const void *context, const double *u, const double *residual, double *conditional) {
     const sf_drop_inference *in = context;
     double few[256], *own = few, sum = log_prior(in, u);
-    sf_error err = SF_ERROR_INIT;
     if (in->data > 128)
-        own = sf_alloc(&err, 2 * in->data, sizeof *own, "data");
+        own = sf_alloc(SF_IGNORED, 2 * in->data, sizeof *own, "data");
     for (int d = 0; conditional && d < in->fit->measured_drops; d++)
         conditional[d] = 0;
     if (own && isfinite(sum) && (residual || respond_residual(in, u, own)))
@@ -384,10 +382,9 @@ static void fill_error(sf_discrepancy_size size, const double *x, sf_response_er
 
 bool sf_drop_inference_draw(const sf_drop_inference *in, const double *u, uint64_t seed, double *delta,
                             sf_response_error *error, double *own) {
-    sf_error err = SF_ERROR_INIT;
     double x[SF_DISCREPANCY_MOST];
     sf_discrepancy_size size = sf_drop_inference_size(in, u);
-    SF_OWNED double *residual = sf_alloc(&err, in->data, sizeof *residual, "data");
+    SF_OWNED double *residual = sf_alloc(SF_IGNORED, in->data, sizeof *residual, "data");
     SF_RANDOM *random = gsl_rng_alloc(gsl_rng_taus2);
     if (!residual || !random || !find_residual(in, u, residual))
         return false;
@@ -482,10 +479,9 @@ sf_status sf_drop_infer(const sf_drop_fit *fit, const sf_inference_options *opti
 }
 
 void sf_drop_inference_free(sf_drop_inference *in) {
-    SF_FREE(in->data_row, in->offset, in->jacobian, in->base);
     sf_discrepancy_free(&in->all);
     for (int d = 0; d < SF_FIT_MAX_DROPS; d++)
         sf_discrepancy_free(&in->without[d]);
     sf_chains_free(&in->chains);
-    *in = (sf_drop_inference){0};
+    SF_CLEAR(in, in->data_row, in->offset, in->jacobian, in->base);
 }

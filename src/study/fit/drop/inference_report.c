@@ -83,19 +83,17 @@ static void put_models(FILE *f, const sf_drop_average *a) {
               "Bayesian bootstrap of the drops. The evidence, which depends on the widths of the priors, stands beside for "
               "comparison. Misfit: at the maximum.");
     SF_HTML_TABLE table = sf_html_table_begin(
-        f, "dense",
+        f,
         "model|>weight|>log predictive density of left-out drops|>log evidence|>± (1 sd)|>weight by evidence|>unknowns|>misfit");
     for (int m = 0; m < a->models; m++) {
         const sf_drop_inference *in = a->model[m];
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s%s", label_of(a, m), m == sf_drop_average_best(a) ? " (written)" : "");
+        SF_HTML_ROW(&table, "%s%s", label_of(a, m), m == sf_drop_average_best(a) ? " (written)" : "");
         sf_html_line(&table, NULL, "%.3f|%.2f|%.2f|%.2f|%.3f|%d|%.2f", a->weight[m], a->predictive[m],
                      in->evidence.log_value, in->evidence.error, a->evidence_weight[m],
                      in->fit->input->unknown_count, in->fit->result.misfit);
     }
     for (int m = 0; m < a->failed; m++) {
-        sf_html_row(&table);
-        sf_html_cell(&table, "%s: FAILED, %s", a->failure[m].label, a->failure[m].sentence);
+        SF_HTML_ROW(&table, "%s: FAILED, %s", a->failure[m].label, a->failure[m].sentence);
         sf_html_line(&table, NULL, "0.000|–|–|–|–|–|–");
     }
 }
@@ -129,7 +127,7 @@ static sf_status put_predictions(FILE *f, const sf_drop_average *a, sf_error *er
     sf_html_heading(f, "Predictions, averaged over the models");
     put_prediction_notes(f, a);
     SF_HTML_TABLE table = sf_html_table_begin(
-        f, "dense",
+        f,
         "drop|quantity|>median|>95 %|>95 % of a single pad and drop|>95 % of the model with the largest weight alone");
     for (int q = 0; q < in->quantities; q++) {
         const sf_drop_kind_info *about = sf_drop_kind_get(in->quantity[q].kind);
@@ -164,7 +162,7 @@ static sf_status put_parameters(FILE *f, const sf_drop_average *a, sf_error *err
         "the true loading curve over the form's; a large one says that the form does not fit. kappa: the model's other "
         "errors, as a multiple of 1 %% of a_max and 2 %% of the other numbers.");
     SF_HTML_TABLE table =
-        sf_html_table_begin(f, "dense", "model|parameter|>median|>95 %|>R-hat|>effective sample size");
+        sf_html_table_begin(f, "model|parameter|>median|>95 %|>R-hat|>effective sample size");
     for (int m = 0; m < a->models; m++) {
         const sf_drop_inference *in = a->model[m];
         for (int k = 0; k < in->parameters; k++) {
@@ -188,7 +186,7 @@ static void put_left_out(FILE *f, const sf_drop_average *a) {
     sf_html_note(f, "log p of a drop's data given the others'. By importance weights of the whole posterior "
                     "where their Pareto k is below 0.5; else by draws of a wider distribution if enough of "
                     "them count; else by chains without the drop.");
-    SF_HTML_TABLE table = sf_html_table_begin(f, "dense", "model|drop|>log density|>Pareto k|by");
+    SF_HTML_TABLE table = sf_html_table_begin(f, "model|drop|>log density|>Pareto k|by");
     for (int m = 0; m < a->models; m++)
         for (int d = 0; d < a->model[m]->fit->measured_drops; d++) {
             const sf_left_out *out = &a->model[m]->left_out[d];
@@ -207,7 +205,7 @@ static void put_diagnostics(FILE *f, const sf_drop_average *a) {
                  "Reached: R-hat below 1.02 and an effective sample size above 400 for every parameter and "
                  "prediction; the evidence from at least 100 effective draws.");
     SF_HTML_TABLE table = sf_html_table_begin(
-        f, "dense",
+        f,
         "model|>largest R-hat|>least effective size|>states kept|>accepted (%)|>evaluations|>effective draws of the evidence|reached");
     for (int m = 0; m < a->models; m++) {
         const sf_drop_inference *in = a->model[m];
@@ -266,8 +264,7 @@ static sf_status json_parameters(sf_json *j, const sf_drop_inference *in, sf_err
         double value[3];
         SF_TRY(find_parameter(in, k, value, err));
         SF_JSON_OBJECT(j, NULL);
-        sf_json_text(j, "name", sf_drop_inference_name(in, k));
-        sf_json_text(j, "unit", "SI");
+        SF_JSON_TEXTS(j, {"name", sf_drop_inference_name(in, k)}, {"unit", "SI"});
         json_quantiles(j, value);
         SF_JSON_NUMBERS(j, {"rhat", in->chains.rhat[k]}, {"effective_sample_size", in->chains.effective[k]});
     }
@@ -280,8 +277,7 @@ static void json_failed_drops(sf_json *j, const sf_drop_fit *fit) {
     for (int d = fit->measured_drops; d < fit->input->drop_count; d++)
         if (*fit->simulated[d].failure) {
             SF_JSON_OBJECT(j, NULL);
-            sf_json_text(j, "drop", fit->input->drop[d].name);
-            sf_json_text(j, "failure", fit->simulated[d].failure);
+            SF_JSON_TEXTS(j, {"drop", fit->input->drop[d].name}, {"failure", fit->simulated[d].failure});
         }
 }
 
@@ -324,8 +320,7 @@ static sf_status json_prediction(sf_json *j, const sf_drop_average *a, int q, sf
     SF_TRY(sf_drop_average_quantiles(a, SF_ALL_MODELS, q, 3, THREE, value, err));
     SF_TRY(sf_drop_average_quantiles(a, SF_SINGLE_DROP, q, 3, THREE, one, err));
     SF_JSON_OBJECT(j, NULL);
-    sf_json_text(j, "drop", drop_of(in, q));
-    sf_json_text(j, "quantity", about->key);
+    SF_JSON_TEXTS(j, {"drop", drop_of(in, q)}, {"quantity", about->key});
     json_quantiles(j, value);
     sf_json_text(j, "open", isnan(value[1]) ? NULL : isinf(value[2]) ? "above" : "no");
     SF_JSON_NUMBERS(j, {"single_drop_low95", one[0]}, {"single_drop_high95", one[2]});
@@ -408,8 +403,7 @@ static sf_status put_csv_draw(sf_csv *csv, const sf_drop_average *a, int k, cons
 
 sf_status sf_inference_csv(const sf_drop_average *a, const sf_staging *output, sf_error *err) {
     sf_posterior_draw draw[SF_POSTERIOR_DRAWS];
-    sf_csv csv;
-    SF_TRY(sf_csv_open(&csv, output, "posterior.csv", err));
+    SF_CSV_FILE(csv, output, "posterior.csv", err);
     put_csv_heading(&csv, a);
     sf_drop_average_draw(a, draw);
     for (int k = 0; k < SF_POSTERIOR_DRAWS && err->status == SF_OK; k++)

@@ -157,9 +157,8 @@ static sf_status learn(walk *w, int count, const walker *list, sf_error *err) {
     for (int c = 0; c < count; c++)
         for (int k = 0; k < list[c].tried; k++, all++)
             best = fmax(best, list[c].tried_density[k]);
-    SF_OWNED double *u = sf_alloc(err, all * n, sizeof *u, "states"),
-                    *y = sf_alloc(err, all * m, sizeof *y, "states");
-    SF_TRY(err->status);
+    SF_OWN(double, u, all *n, "states", err);
+    SF_OWN(double, y, all *m, "states", err);
     for (int c = 0; c < count; c++)
         for (size_t k = 0; k < (size_t)list[c].tried; k++)
             if (list[c].tried_density[k] > best - FAR) {
@@ -466,10 +465,8 @@ static sf_status allocate(work *w, sf_error *err) {
                   chains = (unsigned long)r->chains;
     w->room = o->most_kept + o->round;
     unsigned long all = chains * (unsigned long)w->room;
-    w->walker = sf_alloc(err, chains, sizeof *w->walker, "Markov chains");
-    w->column = sf_alloc(err, all, sizeof(double), "Markov chains");
-    r->sample = sf_alloc(err, (all + 2) * (n + q) + all, sizeof(double), "Markov chains");
-    SF_TRY(err->status);
+    SF_TRY(SF_ALLOC_ALL(err, "Markov chains", SF_ROOM(w->walker, chains), SF_ROOM(w->column, all),
+                        SF_ROOM(r->sample, (all + 2) * (n + q) + all)));
     r->quantity = r->sample + all * n;
     r->log_density = r->quantity + all * q;
     r->rhat = r->log_density + all;
@@ -515,6 +512,5 @@ sf_status sf_chains_run(const sf_target *target, const double *start, const doub
 }
 
 void sf_chains_free(sf_chains *r) {
-    free(r->sample); /* and all behind it */
-    *r = (sf_chains){0};
+    SF_CLEAR(r, r->sample); /* and all behind it */
 }

@@ -108,8 +108,7 @@ sf_status sf_discrepancy_build(int data, int bins, const double *jacobian, const
 }
 
 void sf_discrepancy_free(sf_discrepancy *d) {
-    SF_FREE(d->root, d->base_root, d->white, d->gram, d->spread[0], d->spread[1]);
-    *d = (sf_discrepancy){0};
+    SF_CLEAR(d, d->root, d->base_root, d->white, d->gram, d->spread[0], d->spread[1]);
 }
 
 static double size_of(const sf_discrepancy *d, int latent, sf_discrepancy_size size) {

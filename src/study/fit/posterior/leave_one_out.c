@@ -172,8 +172,7 @@ static double *split_all(const sf_grouped *g, const double *sample, int count, s
 /* By weights 1 / p(y_g | others, u); `scratch` [count]. */
 static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
                        sf_error *err) {
-    SF_OWNED double *sum = sf_alloc(err, count, sizeof *sum, "weights");
-    SF_TRY(err->status);
+    SF_OWN(double, sum, count, "weights", err);
     for (int s = 0; s < count; s++)
         scratch[s] = -all[s * groups + g];
     out->pareto_k = sf_pareto_smooth(count, scratch, err);

@@ -165,8 +165,7 @@ static sf_status find_axis(samples *s, sf_error *err) {
 
 /* First shares: equal slices along the axis. */
 static sf_status slice(const samples *s, int parts, sf_error *err) {
-    SF_OWNED double *sorted = sf_alloc(err, s->count, sizeof *sorted, "samples");
-    SF_TRY(err->status);
+    SF_OWN(double, sorted, s->count, "samples", err);
     memcpy(sorted, s->position, (size_t)s->count * sizeof *sorted);
     gsl_sort(sorted, 1, (size_t)s->count);
     for (int k = 0; k < s->count; k++)
@@ -252,9 +251,8 @@ static int choose_parts(samples *half, int rest, double freedom) {
 sf_status sf_mixture_fit(int n, int count, const double *u, double freedom, sf_mixture *m, sf_error *err) {
     if (n < 1 || n > N || count < 2 * (n + 1))
         return SF_FAIL(err, SF_ERR_NUMERIC, "%d samples are too few to describe %d parameters", count, n);
-    SF_OWNED double *share = sf_alloc(err, (unsigned long)count * SF_MIXTURE_MOST, sizeof *share, "samples"),
-                    *position = sf_alloc(err, count, sizeof *position, "samples");
-    SF_TRY(err->status);
+    SF_OWN(double, share, (unsigned long)count *SF_MIXTURE_MOST, "samples", err);
+    SF_OWN(double, position, count, "samples", err);
     samples all = {.n = n, .count = count, .u = u, .share = share, .position = position}, half = all;
     int parts = 1;
     half.count = count / 2;
@@ -303,8 +301,7 @@ static void fill_terms(const sf_emulator *e, const double *z, double *term) {
 /* Centre and factor of the points; false: they span no volume. */
 static bool find_frame(sf_emulator *e, int count, const double *u) {
     sf_mixture m;
-    sf_error none = SF_ERROR_INIT;
-    if (sf_mixture_about(e->parameters, count, u, 1, &m, &none) != SF_OK)
+    if (sf_mixture_about(e->parameters, count, u, 1, &m, SF_IGNORED) != SF_OK)
         return false;
     e->frame = m.part[0];
     return true;
@@ -367,9 +364,8 @@ sf_status sf_emulator_fit(int parameters, int responses, int count, const double
                     *right = sf_alloc(err, all, sizeof *right, "an emulator");
     e->coefficient = sf_alloc(err, all, sizeof(double), "an emulator");
     SF_TRY(err->status);
-    sf_error singular = SF_ERROR_INIT;
     add_points(e, count, u, y, gram, right);
-    if (solve(e, gram, right, &singular) != SF_OK)
+    if (solve(e, gram, right, SF_IGNORED) != SF_OK)
         sf_emulator_free(e);
     return err->status;
 }
@@ -389,6 +385,5 @@ bool sf_emulator_at(const sf_emulator *e, const double *u, double *y) {
 }
 
 void sf_emulator_free(sf_emulator *e) {
-    free(e->coefficient);
-    *e = (sf_emulator){0};
+    SF_CLEAR(e, e->coefficient);
 }
