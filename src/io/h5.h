@@ -74,7 +74,7 @@ sf_status sf_h5_rows_end(sf_h5_rows *rows, sf_error *err);
  * within the file's; data in other files and filters (compression) are refused. */
 sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int rank, int64_t *dims,
                      void **data, sf_error *err);
-/* A scalar of SF_H5_F64 or SF_H5_I64. */
+/* A scalar of SF_H5_F64 or SF_H5_I64: `value` has eight bytes. */
 sf_status sf_h5_read_one(const sf_h5 *file, const char *path, sf_h5_type type, void *value, sf_error *err);
 sf_status sf_h5_read_scalar(const sf_h5 *file, const char *path, double *value, sf_error *err);
 /* One string of fixed length. `*text` is NUL-terminated, from malloc, owned by the caller. */

@@ -47,7 +47,7 @@ void sf_json_numbers(sf_json *json, const sf_named *list); /* until a key is NUL
 void sf_json_integer(sf_json *json, const char *key, int64_t value);
 void sf_json_bool(sf_json *json, const char *key, bool value);
 void sf_json_text(sf_json *json, const char *key, const char *text); /* NULL: null */
-/* Several texts, as SF_JSON_NUMBERS: each is a key and its text. */
+/* Several texts of the open object, as SF_JSON_NUMBERS: each is a key and its text. */
 typedef const char *sf_named_text[2];
 void sf_json_texts(sf_json *json, const sf_named_text *list); /* until a key is NULL */
 #define SF_JSON_TEXTS(json, ...) sf_json_texts(json, (const sf_named_text[]){__VA_ARGS__, {0}})

@@ -163,7 +163,8 @@ void sf_summary_print(FILE *out, const sf_summary *summary);
 /* The section Material: the keys that the case gives, and the comments of the material. */
 void sf_origin_put_material(FILE *page, const char *case_text, const char *parameters);
 
-/* A row with the value of a key, without the brackets of the case's syntax; none if the key is absent. */
+/* Rows with the values of keys, each given as key and title, until a key is NULL; without the brackets of the
+ * case's syntax, and none for a key that is absent. */
 void sf_origin_put_keys(sf_html_table *table, const char *parameters, const sf_named_text *list);
 #define SF_ORIGIN_PUT(table, parameters, ...)                                                                \
     sf_origin_put_keys(table, parameters, (const sf_named_text[]){__VA_ARGS__, {0}})
