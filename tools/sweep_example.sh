@@ -3,7 +3,7 @@
 # Runs examples/sweep into out/sweep, and one foam of the posterior (20 drops) with the mesh of the plan and with that of
 # the case, 5 mm in the core, into out/sweep_coarse and out/sweep_fine. Prints the probability of HIC < 1000, what the
 # coarse mesh changes, and what 100,000 such drops take, as tables; then the largest HIC of the pad of 70 mm and the
-# times of the solver (docs/campaigns.md).
+# times of the solver (docs/campaigns.md; docs/performance.md, "Checks of campaigns").
 #
 #     tools/sweep_example.sh           seven minutes on two idle cores; the folders must not be there
 #
