@@ -52,7 +52,12 @@ def read(path):
         return list(csv.DictReader(stream))
 
 
-print("| plan | rows | simulated | left open | figure | predicted and compared | intervals that hold | largest error | rms error |")
+def usable(row):
+    return row["run_status"] == "done" and row["grade"] != "do not use"
+
+
+print("| plan | rows | simulated | left open (of those compared usable) | figure | predicted and compared "
+      "| intervals that hold | largest error | rms error |")
 print("|---|---:|---:|---:|---|---:|---:|---:|---:|")
 for folder in sys.argv[1:]:
     plan = folder.split("/accuracy-")[-1]
@@ -60,14 +65,17 @@ for folder in sys.argv[1:]:
     simulated = sum(row["run_status"] in ("done", "failed") for row in rows)
     coarse = pathlib.Path(folder, "coarse/runs.csv")
     coarse = f", and {sum(row['run_status'] == 'done' for row in read(coarse))} coarse ones" if coarse.exists() else ""
-    left = sum(row["run_status"] == "open" for row in rows)
-    for low in [name for name in rows[0] if name.endswith("_low")]:
+    lows = [name for name in rows[0] if name.endswith("_low")]
+    left = [drop for row, drop in zip(rows, drops) if row["run_status"] == "open"]
+    told = [drop for drop in left if drop["run_status"] != "open"]
+    lost = sum(usable(drop) and all(drop[low[: -len("_low")]] for low in lows) for drop in told)
+    for low in lows:
         figure = low[: -len("_low")]
         errors, held, wrong = [], 0, 0
         for row, drop in zip(rows, drops):
             if row["run_status"] != "predicted" or drop["run_status"] == "open":
                 continue
-            if drop["run_status"] != "done" or drop["grade"] == "do not use" or not drop[figure]:
+            if not usable(drop) or not drop[figure]:
                 wrong += 1
                 continue
             value = float(drop[figure])
@@ -77,7 +85,7 @@ for folder in sys.argv[1:]:
             sys.exit(f"{folder}: no predicted row was simulated: give more time (SF_TIME)")
         rms = math.sqrt(sum(e * e for e in errors) / len(errors))
         note = f" ({wrong} have none that may be used)" if wrong else ""
-        print(f"| {plan} | {len(rows)} | {simulated} ({100 * simulated / len(rows):.1f} %){coarse} | {left} | {figure} "
+        print(f"| {plan} | {len(rows)} | {simulated} ({100 * simulated / len(rows):.1f} %){coarse} | {len(left)} ({lost} of {len(told)}) | {figure} "
               f"| {len(errors)}{note} | {100 * held / len(errors):.1f} % | {100 * max(map(abs, errors)):.2f} % "
               f"| {100 * rms:.2f} % |")
 PYTHON
