@@ -160,6 +160,7 @@ static void figures_change_smoothly(void **state) {
         for (int i = 0; i < 4; i++) {
             sf_columns c = columns_at(speed * (1 + shift[i]));
             sf_columns_figures figures;
+            c.informed = 0.4;
             sf_error err = SF_ERROR_INIT;
             assert_int_equal(sf_columns_respond(&c, &law, &figures, NULL, &err), SF_OK);
             sf_columns_scale(&figures, y[i]);
@@ -167,10 +168,39 @@ static void figures_change_smoothly(void **state) {
         for (int j = 0; j < FIGURES; j++)
             worst[j] = larger(worst[j], fabs((y[2][j] - y[1][j]) / 0.002 - (y[3][j] - y[0][j]) / 0.02));
     }
-    print_message("derivatives differ by %.2g, %.2g, %.2g, %.2g, %.2g, %.2g at most\n", worst[0], worst[1],
-                  worst[2], worst[3], worst[4], worst[5]);
+    print_message("derivatives differ by %.2g, %.2g, %.2g, %.2g, %.2g, %.2g, %.2g at most\n", worst[0],
+                  worst[1], worst[2], worst[3], worst[4], worst[5], worst[6]);
     for (int j = 0; j < FIGURES; j++)
         assert_true(worst[j] < 0.05);
+    sf_foam_free(&foam);
+}
+
+/* Returns the integral over u of u^2 (R - depth + u), to which the work of a linear foam is proportional. */
+static double linear_work(double depth, double from) {
+    return (0.08 - depth) * (pow(depth, 3) - pow(from, 3)) / 3 + (pow(depth, 4) - pow(from, 4)) / 4;
+}
+
+static void work_beyond_the_data_is_that_of_a_linear_foam(void **state) {
+    (void)state;
+    point_card card;
+    sf_foam foam;
+    sf_error err = SF_ERROR_INIT;
+    point_card_init(&card);
+    point_card_add_line(&card, 4e5, 0.95);
+    foam_build(&card, &foam);
+    const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
+    for (double informed = 0.05; informed < 0.75; informed += 0.05) {
+        sf_columns_figures figures;
+        sf_columns c = columns_at(4.5);
+        c.informed = informed;
+        assert_int_equal(sf_columns_respond(&c, &law, &figures, NULL, &err), SF_OK);
+        double depth = figures.strain * c.thickness, from = informed * c.thickness;
+        double share = from < depth ? linear_work(depth, from) / linear_work(depth, 0) : 0;
+        assert_true(fabs(figures.beyond - share) < 0.015);
+        c.informed = 0;
+        assert_int_equal(sf_columns_respond(&c, &law, &figures, NULL, &err), SF_OK);
+        assert_true(figures.beyond == 0);
+    }
     sf_foam_free(&foam);
 }
 
@@ -345,6 +375,7 @@ int main(void) {
         cmocka_unit_test(column_figures_are_those_of_the_reading),
         cmocka_unit_test(drop_is_that_of_fine_steps),
         cmocka_unit_test(figures_change_smoothly),
+        cmocka_unit_test(work_beyond_the_data_is_that_of_a_linear_foam),
         cmocka_unit_test(collapse_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -207,6 +207,7 @@ static sf_status evaluate(void *context, sf_runs *runs, int count, const int64_t
             place[sf_runs_figure("rebound_time_ms")] = f->ends == 1 && time < RUN_END ? time : NAN;
             place[sf_runs_figure("v_rebound_m_s")] = time < RUN_END ? 0.01 * a_max : NAN;
         }
+        place[sf_runs_figure("negative_dissipation")] = fmax(0, 0.2 * (strain - 0.9)); /* 0.01 of 0.95 */
         place[sf_runs_figure("energy_beyond_data")] = strain > 0.7 ? 2 * (strain - 0.7) : 0;
         sf_runs_done(runs, row[k], strain > 0.95 ? SF_GRADE_DO_NOT_USE : SF_GRADE_VALID, "drop", NULL, err);
     }
@@ -250,7 +251,7 @@ static void rows_are_predicted_as_accurately_as_asked(void **state) {
     sf_runs runs;
     sf_error err;
     formula f = {0};
-    int64_t predicted = 0, held[2] = {0}, unusable = 0;
+    int64_t predicted = 0, held[2] = {0}, unusable = 0, lost = 0, given_back = 0;
     read_plan(p, &plan);
     if (run(p, &plan, &f, &runs, &err) != SF_OK)
         fail_msg("%s", err.text);
@@ -258,6 +259,8 @@ static void rows_are_predicted_as_accurately_as_asked(void **state) {
         double a_max, hic, strain;
         pad(&plan, row, &a_max, &hic, &strain);
         unusable += strain > 0.95;
+        lost += runs.state[row] == SF_SWEEP_OPEN && strain <= 0.95;
+        given_back += runs.state[row] == SF_SWEEP_OPEN && strstr(runs.message[row], "give back too much");
         if (runs.state[row] != SF_SWEEP_PREDICTED)
             continue;
         predicted++;
@@ -273,7 +276,8 @@ static void rows_are_predicted_as_accurately_as_asked(void **state) {
         (long long)sf_runs_count(&runs, SF_SWEEP_OPEN), (long long)unusable,
         100 * (double)held[0] / (double)predicted, 100 * (double)held[1] / (double)predicted);
     assert_true(f.calls < runs.count / 6);
-    assert_true(predicted + f.calls + unusable >= runs.count);
+    assert_true(predicted + f.calls + unusable + lost >= runs.count && lost <= unusable / 5);
+    assert_true(given_back > 0);
     for (int k = 0; k < 2; k++)
         assert_true((double)held[k] >= 0.93 * (double)predicted);
     sf_runs_free(&runs);

@@ -178,12 +178,63 @@ static void columns_follow_the_diameter_of_the_missile(void **state) {
     sf_plan_free(&plan);
 }
 
+/* LEAP is informed up to a strain of 0.6: columns of the larger area tell how much of the energy is beyond.
+ */
+static void columns_know_the_energy_beyond_the_data(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_sweep_trend trend;
+    sf_error err = SF_ERROR_INIT;
+    double largest = 0, expected[SF_TRENDS];
+    program_shell(
+        p,
+        "sed -e '/^factors/,/^figures/d' -e \"s,set = .,&\\\"material=@$SF_SOURCE_DIR/examples/materials/leap.cfg\\\"\\,,\" "
+        "all.cfg > leap.cfg; echo 'factors = ( { key = \"missile.velocity\"; from = \"3 m/s\"; to = "
+        "\"5.5 m/s\"; count = 6; } );' >> leap.cfg");
+    program_succeed(p, "sweep", "leap.cfg -o out --jobs 2 --force");
+    learn(p, "leap", &plan, &runs, &trend);
+    for (int64_t row = 0; row < runs.count; row++) {
+        double drop = sf_runs_place(&runs, row)[sf_runs_figure("energy_beyond_data")];
+        assert_int_equal(sf_sweep_trend_at(&trend, row, expected, &err), SF_OK);
+        print_message("of the energy %.3f is beyond the data, by columns %.3f\n", drop,
+                      expected[SF_TREND_BEYOND]);
+        assert_true(fabs(drop - expected[SF_TREND_BEYOND]) < 0.15);
+        largest = fmax(largest, drop);
+    }
+    assert_true(largest > 0.4);
+    sf_runs_free(&runs);
+    sf_plan_free(&plan);
+}
+
+/* The first pad is thinner than the missile is high: the profile is that of the thickest one. */
+static void columns_reach_through_the_thickest_pad(void **state) {
+    const program_place *p = *state;
+    sf_plan plan;
+    sf_runs runs;
+    sf_sweep_trend trend;
+    double area = 0;
+    program_shell(p, "sed -e '/^factors/,/^figures/d' all.cfg > thick.cfg; echo 'factors = ( { key = "
+                     "\"geometry.parameters.thickness\"; values = [50.0, 65.0, 80.0]; } );' >> thick.cfg");
+    program_succeed(p, "sweep", "thick.cfg -o out --jobs 2 --force");
+    learn(p, "thick", &plan, &runs, &trend);
+    assert_null(trend.problem);
+    assert_true(trend.step == 0);
+    for (int k = 0; k < trend.columns.count; k++)
+        area += trend.columns.area[k];
+    assert_true(fabs(area / (M_PI * 0.08 * 0.08) - 1) < 0.02);
+    sf_runs_free(&runs);
+    sf_plan_free(&plan);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(coarse_drops_that_are_none_are_refused),
         cmocka_unit_test(a_plan_is_predicted_from_its_coarse_drops),
         cmocka_unit_test(predictions_and_columns_are_near_the_drops),
         cmocka_unit_test(columns_follow_the_diameter_of_the_missile),
+        cmocka_unit_test(columns_reach_through_the_thickest_pad),
+        cmocka_unit_test(columns_know_the_energy_beyond_the_data),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

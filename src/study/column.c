@@ -80,6 +80,8 @@ typedef struct flight {
     double deepest;                   /* m, the largest depth so far */
     double step;                      /* s, the last one */
     double stiffness;                 /* N m-1, along it */
+    double stress[SF_COLUMNS];        /* Pa, of the last force */
+    double work[SF_COLUMNS];          /* J m-3, of the steps downwards */
     sf_uniaxial point[SF_COLUMNS];
 } flight;
 
@@ -99,7 +101,8 @@ static double force(flight *f, double dt, double depth) {
         if (strain >= 1)
             return INFINITY;
         double stress = f->law->law->uniaxial(f->law->numbers, dt, strain, &f->point[k]);
-        sum += c->area[k] * fmax(0, stress); /* the missile does not pull */
+        f->stress[k] = fmax(0, stress); /* the missile does not pull */
+        sum += c->area[k] * f->stress[k];
     }
     return sum;
 }
@@ -118,6 +121,8 @@ static bool step(flight *f, double dt) {
     }
     if (fabs(moved) > 1e-3 * dt) /* slower, a difference of forces is no slope */
         f->stiffness = fabs((after - f->force) / moved);
+    for (int k = columns_above(f->columns, depth) - 1; k >= 0 && moved > 0; k--)
+        f->work[k] += f->stress[k] * moved / f->columns->thickness;
     f->time += dt;
     f->depth = depth;
     double falling = f->speed, upwards = after / mass - SF_STANDARD_GRAVITY;
@@ -178,6 +183,23 @@ void sf_columns_scale(const sf_columns_figures *f, double y[SF_COLUMNS_LOGARITHM
     y[SF_FIT_REBOUND] = log(f->v_rebound);
     y[SF_FIT_CONTACT] = log(1e3 * f->contact_time);
     y[SF_COLUMNS_STRAIN] = log(f->strain);
+    y[SF_COLUMNS_BEYOND] = f->beyond;
+}
+
+/* Returns the share of the work in columns beyond `informed`. Each column stands for the gaps up to the
+ * middle between its own and the next ones, and counts by their part that is beyond: the share then has no
+ * jumps. */
+static double share_beyond(const flight *f) {
+    const sf_columns *c = f->columns;
+    double all = 0, beyond = 0, most = f->deepest - c->informed * c->thickness, low = 0;
+    for (int k = 0; k < c->count; k++) {
+        double high = k + 1 < c->count ? 0.5 * (c->gap[k] + c->gap[k + 1]) : 2 * c->gap[k] - low,
+               work = c->area[k] * f->work[k];
+        all += work;
+        beyond += c->informed > 0 ? work * fmin(1, fmax(0, (most - low) / (high - low))) : 0;
+        low = high;
+    }
+    return all > 0 ? beyond / all : 0;
 }
 
 /* A drop on the points as they are. */
@@ -195,6 +217,7 @@ static sf_status drop(flight *f, sf_series *curve, sf_columns_figures *out, sf_e
         }
     }
     out->strain = f->deepest / f->columns->thickness;
+    out->beyond = share_beyond(f);
     return err->status;
 }
 

@@ -28,6 +28,7 @@ typedef struct sf_columns {
     double gap[SF_COLUMNS];  /* m, g_k: height above the missile's lowest point, ascending */
     int before;              /* drops like this one before it on the pad; 0: the foam is new */
     double pause[SF_SERIES_MOST]; /* [before] s, at rest after each of them */
+    double informed;              /* -, strain up to which data inform the foam; 0: without bound */
 } sf_columns;
 
 /* Columns below the missile's surface, as results.h5 holds it, and within the pad's outline. Errors: the
@@ -42,16 +43,17 @@ typedef struct sf_columns_figures {
     double v_rebound;    /* m s-1; NaN: contact had not ended */
     double contact_time; /* s, from first contact to the end of contact; NaN: it had not */
     double strain;       /* -, largest indentation over the thickness */
+    double beyond; /* -, share of the work on the foam, at that indentation, in columns beyond `informed` */
 } sf_columns_figures;
 
 /* Their natural logarithms: of the numbers that may be measured (model/good_run.h), window and contact in ms,
- * and of the strain. */
-enum { SF_COLUMNS_STRAIN = SF_FIT_SAMPLES, SF_COLUMNS_LOGARITHMS };
+ * and of the strain; and the share of work as it is. */
+enum { SF_COLUMNS_STRAIN = SF_FIT_SAMPLES, SF_COLUMNS_BEYOND, SF_COLUMNS_LOGARITHMS };
 void sf_columns_scale(const sf_columns_figures *figures, double y[SF_COLUMNS_LOGARITHMS]);
 
 /* Deceleration (s, g) from first contact until the missile has left the foam, at most 0.2 s, at
- * the times of the steps (velocity Verlet, 0.1 ms at most). Sets rebound, contact time and strain of
- * `figures`. `curve` is owned by the caller. Errors: the foam collapses. */
+ * the times of the steps (velocity Verlet, 0.1 ms at most). Sets rebound, contact time, strain and
+ * `beyond` of `figures`. `curve` is owned by the caller. Errors: the foam collapses. */
 sf_status sf_columns_drop(const sf_columns *columns, const sf_material_law *law, sf_series *curve,
                           sf_columns_figures *figures, sf_error *err);
 
@@ -63,7 +65,7 @@ sf_status sf_columns_read(const sf_series *filtered, sf_columns_figures *figures
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law,
                              sf_columns_figures *figures, sf_series *filtered, sf_error *err);
 
-/* The logarithms of the figures alone (sf_columns_scale). Errors as of sf_columns_drop. */
+/* The scaled figures alone (sf_columns_scale). Errors as of sf_columns_drop. */
 sf_status sf_columns_expect(const sf_columns *columns, const sf_material_law *law,
                             double y[SF_COLUMNS_LOGARITHMS], sf_error *err);
 
@@ -85,7 +87,7 @@ sf_status sf_pulse_hic(const sf_series *acceleration_g, sf_hic *hic, sf_error *e
  * scatter of meshes. Lengths and nugget maximise the restricted likelihood under a weak prior. The same bits
  * for any number of threads. */
 
-enum { SF_PREDICTOR_INPUTS = 20 };
+enum { SF_PREDICTOR_INPUTS = 24 };
 #define SF_PREDICTOR_SIDES 1.959963984540054 /* standard deviations on each side of a 95 % interval */
 
 typedef struct sf_predictor {

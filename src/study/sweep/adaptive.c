@@ -9,7 +9,7 @@
 enum {
     CHECKED_PART = 40, /* one row of so many is a check, within bounds */
     LEAST_CHECKS = 20, /* with fewer than 19 the largest residual is no bound of 95 % */
-    MOST_CHECKS = 50,
+    MOST_CHECKS = 25,
     DESIGN_PER_INPUT = 8, /* further rows of the first round */
     LEAST_DESIGN = 12,
     MOST_DESIGN = 96,
@@ -20,21 +20,33 @@ enum {
     MANY_ROWS = 10000   /* whose columns take half a minute */
 };
 
-/* Quantities that tell whether the figures of a row can be used, and what is said of a row in which they
- * surely cannot. */
-enum { WATCH_STRAIN, WATCH_DATA, WATCH_CONTACT, WATCH_USE, WATCHED };
+/* Quantities that tell whether the figures of a row can be used, and the sentence of a row in which they
+ * probably cannot. */
+enum { WATCH_STRAIN, WATCH_DATA, WATCH_CONTACT, WATCH_DISSIPATION, WATCH_USE, WATCHED };
 static const struct {
     const char *what, *left_open;
+    int trend;          /* of columns; -1: none */
+    const char *figure; /* that a check of the run refuses; NULL: another quantity */
+    int check;
 } watched[WATCHED] = {
-    [WATCH_STRAIN] = {"the strain", "not simulated: its missile is expected to reach the anvil"},
+    [WATCH_STRAIN] = {"the strain", "not simulated: its missile is expected to reach the anvil",
+                      SF_TREND_STRAIN, "max_mean_strain", SF_CHECK_anvil},
     [WATCH_DATA] = {"the energy beyond the foam's data",
-                    "not simulated: it is expected to be beyond the data of the foam"},
+                    "not simulated: it is expected to be beyond the data of the foam", SF_TREND_BEYOND,
+                    "energy_beyond_data", SF_CHECK_informed},
     [WATCH_CONTACT] = {"the time of contact",
-                       "not simulated: its run is expected to end in contact: give a longer solver.end_time"},
+                       "not simulated: its run is expected to end in contact: give a longer solver.end_time",
+                       SF_TREND_CONTACT},
+    [WATCH_DISSIPATION] = {"the energy given back by what dissipates",
+                           "not simulated: what dissipates is expected to give back too much energy", -1,
+                           "negative_dissipation", SF_CHECK_dissipation},
     [WATCH_USE] = {"the verdict",
-                   "not simulated: it is expected to have no figures, or none that can be used"}};
+                   "not simulated: it is expected to have no figures, or none that can be used", -1}};
 enum { TARGETS = SF_SWEEP_FIGURES + WATCHED, INPUTS = SF_SWEEP_FACTORS + SF_TREND_INDENTATION };
+enum { COARSE_INPUTS = 5 }; /* the first outputs of coarse drops */
+_Static_assert(INPUTS <= (int)SF_PREDICTOR_INPUTS, "a process has room for all inputs");
 static const double COLLAPSED = 1.5; /* scaled figure of columns that collapse: beyond those of all others */
+static const double LIKELY = 0.84;   /* standard deviations beyond a bound: an expectation of 80 % */
 static const double UNUSABLE = 0.5, HELD = 0.95, LEAST_DEVIATION = 1e-9;
 
 struct sf_sweep_adaptive {
@@ -49,7 +61,8 @@ struct sf_sweep_adaptive {
     bool *check; /* [rows] random rows that are simulated and teach nothing: they measure the predictions;
                     owned */
     int64_t checks;
-    int held[SF_SWEEP_FIGURES], checked[SF_SWEEP_FIGURES]; /* of them, in the intervals and with figures */
+    int held[SF_SWEEP_FIGURES], checked[SF_SWEEP_FIGURES]; /* of them, in the intervals as they were before
+                                                              they were widened, and with figures */
     sf_sweep_trend trend;
     double *expected; /* [rows][SF_TRENDS] of the columns; NULL: not yet computed; owned */
     const struct sf_sweep_adaptive *coarse; /* NULL: there are no coarse drops; borrowed, like the next */
@@ -58,15 +71,16 @@ struct sf_sweep_adaptive {
         *doubt; /* [rows][TARGETS] outputs of the coarse drops and their standard deviations; owned */
     int targets;
     sf_predictor model[TARGETS]; /* the plan's figures, then those that are watched */
+    double farthest[TARGETS];    /* largest expectation of the rows that a model has learnt from */
     bool all;                    /* too few rows can be used: every row is simulated */
 };
 
 /* Judgement of an open row by the processes. */
 typedef struct outlook {
-    double ratio; /* of the widest half interval to its wish; at most one: the row is predicted */
+    double ratio; /* of the largest standard deviation to its wish; at most one: the row is predicted */
     int target;   /* of that */
     double wish;  /* standard deviation of the target that meets it */
-    int unusable; /* what says that it surely cannot be used; WATCHED: nothing */
+    int unusable; /* quantity by which it probably cannot be used; WATCHED: none */
     double value[SF_SWEEP_FIGURES], half[SF_SWEEP_FIGURES]; /* of the logarithm */
 } outlook;
 
@@ -94,7 +108,8 @@ static double figure_of(const sf_sweep_adaptive *a, int64_t row, int k) {
 
 /* Makes these figures inputs, too: foams, which differ as words, are near by them. */
 static void add_figures(sf_sweep_adaptive *a) {
-    for (int k = 0; k < SF_TREND_INDENTATION && (a->coarse || !a->trend.problem); k++) {
+    int count = a->coarse ? COARSE_INPUTS : a->trend.problem ? 0 : SF_TREND_INDENTATION;
+    for (int k = 0; k < count; k++) {
         double low = INFINITY, high = -INFINITY;
         for (int64_t row = 0; row < a->plan->rows; row++) {
             low = fmin(low, figure_of(a, row, k));
@@ -179,10 +194,8 @@ static int choose_apart(const sf_sweep_adaptive *a, const sf_runs *runs, int mos
 /* Returns what columns or coarse drops have for the output of a target; 0: columns have no such figure; NaN:
  * the figures of the coarse drop cannot be used. */
 static double expected_of(const sf_sweep_adaptive *a, int target, int64_t row) {
-    int k = target - a->plan->figure_count, at = k < 0 ? sf_sweep_trend_find(a->plan->figure[target].figure)
-                                                 : k == WATCH_STRAIN  ? SF_TREND_STRAIN
-                                                 : k == WATCH_CONTACT ? SF_TREND_CONTACT
-                                                                      : -1;
+    int k = target - a->plan->figure_count,
+        at = k < 0 ? sf_sweep_trend_find(a->plan->figure[target].figure) : watched[k].trend;
     if (a->coarse)
         return a->base[row * TARGETS + target];
     double expected = at < 0 ? 0 : a->expected[row * SF_TRENDS + at];
@@ -197,34 +210,39 @@ static bool has_figures(const sf_runs *runs, int64_t row) {
     return all;
 }
 
+/* The output of what is watched from which a row cannot be used. */
+static double bound_of(const sf_sweep_adaptive *a, int k, int64_t row) {
+    return watched[k].figure    ? sf_good_run_rule_get(watched[k].check)->refuse
+           : k == WATCH_CONTACT ? a->expected[row * SF_TRENDS + SF_TREND_TIME]
+                                : UNUSABLE;
+}
+
 /* True of a row without figures if a process of what is watched besides the verdict tells why. */
 static bool is_told(const sf_sweep_adaptive *a, const sf_runs *runs, int64_t row) {
     const double *place = sf_runs_place(runs, row);
     const sf_predictor *model = a->model + a->plan->figure_count;
-    return (model[WATCH_STRAIN].count > 0 &&
-            place[sf_runs_figure("max_mean_strain")] >= sf_good_run_rule_get(SF_CHECK_anvil)->refuse) ||
-           (model[WATCH_DATA].count > 0 &&
-            place[sf_runs_figure("energy_beyond_data")] >= sf_good_run_rule_get(SF_CHECK_informed)->refuse) ||
-           (model[WATCH_CONTACT].count > 0 && sf_runs_usable(runs, row) &&
-            isnan(place[sf_runs_figure("rebound_time_ms")]));
+    for (int k = 0; k < WATCHED; k++)
+        if (watched[k].figure && model[k].count > 0 &&
+            place[sf_runs_figure(watched[k].figure)] >= bound_of(a, k, row))
+            return true;
+    return model[WATCH_CONTACT].count > 0 && sf_runs_usable(runs, row) &&
+           isnan(place[sf_runs_figure("rebound_time_ms")]);
 }
 
 /* The output of a target at a row that was simulated: of a figure and the time of contact the logarithm, of
  * the use 0 or 1. NaN: the row has none. */
 static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int target, int64_t row) {
     const double *place = sf_runs_place(runs, row);
-    switch (target - a->plan->figure_count) {
-    case WATCH_STRAIN:
-        return place[sf_runs_figure("max_mean_strain")];
-    case WATCH_DATA:
-        return place[sf_runs_figure("energy_beyond_data")];
-    case WATCH_CONTACT:
-        return log(place[sf_runs_figure("rebound_time_ms")] - place[sf_runs_figure("contact_time_ms")]);
-    case WATCH_USE:
-        return is_told(a, runs, row) ? NAN : !has_figures(runs, row);
-    default:
+    int k = target - a->plan->figure_count;
+    if (k < 0)
         return log(sf_runs_value(runs, row, target));
+    if (watched[k].figure) {
+        double value = place[sf_runs_figure(watched[k].figure)], most = 2 * bound_of(a, k, row);
+        return value > most ? most : value; /* one run that has gone wrong does not hide the others */
     }
+    if (k == WATCH_CONTACT)
+        return log(place[sf_runs_figure("rebound_time_ms")] - place[sf_runs_figure("contact_time_ms")]);
+    return is_told(a, runs, row) ? NAN : !has_figures(runs, row);
 }
 
 /* Finds the output of a target by the coarse drop of a row, which tells nothing of the use; NaN: there is
@@ -312,7 +330,7 @@ static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int tar
         gsl_sort(z, 1, (size_t)n);
         double wider = fmax(1, z[(int64_t)fmin(ceil(HELD * (double)(n + 1)), (double)n) - 1]);
         p->calibration *= wider;
-        while (held < n && z[held] <= wider)
+        while (held < n && z[held] <= 1)
             held++;
     }
     a->checked[target] = (int)n;
@@ -325,12 +343,15 @@ static sf_status fit_target(sf_sweep_adaptive *a, const sf_runs *runs, int targe
     SF_OWNED double *x = sf_alloc(err, MOST_POINTS, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
     bool is_figure = target < a->plan->figure_count;
     int n = 0;
+    a->farthest[target] = -INFINITY;
     SF_TRY(err->status);
     double *y = x + (int64_t)MOST_POINTS * a->inputs;
     for (int64_t row = 0; row < runs->count && n < MOST_POINTS; row++) {
-        double value = is_simulated(runs, row) && !a->check[row] ? excess_of(a, runs, target, row) : NAN;
+        bool learns = is_simulated(runs, row) && !(is_figure && a->check[row]);
+        double value = learns ? excess_of(a, runs, target, row) : NAN;
         if (!isfinite(value))
             continue;
+        a->farthest[target] = fmax(a->farthest[target], expected_of(a, target, row));
         put_inputs(a, row, x + (int64_t)n * a->inputs);
         y[n++] = value;
     }
@@ -362,12 +383,15 @@ static void predict(const sf_sweep_adaptive *a, int target, int64_t row, const d
     sf_predictor_at(&a->model[target], x, room, mean, deviation);
     *mean += expected_of(a, target, row);
     *deviation = a->coarse ? hypot(*deviation, a->doubt[row * TARGETS + target]) : *deviation;
+    /* drops that are all within the data tell nothing beyond */
+    if (target == a->plan->figure_count + WATCH_DATA)
+        *deviation = fmax(*deviation, expected_of(a, target, row) - a->farthest[target]);
 }
 
-/* The target whose half interval is the widest over its wish decides. */
+/* The target whose standard deviation is the largest over its wish decides. */
 static void hold_against(const sf_sweep_adaptive *a, int64_t row, outlook *o, int target, double ratio,
-                         double half) {
-    double doubt = a->coarse ? a->doubt[row * TARGETS + target] : 0, wish = half / SF_PREDICTOR_SIDES;
+                         double wish) {
+    double doubt = a->coarse ? a->doubt[row * TARGETS + target] : 0;
     if (ratio > o->ratio) {
         o->ratio = ratio;
         o->target = target;
@@ -377,19 +401,11 @@ static void hold_against(const sf_sweep_adaptive *a, int64_t row, outlook *o, in
 
 static void judge_figure(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, double *room,
                          outlook *o) {
-    double mean, deviation, wish = log1p(a->plan->figure[target].accuracy);
+    double mean, deviation, wish = log1p(a->plan->figure[target].accuracy) / SF_PREDICTOR_SIDES;
     predict(a, target, row, x, room, &mean, &deviation);
     o->value[target] = exp(mean);
     o->half[target] = SF_PREDICTOR_SIDES * deviation;
-    hold_against(a, row, o, target, isfinite(o->value[target]) ? o->half[target] / wish : INFINITY, wish);
-}
-
-/* The output of what is watched from which a row cannot be used. */
-static double bound_of(const sf_sweep_adaptive *a, int k, int64_t row) {
-    return k == WATCH_STRAIN    ? sf_good_run_rule_get(SF_CHECK_anvil)->refuse
-           : k == WATCH_DATA    ? sf_good_run_rule_get(SF_CHECK_informed)->refuse
-           : k == WATCH_CONTACT ? a->expected[row * SF_TRENDS + SF_TREND_TIME]
-                                : UNUSABLE;
+    hold_against(a, row, o, target, isfinite(o->value[target]) ? deviation / wish : INFINITY, wish);
 }
 
 static void judge_use(const sf_sweep_adaptive *a, int k, int64_t row, const double *x, double *room,
@@ -397,10 +413,11 @@ static void judge_use(const sf_sweep_adaptive *a, int k, int64_t row, const doub
     int target = a->plan->figure_count + k;
     double mean, deviation, bound = bound_of(a, k, row);
     predict(a, target, row, x, room, &mean, &deviation);
-    double margin = fmax(1e-12, fabs(bound - mean)), ratio = SF_PREDICTOR_SIDES * deviation / margin;
-    if (mean > bound && ratio <= 1)
+    double sides = mean > bound ? LIKELY : SF_PREDICTOR_SIDES,
+           margin = fmax(1e-12, fabs(bound - mean)) / sides;
+    if (mean > bound && deviation <= margin)
         o->unusable = k;
-    hold_against(a, row, o, target, isnan(bound - mean) ? INFINITY : ratio, margin);
+    hold_against(a, row, o, target, isnan(bound - mean) ? INFINITY : deviation / margin, margin);
 }
 
 static outlook judge(const sf_sweep_adaptive *a, int64_t row, double *room) {

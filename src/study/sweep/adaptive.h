@@ -4,9 +4,9 @@
  * processes (study/column.h) of the difference between the drops and their columns (below), or their
  * coarse drops.
  * Further processes watch whether the row's figures can be used and are defined: a row that may be near the
- * anvil, beyond its foam's data, in contact at the end of its run, failing or without one of the figures is
- * simulated; one that is sure to be so stays open. Random rows are simulated for
- * checks alone: the intervals are widened until they hold 95 % of these. */
+ * anvil, beyond its foam's data, in contact at the end of its run, giving back energy that it dissipated,
+ * failing or without one of the figures is simulated; a row of which one of these is expected with 80 % stays
+ * open. Random rows are simulated for checks alone: the intervals are widened until they hold these. */
 #pragma once
 #include "study/column.h"
 #include "study/sweep/campaign.h"
@@ -40,17 +40,20 @@ enum {
     SF_TREND_HIC,
     SF_TREND_REBOUND,
     SF_TREND_STRAIN,
-    SF_TREND_EDGE, /* d ln(a_max) / d ln(speed), no logarithm of it: near lock-up the drops fall behind their
-                      columns as it grows */
-    SF_TREND_INDENTATION,
+    SF_TREND_WIDER, /* the first of four changes of the figures before, if columns have 1.35 times their area.
+                       The foam beside the missile carries, too, so that drops differ from columns as these do
+                     */
+    SF_TREND_INDENTATION = 2 * SF_TREND_WIDER,
     SF_TREND_CONTACT, /* ms */
+    SF_TREND_BEYOND,  /* -, no logarithm: share of the work beyond the foam's data, by columns of the larger
+                         area; 1: these collapse */
     SF_TREND_TIME,    /* ms; of every row whose case can be read */
     SF_TRENDS
 };
 
 typedef struct sf_sweep_trend {
     const sf_plan *plan;                    /* borrowed */
-    sf_columns columns;                     /* of the first finished drop */
+    sf_columns columns;                     /* of the finished drop on the thickest pad */
     int numbers, number[SF_SWEEP_FACTORS];  /* factors of the geometry that are numbers */
     double thickness[SF_SWEEP_FACTORS + 1]; /* m, and m per unit of each: the pad's thickness is linear */
     double step;                            /* m, height of a column; 0: all drops have one profile */
@@ -69,6 +72,6 @@ sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *drops, sf_sweep_
 /* The place of a figure among those of columns; -1: columns do not have it. */
 int sf_sweep_trend_find(const char *figure);
 
-/* Natural logarithms of what columns expect of a row, [SF_TRENDS]; NaN where the foam of the columns
- * collapses, or stays in contact. Without a trend 0, but for the time. */
+/* Computes what columns expect of a row, [SF_TRENDS], natural logarithms but where their list says otherwise;
+ * NaN where the foam of the columns collapses, or stays in contact. Without a trend 0, but for the time. */
 sf_status sf_sweep_trend_at(const sf_sweep_trend *trend, int64_t row, double *expected, sf_error *err);

@@ -5,7 +5,7 @@
 
 enum { MOST_DROPS = 64, LEVELS = 8 };
 static const double SAME_PROFILE = 0.02, NEAR_PROFILE = 0.05, SAME_THICKNESS = 0.01; /* relative */
-static const double SLOWER = 0.99; /* of the speed, for the edge */
+static const double WIDER = 1.35;                                                    /* times the area */
 
 int sf_sweep_trend_find(const char *figure) {
     static const char *const names[] = {[SF_TREND_A_MAX] = "a_max_g",
@@ -133,7 +133,7 @@ static double linear_at(const sf_sweep_trend *t, const double *c, int64_t row) {
     return sum;
 }
 
-/* The columns of a row, with the mass and speed of the first drop. */
+/* The columns of a row, with the mass and speed of the drop on the thickest pad. */
 static sf_columns columns_at(const sf_sweep_trend *t, int64_t row) {
     sf_columns columns = t->columns;
     columns.thickness = linear_at(t, t->thickness, row);
@@ -177,9 +177,10 @@ sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep
     if (list && folder && read_drops(runs, folder, list, &count, err) == SF_OK && count > t->numbers) {
         double thickness[MOST_DROPS] = {0};
         bool same = true;
-        t->columns = list[0].columns;
         for (int k = 0; k < count; k++) {
             thickness[k] = list[k].columns.thickness;
+            if (thickness[k] > t->columns.thickness) /* columns end with the pad */
+                t->columns = list[k].columns;
             same = same && is_same_profile(&list[0].columns, &list[k].columns, SAME_PROFILE);
         }
         fit_linear(t, list, count, thickness, t->thickness, err);
@@ -205,17 +206,22 @@ static void respond(const sf_sweep_trend *t, const sf_case *c, int64_t row, doub
     sf_error refused = SF_ERROR_INIT;
     columns.mass = c->missile_card.mass;
     columns.speed = -c->missile_card.speed * c->missile_card.direction[2];
+    columns.informed = sf_material_informed(&c->material);
     if (columns.count == 0 || !(columns.thickness > 0) ||
         sf_material_law_build(&c->material, &law, &refused) != SF_OK)
         return;
-    if (sf_columns_expect(&columns, &law, y, &refused) != SF_OK)
-        return;
-    for (int k = 0; k < SF_TREND_TIME; k++)
-        expected[k] = y[place[k]] + (k == SF_TREND_INDENTATION ? log(columns.thickness) : 0);
-    columns.speed *= SLOWER;
-    expected[SF_TREND_EDGE] = NAN;
     if (sf_columns_expect(&columns, &law, y, &refused) == SF_OK)
-        expected[SF_TREND_EDGE] = (y[SF_FIT_A_MAX] - expected[SF_TREND_A_MAX]) / log(SLOWER);
+        for (int k = 0; k < SF_TREND_BEYOND; k++)
+            if (k < SF_TREND_WIDER || k >= SF_TREND_INDENTATION)
+                expected[k] = y[place[k]] + (k == SF_TREND_INDENTATION ? log(columns.thickness) : 0);
+    for (int k = 0; k < columns.count; k++)
+        columns.area[k] *= WIDER;
+    expected[SF_TREND_BEYOND] = 1;
+    if (sf_columns_expect(&columns, &law, y, &refused) == SF_OK) {
+        for (int k = 0; k < SF_TREND_WIDER; k++)
+            expected[SF_TREND_WIDER + k] = y[place[k]] - expected[k];
+        expected[SF_TREND_BEYOND] = y[SF_COLUMNS_BEYOND];
+    }
 }
 
 sf_status sf_sweep_trend_at(const sf_sweep_trend *t, int64_t row, double *expected, sf_error *err) {
