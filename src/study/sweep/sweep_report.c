@@ -251,9 +251,10 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
     sf_html_note(
         page,
         "%lld of %lld rows were not simulated but predicted from the others; runs.csv has the state and the "
-        "interval of each. The checks are random rows that were simulated and from which nothing was learnt. In "
-        "probabilities a prediction whose interval holds the limit is unknown. %lld rows "
-        "are open: they are expected to fail, to be not to be used or to lack a figure; runs.csv says why.",
+        "interval of each. The checks are random rows that were simulated and from which no figure was learnt. "
+        "They are counted as held by the intervals before these were widened to hold them all. In "
+        "probabilities a prediction whose interval holds the limit is unknown. %lld rows are open: each is "
+        "expected with 80 %% to fail, to be not to be used or to lack a figure; runs.csv says why.",
         a->predicted, r->plan->rows, a->open);
     if (r->coarse > 0)
         sf_html_note(page,
