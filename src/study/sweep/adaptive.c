@@ -9,7 +9,7 @@
 enum {
     CHECKED_PART = 40, /* one row of so many is a check, within bounds */
     LEAST_CHECKS = 20, /* with fewer than 19 the largest residual is no bound of 95 % */
-    MOST_CHECKS = 25,
+    MOST_CHECKS = 32,
     DESIGN_PER_INPUT = 8, /* further rows of the first round */
     LEAST_DESIGN = 12,
     MOST_DESIGN = 96,
