@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Campaigns of few drops on coarse pads that predict rows: columns that are learnt from the drops, and coarse
  * drops in place of columns. */
+#include "extreme.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 
@@ -200,7 +201,7 @@ static void columns_know_the_energy_beyond_the_data(void **state) {
         print_message("of the energy %.3f is beyond the data, by columns %.3f\n", drop,
                       expected[SF_TREND_BEYOND]);
         assert_true(fabs(drop - expected[SF_TREND_BEYOND]) < 0.15);
-        largest = fmax(largest, drop);
+        largest = larger(largest, drop);
     }
     assert_true(largest > 0.4);
     sf_runs_free(&runs);
