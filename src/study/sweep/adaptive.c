@@ -36,12 +36,11 @@ static const struct {
                     "energy_beyond_data", SF_CHECK_informed},
     [WATCH_CONTACT] = {"the time of contact",
                        "not simulated: its run is expected to end in contact: give a longer solver.end_time",
-                       SF_TREND_CONTACT},
+                       SF_TREND_CONTACT, NULL, 0},
     [WATCH_DISSIPATION] = {"the energy given back by what dissipates",
                            "not simulated: what dissipates is expected to give back too much energy", -1,
                            "negative_dissipation", SF_CHECK_dissipation},
-    [WATCH_USE] = {"the verdict",
-                   "not simulated: it is expected to have no figures, or none that can be used", -1}};
+    [WATCH_USE] = {"the verdict", "not simulated: it is expected to have no usable figures", -1, NULL, 0}};
 enum { TARGETS = SF_SWEEP_FIGURES + WATCHED, INPUTS = SF_SWEEP_FACTORS + SF_TREND_INDENTATION };
 enum { COARSE_INPUTS = 5 }; /* the first outputs of coarse drops */
 _Static_assert(INPUTS <= (int)SF_PREDICTOR_INPUTS, "a process has room for all inputs");
