@@ -308,8 +308,8 @@ static void free_models(sf_sweep_adaptive *a) {
         sf_predictor_free(&a->model[t]);
 }
 
-/* Widens the intervals of a figure until they hold 95 % of the check rows and the next random row (split
- * conformal prediction): of n checks the ceil(0.95 (n + 1))-th residual. */
+/* Widens the intervals of a figure by the ceil(0.95 (n + 1))-th residual of n check rows (split conformal
+ * prediction), or by their root mean square if a normal distribution of that asks for more. */
 static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int target, sf_error *err) {
     sf_predictor *p = &a->model[target];
     SF_OWNED double *room = sf_alloc(err, (unsigned long)(p->count + a->checks), sizeof *room, "predictions");
@@ -327,7 +327,9 @@ static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int tar
     }
     if (n > 0) {
         gsl_sort(z, 1, (size_t)n);
-        double wider = fmax(1, z[(int64_t)fmin(ceil(HELD * (double)(n + 1)), (double)n) - 1]);
+        double wider = fmax(z[(int64_t)fmin(ceil(HELD * (double)(n + 1)), (double)n) - 1],
+                            SF_PREDICTOR_SIDES * sqrt(gsl_stats_tss_m(z, 1, (size_t)n, 0) / (double)n));
+        wider = fmax(1, wider);
         p->calibration *= wider;
         while (held < n && z[held] <= 1)
             held++;
