@@ -329,8 +329,7 @@ static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int tar
         gsl_sort(z, 1, (size_t)n);
         double wider = fmax(z[(int64_t)fmin(ceil(HELD * (double)(n + 1)), (double)n) - 1],
                             SF_PREDICTOR_SIDES * sqrt(gsl_stats_tss_m(z, 1, (size_t)n, 0) / (double)n));
-        wider = fmax(1, wider);
-        p->calibration *= wider;
+        p->calibration *= fmax(1, wider);
         while (held < n && z[held] <= 1)
             held++;
     }
