@@ -15,7 +15,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define FIGURE(key) "{ key = \"" key "\"; accuracy = 0.02; }"
+#define FIGURE(key) "{ key = \"" key "\"; accuracy = 0.04; }"
 #define COARSE                                                                                               \
     "coarse = [\"geometry.parameters.fine_spacing=30.0\", \"geometry.parameters.outer_spacing=40.0\"];\n"
 
@@ -78,7 +78,7 @@ static void a_plan_is_predicted_from_its_coarse_drops(void **state) {
     assert_non_null(strstr(r.out, " coarse drops simulated, 0 were there\n"));
     assert_non_null(strstr(r.out, "rows are predicted without columns: coarse drops stand in their place"));
     program_assert_page(p, "out/report.html", "What is predicted is the ratio to coarse drops");
-    assert_true(program_file_number(p, "out/sweep.json", "coarse_drops") >= 44);
+    assert_true(program_file_number(p, "out/sweep.json", "coarse_drops") >= 32);
     assert_in_range((int)program_file_number(p, "out/sweep.json", "predicted"), 5, 16);
     r = program_succeed(p, "sweep", "plan.cfg -o out --jobs 2");
     assert_non_null(strstr(r.out, "\n0 coarse drops simulated, 0 were there"));
@@ -121,7 +121,7 @@ static void predictions_and_columns_are_near_the_drops(void **state) {
         "import csv\n"
         "for row, drop in zip(csv.DictReader(open('predicted.csv')), csv.DictReader(open('out/runs.csv'))):\n"
         "    for key in ('a_max_g', 'hic', 'v_rebound_m_s') if row['run_status'] == 'predicted' else ():\n"
-        "        assert abs(float(row[key]) / float(drop[key]) - 1) < 0.02, (key, row['id'])\n");
+        "        assert abs(float(row[key]) / float(drop[key]) - 1) < 0.04, (key, row['id'])\n");
     program_result r = program_shell(p, "python3 check.py");
     if (r.code != 0)
         fail_msg("%s", r.err);
@@ -179,8 +179,7 @@ static void columns_follow_the_diameter_of_the_missile(void **state) {
     sf_plan_free(&plan);
 }
 
-/* LEAP is informed up to a strain of 0.6: columns of the larger area tell how much of the energy is beyond.
- */
+/* LEAP is informed up to a strain of 0.6: columns tell how much of the energy is beyond. */
 static void columns_know_the_energy_beyond_the_data(void **state) {
     const program_place *p = *state;
     sf_plan plan;
@@ -201,6 +200,8 @@ static void columns_know_the_energy_beyond_the_data(void **state) {
         print_message("of the energy %.3f is beyond the data, by columns %.3f\n", drop,
                       expected[SF_TREND_BEYOND]);
         assert_true(fabs(drop - expected[SF_TREND_BEYOND]) < 0.15);
+        assert_true(expected[SF_TREND_NARROWER + SF_TREND_STRAIN] > 0); /* a smaller area sinks deeper */
+        assert_true(expected[SF_TREND_WIDER + SF_TREND_STRAIN] < 0);
         largest = larger(largest, drop);
     }
     assert_true(largest > 0.4);

@@ -87,7 +87,7 @@ sf_status sf_pulse_hic(const sf_series *acceleration_g, sf_hic *hic, sf_error *e
  * scatter of meshes. Lengths and nugget maximise the restricted likelihood under a weak prior. The same bits
  * for any number of threads. */
 
-enum { SF_PREDICTOR_INPUTS = 24 };
+enum { SF_PREDICTOR_INPUTS = 28 };
 #define SF_PREDICTOR_SIDES 1.959963984540054 /* standard deviations on each side of a 95 % interval */
 
 typedef struct sf_predictor {
@@ -117,6 +117,13 @@ void sf_predictor_free(sf_predictor *predictor);
  * computed, with its scatter. */
 void sf_predictor_at(const sf_predictor *predictor, const double *x, double *room, double *mean,
                      double *deviation);
+
+/* Widens the standard deviations of a process until its 95 % intervals hold points that it has not learnt
+ * from: each eighth of the points is predicted by a process that has learnt from the others (cross-conformal
+ * prediction). The factor, at least 1, is the ceil(0.95 (n + 1))-th of the n residuals over half of their
+ * intervals, the largest of less than 19. `held` of the intervals held their points before. `y` [count] are
+ * the outputs that the process was fitted to, at least four. Errors as of sf_predictor_fit. */
+sf_status sf_predictor_validate(sf_predictor *predictor, const double *y, int *held, sf_error *err);
 
 /* Chooses up to `most` of `candidates` points x [candidates][inputs] to be computed next: again and again the
  * one whose standard deviation over `wish` (of its own) is largest, given those that were chosen before it,

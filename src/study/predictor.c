@@ -7,7 +7,7 @@
 #include <gsl/gsl_multimin.h>
 #include <gsl/gsl_sort.h>
 
-enum { MOST_FOR_LENGTHS = 250, STEPS = 60, LEAST_FOR_CALIBRATION = 20 };
+enum { MOST_FOR_LENGTHS = 250, STEPS = 60, LEAST_FOR_CALIBRATION = 20, FOLDS = 8 };
 /* Normal prior of ln(length) and ln(nugget): it holds lengths that the points do not determine. The lengths
  * of drops over their columns are long; from short ones the search often ends in a worse maximum. */
 static const double LENGTH_MEDIAN = 3, LENGTH_SD = 1.5, NUGGET_MEDIAN = 1e-6, NUGGET_SD = 3;
@@ -278,6 +278,43 @@ static double project(const sf_predictor *p, const double *x, double *room, doub
 
 void sf_predictor_at(const sf_predictor *p, const double *x, double *room, double *mean, double *deviation) {
     *deviation = p->calibration * p->deviation * sqrt(project(p, x, room, mean));
+}
+
+/* Predicts the points of one fold by a process that has learnt from all others, and adds their residuals over
+ * its standard deviations to `z`. */
+static sf_status leave_out(const sf_predictor *p, const double *y, int fold, double *z, int *count,
+                           sf_error *err) {
+    SF_OWNED_BY(sf_predictor_free) sf_predictor rest = {0};
+    size_t width = (size_t)p->inputs;
+    SF_OWNED double *x = sf_alloc(err, p->count, (width + 1) * sizeof *x, "a predictor");
+    int learnt = 0;
+    SF_TRY(err->status);
+    double *known = x + (size_t)p->count * width, mean, deviation;
+    for (int k = 0; k < p->count; k++) {
+        if (k % FOLDS == fold)
+            continue;
+        memcpy(x + (size_t)learnt * width, p->x + (size_t)k * width, width * sizeof *x);
+        known[learnt++] = y[k];
+    }
+    SF_TRY(sf_predictor_fit(p->inputs, p->word, learnt, x, known, &rest, err));
+    for (int k = fold; k < p->count; k += FOLDS) {
+        sf_predictor_at(&rest, p->x + (size_t)k * width, known, &mean, &deviation);
+        z[(*count)++] = fabs(y[k] - mean) / fmax(deviation, sqrt(LEAST_VARIANCE));
+    }
+    return SF_OK;
+}
+
+sf_status sf_predictor_validate(sf_predictor *p, const double *y, int *held, sf_error *err) {
+    SF_OWNED double *z = sf_alloc(err, p->count, sizeof *z, "a predictor");
+    int n = 0;
+    for (int fold = 0; fold < FOLDS && err->status == SF_OK; fold++)
+        leave_out(p, y, fold, z, &n, err);
+    SF_TRY(err->status);
+    gsl_sort(z, 1, (size_t)n);
+    for (*held = 0; *held < n && z[*held] <= SF_PREDICTOR_SIDES;)
+        ++*held;
+    p->calibration *= fmax(1, z[(int)fmin(ceil(SHARE * (n + 1)), n) - 1] / SF_PREDICTOR_SIDES);
+    return SF_OK;
 }
 
 /* Lowers the variances by what point `next` would tell, whose projection grows by one entry like all others.

@@ -3,15 +3,14 @@
 
 #include "io/process.h"
 #include "study/sweep/analysis.h"
-#include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>
 
 enum {
-    CHECKED_PART = 40, /* one row of so many is a check, within bounds */
-    LEAST_CHECKS = 20, /* with fewer than 19 the largest residual is no bound of 95 % */
-    MOST_CHECKS = 32,
-    DESIGN_PER_INPUT = 8, /* further rows of the first round */
-    LEAST_DESIGN = 12,
+    DRAWN_PART = 40, /* one row of so many is drawn for the first round, within bounds */
+    LEAST_DRAWN = 20,
+    MOST_DRAWN = 32,
+    DESIGN_PER_INPUT = 4, /* further rows of the first round */
+    LEAST_POINTS = 6,     /* of a process */
     MOST_DESIGN = 96,
     SAMPLE = 2000, /* open rows that a round looks at */
     DESIGN_SAMPLE = 20000,
@@ -45,8 +44,9 @@ enum { TARGETS = SF_SWEEP_FIGURES + WATCHED, INPUTS = SF_SWEEP_FACTORS + SF_TREN
 enum { COARSE_INPUTS = 5 }; /* the first outputs of coarse drops */
 _Static_assert(INPUTS <= (int)SF_PREDICTOR_INPUTS, "a process has room for all inputs");
 static const double COLLAPSED = 1.5; /* scaled figure of columns that collapse: beyond those of all others */
-static const double LIKELY = 0.84;   /* standard deviations beyond a bound: an expectation of 80 % */
-static const double UNUSABLE = 0.5, HELD = 0.95, LEAST_DEVIATION = 1e-9;
+static const double LIKELY = 0.52;   /* standard deviations beyond a bound: an expectation of 70 % */
+static const double LEAST_PART = 0.1; /* of the accuracy asked for: no interval is narrower */
+static const double UNUSABLE = 0.5;
 
 struct sf_sweep_adaptive {
     const sf_plan *plan;
@@ -57,11 +57,8 @@ struct sf_sweep_adaptive {
     int inputs;                            /* these, and of a plan with columns their figures */
     bool word[INPUTS];
     double low[INPUTS], range[INPUTS];
-    bool *check; /* [rows] random rows that are simulated and teach nothing: they measure the predictions;
-                    owned */
-    int64_t checks;
-    int held[SF_SWEEP_FIGURES], checked[SF_SWEEP_FIGURES]; /* of them, in the intervals as they were before
-                                                              they were widened, and with figures */
+    bool *drawn;                /* [rows] random rows, which are simulated first; owned */
+    int held[SF_SWEEP_FIGURES]; /* simulated rows that were predicted from others, in their intervals */
     sf_sweep_trend trend;
     double *expected; /* [rows][SF_TRENDS] of the columns; NULL: not yet computed; owned */
     const struct sf_sweep_adaptive *coarse; /* NULL: there are no coarse drops; borrowed, like the next */
@@ -131,14 +128,14 @@ static void put_inputs(const sf_sweep_adaptive *a, int64_t row, double *x) {
 
 /* ---- the first round ---- */
 
-static int64_t count_checks(const sf_plan *plan) {
-    int64_t count = plan->rows / CHECKED_PART;
-    count = count < LEAST_CHECKS ? LEAST_CHECKS : count > MOST_CHECKS ? MOST_CHECKS : count;
+static int64_t count_drawn(const sf_plan *plan) {
+    int64_t count = plan->rows / DRAWN_PART;
+    count = count < LEAST_DRAWN ? LEAST_DRAWN : count > MOST_DRAWN ? MOST_DRAWN : count;
     return count < plan->rows ? count : plan->rows;
 }
 
 int64_t sf_sweep_adaptive_design(const sf_plan *plan) {
-    int64_t count = count_checks(plan) + DESIGN_PER_INPUT * plan->factor_count;
+    int64_t count = count_drawn(plan) + DESIGN_PER_INPUT * plan->factor_count;
     count = count > MOST_DESIGN ? MOST_DESIGN : count;
     return count < plan->rows ? count : plan->rows;
 }
@@ -308,59 +305,30 @@ static void free_models(sf_sweep_adaptive *a) {
         sf_predictor_free(&a->model[t]);
 }
 
-/* Widens the intervals of a figure by the ceil(0.95 (n + 1))-th residual of n check rows (split conformal
- * prediction), or by their root mean square if a normal distribution of that asks for more. */
-static sf_status check_target(sf_sweep_adaptive *a, const sf_runs *runs, int target, sf_error *err) {
-    sf_predictor *p = &a->model[target];
-    SF_OWNED double *room = sf_alloc(err, (unsigned long)(p->count + a->checks), sizeof *room, "predictions");
-    double x[INPUTS], mean, deviation;
-    int64_t n = 0, held = 0;
-    SF_TRY(err->status);
-    double *z = room + p->count;
-    for (int64_t row = 0; row < runs->count; row++) {
-        double value = a->check[row] && is_simulated(runs, row) ? excess_of(a, runs, target, row) : NAN;
-        if (!isfinite(value))
-            continue;
-        put_inputs(a, row, x);
-        sf_predictor_at(p, x, room, &mean, &deviation);
-        z[n++] = fabs(value - mean) / SF_PREDICTOR_SIDES / fmax(deviation, LEAST_DEVIATION);
-    }
-    if (n > 0) {
-        gsl_sort(z, 1, (size_t)n);
-        double wider = fmax(z[(int64_t)fmin(ceil(HELD * (double)(n + 1)), (double)n) - 1],
-                            SF_PREDICTOR_SIDES * sqrt(gsl_stats_tss_m(z, 1, (size_t)n, 0) / (double)n));
-        p->calibration *= fmax(1, wider);
-        while (held < n && z[held] <= 1)
-            held++;
-    }
-    a->checked[target] = (int)n;
-    a->held[target] = (int)held;
-    return SF_OK;
-}
-
 /* Fits one process; of too many points the last ones of the list are left out. */
 static sf_status fit_target(sf_sweep_adaptive *a, const sf_runs *runs, int target, sf_error *err) {
     SF_OWNED double *x = sf_alloc(err, MOST_POINTS, (unsigned long)(a->inputs + 1) * sizeof *x, "rows");
     bool is_figure = target < a->plan->figure_count;
     int n = 0;
     a->farthest[target] = -INFINITY;
+    if (is_figure)
+        a->held[target] = 0;
     SF_TRY(err->status);
     double *y = x + (int64_t)MOST_POINTS * a->inputs;
     for (int64_t row = 0; row < runs->count && n < MOST_POINTS; row++) {
-        bool learns = is_simulated(runs, row) && !(is_figure && a->check[row]);
-        double value = learns ? excess_of(a, runs, target, row) : NAN;
+        double value = is_simulated(runs, row) ? excess_of(a, runs, target, row) : NAN;
         if (!isfinite(value))
             continue;
         a->farthest[target] = fmax(a->farthest[target], expected_of(a, target, row));
         put_inputs(a, row, x + (int64_t)n * a->inputs);
         y[n++] = value;
     }
-    if (n < LEAST_DESIGN / 2) {
+    if (n < LEAST_POINTS) {
         a->all |= is_figure;
         return SF_OK;
     }
     SF_TRY(sf_predictor_fit(a->inputs, a->word, n, x, y, &a->model[target], err));
-    return is_figure ? check_target(a, runs, target, err) : SF_OK;
+    return is_figure ? sf_predictor_validate(&a->model[target], y, &a->held[target], err) : SF_OK;
 }
 
 static sf_status fit_models(sf_sweep_adaptive *a, const sf_runs *runs, sf_error *err) {
@@ -404,7 +372,7 @@ static void judge_figure(const sf_sweep_adaptive *a, int target, int64_t row, co
     double mean, deviation, wish = log1p(a->plan->figure[target].accuracy) / SF_PREDICTOR_SIDES;
     predict(a, target, row, x, room, &mean, &deviation);
     o->value[target] = exp(mean);
-    o->half[target] = SF_PREDICTOR_SIDES * deviation;
+    o->half[target] = SF_PREDICTOR_SIDES * fmax(deviation, LEAST_PART * wish);
     hold_against(a, row, o, target, isfinite(o->value[target]) ? deviation / wish : INFINITY, wish);
 }
 
@@ -525,11 +493,11 @@ static int choose_round(sf_sweep_adaptive *a, const sf_runs *runs, int most, int
     return n;
 }
 
-/* The first open rows; `check`: of those that it marks. */
-static int choose_open(const sf_runs *runs, const bool *check, int most, int64_t *row) {
+/* The first open rows; `marked`: of those that it marks. */
+static int choose_open(const sf_runs *runs, const bool *marked, int most, int64_t *row) {
     int count = 0;
     for (int64_t r = 0; r < runs->count && count < most; r++)
-        if (runs->state[r] == SF_SWEEP_OPEN && (!check || check[r]))
+        if (runs->state[r] == SF_SWEEP_OPEN && (!marked || marked[r]))
             row[count++] = r;
     return count;
 }
@@ -538,9 +506,9 @@ static int next(void *context, const sf_runs *runs, int most, int64_t *row, sf_e
     sf_sweep_adaptive *a = context;
     int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN),
             missing = sf_sweep_adaptive_design(a->plan) - ended;
-    int checks = choose_open(runs, a->check, most, row);
-    if (checks > 0)
-        return checks;
+    int drawn = choose_open(runs, a->drawn, most, row);
+    if (drawn > 0)
+        return drawn;
     if (missing > 0 && ended < runs->count)
         return choose_apart(a, runs, missing < most ? (int)missing : most, row, err);
     if (expect(a, runs, err) != SF_OK || fit_models(a, runs, err) != SF_OK)
@@ -565,7 +533,7 @@ static sf_status finish(void *context, sf_runs *runs, sf_error *err) {
                 sf_runs_predicted(runs, row[k], o[k].value, o[k].half);
     }
     for (int k = 0; k < a->plan->figure_count; k++) {
-        runs->checked[k] = a->checked[k];
+        runs->checked[k] = a->model[k].count;
         runs->held[k] = a->held[k];
     }
     return err->status;
@@ -578,8 +546,7 @@ sf_sweep_adaptive *sf_sweep_adaptive_new(const sf_plan *plan, const char *drops,
         return NULL;
     *a = (sf_sweep_adaptive){.plan = plan, .drops = drops, .jobs = jobs, .log = log};
     list_inputs(a);
-    a->checks = count_checks(plan);
-    a->check = sf_analysis_pick(plan->rows, a->checks, err);
+    a->drawn = sf_analysis_pick(plan->rows, count_drawn(plan), err);
     return sf_keep(a, err);
 }
 
@@ -592,7 +559,7 @@ void sf_sweep_adaptive_free(sf_sweep_adaptive *a) {
     if (!a)
         return;
     free_models(a);
-    SF_FREE(a->expected, a->base, a->doubt, a->check, a);
+    SF_FREE(a->expected, a->base, a->doubt, a->drawn, a);
 }
 
 sf_sweep_chooser sf_sweep_adaptive_chooser(sf_sweep_adaptive *a) {

@@ -5,8 +5,8 @@
  * coarse drops.
  * Further processes watch whether the row's figures can be used and are defined: a row that may be near the
  * anvil, beyond its foam's data, in contact at the end of its run, giving back energy that it dissipated,
- * failing or without one of the figures is simulated; a row of which one of these is expected with 80 % stays
- * open. Random rows are simulated for checks alone: the intervals are widened until they hold these. */
+ * failing or without one of the figures is simulated; a row of which one of these is expected with 70 % stays
+ * open. The intervals are widened until they hold rows that were predicted from others. */
 #pragma once
 #include "study/column.h"
 #include "study/sweep/campaign.h"
@@ -28,7 +28,7 @@ void sf_sweep_adaptive_correct(sf_sweep_adaptive *adaptive, const sf_sweep_adapt
 /* The chooser of a campaign; its context is `adaptive`, borrowed. */
 sf_sweep_chooser sf_sweep_adaptive_chooser(sf_sweep_adaptive *adaptive);
 
-/* Rows of the first round, with the checks: simulated before anything is predicted. */
+/* Rows of the first round: simulated before anything is predicted. */
 int64_t sf_sweep_adaptive_design(const sf_plan *plan);
 
 /* Figures of the rows of a plan by columns (study/column.h), whose pad is learnt from the finished drops. A
@@ -40,14 +40,13 @@ enum {
     SF_TREND_HIC,
     SF_TREND_REBOUND,
     SF_TREND_STRAIN,
-    SF_TREND_WIDER, /* the first of four changes of the figures before, if columns have 1.35 times their area.
-                       The foam beside the missile carries, too, so that drops differ from columns as these do
-                     */
-    SF_TREND_INDENTATION = 2 * SF_TREND_WIDER,
-    SF_TREND_CONTACT, /* ms */
-    SF_TREND_BEYOND,  /* -, no logarithm: share of the work beyond the foam's data, by columns of the larger
-                         area; 1: these collapse */
-    SF_TREND_TIME,    /* ms; of every row whose case can be read */
+    SF_TREND_NARROWER, /* the first of four changes of the figures before, if the area is 1.35 times smaller
+                        */
+    SF_TREND_WIDER = 2 * SF_TREND_NARROWER,       /* and of four, if it is 1.35 times larger */
+    SF_TREND_INDENTATION = 3 * SF_TREND_NARROWER, /* the figures before this one are inputs of processes */
+    SF_TREND_CONTACT,                             /* ms */
+    SF_TREND_BEYOND, /* -, no logarithm: share of the work beyond the foam's data; 1: the columns collapse */
+    SF_TREND_TIME,   /* ms; of every row whose case can be read */
     SF_TRENDS
 };
 

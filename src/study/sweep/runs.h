@@ -22,8 +22,8 @@ typedef struct sf_runs {
     double *value;                /* [count][figures] as in summary.json; NaN: none; a text: its number */
     double *half; /* [count][figures of the plan] of a predicted row half of the 95 % interval of the
                      logarithm, else 0; NULL: the plan predicts none */
-    int checked[SF_SWEEP_FIGURES], held[SF_SWEEP_FIGURES]; /* simulated rows by which the predictions of a
-                        figure were checked, and those of them in the intervals before these were widened */
+    int checked[SF_SWEEP_FIGURES], held[SF_SWEEP_FIGURES]; /* simulated rows that were predicted from the
+                        others, and those of them in their intervals before these were widened */
     char **folder;                /* [count] name of its folder; NULL: none */
     char **message; /* [count] why it failed or is left open, or the remarks of its verdict; NULL:
                        none */

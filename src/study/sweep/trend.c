@@ -5,7 +5,7 @@
 
 enum { MOST_DROPS = 64, LEVELS = 8 };
 static const double SAME_PROFILE = 0.02, NEAR_PROFILE = 0.05, SAME_THICKNESS = 0.01; /* relative */
-static const double WIDER = 1.35;                                                    /* times the area */
+static const double AREA = 1.35; /* of the columns, over that below the missile: the foam beside it carries */
 
 int sf_sweep_trend_find(const char *figure) {
     static const char *const names[] = {[SF_TREND_A_MAX] = "a_max_g",
@@ -193,13 +193,22 @@ sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep
 
 /* ---- a row ---- */
 
+/* False: columns of `factor` times the area collapse. */
+static bool respond_of_area(const sf_columns *columns, double factor, const sf_material_law *law, double *y) {
+    sf_columns own = *columns;
+    for (int k = 0; k < own.count; k++)
+        own.area[k] *= factor;
+    return sf_columns_expect(&own, law, y, SF_IGNORED) == SF_OK;
+}
+
 static void respond(const sf_sweep_trend *t, const sf_case *c, int64_t row, double *expected) {
     static const int place[] = {[SF_TREND_A_MAX] = SF_FIT_A_MAX,
                                 [SF_TREND_HIC] = SF_FIT_HIC,
                                 [SF_TREND_REBOUND] = SF_FIT_REBOUND,
                                 [SF_TREND_STRAIN] = SF_COLUMNS_STRAIN,
                                 [SF_TREND_INDENTATION] = SF_COLUMNS_STRAIN,
-                                [SF_TREND_CONTACT] = SF_FIT_CONTACT};
+                                [SF_TREND_CONTACT] = SF_FIT_CONTACT,
+                                [SF_TREND_BEYOND] = SF_COLUMNS_BEYOND};
     sf_columns columns = columns_at(t, row);
     double y[SF_COLUMNS_LOGARITHMS];
     SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
@@ -210,18 +219,16 @@ static void respond(const sf_sweep_trend *t, const sf_case *c, int64_t row, doub
     if (columns.count == 0 || !(columns.thickness > 0) ||
         sf_material_law_build(&c->material, &law, &refused) != SF_OK)
         return;
-    if (sf_columns_expect(&columns, &law, y, &refused) == SF_OK)
-        for (int k = 0; k < SF_TREND_BEYOND; k++)
-            if (k < SF_TREND_WIDER || k >= SF_TREND_INDENTATION)
-                expected[k] = y[place[k]] + (k == SF_TREND_INDENTATION ? log(columns.thickness) : 0);
-    for (int k = 0; k < columns.count; k++)
-        columns.area[k] *= WIDER;
     expected[SF_TREND_BEYOND] = 1;
-    if (sf_columns_expect(&columns, &law, y, &refused) == SF_OK) {
-        for (int k = 0; k < SF_TREND_WIDER; k++)
-            expected[SF_TREND_WIDER + k] = y[place[k]] - expected[k];
-        expected[SF_TREND_BEYOND] = y[SF_COLUMNS_BEYOND];
-    }
+    if (!respond_of_area(&columns, AREA, &law, y))
+        return;
+    for (int k = 0; k < SF_TREND_TIME; k++)
+        if (k < SF_TREND_NARROWER || k >= SF_TREND_INDENTATION)
+            expected[k] = y[place[k]] + (k == SF_TREND_INDENTATION ? log(columns.thickness) : 0);
+    for (int wider = 0; wider < 2; wider++)
+        if (respond_of_area(&columns, wider ? AREA * AREA : 1, &law, y))
+            for (int k = 0; k < SF_TREND_NARROWER; k++)
+                expected[(wider ? SF_TREND_WIDER : SF_TREND_NARROWER) + k] = y[place[k]] - expected[k];
 }
 
 sf_status sf_sweep_trend_at(const sf_sweep_trend *t, int64_t row, double *expected, sf_error *err) {
