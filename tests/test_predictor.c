@@ -107,7 +107,8 @@ static void intervals_hold_what_they_say(void **state) {
 
 /* With eight inputs of which three matter, 40 points do not tell the lengths, and the process is too sure:
  * over 60 functions its intervals hold less than 93 % of 6000 other points, and 93 to 99.5 % once they are
- * widened by points left out. Of these they held what they hold of others. */
+ * widened by points left out. The share of points left out
+ * that they held before is that of the other points. */
 static void intervals_are_widened_by_points_left_out(void **state) {
     (void)state;
     enum { MANY = 8, FEW = 40, TRIALS = 60, OTHERS = 100 };
@@ -363,7 +364,7 @@ static void rows_are_predicted_from_coarse_rows(void **state) {
            100 * (double)held[1] / (double)predicted);
     assert_true(predicted > runs.count * 3 / 4 && f.calls < of_coarse.calls);
     for (int k = 0; k < 2; k++)
-        assert_true((double)held[k] >= 0.92 * (double)predicted);
+        assert_true((double)held[k] >= 0.93 * (double)predicted);
     sf_sweep_adaptive_free(first);
     sf_sweep_adaptive_free(second);
     sf_runs_free(&runs);

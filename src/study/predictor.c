@@ -280,8 +280,13 @@ void sf_predictor_at(const sf_predictor *p, const double *x, double *room, doubl
     *deviation = p->calibration * p->deviation * sqrt(project(p, x, room, mean));
 }
 
+/* Folds go round by one more in each eight: a plan has regular rows. */
+static int fold_of(int point) {
+    return (point + point / FOLDS) % FOLDS;
+}
+
 /* Predicts the points of one fold by a process that has learnt from all others, and adds their residuals over
- * its standard deviations to `z`. */
+ * standard deviations, with the calibration of all points, to `z`. */
 static sf_status leave_out(const sf_predictor *p, const double *y, int fold, double *z, int *count,
                            sf_error *err) {
     SF_OWNED_BY(sf_predictor_free) sf_predictor rest = {0};
@@ -291,15 +296,19 @@ static sf_status leave_out(const sf_predictor *p, const double *y, int fold, dou
     SF_TRY(err->status);
     double *known = x + (size_t)p->count * width, mean, deviation;
     for (int k = 0; k < p->count; k++) {
-        if (k % FOLDS == fold)
+        if (fold_of(k) == fold)
             continue;
         memcpy(x + (size_t)learnt * width, p->x + (size_t)k * width, width * sizeof *x);
         known[learnt++] = y[k];
     }
     SF_TRY(sf_predictor_fit(p->inputs, p->word, learnt, x, known, &rest, err));
-    for (int k = fold; k < p->count; k += FOLDS) {
+    rest.calibration = p->calibration;
+    for (int k = 0; k < p->count; k++) {
+        if (fold_of(k) != fold)
+            continue;
         sf_predictor_at(&rest, p->x + (size_t)k * width, known, &mean, &deviation);
-        z[(*count)++] = fabs(y[k] - mean) / fmax(deviation, sqrt(LEAST_VARIANCE));
+        double off = fabs(y[k] - mean) / fmax(deviation, sqrt(LEAST_VARIANCE));
+        z[(*count)++] = isfinite(off) && isfinite(deviation) ? off : INFINITY;
     }
     return SF_OK;
 }
@@ -307,7 +316,7 @@ static sf_status leave_out(const sf_predictor *p, const double *y, int fold, dou
 sf_status sf_predictor_validate(sf_predictor *p, const double *y, int *held, sf_error *err) {
     SF_OWNED double *z = sf_alloc(err, p->count, sizeof *z, "a predictor");
     int n = 0;
-    for (int fold = 0; fold < FOLDS && err->status == SF_OK; fold++)
+    for (int fold = 0; fold < FOLDS && fold < p->count && err->status == SF_OK; fold++)
         leave_out(p, y, fold, z, &n, err);
     SF_TRY(err->status);
     gsl_sort(z, 1, (size_t)n);

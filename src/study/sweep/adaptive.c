@@ -11,11 +11,10 @@ enum {
     MOST_DRAWN = 32,
     DESIGN_PER_INPUT = 4, /* further rows of the first round */
     LEAST_POINTS = 6,     /* of a process */
-    MOST_DESIGN = 96,
-    SAMPLE = 2000, /* open rows that a round looks at */
+    SAMPLE = 2000,        /* open rows that a round looks at */
     DESIGN_SAMPLE = 20000,
     ROUND_PART = 6,     /* a round simulates one row for so many that are there */
-    MOST_POINTS = 3000, /* of a process: 72 MB and 10 s a fit */
+    MOST_POINTS = 3000, /* of a process: 72 MB and 10 s a fit, of a figure eight more */
     MANY_ROWS = 10000   /* whose columns take half a minute */
 };
 
@@ -43,7 +42,8 @@ static const struct {
 enum { TARGETS = SF_SWEEP_FIGURES + WATCHED, INPUTS = SF_SWEEP_FACTORS + SF_TREND_INDENTATION };
 enum { COARSE_INPUTS = 5 }; /* the first outputs of coarse drops */
 _Static_assert(INPUTS <= (int)SF_PREDICTOR_INPUTS, "a process has room for all inputs");
-static const double COLLAPSED = 1.5; /* scaled figure of columns that collapse: beyond those of all others */
+static const double COLLAPSED =
+    1.5; /* scaled figure of columns that collapse: outside of those of all others */
 static const double LIKELY = 0.52;   /* standard deviations beyond a bound: an expectation of 70 % */
 static const double LEAST_PART = 0.1; /* of the accuracy asked for: no interval is narrower */
 static const double UNUSABLE = 0.5;
@@ -136,7 +136,6 @@ static int64_t count_drawn(const sf_plan *plan) {
 
 int64_t sf_sweep_adaptive_design(const sf_plan *plan) {
     int64_t count = count_drawn(plan) + DESIGN_PER_INPUT * plan->factor_count;
-    count = count > MOST_DESIGN ? MOST_DESIGN : count;
     return count < plan->rows ? count : plan->rows;
 }
 

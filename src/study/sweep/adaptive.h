@@ -5,8 +5,8 @@
  * coarse drops.
  * Further processes watch whether the row's figures can be used and are defined: a row that may be near the
  * anvil, beyond its foam's data, in contact at the end of its run, giving back energy that it dissipated,
- * failing or without one of the figures is simulated; a row of which one of these is expected with 70 % stays
- * open. The intervals are widened until they hold rows that were predicted from others. */
+ * failing or without one of the figures is simulated; a row of which one of these is expected with 70 % at
+ * least stays open. The intervals are widened until they hold rows that were predicted from others. */
 #pragma once
 #include "study/column.h"
 #include "study/sweep/campaign.h"
@@ -31,8 +31,9 @@ sf_sweep_chooser sf_sweep_adaptive_chooser(sf_sweep_adaptive *adaptive);
 /* Rows of the first round: simulated before anything is predicted. */
 int64_t sf_sweep_adaptive_design(const sf_plan *plan);
 
-/* Figures of the rows of a plan by columns (study/column.h), whose pad is learnt from the finished drops. A
- * Gaussian process then predicts the difference of the drops from them. */
+/* Figures of the rows of a plan by columns (study/column.h) of 1.35 times the area below the missile, as the
+ * foam beside it carries, too. Their pad is learnt from the finished drops. A Gaussian process then predicts
+ * the difference of the drops from them. */
 
 /* Figures that columns have, the time of contact, and the time from first contact to the end of the run. */
 enum {
@@ -40,9 +41,8 @@ enum {
     SF_TREND_HIC,
     SF_TREND_REBOUND,
     SF_TREND_STRAIN,
-    SF_TREND_NARROWER, /* the first of four changes of the figures before, if the area is 1.35 times smaller
-                        */
-    SF_TREND_WIDER = 2 * SF_TREND_NARROWER,       /* and of four, if it is 1.35 times larger */
+    SF_TREND_NARROWER, /* the first of four changes of the figures before, by columns of the area itself */
+    SF_TREND_WIDER = 2 * SF_TREND_NARROWER,       /* and of four, by columns of 1.35^2 times the area */
     SF_TREND_INDENTATION = 3 * SF_TREND_NARROWER, /* the figures before this one are inputs of processes */
     SF_TREND_CONTACT,                             /* ms */
     SF_TREND_BEYOND, /* -, no logarithm: share of the work beyond the foam's data; 1: the columns collapse */

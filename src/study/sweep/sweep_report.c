@@ -239,8 +239,9 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
     if (!sf_plan_is_adaptive(r->plan))
         return;
     sf_html_heading(page, "Predicted runs");
-    sf_html_table t =
-        sf_html_table_begin(page, "figure|>accuracy asked for|>widest half of a 95 % interval|>drops held");
+    sf_html_table t = sf_html_table_begin(
+        page,
+        "figure|>accuracy asked for|>widest half of a 95 % interval|>left-out drops in their intervals");
     for (int k = 0; k < r->plan->figure_count; k++) {
         SF_HTML_ROW(&t, "%s", r->plan->figure[k].figure);
         sf_html_cell(&t, "%.3g %%", 100 * r->plan->figure[k].accuracy);
@@ -251,10 +252,10 @@ static void put_predictions(FILE *page, const sf_sweep_report *r) {
     sf_html_note(
         page,
         "%lld of %lld rows were not simulated but predicted from the others; runs.csv has the state and the "
-        "interval of each. Each eighth of the simulated rows was predicted from the others; the last column "
-        "counts those in their intervals, before these were widened to hold 95 %% of the next rows. In "
+        "interval of each. Each eighth of the simulated rows was also predicted from the other seven; the last "
+        "column counts those in their intervals, before these were widened to hold 95 %% of them. In "
         "probabilities a prediction whose interval holds the limit is unknown. %lld rows are open: each is "
-        "expected with 70 %% to fail, to be not to be used or to lack a figure; runs.csv says why.",
+        "expected with 70 %% at least to fail, to be not to be used or to lack a figure; runs.csv says why.",
         a->predicted, r->plan->rows, a->open);
     if (r->coarse > 0)
         sf_html_note(page,
