@@ -46,7 +46,7 @@ static const char tools[] =
     "# programs that the window opens note what they are told to open\n"
     "fake() { mkdir -p fake; printf '#!/bin/sh\\necho $(basename $0) \"$@\" >>opened\\n' >fake/paraview; chmod +x fake/paraview; "
     "for name in xdg-open emacs firefox; do cp fake/paraview fake/$name; done; PATH=$PWD/fake:$PATH; rm -f opened; }\n"
-    "gui() { \"$SF_BIN_DIR/softfall-gui\" -t 1 --script $1.script case.cfg >$1.txt 2>$1.err; code=$?; "
+    "gui() { timeout 1200 \"$SF_BIN_DIR/softfall-gui\" -t 1 --script $1.script case.cfg >$1.txt 2>$1.err; code=$?; "
     ": >$1.txt.ended; return $code; }\n";
 
 static int set_up(void **state) {
@@ -387,6 +387,20 @@ static void a_geometry_is_mended_outside(void **state) {
     assert_non_null(line_of(p, "mend.txt", "\nready: "));
 }
 
+/* A key that comes while gmsh draws is kept until the window waits again: it closes the window before the
+ * script, which draws nearly all the time, has come to its end. */
+static void a_key_while_the_window_draws_is_not_lost(void **state) {
+    const program_place *p = *state;
+    need_display();
+    do_shell(
+        p,
+        "{ echo status; for k in $(seq 100); do echo 'set missile.velocity=4 m/s'; "
+        "echo 'set missile.velocity=4.5 m/s'; done; echo activity; echo quit; } >busy.script; "
+        "for k in 1 2; do rm -f busy.txt busy.txt.ended; "
+        "{ has busy.txt ready && find_window && xdotool mousemove $((X + 800)) $((Y + 400)) key ctrl+q; } & "
+        "gui busy; wait; grep -q ready busy.txt && ! grep activity busy.txt || exit 1; done");
+}
+
 static void nothing_is_left_of_a_window_that_is_closed(void **state) {
     const program_place *p = *state;
     need_display();
@@ -416,6 +430,7 @@ int main(void) {
         cmocka_unit_test(a_series_is_refused),
         cmocka_unit_test(a_mark_stays_when_the_case_is_read_anew),
         cmocka_unit_test(a_geometry_is_mended_outside),
+        cmocka_unit_test(a_key_while_the_window_draws_is_not_lost),
         cmocka_unit_test(nothing_is_left_of_a_window_that_is_closed),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
