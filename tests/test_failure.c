@@ -116,7 +116,7 @@ static void growing_energy(void **state) {
 
 static void vanishing_time_step(void **state) {
     fixture *f = *state;
-    f->model.run.end_time = 1e9 * 1.001 * f->state.dt; /* the floor is a part of it */
+    f->model.run.end_time = 1e9 * 1.03 * f->state.dt; /* the floor is a part of it; a step grows by 2 % */
     assert_fails(f, &f->state, -1, "the stable time step fell to",
                  "densified beyond what the curve can carry");
 }

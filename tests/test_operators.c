@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Operators taken from a model, which loses what they alone are made of, against operators built beside it.
- */
+/* Operators taken from a model, which loses what they alone are made of, against operators built beside it;
+ * the masses of a cloud. */
+#include "extreme.h"
 #include "model_fixture.h"
+#include "post_check.h"
 
+#include "model/stability.h"
 #include "solver/step.h"
 
 #include <math.h>
@@ -51,9 +54,61 @@ static void taken_operators_give_the_same_bits(void **state) {
     fixture_free(&taken);
 }
 
+/* Largest stability constant of the model with the masses rho V, over that with its own. */
+static double constant_ratio(sf_model *m, double density) {
+    sf_error err = SF_ERROR_INIT;
+    double *own = m->mass, largest[2] = {0, 0};
+    double *constant = malloc((size_t)m->node_count * sizeof *constant),
+           *lumped = malloc((size_t)m->node_count * sizeof *lumped);
+    assert_true(constant && lumped);
+    for (int k = 0; k < 2; k++) {
+        m->mass = k ? own : lumped;
+        for (int64_t i = 0; i < m->node_count; i++)
+            lumped[i] = density * m->volume[i];
+        assert_int_equal(sf_stability_constants(m, constant, &err), SF_OK);
+        for (int64_t i = 0; i < m->node_count; i++)
+            largest[k] = larger(largest[k], constant[i]);
+    }
+    m->mass = own;
+    free(constant);
+    free(lumped);
+    return largest[0] / largest[1];
+}
+
+/* Masses of the example's pad have the mass and the centre of mass of its volume, none is less than half of
+ * rho V, those of the lattice are rho V up to its surfaces, and the light nodes at its rim set no step of
+ * their own. */
+static void light_nodes_share_the_mass_of_their_neighbours(void **state) {
+    (void)state;
+    fixture f;
+    fixture_pad((const char *const[]){NULL}, &f);
+    const sf_model *m = &f.model;
+    double density = sf_material_density(&m->material[0]), mass = 0, volume = 0, moment[3] = {0};
+    double least = INFINITY, most = 0, inner = 0;
+    for (int64_t i = 0; i < m->node_count; i++) {
+        const double *x = &m->position[3 * i];
+        double ratio = m->mass[i] / (density * m->volume[i]);
+        mass += m->mass[i];
+        volume += m->volume[i];
+        for (int c = 0; c < 3; c++)
+            moment[c] += x[c] * (m->mass[i] - density * m->volume[i]);
+        least = smaller(least, ratio);
+        most = larger(most, ratio);
+        if (x[0] < 0.06 && x[1] < 0.06)
+            inner = larger(inner, fabs(ratio - 1));
+    }
+    assert_relative(mass, density * volume, 1e-12);
+    for (int c = 0; c < 3; c++)
+        assert_close(moment[c], 0, 1e-13 * mass);
+    assert_true(least >= 0.5 && most > 1.5 && inner < 1e-12);
+    assert_true(constant_ratio(&f.model, density) > 1.2);
+    fixture_free(&f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(taken_operators_give_the_same_bits),
+        cmocka_unit_test(light_nodes_share_the_mass_of_their_neighbours),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

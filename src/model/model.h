@@ -103,7 +103,7 @@ typedef struct sf_model {
     int64_t node_count;
     double *position;       /* [node_count][3] m, X */
     double *volume;         /* [node_count] m3, V of the smoothing domain */
-    double *mass;           /* [node_count] kg, rho V */
+    double *mass;           /* [node_count] kg, rho V, smoothed near light nodes (theory eq. 9) */
     double *spacing;        /* [node_count] m, h */
     double *support;        /* [node_count] m, R */
     uint8_t *node_material; /* [node_count] index in `material`, ascending */
