@@ -249,7 +249,8 @@ static void edges_that_cross_carry_each_other(void **state) {
 }
 
 /* Ridges in the planes of a half and a quarter, of faces that fall away by 60 degrees: they carry as those of
- * the whole, but for what the foam at a plane is stiffer or softer, and its nodes heavier or lighter. */
+ * the whole, but for what the foam at a plane is stiffer or softer, and its light nodes heavier or lighter.
+ */
 static void ridges_in_symmetry_planes_carry(void **state) {
     const program_place *p = *state;
     program_write_text(p, "roofs.geo", ROOFS);
@@ -266,7 +267,7 @@ static void ridges_in_symmetry_planes_carry(void **state) {
         double force = largest(p, "base_reaction_N", 0.5);
         print_message("half in x %d, in y %d: %.4f N at 0.5 mm\n", k & 1, k >> 1, force);
         whole = k == 0 ? force : whole;
-        assert_relative(force, whole, 0.07);
+        assert_relative(force, whole, 0.08);
         assert_true(largest(p, "penetration_mm", 1) < 0.01 * 5 && largest(p, "energy_error_1", 1) < 1e-3);
     }
 }

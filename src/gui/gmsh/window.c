@@ -144,11 +144,13 @@ sf_status sf_window_start(sf_error *err) {
 
 /* gmsh's window is made of FLTK, which handles clicks and keys wherever gmsh says or draws something: also
  * while it rebuilds the tree that they are meant for, and then it crashes. So those that come while we call
- * gmsh are kept, and go back to the head of the queue of X11 before the window waits for events again. Keys
- * that nothing has taken are commands of gmsh: digits mesh in this window, for minutes perhaps, and with a
- * menu open any of them may crash it. gmsh has no interface for that; in one without these names of FLTK and
- * X11 all is as gmsh does it. */
-enum { PUSH = 1, RELEASE = 2, KEY_DOWN = 8, KEY_UP = 9, CLOSE = 10, SHORTCUT = 12, WHEEL = 19, KEPT = 64 };
+ * gmsh are kept, and go back to the head of the queue of X11 before the window waits for events again;
+ * repeats of a key that is held down are lost. Keys that nothing has taken are commands of gmsh: digits mesh
+ * in this window, for minutes perhaps, and with a menu open any of them may crash it. gmsh has no interface
+ * for that; in one without these names of FLTK all is as gmsh does it, and without those of X11 what comes is
+ * lost. */
+enum { PUSH = 1, RELEASE = 2, KEY_DOWN = 8, KEY_UP = 9, CLOSE = 10, MOVE = 11, SHORTCUT = 12, WHEEL = 19 };
+enum { KEPT = 64 };
 
 typedef struct x_event {
     long bytes[24]; /* an XEvent has this size */
@@ -156,28 +158,44 @@ typedef struct x_event {
 
 static struct {
     int (*handle)(int event, void *window);
-    int (*put_back)(void *display, x_event *event);
-    void **display;
-    const x_event **now; /* the one that is handled */
-    void **menu;         /* that waits for a choice */
+    void **menu; /* the open one, which waits for a choice */
     const int *key;
-    int *clicked;    /* the button of a click that another may make a double click */
-    bool is_waiting; /* for events */
+    int (*put_back)(void *display, x_event *event); /* NULL: nothing is kept */
+    void **display;
+    const x_event **now; /* the event that FLTK handles */
+    int *clicked;        /* the button of a click that another one may make a double click */
+    bool is_waiting;     /* the window waits for events */
     x_event kept[KEPT];
     int count;
 } events;
 
-static int dispatch(int event, void *window) {
-    static const int input[] = {PUSH, RELEASE, KEY_DOWN, KEY_UP, CLOSE, SHORTCUT, WHEEL};
-    bool keep = false;
-    for (size_t k = 0; k < sizeof input / sizeof input[0]; k++)
-        keep = keep || (event == input[k] && !events.is_waiting);
-    if (!keep)
-        return events.handle(event, window);
-    if (events.count < KEPT && event != SHORTCUT) /* a shortcut is made of a key */
+/* The second half of the list is for releases alone: a button that is never released would drag. */
+static void keep(int event) {
+    int room = event == RELEASE || event == KEY_UP ? KEPT : KEPT / 2;
+    if (events.put_back && *events.now && events.count < room)
         events.kept[events.count++] = **events.now;
-    *events.clicked = 0; /* or the same click would be a double click when it comes back */
-    return 1;
+    if (event == PUSH && events.clicked)
+        *events.clicked = 0; /* or this click would be a double click when it comes back */
+}
+
+/* A motion is told anew by the next one; before a release that is kept it would drag. */
+static int dispatch(int event, void *window) {
+    if (events.is_waiting)
+        return events.handle(event, window);
+    switch (event) {
+    case PUSH:
+    case RELEASE:
+    case KEY_DOWN:
+    case KEY_UP:
+    case CLOSE:
+    case WHEEL:
+        keep(event);
+        return 1;
+    case SHORTCUT: /* of a key */
+        return 1;
+    default:
+        return event == MOVE && events.count > 0 ? 1 : events.handle(event, window);
+    }
 }
 
 static void put_back_kept(void) {
@@ -198,10 +216,12 @@ static bool find_name(const char *name, void *place) {
 
 static void guard_events(void) {
     void (*set_dispatch)(int (*)(int, void *)), (*add_handler)(int (*)(int));
-    if (find_name("_ZN2Fl7handle_EiP9Fl_Window", &events.handle) && find_name("fl_xevent", &events.now) &&
-        find_name("XPutBackEvent", &events.put_back) && find_name("fl_display", &events.display) &&
+    int (*put_back)(void *, x_event *);
+    if (find_name("fl_xevent", &events.now) && find_name("fl_display", &events.display) &&
+        find_name("_ZN2Fl10e_is_clickE", &events.clicked) && find_name("XPutBackEvent", &put_back))
+        events.put_back = put_back;
+    if (find_name("_ZN2Fl7handle_EiP9Fl_Window", &events.handle) &&
         find_name("_ZN2Fl5grab_E", &events.menu) && find_name("_ZN2Fl8e_keysymE", &events.key) &&
-        find_name("_ZN2Fl10e_is_clickE", &events.clicked) &&
         find_name("_ZN2Fl14event_dispatchEPFiiP9Fl_WindowE", &set_dispatch) &&
         find_name("_ZN2Fl11add_handlerEPFiiE", &add_handler)) {
         set_dispatch(dispatch);
