@@ -109,73 +109,6 @@ static double volume_of(const sf_mesh *mesh) {
     return sum;
 }
 
-/* A node is light whose volume, of a whole ball, is less than LIGHT of the mean of its neighbours'. */
-static const double LIGHT = 0.7;
-/* Part of rho V that a node keeps at least. */
-static const double LEAST_MASS = 0.5;
-
-/* Volume of each domain over the solid angle of the pad that its node sees: one number for all nodes of a
- * lattice, those of its faces, edges and corners too. The angle is that of the domain's inner facets, each by
- * its middle. */
-static void whole_volumes(const sf_mesh *mesh, const sf_dual *dual, const double *volume, double *whole) {
-    for (int64_t e = 0; e < dual->edge_count; e++)
-        for (int64_t u = dual->use_ptr[e]; u < dual->use_ptr[e + 1]; u++) {
-            sf_facet_triangle facet[2];
-            sf_dual_facet(mesh, &dual->use[u], facet);
-            for (int k = 0; k < 4; k++) {
-                int64_t node = dual->edge[2 * e + k % 2];
-                const double *x = &mesh->position[3 * node], *c = facet[k / 2].centroid;
-                double arm[3] = {c[0] - x[0], c[1] - x[1], c[2] - x[2]}, length = sqrt(sf_dot3(arm, arm));
-                whole[node] += fabs(sf_dot3(arm, facet[k / 2].area)) / (length * length * length);
-            }
-        }
-    for (int64_t i = 0; i < mesh->node_count; i++)
-        whole[i] = volume[i] / whole[i];
-}
-
-/* Sets role [n] of the nodes: LONE, LIGHT_NODE, or NEIGHBOUR, which sees a light one. */
-enum { LONE, LIGHT_NODE, NEIGHBOUR };
-static sf_status find_light(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *d, uint8_t *role,
-                            sf_error *err) {
-    SF_OWNED double *whole = sf_alloc(err, mesh->node_count, sizeof *whole, "masses");
-    SF_TRY(err->status);
-    whole_volumes(mesh, dual, d->volume, whole);
-    for (int64_t i = 0; i < mesh->node_count; i++) {
-        double sum = 0;
-        for (int64_t k = dual->edge_ptr[i]; k < dual->edge_ptr[i + 1]; k++)
-            sum += whole[dual->edge_node[k]];
-        bool light = whole[i] * (double)(dual->edge_ptr[i + 1] - dual->edge_ptr[i]) < LIGHT * sum;
-        role[i] = light ? LIGHT_NODE : LONE;
-    }
-    for (int64_t j = 0; j < mesh->node_count; j++)
-        for (int64_t e = d->phi_ptr[j]; e < d->phi_ptr[j + 1] && role[j] == LONE; e++)
-            role[j] = role[d->phi_node[e]] == LIGHT_NODE ? NEIGHBOUR : LONE;
-    return SF_OK;
-}
-
-/* Masses (kg) of a layer's nodes: rho V_I, but light nodes, which would set the time step of the whole pad,
- * and their neighbours spread theirs by their shape functions. Mass and centre of mass stay. */
-static sf_status lump_masses(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *d, double density,
-                             double *mass, sf_error *err) {
-    int64_t n = mesh->node_count;
-    SF_OWNED double *carried = sf_alloc(err, n, sizeof *carried, "masses");
-    SF_OWNED uint8_t *role = sf_alloc(err, n, 1, "masses");
-    double least = 1;
-    if (err->status != SF_OK || find_light(mesh, dual, d, role, err) != SF_OK)
-        return err->status;
-    for (int64_t j = 0; j < n; j++) {
-        carried[j] += role[j] == LONE ? d->volume[j] : 0;
-        for (int64_t e = d->phi_ptr[j]; e < d->phi_ptr[j + 1] && role[j] != LONE; e++)
-            carried[d->phi_node[e]] += d->volume[j] * d->phi_value[e];
-    }
-    for (int64_t i = 0; i < n; i++)
-        least = fmin(least, carried[i] / d->volume[i]);
-    double share = fmin(1, (1 - LEAST_MASS) / (1 - least));
-    for (int64_t i = 0; i < n; i++)
-        mass[i] = density * (d->volume[i] + share * (carried[i] - d->volume[i]));
-    return SF_OK;
-}
-
 /* Spacing, supports, domains and masses of a layer, whose nodes begin at number `first`; the dual's edges
  * move. `volume`: m3, of the mesh. */
 static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dual, double volume,
@@ -190,7 +123,7 @@ static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dua
     if (sf_domain_store_build(c->store, mesh, dual, c->condition_limit, support, &domains, err) == SF_OK &&
         sf_invariants_measure(mesh, dual, &domains, spacing, volume, &report->invariants, err) == SF_OK &&
         sf_invariants_check(&report->invariants, err) == SF_OK &&
-        lump_masses(mesh, dual, &domains, sf_material_density(material), m->mass + first, err) == SF_OK) {
+        sf_cloud_masses(mesh, dual, &domains, sf_material_density(material), m->mass + first, err) == SF_OK) {
         domains.figures.hidden_count =
             c->layer_count > 1 ? 0 : domains.figures.hidden_count; /* report_gaps */
         report_domains(&domains.figures, &report->domains);

@@ -147,7 +147,7 @@ sf_status sf_window_start(sf_error *err) {
  * gmsh are kept, and go back to the head of the queue of X11 before the window waits for events again;
  * repeats of a key that is held down are lost. Keys that nothing has taken are commands of gmsh: digits mesh
  * in this window, for minutes perhaps, and with a menu open any of them may crash it. gmsh has no interface
- * for that; in one without these names of FLTK all is as gmsh does it, and without those of X11 what comes is
+ * for that; in one without these names of FLTK all is as gmsh does it, and without those of X11 they are
  * lost. */
 enum { PUSH = 1, RELEASE = 2, KEY_DOWN = 8, KEY_UP = 9, CLOSE = 10, MOVE = 11, SHORTCUT = 12, WHEEL = 19 };
 enum { KEPT = 64 };
@@ -169,13 +169,16 @@ static struct {
     int count;
 } events;
 
-/* The second half of the list is for releases alone: a button that is never released would drag. */
-static void keep(int event) {
+/* Returns false if there is no room. The second half of the list is for releases alone: a button that is
+ * never released would drag. */
+static bool keep(int event) {
     int room = event == RELEASE || event == KEY_UP ? KEPT : KEPT / 2;
-    if (events.put_back && *events.now && events.count < room)
-        events.kept[events.count++] = **events.now;
-    if (event == PUSH && events.clicked)
+    if (!events.put_back || !*events.now || events.count >= room)
+        return false;
+    events.kept[events.count++] = **events.now;
+    if (event == PUSH)
         *events.clicked = 0; /* or this click would be a double click when it comes back */
+    return true;
 }
 
 /* A motion is told anew by the next one; before a release that is kept it would drag. */
@@ -183,10 +186,11 @@ static int dispatch(int event, void *window) {
     if (events.is_waiting)
         return events.handle(event, window);
     switch (event) {
-    case PUSH:
     case RELEASE:
-    case KEY_DOWN:
     case KEY_UP:
+        return keep(event) ? 1 : events.handle(event, window);
+    case PUSH:
+    case KEY_DOWN:
     case CLOSE:
     case WHEEL:
         keep(event);

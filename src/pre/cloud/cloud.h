@@ -78,6 +78,11 @@ sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const d
                                sf_domains *out, sf_error *err);
 void sf_domains_free(sf_domains *domains);
 
+/* Masses (kg) [mesh->node_count] of the nodes: rho V_I, but light nodes, which would set the time step of the
+ * whole pad, and their neighbours spread theirs by their shape functions. Mass and centre of mass stay. */
+sf_status sf_cloud_masses(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *domains, double density,
+                          double *mass, sf_error *err);
+
 /* Adds the integral of phi_I N over the boundary to `sum` [n][3], m2 (theory eq. 6). */
 void sf_domains_boundary_integral(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *domains,
                                   double *sum);
