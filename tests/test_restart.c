@@ -301,7 +301,7 @@ static void failed_run_keeps_two_peaks(void **state) {
 static void failure_in_the_first_step_has_results(void **state) {
     const program_place *p = *state;
     program_succeed(p, "pre",
-                    "'%s' -o stiff.h5 %s --set material.E='\"9 GPa\"' --set output.frame_interval='\"1 s\"'",
+                    "'%s' -o stiff.h5 %s --set material.E='\"20 GPa\"' --set output.frame_interval='\"1 s\"'",
                     fixture_source(EXAMPLE), program_coarse(20));
     program_result result = program_run(p, "solve", "stiff.h5 -o stiff_results.h5 -t 1 --end-time '1000 s'");
     assert_int_equal(result.code, SF_ERR_NUMERIC);
