@@ -65,7 +65,7 @@ struct sf_sweep_adaptive {
     const sf_runs *coarse_runs;
     double *base,
         *doubt; /* [rows][TARGETS] outputs of the coarse drops and their standard deviations; owned */
-    int targets;
+    int targets;                 /* of the plan */
     sf_predictor model[TARGETS]; /* the plan's figures, then those that are watched */
     double farthest[TARGETS];    /* largest expectation of the rows that a model has learnt from */
     bool all;                    /* too few rows can be used: every row is simulated */
@@ -242,10 +242,11 @@ static double output_of(const sf_sweep_adaptive *a, const sf_runs *runs, int tar
 
 /* Finds the output of a target by the coarse drop of a row, which tells nothing of the use; NaN: there is
  * none. What is watched is also known of coarse rows that were not simulated. */
-static void take_coarse(const sf_sweep_adaptive *a, int target, int64_t row, double *room) {
+static void take_coarse(const sf_sweep_adaptive *a, int target, int64_t row) {
     const sf_sweep_adaptive *c = a->coarse;
     int k = target - a->plan->figure_count;
-    double *value = &a->base[row * TARGETS + target], *doubt = &a->doubt[row * TARGETS + target], x[INPUTS];
+    double *value = &a->base[row * TARGETS + target], *doubt = &a->doubt[row * TARGETS + target], x[INPUTS],
+           room[MOST_POINTS];
     *value = k == WATCH_USE                               ? 0
              : k < 0 || is_simulated(a->coarse_runs, row) ? output_of(c, a->coarse_runs, target, row)
                                                           : NAN;
@@ -258,15 +259,11 @@ static void take_coarse(const sf_sweep_adaptive *a, int target, int64_t row, dou
 }
 
 static sf_status expect_coarse(sf_sweep_adaptive *a, sf_error *err) {
-    int most = 0, targets = a->plan->figure_count + WATCHED;
-    for (int t = 0; t < targets; t++)
-        most = a->coarse->model[t].count > most ? a->coarse->model[t].count : most;
-    SF_OWNED double *room = sf_alloc(err, most + 1, sizeof *room, "predictions");
     a->base = sf_alloc(err, a->plan->rows, TARGETS * sizeof *a->base, "coarse rows");
     a->doubt = sf_alloc(err, a->plan->rows, TARGETS * sizeof *a->doubt, "coarse rows");
     for (int64_t row = 0; row < a->plan->rows && err->status == SF_OK; row++)
-        for (int t = 0; t < targets; t++)
-            take_coarse(a, t, row, room);
+        for (int t = 0; t < a->targets; t++)
+            take_coarse(a, t, row);
     return err->status;
 }
 
@@ -334,7 +331,6 @@ static sf_status fit_models(sf_sweep_adaptive *a, const sf_runs *runs, sf_error 
     bool before = a->all;
     free_models(a);
     a->all = a->inputs == 0;
-    a->targets = a->plan->figure_count + WATCHED;
     for (int t = 0; t < a->targets && !a->all && err->status == SF_OK; t++)
         fit_target(a, runs, t, err);
     if (a->all && !before && a->log)
@@ -345,8 +341,9 @@ static sf_status fit_models(sf_sweep_adaptive *a, const sf_runs *runs, sf_error 
 /* ---- outlook of a row ---- */
 
 /* Mean and standard deviation of the output of a target at a row. */
-static void predict(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, double *room,
-                    double *mean, double *deviation) {
+static void predict(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, double *mean,
+                    double *deviation) {
+    double room[MOST_POINTS];
     sf_predictor_at(&a->model[target], x, room, mean, deviation);
     *mean += expected_of(a, target, row);
     *deviation = a->coarse ? hypot(*deviation, a->doubt[row * TARGETS + target]) : *deviation;
@@ -366,20 +363,18 @@ static void hold_against(const sf_sweep_adaptive *a, int64_t row, outlook *o, in
     }
 }
 
-static void judge_figure(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, double *room,
-                         outlook *o) {
+static void judge_figure(const sf_sweep_adaptive *a, int target, int64_t row, const double *x, outlook *o) {
     double mean, deviation, wish = log1p(a->plan->figure[target].accuracy) / SF_PREDICTOR_SIDES;
-    predict(a, target, row, x, room, &mean, &deviation);
+    predict(a, target, row, x, &mean, &deviation);
     o->value[target] = exp(mean);
     o->half[target] = SF_PREDICTOR_SIDES * fmax(deviation, LEAST_PART * wish);
     hold_against(a, row, o, target, isfinite(o->value[target]) ? deviation / wish : INFINITY, wish);
 }
 
-static void judge_use(const sf_sweep_adaptive *a, int k, int64_t row, const double *x, double *room,
-                      outlook *o) {
+static void judge_use(const sf_sweep_adaptive *a, int k, int64_t row, const double *x, outlook *o) {
     int target = a->plan->figure_count + k;
     double mean, deviation, bound = bound_of(a, k, row);
-    predict(a, target, row, x, room, &mean, &deviation);
+    predict(a, target, row, x, &mean, &deviation);
     double sides = mean > bound ? LIKELY : SF_PREDICTOR_SIDES,
            margin = fmax(1e-12, fabs(bound - mean)) / sides;
     if (mean > bound && deviation <= margin)
@@ -387,15 +382,15 @@ static void judge_use(const sf_sweep_adaptive *a, int k, int64_t row, const doub
     hold_against(a, row, o, target, isnan(bound - mean) ? INFINITY : deviation / margin, margin);
 }
 
-static outlook judge(const sf_sweep_adaptive *a, int64_t row, double *room) {
+static outlook judge(const sf_sweep_adaptive *a, int64_t row) {
     double x[INPUTS];
     outlook o = {.unusable = WATCHED};
     put_inputs(a, row, x);
     for (int k = 0; k < WATCHED; k++)
         if (a->model[a->plan->figure_count + k].count > 0)
-            judge_use(a, k, row, x, room, &o);
+            judge_use(a, k, row, x, &o);
     for (int t = 0; t < a->plan->figure_count; t++)
-        judge_figure(a, t, row, x, room, &o);
+        judge_figure(a, t, row, x, &o);
     if (o.unusable < WATCHED)
         o.ratio = 0;
     return o;
@@ -404,23 +399,11 @@ static outlook judge(const sf_sweep_adaptive *a, int64_t row, double *room) {
 /* Judges `count` rows, side by side. */
 static sf_status judge_rows(const sf_sweep_adaptive *a, int64_t count, const int64_t *row, outlook *o,
                             sf_error *err) {
-    bool failed = false;
-    int most = 0;
-    for (int t = 0; t < a->targets; t++)
-        most = a->model[t].count > most ? a->model[t].count : most;
-#pragma omp parallel reduction(|| : failed)
-    {
-        double *room = malloc((size_t)most * sizeof *room);
-        failed = !room;
-#pragma omp for schedule(dynamic, 64)
-        for (int64_t k = 0; k < count; k++)
-            if (room && !sf_process_stopped())
-                o[k] = judge(a, row[k], room);
-        free(room);
-    }
-    if (sf_process_stopped())
-        return SF_FAIL(err, SF_INTERRUPTED, "interrupted");
-    return failed ? SF_NO_MEMORY(err, "predictions") : SF_OK;
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int64_t k = 0; k < count; k++)
+        if (!sf_process_stopped())
+            o[k] = judge(a, row[k]);
+    return sf_process_stopped() ? SF_FAIL(err, SF_INTERRUPTED, "interrupted") : SF_OK;
 }
 
 /* ---- a further round ---- */
@@ -543,7 +526,8 @@ sf_sweep_adaptive *sf_sweep_adaptive_new(const sf_plan *plan, const char *drops,
     sf_sweep_adaptive *a = sf_alloc(err, 1, sizeof *a, "predictions");
     if (!a)
         return NULL;
-    *a = (sf_sweep_adaptive){.plan = plan, .drops = drops, .jobs = jobs, .log = log};
+    *a = (sf_sweep_adaptive){
+        .plan = plan, .drops = drops, .jobs = jobs, .log = log, .targets = plan->figure_count + WATCHED};
     list_inputs(a);
     a->drawn = sf_analysis_pick(plan->rows, count_drawn(plan), err);
     return sf_keep(a, err);

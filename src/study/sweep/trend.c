@@ -27,23 +27,19 @@ typedef struct drop {
     sf_columns columns;
 } drop;
 
-static sf_status read_drops(const sf_runs *runs, const char *folder, drop *list, int *count, sf_error *err) {
-    char path[PATH_MAX];
-    sf_results r;
-    *count = 0;
-    for (int64_t row = 0; row < runs->count && *count < MOST_DROPS && err->status == SF_OK; row++) {
-        sf_error unreadable = SF_ERROR_INIT;
+/* Lists up to MOST_DROPS; returns how many. */
+static int read_drops(const sf_runs *runs, const char *folder, drop *list) {
+    int count = 0;
+    for (int64_t row = 0; row < runs->count && count < MOST_DROPS; row++) {
         if (runs->state[row] != SF_SWEEP_DONE || !runs->folder[row])
             continue;
-        snprintf(path, sizeof path, "%s/%s/results.h5", folder, runs->folder[row]);
-        if (sf_results_open(path, &r, &unreadable) != SF_OK)
-            continue;
-        list[*count].row = row;
-        if (sf_columns_build(&r, &list[*count].columns, &unreadable) == SF_OK)
-            ++*count;
-        sf_results_close(&r);
+        SF_OWNED_BY(sf_results_close) sf_results r = {0};
+        SF_PRINTED(path, PATH_MAX, "%s/%s/results.h5", folder, runs->folder[row]);
+        list[count].row = row;
+        count += sf_results_open(path, &r, SF_IGNORED) == SF_OK &&
+                 sf_columns_build(&r, &list[count].columns, SF_IGNORED) == SF_OK;
     }
-    return err->status;
+    return count;
 }
 
 /* Area (m2) of the missile up to a height; each column ends in the middle between its gap and the next. */
@@ -166,15 +162,15 @@ bool sf_sweep_is_beyond_columns(const sf_plan *plan) {
 }
 
 sf_status sf_sweep_trend_learn(const sf_runs *runs, const char *folder, sf_sweep_trend *t, sf_error *err) {
-    int count = 0;
     *t = (sf_sweep_trend){.plan = runs->plan, .problem = "no finished drop has columns"};
     if (sf_sweep_is_beyond_columns(runs->plan)) {
         t->problem = "columns have one material and a missile that falls";
         return SF_OK;
     }
     SF_OWNED drop *list = sf_alloc(err, MOST_DROPS, sizeof *list, "columns");
+    int count = list && folder ? read_drops(runs, folder, list) : 0;
     list_numbers(t);
-    if (list && folder && read_drops(runs, folder, list, &count, err) == SF_OK && count > t->numbers) {
+    if (count > t->numbers) {
         double thickness[MOST_DROPS] = {0};
         bool same = true;
         for (int k = 0; k < count; k++) {
