@@ -57,7 +57,7 @@ static void put_band(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c
         chart, (sf_series_style){.kind = SF_SERIES_RANGE, .colour = "#6baed6", .opacity = 0.4},
         "95 %% of the draws");
     for (int k = 0; k < r->spread->grid; k++) {
-        const sf_cfh_band *band = &r->spread->band[c][k];
+        const sf_cfh_interval *band = &r->spread->band[c][k];
         if (isfinite(band->low) && isfinite(band->high))
             sf_series_add(range, r->spread->height[k], band->median, band->low, band->high);
     }
@@ -87,21 +87,12 @@ static void put_crossing(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criteri
 static void put_fit(sf_chart *chart, const sf_cfh_report *r, sf_cfh_criterion c) {
     enum { STEPS = 200 };
     const sf_cfh_fit *fit = &r->result->crossing[c].fit;
-    double lowest = 0, highest = 0;
     if (fit->count == 0)
         return;
-    for (int k = 0, n = 0; k < r->points->count; k++) {
-        if (r->points->point[k].failed)
-            continue;
-        if (n == fit->first)
-            lowest = r->points->point[k].height;
-        if (n++ == fit->first + fit->count - 1)
-            highest = r->points->point[k].height;
-    }
     sf_series_data *line = sf_chart_series(
         chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = "#08519c", .width = 3.5}, "fit");
     for (int k = 0; k <= STEPS; k++) {
-        double height = lowest + (highest - lowest) * k / STEPS;
+        double height = fit->low + (fit->high - fit->low) * k / STEPS;
         sf_series_point(line, height, sf_cfh_fit_at(fit, height));
     }
 }

@@ -179,10 +179,8 @@ void sf_cfh_rig_text(const sf_cfh_report *r, char *text, size_t size) {
 /* Value of the fit at a point; NaN for one that is not in the fit. */
 static double fitted(const sf_cfh_report *r, sf_cfh_criterion c, const sf_cfh_point *p) {
     const sf_cfh_fit *fit = &r->result->crossing[c].fit;
-    int k = -fit->first; /* place among the points of the fit */
-    for (const sf_cfh_point *q = r->points->point; q < p; q++)
-        k += !q->failed;
-    return !p->failed && k >= 0 && k < fit->count ? sf_cfh_fit_at(fit, p->height) : NAN;
+    bool inside = !p->failed && p->height >= fit->low && p->height <= fit->high;
+    return inside ? sf_cfh_fit_at(fit, p->height) : NAN;
 }
 
 const char *sf_cfh_side_word(const sf_cfh_crossing *crossing) {
@@ -501,11 +499,9 @@ sf_status sf_cfh_write_draws(const sf_staging *output, const sf_cfh_report *r, s
 
 /* ---- terminal ---- */
 
-static void put_checks(FILE *out, const sf_cfh_report *r) {
-    if (!r->spread)
-        return;
-    for (int k = 0; k < r->spread->checks; k++) {
-        const sf_cfh_check *check = &r->spread->check[k];
+static void put_checks(FILE *out, const sf_cfh_spread *s) {
+    for (int k = 0; k < s->checks; k++) {
+        const sf_cfh_check *check = &s->check[k];
         if (!check->failed)
             fprintf(out, "  draw %d at %.3f m: a_max %.1f g by columns, %.1f g simulated; HIC %.0f, %.0f\n",
                     check->draw + 1, check->height, check->columns[SF_CFH_A_MAX],
@@ -514,14 +510,14 @@ static void put_checks(FILE *out, const sf_cfh_report *r) {
 }
 
 /* Puts the shares of the sources of uncertainty, where the interval is closed. */
-static void put_shares(FILE *out, const sf_cfh_report *r) {
+static void put_shares(FILE *out, const sf_cfh_spread *s) {
     double share[SF_CFH_PARTS];
-    for (int part = 0; part < SF_CFH_PARTS && r->spread; part++)
-        share[part] = 100 * sf_cfh_spread_share(r->spread, (sf_cfh_part)part);
-    if (!r->spread || isnan(share[SF_CFH_PART_FOAM]))
+    for (int part = 0; part < SF_CFH_PARTS; part++)
+        share[part] = 100 * sf_cfh_spread_share(s, (sf_cfh_part)part);
+    if (isnan(share[SF_CFH_PART_FOAM]))
         return;
     fprintf(out, "  of the interval (its squared length): foam %.0f %%, ", share[SF_CFH_PART_FOAM]);
-    if (r->spread->with_response)
+    if (s->with_response)
         fprintf(out, "errors of the responses %.0f %%, ", share[SF_CFH_PART_RESPONSE]);
     fprintf(out, "mesh %.0f %%, fit and columns %.0f %%\n", share[SF_CFH_PART_MESH],
             share[SF_CFH_PART_FIT] + share[SF_CFH_PART_COLUMNS]);
@@ -543,8 +539,10 @@ void sf_cfh_print(FILE *out, const sf_cfh_report *r) {
         else
             fprintf(out, "%s\n", sf_cfh_side_word(crossing));
     }
-    put_checks(out, r);
-    put_shares(out, r);
+    if (r->spread) {
+        put_checks(out, r->spread);
+        put_shares(out, r->spread);
+    }
     sf_cfh_verdict_text(r, text, sizeof text);
     fprintf(out, "%s\n", text);
     sf_cfh_rig_text(r, text, sizeof text);

@@ -30,7 +30,6 @@ sf_cfh_rig sf_cfh_free_fall(void) {
 static sf_status fit_rig(const char *name, int pairs, const double *height, const double *speed,
                          sf_cfh_rig *rig, sf_error *err) {
     double x[SF_CFH_MAX_PAIRS], y[SF_CFH_MAX_PAIRS], variance = 0, residual = 0;
-    *rig = sf_cfh_free_fall();
     if (pairs < 2 || pairs > SF_CFH_MAX_PAIRS)
         return SF_REFUSE(err, "%s has %d pairs of height and speed, 2 to %d are needed", name, pairs,
                          SF_CFH_MAX_PAIRS);
@@ -112,9 +111,9 @@ static sf_status check_points(const char *name, int count, const double *height,
     return SF_OK;
 }
 
-/* The part of ln(height) between points k and k + 1 at which the chord of ln(value) reaches the limit. */
-static double chord_share(int k, const double *value, double limit) {
-    return log(limit / value[k]) / log(value[k + 1] / value[k]);
+/* The part of ln(height) between two points at which the chord of ln(value) reaches the limit. */
+static double chord_share(double below, double above, double limit) {
+    return log(limit / below) / log(above / below);
 }
 
 /* The run of points within the window, widened to the nearest four. */
@@ -130,6 +129,8 @@ static void choose_points(double centre, int count, const double *height, sf_cfh
             last--;
     }
     fit->first = first;
+    fit->low = height[first];
+    fit->high = height[last];
     fit->count = last - first + 1;
     fit->centre = centre;
 }
@@ -158,9 +159,8 @@ static sf_status fit_quadratic(const double *height, const double *value, sf_cfh
 }
 
 /* Distance from the fit's centre at which it rises through ln(limit); NaN: there is none in its points. */
-static double rising_root(const sf_cfh_fit *fit, const double *height, double limit) {
-    double low = log(height[fit->first]) - fit->centre, root[2];
-    double high = log(height[fit->first + fit->count - 1]) - fit->centre;
+static double rising_root(const sf_cfh_fit *fit, double limit) {
+    double low = log(fit->low) - fit->centre, high = log(fit->high) - fit->centre, root[2];
     int count = gsl_poly_solve_quadratic(fit->c[2], fit->c[1], fit->c[0] - log(limit), &root[0], &root[1]);
     for (int k = 0; k < count; k++)
         if (root[k] >= low && root[k] <= high && fit->c[1] + 2 * fit->c[2] * root[k] > 0)
@@ -184,13 +184,14 @@ static const double MISSES =
 /* `below`: the last point before the first that reaches the limit. */
 static void find_crossing(const double *height, const double *value, int below, double limit,
                           sf_cfh_crossing *out) {
-    double d = rising_root(&out->fit, height, limit), centre = out->fit.centre;
+    double d = rising_root(&out->fit, limit), centre = out->fit.centre;
     out->low = height[below];
     out->high = height[below + 1];
     out->bracketed =
         !(out->fit.rms <= MISSES) || !(exp(centre + d) >= out->low && exp(centre + d) <= out->high);
     if (out->bracketed) {
-        out->height = out->low * pow(out->high / out->low, chord_share(below, value, limit));
+        out->height =
+            out->low * pow(out->high / out->low, chord_share(value[below], value[below + 1], limit));
         out->margin = fmax(log(out->high / out->height), log(out->height / out->low));
         return;
     }
@@ -218,7 +219,7 @@ sf_status sf_cfh_cross(const char *name, int count, const double *height, const 
         return SF_OK;
     double centre = log(height[above > 0 ? above - 1 : 0]); /* of the crossing, or the end nearest to it */
     if (crossed)
-        centre += chord_share(above - 1, value, limit) * log(height[above] / height[above - 1]);
+        centre += chord_share(value[above - 1], value[above], limit) * log(height[above] / height[above - 1]);
     choose_points(centre, count, height, &out->fit);
     if (fit_quadratic(height, value, &out->fit, err) == SF_OK && crossed)
         find_crossing(height, value, above - 1, limit, out);
@@ -477,8 +478,7 @@ static double chord_crossing(const sf_cfh_plan *plan, const bracket *b) {
     double share = 1, width = log(b->above->height / b->below->height);
     for (int c = 0; c < SF_CFH_CRITERIA; c++)
         if (b->above->value[c] >= plan->limit[c])
-            share = fmin(share, log(plan->limit[c] / b->below->value[c]) /
-                                    log(b->above->value[c] / b->below->value[c]));
+            share = fmin(share, chord_share(b->below->value[c], b->above->value[c], plan->limit[c]));
     return log(b->below->height) + share * width;
 }
 

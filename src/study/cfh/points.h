@@ -36,6 +36,7 @@ enum { SF_CFH_MIN_POINTS = 4 }; /* of a fit: a quadratic and one degree of freed
 typedef struct sf_cfh_fit {
     int count; /* points in the fit, 0: no fit */
     int first; /* index of the lowest of them */
+    double low, high; /* m, the lowest and the highest of them */
     double centre;
     double c[3];
     double covariance[3][3];

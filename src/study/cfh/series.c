@@ -246,21 +246,17 @@ static sf_status check_responses(sf_cfh_draws *draws, sf_error *err) {
 /* list[0] is the place of the material. */
 static sf_status read_draw(const char *case_path, int count, const char **list, const sf_material *own,
                            sf_cfh_draw *draw, sf_error *err) {
-    sf_case c;
+    SF_OWNED_BY(sf_case_free) sf_case c = {0};
     sf_error reason = SF_ERROR_INIT;
     SF_PRINTED(material, PATH_MAX + 16, "material=@%s", draw->path);
     list[0] = material;
-    if (sf_case_read(case_path, count, list, NULL, &c, &reason) == SF_OK) {
-        draw->material = c.material;
-        draw->response = c.response_error;
-        c.material = (sf_material){0};
-        sf_case_free(&c);
-        if (check_draw(draw, own, err) == SF_OK)
-            sf_material_law_build(&draw->material, &draw->law, err);
-    } else {
-        SF_FAIL(err, reason.status, "--posterior: %.900s", reason.text);
-    }
-    return err->status;
+    if (sf_case_read(case_path, count, list, NULL, &c, &reason) != SF_OK)
+        return SF_FAIL(err, reason.status, "--posterior: %.900s", reason.text);
+    draw->material = c.material;
+    draw->response = c.response_error;
+    c.material = (sf_material){0};
+    SF_TRY(check_draw(draw, own, err));
+    return sf_material_law_build(&draw->material, &draw->law, err);
 }
 
 sf_status sf_cfh_draws_read(const char *folder, const char *case_path, int override_count,

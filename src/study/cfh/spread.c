@@ -3,9 +3,9 @@
 
 #include "base/sets.h"
 #include "io/process.h"
+#include "study/fit/posterior/mixture.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort.h>
 
 static const double STEP = 0.035;        /* of ln(height) on the grid */
@@ -250,8 +250,7 @@ static sf_status find_bands(sf_cfh_spread *s, sf_error *err) {
         for (int k = 0; k < s->grid; k++) {
             for (int d = 0; d < s->draws; d++)
                 values[d] = exp(s->draw[d].value[c][k]);
-            sf_cfh_interval i = interval_of(values, s->draws);
-            s->band[c][k] = (sf_cfh_band){i.low, i.median, i.high};
+            s->band[c][k] = interval_of(values, s->draws);
         }
     return SF_OK;
 }
@@ -429,8 +428,8 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
     int count = s->draws * SF_CFH_REPEATS;
     SF_OWNED double *values =
         sf_alloc(err, (unsigned long)count * (SF_CFH_FIRST + 2), sizeof *values, "repeats of the draws");
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937), *of_draw = gsl_rng_alloc(gsl_rng_mt19937);
-    if (values && random && of_draw && correct_draws(s, err) == SF_OK) {
+    SF_RANDOM *random = sf_random(SEED, err), *of_draw = sf_random(RESPONSE_SEED, err);
+    if (err->status == SF_OK && correct_draws(s, err) == SF_OK) {
         find_crossings(s);
         find_errors(s);
         find_bands(s, err);
@@ -440,11 +439,7 @@ sf_status sf_cfh_spread_evaluate(sf_cfh_spread *s, const sf_cfh_rig *rig, sf_err
         s->rig = rig->pairs ? height_interval(s, &values[(size_t)count * (SF_CFH_FIRST + 1)], count,
                                               sf_cfh_rig_height(rig, 1))
                             : (sf_cfh_interval){NAN, NAN, NAN, {NAN, NAN}};
-    } else if (err->status == SF_OK) {
-        SF_NO_MEMORY(err, "random numbers");
     }
-    gsl_rng_free(random);
-    gsl_rng_free(of_draw);
     return err->status;
 }
 

@@ -98,10 +98,6 @@ typedef struct sf_cfh_check {
     char note[SF_CFH_NOTE_SIZE];
 } sf_cfh_check;
 
-typedef struct sf_cfh_band {
-    double low, median, high; /* g, -; INFINITY: of draws whose columns collapse */
-} sf_cfh_band;
-
 /* A draw as columns. Its errors of ln(value) are zeros if it states none. */
 typedef struct sf_cfh_curve {
     double column[SF_CFH_CRITERIA][SF_CFH_GRID]; /* ln */
@@ -121,7 +117,8 @@ typedef struct sf_cfh_spread {
     int own;                        /* drops of the case's own material, ascending */
     sf_cfh_drop drop[SF_CFH_DROPS]; /* these, then the checks that have figures */
     int freedom;                    /* degrees of freedom of the columns' own error; 0: it is not known */
-    sf_cfh_band band[SF_CFH_CRITERIA][SF_CFH_GRID]; /* of the draws, foam alone */
+    sf_cfh_interval band[SF_CFH_CRITERIA][SF_CFH_GRID]; /* of the draws, foam alone: g, -, without ends;
+                                                           INFINITY: of draws whose columns collapse */
     sf_cfh_curve *draw;                             /* [draws] owned */
     bool with_response;                             /* the draws state errors of the responses */
     double limit[SF_CFH_CRITERIA];
