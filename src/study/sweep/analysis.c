@@ -64,29 +64,26 @@ static sf_status resample(const sample *s, uint64_t seed, int resamples, double 
     return err->status;
 }
 
-/* The interval of column i of the resamples. */
-static void interval(const double *value, int resamples, int columns, int i, double *scratch, double *low,
-                     double *high) {
-    for (int r = 0; r < resamples; r++)
-        scratch[r] = value[r * columns + i];
-    gsl_sort(scratch, 1, (size_t)resamples);
-    *low = gsl_stats_quantile_from_sorted_data(scratch, 1, (size_t)resamples, 0.025);
-    *high = gsl_stats_quantile_from_sorted_data(scratch, 1, (size_t)resamples, 0.975);
+/* The interval of a column of the resamples, which it sorts. */
+static void interval(double *column, int resamples, int columns, double *low, double *high) {
+    size_t stride = (size_t)columns, n = (size_t)resamples;
+    gsl_sort(column, stride, n);
+    *low = gsl_stats_quantile_from_sorted_data(column, stride, n, 0.025);
+    *high = gsl_stats_quantile_from_sorted_data(column, stride, n, 0.975);
 }
 
 static sf_status evaluate(const sample *s, uint64_t seed, sf_index *index, sf_error *err) {
     int columns = 2 * s->d, resamples = s->used * s->d > LARGE ? FEWER_RESAMPLES : RESAMPLES;
     SF_OWNED double *value =
                         sf_alloc(err, resamples, (unsigned long)columns * sizeof *value, "the bootstrap"),
-                    *all = sf_alloc(err, columns, sizeof *all, "indices"),
-                    *scratch = sf_alloc(err, resamples, sizeof *scratch, "the bootstrap");
+                    *all = sf_alloc(err, columns, sizeof *all, "indices");
     if (err->status == SF_OK && resample(s, seed, resamples, value, err) == SF_OK) {
         estimate(s, NULL, all);
         for (int i = 0; i < s->d && isfinite(all[i]); i++) {
             index[i].first = all[i];
             index[i].total = all[s->d + i];
-            interval(value, resamples, columns, i, scratch, &index[i].first_low, &index[i].first_high);
-            interval(value, resamples, columns, s->d + i, scratch, &index[i].total_low, &index[i].total_high);
+            interval(value + i, resamples, columns, &index[i].first_low, &index[i].first_high);
+            interval(value + s->d + i, resamples, columns, &index[i].total_low, &index[i].total_high);
         }
     }
     return err->status;

@@ -339,11 +339,10 @@ static void add_word(char list[NAMES_SIZE], const char *word) {
         sf_text_add(list, NAMES_SIZE, "%s%s", *list ? "|" : "", word);
 }
 
-static sf_status read_distribution(reading *r, const config_setting_t *setting, sf_error *err) {
+static sf_status read_distribution(reading *r, sf_error *err) {
     sf_factor *f = r->factor;
     char words[NAMES_SIZE] = "", own[NAMES_SIZE] = "key|name|distribution";
     int which = 0;
-    (void)setting;
     for (int k = 0; k < DISTRIBUTIONS; k++)
         add_word(words, distributions[k].name);
     SF_TRY(sf_config_choice(r->config, r->group, "distribution", words, &which, err));
@@ -368,18 +367,17 @@ static sf_status read_distribution(reading *r, const config_setting_t *setting, 
 
 /* A group has the key of one kind; a sampled group without such a key has a distribution. */
 typedef struct factor_kind {
-    const char *key;      /* by which the kind is recognised */
-    const char *more;     /* keys that belong to it, "a|b" */
-    const char *phrase;   /* in a sentence that says what may be given */
-    bool listed, sampled; /* where the kind may stand */
+    const char *key;  /* by which the kind is recognised */
+    const char *more; /* keys that belong to it, "a|b" */
+    bool sampled;     /* it may also stand in a sample */
     sf_status (*read)(reading *r, const config_setting_t *setting, sf_error *err);
 } factor_kind;
 
 static const factor_kind kinds[] = {
-    {"values", "", "values", true, true, read_values},
-    {"files", "", "files", true, true, read_files},
-    {"posterior", "draws", "posterior", true, true, read_posterior},
-    {"from", "to|count|spacing", "or from, to and count", true, false, read_range},
+    {"values", "", true, read_values},
+    {"files", "", true, read_files},
+    {"posterior", "draws", true, read_posterior},
+    {"from", "to|count|spacing", false, read_range},
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
@@ -387,7 +385,7 @@ enum { KINDS = sizeof kinds / sizeof kinds[0] };
 static void list_keys(const factor_kind *kind, bool sampled, char names[NAMES_SIZE]) {
     snprintf(names, NAMES_SIZE, "key|name");
     for (int k = 0; k < KINDS; k++) {
-        if (kind ? kind != &kinds[k] : sampled ? !kinds[k].sampled : !kinds[k].listed)
+        if (kind ? kind != &kinds[k] : sampled && !kinds[k].sampled)
             continue;
         add_word(names, kinds[k].key);
         add_word(names, kinds[k].more);
@@ -418,15 +416,6 @@ static sf_status read_head(reading *r, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status refuse_without_kind(const reading *r, sf_error *err) {
-    char phrases[NAMES_SIZE] = "";
-    for (int k = 0; k < KINDS; k++)
-        sf_text_add(phrases, sizeof phrases, "%s%s", k ? ", " : "", kinds[k].phrase);
-    return sf_config_refuse(r->config, r->group, err,
-                            "%s: give %s; a distribution belongs into a group with sample", r->factor->key,
-                            phrases);
-}
-
 static sf_status read_kind(reading *r, bool sampled, sf_error *err) {
     const factor_kind *kind = NULL;
     const config_setting_t *found = NULL;
@@ -439,8 +428,13 @@ static sf_status read_kind(reading *r, bool sampled, sf_error *err) {
         found = s ? s : found;
         kind = s ? &kinds[k] : kind;
     }
+    if (!kind && sampled)
+        return read_distribution(r, err);
     if (!kind)
-        return sampled ? read_distribution(r, NULL, err) : refuse_without_kind(r, err);
+        return sf_config_refuse(r->config, r->group, err,
+                                "%s: give values, files, posterior, or from, to and count; a distribution "
+                                "belongs into a group with sample",
+                                r->factor->key);
     list_keys(kind, sampled, names);
     SF_TRY(sf_config_names(r->config, r->group, names, err));
     return kind->read(r, found, err);

@@ -57,13 +57,10 @@ static void label_factor(sf_axis *axis, const sf_factor *f) {
 }
 
 static void level_text(const sf_factor *f, double value, char *text, size_t size) {
-    char whole[SF_SWEEP_OVERRIDE_SIZE];
     if (f->words)
         snprintf(text, size, "%s", sf_path_name(f->label[(int64_t)value])); /* a file without its folders */
-    else if (sf_factor_text(f, value, whole, sizeof whole), *f->unit)
-        snprintf(text, size, "%.32s %s", whole, f->unit);
     else
-        snprintf(text, size, "%.32s", whole);
+        snprintf(text, size, "%.12g%s%s", value, *f->unit ? " " : "", f->unit);
 }
 
 /* ---- series: the levels of one chosen factor ---- */

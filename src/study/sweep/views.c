@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/sweep_report.h"
 
+#include "base/text.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
@@ -18,19 +19,17 @@ static sf_status add(sf_sweep_views *v, int64_t row, const char *reason, sf_erro
         return SF_REFUSE(err, "--views: more than %d runs", SF_SWEEP_VIEWS);
     if (k == v->count)
         v->view[v->count++] = (sf_sweep_view){.row = row};
-    size_t used = strlen(v->view[k].reason);
-    snprintf(v->view[k].reason + used, sizeof v->view[k].reason - used, "%s%s", used ? ", " : "", reason);
+    sf_text_add(v->view[k].reason, sizeof v->view[k].reason, "%s%s", *v->view[k].reason ? ", " : "", reason);
     return SF_OK;
 }
 
 /* The usable row of the largest figure; with `limit` the one that is nearest to it. -1: there is none. */
-static int64_t find_row(const sf_runs *r, size_t figure, double limit) {
+static int64_t find_row(const sf_runs *r, int figure, double limit) {
     int64_t best = -1;
     double most = -INFINITY;
     for (int64_t row = 0; row < r->count; row++) {
-        double value = sf_runs_place(r, row)[figure];
-        double merit = isnan(limit) ? value : -fabs(value - limit);
-        if (sf_runs_usable(r, row) && merit > most) {
+        double value = sf_runs_value(r, row, figure), merit = isnan(limit) ? value : -fabs(value - limit);
+        if (merit > most) {
             most = merit;
             best = row;
         }
@@ -49,7 +48,7 @@ static int add_found(const sf_plan *p, const sf_runs *runs, bool by_limit, sf_sw
             continue;
         figures++;
         if (runs)
-            add(v, find_row(runs, sf_runs_figure(f->figure), by_limit ? f->limit : NAN), reason, err);
+            add(v, find_row(runs, k, by_limit ? f->limit : NAN), reason, err);
     }
     return figures;
 }
@@ -133,8 +132,7 @@ static void put_view(FILE *page, const sf_runs *r, const sf_sweep_view *v) {
         fputs("; ", page);
     }
     for (int k = 0; k < p->figure_count; k++) {
-        size_t figure = sf_runs_figure(p->figure[k].figure);
-        double value = sf_runs_place(r, v->row)[figure];
+        double value = sf_runs_place(r, v->row)[r->column[k]];
         if (isfinite(value))
             fprintf(page, "%s %.4g; ", p->figure[k].figure, value);
     }
