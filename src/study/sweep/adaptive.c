@@ -408,11 +408,12 @@ static sf_status judge_rows(const sf_sweep_adaptive *a, int64_t count, const int
 
 /* ---- a further round ---- */
 
-/* The open rows from `first` on, every `step`-th; returns how many. */
-static int64_t list_open(const sf_runs *runs, int64_t step, int64_t *row) {
+/* The first open rows, every `step`-th, at most `most`; `marked`: of those that it marks. Returns how many.
+ */
+static int64_t list_open(const sf_runs *runs, const bool *marked, int64_t step, int64_t most, int64_t *row) {
     int64_t count = 0, at = 0;
-    for (int64_t r = 0; r < runs->count; r++)
-        if (runs->state[r] == SF_SWEEP_OPEN && at++ % step == 0)
+    for (int64_t r = 0; r < runs->count && count < most; r++)
+        if (runs->state[r] == SF_SWEEP_OPEN && (!marked || marked[r]) && at++ % step == 0)
             row[count++] = r;
     return count;
 }
@@ -461,7 +462,7 @@ static int choose_round(sf_sweep_adaptive *a, const sf_runs *runs, int most, int
     wanted = wanted < a->jobs ? a->jobs : wanted;
     wanted = wanted < most ? wanted : most;
     for (; row && o && n == 0 && step > 0; step = step > 1 ? 1 : 0) {
-        count = list_open(runs, step, row);
+        count = list_open(runs, NULL, step, open, row);
         if (judge_rows(a, count, row, o, err) != SF_OK)
             break;
         n = choose_needed(a, count, row, o, wanted, next, &target, err);
@@ -475,27 +476,18 @@ static int choose_round(sf_sweep_adaptive *a, const sf_runs *runs, int most, int
     return n;
 }
 
-/* The first open rows; `marked`: of those that it marks. */
-static int choose_open(const sf_runs *runs, const bool *marked, int most, int64_t *row) {
-    int count = 0;
-    for (int64_t r = 0; r < runs->count && count < most; r++)
-        if (runs->state[r] == SF_SWEEP_OPEN && (!marked || marked[r]))
-            row[count++] = r;
-    return count;
-}
-
 static int next(void *context, const sf_runs *runs, int most, int64_t *row, sf_error *err) {
     sf_sweep_adaptive *a = context;
     int64_t ended = runs->count - sf_runs_count(runs, SF_SWEEP_OPEN),
             missing = sf_sweep_adaptive_design(a->plan) - ended;
-    int drawn = choose_open(runs, a->drawn, most, row);
+    int drawn = (int)list_open(runs, a->drawn, 1, most, row);
     if (drawn > 0)
         return drawn;
     if (missing > 0 && ended < runs->count)
         return choose_apart(a, runs, missing < most ? (int)missing : most, row, err);
     if (expect(a, runs, err) != SF_OK || fit_models(a, runs, err) != SF_OK)
         return 0;
-    return a->all ? choose_open(runs, NULL, most, row) : choose_round(a, runs, most, row, err);
+    return a->all ? (int)list_open(runs, NULL, 1, most, row) : choose_round(a, runs, most, row, err);
 }
 
 /* ---- predictions ---- */
@@ -506,7 +498,7 @@ static sf_status finish(void *context, sf_runs *runs, sf_error *err) {
     SF_OWNED int64_t *row = sf_alloc(err, open, sizeof *row, "rows");
     SF_OWNED outlook *o = sf_alloc(err, open, sizeof *o, "predictions");
     if (row && o && open > 0 && !a->all) {
-        list_open(runs, 1, row);
+        list_open(runs, NULL, 1, open, row);
         judge_rows(a, open, row, o, err);
         for (int64_t k = 0; k < open && err->status == SF_OK; k++)
             if (o[k].unusable < WATCHED)

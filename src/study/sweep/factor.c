@@ -99,12 +99,9 @@ static sf_status take_number(reading *r, const config_setting_t *s, double *out,
 /* True if the value is a number, or a text of a number with a unit. */
 static bool looks_numeric(const sf_config *config, const config_setting_t *s) {
     const char *text = config_setting_get_string(s);
-    double number = 0, si = 0;
+    double number;
     sf_quantity kind;
-    if (sf_config_is_number(s, &number))
-        return true;
-    return text && sf_decimal_read(text + strspn(text, " \t"), &number) &&
-           find_kind(config->units, text, &kind, &si);
+    return sf_config_is_number(s, &number) || (text && find_kind(config->units, text, &kind, &number));
 }
 
 /* ---- words ---- */
