@@ -94,10 +94,9 @@ static char *place_beside(const char *from, const char *name, sf_error *err) {
  * included file, whose place only one of the same text shares. */
 static sf_status find_place(const folder *f, const char *from, const char *name, const char *path,
                             const char *aside, const char *text, char out[PATH_SIZE], sf_error *err) {
-    char first[PATH_SIZE], *beside = place_beside(from, name, err);
-    snprintf(first, sizeof first, "%s%s%s", beside ? "" : aside, beside ? "" : "/",
-             beside ? beside : sf_path_name(path));
-    free(beside);
+    SF_OWNED char *beside = place_beside(from, name, err);
+    SF_PRINTED(first, PATH_SIZE, "%s%s%s", beside ? "" : aside, beside ? "" : "/",
+               beside ? beside : sf_path_name(path));
     const char *end = strrchr(sf_path_name(first), '.');
     int stem = end && end != sf_path_name(first) ? (int)(end - first) : (int)strlen(first);
     const folder_file *other;
@@ -161,14 +160,14 @@ static bool copy_reading(folder *f, const char *path, size_t common, const char 
 /* Places the geometry with everything that gmsh reads for it, in the same places to each other. */
 static sf_status place_geometry(folder *f, const char *from, const char *name, const char *path,
                                 char out[PATH_SIZE], sf_error *err) {
-    char root[PATH_SIZE] = "geo", *wanted = place_beside(from, name, err);
+    SF_OWNED char *wanted = place_beside(from, name, err);
+    char root[PATH_SIZE] = "geo";
     size_t common = common_folder(f, path), length = wanted ? strlen(wanted) : 0;
     const char *inner = path + common + 1;
     size_t tail = strlen(inner);
     if (length >= tail && strcmp(wanted + length - tail, inner) == 0 &&
         (length == tail || wanted[length - tail - 1] == '/'))
         snprintf(root, sizeof root, "%.*s", (int)(length - tail - (length > tail)), wanted);
-    free(wanted);
     for (int number = 1; !copy_reading(f, path, common, root, false, err); number++)
         snprintf(root, sizeof root, number > 1 ? "geo-%d" : "geo", number);
     copy_reading(f, path, common, root, true, err);
@@ -187,15 +186,14 @@ typedef struct part {
 /* Copies the file that a setting names; its new name is relative to that of the part. */
 static char *place_file(void *context, const char *setting, const char *name, sf_error *err) {
     const part *p = context;
-    char place[PATH_SIZE], *beside = sf_case_folder_of(p->path, err),
-                           *path = beside ? sf_path_whole(beside, name, err) : NULL;
-    free(beside);
+    SF_OWNED char *beside = sf_case_folder_of(p->path, err),
+                  *path = beside ? sf_path_whole(beside, name, err) : NULL;
+    char place[PATH_SIZE];
     if (path && strncmp(setting, "geometry.", 9) == 0)
         place_geometry(p->f, p->name, name, path, place, err);
     else if (path && find_place(p->f, p->name, name, path, "data", NULL, place, err) == SF_OK &&
              !find_name(p->f, place))
         copy_file(p->f, place, path, NULL, err);
-    free(path);
     return err->status == SF_OK ? sf_path_between(p->name, place, err) : NULL;
 }
 
@@ -212,9 +210,9 @@ static const char *pass_part(const char *at) {
 static const char *write_include(const part *p, const char *at, FILE *out, sf_error *err) {
     const char *name = strchr(at, '"') + 1, *end = strchr(name, '"'), *text = strchr(end, '\n') + 1,
                *behind = pass_part(text);
-    char place[PATH_SIZE], *asked = strndup(name, (size_t)(end - name)),
-                           *own = strndup(text, (size_t)(behind - text)),
-                           *path = asked && own ? sf_path_whole(p->f->case_folder, asked, err) : NULL;
+    SF_OWNED char *asked = strndup(name, (size_t)(end - name));
+    char place[PATH_SIZE], *own = strndup(text, (size_t)(behind - text));
+    SF_OWNED char *path = asked && own ? sf_path_whole(p->f->case_folder, asked, err) : NULL;
     if (!asked || !own)
         SF_NO_MEMORY(err, "the text of a case");
     if (path && find_place(p->f, CASE_NAME, asked, path, "materials", own, place, err) == SF_OK) {
@@ -225,7 +223,6 @@ static const char *write_include(const part *p, const char *at, FILE *out, sf_er
         else
             free(own);
     }
-    SF_FREE(asked, path);
     return behind + 1;
 }
 
@@ -303,13 +300,12 @@ static sf_status mesh_each(const sf_case *c, sf_meshed mesh[SF_GEOMETRIES], sf_e
 /* Checks that the new case reads no file outside of the new folder. */
 static sf_status check_reading(const folder *f, const sf_broker *read, const char *root, sf_error *err) {
     for (size_t k = 0; k < read->count && err->status == SF_OK; k++) {
-        char *whole = sf_path_whole(NULL, read->file[k].path, err);
+        SF_OWNED char *whole = sf_path_whole(NULL, read->file[k].path, err);
         if (whole && !sf_path_below(root, whole))
             SF_REFUSE(err,
                       "%s has no folder of its own: its geometry reads %s by a path from /; name it relative "
                       "to the geometry",
                       f->request->case_path, whole);
-        free(whole);
     }
     return err->status;
 }

@@ -6,27 +6,19 @@
 enum { PARTS = 4 }; /* a triangle is cut into PARTS^2, so that large ones spread over the gaps they have */
 
 typedef struct outline {
-    double low[3], high[3]; /* m, of the pad */
-    double lowest;          /* m, z of the missile's lowest point */
+    double low[3], high[3];   /* m, of the pad */
+    double bottom[3], top[3]; /* m, of the missile */
 } outline;
-
-static outline find_outline(const sf_results *r) {
-    outline o;
-    double low[3], high[3];
-    sf_box3(r->node_count, r->position, o.low, o.high);
-    sf_box3(r->surface_node_count, r->surface_position, low, high);
-    o.lowest = low[2];
-    return o;
-}
 
 /* Adds a patch of projected area `area` around `x`; gaps are summed with the area as weight. */
 static void add_patch(const outline *o, const double x[3], double area, sf_columns *out) {
-    int k = (int)((x[2] - o->lowest) / out->thickness * SF_COLUMNS);
+    double gap = x[2] - o->bottom[2];
+    int k = (int)(gap / out->thickness * SF_COLUMNS);
     bool inside = x[0] >= o->low[0] && x[0] <= o->high[0] && x[1] >= o->low[1] && x[1] <= o->high[1];
     if (!inside || k < 0 || k >= SF_COLUMNS)
         return;
     out->area[k] += area;
-    out->gap[k] += area * (x[2] - o->lowest);
+    out->gap[k] += area * gap;
 }
 
 static void add_triangle(const outline *o, const double *a, const double *b, const double *c, double factor,
@@ -49,7 +41,9 @@ static void add_triangle(const outline *o, const double *a, const double *b, con
 sf_status sf_columns_build(const sf_results *r, sf_columns *out, sf_error *err) {
     *out =
         (sf_columns){.mass = r->missile_mass, .speed = sf_results_fall_speed(r), .thickness = r->thickness};
-    outline o = find_outline(r);
+    outline o;
+    sf_box3(r->node_count, r->position, o.low, o.high);
+    sf_box3(r->surface_node_count, r->surface_position, o.bottom, o.top);
     for (int64_t t = 0; t < r->surface_triangle_count; t++) {
         const int32_t *v = &r->surface_triangle[3 * t];
         add_triangle(&o, &r->surface_position[3 * (int64_t)v[0]], &r->surface_position[3 * (int64_t)v[1]],
@@ -277,12 +271,6 @@ static sf_status sample(const sf_series *curve, sf_series *uniform, sf_error *er
     return SF_OK;
 }
 
-static sf_status filter(const sf_series *curve, sf_series *filtered, sf_error *err) {
-    SF_OWNED_BY(sf_series_free) sf_series uniform = {0};
-    SF_TRY(sample(curve, &uniform, err));
-    return sf_signal_filter_cfc(&uniform, 1000, filtered, err);
-}
-
 /* Top of the parabola through the largest sample and its neighbours. */
 static double peak_of(const sf_series *c) {
     int64_t k = sf_series_peak(c);
@@ -304,9 +292,10 @@ sf_status sf_columns_read(const sf_series *filtered, sf_columns_figures *out, sf
 
 sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *law, sf_columns_figures *out,
                              sf_series *filtered, sf_error *err) {
-    SF_OWNED_BY(sf_series_free) sf_series curve = {0}, read = {0};
+    SF_OWNED_BY(sf_series_free) sf_series curve = {0}, uniform = {0}, read = {0};
     SF_TRY(sf_columns_drop(columns, law, &curve, out, err));
-    SF_TRY(filter(&curve, &read, err));
+    SF_TRY(sample(&curve, &uniform, err));
+    SF_TRY(sf_signal_filter_cfc(&uniform, 1000, &read, err));
     SF_TRY(sf_columns_read(&read, out, err));
     if (filtered) {
         *filtered = read;

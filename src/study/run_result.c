@@ -29,25 +29,18 @@ static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runne
     return err->status;
 }
 
-static double figure_of(const double *figure, const char *key) {
-    return figure ? figure[sf_figure_find(key) - sf_figure_at] : NAN;
-}
-
 double sf_runner_figure(const sf_runner_result *result, const char *key) {
-    return figure_of(result->figure, key);
+    return result->figure ? result->figure[sf_figure_find(key) - sf_figure_at] : NAN;
 }
 
-/* Sets the numbers that are figures, of which it takes the list; what has no figure is NaN. */
-static void take_numbers(double *f, sf_runner_result *out) {
-    out->a_max_g = figure_of(f, "a_max_g");
-    out->hic = figure_of(f, "hic");
-    out->v0 = figure_of(f, "v0_m_s");
-    out->v_rebound = figure_of(f, "v_rebound_m_s");
-    out->max_indentation = 1e-3 * figure_of(f, "max_indentation_mm");
-    out->energy_error = figure_of(f, "energy_error");
-    out->nodes = (int64_t)figure_of(f, "nodes");
-    out->steps = (int64_t)figure_of(f, "steps");
-    out->figure = f;
+/* Sets the numbers that are figures; what has no figure is NaN. */
+static void take_numbers(sf_runner_result *out) {
+    out->a_max_g = sf_runner_figure(out, "a_max_g");
+    out->hic = sf_runner_figure(out, "hic");
+    out->v0 = sf_runner_figure(out, "v0_m_s");
+    out->v_rebound = sf_runner_figure(out, "v_rebound_m_s");
+    out->max_indentation = 1e-3 * sf_runner_figure(out, "max_indentation_mm");
+    out->energy_error = sf_runner_figure(out, "energy_error");
 }
 
 /* The end of every reading: the path, or nothing if anything failed. */
@@ -87,7 +80,7 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
     write_record(at, &r, &f, out);
     f.filtered = (sf_series){0};
     if (take_layers(&r, &f, out, err) == SF_OK && take_figures(&r, &f, out, err) == SF_OK)
-        take_numbers(out->figure, out);
+        take_numbers(out);
     return finish_result(path, out, err);
 }
 
@@ -96,12 +89,11 @@ static sf_status read_drop(const sf_run_folder *at, bool figures_only, sf_runner
     SF_OWNED_BY(sf_run_record_free) sf_run_record record = {0};
     if (!figures_only || !sf_run_record_read(at->figures, at->results, &record))
         return read_result(at, out, err);
-    *out = (sf_runner_result){.grade = record.grade,
-                              .hic_window = NAN,
-                              .contact_time = NAN,
-                              .max_local_strain = figure_of(record.figure, "max_local_strain")};
-    take_numbers(record.figure, out);
+    *out = (sf_runner_result){
+        .grade = record.grade, .hic_window = NAN, .contact_time = NAN, .figure = record.figure};
     record.figure = NULL;
+    take_numbers(out);
+    out->max_local_strain = sf_runner_figure(out, "max_local_strain");
     snprintf(out->verdict, sizeof out->verdict, "%s", record.verdict);
     snprintf(out->status, sizeof out->status, "%s", record.status);
     return finish_result(at->results, out, err);
@@ -145,17 +137,16 @@ sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_r
     sf_runner_result all = {0};
     if (at->drops == 1)
         return read_drop(at, figures_only, out, err);
-    double *sum = sf_alloc(err, SF_FIGURE_TOTAL, sizeof *sum, "figures");
+    all.figure = sf_alloc(err, SF_FIGURE_TOTAL, sizeof *all.figure, "figures");
     for (int k = 1; k <= at->drops && err->status == SF_OK; k++) {
         const sf_run_folder drop = sf_run_folder_of_drop(at, k);
         SF_OWNED_BY(sf_runner_result_free) sf_runner_result one = {0};
         if (read_drop(&drop, figures_only, &one, err) != SF_OK)
             break;
-        add_figures(at, k, one.figure, sum);
+        add_figures(at, k, one.figure, all.figure);
         add_drop(k, &one, &all);
     }
-    if (sum)
-        take_numbers(sum, &all);
+    take_numbers(&all);
     *out = all;
     return finish_result(at->results, out, err);
 }

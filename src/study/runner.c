@@ -20,23 +20,9 @@ bool sf_runner_sets_key(const char *key) {
     return false;
 }
 
-/* Every override of the drop, ours included; `material` is the buffer of the first. */
-static int list_overrides(const sf_runner_drop *drop, char *material, const char **list) {
-    int count = 0;
-    if (drop->material) {
-        snprintf(material, MATERIAL_SIZE, "material=@%s", drop->material);
-        list[count++] = material;
-    }
-    for (int k = 0; k < drop->override_count; k++)
-        list[count++] = drop->overrides[k];
-    for (int k = 0; k < LEAN; k++)
-        list[count++] = lean_output[k];
-    return count;
-}
-
 /* ---- drops ---- */
 
-/* A drop with its overrides and its folder. */
+/* A drop with its overrides, those of campaigns included, and its folder. */
 typedef struct located {
     char material[MATERIAL_SIZE];
     int count;
@@ -45,7 +31,15 @@ typedef struct located {
 } located;
 
 static sf_status locate(const sf_runner *runner, const sf_runner_drop *drop, located *l, sf_error *err) {
-    l->count = list_overrides(drop, l->material, l->overrides);
+    l->count = 0;
+    if (drop->material) {
+        snprintf(l->material, sizeof l->material, "material=@%s", drop->material);
+        l->overrides[l->count++] = l->material;
+    }
+    for (int k = 0; k < drop->override_count; k++)
+        l->overrides[l->count++] = drop->overrides[k];
+    for (int k = 0; k < LEAN; k++)
+        l->overrides[l->count++] = lean_output[k];
     return sf_run_folder_name(runner->folder, drop->label, drop->case_path, l->count, l->overrides, &l->at,
                               err);
 }
@@ -339,11 +333,10 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
         sf_manifest_write(path, runner->folder, b->pending_count, b->pending, b->drop, key, size, err) ==
             SF_OK &&
         sf_manifest_read(path, &m, err) == SF_OK) {
-        for (int k = 0; k < m.count; k++) { /* of an earlier try: what they say is not so */
-            char outcome[SF_RUN_PATH_SIZE];
+        for (int k = 0; k < m.count; k = sf_manifest_group_end(&m, k)) {
+            char outcome[SF_RUN_PATH_SIZE]; /* of an earlier try: what it says is not so */
             sf_manifest_outcome_path(path, m.run[k].group, outcome, sizeof outcome);
-            if (k == 0 || strcmp(m.run[k].group, m.run[k - 1].group) != 0)
-                sf_folder_remove_file(outcome);
+            sf_folder_remove_file(outcome);
         }
         sf_log_print(runner->log, "  %d drops in jobs of %d by snakemake; its words are in %s\n",
                      b->pending_count, size, log);

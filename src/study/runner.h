@@ -39,7 +39,6 @@ typedef struct sf_runner_result {
     sf_grade grade;                     /* of the run, as softfall-post gives it */
     double sure;                        /* sf_verdict.sure; 0: read from a record */
     char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */
-    int64_t nodes, steps;
     double *figure;  /* [of sf_figure_at] sf_figure_number; owned */
     char status[80]; /* how the run ended: the figure that is a text */
     sf_series curve; /* s, g: filtered; owned */
