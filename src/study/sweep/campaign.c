@@ -170,10 +170,8 @@ static sf_status check_unchanged(const sf_sweep_campaign *c, sf_runs *runs, sf_e
 
 /* No row of other inputs comes into the table. It is written in any case; the first failure counts. */
 static sf_status save(const sf_sweep_campaign *c, sf_runs *runs, bool turned, sf_error *err) {
-    sf_error second = SF_ERROR_INIT, edited = SF_ERROR_INIT;
-    turned = check_unchanged(c, runs, &edited) != SF_OK || turned;
-    if (err->status == SF_OK)
-        *err = edited;
+    sf_error second = SF_ERROR_INIT;
+    turned = check_unchanged(c, runs, err) != SF_OK || turned;
     if (write_table(c, runs, turned, &second) != SF_OK && err->status == SF_OK)
         *err = second;
     return err->status;

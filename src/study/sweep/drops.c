@@ -90,14 +90,9 @@ static sf_status run(void *context, sf_runs *runs, int count, const int64_t *row
     *fresh = 0;
     if (begin_piece(&p, runs->plan, count, row, err) == SF_OK &&
         sf_runner_run_each(runner, count, p.drop, p.result, p.failure, err) == SF_OK) {
-        sf_error first = SF_ERROR_INIT;
-        for (int k = 0; k < count; k++) {
-            sf_error own = SF_ERROR_INIT;
-            if (take_row(&p, k, runs, row[k], fresh, &own) != SF_OK && first.status == SF_OK)
-                first = own;
-        }
+        for (int k = 0; k < count; k++) /* all: the first failure is kept */
+            take_row(&p, k, runs, row[k], fresh, err);
         open_changed(&p, runs, row);
-        *err = first;
     }
     end_piece(&p);
     return err->status;

@@ -499,13 +499,6 @@ int64_t sf_sample_rows(sf_sampling method, int d, int64_t count) {
     return method == SF_SAMPLING_SALTELLI ? count * (d + 2) : count;
 }
 
-static sf_status draw_shift(int d, uint64_t seed, double *shift, sf_error *err) {
-    SF_RANDOM *rng = sf_random(seed, err);
-    for (int i = 0; rng && i < d; i++)
-        shift[i] = gsl_rng_uniform_pos(rng);
-    return err->status;
-}
-
 /* The sequence, or, with another seed than 1, moved as a whole (modulo 1; Cranley and Patterson 1976,
  * doi:10.1137/0713071): each coordinate is as evenly spread, at other points. */
 static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error *err) {
@@ -515,8 +508,9 @@ static sf_status sobol(int d, int64_t count, uint64_t seed, double *u, sf_error 
     gsl_qrng *q = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d);
     if (!q)
         return SF_NO_MEMORY(err, "the Sobol' sequence");
-    if (seed != 1)
-        draw_shift(d, seed, shift, err);
+    SF_RANDOM *rng = seed != 1 ? sf_random(seed, err) : NULL;
+    for (int i = 0; rng && i < d; i++)
+        shift[i] = gsl_rng_uniform_pos(rng);
     for (int64_t k = 0; k < count && err->status == SF_OK; k++) {
         gsl_qrng_get(q, u + k * d);
         for (int i = 0; i < d; i++) {

@@ -117,18 +117,7 @@ static sf_status read_zip(const sf_config *config, const config_setting_t *group
     return SF_OK;
 }
 
-/* Maps the unit cube to the values of the factors. */
-static sf_status spread(const double *u, sf_plan *p, const sf_block *b, sf_error *err) {
-    int d = p->factor_count - b->first;
-    for (int i = 0; i < d; i++) {
-        sf_factor *f = &p->factor[b->first + i];
-        f->value = sf_alloc(err, b->rows, sizeof *f->value, "the values of a factor");
-        for (int64_t k = 0; k < b->rows && f->value; k++)
-            f->value[k] = sf_factor_quantile(f, u[k * d + i]);
-    }
-    return err->status;
-}
-
+/* Samples the unit cube, and maps it to the values of the factors. */
 static sf_status draw(const sf_config *config, const config_setting_t *group, sf_plan *p, sf_block *b,
                       sf_error *err) {
     int d = p->factor_count - b->first;
@@ -137,8 +126,12 @@ static sf_status draw(const sf_config *config, const config_setting_t *group, sf
     SF_OWNED double *u = sf_alloc(err, b->rows, (unsigned long)d * sizeof *u, "samples");
     if (u && sf_sample(b->method, d, b->samples, b->seed, u, &inner) != SF_OK)
         sf_config_refuse(config, group, err, "%s", inner.text);
-    else if (u)
-        spread(u, p, b, err);
+    for (int i = 0; i < d && err->status == SF_OK; i++) {
+        sf_factor *f = &p->factor[b->first + i];
+        f->value = sf_alloc(err, b->rows, sizeof *f->value, "the values of a factor");
+        for (int64_t k = 0; k < b->rows && f->value; k++)
+            f->value[k] = sf_factor_quantile(f, u[k * d + i]);
+    }
     return err->status;
 }
 
