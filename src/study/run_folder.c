@@ -197,11 +197,7 @@ static sf_status name_folder(const char *path, char out[PATH_MAX], sf_error *err
 }
 
 void sf_run_folder_name_key(const char *parent, const char *label, uint64_t key, sf_run_folder *at) {
-    at->key = key;
-    at->drops = 1;
-    at->counted = 1;
-    for (int k = 0; k < SF_GEOMETRIES; k++)
-        at->geometry[k][0] = '\0';
+    *at = (sf_run_folder){.key = key, .drops = 1, .counted = 1};
     snprintf(at->path, sizeof at->path, "%s/%s-%016llx", parent, label, (unsigned long long)key);
     snprintf(at->model, sizeof at->model, "%s/model.h5", at->path);
     snprintf(at->results, sizeof at->results, "%s/results.h5", at->path);

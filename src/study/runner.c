@@ -6,8 +6,6 @@
 #include "io/process.h"
 #include <sys/stat.h>
 
-enum { MATERIAL_SIZE = PATH_MAX + 64 };
-
 /* A campaign needs the curve and the figures, not the fields. */
 static const char *const lean_output[] = {"output.fields=[\"displacement\"]", "output.frame_interval=1000 s"};
 enum { LEAN = sizeof lean_output / sizeof lean_output[0] };
@@ -24,7 +22,7 @@ bool sf_runner_sets_key(const char *key) {
 
 /* A drop with its overrides, those of campaigns included, and its folder. */
 typedef struct located {
-    char material[MATERIAL_SIZE];
+    char material[PATH_MAX + 64];
     int count;
     const char *overrides[SF_RUNNER_OVERRIDES + 1 + LEAN];
     sf_run_folder at;
@@ -356,14 +354,14 @@ static sf_status simulate_pending(batch *b, sf_error *failure, sf_error *err) {
     if (b->pending_count == 0)
         return SF_OK;
     SF_TRY(sf_folder_own(b->runner->folder, err));
-    SF_OWNED sf_error *own = sf_alloc(err, b->pending_count, sizeof *own, "failures");
-    for (int k = 0; own && k < b->pending_count; k++)
+    SF_OWN(sf_error, own, b->pending_count, "failures", err);
+    for (int k = 0; k < b->pending_count; k++)
         own[k] = (sf_error)SF_ERROR_INIT;
-    if (own && sf_engine_is_local(&b->runner->engine))
+    if (sf_engine_is_local(&b->runner->engine))
         simulate_here(b, own, err);
-    else if (own)
+    else
         simulate_elsewhere(b, own, err);
-    for (int k = 0; k < b->pending_count && own && err->status == SF_OK; k++)
+    for (int k = 0; k < b->pending_count && err->status == SF_OK; k++)
         failure[b->pending[k]] = own[k];
     return err->status;
 }
