@@ -113,13 +113,11 @@ static sf_status find_place(const folder *f, const char *from, const char *name,
 
 /* Lists the files that gmsh read for each geometry. */
 static sf_status list_reading(folder *f, sf_error *err) {
-    size_t most = 0;
     for (int k = 0; k < SF_GEOMETRIES; k++)
-        most += f->mesh[k].broker.count;
-    f->read = sf_alloc(err, most, sizeof *f->read, "the files of a geometry");
-    for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         for (size_t i = 0; i < f->mesh[k].broker.count && err->status == SF_OK; i++) {
             const sf_broker_file *file = &f->mesh[k].broker.file[i];
+            if (!sf_grow(&f->read, (size_t)f->read_count, sizeof *f->read))
+                return SF_NO_MEMORY(err, "the files of a geometry");
             f->read[f->read_count++] =
                 (geometry_file){sf_path_whole(NULL, sf_campaign_geometry(&f->c, k)->path, err),
                                 sf_path_whole(NULL, file->path, err), file->hash};

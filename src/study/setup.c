@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/setup.h"
 
-#include "base/text.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/process.h"

@@ -5,7 +5,6 @@
 #pragma once
 #include "study/config.h"
 #include "study/runner.h"
-#include <gsl/gsl_rng.h>
 
 /* A factor of a sweep: a key of the case and the values that it takes. A factor of numbers has one unit, that
  * of its first value; all others are converted. One of words (names, files, lists) has numbered levels. */
