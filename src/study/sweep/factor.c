@@ -364,17 +364,18 @@ static sf_status read_distribution(reading *r, sf_error *err) {
 
 /* A group has the key of one kind; a sampled group without such a key has a distribution. */
 typedef struct factor_kind {
-    const char *key;  /* by which the kind is recognised */
-    const char *more; /* keys that belong to it, "a|b" */
-    bool sampled;     /* it may also stand in a sample */
+    const char *key;    /* by which the kind is recognised */
+    const char *more;   /* keys that belong to it, "a|b" */
+    const char *phrase; /* in a sentence that says what may be given */
+    bool sampled;       /* it may also stand in a sample */
     sf_status (*read)(reading *r, const config_setting_t *setting, sf_error *err);
 } factor_kind;
 
 static const factor_kind kinds[] = {
-    {"values", "", true, read_values},
-    {"files", "", true, read_files},
-    {"posterior", "draws", true, read_posterior},
-    {"from", "to|count|spacing", false, read_range},
+    {"values", "", "values", true, read_values},
+    {"files", "", "files", true, read_files},
+    {"posterior", "draws", "posterior", true, read_posterior},
+    {"from", "to|count|spacing", "or from, to and count", false, read_range},
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
@@ -413,6 +414,15 @@ static sf_status read_head(reading *r, sf_error *err) {
     return SF_OK;
 }
 
+static sf_status refuse_without_kind(const reading *r, sf_error *err) {
+    char phrases[NAMES_SIZE] = "";
+    for (int k = 0; k < KINDS; k++)
+        sf_text_add(phrases, sizeof phrases, "%s%s", k ? ", " : "", kinds[k].phrase);
+    return sf_config_refuse(r->config, r->group, err,
+                            "%s: give %s; a distribution belongs into a group with sample", r->factor->key,
+                            phrases);
+}
+
 static sf_status read_kind(reading *r, bool sampled, sf_error *err) {
     const factor_kind *kind = NULL;
     const config_setting_t *found = NULL;
@@ -425,13 +435,8 @@ static sf_status read_kind(reading *r, bool sampled, sf_error *err) {
         found = s ? s : found;
         kind = s ? &kinds[k] : kind;
     }
-    if (!kind && sampled)
-        return read_distribution(r, err);
     if (!kind)
-        return sf_config_refuse(r->config, r->group, err,
-                                "%s: give values, files, posterior, or from, to and count; a distribution "
-                                "belongs into a group with sample",
-                                r->factor->key);
+        return sampled ? read_distribution(r, err) : refuse_without_kind(r, err);
     list_keys(kind, sampled, names);
     SF_TRY(sf_config_names(r->config, r->group, names, err));
     return kind->read(r, found, err);
