@@ -200,7 +200,7 @@ static void clock_zero_line_and_impact_are_chosen(void **state) {
         for (int64_t i = 0; i < r.raw.count; i++)
             top = larger(top, r.raw.value[i]);
         assert_close(top, PEAK / (impact ? impact : 1), 0.01);
-        assert_close(r.other, impact ? 0 : 0.5, 1e-3);
+        assert_close(r.record.rows[SF_RECORD_other_impact].value, impact ? 0 : 0.5, 1e-3);
         if (!strstr(r.interpretation, "3 at 145.9 ms (50 g)"))
             fail_msg("%s", r.interpretation);
         sf_reference_free(&r);

@@ -160,7 +160,7 @@ static void the_time_axis_ends_with_the_pulse(void **state) {
     sf_plot_time_range(&figures, NULL, range);
     assert_close(range[0], 0, 1e-12);
     assert_true(range[1] > 0.02 && range[1] < 0.0225);
-    const sf_comparison measured = {.measured = {ROWS, time, value}, .shift = 0.001};
+    const sf_comparison measured = {.measured.curve = {ROWS, time, value}, .shift = 0.001};
     sf_plot_time_range(&figures, &measured, range);
     assert_true(range[0] < 0 && range[0] > -0.003 && range[1] > 0.021 && range[1] < 0.025);
 }

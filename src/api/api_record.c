@@ -7,7 +7,6 @@
 struct softfall_record {
     sf_reference reference;
     sf_injury injury;
-    sf_record_verdict verdict;
     char line[SF_VERDICT_LINE_SIZE];
 };
 
@@ -88,8 +87,7 @@ static sf_status take_options(settings *s, const char *const *options, int count
 static sf_status read_record(softfall_record *r, const sf_reference_options *options, sf_error *err) {
     SF_TRY(sf_reference_read(options, &r->reference, err));
     SF_TRY(sf_injury_evaluate(&r->reference.curve, &r->injury, err));
-    SF_TRY(sf_record_judge(&r->reference.raw, &r->reference.curve, r->reference.other, &r->verdict, err));
-    sf_record_line(&r->verdict, r->line, sizeof r->line);
+    sf_record_line(&r->reference.record, r->line, sizeof r->line);
     return SF_OK;
 }
 
@@ -125,7 +123,7 @@ int64_t softfall_record_curve(const softfall_record *r, const double **time, con
 }
 
 int softfall_record_grade(const softfall_record *r) {
-    return (int)r->verdict.grade;
+    return (int)r->reference.record.grade;
 }
 
 const char *softfall_record_verdict(const softfall_record *r) {

@@ -167,7 +167,7 @@ static sf_status fit_all(const sf_compare_options *options, const sf_series *mod
         sf_region region = k < 0 ? window : options->regions[k];
         for (int j = 0; j < 2; j++) {
             sf_fit *fit = &c->fits[c->fit_count++];
-            SF_TRY(sf_compare_fit(&c->measured, model, options->left, options->flight, c->shift, region,
+            SF_TRY(sf_compare_fit(&c->measured.curve, model, options->left, options->flight, c->shift, region,
                                   intervals[j], fit, err));
             fit->is_window = k < 0;
             snprintf(fit->span, sizeof fit->span, "%.3f to %.3f%s", region.begin * 1e3, region.end * 1e3,
@@ -203,32 +203,19 @@ sf_rows sf_fit_rows(void) {
     return SF_ROWS(rows);
 }
 
-/* Reads the measured curve as it is compared. */
-static sf_status read_measured(const sf_compare_options *options, sf_comparison *c, sf_error *err) {
-    sf_reference reference;
-    SF_TRY(sf_reference_read(&options->reference, &reference, err));
-    c->measured = reference.curve;
-    c->raw = reference.raw;
-    c->cfc = options->reference.cfc;
-    c->inverted = options->reference.invert;
-    c->origin = reference.origin;
-    c->offset = reference.offset;
-    SF_TRY(sf_record_judge(&c->raw, &c->measured, reference.other, &c->record, err));
-    memcpy(c->interpretation, reference.interpretation, sizeof c->interpretation);
-    return sf_injury_evaluate(&c->measured, &c->injury, err);
-}
-
 static sf_status compare(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
                          sf_error *err) {
     double measured_contact = 0, model_contact = 0, zero = NAN;
     const char *path = options->reference.path;
-    SF_TRY(read_measured(options, c, err));
+    const sf_series *raw = &c->measured.raw, *curve = &c->measured.curve;
+    SF_TRY(sf_reference_read(&options->reference, &c->measured, err));
+    SF_TRY(sf_injury_evaluate(curve, &c->injury, err));
     if (!(c->injury.a_max_g > 0))
         return SF_REFUSE(
             err, "%s has no positive acceleration: positive means that the missile is slowed down", path);
     if (!c->shift_given) {
-        SF_TRY(sf_record_offset(&c->raw, &c->raw, &zero, err));
-        SF_TRY(sf_contact_instant(&c->measured, path, isnan(zero) ? 0 : zero, &measured_contact, err));
+        SF_TRY(sf_record_offset(raw, raw, &zero, err));
+        SF_TRY(sf_contact_instant(curve, path, isnan(zero) ? 0 : zero, &measured_contact, err));
         SF_TRY(sf_contact_instant(model, "the computed curve", 0, &model_contact, err));
         c->shift = model_contact - measured_contact;
     }
@@ -238,14 +225,16 @@ static sf_status compare(const sf_compare_options *options, const sf_series *mod
 
 sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *c,
                          sf_error *err) {
-    *c = (sf_comparison){.shift = options->shift, .shift_given = !isnan(options->shift)};
+    *c = (sf_comparison){.cfc = options->reference.cfc,
+                         .inverted = options->reference.invert,
+                         .shift = options->shift,
+                         .shift_given = !isnan(options->shift)};
     if (compare(options, model, c, err) != SF_OK)
         sf_comparison_free(c);
     return err->status;
 }
 
 void sf_comparison_free(sf_comparison *comparison) {
-    sf_series_free(&comparison->measured);
-    sf_series_free(&comparison->raw);
+    sf_reference_free(&comparison->measured);
     SF_CLEAR(comparison, comparison->fits);
 }

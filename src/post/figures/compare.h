@@ -98,8 +98,8 @@ typedef struct sf_reference {
     double origin;     /* s, of its clock, that was taken away from the times */
     double offset;     /* g, that was taken away from the values; of axes, the resultant of theirs */
     char impacts[256]; /* "1 at 12.4 ms (150 g), ..."; empty: there is one */
-    double other;      /* highest of the other impacts, over the peak, if none was asked for; else 0 */
     char interpretation[SF_REFERENCE_INTERPRETATION]; /* how the file was read, for the report */
+    sf_record_verdict record;                         /* may it be compared with? */
 } sf_reference;
 
 /* SF_ERR_INPUT names the file, the line and what was expected: also if the samples are further apart than a
@@ -155,17 +155,13 @@ typedef struct sf_compare_options {
 } sf_compare_options;
 
 typedef struct sf_comparison {
-    sf_series measured; /* s on its own clock, g, filtered like the model; owned */
-    sf_series raw;      /* the points of the file; owned */
-    char interpretation[SF_REFERENCE_INTERPRETATION]; /* how the file was read */
-    double cfc;                                       /* of the measured curve; 0: not filtered here */
-    bool inverted;                                    /* on the user's word */
-    double origin, offset;                            /* s and g, taken away from times and values */
-    sf_record_verdict record;                         /* may it be compared with? */
-    sf_injury injury;                                 /* of the measured curve */
-    double shift;                                     /* s, as used */
-    int shift_given;                                  /* 1 if the caller gave it */
-    double peak_error;                                /* model a_max / measured a_max - 1 */
+    sf_reference measured; /* on its own clock, filtered like the model; owned */
+    double cfc;            /* of the measured curve; 0: not filtered here */
+    bool inverted;         /* on the user's word */
+    sf_injury injury;      /* of the measured curve */
+    double shift;          /* s, as used */
+    int shift_given;       /* 1 if the caller gave it */
+    double peak_error;     /* model a_max / measured a_max - 1 */
     int64_t fit_count;
     sf_fit *fits; /* [fit_count]: for the window, then each region: at 0.25 and at 0.50 ms; owned */
 } sf_comparison;

@@ -17,6 +17,7 @@ typedef struct record {
     int axes;                          /* 1: the acceleration itself */
     sf_series axis[SF_REFERENCE_AXES]; /* s and g; owned */
     int *line;                         /* of the samples, in the file; owned */
+    double other; /* highest of the other impacts, over the peak, if none was asked for; else 0 */
     char interpretation[SF_TABLE_INTERPRETATION];
 } record;
 
@@ -233,7 +234,7 @@ static sf_status choose_part(record *r, sf_reference *reference, sf_error *err) 
         chosen = chosen == 0 || impact[k].peak > impact[chosen - 1].peak ? k + 1 : chosen;
     for (int k = 0; k < count && o->impact == 0; k++)
         if (k + 1 != chosen)
-            reference->other = fmax(reference->other, impact[k].peak / impact[chosen - 1].peak);
+            r->other = fmax(r->other, impact[k].peak / impact[chosen - 1].peak);
     if (count < 2 && o->impact <= count)
         return SF_OK;
     if (o->impact > count)
@@ -396,7 +397,7 @@ static sf_status make(record *r, sf_reference *reference, sf_error *err) {
     SF_TRY(filter_axes(r, reference, err));
     SF_TRY(check_sign(o, &reference->curve, err));
     describe(r, reference);
-    return SF_OK;
+    return sf_record_judge(&reference->raw, &reference->curve, r->other, &reference->record, err);
 }
 
 sf_status sf_reference_read(const sf_reference_options *options, sf_reference *reference, sf_error *err) {

@@ -52,7 +52,7 @@ sf_status sf_csv_write_compression(const sf_staging *output, const sf_results *r
 
 sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *comparison,
                                  const sf_figures *figures, sf_error *err) {
-    const sf_series *raw = &comparison->raw, *model = &figures->filtered;
+    const sf_series *raw = &comparison->measured.raw, *model = &figures->filtered;
     SF_CSV_FILE(csv, output, "reference.csv", err);
     SF_CSV_PRINT_LINE(&csv,
                       "time_ms,acceleration_measured_g,acceleration_cfc%.0f_g,acceleration_measured_raw_g",
@@ -60,7 +60,7 @@ sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *
     for (int64_t i = 0; i < raw->count; i++) {
         double time = raw->time[i] + comparison->shift;
         bool covered = time >= model->time[0] && time <= model->time[model->count - 1];
-        SF_CSV_LINE(&csv, time * 1e3, sf_series_at(&comparison->measured, raw->time[i]),
+        SF_CSV_LINE(&csv, time * 1e3, sf_series_at(&comparison->measured.curve, raw->time[i]),
                     covered ? sf_series_at(model, time) : NAN, raw->value[i]);
     }
     return sf_csv_close(&csv, err);

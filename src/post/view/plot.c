@@ -54,7 +54,7 @@ void sf_plot_time_range(const sf_figures *f, const sf_comparison *c, double rang
     }
     double first = range[0], last = range[1], margin = 0.06 * (last - first);
     if (c) { /* noise before and after its pulse is not one */
-        widen(&c->measured, 0.05, c->shift, range);
+        widen(&c->measured.curve, 0.05, c->shift, range);
         range[0] = fmax(range[0], first - 3 * margin);
         range[1] = fmin(range[1], last + 3 * margin);
     }
@@ -80,8 +80,8 @@ double sf_plot_difference(const sf_series *a, const sf_series *b, const double r
 static void find_values(picture *p) {
     const sf_series *curves[3] = {&p->figures->filtered, p->raw ? &p->figures->raw : NULL,
                                   !p->comparison ? NULL
-                                  : p->points    ? &p->comparison->raw
-                                                 : &p->comparison->measured};
+                                  : p->points    ? &p->comparison->measured.raw
+                                                 : &p->comparison->measured.curve};
     double low = 0, high = 0;
     for (int k = 0; k < 3; k++) {
         double shift = k == 2 && p->comparison ? p->comparison->shift : 0;
@@ -103,7 +103,7 @@ static void find_values(picture *p) {
 static bool points_are_seen(const picture *p) {
     const sf_comparison *c = p->comparison;
     const double range[2] = {p->time[0] - c->shift, p->time[1] - c->shift};
-    return sf_plot_difference(&c->raw, &c->measured, range) > SEEN;
+    return sf_plot_difference(&c->measured.raw, &c->measured.curve, range) > SEEN;
 }
 
 /* The drop with its verdict, and both limits with pass or fail. */
@@ -148,7 +148,7 @@ static void put_curves(sf_chart *chart, const picture *p) {
     if (f->injury.hic.value > 0)
         put_hic(chart, p);
     if (p->points)
-        put_curve(chart, &c->raw, c->shift, 1.2, "#a0a0a0", "measured, as in its file");
+        put_curve(chart, &c->measured.raw, c->shift, 1.2, "#a0a0a0", "measured, as in its file");
     if (p->raw)
         put_curve(chart, &f->raw, 0, 1.2, "#fd8d3c", "raw");
     snprintf(title, sizeof title, "%sCFC %.0f%s", c ? "model, " : "", f->cfc, f->passed);
@@ -158,7 +158,7 @@ static void put_curves(sf_chart *chart, const picture *p) {
     if (c->cfc > 0)
         snprintf(class, sizeof class, ", CFC %.0f", c->cfc);
     snprintf(title, sizeof title, "measured%s: a_max %.1f g", class, c->injury.a_max_g);
-    put_curve(chart, &c->measured, c->shift, 2, "#202020", title);
+    put_curve(chart, &c->measured.curve, c->shift, 2, "#202020", title);
 }
 
 static void put_drop(sf_chart *chart, sf_panel *panel, const picture *p) {

@@ -390,9 +390,10 @@ static void put_comparison(const page *p) {
         p->report->summary->reference_path, c->injury.a_max_g, 100 * c->peak_error, c->injury.hic.value,
         c->shift * 1e3, c->shift_given ? "as given" : "contact of both curves");
     char line[SF_VERDICT_LINE_SIZE];
-    sf_record_line(&c->record, line, sizeof line);
-    sf_html_banner(p->file, sf_report_kind(c->record.grade),
-                   c->record.grade == SF_GRADE_DO_NOT_USE ? "comparison not usable" : "record", "%s.", line);
+    sf_record_line(&c->measured.record, line, sizeof line);
+    sf_html_banner(p->file, sf_report_kind(c->measured.record.grade),
+                   c->measured.record.grade == SF_GRADE_DO_NOT_USE ? "comparison not usable" : "record",
+                   "%s.", line);
     sf_rows_html_table(p->file, sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
 }
 

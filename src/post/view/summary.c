@@ -50,11 +50,11 @@ static sf_value origin_of_shift(const void *record) {
 }
 
 static const sf_row comparison_rows[] = {
-    {.key = "understood", SF_ROW_OF(TEXT, sf_comparison, interpretation)},
+    {.key = "understood", SF_ROW_OF(TEXT, sf_comparison, measured.interpretation)},
     {.key = "cfc", .value = class_of_measured},
     {.key = "inverted", SF_ROW_OF(FLAG, sf_comparison, inverted)},
-    {.key = "clock_origin_s", SF_ROW_OF(NUMBER, sf_comparison, origin)},
-    {.key = "zero_line_g", SF_ROW_OF(NUMBER, sf_comparison, offset)},
+    {.key = "clock_origin_s", SF_ROW_OF(NUMBER, sf_comparison, measured.origin)},
+    {.key = "zero_line_g", SF_ROW_OF(NUMBER, sf_comparison, measured.offset)},
     {.key = "shift_ms", .factor = 1e3, SF_ROW_OF(NUMBER, sf_comparison, shift)},
     {.key = "shift_from", .type = SF_ROW_STRING, .value = origin_of_shift},
     {.key = "a_max_g", SF_ROW_OF(NUMBER, sf_comparison, injury.a_max_g)},
@@ -105,9 +105,10 @@ static void put_comparison(sf_json *json, const char *path, const sf_comparison 
     sf_json_text(json, "file", path);
     sf_rows_json(json, SF_ROWS(comparison_rows), c);
     sf_json_open(json, "record", '{');
-    sf_json_text(json, "grade", sf_verdict_phrase(c->record.grade));
-    sf_rows_json_array(json, "checks", SF_ROWS(check_rows),
-                       (sf_records){c->record.rows, sizeof c->record.rows[0], SF_RECORD_CHECKS});
+    sf_json_text(json, "grade", sf_verdict_phrase(c->measured.record.grade));
+    sf_rows_json_array(
+        json, "checks", SF_ROWS(check_rows),
+        (sf_records){c->measured.record.rows, sizeof c->measured.record.rows[0], SF_RECORD_CHECKS});
     sf_json_close(json);
     sf_rows_json_array(json, "fits", sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
 }
@@ -171,15 +172,15 @@ static void print_figures(FILE *out, const sf_summary *s, const char *const *key
 }
 
 static void print_comparison(FILE *out, const char *path, const sf_comparison *c) {
-    fprintf(out, "Compared with\nreference %s: %s\n", path, c->interpretation);
+    fprintf(out, "Compared with\nreference %s: %s\n", path, c->measured.interpretation);
     fprintf(out, "  measured a_max %.2f g (model %+.1f %%), HIC %.1f\n", c->injury.a_max_g,
             c->peak_error * 100, c->injury.hic.value);
     fprintf(out, "  model time = measured time %+.4f ms (%s)\n", c->shift * 1e3,
             c->shift_given ? "as given" : "contact of both curves");
     char line[SF_VERDICT_LINE_SIZE];
-    sf_record_line(&c->record, line, sizeof line);
+    sf_record_line(&c->measured.record, line, sizeof line);
     fprintf(out, "  record: %s\n%s", line,
-            c->record.grade == SF_GRADE_DO_NOT_USE ? "  comparison not usable\n" : "");
+            c->measured.record.grade == SF_GRADE_DO_NOT_USE ? "  comparison not usable\n" : "");
     sf_rows_text_table(out, sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
 }
 

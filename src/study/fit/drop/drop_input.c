@@ -13,16 +13,14 @@ static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are 
 /* Samples from contact on, where the curve is above the level. */
 static sf_status sample_curve(const sf_reference_options *options, sf_fit_drop *drop, sf_error *err) {
     SF_OWNED_BY(sf_reference_free) sf_reference reference = {0};
-    sf_record_verdict record;
     char line[SF_VERDICT_LINE_SIZE];
     double contact = 0, peak = 0, zero = NAN;
     SF_TRY(sf_reference_read(options, &reference, err));
     const sf_series *curve = &reference.curve;
-    SF_TRY(sf_record_judge(&reference.raw, curve, reference.other, &record, err));
-    sf_record_line(&record, line, sizeof line);
+    sf_record_line(&reference.record, line, sizeof line);
     snprintf(drop->interpretation, sizeof drop->interpretation, "%.600s; record: %.400s",
              reference.interpretation, line);
-    if (record.grade == SF_GRADE_DO_NOT_USE)
+    if (reference.record.grade == SF_GRADE_DO_NOT_USE)
         return SF_REFUSE(err, "%s: a foam cannot be fitted to this record: %s", options->path, line);
     SF_TRY(sf_record_offset(&reference.raw, &reference.raw, &zero, err));
     SF_TRY(sf_contact_instant(curve, options->path, isnan(zero) ? 0 : zero, &contact, err));
