@@ -191,9 +191,10 @@ static sf_status write_series(const overlay *o, sf_error *err) {
 /* The pad before each later drop. */
 static void put_pads(FILE *page, const overlay *o) {
     for (int k = 1; k < o->count; k++) {
-        char text[400];
-        SF_OWNED char *svg = sf_report_picture_before(&o->run[k].results, text, sizeof text, SF_IGNORED);
-        sf_html_figure(page, svg, "Drop %d. %s", k + 1, text);
+        sf_report_picture p = {0};
+        sf_report_picture_before(&o->run[k].results, &p, SF_IGNORED);
+        sf_html_figure(page, p.svg, "Drop %d. %s", k + 1, p.text);
+        free(p.svg);
     }
 }
 

@@ -103,13 +103,10 @@ const char *sf_report_findings(const sf_verdict *verdict, char *line, size_t siz
 }
 
 static void put_limit_tile(const page *p, const sf_limit *limit) {
-    char value[48], remark[96];
+    char value[48] = "–", remark[96];
     const char *unit = strcmp(limit->unit, "1") == 0 ? "" : limit->unit, *blank = *unit ? " " : "";
-    bool known = isfinite(limit->value);
-    if (known)
+    if (isfinite(limit->value))
         snprintf(value, sizeof value, "%.1f%s%s", limit->value, blank, unit);
-    else
-        snprintf(value, sizeof value, "–");
     snprintf(remark, sizeof remark, "limit %g%s%s: %s", limit->bound, blank, unit, sf_limit_phrase(limit));
     sf_html_tile(p->file,
                  !limit->judged  ? "plain"
@@ -269,10 +266,10 @@ static void put_link(const page *p, const sf_staging *output) {
 }
 
 /* A block with a picture of the drop, and with what came with the film if `output` is given. */
-static void put_picture(const page *p, const char *heading, const char *svg, const char *caption,
+static void put_picture(const page *p, const char *heading, const sf_report_picture *picture,
                         const sf_staging *output) {
     SF_HTML_BLOCK(p->file, heading);
-    sf_html_figure(p->file, svg, "%s", caption);
+    sf_html_figure(p->file, picture->svg, "%s", picture->text);
     if (!output)
         return;
     put_scene(p, output);
@@ -281,15 +278,15 @@ static void put_picture(const page *p, const char *heading, const char *svg, con
 
 static void put_pictures(const page *p, const sf_staging *output) {
     const sf_report_pictures *q = p->pictures;
-    if (q->before)
-        put_picture(p, "The pad before the drop", q->before, q->before_text, NULL);
-    put_picture(p, "The pad at the peak", q->pad, q->pad_text, output);
-    put_picture(p, "Mid-section", q->instants, q->instants_text, NULL);
+    if (q->before.svg)
+        put_picture(p, "The pad before the drop", &q->before, NULL);
+    put_picture(p, "The pad at the peak", &q->pad, output);
+    put_picture(p, "Mid-section", &q->instants, NULL);
     SF_HTML_BLOCK(p->file, p->figures->driven ? "Stress and strain"
                                               : "Acceleration, and stress through the thickness");
     SF_HTML_DIVISION(p->file, "columns wide");
     put_curve(p, output);
-    sf_html_figure(p->file, q->profile, "%s", q->profile_text);
+    sf_html_figure(p->file, q->profile.svg, "%s", q->profile.text);
 }
 
 /* ---- tables ---- */
@@ -333,7 +330,7 @@ static void put_checks(const page *p) {
 static void put_verdict(const page *p) {
     SF_HTML_DIVISION(p->file, "columns wide");
     put_checks(p);
-    put_picture(p, "Force and indentation", p->pictures->force, p->pictures->force_text, NULL);
+    put_picture(p, "Force and indentation", &p->pictures->force, NULL);
 }
 
 static bool is_defined(const page *p, const sf_figure *figure) {
@@ -475,7 +472,7 @@ static void put_versions(const page *p) {
 static void put_provenance(const page *p) {
     SF_HTML_DIVISION(p->file, "columns ");
     put_versions(p);
-    put_picture(p, "Energies", p->pictures->energies, p->pictures->energies_text, NULL);
+    put_picture(p, "Energies", &p->pictures->energies, NULL);
 }
 
 /* A pad of several materials, layer by layer. */

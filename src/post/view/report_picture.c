@@ -95,12 +95,12 @@ static int name_missing(const instant list[SF_INSTANTS], char *text, size_t size
 
 /* ---- pictures of the cut ---- */
 
-static char *draw_pad(const sf_cut *cut, const instant *peak, char *text, size_t size, sf_error *err) {
+static void draw_pad(const sf_cut *cut, const instant *peak, sf_report_picture *p, sf_error *err) {
     if (!peak->head || cut->polygon_count == 0) {
-        snprintf(text, size,
+        snprintf(p->text, sizeof p->text,
                  "No picture of the deformed pad: results.h5 holds no displacement and von Mises stress at "
                  "the peak.");
-        return NULL;
+        return;
     }
     bool strain = peak->frame.field[SF_FRAME_LARGEST_COMPRESSION] != NULL;
     const sf_picture_style style = {.field = strain ? SF_FRAME_LARGEST_COMPRESSION : SF_FRAME_VON_MISES,
@@ -111,38 +111,38 @@ static char *draw_pad(const sf_cut *cut, const instant *peak, char *text, size_t
                                     .half_width = INFINITY};
     const sf_picture picture = {peak->title, peak->head, &peak->frame};
     snprintf(
-        text, size,
+        p->text, sizeof p->text,
         "The deformed pad, cut through the axis of the missile%s, with the cells of the background mesh.",
         cut->mirrored ? " and mirrored there" : "");
-    return sf_picture_draw(cut, &picture, 1, &style, err);
+    p->svg = sf_picture_draw(cut, &picture, 1, &style, err);
 }
 
-char *sf_report_picture_before(const sf_results *r, char *text, size_t size, sf_error *err) {
+void sf_report_picture_before(const sf_results *r, sf_report_picture *p, sf_error *err) {
     SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
     SF_OWNED_BY(sf_cut_free) sf_cut cut = {0};
-    char *svg = NULL;
     if (r->frame_count == 0 || r->frames[0].time > 0 || !sf_h5_exists(r->file, "/frames/000000/softening") ||
         sf_frame_read(r, &r->frames[0], &frame, err) != SF_OK || !frame.field[SF_FRAME_DISPLACEMENT] ||
         sf_cut_make(r, &cut, err) != SF_OK || cut.polygon_count == 0) {
-        snprintf(text, size, "No picture: results.h5 holds no displacement and softening at the start.");
+        snprintf(p->text, sizeof p->text,
+                 "No picture: results.h5 holds no displacement and softening at the start.");
     } else {
         const sf_picture_style style = {.field = SF_FRAME_SOFTENING,
                                         .factor = 1e-3,
                                         .label = "softening (kJ/m³)",
                                         .half_width = INFINITY};
         const sf_picture picture = {"before the drop", &r->frames[0], &frame};
-        snprintf(text, size,
+        snprintf(p->text, sizeof p->text,
                  "The pad before the drop: the energy by which loading, up to the largest so far, takes up "
                  "less than that of new foam.");
         if (isfinite(r->set))
-            sf_text_add(text, size, " Its permanent set is %.3g mm deep at the impact point.", 1e3 * r->set);
-        svg = sf_picture_draw(&cut, &picture, 1, &style, err);
+            sf_text_add(p->text, sizeof p->text, " Its permanent set is %.3g mm deep at the impact point.",
+                        1e3 * r->set);
+        p->svg = sf_picture_draw(&cut, &picture, 1, &style, err);
     }
-    return svg;
 }
 
-static char *draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], char *text, size_t size,
-                           sf_error *err) {
+static void draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], sf_report_picture *p,
+                          sf_error *err) {
     sf_picture picture[SF_INSTANTS];
     char missing[160];
     int count = 0, lost = name_missing(list, missing, sizeof missing);
@@ -150,10 +150,10 @@ static char *draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], c
         if (list[k].head)
             picture[count++] = (sf_picture){list[k].title, list[k].head, &list[k].frame};
     if (count == 0) {
-        snprintf(text, size,
+        snprintf(p->text, sizeof p->text,
                  "No picture of the mid-section: results.h5 holds no frames with displacement and von Mises "
                  "stress near the peak.");
-        return NULL;
+        return;
     }
     double half = 1.25 * fmax(cut->missile[1] - cut->axis, cut->axis - cut->missile[0]);
     const sf_picture_style style = {.field = SF_FRAME_VON_MISES,
@@ -161,22 +161,22 @@ static char *draw_instants(const sf_cut *cut, const instant list[SF_INSTANTS], c
                                     .label = "von Mises stress (kPa), logarithmic",
                                     .logarithmic = true,
                                     .half_width = half > 0 ? half : INFINITY};
-    snprintf(text, size, "Von Mises stress in the mid-section at %s.%s%s%s",
+    snprintf(p->text, sizeof p->text, "Von Mises stress in the mid-section at %s.%s%s%s",
              count == 3 ? "three instants" : "the instants that have a frame", lost ? " No frame near: " : "",
              missing, lost ? " (shorten output.frame_interval)." : "");
-    return sf_picture_draw(cut, picture, count, &style, err);
+    p->svg = sf_picture_draw(cut, picture, count, &style, err);
 }
 
 /* ---- curves ---- */
 
 /* Draws a chart for the page, and frees it. */
-static char *take_curve(sf_chart *chart, const sf_staging *output, char *text, size_t size, sf_error *err) {
+static sf_status take_curve(sf_chart *chart, const sf_staging *output, sf_report_picture *p, sf_error *err) {
     char warning[320];
-    char *svg = sf_chart_page(chart, output, "softfall-post", warning, sizeof warning, err);
-    if (!svg)
-        snprintf(text, size, "%s.", warning);
+    p->svg = sf_chart_page(chart, output, "softfall-post", warning, sizeof warning, err);
+    if (!p->svg)
+        snprintf(p->text, sizeof p->text, "%s.", warning);
     sf_chart_free(chart);
-    return svg;
+    return err->status;
 }
 
 static sf_series_style line_of(const char *colour, double width) {
@@ -192,11 +192,11 @@ static double tic_step(double top) {
 enum { SMALL_WIDTH = 790, SMALL_HEIGHT = 720, HALF_WIDTH = 1130, FORCE_HEIGHT = 570, HALF_HEIGHT = 460 };
 
 static sf_status draw_profile(const sf_staging *output, const sf_results *r, const instant list[SF_INSTANTS],
-                              char **svg, char *text, size_t size, sf_error *err) {
+                              sf_report_picture *p, sf_error *err) {
     static const char *const colour[SF_INSTANTS] = {"#6baed6", "#cb181d", "#41ab5d"};
     sf_section_point station[SF_SECTION_STATIONS];
     int count = 0;
-    snprintf(text, size, "No frames for the von Mises stress through the thickness.");
+    snprintf(p->text, sizeof p->text, "No frames for the von Mises stress through the thickness.");
     for (int k = 0; k < SF_INSTANTS; k++)
         count += list[k].head != NULL;
     if (count == 0)
@@ -220,13 +220,13 @@ static sf_status draw_profile(const sf_staging *output, const sf_results *r, con
                     line, 1e-3 * sf_section_mean(list[k].frame.field[SF_FRAME_VON_MISES], 1, 0, &station[s]),
                     1e3 * (top - sf_section_mean(r->position, 3, 2, &station[s])));
     }
-    snprintf(text, size, "Von Mises stress through the thickness, under the axis of the missile.");
-    *svg = take_curve(chart, output, text, size, err);
-    return err->status;
+    snprintf(p->text, sizeof p->text,
+             "Von Mises stress through the thickness, under the axis of the missile.");
+    return take_curve(chart, output, p, err);
 }
 
-static sf_status draw_force(const sf_staging *output, const sf_history *h, char **svg, char *text,
-                            size_t size, sf_error *err) {
+static sf_status draw_force(const sf_staging *output, const sf_history *h, sf_report_picture *p,
+                            sf_error *err) {
     sf_chart *chart = sf_chart_new("force", HALF_WIDTH, FORCE_HEIGHT, err);
     sf_panel *panel = sf_chart_panel(chart);
     sf_axis_label(&panel->x, "indentation (mm)");
@@ -236,9 +236,8 @@ static sf_status draw_force(const sf_staging *output, const sf_history *h, char 
     panel->y.step = tic_step(fmax(1e-3 * sf_history_largest(h, h->contact_force), 1e-9));
     sf_series_points(sf_chart_series(chart, line_of("#08519c", 3.5), NULL), h->rows, h->indentation,
                      h->contact_force, 1e3, 1e-3, 0);
-    snprintf(text, size, "Force on the missile over its indentation.");
-    *svg = take_curve(chart, output, text, size, err);
-    return err->status;
+    snprintf(p->text, sizeof p->text, "Force on the missile over its indentation.");
+    return take_curve(chart, output, p, err);
 }
 
 /* The energies that are seen beside the largest. */
@@ -258,8 +257,8 @@ static void put_energies(sf_chart *chart, const sf_history *h, double top) {
                                  h->rows, h->time, h->column[c], 1e3, 1, 0);
 }
 
-static sf_status draw_energies(const sf_staging *output, const sf_history *h, const sf_figures *f, char **svg,
-                               char *text, size_t size, sf_error *err) {
+static sf_status draw_energies(const sf_staging *output, const sf_history *h, const sf_figures *f,
+                               sf_report_picture *p, sf_error *err) {
     double range[2];
     double top =
         fmax(sf_history_largest(h, h->energy_kinetic_missile), sf_history_largest(h, h->energy_stored));
@@ -273,9 +272,9 @@ static sf_status draw_energies(const sf_staging *output, const sf_history *h, co
     panel->y.step = tic_step(fmax(top, 1e-9));
     panel->key = SF_KEY_RIGHT;
     put_energies(chart, h, top);
-    snprintf(text, size, "Energies of the whole pad and missile; those below 1 %% are left out.");
-    *svg = take_curve(chart, output, text, size, err);
-    return err->status;
+    snprintf(p->text, sizeof p->text,
+             "Energies of the whole pad and missile; those below 1 %% are left out.");
+    return take_curve(chart, output, p, err);
 }
 
 /* ---- all ---- */
@@ -286,22 +285,19 @@ sf_status sf_report_pictures_make(const sf_staging *output, const sf_results *re
     SF_OWNED_BY(sf_cut_free) sf_cut cut = {0};
     *p = (sf_report_pictures){0};
     read_instants(results, &figures->raw, list);
-    p->before = sf_report_picture_before(results, p->before_text, sizeof p->before_text, err);
+    sf_report_picture_before(results, &p->before, err);
     if (err->status == SF_OK && sf_cut_make(results, &cut, err) == SF_OK) {
-        p->pad = draw_pad(&cut, &list[1], p->pad_text, sizeof p->pad_text, err);
-        p->instants = draw_instants(&cut, list, p->instants_text, sizeof p->instants_text, err);
+        draw_pad(&cut, &list[1], &p->pad, err);
+        draw_instants(&cut, list, &p->instants, err);
     }
-    if (err->status == SF_OK &&
-        draw_profile(output, results, list, &p->profile, p->profile_text, sizeof p->profile_text, err) ==
-            SF_OK &&
-        draw_force(output, &results->history, &p->force, p->force_text, sizeof p->force_text, err) == SF_OK)
-        draw_energies(output, &results->history, figures, &p->energies, p->energies_text,
-                      sizeof p->energies_text, err);
+    if (err->status == SF_OK && draw_profile(output, results, list, &p->profile, err) == SF_OK &&
+        draw_force(output, &results->history, &p->force, err) == SF_OK)
+        draw_energies(output, &results->history, figures, &p->energies, err);
     for (int k = 0; k < SF_INSTANTS; k++)
         sf_frame_free(&list[k].frame);
     return err->status;
 }
 
 void sf_report_pictures_free(sf_report_pictures *p) {
-    SF_CLEAR(p, p->before, p->pad, p->instants, p->profile, p->force, p->energies);
+    SF_CLEAR(p, p->before.svg, p->pad.svg, p->instants.svg, p->profile.svg, p->force.svg, p->energies.svg);
 }
