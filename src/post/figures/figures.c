@@ -361,7 +361,7 @@ static void set_undefined(sf_figures *f) {
 /* Figures of every run, free or driven. */
 static void take_facts(const sf_results *r, double cfc, sf_figures *f) {
     f->cfc = cfc;
-    f->touched = sf_results_touched(r);
+    f->touched = isfinite(first_contact(&r->history));
     f->driven = r->driven;
     f->turns = r->turns;
     f->kinematic = r->kinematic;

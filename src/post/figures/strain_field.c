@@ -247,11 +247,10 @@ sf_rows sf_layer_figure_rows(void) {
 /* Takes the sums of the solver by layer until the last frame. */
 static void take_sums(const sf_results *r, sf_layer_figures *f) {
     for (int k = 0; k < r->layer_count; k++) {
-        const sf_layer_sums *sums = &r->layer_sums[k];
-        f[k].max_local_strain = sums->compression;
-        f[k].stored_energy = sums->stored;
-        f[k].hysteresis_energy = sums->hysteresis;
-        f[k].viscous_energy = sums->viscous;
+        f[k].max_local_strain = r->layer_sum[SF_LAYER_COMPRESSION][k];
+        f[k].stored_energy = r->layer_sum[SF_LAYER_STORED][k];
+        f[k].hysteresis_energy = r->layer_sum[SF_LAYER_HYSTERESIS][k];
+        f[k].viscous_energy = r->layer_sum[SF_LAYER_VISCOUS][k];
         f[k].absorbed_energy = f[k].stored_energy + f[k].hysteresis_energy + f[k].viscous_energy;
     }
 }
@@ -292,7 +291,7 @@ sf_layer_figures *sf_layer_figures_compute(const sf_results *r, const double *co
     }
     for (int64_t i = 0; i < r->node_count; i++)
         f[r->node_layer[i]].volume += sf_results_whole(r) * r->volume[i];
-    if (r->layer_sums)
+    if (r->layer_sum[0])
         take_sums(r, f);
     if (compression && energy_density)
         add_peak(r, compression, energy_density, f);

@@ -100,7 +100,8 @@ static bool is_included(const char *begin, const char *end) {
            strncmp(end - behind, SF_INCLUDED_END, behind) == 0;
 }
 
-/* Comments from `line` on; `prefix` stands before each. Blank lines and others are passed over, or end it. */
+/* Comments from `line` on, NULL: none; `prefix` stands before each. Blank lines and others are passed over,
+ * or end it. */
 static char *collect(const char *line, const char *prefix, bool to_brace) {
     size_t length, before = strlen(prefix);
     SF_TEXT_STREAM(out, text, size);
@@ -151,10 +152,7 @@ char *sf_origin_material(const char *case_text, const char *layer) {
     const char *replaced = after_last(case_text, replacing);
     if (replaced)
         return collect(replaced, "#     ", true);
-    if (layer) {
-        const char *own = after_name(after_last(case_text, "materials"), layer);
-        return collect(own ? own : "", "", true);
-    }
-    const char *group = after_last(case_text, "material");
-    return collect(group ? group : "", "", true);
+    return collect(layer ? after_name(after_last(case_text, "materials"), layer)
+                         : after_last(case_text, "material"),
+                   "", true);
 }

@@ -118,8 +118,10 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
 }
 
 static sf_status check_lengths(sf_results *r, const int64_t *rows, sf_error *err) {
+    bool differ = false;
     r->history.rows = rows[0];
     for (int c = 1; c < SF_HISTORY_COUNT; c++) {
+        differ = differ || rows[c] != rows[0];
         if (rows[c] != rows[0] && sf_results_ended_well(r))
             return SF_FAIL(err, SF_ERR_IO,
                            "/history/%s has %lld rows, /history/time has %lld: the file is damaged",
@@ -127,10 +129,7 @@ static sf_status check_lengths(sf_results *r, const int64_t *rows, sf_error *err
         if (rows[c] < r->history.rows)
             r->history.rows = rows[c];
     }
-    int longer = 0;
-    while (longer < SF_HISTORY_COUNT && rows[longer] == r->history.rows)
-        longer++;
-    if (longer < SF_HISTORY_COUNT)
+    if (differ)
         sf_results_note(r, "the columns of /history differ in length: the first %lld rows are used",
                         (long long)r->history.rows);
     return SF_OK;
@@ -197,13 +196,6 @@ double sf_results_cross_section(const sf_results *r) {
         volume += r->volume[i];
     sf_box3(r->node_count, r->position, low, high);
     return sf_results_whole(r) * volume / (high[2] - low[2]);
-}
-
-bool sf_results_touched(const sf_results *results) {
-    for (int64_t i = 0; i < results->history.rows; i++)
-        if (results->history.contact_nodes[i] > 0)
-            return true;
-    return false;
 }
 
 static sf_status read_array(const sf_results *r, const char *path, sf_h5_type type, int64_t *rows,
@@ -305,21 +297,15 @@ static sf_status read_layers(sf_results *r, sf_error *err) {
 
 /* Reads the sums by layer of the frame; none if the frame has none. */
 static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_error *err) {
-    static const char *const names[] = {"layer_stored", "layer_hysteresis", "layer_viscous",
-                                        "layer_compression"};
-    static const size_t offsets[] = {offsetof(sf_layer_sums, stored), offsetof(sf_layer_sums, hysteresis),
-                                     offsetof(sf_layer_sums, viscous), offsetof(sf_layer_sums, compression)};
-    r->layer_sums = sf_alloc(err, r->layer_count, sizeof *r->layer_sums, "sums of layers");
-    for (int k = 0; k < 4 && err->status == SF_OK; k++) {
-        SF_OWNED double *value = NULL;
+    static const char *const names[SF_LAYER_SUMS] = {"layer_stored", "layer_hysteresis", "layer_viscous",
+                                                     "layer_compression"};
+    for (int k = 0; k < SF_LAYER_SUMS; k++) {
         int64_t count = r->layer_count;
         SF_PRINTED(path, 80, "%s/%s", head->group, names[k]);
-        if (read_array(r, path, SF_H5_F64, &count, 1, &value, err) != SF_OK)
-            break;
-        for (int64_t i = 0; i < count && check_finite(value, count, path, err) == SF_OK; i++)
-            *(double *)((char *)&r->layer_sums[i] + offsets[k]) = value[i];
+        SF_TRY(read_array(r, path, SF_H5_F64, &count, 1, &r->layer_sum[k], err));
+        SF_TRY(check_finite(r->layer_sum[k], count, path, err));
     }
-    return err->status;
+    return SF_OK;
 }
 
 static sf_status read_model(sf_results *r, sf_error *err) {
@@ -477,8 +463,8 @@ static sf_status read_frame_list(sf_results *r, sf_error *err) {
     sf_error problem = SF_ERROR_INIT;
     if (r->frame_count > 0 && r->layer_count > 0 &&
         read_layer_sums(r, &r->frames[r->frame_count - 1], &problem) != SF_OK) {
-        free(r->layer_sums);
-        r->layer_sums = NULL;
+        sf_free_all(SF_LAYER_SUMS, r->layer_sum);
+        memset(r->layer_sum, 0, sizeof r->layer_sum);
         SF_TRY(keep_error(r, &problem, err));
     }
     if (r->frame_count == 0)
@@ -507,11 +493,11 @@ sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) 
 void sf_results_close(sf_results *results) {
     sf_h5_drop(&results->file);
     sf_history_free(&results->history);
+    sf_free_all(SF_LAYER_SUMS, results->layer_sum);
     SF_CLEAR(results, results->position, results->volume, results->cell_type, results->cell_ptr,
              results->cell_node, results->surface_position, results->surface_triangle,
              results->support_position, results->support_triangle, results->node_layer, results->layer_name,
-             results->layer_names, results->layer_density, results->layer_informed, results->layer_sums,
-             results->frames);
+             results->layer_names, results->layer_density, results->layer_informed, results->frames);
 }
 
 sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame,

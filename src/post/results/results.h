@@ -23,11 +23,8 @@ typedef struct sf_frame {
     double *field[SF_FRAME_FIELDS]; /* [node_count][components], NULL if the file does not hold it */
 } sf_frame;
 
-/* Sums over one layer, whole pad, to date. */
-typedef struct sf_layer_sums {
-    double stored, hysteresis, viscous; /* J */
-    double compression;                 /* -, largest */
-} sf_layer_sums;
+/* Sums over a layer, whole pad, to date: energies in J, and the largest compression. */
+enum { SF_LAYER_STORED, SF_LAYER_HYSTERESIS, SF_LAYER_VISCOUS, SF_LAYER_COMPRESSION, SF_LAYER_SUMS };
 
 enum { SF_RESULTS_NOTES = 24, SF_RESULTS_NOTE_SIZE = 512 };
 
@@ -72,7 +69,7 @@ typedef struct sf_results {
     char *layer_names;
     double *layer_density;     /* [layer_count] kg m-3 */
     double *layer_informed;    /* [layer_count] as informed_strain */
-    sf_layer_sums *layer_sums; /* [layer_count] of the last frame; NULL: no frame has them */
+    double *layer_sum[SF_LAYER_SUMS]; /* [layer_count] of the last frame; all NULL: no frame has them */
     double impact_x, impact_y; /* m, where the missile's lowest point arrives at the pad's top; NaN: the file
                                   does not say */
     double missile_mass;       /* kg; 0 with a prescribed motion, like the speed */
@@ -133,9 +130,6 @@ double sf_results_fall_speed(const sf_results *results);
 double sf_results_whole(const sf_results *results);
 /* Mean cross-section of the whole pad, its volume over its thickness, m2. */
 double sf_results_cross_section(const sf_results *results);
-
-/* True if the missile ever touched the pad. */
-bool sf_results_touched(const sf_results *results);
 
 /* True for the statuses finished, rebound and interrupted. */
 bool sf_results_ended_well(const sf_results *results);
