@@ -2,6 +2,7 @@
 /* softfall-post RESULTS -o DIR: injury figures, curves, pictures and ParaView files from a results.h5. */
 #include "base/text.h"
 #include "base/program.h"
+#include "base/units.h"
 #include "io/provenance.h"
 #include "post/view/report.h"
 
@@ -130,9 +131,9 @@ static const sf_option list[] = {
      "exit status 8 if the verdict is \"valid with remarks\", 9 if it is \"do not use\"; it says nothing about limits that "
      "are exceeded",
      .member = AT(strict)},
-    {"limit-g", 0, "G", "limit of a_max in g (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) ")",
+    {"limit-g", 0, "G", "limit of a_max in g (default " SF_UNITS_QUOTE(SF_DEFAULT_LIMIT_G) ")",
      .member = AT(limits.a_max_g), .read = sf_program_read_limit},
-    {"limit-hic", 0, "HIC", "limit of HIC (default " SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_HIC) ")",
+    {"limit-hic", 0, "HIC", "limit of HIC (default " SF_UNITS_QUOTE(SF_DEFAULT_LIMIT_HIC) ")",
      .member = AT(limits.hic), .read = sf_program_read_limit},
     {"reference", 0, "CSV",
      "compare with a measured curve: columns such as time_ms and acceleration_g, or \"Time (ms)\" and "

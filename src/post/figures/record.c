@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/compare.h"
 
-#include "base/text.h"
 #include <gsl/gsl_sort.h>
 #include <string.h>
 
@@ -200,15 +199,9 @@ sf_status sf_record_judge(const sf_series *raw, const sf_series *curve, double o
         *row = rules[k];
         row->value = r.peak > 0 ? values[k](&r) : NAN;
         row->value = k == SF_RECORD_other_impact ? fmax(row->value, other) : row->value;
-        row->grade = row->value > row->use_bound ? SF_GRADE_DO_NOT_USE
-                     : row->value > row->bound   ? SF_GRADE_REMARKS
-                                                 : SF_GRADE_VALID;
+        sf_check_judge(row, true);
         if (isnan(row->value))
             snprintf(row->text, sizeof row->text, "%s: the record does not tell", row->title);
-        else
-            snprintf(row->text, sizeof row->text, "%s %.3g %% (%s %.3g %%)", row->title, 100 * row->value,
-                     row->grade == SF_GRADE_DO_NOT_USE ? "not to be used beyond" : "good up to",
-                     100 * (row->grade == SF_GRADE_DO_NOT_USE ? row->use_bound : row->bound));
         verdict->grade = row->grade > verdict->grade ? row->grade : verdict->grade;
     }
     return SF_OK;
@@ -265,10 +258,5 @@ sf_status sf_record_find_impacts(const sf_series *raw, sf_record_impact impact[S
 }
 
 void sf_record_line(const sf_record_verdict *verdict, char *text, size_t size) {
-    int found = 0;
-    snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
-    for (int grade = SF_GRADE_DO_NOT_USE; grade > SF_GRADE_VALID; grade--)
-        for (int k = 0; k < SF_RECORD_CHECKS; k++)
-            if (verdict->rows[k].grade == (sf_grade)grade)
-                sf_text_add(text, size, "%s%s", found++ ? "; " : ": ", verdict->rows[k].text);
+    sf_check_line(verdict->grade, SF_RECORD_CHECKS, verdict->rows, SF_RECORD_CHECKS, text, size);
 }

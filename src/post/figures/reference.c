@@ -109,18 +109,17 @@ static sf_table_layout layout_of(const sf_reference_options *o, const char *colu
 /* One column; of a file whose rate is given, over the number of the sample. */
 static sf_status read_column(const sf_reference_options *o, const char *column, sf_table *table,
                              sf_error *err) {
-    sf_table_layout layouts[2] = {layout_of(o, column), layout_of(o, column)};
-    int which = 0;
+    sf_table_layout layout = layout_of(o, column);
     if (!(o->rate > 0))
-        return sf_table_read(o->path, layouts, table, err);
-    if (sf_table_read(o->path, layouts, table, SF_IGNORED) == SF_OK) {
+        return sf_table_read(o->path, &layout, table, err);
+    if (sf_table_read(o->path, &layout, table, SF_IGNORED) == SF_OK) {
         sf_table_free(table);
         return SF_REFUSE(err, "%s has a column of time: leave its sampling rate out", o->path);
     }
-    layouts[1].counted = true;
-    layouts[1].column[0] = "sample";
-    layouts[1].unit[0] = 1 / o->rate;
-    return sf_table_read_any(o->path, &layouts[1], 1, &which, table, err);
+    layout.counted = true;
+    layout.column[0] = "sample";
+    layout.unit[0] = 1 / o->rate;
+    return sf_table_read(o->path, &layout, table, err);
 }
 
 /* Keeps the samples of the axes before that `table` holds too: others were lost in one of the axes. */

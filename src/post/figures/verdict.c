@@ -77,16 +77,22 @@ static const value_of values[SF_CHECKS] = {SF_GOOD_RUN(VALUE)};
 
 /* ---- rows ---- */
 
-static sf_grade judge(double value, const sf_good_run_rule *rule) {
-    double size = fabs(value);
-    return size > rule->refuse   ? SF_GRADE_DO_NOT_USE
-           : size > rule->remark ? SF_GRADE_REMARKS
-                                 : SF_GRADE_VALID;
-}
-
 /* A value as a sentence shows it. */
 static void show(double value, bool percent, char text[32]) {
     snprintf(text, 32, percent ? "%.3g %%" : "%.3g", percent ? 100 * value : value);
+}
+
+void sf_check_judge(sf_check *c, bool percent) {
+    double size = fabs(c->value);
+    char value[32], bound[32];
+    c->grade = size > c->use_bound ? SF_GRADE_DO_NOT_USE
+               : size > c->bound   ? SF_GRADE_REMARKS
+                                   : SF_GRADE_VALID;
+    bool refused = c->grade == SF_GRADE_DO_NOT_USE;
+    show(c->value, percent, value);
+    show(refused ? c->use_bound : c->bound, percent, bound);
+    snprintf(c->text, sizeof c->text, "%s %s (%s %s)", c->title, value,
+             refused ? "not to be used beyond" : "good up to", bound);
 }
 
 bool sf_check_is_flag(const sf_check *check) {
@@ -107,10 +113,8 @@ static bool ended_on_anvil(const sf_results *r) {
     return r->has_summary && strncmp(r->status, reason, sizeof reason - 1) == 0;
 }
 
-static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf_figures *f, sf_check *c) {
-    char value[32], bound[32];
-    show(c->value, rule->percent, value);
-    show(c->grade == SF_GRADE_DO_NOT_USE ? c->use_bound : c->bound, rule->percent, bound);
+/* Writes the findings that are not only a value and its bound. */
+static void describe(const sf_results *r, const sf_figures *f, sf_check *c) {
     if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_notes)->key)
         snprintf(c->text, sizeof c->text, "%.0f of the programs' notes, the first: %.*s", c->value,
                  sf_utf8_cut(first_note(r), 200), first_note(r));
@@ -129,9 +133,6 @@ static void describe(const sf_good_run_rule *rule, const sf_results *r, const sf
     else if (sf_check_is_flag(c))
         snprintf(c->text, sizeof c->text, "the raw peak is %s",
                  c->value > 0 ? "one or two time steps long" : "longer than two time steps");
-    else
-        snprintf(c->text, sizeof c->text, "%s %s (%s %s)", c->title, value,
-                 c->grade == SF_GRADE_DO_NOT_USE ? "not to be used beyond" : "good up to", bound);
     if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_rim)->key)
         sf_text_add(c->text, sizeof c->text, ", at (%.4g, %.4g, %.4g) mm: take a finer mesh there",
                     1e3 * f->cut.place[0], 1e3 * f->cut.place[1], 1e3 * f->cut.place[2]);
@@ -146,8 +147,8 @@ static void fill_row(int k, const sf_results *r, const sf_figures *f, sf_check *
                     .value = values[k](r, f),
                     .bound = rule->remark,
                     .use_bound = rule->refuse};
-    c->grade = judge(c->value, rule);
-    describe(rule, r, f, c);
+    sf_check_judge(c, rule->percent);
+    describe(r, f, c);
 }
 
 const char *sf_limit_phrase(const sf_limit *limit) {
@@ -193,14 +194,17 @@ void sf_verdict_compute(const sf_results *results, const sf_figures *figures, co
     verdict->limits[1] = limit_of("hic", "HIC", "1", injury->hic.value, limits->hic, whole);
 }
 
-void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size) {
-    enum { SHOWN = 3 };
+void sf_check_line(sf_grade grade, int count, const sf_check *rows, int shown, char *text, size_t size) {
     int found = 0;
-    snprintf(text, size, "%s", sf_verdict_phrase(verdict->grade));
-    for (int grade = SF_GRADE_DO_NOT_USE; grade > SF_GRADE_VALID; grade--)
-        for (int k = 0; k < verdict->count; k++)
-            if (verdict->rows[k].grade == (sf_grade)grade && found++ < SHOWN)
-                sf_text_add(text, size, "%s%s", found == 1 ? ": " : "; ", verdict->rows[k].text);
-    if (found > SHOWN)
-        sf_text_add(text, size, "; and %d more", found - SHOWN);
+    snprintf(text, size, "%s", sf_verdict_phrase(grade));
+    for (int bad = SF_GRADE_DO_NOT_USE; bad > SF_GRADE_VALID; bad--)
+        for (int k = 0; k < count; k++)
+            if (rows[k].grade == (sf_grade)bad && found++ < shown)
+                sf_text_add(text, size, "%s%s", found == 1 ? ": " : "; ", rows[k].text);
+    if (found > shown)
+        sf_text_add(text, size, "; and %d more", found - shown);
+}
+
+void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size) {
+    sf_check_line(verdict->grade, verdict->count, verdict->rows, 3, text, size);
 }

@@ -36,10 +36,6 @@ typedef struct sf_limits {
 #define SF_DEFAULT_LIMIT_HIC 1000
 #define SF_DEFAULT_LIMITS ((sf_limits){SF_DEFAULT_LIMIT_G, SF_DEFAULT_LIMIT_HIC})
 
-/* The default limits in a text: SF_LIMIT_TEXT(SF_DEFAULT_LIMIT_G) is "200". */
-#define SF_LIMIT_TEXT(limit) SF_LIMIT_TEXT_(limit)
-#define SF_LIMIT_TEXT_(limit) #limit
-
 enum { SF_LIMITS = 2 }; /* a_max, HIC in this order */
 
 typedef struct sf_verdict {
@@ -53,6 +49,13 @@ typedef struct sf_verdict {
 
 /* "passed", "failed" or "not judged"; static. */
 const char *sf_limit_phrase(const sf_limit *limit);
+
+/* Grades a value by its bounds, and writes the finding; `percent`: they are shown in percent. */
+void sf_check_judge(sf_check *check, bool percent);
+
+/* "valid", or the phrase and the findings of the rows that are not valid, the worst first; after `shown`
+ * findings only the number of the others: "and 2 more". */
+void sf_check_line(sf_grade grade, int count, const sf_check *rows, int shown, char *text, size_t size);
 
 /* "valid", "valid with remarks", "do not use"; static. */
 const char *sf_verdict_phrase(sf_grade grade);
@@ -69,6 +72,5 @@ enum { SF_VERDICT_LINE_SIZE = 1280 };
 /* True of a check that says yes or no: a sentence or a table shows no numbers of it. */
 bool sf_check_is_flag(const sf_check *check);
 
-/* "valid", or the phrase and the findings of the rows that are not valid, the worst first; after three
- * findings only the number of the others: "and 2 more". */
+/* The line of its rows, with three findings. */
 void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size);

@@ -21,16 +21,9 @@ typedef struct picture {
     bool limited;    /* the limit lies within the axis */
 } picture;
 
-static double largest(const sf_series *s) {
-    double value = 0;
-    for (int64_t i = 0; i < s->count; i++)
-        value = fmax(value, s->value[i]);
-    return value;
-}
-
 /* Widens the range by the part of the curve that is above this fraction of its largest value. */
 static void widen(const sf_series *s, double fraction, double shift, double range[2]) {
-    double bound = fraction * largest(s);
+    double bound = fraction * fmax(0, s->value[sf_series_peak(s)]);
     int64_t first = 0, last = s->count - 1;
     while (first < last && s->value[first] <= bound)
         first++;
