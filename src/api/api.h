@@ -24,8 +24,3 @@ static inline softfall_status softfall_return(const sf_error *err, softfall_erro
     }
     return (softfall_status)err->status;
 }
-
-/* A block of one zeroed struct; NULL records SF_ERR_MEMORY. */
-static inline void *softfall_new(sf_error *err, unsigned long size, const char *what) {
-    return sf_alloc(err, 1, size, what);
-}

@@ -25,7 +25,7 @@ softfall_status softfall_case_read(const char *path, const char *const *override
     sf_error err = SF_ERROR_INIT;
     softfall_sink copy;
     const sf_sink inner = listen(sink, &copy);
-    *out = softfall_new(&err, sizeof **out, "a case");
+    *out = sf_alloc(&err, 1, sizeof **out, "a case");
     if (*out && sf_case_read(path, count, overrides, &inner, &(*out)->data, &err) != SF_OK) {
         free(*out);
         *out = NULL;
@@ -64,7 +64,7 @@ softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink
         SF_REFUSE(&err, "the case %s has been built already: read it again", c->data.path);
         return softfall_return(&err, error);
     }
-    softfall_model *m = softfall_new(&err, sizeof *m, "a model");
+    softfall_model *m = sf_alloc(&err, 1, sizeof *m, "a model");
     if (m) {
         c->used_up = true;
         if (sf_model_make(&c->data, &m->model, &report, m->libraries, &inner, &err) == SF_OK)

@@ -73,7 +73,7 @@ static sf_status take_set(softfall_drop *d, const sf_state *before, double pause
 /* The drop of a model; `before` and `pause`: as of sf_series_continue, NULL: on a new pad. */
 static sf_status create(const sf_model *model, int threads, const softfall_drop *before, double pause,
                         softfall_drop **out, sf_error *err) {
-    softfall_drop *d = softfall_new(err, sizeof *d, "a drop");
+    softfall_drop *d = sf_alloc(err, 1, sizeof *d, "a drop");
     SF_TRY(err->status);
     d->model = d->undeformed = *model;
     d->threads = threads;
@@ -260,7 +260,7 @@ static sf_status read_model(const char *path, softfall_model *m, sf_error *err) 
 
 softfall_status softfall_model_read(const char *path, softfall_model **out, softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
-    *out = softfall_new(&err, sizeof **out, "a model");
+    *out = sf_alloc(&err, 1, sizeof **out, "a model");
     if (*out && read_model(path, *out, &err) != SF_OK) {
         softfall_model_free(*out);
         *out = NULL;

@@ -100,7 +100,7 @@ softfall_status softfall_record_read(const char *path, const char *const *option
                               .unfiltered_option = "filter=none",
                               .invert_option = "invert",
                               .heading_option = "heading=TEXT"}};
-    *out = softfall_new(&err, sizeof **out, "a record");
+    *out = sf_alloc(&err, 1, sizeof **out, "a record");
     if (*out &&
         (take_options(&s, options, count, &err) != SF_OK || read_record(*out, &s.options, &err) != SF_OK)) {
         softfall_record_free(*out);

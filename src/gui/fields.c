@@ -153,21 +153,15 @@ static void keep_changes(const sf_fields *before, sf_fields *fields) {
     }
 }
 
-sf_status sf_fields_read(const char *case_path, const sf_sink *sink, sf_fields *fields, sf_case *out,
+sf_status sf_fields_read(const char *case_path, const sf_fields *before, sf_fields *fields, sf_case *out,
                          sf_error *err) {
-    SF_OWNED sf_fields *before = sf_alloc(err, 1, sizeof *before, "fields");
     const sf_case_listener listener = {hear, fields};
-    SF_TRY(err->status);
-    *before = *fields;
     fields->count = 0;
-    if (sf_case_read_values(case_path, 1, 0, NULL, sink, &listener, out, err) == SF_OK &&
-        out->layer_count == 0)
+    SF_TRY(sf_case_read_values(case_path, 1, 0, NULL, NULL, &listener, out, err));
+    if (out->layer_count == 0)
         add_material(fields);
-    if (err->status == SF_OK)
-        keep_changes(before, fields);
-    else
-        *fields = *before;
-    return err->status;
+    keep_changes(before, fields);
+    return SF_OK;
 }
 
 /* ---- of geometries ---- */
@@ -181,7 +175,6 @@ static const sf_geo_parameter *find_parameter(const sf_geo_source *source, const
 
 void sf_fields_add_geometry(const char *group, const sf_geo_names *names, const sf_geo_source *source,
                             const sf_fields *before, sf_fields *fields) {
-    int first = fields->count;
     for (int k = 0; k < names->count; k++) {
         const sf_geo_parameter *p = find_parameter(source, names->name[k].variable);
         sf_field *f = add(fields);
@@ -196,8 +189,7 @@ void sf_fields_add_geometry(const char *group, const sf_geo_names *names, const 
             snprintf(f->given, sizeof f->given, "%.12g", p->value);
         memcpy(f->now, f->given, sizeof f->now);
     }
-    if (before && first < fields->count)
-        keep_changes(before, fields);
+    keep_changes(before, fields);
 }
 
 void sf_fields_take_defaults(sf_fields *fields) {

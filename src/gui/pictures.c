@@ -451,15 +451,6 @@ void sf_pictures_show_model(sf_pictures *p, const char *path, double length_unit
     sf_shape_free(&p->shape);
 }
 
-/* The frame of the largest acceleration. */
-static int find_peak(const sf_results *r) {
-    int best = 0;
-    for (int k = 1; k < r->frame_count; k++)
-        if (r->frames[k].acceleration > r->frames[best].acceleration)
-            best = k;
-    return best;
-}
-
 static void add_frames(sf_pictures *p, const sf_results *r, sf_error *err) {
     for (; p->frames < r->frame_count && err->status == SF_OK; p->frames++) {
         const sf_frame_head *head = &r->frames[p->frames];
@@ -490,7 +481,7 @@ void sf_pictures_show_results(sf_pictures *p, const char *path, double length_un
     }
     add_frames(p, &r, &err);
     if (p->frames > 0)
-        show_frame(p, whole && err.status == SF_OK ? find_peak(&r) : p->frames - 1);
+        show_frame(p, whole && err.status == SF_OK ? (int)(sf_frame_of_peak(&r) - r.frames) : p->frames - 1);
     plot_outcome(&r);
     if (whole && err.status == SF_OK)
         show_outcome(&r, &err);

@@ -91,7 +91,7 @@ static sf_status read_case(sf_session *s, sf_error *err) {
     sf_case fresh;
     SF_OWN(sf_fields, before, 1, "fields", err);
     *before = s->fields;
-    if (sf_fields_read(s->case_path, NULL, &s->fields, &fresh, err) == SF_OK) {
+    if (sf_fields_read(s->case_path, before, &s->fields, &fresh, err) == SF_OK) {
         sf_case_free(&s->case_file);
         s->case_file = fresh;
         if (add_geometry(fresh.pad.path, "geometry.parameters", &fresh.pad, before, &s->fields, err) ==

@@ -61,14 +61,14 @@ typedef struct sf_overrides {
     char *text[SF_FIELD_OVERRIDES]; /* owned */
 } sf_overrides;
 
-/* Reads the keys of the case without overrides; `now` is kept of the fields that were there before and
- * differed from their case. Parameters of geometries are gone: sf_fields_add_geometry. The case is the
- * caller's. */
-sf_status sf_fields_read(const char *case_path, const sf_sink *sink, sf_fields *fields, sf_case *out,
+/* Reads the keys of the case without overrides; `now` is kept of the fields that differed from their case
+ * `before`. Parameters of geometries are gone: sf_fields_add_geometry. The case is the caller's. On failure
+ * the fields mean nothing. */
+sf_status sf_fields_read(const char *case_path, const sf_fields *before, sf_fields *fields, sf_case *out,
                          sf_error *err);
 /* Adds the parameters `names` of a geometry, key "group.VARIABLE", with what the case gives; others are known
  * once the geometry was read: sf_fields_take_defaults. `before`: the fields as they were, for what was
- * changed; or NULL. */
+ * changed. */
 void sf_fields_add_geometry(const char *group, const sf_geo_names *names, const sf_geo_source *source,
                             const sf_fields *before, sf_fields *fields);
 

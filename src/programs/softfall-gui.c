@@ -9,18 +9,13 @@
 /* A text that does in the window what a user does, for tests and pictures: docs/window.md lists its words. */
 
 typedef struct script_state {
-    char *text; /* owned */
-    char *rest; /* what is left of it */
+    char *rest; /* what is left of its text */
     int line;
     double deadline; /* s, of `wait`; 0: none */
     sf_activity awaited;
     int frames; /* awaited too */
     bool ended; /* by `quit`, or by an error */
 } script_state;
-
-static void close_script(script_state *s) {
-    SF_CLEAR(s, s->text);
-}
 
 /* "wait NAME [SECONDS]", NAME of an activity, or "wait N frames while running". */
 static sf_status begin_wait(script_state *s, char *rest, sf_error *err) {
@@ -141,11 +136,12 @@ static void live(sf_session *session, script_state *script, sf_error *err) {
 }
 
 static sf_status run(const options *o, sf_error *err) {
-    SF_OWNED_BY(close_script) script_state script = {0};
+    script_state script = {0};
+    SF_OWNED char *text = NULL;
     SF_OWN(sf_session, session, 1, "the window", err);
     if (o->script)
-        SF_TRY(sf_plain_read(o->script, "script", SF_PLAIN_TEXT, &script.text, NULL, err));
-    script.rest = script.text;
+        SF_TRY(sf_plain_read(o->script, "script", SF_PLAIN_TEXT, &text, NULL, err));
+    script.rest = text;
     session->case_path = o->case_path ? o->case_path : "case.cfg";
     session->threads = o->threads;
     if (sf_window_start(err) == SF_OK) {

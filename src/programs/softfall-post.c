@@ -23,7 +23,6 @@ typedef struct options {
     bool comparing; /* --reference was given */
     bool tuned;     /* an option that needs --reference was given */
     sf_compare_options compare;
-    sf_region *regions;
 } options;
 
 /* All resources of the program, released together. */
@@ -82,11 +81,11 @@ static sf_status read_view(const char *option, const char *text, void *view, sf_
 }
 
 static sf_status read_regions(const char *option, const char *text, void *values, sf_error *err) {
-    options *o = values;
+    sf_compare_options *compare = values;
     (void)option;
-    free(o->regions);
-    o->regions = NULL;
-    return sf_regions_parse(text, &o->regions, &o->compare.region_count, err);
+    free(compare->regions);
+    compare->regions = NULL;
+    return sf_regions_parse(text, &compare->regions, &compare->region_count, err);
 }
 
 /* A reader that calls a function of the library, whose sentences need no name of the option. */
@@ -169,7 +168,7 @@ static const sf_option list[] = {
      "compare over A to B ms of the measured time (default: its HIC window); within the data",
      .member = AT(compare.window), .read = read_region, TUNES},
     {"regions", 0, "A-B,C-D,...", "compare over these regions too, in ms of the measured time",
-     .read = read_regions, TUNES},
+     .member = AT(compare), .read = read_regions, TUNES},
     {"shift", 0, "MS", "model time = measured time + MS (default: align the contacts)",
      .member = AT(compare.shift), .read = read_ms, TUNES},
     {0},
@@ -207,7 +206,6 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
         .fault = find_fault,
         .list = {{list, o}}};
     sf_command_parse(&command, argc, argv, err);
-    o->compare.regions = o->regions;
     if (!(o->compare.reference.from < o->compare.reference.to))
         SF_REFUSE(err, "--from %g and --to %g: the part of the measured curve has no length",
                   1e3 * o->compare.reference.from, 1e3 * o->compare.reference.to);
@@ -349,11 +347,10 @@ int main(int argc, char **argv) {
         run(&o, &j, &err);
     }
     sf_staging_end(&j.output);
-    if (o.comparing)
-        sf_comparison_free(&j.comparison);
+    sf_comparison_free(&j.comparison);
     sf_figures_free(&j.figures);
     sf_results_close(&j.results);
-    SF_FREE(j.command_line, o.regions);
+    SF_FREE(j.command_line, o.compare.regions);
     int code = sf_error_report(&err, "softfall-post");
     return code == 0 && o.strict ? strict_codes[j.verdict.grade] : code;
 }

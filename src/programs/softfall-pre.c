@@ -111,14 +111,11 @@ int main(int argc, char **argv) {
                              .fault = find_fault,
                              .is_usage = true,
                              .list = {{list, &o}}};
-    if (sf_program_begin(argv, &err) != SF_OK || sf_command_parse(&line, argc, argv, &err) != SF_OK)
-        return sf_error_report(&err, "softfall-pre");
-    if (o.keys) {
+    if (sf_program_begin(argv, &err) == SF_OK && sf_command_parse(&line, argc, argv, &err) == SF_OK && o.keys)
         sf_case_print_keys(stdout);
-        return sf_error_report(&err, "softfall-pre");
-    }
-    SF_OWNED char *command = sf_command_line(argc, argv);
-    if (sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK)
+    else if (err.status == SF_OK && sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK) {
+        SF_OWNED char *command = sf_command_line(argc, argv);
         build(&o, command ? command : "softfall-pre", 1, &err);
+    }
     return sf_error_report(&err, "softfall-pre");
 }

@@ -181,17 +181,15 @@ static sf_status set_end_time(const options *o, const sf_checkpoint *from, sf_mo
     return sf_model_check(model, err);
 }
 
-/* Other programs may round differently. The sentence also goes into the results; "" if there is none. */
-static void compare_builds(const sf_checkpoint *from, char note[1024]) {
-    const sf_sink sink = sf_program_sink("softfall-solve");
-    note[0] = '\0';
+/* Other programs may round differently. The sentence also goes into the results. */
+static void compare_builds(const sf_checkpoint *from, sf_run *run) {
     if (strcmp(from->git_revision, SF_GIT_REVISION) == 0 &&
         strcmp(from->compiler_flags, SF_COMPILER_FLAGS) == 0)
         return;
-    snprintf(note, 1024,
+    snprintf(run->note, sizeof run->note,
              "%.600s is from another build (%.100s): the last digits may differ from those of one run",
              from->path, from->git_revision);
-    sf_sink_tell(&sink, SF_WARNING, "%s", note);
+    sf_sink_tell(run->sink, SF_WARNING, "%s", run->note);
 }
 
 /* After a failure: removes the files, or reports which of them remain. */
@@ -330,15 +328,6 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
             return SF_OK;
     }
     print_model(&model, o->threads);
-    char note[1024] = "";
-    if (o->restart)
-        compare_builds(&from, note);
-    SF_TRY(start(o, &from, &provenance, &output, &model, &model_file, &operators, &state, err));
-    for (int64_t later = 2; k == 1 && later <= all->drops && !o->restart; later++) {
-        char checkpoint[SF_PATH_SIZE]; /* of an earlier series, which this one would seem to have reached */
-        name_checkpoint(o->output, later, checkpoint);
-        unlink(checkpoint);
-    }
     const sf_sink sink = sf_program_sink("softfall-solve");
     sf_run run = {.stop = stop,
                   .log = stdout,
@@ -351,7 +340,14 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
                   .checkpoint_wall = o->checkpoint_wall,
                   .checkpoint_time = o->checkpoint_time,
                   .provenance = &provenance};
-    snprintf(run.note, sizeof run.note, "%s", note);
+    if (o->restart)
+        compare_builds(&from, &run);
+    SF_TRY(start(o, &from, &provenance, &output, &model, &model_file, &operators, &state, err));
+    for (int64_t later = 2; k == 1 && later <= all->drops && !o->restart; later++) {
+        char checkpoint[SF_PATH_SIZE]; /* of an earlier series, which this one would seem to have reached */
+        name_checkpoint(o->output, later, checkpoint);
+        unlink(checkpoint);
+    }
     sf_run_drop(&model, &operators, &state, &run, &output, o->restart ? &from : NULL, err);
     if (state.step > 0)
         print_ledger(&model, &state, &run);

@@ -150,7 +150,7 @@ typedef struct sf_compare_options {
     double flight;            /* g: the model's curve in free flight */
     double shift;             /* s; NaN = align the contacts */
     sf_region window;         /* NaN = HIC window of the measured curve */
-    const sf_region *regions; /* [region_count], besides the window */
+    sf_region *regions;       /* [region_count], besides the window; the caller's */
     int64_t region_count;
 } sf_compare_options;
 

@@ -532,6 +532,14 @@ sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *h
     return SF_OK;
 }
 
+const sf_frame_head *sf_frame_of_peak(const sf_results *r) {
+    const sf_frame_head *best = r->frame_count > 0 ? &r->frames[0] : NULL;
+    for (int64_t k = 1; k < r->frame_count; k++)
+        if (r->frames[k].acceleration > best->acceleration)
+            best = &r->frames[k];
+    return best;
+}
+
 void sf_frame_free(sf_frame *frame) {
     sf_free_all(SF_FRAME_FIELDS, frame->field);
     *frame = (sf_frame){0};

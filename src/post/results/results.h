@@ -117,6 +117,8 @@ sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf
 sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
                                sf_frame *frame, sf_error *err);
 void sf_frame_free(sf_frame *frame);
+/* The frame of the largest acceleration; NULL: there are none. */
+const sf_frame_head *sf_frame_of_peak(const sf_results *results);
 
 /* Component of a vector along the missile's direction of motion. */
 static inline double sf_results_along(const sf_results *results, const double vector[3]) {

@@ -202,20 +202,9 @@ static sf_status write_rows(sf_csv *csv, const sf_results *r, const sf_frame *fr
     return SF_OK;
 }
 
-/* /peak, or the frame of the largest acceleration; NULL if there is neither. */
-static const sf_frame_head *peak_head(const sf_results *r) {
-    if (r->has_peak)
-        return &r->peak;
-    const sf_frame_head *best = r->frame_count > 0 ? &r->frames[0] : NULL;
-    for (int64_t k = 1; k < r->frame_count; k++)
-        if (r->frames[k].acceleration > best->acceleration)
-            best = &r->frames[k];
-    return best;
-}
-
 sf_status sf_section_write(const sf_staging *output, const sf_results *results, bool *written,
                            sf_error *err) {
-    const sf_frame_head *head = peak_head(results);
+    const sf_frame_head *head = results->has_peak ? &results->peak : sf_frame_of_peak(results);
     SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
     *written = false;
     if (!head)
