@@ -236,6 +236,9 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
     bool section = false;
     const sf_comparison *comparison = o->comparing ? &j->comparison : NULL;
     const sf_xdmf_options xdmf = {j->command_line, o->full};
+    const sf_summary summary = {
+        o->results_path, o->compare.reference.path, j->command_line, &j->results, &j->figures, comparison,
+        &j->verdict};
     name_output(j);
     if (sf_staging_begin(o->directory, j->names, o->force, &j->output, err) != SF_OK ||
         sf_csv_write_history(&j->output, &j->results, &j->figures, err) != SF_OK ||
@@ -247,17 +250,14 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
         sf_paraview_write(&j->output, &j->results, &j->xdmf, j->state_warning, sizeof j->state_warning,
                           err) != SF_OK ||
         (o->film && sf_paraview_film(&j->output, o->film, err) != SF_OK) ||
-        sf_plot_write(&j->output, &j->results, &j->figures, comparison, &j->verdict, j->plot_warning,
-                      sizeof j->plot_warning, err))
+        sf_plot_write(&j->output, &summary, j->plot_warning, sizeof j->plot_warning, err) != SF_OK)
         return err->status;
     if (!section)
         fprintf(stderr,
                 "softfall-post: warning: no frame holds the von Mises stress at the peak: no section.csv\n");
-    const sf_summary summary = {
-        o->results_path, o->compare.reference.path, &j->results, &j->figures, comparison, &j->verdict};
-    const sf_report report = {&summary, j->command_line};
-    SF_TRY(sf_browser_write(&j->output, &report, &j->xdmf, o->view, j->view_warning, sizeof j->view_warning, err));
-    SF_TRY(sf_report_write(&j->output, &report, err));
+    SF_TRY(sf_browser_write(&j->output, &summary, &j->xdmf, o->view, j->view_warning, sizeof j->view_warning,
+                            err));
+    SF_TRY(sf_report_write(&j->output, &summary, err));
     SF_TRY(sf_summary_write(&j->output, &summary, err));
     SF_TRY(sf_staging_commit(&j->output, err));
     sf_xdmf_remove_old(o->directory, j->data);

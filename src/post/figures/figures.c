@@ -328,10 +328,8 @@ static sf_status compute_below_anvil(const sf_results *r, sf_figures *f, sf_erro
     for (int64_t i = 0; i < r->node_count; i++)
         high = fmax(high, r->position[3 * i + 2]);
     double plane = high - r->anvil_depth;
-    for (int64_t k = 0; k < r->frame_count && problem.status == SF_OK; k++)
-        add_depth(r, &r->frames[k], plane, &depth, &problem);
-    if (problem.status == SF_OK && r->has_peak)
-        add_depth(r, &r->peak, plane, &depth, &problem);
+    for (int64_t k = 0; k < r->frame_count + r->has_peak && problem.status == SF_OK; k++)
+        add_depth(r, k < r->frame_count ? &r->frames[k] : &r->peak, plane, &depth, &problem);
     if (problem.status == SF_OK)
         f->below_anvil = depth;
     else if (sf_results_ended_well(r))

@@ -29,7 +29,7 @@ enum { COLOURINGS = sizeof colourings / sizeof colourings[0] };
 
 /* The page, and what is shown on it. */
 typedef struct page {
-    const sf_report *report;
+    const sf_summary *summary;
     const sf_results *results;
     const sf_xdmf *made;
     double bytes; /* that it may have */
@@ -144,11 +144,11 @@ static void put_indices(page *p, const char *key, const int32_t *index, int64_t 
 /* ---- the parts of the facts ---- */
 
 static void put_texts(page *p) {
-    const sf_verdict *verdict = p->report->summary->verdict;
+    const sf_verdict *verdict = p->summary->verdict;
     char title[SF_REPORT_TITLE_SIZE], line[SF_VERDICT_LINE_SIZE], foot[320];
     sf_report_title(p->results, title, sizeof title);
     snprintf(foot, sizeof foot, "softfall-post %s (%s), from %.160s; drawn by WebGL 2, without a library",
-             SF_VERSION, SF_GIT_REVISION, p->report->summary->results_path);
+             SF_VERSION, SF_GIT_REVISION, p->summary->results_path);
     SF_JSON_TEXTS(&p->json, {"title", title}, {"verdict", sf_verdict_phrase(verdict->grade)},
                   {"kind", sf_report_kind(verdict->grade)},
                   {"findings", sf_report_findings(verdict, line, sizeof line)}, {"foot", foot});
@@ -246,7 +246,7 @@ static void put_surface(page *p, const char *key, int64_t nodes, const double *p
 
 /* The curve that the time runs along, with few enough of its points. */
 static void put_curve(page *p) {
-    const sf_figures *f = p->report->summary->figures;
+    const sf_figures *f = p->summary->figures;
     const sf_history *h = &p->results->history;
     bool force = f->driven || f->filtered.count < 2;
     const double *x = force ? h->time : f->filtered.time, *y = force ? h->contact_force : f->filtered.value;
@@ -354,11 +354,11 @@ static sf_status write_page(page *p, const sf_staging *output, const char *text,
     return err->status;
 }
 
-sf_status sf_browser_write(const sf_staging *output, const sf_report *report, const sf_xdmf *made,
+sf_status sf_browser_write(const sf_staging *output, const sf_summary *summary, const sf_xdmf *made,
                            double megabytes, char *warning, size_t size, sf_error *err) {
-    const sf_results *r = report->summary->results;
+    const sf_results *r = summary->results;
     const sf_cells cells = SF_CELLS_OF(r);
-    page p = {.report = report, .results = r, .made = made, .bytes = megabytes * 1e6};
+    page p = {.summary = summary, .results = r, .made = made, .bytes = megabytes * 1e6};
     sf_error problem = SF_ERROR_INIT;
     SF_OWNED char *text = NULL;
     *warning = '\0';

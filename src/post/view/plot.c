@@ -9,10 +9,7 @@ static const double SEEN = 0.01; /* of the largest value: a curve this far from 
 
 /* The curves of a drop and their ranges. */
 typedef struct picture {
-    const sf_results *results;
-    const sf_figures *figures;
-    const sf_comparison *comparison; /* NULL: nothing was measured */
-    const sf_verdict *verdict;
+    const sf_summary *drop;
     double limit;    /* g, of a_max; INFINITY: none */
     double time[2];  /* s */
     double value[2]; /* g */
@@ -71,13 +68,13 @@ double sf_plot_difference(const sf_series *a, const sf_series *b, const double r
 /* The axis runs from 0, or below 0 if the curves really go there, to a bit above the highest of them and,
  * unless that is far above, the limit. */
 static void find_values(picture *p) {
-    const sf_series *curves[3] = {&p->figures->filtered, p->raw ? &p->figures->raw : NULL,
-                                  !p->comparison ? NULL
-                                  : p->points    ? &p->comparison->measured.raw
-                                                 : &p->comparison->measured.curve};
+    const sf_series *curves[3] = {&p->drop->figures->filtered, p->raw ? &p->drop->figures->raw : NULL,
+                                  !p->drop->comparison ? NULL
+                                  : p->points          ? &p->drop->comparison->measured.raw
+                                                       : &p->drop->comparison->measured.curve};
     double low = 0, high = 0;
     for (int k = 0; k < 3; k++) {
-        double shift = k == 2 && p->comparison ? p->comparison->shift : 0;
+        double shift = k == 2 && p->drop->comparison ? p->drop->comparison->shift : 0;
         for (int64_t i = 0; curves[k] && i < curves[k]->count; i++) {
             double time = curves[k]->time[i] + shift;
             if (time < p->time[0] || time > p->time[1])
@@ -94,29 +91,29 @@ static void find_values(picture *p) {
 }
 
 static bool points_are_seen(const picture *p) {
-    const sf_comparison *c = p->comparison;
+    const sf_comparison *c = p->drop->comparison;
     const double range[2] = {p->time[0] - c->shift, p->time[1] - c->shift};
     return sf_plot_difference(&c->measured.raw, &c->measured.curve, range) > SEEN;
 }
 
 /* The drop with its verdict, and both limits with pass or fail. */
 static void put_title(sf_chart *chart, const picture *p) {
-    const sf_results *r = p->results;
+    const sf_results *r = p->drop->results;
     char limits[160] = "";
-    for (int k = 0; k < p->verdict->limit_count; k++) {
-        const sf_limit *limit = &p->verdict->limits[k];
+    for (int k = 0; k < p->drop->verdict->limit_count; k++) {
+        const sf_limit *limit = &p->drop->verdict->limits[k];
         if (isfinite(limit->value))
             sf_text_add(limits, sizeof limits, "%s%s %.4g, limit %.4g: %s", *limits ? "; " : "\n",
                         limit->title, limit->value, limit->bound, sf_limit_phrase(limit));
     }
     sf_chart_title(chart, "Missile of %.3g kg at %.3g m/s on a foam pad of %.4g mm: %s%s", r->missile_mass,
-                   r->missile_speed, r->thickness * 1e3, sf_verdict_phrase(p->verdict->grade), limits);
+                   r->missile_speed, r->thickness * 1e3, sf_verdict_phrase(p->drop->verdict->grade), limits);
 }
 
 /* The part of the filtered curve within the HIC window, shaded. */
 static void put_hic(sf_chart *chart, const picture *p) {
-    const sf_hic *hic = &p->figures->injury.hic;
-    const sf_series *curve = &p->figures->filtered;
+    const sf_hic *hic = &p->drop->figures->injury.hic;
+    const sf_series *curve = &p->drop->figures->filtered;
     sf_series_data *area =
         sf_chart_series(chart, (sf_series_style){.kind = SF_SERIES_AREA, .colour = "#c6dbef"},
                         "HIC %.1f: %.2f to %.2f ms", hic->value, hic->t1 * 1e3, hic->t2 * 1e3);
@@ -135,8 +132,8 @@ static void put_curve(sf_chart *chart, const sf_series *curve, double shift, dou
 
 /* The measured points stand thin and pale behind the curves, as they may be noisy. */
 static void put_curves(sf_chart *chart, const picture *p) {
-    const sf_figures *f = p->figures;
-    const sf_comparison *c = p->comparison;
+    const sf_figures *f = p->drop->figures;
+    const sf_comparison *c = p->drop->comparison;
     char title[224], class[32] = "";
     if (f->injury.hic.value > 0)
         put_hic(chart, p);
@@ -155,29 +152,29 @@ static void put_curves(sf_chart *chart, const picture *p) {
 }
 
 static void put_drop(sf_chart *chart, sf_panel *panel, const picture *p) {
-    const sf_injury *i = &p->figures->injury;
+    const sf_injury *i = &p->drop->figures->injury;
     put_title(chart, p);
     sf_axis_label(&panel->x, "time (ms)");
     sf_axis_range(&panel->x, p->time[0] * 1e3, p->time[1] * 1e3);
-    sf_axis_label(&panel->y, "%s (g)", p->figures->acceleration);
+    sf_axis_label(&panel->y, "%s (g)", p->drop->figures->acceleration);
     snprintf(panel->y.page_label, sizeof panel->y.page_label, "acceleration (g)");
     sf_axis_range(&panel->y, p->value[0], p->value[1]);
     panel->key = SF_KEY_BELOW;
     panel->key_columns = SF_PLOT_KEY_COLUMNS;
     if (p->limited)
         sf_chart_level(chart, p->limit, "#cb181d", "limit %g g", p->limit);
-    if (p->figures->touched && i->a_max_g > 0)
+    if (p->drop->figures->touched && i->a_max_g > 0)
         sf_chart_spot(chart, i->a_max_time * 1e3, i->a_max_g, "#08306b", "a_max %.1f g", i->a_max_g);
     put_curves(chart, p);
 }
 
 /* Stress over strain of a compression test. */
 static void put_compression(sf_chart *chart, sf_panel *panel, const picture *p) {
-    const sf_results *r = p->results;
+    const sf_results *r = p->drop->results;
     const sf_history *h = &r->history;
-    double area = p->figures->area;
+    double area = p->drop->figures->area;
     sf_chart_title(chart, "Compression of a foam specimen of %.4g mm, %.4g cm²: %s", r->thickness * 1e3,
-                   area * 1e4, sf_verdict_phrase(p->verdict->grade));
+                   area * 1e4, sf_verdict_phrase(p->drop->verdict->grade));
     sf_axis_label(&panel->x, "strain");
     sf_axis_label(&panel->y, "nominal stress (kPa)");
     sf_series_points(
@@ -190,20 +187,16 @@ const char *sf_plot_name(const sf_figures *figures) {
     return figures->driven ? "compression" : "acceleration";
 }
 
-sf_status sf_plot_write(const sf_staging *output, const sf_results *results, const sf_figures *figures,
-                        const sf_comparison *comparison, const sf_verdict *verdict, char *warning,
-                        size_t size, sf_error *err) {
-    const char *name = sf_plot_name(figures);
-    picture p = {.results = results,
-                 .figures = figures,
-                 .comparison = comparison,
-                 .verdict = verdict,
-                 .limit = verdict->limit_count ? verdict->limits[0].bound : INFINITY};
-    sf_plot_time_range(figures, comparison, p.time);
+sf_status sf_plot_write(const sf_staging *output, const sf_summary *summary, char *warning, size_t size,
+                        sf_error *err) {
+    const sf_figures *figures = summary->figures;
+    const sf_verdict *verdict = summary->verdict;
+    picture p = {.drop = summary, .limit = verdict->limit_count ? verdict->limits[0].bound : INFINITY};
+    sf_plot_time_range(figures, summary->comparison, p.time);
     p.raw = sf_plot_difference(&figures->raw, &figures->filtered, p.time) > SEEN;
-    p.points = comparison && points_are_seen(&p);
+    p.points = summary->comparison && points_are_seen(&p);
     find_values(&p);
-    sf_chart *chart = sf_chart_new(name, WIDTH, HEIGHT, err);
+    sf_chart *chart = sf_chart_new(sf_plot_name(figures), WIDTH, HEIGHT, err);
     sf_panel *panel = sf_chart_panel(chart);
     if (figures->driven)
         put_compression(chart, panel, &p);

@@ -81,7 +81,7 @@ static const char caution[] =
 /* The page, and what its parts need. */
 typedef struct page {
     FILE *file;
-    const sf_report *report;
+    const sf_summary *summary;
     const sf_results *results;
     const sf_figures *figures;
     const sf_verdict *verdict;
@@ -378,13 +378,13 @@ static void put_figures(const page *p) {
 }
 
 static void put_comparison(const page *p) {
-    const sf_comparison *c = p->report->summary->comparison;
+    const sf_comparison *c = p->summary->comparison;
     if (!c)
         return;
     SF_HTML_BLOCK(p->file, "Comparison with a measured curve");
     sf_html_paragraph(
         p->file, "%s: a_max %.1f g (model %+.1f %%), HIC %.1f. Model time = measured time %+.3f ms (%s).",
-        p->report->summary->reference_path, c->injury.a_max_g, 100 * c->peak_error, c->injury.hic.value,
+        p->summary->reference_path, c->injury.a_max_g, 100 * c->peak_error, c->injury.hic.value,
         c->shift * 1e3, c->shift_given ? "as given" : "contact of both curves");
     char line[SF_VERDICT_LINE_SIZE];
     sf_record_line(&c->measured.record, line, sizeof line);
@@ -451,7 +451,7 @@ static void put_command(const page *p) {
     SF_OWNED char *all = NULL;
     if (pre && solve &&
         asprintf(&all, "%s\n%s\n%s", *pre ? pre : "(softfall-pre: not recorded)",
-                 *solve ? solve : "(softfall-solve: not recorded)", p->report->command_line) >= 0) {
+                 *solve ? solve : "(softfall-solve: not recorded)", p->summary->command_line) >= 0) {
         SF_HTML_BLOCK(p->file, "The commands that repeat this report, in the folder of the original run");
         sf_html_pre(p->file, all);
     }
@@ -523,14 +523,13 @@ static sf_status write_page(page *p, const sf_staging *output, sf_error *err) {
     put_figures(p);
     put_command(p);
     snprintf(foot, sizeof foot, "softfall-post %s (%s), from %.300s", SF_VERSION, SF_GIT_REVISION,
-             p->report->summary->results_path);
+             p->summary->results_path);
     return sf_html_end(p->file, NULL, foot, err);
 }
 
-sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_error *err) {
-    const sf_summary *s = report->summary;
+sf_status sf_report_write(const sf_staging *output, const sf_summary *s, sf_error *err) {
     SF_OWNED_BY(sf_report_pictures_free) sf_report_pictures pictures = {0};
-    page p = {.report = report,
+    page p = {.summary = s,
               .results = s->results,
               .figures = s->figures,
               .verdict = s->verdict,

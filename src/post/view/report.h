@@ -96,6 +96,17 @@ sf_status sf_xdmf_write(const sf_staging *output, sf_results *results, const sf_
  * that hash that no .xdmf file there names, but not `data`. */
 void sf_xdmf_remove_old(const char *directory, const char *data);
 
+/* A drop and the figures that softfall-post has computed of it, for its files. */
+typedef struct sf_summary {
+    const char *results_path;
+    const char *reference_path; /* NULL without comparison */
+    const char *command_line;   /* of softfall-post */
+    const sf_results *results;
+    const sf_figures *figures;
+    const sf_comparison *comparison; /* NULL: nothing was measured */
+    const sf_verdict *verdict;
+} sf_summary;
+
 /* acceleration.png: the curves, the HIC window and the limit; acceleration.gp, which draws the picture again,
  * or differently, stays beside it. Of a run with a prescribed motion compression.png: stress over strain. */
 
@@ -105,12 +116,10 @@ enum { SF_PLOT_KEY_COLUMNS = 2 };
 /* The name of the script without its ending. */
 const char *sf_plot_name(const sf_figures *figures);
 
-/* Writes the script and the picture, which names the verdict and shows its limits. `comparison` may be NULL.
- * If gnuplot is absent or fails, `warning` (size bytes) says so in a sentence, and that is no error;
- * otherwise it is "". */
-sf_status sf_plot_write(const sf_staging *output, const sf_results *results, const sf_figures *figures,
-                        const sf_comparison *comparison, const sf_verdict *verdict, char *warning,
-                        size_t size, sf_error *err);
+/* Writes the script and the picture, which names the verdict and shows its limits. If gnuplot is absent or
+ * fails, `warning` (size bytes) says so in a sentence, and that is no error; otherwise it is "". */
+sf_status sf_plot_write(const sf_staging *output, const sf_summary *summary, char *warning, size_t size,
+                        sf_error *err);
 
 /* Instants (s) between which the axis of the pulse runs: where the model's curve is above 2 % of its largest
  * value, or the measured one above 5 %, and a margin; all of a run without a pulse. */
@@ -144,16 +153,6 @@ void sf_report_pictures_free(sf_report_pictures *pictures);
 /* summary.json, and the short table that softfall-post prints. Keys carry their units; a figure that the run
  * does not define is null. docs/formats.md lists the keys. */
 
-/* `comparison` may be NULL. */
-typedef struct sf_summary {
-    const char *results_path;
-    const char *reference_path; /* NULL without comparison */
-    const sf_results *results;
-    const sf_figures *figures;
-    const sf_comparison *comparison;
-    const sf_verdict *verdict;
-} sf_summary;
-
 sf_status sf_summary_write(const sf_staging *output, const sf_summary *summary, sf_error *err);
 
 /* The verdict, its rows that are not valid, and the table on `out`; the last line says that the figures are
@@ -182,13 +181,8 @@ const char *sf_report_kind(sf_grade grade);
  * what, the deformed pad at the peak, the mid-section at three instants, curves, figures, material, mesh and
  * where it all comes from. A picture that cannot be made is replaced by the reason. */
 
-typedef struct sf_report {
-    const sf_summary *summary;
-    const char *command_line; /* of softfall-post */
-} sf_report;
-
 /* After sf_plot_write, whose picture the page takes in. */
-sf_status sf_report_write(const sf_staging *output, const sf_report *report, sf_error *err);
+sf_status sf_report_write(const sf_staging *output, const sf_summary *summary, sf_error *err);
 
 /* The ready state for ParaView, pad_paraview.py beside pad.xdmf: share/softfall/pad_paraview.py with the
  * facts of the drop in it; and the film and the picture that it makes. */
@@ -219,7 +213,7 @@ enum { SF_BROWSER_MOST_MB = 200 }; /* beyond that a browser may have no memory f
 /* After pad.xdmf; before report.html, which links it. The page has at most so many MB: fewer frames than
  * there are, or the skin without the inside; the page says so. `warning` (size bytes) says why there is no
  * page, or is ""; with 0 MB, or without frames, there is none and no warning. */
-sf_status sf_browser_write(const sf_staging *output, const sf_report *report, const sf_xdmf *made,
+sf_status sf_browser_write(const sf_staging *output, const sf_summary *summary, const sf_xdmf *made,
                            double megabytes, char *warning, size_t size, sf_error *err);
 
 /* softfall-post compare A B ... -o DIR: several runs in one picture and one table. softfall-post series: the
