@@ -157,10 +157,10 @@ static sf_status read_results(const char *path, sf_error *err) {
     sf_figures figures;
     if (sf_results_open(path, &results, err) != SF_OK)
         return err->status;
-    if (results.has_peak && sf_frame_read(&results, &results.peak, &frame, err) == SF_OK)
+    if (results.has_peak && sf_frame_read(&results, &results.peak, SF_FIELD_ALL, &frame, err) == SF_OK)
         sf_frame_free(&frame);
     for (int64_t k = 0; k < results.frame_count && err->status == SF_OK; k++)
-        if (sf_frame_read(&results, &results.frames[k], &frame, err) == SF_OK)
+        if (sf_frame_read(&results, &results.frames[k], SF_FIELD_ALL, &frame, err) == SF_OK)
             sf_frame_free(&frame);
     if (err->status == SF_OK && sf_figures_compute(&results, 1000, &figures, err) == SF_OK)
         sf_figures_free(&figures);

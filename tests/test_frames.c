@@ -118,11 +118,11 @@ static void moved_frame_is_told(void **state) {
     copy_killed(p);
     assert_int_equal(sf_results_open(program_path(p, "broken/killed.h5"), &r, &err), SF_OK);
     assert_true(r.frame_count > 3);
-    assert_int_equal(sf_frame_read(&r, &r.frames[1], &frame, &err), SF_OK);
+    assert_int_equal(sf_frame_read(&r, &r.frames[1], SF_FIELD_ALL, &frame, &err), SF_OK);
     assert_non_null(frame.field[SF_FRAME_VON_MISES]);
     sf_frame_free(&frame);
     program_shell(p, "rm broken/killed.h5.run/frame-*.h5");
-    assert_int_equal(sf_frame_read(&r, &r.frames[2], &frame, &err), SF_ERR_IO);
+    assert_int_equal(sf_frame_read(&r, &r.frames[2], SF_FIELD_ALL, &frame, &err), SF_ERR_IO);
     assert_non_null(strstr(err.text, "read the results again"));
     assert_null(frame.field[SF_FRAME_DISPLACEMENT]);
     sf_results_close(&r);

@@ -58,7 +58,7 @@ static double deepest_inside(const program_place *p) {
     assert_int_equal(sf_results_open(program_path(p, "r.h5"), &r, &err), SF_OK);
     assert_true(r.frame_count > 10 && r.sphere_radius > 0);
     for (int64_t k = 0; k < r.frame_count; k++) {
-        assert_int_equal(sf_frame_read(&r, &r.frames[k], &frame, &err), SF_OK);
+        assert_int_equal(sf_frame_read(&r, &r.frames[k], SF_FIELD_ALL, &frame, &err), SF_OK);
         for (int64_t i = 0; i < r.node_count; i++) {
             double arm[3];
             for (int c = 0; c < 3; c++)
@@ -107,7 +107,7 @@ static double deepest_corner(const program_place *p) {
     double top[CELLS + 1][CELLS + 1][3], deepest = 0;
     assert_int_equal(sf_results_open(program_path(p, "r.h5"), &r, &err), SF_OK);
     const sf_frame_head *head = &r.frames[r.frame_count / 2];
-    assert_int_equal(sf_frame_read(&r, head, &frame, &err), SF_OK);
+    assert_int_equal(sf_frame_read(&r, head, SF_FIELD_ALL, &frame, &err), SF_OK);
     for (int64_t i = 0; i < r.node_count; i++) {
         const double *x = &r.position[3 * i];
         for (int c = 0; c < 3 && x[2] > TOP - 1e-6; c++)

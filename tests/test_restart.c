@@ -555,9 +555,9 @@ static void overflow_leaves_the_last_finite_state(void **state) {
             fail_msg("exit code %d: %s", run.code, run.err);
         assert_true(last_frame(p, "over.h5", &r) > 0);
         assert_true(r.has_peak && r.frame_count > (kept ? 1 : 0));
-        assert_int_equal(sf_frame_read(&r, &r.frames[r.frame_count - 1], &frame, &err), SF_OK);
+        assert_int_equal(sf_frame_read(&r, &r.frames[r.frame_count - 1], SF_FIELD_ALL, &frame, &err), SF_OK);
         sf_frame_free(&frame);
-        assert_int_equal(sf_frame_read(&r, &r.peak, &frame, &err), SF_OK);
+        assert_int_equal(sf_frame_read(&r, &r.peak, SF_FIELD_ALL, &frame, &err), SF_OK);
         sf_frame_free(&frame);
         if (kept)
             assert_true(r.frames[r.frame_count - 1].time == r.history.time[r.history.rows - 1]);

@@ -191,7 +191,8 @@ static void assert_uniform(const program_place *p, int kind, const char *more, d
     sf_frame frame;
     sf_error err = SF_ERROR_INIT;
     assert_int_equal(sf_results_open(program_path(p, "r.h5"), &results, &err), SF_OK);
-    assert_int_equal(sf_frame_read(&results, &results.frames[results.frame_count - 1], &frame, &err), SF_OK);
+    assert_int_equal(
+        sf_frame_read(&results, &results.frames[results.frame_count - 1], SF_FIELD_ALL, &frame, &err), SF_OK);
     double sum[2] = {0}, volume[2] = {0}, near = 0, far = 0;
     for (int64_t i = 0; i < results.node_count; i++) {
         int upper = results.position[3 * i + 2] > 0.020005;

@@ -78,7 +78,7 @@ static void assert_told(const sf_results *r, const char *line) {
                             &error, &place[0], &place[1], &place[2], &within),
                      9);
     assert_in_range(node, 0, r->node_count - 1);
-    assert_int_equal(sf_frame_read(r, head_at(r, time), &frame, &err), SF_OK);
+    assert_int_equal(sf_frame_read(r, head_at(r, time), SF_FIELD_ALL, &frame, &err), SF_OK);
     double expected = frame.field[field_of(field)][node];
     if (!(fabs(value - expected) <= 1.001 * error + 1e-8 * fabs(expected)) || !(within < 1e-5))
         fail_msg("%s is %.9g in results.h5, within %g: %s", field, expected, error, line);

@@ -171,7 +171,7 @@ static sf_status read_shape_frame(const sf_shape *s, const sf_results *r, const 
                                   sf_shape_frame *out, sf_error *err) {
     SF_OWNED_BY(sf_frame_free) sf_frame fields = {{0}};
     *out = (sf_shape_frame){0};
-    SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err));
+    SF_TRY(sf_frame_read(r, head, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES, &fields, err));
     SF_ALLOC_ALL(err, "a frame", SF_ROOM(out->pad, 3 * s->pad.node_count),
                  SF_ROOM(out->missile, 3 * s->missile.node_count));
     if (fields.field[SF_FRAME_VON_MISES])

@@ -124,7 +124,7 @@ static sf_status read_stretches(const sf_results *r, sf_indentation_curve *out, 
     for (int64_t k = 1; k < r->frame_count && out->frames < SF_INDENTATION_FRAMES; k++) {
         sf_frame frame;
         double volume = 0, beyond = 0, largest = 0;
-        if (sf_frame_read(r, &r->frames[k], &frame, err) != SF_OK)
+        if (sf_frame_read(r, &r->frames[k], SF_FIELD_ALL, &frame, err) != SF_OK)
             return err->status;
         const double *stretch = frame.field[SF_FRAME_PRINCIPAL_STRETCHES];
         for (int64_t i = 0; stretch && i < r->node_count; i++) {

@@ -288,7 +288,7 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
     }
     int fields = SF_FIELD_LARGEST_COMPRESSION | SF_FIELD_ENERGY_DENSITY | SF_FIELD_DISPLACEMENT |
                  SF_FIELD_CONTACT_PRESSURE;
-    if (sf_frame_read_fields(r, &r->peak, fields, &peak, &problem) != SF_OK)
+    if (sf_frame_read(r, &r->peak, fields, &peak, &problem) != SF_OK)
         return sf_results_ended_well(r) ? SF_FAIL(err, problem.status, "%s", problem.text) : SF_OK;
     const double *compression = peak.field[SF_FRAME_LARGEST_COMPRESSION],
                  *energy = peak.field[SF_FRAME_ENERGY_DENSITY], *moved = peak.field[SF_FRAME_DISPLACEMENT];
@@ -312,7 +312,7 @@ static sf_status compute_fields(const sf_results *r, sf_figures *f, sf_error *er
 static sf_status add_depth(const sf_results *r, const sf_frame_head *head, double plane, double *depth,
                            sf_error *err) {
     SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
-    SF_TRY(sf_frame_read_fields(r, head, SF_FIELD_DISPLACEMENT, &frame, err));
+    SF_TRY(sf_frame_read(r, head, SF_FIELD_DISPLACEMENT, &frame, err));
     const double *u = frame.field[SF_FRAME_DISPLACEMENT];
     for (int64_t i = 0; u && i < r->node_count; i++)
         *depth = fmax(*depth, plane - (r->position[3 * i + 2] + u[3 * i + 2]));

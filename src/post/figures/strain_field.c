@@ -317,7 +317,7 @@ static double largest_slip(const sf_results *r, const double *displacement, cons
 sf_status sf_layers_note_slip(sf_results *r, sf_error *err) {
     SF_OWNED_BY(sf_frame_free) sf_frame peak = {0};
     if (r->layer_count == 0 || !r->has_peak ||
-        sf_frame_read_fields(r, &r->peak, SF_FIELD_DISPLACEMENT, &peak, SF_IGNORED) != SF_OK)
+        sf_frame_read(r, &r->peak, SF_FIELD_DISPLACEMENT, &peak, SF_IGNORED) != SF_OK)
         return SF_OK; /* the figures say what is damaged */
     SF_OWNED int64_t *order = order_by_place(r, err);
     int64_t at = 0;

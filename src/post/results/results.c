@@ -500,13 +500,8 @@ void sf_results_close(sf_results *results) {
              results->layer_names, results->layer_density, results->layer_informed, results->frames);
 }
 
-sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame,
+sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, int fields, sf_frame *frame,
                         sf_error *err) {
-    return sf_frame_read_fields(results, head, SF_FIELD_ALL, frame, err);
-}
-
-sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
-                               sf_frame *frame, sf_error *err) {
     *frame = (sf_frame){0};
     for (int f = 0; f < SF_FRAME_FIELDS; f++) {
         const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);

@@ -110,12 +110,11 @@ typedef struct sf_results {
 sf_status sf_results_open(const char *path, sf_results *results, sf_error *err);
 void sf_results_close(sf_results *results);
 
-/* Every field that the group holds, checked for shape and finiteness; release with sf_frame_free. SF_ERR_IO:
- * the group is gone, too, as a run in progress moves its frames: open the results again. */
-sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, sf_frame *frame, sf_error *err);
-/* Reads only the fields in `fields`, bits SF_FIELD_*. */
-sf_status sf_frame_read_fields(const sf_results *results, const sf_frame_head *head, int fields,
-                               sf_frame *frame, sf_error *err);
+/* Reads those of `fields`, bits SF_FIELD_*, that the group holds, checked for shape and finiteness. Release
+ * with sf_frame_free. SF_ERR_IO: the group is gone, too, as a run in progress moves its frames: open the
+ * results again. */
+sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, int fields, sf_frame *frame,
+                        sf_error *err);
 void sf_frame_free(sf_frame *frame);
 /* The frame of the largest acceleration; NULL: there are none. */
 const sf_frame_head *sf_frame_of_peak(const sf_results *results);

@@ -278,7 +278,7 @@ static sf_status put_frame(page *p, const sf_frame_head *head, sf_error *err) {
     int fields = p->made->fields & SF_FIELD_DISPLACEMENT;
     for (int k = 0; k < COLOURINGS; k++)
         fields |= p->made->fields & 1 << colourings[k].field;
-    SF_TRY(sf_frame_read_fields(r, head, fields, &frame, err));
+    SF_TRY(sf_frame_read(r, head, fields, &frame, err));
     SF_JSON_OBJECT(&p->json, NULL);
     sf_json_number(&p->json, "time", head->time);
     put_motion(p, head);

@@ -209,7 +209,7 @@ sf_status sf_section_write(const sf_staging *output, const sf_results *results, 
     *written = false;
     if (!head)
         return SF_OK;
-    if (sf_frame_read(results, head, &frame, err) != SF_OK || !frame.field[SF_FRAME_VON_MISES])
+    if (sf_frame_read(results, head, SF_FIELD_ALL, &frame, err) != SF_OK || !frame.field[SF_FRAME_VON_MISES])
         return err->status;
     SF_CSV_FILE(csv, output, "section.csv", err);
     SF_CSV_PRINT_LINE(

@@ -71,7 +71,7 @@ static void read_instants(const sf_results *r, const sf_series *raw, instant lis
         const sf_frame_head *head = isnan(list[k].wanted) ? NULL : nearest(r, list[k].wanted, reach);
         if (k == 1 && r->has_peak)
             head = &r->peak;
-        if (!head || sf_frame_read(r, head, &list[k].frame, SF_IGNORED) != SF_OK ||
+        if (!head || sf_frame_read(r, head, SF_FIELD_ALL, &list[k].frame, SF_IGNORED) != SF_OK ||
             !has_fields(&list[k].frame))
             continue;
         list[k].head = head;
@@ -121,8 +121,8 @@ void sf_report_picture_before(const sf_results *r, sf_report_picture *p, sf_erro
     SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
     SF_OWNED_BY(sf_cut_free) sf_cut cut = {0};
     if (r->frame_count == 0 || r->frames[0].time > 0 || !sf_h5_exists(r->file, "/frames/000000/softening") ||
-        sf_frame_read(r, &r->frames[0], &frame, err) != SF_OK || !frame.field[SF_FRAME_DISPLACEMENT] ||
-        sf_cut_make(r, &cut, err) != SF_OK || cut.polygon_count == 0) {
+        sf_frame_read(r, &r->frames[0], SF_FIELD_ALL, &frame, err) != SF_OK ||
+        !frame.field[SF_FRAME_DISPLACEMENT] || sf_cut_make(r, &cut, err) != SF_OK || cut.polygon_count == 0) {
         snprintf(p->text, sizeof p->text,
                  "No picture: results.h5 holds no displacement and softening at the start.");
     } else {

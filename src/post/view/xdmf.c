@@ -240,7 +240,7 @@ static sf_status write_frames(const store *s, sf_results *r, sf_shown *shown, sf
         const sf_frame_head *head = shown->head[k];
         SF_OWNED_BY(sf_frame_free) sf_frame frame = {0};
         sf_error problem = SF_ERROR_INIT;
-        if (sf_frame_read_fields(r, head, fields_wanted(r, shown, k), &frame, &problem) != SF_OK) {
+        if (sf_frame_read(r, head, fields_wanted(r, shown, k), &frame, &problem) != SF_OK) {
             if (sf_results_ended_well(r))
                 return SF_FAIL(err, problem.status, "%s", problem.text);
             sf_results_note(r, "frames from %.9g s on are left out: %.150s", head->time, problem.text);
