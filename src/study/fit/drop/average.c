@@ -93,9 +93,8 @@ static void add_states(const sf_drop_inference *in, const double *column, int wi
 
 static sf_status take_quantiles(weighted *w, int count, const double *probability, double *value,
                                 sf_error *err) {
-    SF_OWNED size_t *order = sf_alloc(err, w->count, sizeof *order, "samples");
+    SF_OWN(size_t, order, w->count, "samples", err);
     double all = 0;
-    SF_TRY(err->status);
     gsl_sort_index(order, w->value, 1, (size_t)w->count);
     for (int s = 0; s < w->count; s++)
         all += w->weight[s];
@@ -111,16 +110,6 @@ static sf_status take_quantiles(weighted *w, int count, const double *probabilit
     return SF_OK;
 }
 
-static void free_weighted(weighted *w) {
-    free(w->value);
-}
-
-/* Returns room for `most` samples; release it with free_weighted. */
-static weighted make_weighted(int most, sf_error *err) {
-    double *value = sf_alloc(err, 2 * most, sizeof *value, "samples");
-    return (weighted){.value = value, .weight = value + most};
-}
-
 sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int quantity, int count,
                                     const double *probability, double *value, sf_error *err) {
     int most = 0;
@@ -128,7 +117,8 @@ sf_status sf_drop_average_quantiles(const sf_drop_average *a, int model, int qua
     bool above_all = sf_drop_kind_get(q->kind)->above_all, known = true;
     for (int m = 0; m < a->models; m++)
         most += states_of(a->model[m]);
-    SF_OWNED_BY(free_weighted) weighted w = make_weighted(most, err);
+    SF_OWN(double, room, 2 * most, "samples", err);
+    weighted w = {.value = room, .weight = room + most};
     SF_RANDOM *random = gsl_rng_alloc(gsl_rng_taus2);
     if (!random)
         SF_NO_MEMORY(err, "random numbers");
@@ -163,8 +153,8 @@ double sf_drop_average_missing(const sf_drop_average *a, int quantity) {
 
 sf_status sf_drop_parameter_quantiles(const sf_drop_inference *in, int parameter, int count,
                                       const double *probability, double *value, sf_error *err) {
-    SF_OWNED_BY(free_weighted) weighted w = make_weighted(states_of(in), err);
-    SF_TRY(err->status);
+    SF_OWN(double, room, 2 * states_of(in), "samples", err);
+    weighted w = {.value = room, .weight = room + states_of(in)};
     add_states(in, &in->chains.sample[parameter], in->parameters, 1, false, 0, NULL, &w);
     return take_quantiles(&w, count, probability, value, err);
 }

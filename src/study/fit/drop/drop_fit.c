@@ -415,9 +415,8 @@ static sf_status choose_mount(sf_drop_fit *fit, const sf_mapping_problem *p, dou
     static const double FREQUENCY = 0.1, DAMPING = 0.5; /* standard deviations */
     const int frequencies = fit->chain[0] >= 0 ? 25 : 0, dampings = fit->chain[1] >= 0 ? 4 : 0; /* a side */
     double place[SF_MAPPING_MAX_PARAMETERS];
-    SF_OWNED double *y = sf_alloc(err, p->responses, sizeof *y, "responses");
+    SF_OWN(double, y, p->responses, "responses", err);
     *least = INFINITY;
-    SF_TRY(err->status);
     fit->rigid = true; /* not through a mount that may give no figures */
     simulate(fit, u, y, err);
     fit->rigid = false;

@@ -312,10 +312,9 @@ static sf_status place_all(const work *w, sf_error *err) {
 /* The proposals from the round's states of all chains; unchanged where they span no volume. */
 static sf_status match(work *w, sf_error *err) {
     int n = w->target->parameters, round = w->options->round, count = w->options->chains * round;
-    SF_OWNED double *all = sf_alloc(err, (unsigned long)(count * n), sizeof *all, "samples");
+    SF_OWN(double, all, count *n, "samples", err);
     sf_mixture proposal, jump;
     sf_error none = SF_ERROR_INIT;
-    SF_TRY(err->status);
     for (int c = 0; c < w->options->chains; c++)
         memcpy(&all[c * round * n], w->walker[c].path, (size_t)(round * n) * sizeof *all);
     if (sf_mixture_about(n, count, all, FREEDOM, &jump, &none) == SF_OK &&

@@ -169,17 +169,17 @@ static double *split_all(const sf_grouped *g, const double *sample, int count, s
     return all;
 }
 
-/* By weights 1 / p(y_g | others, u); `scratch` [count]. */
-static sf_status weigh(const double *all, int groups, int g, int count, double *scratch, sf_left_out *out,
-                       sf_error *err) {
-    SF_OWN(double, sum, count, "weights", err);
+/* By weights 1 / p(y_g | others, u). */
+static sf_status weigh(const double *all, int groups, int g, int count, sf_left_out *out, sf_error *err) {
+    SF_OWN(double, weight, 2 * count, "weights", err);
+    double *sum = weight + count;
     for (int s = 0; s < count; s++)
-        scratch[s] = -all[s * groups + g];
-    out->pareto_k = sf_pareto_smooth(count, scratch, err);
+        weight[s] = -all[s * groups + g];
+    out->pareto_k = sf_pareto_smooth(count, weight, err);
     out->converged = out->pareto_k < USABLE;
     for (int s = 0; s < count; s++)
-        sum[s] = scratch[s] + all[s * groups + g];
-    out->log_density = log_mean(count, sum, NULL) - log_mean(count, scratch, NULL);
+        sum[s] = weight[s] + all[s * groups + g];
+    out->log_density = log_mean(count, sum, NULL) - log_mean(count, weight, NULL);
     return err->status;
 }
 
@@ -257,9 +257,8 @@ static sf_status draw_wide(const sf_grouped *g, const sf_chains *chains, const s
 /* Estimates log p(group | others) by the weights, and sets `out->drawn` if enough draws count. */
 static sf_status take_wide(const wide *w, int groups, int group, double effective, sf_left_out *out,
                            sf_error *err) {
-    SF_OWNED double *others = sf_alloc(err, w->count, sizeof *others, "draws");
+    SF_OWN(double, others, w->count, "draws", err);
     double size;
-    SF_TRY(err->status);
     for (int k = 0; k < w->count; k++)
         others[k] = isinf(w->weight[k]) ? -INFINITY : w->weight[k] - w->conditional[k * groups + group];
     double without_group = log_mean(w->count, others, &size);
@@ -276,11 +275,10 @@ sf_status sf_leave_one_out(const sf_grouped *g, const sf_chains *chains, const s
     if (g->groups > MOST_GROUPS)
         return SF_REFUSE(err, "%d groups of data to be left out one by one" SF_AT_MOST("%d"), g->groups,
                          MOST_GROUPS);
-    SF_OWNED double *all = split_all(g, chains->sample, count, err),
-                    *scratch = sf_alloc(err, count, sizeof *scratch, "weights");
+    SF_OWNED double *all = split_all(g, chains->sample, count, err);
     for (int k = 0; k < g->groups && err->status == SF_OK; k++) {
         out[k] = (sf_left_out){.converged = false};
-        if (weigh(all, g->groups, k, count, scratch, &out[k], err) != SF_OK || out[k].converged)
+        if (weigh(all, g->groups, k, count, &out[k], err) != SF_OK || out[k].converged)
             continue;
         if (options->draws > 0 && w.count == 0 && draw_wide(g, chains, options, &w, err) != SF_OK)
             break;
