@@ -19,10 +19,10 @@
  * Responses: nominal stress over the largest measured one, at strains 0.05 apart (neighbours closer than that
  * deviate alike), loading then unloading; ln of a cushion's peak deceleration in g (F/m, CFC 1000). */
 
-enum { SF_JOINT_MOST = 8, SF_JOINT_POINTS = 48, SF_JOINT_NAME = 64, SF_JOINT_INTERPRETATION = 768 };
+enum { SF_JOINT_MOST = 8, SF_JOINT_POINTS = 48, SF_FIT_NAME_SIZE = 64, SF_JOINT_INTERPRETATION = 768 };
 
 typedef struct sf_joint_test {
-    char name[SF_JOINT_NAME];
+    char name[SF_FIT_NAME_SIZE];
     uint64_t file;                                /* hash of its text */
     double rate;                                  /* s-1, nominal */
     double turn;                                  /* -, largest strain */
@@ -35,7 +35,7 @@ typedef struct sf_joint_test {
 } sf_joint_test;
 
 typedef struct sf_joint_cushion {
-    char name[SF_JOINT_NAME];
+    char name[SF_FIT_NAME_SIZE];
     uint64_t file;            /* hash of its text; 0: no file */
     double thickness, height; /* m; of free fall */
     int count;
@@ -56,6 +56,10 @@ typedef struct sf_joint {
  * key; data that are there twice are refused. */
 sf_status sf_joint_read(const sf_config *config, sf_config_item *root, sf_joint *joint, sf_error *err);
 
+/* Reads the key `name` of data; without it they are called by the usual word and their number,
+ * "compression 2". */
+sf_status sf_fit_name_read(const sf_config *config, sf_config_item *entry, const char *usual, int number,
+                           char name[SF_FIT_NAME_SIZE], sf_error *err);
 /* Data and their standard deviations, [rows] each. */
 void sf_joint_data(const sf_joint *joint, double *measured, double *sd);
 /* Responses [rows] of a foam. SF_ERR_NUMERIC: it collapses. */
@@ -68,7 +72,7 @@ uint64_t sf_joint_hash(uint64_t hash, const sf_joint *joint);
 double sf_joint_rms(const sf_joint_test *test, bool unloading, const double *y);
 
 /* One entry of the lists `drops` and `predict`: a case, and what was measured. */
-enum { SF_FIT_NAME_SIZE = 64, SF_FIT_CURVE_SAMPLES = 200 };
+enum { SF_FIT_CURVE_SAMPLES = 200 };
 
 /* A drop that was measured, or (predicted) is only to be simulated with the identified material. */
 typedef struct sf_fit_drop {

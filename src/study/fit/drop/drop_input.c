@@ -77,15 +77,7 @@ static sf_status read_curve(const sf_config *config, sf_config_item *group, sf_f
 static sf_status name_drop(const sf_config *config, sf_config_item *group, int count, sf_fit_drop *drop,
                            sf_error *err) {
     sf_fit_drop *const last = &drop[count];
-    const char *name = NULL;
-    SF_TRY(sf_config_text(config, group, "name", false, &name, err));
-    if (name && strlen(name) >= sizeof last->name)
-        return sf_config_refuse(config, group, err, "the name \"%.80s\" is longer than %zu characters", name,
-                                sizeof last->name - 1);
-    if (name)
-        snprintf(last->name, sizeof last->name, "%s", name);
-    else
-        snprintf(last->name, sizeof last->name, "drop-%d", count + 1);
+    SF_TRY(sf_fit_name_read(config, group, "drop-", count + 1, last->name, err));
     if (strspn(last->name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") !=
         strlen(last->name))
         return sf_config_refuse(config, group, err,

@@ -99,18 +99,17 @@ double sf_joint_rms(const sf_joint_test *test, bool unloading, const double *y) 
 static const double GRID = 0.05, SPREAD = 0.01; /* strain: between points, and over which each is a mean */
 enum { LEAST_POINTS = 2 };                      /* of loading */
 
-/* The text, or "compression 2". */
-static sf_status read_name(const sf_config *config, sf_config_item *entry, const char *kind, int number,
-                           char name[SF_JOINT_NAME], sf_error *err) {
+sf_status sf_fit_name_read(const sf_config *config, sf_config_item *entry, const char *usual, int number,
+                           char name[SF_FIT_NAME_SIZE], sf_error *err) {
     const char *text = NULL;
     SF_TRY(sf_config_text(config, entry, "name", false, &text, err));
-    if (text && strlen(text) >= SF_JOINT_NAME)
+    if (text && strlen(text) >= SF_FIT_NAME_SIZE)
         return sf_config_refuse(config, entry, err, "the name \"%.80s\" is longer than %d characters", text,
-                                SF_JOINT_NAME - 1);
+                                SF_FIT_NAME_SIZE - 1);
     if (text)
-        snprintf(name, SF_JOINT_NAME, "%s", text);
+        snprintf(name, SF_FIT_NAME_SIZE, "%s", text);
     else
-        snprintf(name, SF_JOINT_NAME, "%s %d", kind, number);
+        snprintf(name, SF_FIT_NAME_SIZE, "%s%d", usual, number);
     return SF_OK;
 }
 
@@ -186,7 +185,7 @@ static sf_status read_test(const sf_config *config, sf_config_item *entry, sf_jo
     SF_OWNED char *path = NULL;
     *test = (sf_joint_test){.sd = 0.05};
     SF_TRY(sf_config_names(config, entry, "name|file|sd|" SF_COMPRESSION_SOURCE_KEYS, err));
-    SF_TRY(read_name(config, entry, "compression", joint->test_count + 1, test->name, err));
+    SF_TRY(sf_fit_name_read(config, entry, "compression ", joint->test_count + 1, test->name, err));
     SF_TRY(sf_config_number(config, entry, "sd", false, 1e-3, 1, &test->sd, err));
     SF_TRY(sf_compression_source_read(config, entry, (sf_compression_specimen){0}, &source, err));
     SF_TRY(sf_config_file(config, entry, "file", true, &path, err));
@@ -314,7 +313,7 @@ static sf_status read_cushion(const sf_config *config, sf_config_item *entry, sf
                    *file = config_setting_get_member(entry, "file");
     *cushion = (sf_joint_cushion){.sd = 0.05};
     SF_TRY(sf_config_names(config, entry, "name|file|points|stress_energy|thickness|drop_height|sd", err));
-    SF_TRY(read_name(config, entry, "cushion", joint->cushion_count + 1, cushion->name, err));
+    SF_TRY(sf_fit_name_read(config, entry, "cushion ", joint->cushion_count + 1, cushion->name, err));
     SF_TRY(sf_config_number(config, entry, "sd", false, 1e-3, 1, &cushion->sd, err));
     SF_TRY(sf_config_quantity(config, entry, "thickness", SF_LENGTH, true, 0, &cushion->thickness, err));
     SF_TRY(sf_config_quantity(config, entry, "drop_height", SF_LENGTH, true, 0, &cushion->height, err));
