@@ -252,8 +252,6 @@ sf_status sf_drop_fit_card(const sf_fit_input *input, const double *u, sf_foam_c
 /* Bounds of number `k` of u: those of its parameter, of HU the lower one; infinite of speeds and the chain.
  */
 void sf_drop_fit_bounds(const sf_fit_input *input, int k, double *low, double *high);
-/* Every parameter (SI) at scaled ones. */
-void sf_drop_fit_values(const sf_fit_input *input, const double *u, double value[SF_PARAMETER_COUNT]);
 /* Lists parameters and responses, with what was measured; needs `input` and `memory`. */
 sf_status sf_drop_fit_list(sf_drop_fit *fit, sf_error *err);
 /* Scaled responses of one drop from its figures, its curve, which has CFC 1000, as the chain reads it, and

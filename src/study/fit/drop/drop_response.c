@@ -15,15 +15,11 @@
  * has this standard deviation. */
 static const double BOUND = 0.99, BOUND_SD = 0.003;
 
-void sf_drop_fit_values(const sf_fit_input *in, const double *u, double value[SF_PARAMETER_COUNT]) {
-    memcpy(value, in->start, SF_PARAMETER_COUNT * sizeof *value);
-    for (int k = 0; k < in->unknown_count; k++)
-        value[in->unknown[k]] = exp(u[k]);
-}
-
 sf_status sf_drop_fit_card(const sf_fit_input *in, const double *u, sf_foam_card *card, sf_error *err) {
     double value[SF_PARAMETER_COUNT];
-    sf_drop_fit_values(in, u, value);
+    memcpy(value, in->start, sizeof value);
+    for (int k = 0; k < in->unknown_count; k++)
+        value[in->unknown[k]] = exp(u[k]);
     return sf_foam_form_card(&in->form, value, card, err);
 }
 

@@ -346,13 +346,13 @@ static sf_status add_unknown(const sf_config *config, sf_config_item *model, sf_
     return put_unknown(config, model, in, p, err);
 }
 
-/* Without a list: those that are usual for the form. */
+/* Without a list: those that are usual for the form, and ED. */
 static sf_status add_usual(const sf_config *config, sf_config_item *model, sf_fit_input *in, sf_error *err) {
-    sf_foam_parameter usual[SF_PARAMETER_COUNT];
-    int count = sf_foam_form_usual(&in->form, usual);
-    for (int k = 0; k < count; k++)
-        SF_TRY(add_unknown(config, model, in, usual[k], err));
-    return SF_OK;
+    const sf_curve_form *form = in->form.curve;
+    for (int k = 0; k < form->entry_count; k++)
+        if (form->entry[k].usual)
+            SF_TRY(add_unknown(config, model, in, form->entry[k].parameter, err));
+    return add_unknown(config, model, in, SF_PARAMETER_ED, err);
 }
 
 /* The rate terms of an entry of `forms`: those that it names are unknown, the others are not there. */

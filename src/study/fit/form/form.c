@@ -247,15 +247,6 @@ double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter paramet
     return entry ? entry->prior_sd : sf_parameter_get(parameter)->prior_sd;
 }
 
-int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARAMETER_COUNT]) {
-    int count = 0;
-    for (int k = 0; k < form->curve->entry_count; k++)
-        if (form->curve->entry[k].usual)
-            usual[count++] = form->curve->entry[k].parameter;
-    usual[count++] = SF_PARAMETER_ED;
-    return count;
-}
-
 static sf_config_item *given_fraction(sf_config_item *holder) {
     sf_config_item *start = config_setting_get_member(holder, "start");
     return start ? config_setting_get_member(start, "solid_fraction") : NULL;

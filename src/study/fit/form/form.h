@@ -206,10 +206,6 @@ void sf_foam_form_start_lock(double value[SF_PARAMETER_COUNT]);
  * where solid_density is not known. */
 double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter parameter);
 
-/* The parameters that are identified where the user does not say: the form's usual ones and ED. Returns their
- * number. */
-int sf_foam_form_usual(const sf_foam_form *form, sf_foam_parameter usual[SF_PARAMETER_COUNT]);
-
 /* A card with these values; its arrays are owned by the caller (sf_foam_card_free). SF_ERR_NUMERIC if the
  * values make no curve. */
 sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARAMETER_COUNT],
