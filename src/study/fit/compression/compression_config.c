@@ -7,8 +7,6 @@ static const char RATE_WORDS[] = "none|log|maxwell|curves|auto", RULE_WORDS[] = 
 
 /* ---- a form of the loading curve ---- */
 
-const char *const sf_form_rate_names[] = {"none", "factor", "maxwell", "both"};
-static const char FORM_RATES[] = "none|factor|maxwell|both";
 static const char FREE_FORM[] = "free";
 enum { SLOPE_POINTS = 4 }; /* of the slope that E begins with */
 
@@ -49,14 +47,13 @@ static bool is_of_curve(const sf_form_request *r, sf_foam_parameter p) {
 /* A value of the rate that the rate model does not have would be lost, or act where none is asked for. */
 static sf_status check_rate_value(const sf_config *file, sf_config_item *item, sf_foam_parameter p,
                                   const sf_form_request *r, sf_error *err) {
-    bool factor = p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE,
-         maxwell = p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
-    if ((factor && !(r->rate & SF_FORM_RATE_FACTOR)) || (maxwell && !(r->rate & SF_FORM_RATE_MAXWELL)))
+    sf_form_rate term = sf_form_rate_of(p);
+    if ((r->rate & term) != term)
         return sf_config_refuse(file, item, err,
                                 "%s is given, but rate_model = \"%s\" has none: give rate_model = \"%s\" "
                                 "or \"both\", or leave it out",
                                 sf_parameter_get(p)->name, sf_form_rate_names[r->rate],
-                                sf_form_rate_names[factor ? SF_FORM_RATE_FACTOR : SF_FORM_RATE_MAXWELL]);
+                                sf_form_rate_names[term]);
     return SF_OK;
 }
 
@@ -64,8 +61,7 @@ static sf_status read_value(const sf_config *file, sf_config_item *group, sf_con
                             sf_form_request *r, sf_error *err) {
     const char *name = config_setting_name(item);
     sf_foam_parameter p = sf_parameter_find(name);
-    if (!is_of_curve(r, p) && p != SF_PARAMETER_RATE_FACTOR && p != SF_PARAMETER_ED &&
-        p != SF_PARAMETER_BETA1)
+    if (!is_of_curve(r, p) && (p == SF_PARAMETER_RATE_REFERENCE || !sf_form_rate_of(p)))
         return sf_config_refuse(file, item, err,
                                 "start: \"%.80s\" is neither E, a parameter of curve_form = \"%s\", nor "
                                 "rate_factor, ED or BETA1",
@@ -158,7 +154,7 @@ static sf_status read_form_rate(const sf_config *file, sf_config_item *root, sf_
     sf_form_request *r = &c->form;
     int rate = SF_FORM_RATE_NONE;
     const sf_compression_test *slowest = &c->test[0], *fastest = &c->test[c->test_count - 1];
-    SF_TRY(sf_config_choice(file, root, "rate_model", FORM_RATES, &rate, err));
+    SF_TRY(sf_config_choice(file, root, "rate_model", SF_FORM_RATE_WORDS, &rate, err));
     r->rate = (sf_form_rate)rate;
     bool factor = r->rate & SF_FORM_RATE_FACTOR, maxwell = r->rate & SF_FORM_RATE_MAXWELL;
     if (r->rate != SF_FORM_RATE_NONE && fastest->rate < slowest->rate * (1 + 1e-6))

@@ -10,14 +10,6 @@
 
 enum { SF_FORM_UNKNOWNS = 16 };
 
-/* Bits: the law has a factor on the curve, a Maxwell branch. */
-typedef enum sf_form_rate {
-    SF_FORM_RATE_NONE,
-    SF_FORM_RATE_FACTOR,
-    SF_FORM_RATE_MAXWELL,
-    SF_FORM_RATE_BOTH
-} sf_form_rate;
-
 typedef struct sf_form_request {
     sf_foam_form form; /* its curve is NULL: none was asked for; the base has no curves */
     sf_form_rate rate;
@@ -25,9 +17,6 @@ typedef struct sf_form_request {
     int unknown_count;
     sf_foam_parameter unknown[SF_FORM_UNKNOWNS];
 } sf_form_request;
-
-/* Names of sf_form_rate. */
-extern const char *const sf_form_rate_names[];
 
 /* Keys of a file with law = "hyperfoam". */
 #define SF_HYPERFOAM_REQUEST_KEYS "law|name|density|tests|DAMP|terms|nu"

@@ -130,8 +130,7 @@ static void warn(const void *place, const sf_sink *sink) {
         sf_sink_tell(sink, SF_WARNING, "%s", POOR_WARNING);
     for (int k = 0; k < c->form.unknown_count; k++) {
         sf_foam_parameter p = c->form.unknown[k];
-        bool is_of_rate = p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1;
-        if (is_of_rate && !sf_form_fit_determines(fit, k))
+        if (sf_form_rate_of(p) && !sf_form_fit_determines(fit, k))
             sf_sink_tell(sink, SF_WARNING,
                          "these tests do not determine %s: its standard error exceeds 100 %%, or it is at "
                          "its bound",

@@ -240,29 +240,17 @@ static sf_status check_start(const sf_config *config, sf_config_item *root, cons
 
 /* ---- rate terms ---- */
 
-enum { FACTOR = 1, MAXWELL = 2 };
-
-static const char RATE_WORDS[] = "none|factor|maxwell|both";
-
-/* The term of the rate that the parameter belongs to; 0: none. */
-static int term_of(sf_foam_parameter p) {
-    if (p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE)
-        return FACTOR;
-    return p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1 ? MAXWELL : 0;
-}
-
 /* A parameter of a term that the model's `rate` does not name has no effect. `what`: "start: ED". */
 static sf_status check_term(const sf_config *config, sf_config_item *item, sf_config_item *model,
                             sf_foam_parameter p, const char *what, sf_error *err) {
-    int rate = -1, term = term_of(p);
-    const char *name = NULL;
-    if (sf_config_choice(config, model, "rate", RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
+    int rate = -1, term = (int)sf_form_rate_of(p);
+    if (sf_config_choice(config, model, "rate", SF_FORM_RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
         (rate & term) == term)
         return err->status;
-    SF_TRY(sf_config_text(config, model, "rate", true, &name, err));
     return sf_config_refuse(config, item, err,
                             "%s is of the %s, which a model with rate = \"%s\" does not have", what,
-                            term == FACTOR ? "rate factor" : "Maxwell branch", name);
+                            term == SF_FORM_RATE_FACTOR ? "rate factor" : "Maxwell branch",
+                            sf_form_rate_names[rate]);
 }
 
 /* The start values of the model alone; those of all models may be for other models. */
@@ -358,17 +346,17 @@ static sf_status add_usual(const sf_config *config, sf_config_item *model, sf_fi
 /* The rate terms of an entry of `forms`: those that it names are unknown, the others are not there. */
 static sf_status read_rate(const sf_config *config, sf_config_item *model, sf_fit_input *in, sf_error *err) {
     int rate = -1;
-    if (sf_config_choice(config, model, "rate", RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
+    if (sf_config_choice(config, model, "rate", SF_FORM_RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
         check_terms(config, model, err) != SF_OK)
         return err->status;
-    if (rate & MAXWELL && !(in->start[SF_PARAMETER_ED] > 0 && in->start[SF_PARAMETER_BETA1] > 0))
+    if (rate & SF_FORM_RATE_MAXWELL && !(in->start[SF_PARAMETER_ED] > 0 && in->start[SF_PARAMETER_BETA1] > 0))
         return sf_config_refuse(config, model, err,
                                 "a Maxwell branch needs ED and BETA1 in the start material or in start");
-    if (rate & FACTOR)
+    if (rate & SF_FORM_RATE_FACTOR)
         sf_foam_form_start_rate(in->start);
     else
         in->start[SF_PARAMETER_RATE_FACTOR] = 0;
-    if (!(rate & MAXWELL))
+    if (!(rate & SF_FORM_RATE_MAXWELL))
         in->start[SF_PARAMETER_ED] = 0;
     return SF_OK;
 }

@@ -19,6 +19,14 @@ sf_foam_parameter sf_parameter_find(const char *name) {
     return (sf_foam_parameter)k;
 }
 
+const char *const sf_form_rate_names[] = {"none", "factor", "maxwell", "both"};
+
+sf_form_rate sf_form_rate_of(sf_foam_parameter p) {
+    if (p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE)
+        return SF_FORM_RATE_FACTOR;
+    return p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1 ? SF_FORM_RATE_MAXWELL : SF_FORM_RATE_NONE;
+}
+
 static const sf_curve_form *const forms[SF_CURVE_FORMS] = {
 #define SF_CURVE_FORM(form) &sf_form_##form,
     SF_CURVE_FORM_LIST(SF_CURVE_FORM)

@@ -73,6 +73,21 @@ const sf_parameter_info *sf_parameter_get(sf_foam_parameter parameter);
 /* SF_PARAMETER_COUNT if there is none of that name. */
 sf_foam_parameter sf_parameter_find(const char *name);
 
+/* Bits: the law has a factor on the curve, a Maxwell branch. */
+typedef enum sf_form_rate {
+    SF_FORM_RATE_NONE,
+    SF_FORM_RATE_FACTOR,
+    SF_FORM_RATE_MAXWELL,
+    SF_FORM_RATE_BOTH
+} sf_form_rate;
+
+/* Their names, and these as a list. */
+extern const char *const sf_form_rate_names[];
+#define SF_FORM_RATE_WORDS "none|factor|maxwell|both"
+
+/* The bit of the parameter. */
+sf_form_rate sf_form_rate_of(sf_foam_parameter parameter);
+
 /* Forms of the loading curve of a foam, for identification: nominal stress against compressive strain as a
  * function of a few parameters, with what is known of them beforehand (theory, section "Forms of the loading
  * curve"). Each is an entry of SF_CURVE_FORM_LIST. Pure functions of a set of values [SF_PARAMETER_COUNT] in
