@@ -165,22 +165,25 @@ static void set_densification(const sf_curve_form *form, const double *value, do
                  : 0;
 }
 
+/* The card takes the curves; its own go. */
+static void replace_curves(sf_foam_card *card, sf_law_curves *curves) {
+    sf_law_curves_free(&card->curves);
+    card->curves = *curves;
+    *curves = (sf_law_curves){0};
+}
+
 sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value, sf_foam_card *card,
                                  sf_error *err) {
-    sf_law_curves made;
+    SF_OWNED_BY(sf_law_curves_free) sf_law_curves made = {0};
     SF_TRY(form->check(value, err));
     SF_TRY(sf_form_curves_alloc(1, POINTS, &made, err));
     double pole = sf_curve_form_pole(form, value), last = last_part(form, value, pole);
     for (int k = 0; k < POINTS; k++)
         made.curve_strain[k] = pole * part_of(k, last);
     sf_curve_form_stresses(form, value, POINTS, made.curve_strain, made.curve_stress);
-    if (check_table(form, made.curve_strain, made.curve_stress, err) != SF_OK) {
-        sf_law_curves_free(&made);
-        return err->status;
-    }
+    SF_TRY(check_table(form, made.curve_strain, made.curve_stress, err));
     set_densification(form, value, pole, made.curve_strain[POINTS - 1], card);
-    sf_law_curves_free(&card->curves);
-    card->curves = made;
+    replace_curves(card, &made);
     return SF_OK;
 }
 
@@ -309,18 +312,16 @@ sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root,
     return SF_OK;
 }
 
-static void copy_items(void *to, const void *from, int64_t count, size_t size) {
-    if (from && count > 0)
-        memcpy(to, from, (size_t)count * size);
-}
-
 static sf_status copy_card(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {
     *to = *from;
+    size_t count = (size_t)from->curve_count, points = (size_t)from->curve_points;
     SF_TRY(sf_form_curves_alloc(from->curve_count, from->curve_points, &to->curves, err));
-    copy_items(to->curve_rate, from->curve_rate, from->curve_count, sizeof(double));
-    copy_items(to->curve_ptr, from->curve_ptr, from->curve_count + 1, sizeof(int64_t));
-    copy_items(to->curve_strain, from->curve_strain, from->curve_points, sizeof(double));
-    copy_items(to->curve_stress, from->curve_stress, from->curve_points, sizeof(double));
+    if (count > 0) {
+        memcpy(to->curve_rate, from->curve_rate, count * sizeof *to->curve_rate);
+        memcpy(to->curve_ptr, from->curve_ptr, (count + 1) * sizeof *to->curve_ptr);
+        memcpy(to->curve_strain, from->curve_strain, points * sizeof *to->curve_strain);
+        memcpy(to->curve_stress, from->curve_stress, points * sizeof *to->curve_stress);
+    }
     return SF_OK;
 }
 
@@ -383,12 +384,11 @@ static double table_end(const sf_curve *curve, double limit) {
 
 sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
     enum { FINE = 196 };
-    sf_law_curves fine;
+    SF_OWNED_BY(sf_law_curves_free) sf_law_curves fine = {0};
     SF_TRY(sf_form_curves_alloc(card->curve_count, FINE * card->curve_count, &fine, err));
-    for (int64_t c = 0; c < card->curve_count && err->status == SF_OK; c++) {
-        sf_curve curve;
-        if (sf_curve_build(card, c, &curve, err) != SF_OK)
-            break;
+    for (int64_t c = 0; c < card->curve_count; c++) {
+        SF_OWNED_BY(sf_curve_free) sf_curve curve = {0};
+        SF_TRY(sf_curve_build(card, c, &curve, err));
         double last = table_end(&curve, card->densification_limit), slope, energy;
         fine.curve_rate[c] = card->curve_rate[c];
         for (int k = 0; k < FINE; k++) {
@@ -396,14 +396,8 @@ sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
             fine.curve_strain[at] = last * k / (FINE - 1);
             sf_curve_evaluate(&curve, fine.curve_strain[at], &fine.curve_stress[at], &slope, &energy);
         }
-        sf_curve_free(&curve);
     }
-    if (err->status != SF_OK) {
-        sf_law_curves_free(&fine);
-        return err->status;
-    }
-    sf_law_curves_free(&card->curves);
-    card->curves = fine;
+    replace_curves(card, &fine);
     card->densification_start = 0;
     return SF_OK;
 }
