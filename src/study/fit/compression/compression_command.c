@@ -17,13 +17,11 @@ static const sf_option options[] = {
 /* Refuses what cannot be done before anything is computed or made. */
 static sf_status check_job(const sf_compression_job *job, sf_study *study, const sf_compression_kind *kind,
                            const sf_compression_config *config, sf_error *err) {
+    const sf_curve_form *form = config->form.form.curve;
     uint64_t ignored; /* the case can be read */
     if (kind->label && job->case_path)
-        return SF_REFUSE(err,
-                         kind == &sf_compression_form_kind
-                             ? "--simulate does not work with curve_form = \"%s\" in %s"
-                             : "--simulate does not work with law = \"%s\" in %s",
-                         config->form.form.curve ? config->form.form.curve->name : kind->label, job->path);
+        return SF_REFUSE(err, "--simulate does not work with %s = \"%s\" in %s", form ? "curve_form" : "law",
+                         form ? form->name : kind->label, job->path);
     if (config->thermal && job->case_path)
         return SF_REFUSE(err, "--simulate does not work with tests at several temperatures, in %s",
                          job->path);

@@ -330,39 +330,36 @@ sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entr
     return SF_OK;
 }
 
-/* Into the tests that are fitted, each rate once, or those that are predicted. */
+/* Into the tests that are fitted, each rate once unless they are of several specimens, or those that are
+ * predicted. */
 static sf_status read_test(const sf_config *file, sf_config_item *entry, bool predicted,
                            sf_compression_config *c, sf_error *err) {
-    sf_compression_test test;
+    SF_OWNED_BY(sf_compression_test_free) sf_compression_test test = {0};
     sf_error inner = SF_ERROR_INIT;
     SF_OWNED char *path = NULL;
     sf_compression_source source = {.toe = c->toe};
     double temperature = 0;
     const char *names =
         c->specimens ? "file|" SF_COMPRESSION_SOURCE_KEYS : "file|temperature|" SF_COMPRESSION_SOURCE_KEYS;
-    if (sf_config_names(file, entry, names, err) == SF_OK &&
-        sf_config_quantity(file, entry, "temperature", SF_TEMPERATURE, false, 0, &temperature, err) ==
-            SF_OK &&
-        sf_compression_source_read(file, entry, c->specimen, &source, err) == SF_OK &&
-        (predicted || c->specimens || check_rate(file, entry, source.rate, temperature, c, err) == SF_OK) &&
-        sf_config_file(file, entry, "file", true, &path, err) == SF_OK) {
-        source.path = path;
-        if (sf_compression_test_read(&source, &test, &inner) != SF_OK)
-            SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
-                    config_setting_source_line(entry));
-        if (temperature > 0 && !(temperature >= 100 && temperature <= 600)) /* as pad.temperature */
-            sf_config_refuse(file, entry, err, "temperature" SF_OUTSIDE("%g K", "100", "600 K"), temperature);
-        test.temperature = temperature;
-        if (err->status != SF_OK)
-            return err->status;
-        if (predicted)
-            insert_test(c->predicted, &c->predicted_count, &test);
-        else if (check_points(file, entry, &test, c, err) == SF_OK)
-            insert_test(c->test, &c->test_count, &test);
-        else
-            sf_compression_test_free(&test);
-    }
-    return err->status;
+    SF_TRY(sf_config_names(file, entry, names, err));
+    SF_TRY(sf_config_quantity(file, entry, "temperature", SF_TEMPERATURE, false, 0, &temperature, err));
+    SF_TRY(sf_compression_source_read(file, entry, c->specimen, &source, err));
+    if (!c->specimens)
+        SF_TRY(check_rate(file, entry, source.rate, temperature, c, err));
+    SF_TRY(sf_config_file(file, entry, "file", true, &path, err));
+    source.path = path;
+    if (sf_compression_test_read(&source, &test, &inner) != SF_OK)
+        return SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, file->path,
+                       config_setting_source_line(entry));
+    if (temperature > 0 && !(temperature >= 100 && temperature <= 600)) /* as pad.temperature */
+        return sf_config_refuse(file, entry, err, "temperature" SF_OUTSIDE("%g K", "100", "600 K"),
+                                temperature);
+    test.temperature = temperature;
+    if (!predicted)
+        SF_TRY(check_points(file, entry, &test, c, err));
+    insert_test(predicted ? c->predicted : c->test, predicted ? &c->predicted_count : &c->test_count, &test);
+    test = (sf_compression_test){0};
+    return SF_OK;
 }
 
 static sf_status read_tests(const sf_config *file, sf_config_item *root, const char *name, bool predicted,
@@ -411,9 +408,9 @@ static sf_status take_temperatures(const sf_config *file, sf_config_item *root, 
 
 static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
     sf_config_item *root = config_root_setting(&file->config);
-    int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
-    bool form = false, hyperfoam;
-    SF_TRY(sf_hyperfoam_request_asked(file, root, &hyperfoam, err));
+    int model = SF_RATE_AUTO, rule = SF_RULE_AUTO, hyperfoam = 0;
+    bool form = false;
+    SF_TRY(sf_config_choice(file, root, "law", "low_density_foam|hyperfoam", &hyperfoam, err));
     if (!hyperfoam)
         SF_TRY(is_form_asked(file, root, &form, err));
     SF_TRY(sf_config_names(

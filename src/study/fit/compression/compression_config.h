@@ -29,8 +29,6 @@ typedef struct sf_hyperfoam_request {
                                      outwards; owned */
 } sf_hyperfoam_request;
 
-/* True if the file asks for the hyperfoam. */
-sf_status sf_hyperfoam_request_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err);
 /* Reads terms, nu and the only test. SF_ERR_INPUT also where nu is both given and measured, or neither. */
 sf_status sf_hyperfoam_request_read(const sf_config *file, sf_config_item *root,
                                     sf_hyperfoam_request *request, sf_compression_test *test, sf_error *err);

@@ -35,16 +35,7 @@ typedef struct fitted {
 
 /* ---- the request: terms, nu and lateral strain ---- */
 
-enum { LAW_HYPERFOAM = 1, LEAST_LATERAL = 6 };
-#define LAW_WORDS "low_density_foam|hyperfoam"
-
-sf_status sf_hyperfoam_request_asked(const sf_config *file, sf_config_item *root, bool *asked,
-                                     sf_error *err) {
-    int law = 0;
-    SF_TRY(sf_config_choice(file, root, "law", LAW_WORDS, &law, err));
-    *asked = law == LAW_HYPERFOAM;
-    return SF_OK;
-}
+enum { LEAST_LATERAL = 6 };
 
 static sf_status check_lateral(const sf_table_point *p, sf_error *err) {
     if (p->value[0] >= 1 || p->value[1] <= -1 || p->value[1] >= 1)
