@@ -20,8 +20,9 @@ static const double RANK_TOLERANCE = 1e-7; /* columns of the Jacobian below it d
 typedef struct problem {
     const sf_compression_model *model;
     bool unloading;
-    gsl_vector *all;    /* every parameter; those of the side are searched */
-    double *stress;     /* scratch */
+    gsl_vector *all;     /* every parameter */
+    gsl_vector_view own; /* those of the side, which are searched */
+    double *stress;      /* scratch */
     gsl_matrix *change; /* [points][all parameters], scratch */
 } problem;
 
@@ -40,18 +41,11 @@ static int points_of(const sf_compression_data *d, bool unloading) {
     return count;
 }
 
-static void take(const problem *p, const gsl_vector *x) {
-    gsl_vector_view own =
-        gsl_vector_subvector(p->all, first_of(p->model, p->unloading), count_of(p->model, p->unloading));
-    gsl_vector_memcpy(&own.vector, x);
-}
-
 static int deviations(const gsl_vector *x, void *context, gsl_vector *out) {
-    const problem *p = context;
+    problem *p = context;
     const sf_compression_data *d = p->model->data;
-    take(p, x);
+    gsl_vector_memcpy(&p->own.vector, x);
     sf_compression_predict(p->model, p->all, p->stress, NULL);
-    gsl_vector_set_zero(out);
     for (int i = 0, k = 0; i < d->count; i++)
         if (d->unloading[i] == p->unloading)
             gsl_vector_set(out, (size_t)k++, (p->stress[i] - d->stress[i]) / d->sigma[i]);
@@ -59,10 +53,10 @@ static int deviations(const gsl_vector *x, void *context, gsl_vector *out) {
 }
 
 static int derivatives(const gsl_vector *x, void *context, gsl_matrix *out) {
-    const problem *p = context;
+    problem *p = context;
     const sf_compression_data *d = p->model->data;
     const size_t first = first_of(p->model, p->unloading);
-    take(p, x);
+    gsl_vector_memcpy(&p->own.vector, x);
     sf_compression_predict(p->model, p->all, p->stress, p->change);
     for (int i = 0, k = 0; i < d->count; i++)
         if (d->unloading[i] == p->unloading) {
@@ -81,7 +75,8 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
     size_t n = (size_t)points_of(model->data, unloading), p = count_of(model, unloading);
     SF_OWNED double *stress = sf_alloc(err, model->data->count, sizeof *stress, "stresses");
     SF_MATRIX *change = sf_matrix((size_t)model->data->count, x->size, err);
-    problem context = {model, unloading, x, stress, change};
+    problem context = {model,  unloading, x, gsl_vector_subvector(x, first_of(model, unloading), p),
+                       stress, change};
     gsl_multifit_nlinear_fdf fdf = {.f = deviations, .df = derivatives, .n = n, .p = p, .params = &context};
     gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
     how.solver = gsl_multifit_nlinear_solver_cholesky;
@@ -95,13 +90,12 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
     if (n > p && !w)
         SF_NO_MEMORY(err, "a fit of %zu parameters to %zu points", p, n);
     if (w && err->status == SF_OK) {
-        gsl_vector_view own = gsl_vector_subvector(x, first_of(model, unloading), p);
-        gsl_vector_memcpy(start, &own.vector);
+        gsl_vector_memcpy(start, &context.own.vector);
         if (gsl_multifit_nlinear_init(start, &fdf, w) == GSL_SUCCESS) {
             gsl_multifit_nlinear_driver(ITERATIONS, STEP_TOLERANCE, GRADIENT_TOLERANCE, 0, NULL, NULL, &info,
                                         w);
             gsl_blas_ddot(gsl_multifit_nlinear_residual(w), gsl_multifit_nlinear_residual(w), &chi2);
-            take(&context, isfinite(chi2) ? gsl_multifit_nlinear_position(w) : start);
+            gsl_vector_memcpy(&context.own.vector, isfinite(chi2) ? gsl_multifit_nlinear_position(w) : start);
             if (covariance)
                 gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), RANK_TOLERANCE, covariance);
         }
@@ -490,10 +484,10 @@ static sf_status finish(sf_compression_fit *fit, sf_error *err) {
     SF_TRY(search_loading(&fit->model, fit->parameters, &fit->side[0].chi2, err));
     if (isfinite(fit->side[0].chi2) && unloads) {
         fit->side[1].chi2 = search_unloading(&fit->model, fit->parameters, err);
-        if (err->status == SF_OK && isfinite(fit->side[1].chi2))
+        if (err->status == SF_OK && isfinite(fit->side[1].chi2)) {
             SF_TRY(try_alpha(fit, err));
-        if (isfinite(fit->side[1].chi2))
             SF_TRY(weigh_by_law(fit, err));
+        }
     }
     if (err->status == SF_OK && isfinite(fit->side[0].chi2) && isfinite(fit->side[1].chi2))
         SF_TRY(find_errors(fit, err));
