@@ -318,9 +318,7 @@ static sf_status conclude(const double *value, const double own[HYSTERESIS + MEM
     fit->card.informed_strain = informed;
     memcpy(fit->value, value, sizeof fit->value);
     memcpy(fit->unloading.fit.value, own, sizeof fit->unloading.fit.value);
-    fit->value[SF_PARAMETER_HU] = own[0];
-    fit->value[SF_PARAMETER_SHAPE] = own[1];
-    fit->value[SF_PARAMETER_ALPHA] = own[2];
+    memcpy(&fit->value[SF_PARAMETER_HU], own, HYSTERESIS * sizeof *own); /* and SHAPE and ALPHA behind it */
     memcpy(&fit->value[SF_PARAMETER_RELOAD], own + HYSTERESIS, MEMORY * sizeof *own);
     for (int k = 0; k < records; k++) {
         SF_TRY(follow_record(&fit->config->cycles[k], &fit->card, &fit->cycles[k], err));

@@ -273,6 +273,11 @@ static double area(const double *strain, const double *stress, int first, int la
     return sum;
 }
 
+/* Part of the energy of loading that unloading returns. */
+static double returned(const sf_compression_test *t, const double *stress) {
+    return -area(t->strain, stress, t->loading - 1, t->count) / area(t->strain, stress, 0, t->loading);
+}
+
 double sf_form_rms(const double *measured, double largest, const double *stress, int first, int last) {
     double sum = 0;
     for (int i = first; i < last; i++)
@@ -299,14 +304,9 @@ static sf_status follow_test(const sf_form_fit *fit, const sf_curve *curve, cons
         out->stress[i] = by * stress + viscous;
     }
     out->loading_rms = sf_form_rms(t->stress, t->largest_stress, out->stress, 0, t->loading);
-    out->unloading_rms =
-        back ? sf_form_rms(t->stress, t->largest_stress, out->stress, t->loading, t->count) : NAN;
-    out->returned_measured = back ? -area(t->strain, t->stress, t->loading - 1, t->count) /
-                                        area(t->strain, t->stress, 0, t->loading)
-                                  : NAN;
-    out->returned_fitted = back ? -area(t->strain, out->stress, t->loading - 1, t->count) /
-                                      area(t->strain, out->stress, 0, t->loading)
-                                : NAN;
+    out->unloading_rms = sf_form_rms(t->stress, t->largest_stress, out->stress, t->loading, t->count);
+    out->returned_measured = back ? returned(t, t->stress) : NAN;
+    out->returned_fitted = back ? returned(t, out->stress) : NAN;
     return SF_OK;
 }
 
