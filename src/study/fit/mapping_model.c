@@ -162,18 +162,16 @@ sf_status sf_mapping_minimise(const sf_mapping_model *model, const double *sd, c
 sf_status sf_mapping_differentiate(const sf_mapping_model *a, double *jacobian, sf_error *err) {
     const sf_mapping_problem *p = a->problem;
     double u[SF_MAPPING_MAX_PARAMETERS];
-    size_t n = (size_t)p->responses;
-    SF_OWNED double *plus = sf_alloc(err, n, sizeof *plus, "responses"),
-                    *minus = sf_alloc(err, n, sizeof *minus, "responses");
-    for (int j = 0; j < p->parameters && err->status == SF_OK; j++) {
+    SF_OWN(double, plus, p->responses, "responses", err);
+    SF_OWN(double, minus, p->responses, "responses", err);
+    for (int j = 0; j < p->parameters; j++) {
         memcpy(u, a->anchor, (size_t)p->parameters * sizeof *u);
         u[j] = a->anchor[j] + DIFFERENCE;
-        sf_mapping_evaluate(a, u, plus, err);
+        SF_TRY(sf_mapping_evaluate(a, u, plus, err));
         u[j] = a->anchor[j] - DIFFERENCE;
-        if (err->status == SF_OK)
-            sf_mapping_evaluate(a, u, minus, err);
-        for (int i = 0; i < p->responses && err->status == SF_OK; i++)
+        SF_TRY(sf_mapping_evaluate(a, u, minus, err));
+        for (int i = 0; i < p->responses; i++)
             jacobian[i * p->parameters + j] = (plus[i] - minus[i]) / (2 * DIFFERENCE);
     }
-    return err->status;
+    return SF_OK;
 }

@@ -375,16 +375,15 @@ static sf_status check_rate_factor(const sf_config *config, sf_config_item *mode
 /* The simulations refuse it too, but only when they begin. */
 static sf_status check_memory(const sf_config *config, sf_config_item *model, const sf_fit_input *in,
                               sf_error *err) {
+    bool remembers = in->start[SF_PARAMETER_RELOAD] > 0 || in->start[SF_PARAMETER_RECOVERY] > 0;
     for (int k = 0; k < in->drop_count; k++)
-        if (in->drop[k].number > 0 &&
-            !(in->start[SF_PARAMETER_RELOAD] > 0 || in->start[SF_PARAMETER_RECOVERY] > 0))
+        if (in->drop[k].number > 0 && !remembers)
             return sf_config_refuse(
                 config, model, err,
                 "the drop \"%s\" is of a series, but the foam of %s remembers nothing: give "
                 "it material.memory, or start: { reload = 0.4; }",
                 in->drop[k].name, in->material_path);
-    if (in->start[SF_PARAMETER_HU] == 1 &&
-        (in->start[SF_PARAMETER_RELOAD] > 0 || in->start[SF_PARAMETER_RECOVERY] > 0))
+    if (in->start[SF_PARAMETER_HU] == 1 && remembers)
         return sf_config_refuse(config, model, err,
                                 "HU is 1, but a foam without hysteresis has nothing to remember: give it "
                                 "HU, SHAPE and ALPHA of the unloading, or leave out reload and recovery");

@@ -79,22 +79,15 @@ sf_status sf_drop_inference_card(const sf_drop_inference *in, const double *u, c
 
 /* ---- corrected surrogate ---- */
 
-/* The parameters of the fit at a state: foam, and speeds as given. */
-static void fit_parameters(const sf_drop_inference *in, const double *u, double *full) {
-    memset(full, 0, (size_t)in->fit->parameters * sizeof *full);
-    memcpy(full, u, (size_t)in->fit->input->unknown_count * sizeof *u);
-}
-
-/* Corrected responses of drops `first` to `last` - 1 into y [responses]; `delta`: of the curve that it
- * raises, or NULL. A foam that no card may hold fails, as no simulation could follow it. */
+/* Corrected responses of drops `first` to `last` - 1 into y [responses], with the speeds as given; `delta`:
+ * of the curve that it raises, or NULL. A foam that no card may hold fails, as no simulation could follow it.
+ */
 static sf_status respond(const sf_drop_inference *in, const double *u, const double *delta, int first,
                          int last, double *y, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
-    double full[SF_MAPPING_MAX_PARAMETERS];
     SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
-    fit_parameters(in, u, full);
-    SF_TRY(delta ? sf_drop_inference_card(in, full, delta, &card, err)
-                 : sf_drop_fit_card(fit->input, full, &card, err));
+    SF_TRY(delta ? sf_drop_inference_card(in, u, delta, &card, err)
+                 : sf_drop_fit_card(fit->input, u, &card, err));
     SF_TRY(sf_foam_check_shared(&card, err));
     SF_TRY(sf_drop_fit_respond(fit, first, last, &card, NULL, y, err));
     for (int k = fit->row[first]; k < fit->row[last]; k++)
@@ -145,12 +138,10 @@ static double mean_offset(const sf_drop_fit *fit, int kind) {
 static sf_status find_offset(sf_drop_inference *in, sf_error *err) {
     const sf_drop_fit *fit = in->fit;
     int n = responses_of(fit), measured = fit->row[fit->measured_drops];
-    double full[SF_MAPPING_MAX_PARAMETERS];
     SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     in->offset = sf_alloc(err, n, sizeof(double), "responses");
-    fit_parameters(in, fit->result.u, full);
     SF_TRY(err->status);
-    SF_TRY(sf_drop_fit_card(fit->input, full, &card, err));
+    SF_TRY(sf_drop_fit_card(fit->input, fit->result.u, &card, err));
     sf_drop_fit_respond(fit, fit->measured_drops, fit->input->drop_count, &card, NULL, in->offset, err);
     for (int k = 0; k < n; k++)
         in->offset[k] = k < measured ? fit->result.offset[k] : fit->y[k] - in->offset[k];
@@ -353,17 +344,14 @@ static bool respond_residual(const void *context, const double *u, double *resid
 
 static double split(const void *context, const double *u, const double *residual, double *conditional) {
     const sf_drop_inference *in = context;
-    double few[256], *own = few, sum = log_prior(in, u);
-    if (in->data > 128)
-        own = sf_alloc(SF_IGNORED, 2 * in->data, sizeof *own, "data");
+    double sum = log_prior(in, u);
+    SF_OWNED double *own = sf_alloc(SF_IGNORED, 2 * in->data, sizeof *own, "data");
     for (int d = 0; conditional && d < in->fit->measured_drops; d++)
         conditional[d] = 0;
     if (own && isfinite(sum) && (residual || respond_residual(in, u, own)))
         sum += split_of(in, u, residual ? residual : own, conditional, own + in->data);
     else
         sum = -INFINITY;
-    if (own != few)
-        free(own);
     return sum;
 }
 

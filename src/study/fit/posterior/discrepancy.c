@@ -135,7 +135,8 @@ static double factor(const sf_discrepancy *d, sf_discrepancy_size size, double *
 static double project(const sf_discrepancy *d, const double *r, sf_discrepancy_size size, const double *c,
                       double *q) {
     int p = d->latent;
-    double few[64], *w = d->data <= 64 ? few : malloc((size_t)d->data * sizeof *w), sum = 0;
+    double sum = 0;
+    SF_OWNED double *w = malloc((size_t)d->data * sizeof *w);
     if (!w)
         return INFINITY;
     memset(q, 0, (size_t)p * sizeof *q);
@@ -154,8 +155,6 @@ static double project(const sf_discrepancy *d, const double *r, sf_discrepancy_s
             q[k] -= c[k * p + l] * q[l];
         q[k] /= c[k * p + k];
     }
-    if (w != few)
-        free(w);
     return sum;
 }
 
