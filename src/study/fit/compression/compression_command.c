@@ -15,28 +15,28 @@ static const sf_option options[] = {
 };
 
 /* Refuses what cannot be done before anything is computed or made. */
-static sf_status check_job(const sf_compression_job *job, sf_study *study, const sf_compression_kind *kind,
+static sf_status check_job(const sf_compression_job *job, const sf_compression_kind *kind,
                            const sf_compression_config *config, sf_error *err) {
     const sf_curve_form *form = config->form.form.curve;
     uint64_t ignored; /* the case can be read */
     if (kind->label && job->case_path)
         return SF_REFUSE(err, "--simulate does not work with %s = \"%s\" in %s", form ? "curve_form" : "law",
-                         form ? form->name : kind->label, job->path);
+                         form ? form->name : kind->label, job->study->input);
     if (config->thermal && job->case_path)
         return SF_REFUSE(err, "--simulate does not work with tests at several temperatures, in %s",
-                         job->path);
-    SF_TRY(sf_study_check(study, kind->outputs, err));
+                         job->study->input);
+    SF_TRY(sf_study_check(job->study, kind->outputs, err));
     return job->case_path ? sf_plain_hash(job->case_path, "case file", SF_PLAIN_TEXT, &ignored, err) : SF_OK;
 }
 
-static void print_tests(FILE *out, const sf_compression_config *config) {
+static void print_tests(const sf_compression_config *config) {
     for (int k = 0; k < config->test_count; k++) {
-        fprintf(out, "test %s: %s", config->test[k].path, config->test[k].interpretation);
+        printf("test %s: %s", config->test[k].path, config->test[k].interpretation);
         if (config->hyperfoam.terms > 0)
-            fprintf(out, ", %d points of lateral strain", config->hyperfoam.lateral_count);
-        fputc('\n', out);
+            printf(", %d points of lateral strain", config->hyperfoam.lateral_count);
+        putchar('\n');
     }
-    fflush(out);
+    fflush(stdout);
 }
 
 static sf_status write_material(const sf_staging *output, const sf_compression_kind *kind, const void *fit,
@@ -53,57 +53,51 @@ static sf_status write_material(const sf_staging *output, const sf_compression_k
     return sf_material_write_checked(output->aside, "material", &material, &comments, err);
 }
 
-static sf_status write_all(const sf_compression_job *job, const sf_compression_kind *kind, sf_study *study,
-                           void *fit, const sf_compression_config *config, char *warning, size_t size,
-                           sf_error *err) {
-    sf_staging *output = &study->output;
-    SF_TRY(sf_staging_begin(job->directory, kind->outputs, study->force, output, err));
+static sf_status write_all(const sf_compression_job *job, const sf_compression_kind *kind, void *fit,
+                           const sf_compression_config *config, char *warning, size_t size, sf_error *err) {
+    sf_staging *output = &job->study->output;
+    SF_TRY(sf_staging_begin(job->study->directory, kind->outputs, job->study->force, output, err));
     SF_CSV_FILE(points, output, "fit.csv", err);
     kind->points(&points, fit);
     SF_TRY(sf_csv_close(&points, err));
     if (kind->more)
-        SF_TRY(kind->more(job, output, fit, warning, size, err));
+        SF_TRY(kind->more(job, fit, warning, size, err));
     SF_JSON_FILE(json, output, "fit.json", err);
-    kind->json(&json, fit, job->path);
+    kind->json(&json, fit, job->study->input);
     sf_json_close(&json);
     SF_TRY(sf_staging_close(json.file, "fit.json", err));
     SF_TRY(write_material(output, kind, fit, config->name, config->thermal, err));
     return sf_staging_commit(output, err);
 }
 
-static sf_status fit_and_write(sf_study *study, const sf_compression_job *job,
-                               const sf_compression_kind *kind, const sf_compression_config *config,
-                               void *fit, sf_error *err) {
+static sf_status fit_and_write(const sf_compression_job *job, const sf_compression_kind *kind,
+                               const sf_compression_config *config, void *fit, sf_error *err) {
     char warning[512] = "";
     SF_TRY(kind->run(config, fit, err));
-    SF_TRY(write_all(job, kind, study, fit, config, warning, sizeof warning, err));
-    kind->describe(job->log, fit, false);
-    sf_study_close(study, kind->files, warning);
-    kind->warn(fit, &study->sink);
+    SF_TRY(write_all(job, kind, fit, config, warning, sizeof warning, err));
+    kind->describe(stdout, fit, false);
+    sf_study_close(job->study, kind->files, warning);
+    kind->warn(fit, &job->study->sink);
     return SF_OK;
 }
 
 static sf_status run(sf_study *study, void *own, sf_error *err) {
     sf_compression_job *job = own;
     SF_OWNED_BY(sf_compression_config_free) sf_compression_config config = {0};
-    job->path = study->input;
-    job->directory = study->directory;
-    job->command = study->command;
+    job->study = study;
     if (job->friction && !job->case_path)
         return SF_REFUSE(err, "--friction needs --simulate");
-    SF_TRY(sf_compression_config_read(job->path, &config, err));
+    SF_TRY(sf_compression_config_read(study->input, &config, err));
     const sf_compression_kind *kind = config.hyperfoam.terms > 0 ? &sf_compression_hyperfoam
                                       : config.form.form.curve   ? &sf_compression_form_kind
                                                                  : &sf_compression_tables;
-    void *fit =
-        check_job(job, study, kind, &config, err) == SF_OK ? sf_alloc(err, 1, kind->size, "the fit") : NULL;
-    if (fit) {
-        print_tests(job->log, &config);
-        fit_and_write(study, job, kind, &config, fit, err);
-        if (kind->free)
-            kind->free(fit);
-    }
-    free(fit);
+    SF_TRY(check_job(job, kind, &config, err));
+    SF_OWNED void *fit = sf_alloc(err, 1, kind->size, "the fit");
+    SF_TRY(err->status);
+    print_tests(&config);
+    fit_and_write(job, kind, &config, fit, err);
+    if (kind->free)
+        kind->free(fit);
     return err->status;
 }
 
@@ -118,6 +112,6 @@ int sf_fit_compression_main(int argc, char **argv) {
         .options = options,
         .run = run,
     };
-    sf_compression_job job = {.log = stdout};
+    sf_compression_job job = {0};
     return sf_study_main(argc, argv, &program, &job);
 }

@@ -8,11 +8,10 @@
 
 /* The request of the command; borrowed. */
 typedef struct sf_compression_job {
-    const char *path, *directory, *command; /* FIT.cfg as given, -o, the whole command line */
-    const char *case_path;                  /* --simulate: of a cube between platens (missile.motion,
-                                               geometry.parameters.side); NULL: none */
-    const char *friction; /* of the upper platen, in place of the case's; NULL: the case's */
-    FILE *log;            /* progress and summary */
+    struct sf_study *study; /* study/setup.h */
+    const char *case_path;  /* --simulate: of a cube between platens (missile.motion,
+                               geometry.parameters.side); NULL: none */
+    const char *friction;   /* of the upper platen, in place of the case's; NULL: the case's */
 } sf_compression_job;
 
 typedef struct sf_compression_kind {
@@ -32,8 +31,7 @@ typedef struct sf_compression_kind {
     void (*points)(sf_csv *csv, const void *fit);
     void (*json)(sf_json *json, const void *fit, const char *path);
     /* Further files; NULL: none. `warning` (size bytes): why there is no picture, or "". */
-    sf_status (*more)(const sf_compression_job *job, const sf_staging *output, void *fit, char *warning,
-                      size_t size, sf_error *err);
+    sf_status (*more)(const sf_compression_job *job, void *fit, char *warning, size_t size, sf_error *err);
     void (*warn)(const void *fit, const sf_sink *sink);
 } sf_compression_kind;
 

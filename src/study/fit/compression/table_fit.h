@@ -122,5 +122,5 @@ sf_table_estimate sf_table_estimate_of(const sf_estimate *estimate);
 const char *sf_table_misfit(const sf_side *side, char text[160]);
 
 /* fit.gp, fit.png and report.html. */
-sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging *output,
-                                const sf_table_result *result, char *warning, size_t size, sf_error *err);
+sf_status sf_table_report_write(const struct sf_study *study, const sf_table_result *result, char *warning,
+                                size_t size, sf_error *err);

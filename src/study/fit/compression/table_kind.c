@@ -8,7 +8,7 @@
 #include "material/low_density_foam.h"
 #include "io/replace.h"
 #include "study/material_file.h"
-#include "study/runner.h"
+#include "study/setup.h"
 #include <errno.h>
 
 static const double CARD_STEP = 5e-4; /* strain, of the check by the solver's law */
@@ -310,20 +310,19 @@ static sf_status simulate(sf_table_result *r, const sf_compression_job *job, con
     sf_table_test *test = &r->test[index];
     const sf_compression_test *lab = &test->test;
     double rates[SF_COMPRESSION_TESTS], turn_time = lab->largest_strain / SIMULATED_RATE;
-    char real[PATH_MAX], name[32], motion[TEXT], material[TEXT], side[64], spacing[64], end[64], friction[64],
-        moved[TEXT + 32];
+    char real[PATH_MAX], friction[64];
     test->speed_up = SIMULATED_RATE / lab->rate;
     const sf_foam_card fast = quicken(&r->card, test->speed_up, rates);
     const sf_material quick = sf_foam_material(&fast);
     if (!realpath(folder, real))
         return SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be found: %s", folder, strerror(errno));
-    snprintf(name, sizeof name, "test-%d", index + 1);
-    snprintf(motion, sizeof motion, "%s/%s-motion.csv", real, name);
-    snprintf(material, sizeof material, "%s/%s.cfg", real, name);
-    snprintf(moved, sizeof moved, "missile.motion=%s", motion);
-    snprintf(side, sizeof side, "geometry.parameters.side=%.12g", 1e3 * c->specimen.side);
-    snprintf(spacing, sizeof spacing, "geometry.parameters.spacing=%.12g", 1e3 * c->specimen.side / CELLS);
-    snprintf(end, sizeof end, "solver.end_time=%.12g s", 2 * turn_time);
+    SF_PRINTED(name, 32, "test-%d", index + 1);
+    SF_PRINTED(motion, TEXT, "%s/%s-motion.csv", real, name);
+    SF_PRINTED(material, TEXT, "%s/%s.cfg", real, name);
+    SF_PRINTED(moved, TEXT + 32, "missile.motion=%s", motion);
+    SF_PRINTED(side, 64, "geometry.parameters.side=%.12g", 1e3 * c->specimen.side);
+    SF_PRINTED(spacing, 64, "geometry.parameters.spacing=%.12g", 1e3 * c->specimen.side / CELLS);
+    SF_PRINTED(end, 64, "solver.end_time=%.12g s", 2 * turn_time);
     sf_runner runner = {.folder = real, .threads = 1};
     sf_runner_drop drop = {.label = name,
                            .case_path = job->case_path,
@@ -346,8 +345,8 @@ static sf_status simulate(sf_table_result *r, const sf_compression_job *job, con
 }
 
 /* Simulates the tests in DIR/simulation, which stays, and writes the curves. */
-static sf_status write_simulation(const sf_compression_job *job, const sf_staging *output, sf_table_result *r,
-                                  sf_error *err) {
+static sf_status write_simulation(const sf_compression_job *job, sf_table_result *r, sf_error *err) {
+    const sf_staging *output = &job->study->output;
     cube_test cube;
     if (!job->case_path)
         return SF_OK;
@@ -360,23 +359,22 @@ static sf_status write_simulation(const sf_compression_job *job, const sf_stagin
         const sf_table_test *test = &r->test[k];
         for (int i = 0; i < cube.count; i++)
             SF_CSV_LINE(&csv, k + 1, cube.strain[i], 1e-3 * cube.cube[i], 1e-3 * cube.point[i]);
-        fprintf(job->log,
-                "simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g "
-                "%% unloading\n",
-                test->test.rate, test->difference[0], test->difference[1]);
-        fflush(job->log);
+        printf("simulated cube against material point, %.4g 1/s: largest difference %.2g %% loading, %.2g "
+               "%% unloading\n",
+               test->test.rate, test->difference[0], test->difference[1]);
+        fflush(stdout);
     }
     r->simulated = true;
     sf_csv_close(&csv, err);
     return err->status;
 }
 
-static sf_status write_more(const sf_compression_job *job, const sf_staging *output, void *place,
-                            char *warning, size_t size, sf_error *err) {
+static sf_status write_more(const sf_compression_job *job, void *place, char *warning, size_t size,
+                            sf_error *err) {
     sf_table_result *r = place;
-    SF_TRY(write_curves(output, &r->fit, err));
-    SF_TRY(write_simulation(job, output, r, err));
-    return sf_table_report_write(job, output, r, warning, size, err);
+    SF_TRY(write_curves(&job->study->output, &r->fit, err));
+    SF_TRY(write_simulation(job, r, err));
+    return sf_table_report_write(job->study, r, warning, size, err);
 }
 
 /* ---- fit.json ---- */

@@ -5,6 +5,7 @@
 
 #include "build_info.h"
 #include "report/chart.h"
+#include "study/setup.h"
 
 static const char *const rates[SF_RATE_MODELS] = {
     "none: one curve for all rates",
@@ -324,12 +325,13 @@ static void put_limits(FILE *out, const sf_compression_fit *fit) {
                           e[SF_ESTIMATE_SHAPE].value, e[SF_ESTIMATE_HU].note);
 }
 
-sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging *output,
-                                const sf_table_result *r, char *warning, size_t size, sf_error *err) {
+sf_status sf_table_report_write(const sf_study *study, const sf_table_result *r, char *warning, size_t size,
+                                sf_error *err) {
     const sf_compression_fit *fit = &r->fit;
+    const sf_staging *output = &study->output;
     SF_TRY(write_picture(output, fit, warning, size, err));
     SF_PRINTED(title, 256, "%s: identification from compression tests", fit->data.config->name);
-    FILE *out = sf_html_begin(output, title, job->path, err);
+    FILE *out = sf_html_begin(output, title, study->input, err);
     SF_TRY(err->status);
     put_banner(out, fit);
     sf_chart_figure(out, output, "fit", "softfall-fit",
@@ -340,6 +342,6 @@ sf_status sf_table_report_write(const sf_compression_job *job, const sf_staging 
     put_choice(out, fit);
     put_simulation(out, r);
     put_limits(out, fit);
-    return sf_html_end(out, job->command, "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")",
+    return sf_html_end(out, study->command, "softfall-fit compression " SF_VERSION " (" SF_GIT_REVISION ")",
                        err);
 }
