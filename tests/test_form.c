@@ -242,20 +242,6 @@ static void values_that_make_no_curve_are_refused(void **state) {
     refuse(&sf_form_spline, SF_PARAMETER_SPLINE_6, 0.1, "does not rise");
 }
 
-static void the_solid_density_must_be_plausible(void **state) {
-    (void)state;
-    static const struct {
-        double foam, solid;
-        const char *reason;
-    } wrong[] = {{35, 35, "solids that foams"}, {35, 1e5, "solids that foams"}, {300, 500, "half solid"}};
-    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
-        sf_error err = SF_ERROR_INIT;
-        const sf_foam_form form = {.base = {.density = wrong[k].foam}, .solid_density = wrong[k].solid};
-        assert_int_equal(sf_foam_form_check_solid(&form, &err), SF_ERR_INPUT);
-        assert_non_null(strstr(err.text, wrong[k].reason));
-    }
-}
-
 /* A fine table in place of curve and densification holds no stress that the reader of a material file
  * refuses, with a densification that is next to a wall. */
 static void a_fine_table_ends_at_1_gpa(void **state) {
@@ -353,7 +339,6 @@ int main(void) {
         cmocka_unit_test(a_lock_up_of_its_own_continues_the_form),
         cmocka_unit_test(the_spline_bends_where_its_parameter_says),
         cmocka_unit_test(values_that_make_no_curve_are_refused),
-        cmocka_unit_test(the_solid_density_must_be_plausible),
         cmocka_unit_test(a_fine_table_ends_at_1_gpa),
         cmocka_unit_test(a_card_has_the_values),
     };

@@ -237,6 +237,10 @@ static void bad_input_gets_one_sentence(void **state) {
         {GOOD "curve_form = \"table\";", "but not table"},
         {GOOD "curve_form = \"gas_solid\";", "needs solid_density"},
         {GOOD "curve_form = \"gas_solid\"; solid_density = \"50 kg/m3\";", "solids that foams are made of"},
+        {GOOD "curve_form = \"gas_solid\"; solid_density = \"1e5 kg/m3\";", "solids that foams are made of"},
+        {"density = \"300 kg/m3\"; tests = ( { file = \"t.csv\"; rate = \"0.01 1/s\"; } );\n"
+         "curve_form = \"gas_solid\"; solid_density = \"500 kg/m3\";",
+         "less than half solid"},
         {GOOD "curve_form = \"gas\"; rate_model = \"factor\";", "needs tests at two rates"},
         {GOOD "curve_form = \"gas\"; rate_model = \"log\";", "it must be one of none, factor, maxwell, both"},
         {GOOD "curve_form = \"gas\"; unknown = ( \"rusch_A\" );", "neither E nor a parameter of"},

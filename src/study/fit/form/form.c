@@ -196,18 +196,6 @@ static const double USUAL_SOLID = 0.05;     /* solid fraction, where it is not k
 static const double RATE_FACTOR = 0.1;      /* median where the start material has none */
 static const double RATE_REFERENCE = 1;     /* s-1, the same; drops are far above */
 
-sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err) {
-    double solid = form->solid_density, foam = form->base.density;
-    if (!(solid >= LEAST_SOLID && solid <= MOST_SOLID))
-        return SF_REFUSE(err, "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3",
-                         solid, LEAST_SOLID, MOST_SOLID);
-    if (!(foam < MOST_FRACTION * solid))
-        return SF_REFUSE(
-            err, "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than half solid",
-            solid, foam);
-    return SF_OK;
-}
-
 /* Parameters that are members of the card. */
 static const struct {
     sf_foam_parameter parameter;
@@ -303,12 +291,18 @@ sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_f
 
 sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
                                   sf_error *err) {
-    sf_error inner = SF_ERROR_INIT;
-    SF_TRY(
-        sf_config_quantity(config, root, "solid_density", SF_DENSITY, false, 0, &form->solid_density, err));
-    if (form->solid_density > 0 && sf_foam_form_check_solid(form, &inner) != SF_OK)
-        return sf_config_refuse(config, config_setting_get_member(root, "solid_density"), err, "%s",
-                                inner.text);
+    sf_config_item *item = config_setting_get_member(root, "solid_density");
+    double *solid = &form->solid_density, foam = form->base.density;
+    SF_TRY(sf_config_quantity(config, root, "solid_density", SF_DENSITY, false, 0, solid, err));
+    if (item && !(*solid >= LEAST_SOLID && *solid <= MOST_SOLID))
+        return sf_config_refuse(
+            config, item, err, "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3",
+            *solid, LEAST_SOLID, MOST_SOLID);
+    if (item && !(foam < MOST_FRACTION * *solid))
+        return sf_config_refuse(config, item, err,
+                                "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than "
+                                "half solid",
+                                *solid, foam);
     return SF_OK;
 }
 

@@ -190,11 +190,8 @@ typedef struct sf_foam_form {
     double solid_density;       /* kg m-3, of the solid in the cell walls; 0: not known */
 } sf_foam_form;
 
-/* SF_ERR_INPUT: solid_density is not plausible for this foam (the foam must be lighter than half of it, and a
- * solid has between 300 and 20,000 kg/m3). */
-sf_status sf_foam_form_check_solid(const sf_foam_form *form, sf_error *err);
-
-/* The key solid_density of a fit file, if it is there, with that check. */
+/* The key solid_density of a fit file, if it is there. SF_ERR_INPUT: it is not plausible for this foam (the
+ * foam must be lighter than half of it, and a solid has between 300 and 20,000 kg/m3). */
 sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
                                   sf_error *err);
 /* Checks that the solid fraction is known in one way, where the form has one: by solid_density in `root`, as
