@@ -69,10 +69,8 @@ sf_status sf_spline_init(sf_spline *spline, int break_count, const double *break
     spline->primary = gsl_bspline_alloc(SF_SPLINE_ORDER + 1, b);
     spline->higher = gsl_vector_alloc(n + 1);
     spline->slope = gsl_matrix_alloc(n, 2);
-    if (!spline->base || !spline->primary || !spline->higher || !spline->slope) {
-        sf_spline_free(spline);
+    if (!spline->base || !spline->primary || !spline->higher || !spline->slope)
         return SF_NO_MEMORY(err, "a spline of %d coefficients", spline->count);
-    }
     gsl_vector_const_view places = gsl_vector_const_view_array(breaks, b);
     gsl_bspline_knots(&places.vector, spline->base);
     gsl_bspline_knots(&places.vector, spline->primary);

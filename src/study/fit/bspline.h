@@ -41,6 +41,7 @@ double sf_spline_grade(sf_spline_grading grading, double low, double high, doubl
 /* Part of the intervals over [0, high] that lie below `strain`, SF_GRADING_FOAM. */
 double sf_spline_part(double high, double strain);
 
+/* Release with sf_spline_free, also on failure. */
 sf_status sf_spline_init(sf_spline *spline, int break_count, const double *breaks, sf_error *err);
 void sf_spline_free(sf_spline *spline);
 

@@ -39,21 +39,21 @@ static double pause_before(const sf_cycle_record *r, int i) {
 static sf_status take_tables(const char *path, sf_cycle_record *r, sf_error *err) {
     const sf_table_layout layouts[2] = {sf_case_curve_layout("record of cycles", NULL), time_layout()};
     SF_OWNED_BY(sf_table_free) sf_table stress = {0}, time = {0};
-    if (sf_table_read(path, &layouts[0], &stress, err) == SF_OK &&
-        sf_table_read(path, &layouts[1], &time, err) == SF_OK && stress.count != time.count)
-        SF_REFUSE(err, "%s: %lld rows with stress, %lld with time", path, (long long)stress.count,
-                  (long long)time.count);
-    if (err->status == SF_OK) {
-        r->count = (int)stress.count;
-        r->strain = stress.value[0];
-        r->stress = stress.value[1];
-        r->time = time.value[0];
-        stress.value[0] = stress.value[1] = time.value[0] = NULL;
-    }
-    for (int i = 0; i < r->count && err->status == SF_OK; i++) {
+    SF_TRY(sf_table_read(path, &layouts[0], &stress, err));
+    SF_TRY(sf_table_read(path, &layouts[1], &time, err));
+    if (stress.count != time.count)
+        return SF_REFUSE(err, "%s: %lld rows with stress, %lld with time", path, (long long)stress.count,
+                         (long long)time.count);
+    r->count = (int)stress.count;
+    r->strain = stress.value[0];
+    r->stress = stress.value[1];
+    r->time = time.value[0];
+    stress.value[0] = stress.value[1] = time.value[0] = NULL;
+    for (int i = 0; i < r->count; i++) {
         if (!(r->strain[i] < LIMIT) || (i > 0 && !(r->time[i] > r->time[i - 1])))
-            SF_REFUSE(err, "%s:%d: time %g s after %g s, strain %g: time must rise, strain stay below %g",
-                      path, stress.line[i], r->time[i], i > 0 ? r->time[i - 1] : 0, r->strain[i], LIMIT);
+            return SF_REFUSE(
+                err, "%s:%d: time %g s after %g s, strain %g: time must rise, strain stay below %g", path,
+                stress.line[i], r->time[i], i > 0 ? r->time[i - 1] : 0, r->strain[i], LIMIT);
         r->strain[i] = fmax(0, r->strain[i]);
         r->largest_stress = fmax(r->largest_stress, r->stress[i]);
     }

@@ -68,18 +68,13 @@ sf_status sf_compression_data_init(const sf_compression_config *config, sf_compr
     for (int k = 0; k < config->test_count; k++)
         data->count += config->test[k].count;
     unsigned long n = (unsigned long)data->count;
-    SF_ALLOC_ALL(err, "test points", SF_ROOM(data->test, n), SF_ROOM(data->unloading, n),
-                 SF_ROOM(data->strain, 4 * n));
-    if (err->status == SF_OK) {
-        data->stress = data->strain + n;
-        data->smooth = data->stress + n;
-        data->sigma = data->smooth + n;
-        fill(data);
-        estimate(data, err);
-    }
-    if (err->status != SF_OK)
-        sf_compression_data_free(data);
-    return err->status;
+    SF_TRY(SF_ALLOC_ALL(err, "test points", SF_ROOM(data->test, n), SF_ROOM(data->unloading, n),
+                        SF_ROOM(data->strain, 4 * n)));
+    data->stress = data->strain + n;
+    data->smooth = data->stress + n;
+    data->sigma = data->smooth + n;
+    fill(data);
+    return estimate(data, err);
 }
 
 void sf_compression_data_free(sf_compression_data *data) {
@@ -475,11 +470,8 @@ sf_status sf_compression_model_init(const sf_compression_data *data, sf_compress
     model->curve_count = form.rate == SF_RATE_CURVES ? data->config->test_count : 1;
     SF_TRY(make_spline(model, err));
     unsigned long items = (unsigned long)data->count * (unsigned long)model->spline.count;
-    SF_ALLOC_ALL(err, "spline rows", SF_ROOM(model->value_row, items), SF_ROOM(model->area_row, items));
-    if (err->status != SF_OK) {
-        sf_compression_model_free(model);
-        return err->status;
-    }
+    SF_TRY(
+        SF_ALLOC_ALL(err, "spline rows", SF_ROOM(model->value_row, items), SF_ROOM(model->area_row, items)));
     set_ranges(model);
     fill_rows(model);
     return SF_OK;

@@ -30,6 +30,7 @@ typedef struct sf_compression_data {
     double largest; /* Pa, largest stress of all points */
 } sf_compression_data;
 
+/* Release with sf_compression_data_free, also on failure. */
 sf_status sf_compression_data_init(const sf_compression_config *config, sf_compression_data *data,
                                    sf_error *err);
 void sf_compression_data_free(sf_compression_data *data);
@@ -80,6 +81,7 @@ typedef struct sf_compression_model {
     double peak_row[SF_COMPRESSION_TESTS][2][SF_SPLINE_COEFFICIENTS]; /* value, integral at the turn */
 } sf_compression_model;
 
+/* Release with sf_compression_model_free, also on failure. */
 sf_status sf_compression_model_init(const sf_compression_data *data, sf_compression_form form,
                                     sf_compression_model *model, sf_error *err);
 void sf_compression_model_free(sf_compression_model *model);

@@ -366,7 +366,7 @@ static double search_unloading(const sf_compression_model *model, gsl_vector *x,
 
 /* Unloading with ALPHA, from what was found without it: taken if the points ask for it (BIC). */
 static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
-    sf_compression_model model;
+    SF_OWNED_BY(sf_compression_model_free) sf_compression_model model = {0};
     const sf_compression_form form = {fit->model.form.rate, fit->model.form.rule, true};
     double n = points_of(&fit->data, true);
     if (fit->model.form.alpha)
@@ -388,7 +388,6 @@ static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
             x = without;
         }
     }
-    sf_compression_model_free(&model);
     return err->status;
 }
 
