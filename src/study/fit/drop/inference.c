@@ -232,15 +232,6 @@ static bool is_of(const sf_drop_fit *fit, int row, int drop) {
     return drop >= 0 && row >= fit->row[drop] && row < fit->row[drop + 1];
 }
 
-/* Which data are not of `left_out` (-1: all); their number. */
-static int select_data(const sf_drop_inference *in, int left_out, int *which) {
-    int count = 0;
-    for (int i = 0; i < in->data; i++)
-        if (!is_of(in->fit, in->data_row[i], left_out))
-            which[count++] = i;
-    return count;
-}
-
 /* Derivatives of a datum by the errors x: first those that all drops share, by number, then each drop's. */
 static void fill_effects(const sf_drop_fit *fit, int row, double *effect) {
     for (int d = 0; d < fit->measured_drops; d++) {
@@ -251,7 +242,7 @@ static void fill_effects(const sf_drop_fit *fit, int row, double *effect) {
     }
 }
 
-/* The discrepancy of the data that are not of one drop. */
+/* The discrepancy of the data that are not of one drop (-1: of all). */
 static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf_discrepancy *out,
                                    sf_error *err) {
     unsigned long n = (unsigned long)in->data;
@@ -265,7 +256,10 @@ static sf_status build_discrepancy(const sf_drop_inference *in, int left_out, sf
         place[b] = PLACE_WIDTH * b;
     sf_kernel_fill(PLACES, place, LENGTH, kernel);
     SF_TRY(err->status);
-    int count = select_data(in, left_out, which);
+    int count = 0;
+    for (int i = 0; i < in->data; i++)
+        if (!is_of(in->fit, in->data_row[i], left_out))
+            which[count++] = i;
     for (int i = 0; i < count; i++) {
         memcpy(&jacobian[i * PLACES], &in->jacobian[in->data_row[which[i]] * PLACES],
                PLACES * sizeof *jacobian);

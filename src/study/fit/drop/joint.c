@@ -326,11 +326,10 @@ static sf_status read_cushion(const sf_config *config, sf_config_item *entry, sf
         SF_TRY(read_energy(config, energy, cushion, err));
     SF_TRY(sf_config_file(config, entry, "file", false, &path, err));
     if (path && read_table(path, cushion, &inner) != SF_OK)
-        SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
-                config_setting_source_line(entry));
-    else if (path)
-        sf_plain_hash(path, NULL, SF_PLAIN_TEXT, &cushion->file, err);
-    SF_TRY(err->status);
+        return SF_FAIL(err, inner.status, "%s (named at %s:%u)", inner.text, config->path,
+                       config_setting_source_line(entry));
+    if (path)
+        SF_TRY(sf_plain_hash(path, NULL, SF_PLAIN_TEXT, &cushion->file, err));
     SF_TRY(check_cushion(config, entry, joint, err));
     joint->rows += cushion->count;
     joint->cushion_count++;
