@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/folder.h"
 #include "study/fit/drop/drop_report.h"
-#include "study/setup.h"
 #include <omp.h>
 
 /* The models of the file, each with its fit and posterior. */
@@ -55,12 +54,11 @@ static sf_status average_models(models *all, sf_error *err) {
             list[count++] = &all->inference[m];
     SF_TRY(sf_drop_average_build(count, list, all->input[0].seed, a, err));
     for (int m = 0; m < all->count; m++) {
-        sf_failed_model *failed = &a->failure[a->failed];
         if (all->failure[m].status == SF_OK)
             continue;
+        sf_failed_model *failed = &a->failure[a->failed++];
         failed->label = all->input[m].label;
         snprintf(failed->sentence, sizeof failed->sentence, "%.500s", all->failure[m].text);
-        a->failed++;
     }
     return SF_OK;
 }
@@ -120,8 +118,7 @@ static sf_status commit(const char *directory, const sf_drop_average *average, s
 static sf_status report(sf_study *study, const models *all, char *warning, size_t size, sf_error *err) {
     const sf_drop_average *average = all->average.models > 0 ? &all->average : NULL;
     const sf_drop_fit *best = average ? average->model[sf_drop_average_best(average)]->fit : &all->fit[0];
-    SF_TRY(sf_drop_report_write(best, average, study->input, study->command, &study->output, warning, size,
-                                err));
+    SF_TRY(sf_drop_report_write(best, average, study, warning, size, err));
     SF_TRY(commit(study->directory, &all->average, &study->output, err));
     sf_drop_report_print(best, stdout);
     return average ? sf_inference_print(stdout, average, err) : SF_OK;

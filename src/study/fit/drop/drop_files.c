@@ -269,28 +269,29 @@ static void put_provenance(FILE *f, const sf_drop_fit *fit, const sf_drop_averag
             low, high, in->form.curve->formula);
 }
 
-static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *average,
-                                const char *input_path, const sf_staging *output, sf_error *err) {
+static sf_status write_material(const sf_drop_fit *fit, const sf_drop_average *average, const sf_study *study,
+                                sf_error *err) {
     SF_OWNED_BY(sf_foam_card_free) sf_foam_card card = {0};
     double low;
     SF_OWNED SF_TEXT_STREAM(f, provenance, size);
     if (f)
-        put_provenance(f, fit, average, input_path);
+        put_provenance(f, fit, average, study->input);
     if (!f || fclose(f) != 0)
         return SF_NO_MEMORY(err, "the material's comments");
     const sf_material_text text = {.title = fit->input->title, .provenance = provenance};
     SF_TRY(sf_drop_fit_card(fit->input, fit->result.u, &card, err));
     sf_drop_informed_strains(fit, &low, &card.informed_strain);
     const sf_material material = sf_foam_material(&card);
-    return sf_material_write_checked(output->aside, fit->input->material_name, &material, &text, err);
+    return sf_material_write_checked(study->output.aside, fit->input->material_name, &material, &text, err);
 }
 
-sf_status sf_drop_files_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
-                              const sf_staging *output, char *warning, size_t size, sf_error *err) {
+sf_status sf_drop_files_write(const sf_drop_fit *fit, const sf_drop_average *average, const sf_study *study,
+                              char *warning, size_t size, sf_error *err) {
+    const sf_staging *output = &study->output;
     strain_bin bin[SF_FIT_STRAIN_BINS];
     SF_TRY(list_strain_bins(fit, bin, err));
     SF_TRY(write_curve(bin, output, err));
     SF_TRY(write_drops(fit, output, err));
     SF_TRY(write_picture(fit, bin, output, warning, size, err));
-    return write_material(fit, average, input_path, output, err);
+    return write_material(fit, average, study, err);
 }

@@ -307,13 +307,13 @@ static void put_curve(FILE *f, const sf_drop_fit *fit) {
     }
 }
 
-static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
-                              const char *command, const sf_staging *output, sf_error *err) {
+static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *average, const sf_study *study,
+                              sf_error *err) {
     SF_PRINTED(title, 256, "Identification from drops: %s", fit->input->material_name);
-    FILE *f = sf_html_begin(output, title, input_path, err);
+    FILE *f = sf_html_begin(&study->output, title, study->input, err);
     SF_TRY(err->status);
     put_banner(f, fit);
-    sf_chart_figure(f, output, "fit", "softfall-fit",
+    sf_chart_figure(f, &study->output, "fit", "softfall-fit",
                     "Identified curve with its 95 % band, information of the drops about it, and the drops");
     if (average)
         sf_inference_html(f, average, err);
@@ -326,7 +326,7 @@ static sf_status write_report(const sf_drop_fit *fit, const sf_drop_average *ave
     put_parameters(f, fit);
     put_sensitivities(f, fit);
     put_curve(f, fit);
-    return sf_html_end(f, command, "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")", err);
+    return sf_html_end(f, study->command, "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }
 
 /* ---- fit.json ---- */
@@ -422,11 +422,11 @@ static void json_parameters(sf_json *j, const sf_drop_fit *fit) {
     }
 }
 
-static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
-                            const sf_staging *output, sf_error *err) {
-    SF_JSON_FILE(j, output, "fit.json", err);
+static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *average, const sf_study *study,
+                            sf_error *err) {
+    SF_JSON_FILE(j, &study->output, "fit.json", err);
     SF_JSON_TEXTS(&j, {"program", "softfall-fit drop " SF_VERSION " (" SF_GIT_REVISION ")"},
-                  {"input", input_path}, {"input_text", fit->input->text});
+                  {"input", study->input}, {"input_text", fit->input->text});
     sf_json_bool(&j, "converged", fit->result.converged);
     if (fit->result.reason)
         sf_json_text(&j, "reason", fit->result.reason);
@@ -443,14 +443,13 @@ static sf_status write_json(const sf_drop_fit *fit, const sf_drop_average *avera
     return sf_staging_close(j.file, "fit.json", err);
 }
 
-sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
-                               const char *command, const sf_staging *output, char *warning, size_t size,
-                               sf_error *err) {
-    SF_TRY(sf_drop_files_write(fit, average, input_path, output, warning, size, err));
-    SF_TRY(write_json(fit, average, input_path, output, err));
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *average, const sf_study *study,
+                               char *warning, size_t size, sf_error *err) {
+    SF_TRY(sf_drop_files_write(fit, average, study, warning, size, err));
+    SF_TRY(write_json(fit, average, study, err));
     if (average)
-        SF_TRY(sf_inference_csv(average, output, err));
-    return write_report(fit, average, input_path, command, output, err);
+        SF_TRY(sf_inference_csv(average, &study->output, err));
+    return write_report(fit, average, study, err);
 }
 
 /* ---- the terminal ---- */

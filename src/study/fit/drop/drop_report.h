@@ -2,14 +2,12 @@
 /* The output of `softfall-fit drop`: report.html, fit.json, fit.png with its data, and the material file. */
 #pragma once
 #include "study/fit/drop/inference.h"
+#include "study/setup.h"
 
-/* Writes everything into the staging directory; `fit` is that of the material, `average` the posterior of all
- * models (NULL: none); `command`: the words of the command; `warning` (size bytes) says why there is no
- * picture, or is
- * "". */
-sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
-                               const char *command, const sf_staging *output, char *warning, size_t size,
-                               sf_error *err);
+/* Writes everything into the staging directory of the study; `fit` is that of the material, `average` the
+ * posterior of all models (NULL: none); `warning` (size bytes) says why there is no picture, or is "". */
+sf_status sf_drop_report_write(const sf_drop_fit *fit, const sf_drop_average *average, const sf_study *study,
+                               char *warning, size_t size, sf_error *err);
 
 /* The short form, for the terminal. */
 void sf_drop_report_print(const sf_drop_fit *fit, FILE *file);
@@ -52,8 +50,8 @@ typedef struct sf_chain_shown {
 int sf_drop_chain_list(const sf_drop_fit *fit, sf_chain_shown shown[SF_SIGNAL_CHAIN]);
 
 /* fit-curve.csv, fit-drops.csv, fit.gp with fit.png, and the material file with its comments. */
-sf_status sf_drop_files_write(const sf_drop_fit *fit, const sf_drop_average *average, const char *input_path,
-                              const sf_staging *output, char *warning, size_t size, sf_error *err);
+sf_status sf_drop_files_write(const sf_drop_fit *fit, const sf_drop_average *average, const sf_study *study,
+                              char *warning, size_t size, sf_error *err);
 
 /* Runs `softfall-fit drop FIT.cfg -o DIR` and returns the exit code; argv[0] is the name of the program. */
 int sf_fit_drop_main(int argc, char **argv);
