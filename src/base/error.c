@@ -72,6 +72,7 @@ void sf_release(void *pointer) {
     void *block;
     memcpy(&block, pointer, sizeof block);
     free(block);
+    memset(pointer, 0, sizeof block);
 }
 
 void *sf_keep(void *block, const sf_error *err) {

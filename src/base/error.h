@@ -76,7 +76,7 @@ void sf_error_clean(char *sentence);
 #define SF_OWNED SF_OWNED_BY(sf_release)
 #define SF_OWNED_BY(function) __attribute__((cleanup(function)))
 
-/* Calls free() with the pointer at this address. */
+/* Calls free() with the pointer at this address, which becomes NULL. */
 void sf_release(void *pointer);
 
 /* Returns the block (from malloc); frees it and returns NULL after a failure. */

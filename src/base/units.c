@@ -299,17 +299,13 @@ sf_status sf_units_open(sf_units **units, sf_error *err) {
 void sf_units_close(sf_units **units) {
     if (!*units)
         return;
-    if ((*units)->borrowed) {
-        free(*units);
-        *units = NULL;
-        return;
+    if (!(*units)->borrowed) {
+        for (int k = 0; k < SF_QUANTITY_COUNT; k++)
+            ut_free((*units)->si[k]);
+        ut_free_system((*units)->system);
+        ut_set_error_message_handler((*units)->previous);
     }
-    for (int k = 0; k < SF_QUANTITY_COUNT; k++)
-        ut_free((*units)->si[k]);
-    ut_free_system((*units)->system);
-    ut_set_error_message_handler((*units)->previous);
-    free(*units);
-    *units = NULL;
+    sf_release(units);
 }
 
 /* UDUNITS calls a unit and its reciprocal convertible; a period is no rate, so only the quotient decides. */

@@ -260,11 +260,9 @@ static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h
                        expected == H5T_FLOAT ? "floating-point" : "integer");
     SF_TRY(check_shape(file, path, set, size, rank, dims, &count, err));
     *data = sf_alloc(err, count, type == SF_H5_U8 ? 1 : type == SF_H5_I32 ? 4 : 8, path);
-    if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0) {
+    if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0)
         SF_FAIL(err, SF_ERR_IO, "%s: %s cannot be read", file->path, path);
-        free(*data);
-        *data = NULL;
-    }
+    *data = sf_keep(*data, err);
     return err->status;
 }
 

@@ -87,8 +87,7 @@ void sf_plain_clear(void) {
     }
     for (size_t k = 0; k < list.count; k++)
         free((char *)list.entry[k].path);
-    free(list.entry);
-    list.entry = NULL;
+    sf_release(&list.entry);
     list.count = 0;
     pthread_mutex_unlock(&list.lock);
 }
@@ -240,10 +239,8 @@ static sf_status take(reading *r, sf_error *err) {
     SF_TRY(pass(r->path, r->what, &r->file, &info, err));
     read_all(r, &info, err);
     close(r->file);
-    if (err->status != SF_OK || !r->keep) {
-        free(r->text);
-        r->text = NULL;
-    }
+    if (err->status != SF_OK || !r->keep)
+        sf_release(&r->text);
     return err->status;
 }
 

@@ -104,8 +104,7 @@ sf_status sf_staging_begin(const char *directory, const char *const *names, bool
     }
     if (output->aside && !mkdtemp(output->aside)) {
         SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be written in: %s", directory, strerror(errno));
-        free(output->aside);
-        output->aside = NULL;
+        sf_release(&output->aside);
     }
     if (output->aside && sf_folder_own(output->aside, err) == SF_OK)
         return SF_OK;
@@ -157,8 +156,7 @@ sf_status sf_staging_commit(sf_staging *output, sf_error *err) {
         sf_replace_sync_name(output->directory);
     output->created = false;
     remove_flat(AT_FDCWD, output->aside);
-    free(output->aside);
-    output->aside = NULL;
+    sf_release(&output->aside);
     return SF_OK;
 }
 
@@ -215,8 +213,7 @@ sf_status sf_tree_begin(const char *path, sf_tree *tree, sf_error *err) {
     }
     if (!mkdtemp(tree->aside)) {
         SF_FAIL(err, SF_ERR_IO, "the folder %s cannot be made: %s", path, strerror(errno));
-        free(tree->aside);
-        tree->aside = NULL;
+        sf_release(&tree->aside);
         return err->status;
     }
     open_to_others(tree->aside);
@@ -295,8 +292,7 @@ static sf_status move_into(sf_tree *tree, sf_error *err) {
 sf_status sf_tree_commit(sf_tree *tree, sf_error *err) {
     SF_TRY(tree->there ? move_into(tree, err) : move_one(tree->aside, tree->path, err));
     sf_replace_sync_name(tree->path);
-    free(tree->aside);
-    tree->aside = NULL;
+    sf_release(&tree->aside);
     return SF_OK;
 }
 

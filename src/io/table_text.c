@@ -111,10 +111,7 @@ sf_status sf_table_text_read(const char *path, const char *what, char **text, sf
                   path);
     if (err->status == SF_OK)
         convert_mme(path, what, text, err);
-    if (err->status != SF_OK) {
-        free(*text);
-        *text = NULL;
-    }
+    *text = sf_keep(*text, err);
     return err->status;
 }
 

@@ -377,11 +377,9 @@ static const sf_history_variable history[] = SF_FOAM_HISTORY(has_rates);
 
 static sf_status build(const void *card, void **numbers, sf_error *err) {
     sf_foam *foam = sf_alloc(err, 1, sizeof *foam, "foam");
-    if (foam && sf_foam_build(card, foam, err) != SF_OK) {
-        free(foam);
-        foam = NULL;
-    }
-    *numbers = foam;
+    if (foam)
+        sf_foam_build(card, foam, err);
+    *numbers = sf_keep(foam, err);
     return err->status;
 }
 

@@ -300,23 +300,20 @@ void sf_model_free(sf_model *model) {
 }
 
 void sf_model_drop_mesh(sf_model *model) {
-    SF_FREE(model->cell_type, model->cell_ptr, model->cell_node);
-    model->cell_type = NULL;
-    model->cell_ptr = NULL;
-    model->cell_node = NULL;
+    sf_release(&model->cell_type);
+    sf_release(&model->cell_ptr);
+    sf_release(&model->cell_node);
     model->cell_count = model->cell_nnz = 0;
 }
 
 void sf_model_drop_domain_nodes(sf_model *model) {
-    SF_FREE(model->domain_node, model->support);
-    model->domain_node = NULL;
-    model->support = NULL;
+    sf_release(&model->domain_node);
+    sf_release(&model->support);
 }
 
 void sf_model_drop_edges(sf_model *model) {
-    SF_FREE(model->edge_ptr, model->edge_node);
-    model->edge_ptr = NULL;
-    model->edge_node = NULL;
+    sf_release(&model->edge_ptr);
+    sf_release(&model->edge_node);
 }
 
 /* The nodes of such a plane are held along its normal, but not as part of the base. */

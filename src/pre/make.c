@@ -65,8 +65,7 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
         sf_gmsh_read_hull(session, c->surface_group, c->length_unit, surface, err);
     if (err->status == SF_OK && read_supports(session, c, mesh, support, err) == SF_OK)
         turn_up(c->up, mesh, surface);
-    free(c->geometry_files);
-    c->geometry_files = NULL;
+    sf_release(&c->geometry_files);
     if (err->status == SF_OK && !(c->geometry_files = strdup(session->files)))
         SF_NO_MEMORY(err, "the files of a geometry");
     if (session)

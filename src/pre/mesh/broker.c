@@ -81,8 +81,7 @@ static int copy(sf_broker *b, sf_broker_file *f) {
     for (size_t k = 0; k < b->count; k++) {
         const sf_broker_file *other = &b->file[k];
         if (other->text && other->size == f->size && memcmp(other->text, f->text, f->size) == 0) {
-            free(f->text);
-            f->text = NULL;
+            sf_release(&f->text);
             f->is_text = false;
             f->memory = other->memory;
             return 0;

@@ -195,8 +195,7 @@ static sf_status build_sets(const sf_raw_mesh *raw, const sf_tag_index *index, c
             sf_alloc(err, SF_RAW_FACE * (size_t)count_faces(raw, g), sizeof *set->face, "surface faces");
         int64_t count = set->face ? mark_group(raw, index, number, g, mark, set) : 0;
         if (count == 0) {
-            free(set->face);
-            set->face = NULL;
+            sf_release(&set->face);
             continue;
         }
         mesh->set_count++;
