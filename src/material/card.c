@@ -35,7 +35,8 @@ double sf_material_density(const sf_material *material) {
 }
 
 double sf_material_informed(const sf_material *material) {
-    return material->law->informed_strain(material->card);
+    double informed = member(material, material->law->informed);
+    return informed > 0 ? informed : material->law->data_end(material->card);
 }
 
 double sf_material_rest_modulus(const sf_material *material) {

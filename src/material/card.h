@@ -100,6 +100,7 @@ typedef struct sf_law {
     size_t density; /* offset of the double: kg m-3, undeformed */
     size_t length;  /* m, a fixed length of damping, 0: each node's spacing; SIZE_MAX: no such member */
     size_t curves;  /* of sf_law_curves; SIZE_MAX: none */
+    size_t informed; /* -, largest compressive strain about which the data inform; 0: data_end */
     double (*rest_modulus)(const void *card); /* Pa: the least stiffness of the stabilisation */
     /* Rules beyond the bounds of each parameter; SF_ERR_MODEL. NULL: none. */
     sf_status (*check)(const void *card, sf_error *err);
@@ -112,8 +113,6 @@ typedef struct sf_law {
     double (*limit_strain)(const void *card);
     const char *data_end_words; /* before that strain in a sentence: "the compression table ends at" */
     const char *stiffness_keys; /* those of the stiffness at rest: "E, curve" */
-    /* -, largest compressive strain about which the data inform, as the card says or data_end. */
-    double (*informed_strain)(const void *card);
     /* Bounds on the tangent (Pa) and the viscosity (Pa s) of an undeformed point with this damping length
      * (m): the first time step. */
     void (*rest_bounds)(const void *card, double length, double *tangent, double *viscosity);
@@ -168,7 +167,7 @@ sf_law_curves *sf_material_curves(const sf_material *material);
 void sf_law_curves_free(sf_law_curves *curves);
 
 double sf_material_density(const sf_material *material);      /* kg m-3 */
-double sf_material_informed(const sf_material *material);     /* -, see sf_law.informed_strain */
+double sf_material_informed(const sf_material *material);     /* -, see sf_law.informed */
 double sf_material_rest_modulus(const sf_material *material); /* Pa */
 /* m, L of damping at a node with this spacing (m). */
 double sf_material_length(const sf_material *material, double spacing);

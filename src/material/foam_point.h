@@ -93,7 +93,7 @@ double sf_foam_point_softening(const void *numbers, double (*history)[SF_LANES],
     .card_size = sizeof(card), .parameter = parameters,                                                      \
     .parameter_count = sizeof parameters / sizeof parameters[0], .density = offsetof(card, density),         \
     .length = offsetof(card, damp_length), .rest_modulus = rest_modulus, .check = check,                     \
-    .check_keys = check_keys, .data_end = data_end, .informed_strain = informed_strain,                      \
+    .check_keys = check_keys, .data_end = data_end, .informed = offsetof(card, informed_strain),             \
     .rest_bounds = rest_bounds, .history = history, .history_count = sizeof history / sizeof history[0],     \
     .build = build, .energy = energy, .shift = sf_foam_shift, .rest = sf_foam_point_rest,                    \
     .softening = sf_foam_point_softening

@@ -124,11 +124,6 @@ static double data_end(const void *card) {
     return ((const sf_hyperfoam_card *)card)->stable_to;
 }
 
-static double informed_strain(const void *card) {
-    double informed = ((const sf_hyperfoam_card *)card)->informed_strain;
-    return informed > 0 ? informed : data_end(card);
-}
-
 static double rest_modulus(const void *card) {
     return sf_hyperfoam_build(card).rest;
 }
@@ -335,13 +330,18 @@ typedef struct path {
     const char *name;
     int held;   /* directions with a given stretch; the others are free of stress */
     int axes;   /* of them, how many change */
-    bool pulls; /* tension */
+    enum { PRESSED, PULLED, SHEARED } way; /* SHEARED: the second is stretched at constant volume */
 } path;
 static const path paths[] = {
-    {"uniaxial compression", 1, 1, false},   {"uniaxial tension", 1, 1, true},
-    {"biaxial compression", 2, 2, false},    {"biaxial tension", 2, 2, true},
-    {"confined compression", 3, 1, false},   {"confined tension", 3, 1, true},
-    {"volumetric compression", 3, 3, false}, {"volumetric tension", 3, 3, true},
+    {"uniaxial compression", 1, 1, PRESSED},
+    {"uniaxial tension", 1, 1, PULLED},
+    {"biaxial compression", 2, 2, PRESSED},
+    {"biaxial tension", 2, 2, PULLED},
+    {"confined compression", 3, 1, PRESSED},
+    {"confined tension", 3, 1, PULLED},
+    {"volumetric compression", 3, 3, PRESSED},
+    {"volumetric tension", 3, 3, PULLED},
+    {"shear", 3, 1, SHEARED},
 };
 
 /* Contribution of term k to the form v . D v. */
@@ -409,7 +409,9 @@ static bool path_fails(const sf_hyperfoam *foam, const path *p, double limit, sf
     for (int k = 0; k <= STEPS; k++) {
         double strain = limit * k / STEPS;
         for (int i = 0; i < p->axes; i++)
-            stretch[i] = p->pulls ? 1 + strain : 1 - strain;
+            stretch[i] = p->way == PULLED ? 1 + strain : 1 - strain;
+        if (p->way == SHEARED)
+            stretch[1] = 1 / stretch[0];
         bool found = p->held == 3 || sf_hyperfoam_release(foam, p->held, stretch);
         out->term = 0;
         if (stable(foam, stretch, &out->term) && found)
@@ -421,23 +423,9 @@ static bool path_fails(const sf_hyperfoam *foam, const path *p, double limit, sf
     return false;
 }
 
-/* At constant volume: one direction compressed, one stretched. */
-static bool shear_fails(const sf_hyperfoam *foam, double limit, sf_hyperfoam_failure *out) {
-    for (int k = 0; k <= STEPS; k++) {
-        double strain = limit * k / STEPS;
-        const double stretch[3] = {1 - strain, 1 / (1 - strain), 1};
-        if (stable(foam, stretch, &out->term))
-            continue;
-        out->path = "shear";
-        out->strain = strain;
-        return true;
-    }
-    return false;
-}
-
 bool sf_hyperfoam_fails(const sf_hyperfoam *foam, double limit, sf_hyperfoam_failure *out) {
     for (size_t k = 0; k < sizeof paths / sizeof *paths; k++)
         if (path_fails(foam, &paths[k], limit, out))
             return true;
-    return shear_fails(foam, limit, out);
+    return false;
 }

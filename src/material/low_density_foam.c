@@ -350,11 +350,6 @@ static double limit_strain(const void *card) {
     return sf_curve_build(card, 0, &curve, SF_IGNORED) == SF_OK ? curve.beyond.limit : 1;
 }
 
-static double informed_strain(const void *card) {
-    double informed = ((const sf_foam_card *)card)->informed_strain;
-    return informed > 0 ? informed : data_end(card);
-}
-
 static double rest_modulus(const void *card) {
     return ((const sf_foam_card *)card)->modulus;
 }
