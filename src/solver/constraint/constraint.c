@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/constraint/constraint.h"
 
+#include "base/sets.h"
+
 enum { ALL = 7, BATCH = 64 }; /* mask of x, y and z; rows or nodes of one call of a kernel */
 
 /* True if a node whose components in `mask` are held has a row in the range: 0 for all components in
@@ -62,22 +64,6 @@ static sf_status list_rows(const sf_model *m, sf_constraint *c, sf_ldl_entries *
     return err->status;
 }
 
-/* Lists the touched nodes; `place` [n] gets their places. */
-static sf_status list_touched(const sf_model *m, sf_constraint *c, int32_t *place, sf_error *err) {
-    for (int64_t k = 0; k < c->row_ptr[c->rows]; k++)
-        place[c->row_place[k]] = 1;
-    for (int64_t i = 0; i < m->node_count; i++)
-        c->touched_count += place[i];
-    c->touched = sf_alloc(err, c->touched_count, sizeof *c->touched, "constraint lists");
-    int64_t count = 0;
-    for (int64_t i = 0; i < m->node_count && err->status == SF_OK; i++)
-        if (place[i]) {
-            c->touched[count] = (int32_t)i;
-            place[i] = (int32_t)count++;
-        }
-    return err->status;
-}
-
 static void list_by_node(sf_constraint *c) {
     for (int64_t k = 0; k < c->row_ptr[c->rows]; k++)
         c->node_ptr[c->row_place[k] + 1]++;
@@ -122,7 +108,6 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
     for (int64_t r = 0; r < c->rows; r++)
         entries += phi_count(m, c->row[r].node) + phi_count(m, c->row[r].other);
     unsigned long all = (unsigned long)entries, rows = (unsigned long)c->rows;
-    SF_OWNED int32_t *place = sf_alloc(err, m->node_count, sizeof *place, "constraint lists");
     SF_ALLOC_ALL(err, "constraint lists", SF_ROOM(c->row_ptr, rows + 1), SF_ROOM(c->row_place, all),
                  SF_ROOM(c->row_phi, all), SF_ROOM(c->node_row, all), SF_ROOM(c->node_phi, all));
     entries = 0;
@@ -132,10 +117,9 @@ static sf_status build_lists(const sf_model *m, sf_constraint *c, sf_error *err)
         c->row_ptr[r + 1] = entries;
     }
     SF_TRY(err->status);
-    SF_TRY(list_touched(m, c, place, err));
+    c->touched =
+        sf_list_number(m->node_count, entries, c->row_place, &c->touched_count, "constraint lists", err);
     c->node_ptr = sf_alloc(err, c->touched_count + 1, sizeof *c->node_ptr, "constraint lists");
-    for (int64_t k = 0; k < entries; k++)
-        c->row_place[k] = place[c->row_place[k]];
     if (err->status == SF_OK)
         list_by_node(c);
     return err->status;

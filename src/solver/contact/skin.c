@@ -5,20 +5,13 @@
 #include "base/sets.h"
 
 static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
-    unsigned long nodes = (unsigned long)(m->node_count + m->support_node_count);
-    SF_OWNED int32_t *place = sf_alloc(err, nodes, sizeof *place, "skin of the pad");
     skin->facet_count = m->skin_count + m->support_triangle_count;
-    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->node, nodes),
-                 SF_ROOM(skin->facet, 3 * skin->facet_count));
-    for (int64_t k = 0; err->status == SF_OK && k < 3 * m->skin_count; k++)
-        place[m->skin_triangle[k]] = 1;
-    for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
-        if (place[i]) {
-            place[i] = (int32_t)skin->moving;
-            skin->node[skin->moving++] = (int32_t)i;
-        }
-    for (int64_t k = 0; err->status == SF_OK && k < 3 * m->skin_count; k++)
-        skin->facet[k] = place[m->skin_triangle[k]];
+    skin->facet = sf_alloc(err, 3 * skin->facet_count, sizeof *skin->facet, "skin of the pad");
+    SF_TRY(err->status);
+    for (int64_t k = 0; k < 3 * m->skin_count; k++)
+        skin->facet[k] = m->skin_triangle[k];
+    skin->node =
+        sf_list_number(m->node_count, 3 * m->skin_count, skin->facet, &skin->moving, "skin of the pad", err);
     for (int64_t k = 0; err->status == SF_OK && k < 3 * m->support_triangle_count; k++)
         skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
     skin->nodes = skin->moving + m->support_node_count;

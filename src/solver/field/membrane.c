@@ -2,24 +2,17 @@
 #include "solver/field/field.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "model/stability.h"
 
 /* ---- constants ---- */
 
 static sf_status number_nodes(const sf_model *m, sf_membrane *b, sf_error *err) {
-    SF_OWNED int32_t *place = sf_alloc(err, m->node_count, sizeof *place, "membrane");
     b->triangle_count = m->membrane_count;
-    b->node = sf_alloc(err, m->node_count, sizeof *b->node, "membrane");
     b->triangle = sf_alloc(err, 3 * m->membrane_count, sizeof *b->triangle, "membrane");
-    for (int64_t k = 0; err->status == SF_OK && k < 3 * m->membrane_count; k++)
-        place[m->membrane_triangle[k]] = 1;
-    for (int64_t i = 0; err->status == SF_OK && i < m->node_count; i++)
-        if (place[i]) {
-            place[i] = (int32_t)b->count;
-            b->node[b->count++] = (int32_t)i;
-        }
-    for (int64_t k = 0; err->status == SF_OK && k < 3 * m->membrane_count; k++)
-        b->triangle[k] = place[m->membrane_triangle[k]];
+    SF_TRY(err->status);
+    memcpy(b->triangle, m->membrane_triangle, 3 * (size_t)m->membrane_count * sizeof *b->triangle);
+    b->node = sf_list_number(m->node_count, 3 * b->triangle_count, b->triangle, &b->count, "membrane", err);
     return err->status;
 }
 
