@@ -79,6 +79,20 @@ char *sf_line_take(char **rest, const char *name, char separator) {
     return line && strncmp(line, name, length) == 0 && line[length] == separator ? line + length + 1 : NULL;
 }
 
+const char *sf_blanks_pass(const char *text, bool hash) {
+    for (;;) {
+        text += strspn(text, " \t\r\n\v\f");
+        if ((hash && *text == '#') || strncmp(text, "//", 2) == 0) {
+            text += strcspn(text, "\n");
+        } else if (strncmp(text, "/*", 2) == 0) {
+            const char *end = strstr(text + 2, "*/");
+            text = end ? end + 2 : text + strlen(text);
+        } else {
+            return text;
+        }
+    }
+}
+
 int sf_utf8_length(const unsigned char *s) {
     static const struct {
         unsigned char first_low, first_high, second_low, second_high;

@@ -26,6 +26,9 @@ const char *sf_word_at(const char *list, int place, int *length);
 /* Takes the next line from `rest`: what follows `name` and separator in it; NULL: it begins otherwise. */
 char *sf_line_take(char **rest, const char *name, char separator);
 
+/* Returns what follows the blanks and the comments of C++ at `text`; with `hash`, those after "#" as well. */
+const char *sf_blanks_pass(const char *text, bool hash);
+
 /* Length of the well-formed UTF-8 sequence at `s`, 0 if there is none (RFC 3629). */
 int sf_utf8_length(const unsigned char *s);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/grammar.h"
 
+#include "base/text.h"
 #include "case/keys.h"
 #include "io/plain_file.h"
 
@@ -13,19 +14,8 @@ static sf_status no_memory(sf_error *err) {
 /* The characters of names, numbers and words. */
 static const char WORD[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.+-*";
 
-/* Passes blanks and comments. */
 static const char *pass_blanks(const char *at) {
-    for (;;) {
-        at += strspn(at, " \t\r\n\v\f");
-        if (*at == '#' || strncmp(at, "//", 2) == 0) {
-            at += strcspn(at, "\n");
-        } else if (strncmp(at, "/*", 2) == 0) {
-            const char *end = strstr(at + 2, "*/");
-            at = end ? end + 2 : at + strlen(at);
-        } else {
-            return at;
-        }
-    }
+    return sf_blanks_pass(at, true);
 }
 
 static const char *pass_string(const char *at) {

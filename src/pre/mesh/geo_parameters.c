@@ -9,18 +9,7 @@
 #include "pre/mesh/mesher_protocol.h"
 
 static const char *skip_blank(const char *p) {
-    for (;;) {
-        if (isspace((unsigned char)*p)) {
-            p++;
-        } else if (p[0] == '/' && p[1] == '/') {
-            p += strcspn(p, "\n");
-        } else if (p[0] == '/' && p[1] == '*') {
-            const char *end = strstr(p + 2, "*/");
-            p = end ? end + 2 : p + strlen(p);
-        } else {
-            return p;
-        }
-    }
+    return sf_blanks_pass(p, false);
 }
 
 static bool is_word(char c) {
