@@ -141,11 +141,11 @@ void sf_replace_sync_name(const char *path) {
 
 sf_status sf_replace_commit(const char *partial, const char *path, sf_error *err) {
     struct stat info;
-    if (sync_handle(sf_replace_reopen(partial)) != 0)
+    if (err->status == SF_OK && sync_handle(sf_replace_reopen(partial)) != 0)
         SF_FAIL(err, SF_ERR_IO, "%s cannot be brought to the disk: %s", partial, strerror(errno));
     else if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
         SF_FAIL(err, SF_ERR_IO, "%s cannot be written: it is %s", path, sf_plain_kind(info.st_mode));
-    else if (rename(partial, path) != 0)
+    else if (err->status == SF_OK && rename(partial, path) != 0)
         SF_FAIL(err, SF_ERR_IO, "%s cannot be renamed to %s: %s", partial, path, strerror(errno));
     if (err->status != SF_OK)
         unlink(partial);
@@ -167,10 +167,7 @@ sf_status sf_replace_close(sf_replacement *out, sf_error *err) {
     bool failed = ferror(out->file) != 0;
     if (fclose(out->file) != 0 || failed)
         SF_FAIL(err, SF_ERR_IO, SF_NOT_WRITTEN, out->path);
-    if (err->status == SF_OK)
-        return sf_replace_commit(out->partial, out->path, err);
-    unlink(out->partial);
-    return err->status;
+    return sf_replace_commit(out->partial, out->path, err);
 }
 
 /* ---- what killed processes left ---- */

@@ -45,7 +45,8 @@ sf_status sf_replace_close(sf_replacement *out, sf_error *err);
 int sf_replace_reopen(const char *path);
 
 /* Makes the closed file `partial` the file `path`, both on the disk (fsync of the file and of the folder);
- * removes it on failure. A folder, pipe, socket or device of the name `path` stays: SF_ERR_IO. */
+ * removes it on failure, also after an earlier one. A folder, pipe, socket or device of the name `path`
+ * stays: SF_ERR_IO. */
 sf_status sf_replace_commit(const char *partial, const char *path, sf_error *err);
 
 /* The name of a file or folder that was made is on the disk (fsync of the folder that holds it). */

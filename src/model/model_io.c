@@ -3,7 +3,6 @@
 
 #include "io/replace.h"
 #include "material/laws.h"
-#include <unistd.h>
 
 /* Writes a member of the model, or of a law's curves, as the dataset `path`. */
 static sf_status write_field(sf_h5 *h5, const char *path, const sf_model_field *field, const void *record,
@@ -78,7 +77,6 @@ static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, 
 static sf_status read_field(const sf_h5 *h5, const char *path, const sf_model_field *field, void *record,
                             sf_error *err) {
     char *base = record;
-    void *data = NULL;
     bool absent = field->optional && !sf_h5_exists(h5, path);
     if (field->rows_offset == SIZE_MAX)
         return absent ? SF_OK : sf_h5_read_one(h5, path, field->type, base + field->offset, err);
@@ -93,18 +91,8 @@ static sf_status read_field(const sf_h5 *h5, const char *path, const sf_model_fi
                        "%s is missing: an older version made this model; make it anew with softfall-pre",
                        path);
     int64_t dims[2] = {rows + field->rows_extra, field->columns};
-    sf_status status = sf_h5_read(h5, path, field->type, field->columns > 1 ? 2 : 1, dims, &data, err);
-    *(void **)(base + field->offset) = data;
-    return status;
-}
-
-static sf_status read_curves(const sf_h5 *h5, sf_law_curves *curves, int64_t index, sf_error *err) {
-    char path[PATH_SIZE];
-    for (int k = 0; k < CURVE_FIELDS && err->status == SF_OK; k++) {
-        snprintf(path, sizeof path, "/material/%lld/%s", (long long)index, curve_fields[k].path);
-        read_field(h5, path, &curve_fields[k], curves, err);
-    }
-    return err->status;
+    return sf_h5_read(h5, path, field->type, field->columns > 1 ? 2 : 1, dims,
+                      (void **)(base + field->offset), err);
 }
 
 /* The name of a layer; "" if there is none. */
@@ -138,7 +126,11 @@ static sf_status read_material(const sf_h5 *h5, sf_material *m, int64_t index, s
                        (char *)m->card + p->offset, err);
     }
     sf_law_curves *curves = sf_material_curves(m);
-    return curves && err->status == SF_OK ? read_curves(h5, curves, index, err) : err->status;
+    for (int k = 0; k < CURVE_FIELDS && curves && err->status == SF_OK; k++) {
+        snprintf(path, sizeof path, "/material/%lld/%s", (long long)index, curve_fields[k].path);
+        read_field(h5, path, &curve_fields[k], curves, err);
+    }
+    return err->status;
 }
 
 static sf_status read_materials(const sf_h5 *h5, sf_model *model, sf_error *err) {
@@ -181,10 +173,7 @@ sf_status sf_model_write(const char *path, const sf_model *model, const sf_prove
     if (err->status == SF_OK)
         sf_h5_set_attribute(h5, "content_hash", hash, err);
     sf_h5_close(&h5, err);
-    if (err->status == SF_OK)
-        return sf_replace_commit(partial, path, err);
-    unlink(partial);
-    return err->status;
+    return sf_replace_commit(partial, path, err);
 }
 
 sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_error *err) {
@@ -194,23 +183,20 @@ sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_erro
     const sf_model_field *field = sf_model_fields(&count);
     memset(model, 0, sizeof *model);
     SF_TRY(sf_h5_open(path, &h5, err));
-    sf_status status = sf_provenance_check(h5, path, "softfall-model", &inner);
-    for (size_t k = 0; k < count && status == SF_OK; k++)
-        status = read_field(h5, field[k].path, &field[k], model, &inner);
-    if (status == SF_OK)
-        status = read_materials(h5, model, &inner);
-    if (status == SF_OK)
-        status = sf_model_check(model, &inner);
-    if (status == SF_OK)
-        status = check_content_hash(h5, model, &inner);
-    if (status != SF_OK) {
+    sf_provenance_check(h5, path, "softfall-model", &inner);
+    for (size_t k = 0; k < count && inner.status == SF_OK; k++)
+        read_field(h5, field[k].path, &field[k], model, &inner);
+    if (inner.status == SF_OK && read_materials(h5, model, &inner) == SF_OK &&
+        sf_model_check(model, &inner) == SF_OK)
+        check_content_hash(h5, model, &inner);
+    if (inner.status != SF_OK) {
         SF_FAIL(err, inner.status, inner.status == SF_ERR_MODEL ? "%.200s: %.800s" : "%.0s%.800s", path,
                 inner.text);
         sf_model_free(model);
     }
-    if (status == SF_OK && file)
+    if (inner.status == SF_OK && file)
         *file = h5;
     else
-        sf_h5_close(&h5, &inner);
-    return status;
+        sf_h5_drop(&h5);
+    return err->status;
 }

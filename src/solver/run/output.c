@@ -185,10 +185,9 @@ void sf_output_clear(const sf_output *o) {
 
 sf_status sf_output_seal(sf_h5 **file, const char *partial, const char *path, sf_error *err) {
     sf_h5_close(file, err);
-    if (err->status == SF_OK && sf_seal_add(partial, err) == SF_OK)
-        return sf_replace_commit(partial, path, err);
-    unlink(partial);
-    return err->status;
+    if (err->status == SF_OK)
+        sf_seal_add(partial, err);
+    return sf_replace_commit(partial, path, err);
 }
 
 static int64_t size_of(const char *path) {
