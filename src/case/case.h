@@ -152,6 +152,9 @@ void sf_case_free(sf_case *c);
 /* The interface of two layers, in either order; NULL: the case does not name it, and it is tied. */
 const sf_case_interface *sf_case_interface_find(const sf_case *c, int layer, int other);
 
+/* True if a list of groups has the name. */
+bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const char *name);
+
 /* Would a case with this material file (the keys of the group `material`) be refused for it, on a pad of this
  * temperature (K; 0: none is given)? The sentence names file, line and key. */
 sf_status sf_case_check_material(const char *path, double temperature, sf_error *err);

@@ -165,10 +165,8 @@ static const curve_order RATES = {"rate", "0.0017 1/s", "s-1", SF_RATE},
 static sf_status read_entry(sf_case_reader *reader, const config_setting_t *entry, const curve_order *order,
                             sf_error *err) {
     const sf_law_curves *card = sf_material_curves(reader->material);
-    const config_setting_t *rate =
-        config_setting_is_group(entry) ? config_setting_get_member(entry, order->key) : NULL;
-    const config_setting_t *file =
-        config_setting_is_group(entry) ? config_setting_get_member(entry, "file") : NULL;
+    const config_setting_t *rate = config_setting_get_member(entry, order->key); /* NULL: not in a group */
+    const config_setting_t *file = config_setting_get_member(entry, "file");
     if (!rate || !file || config_setting_length(entry) != 2)
         return SF_REFUSE_AT(reader, entry, err,
                             "%s.curves: each entry must be { %s = \"%s\"; file = \"name.csv\"; }",
@@ -278,8 +276,7 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
         if (config_setting_length(setting) > MOST_CURVES)
             return SF_REFUSE_AT(reader, setting, err, "%s.curves: %d curves" SF_AT_MOST("%d"),
                                 reader->material_group, config_setting_length(setting), MOST_CURVES);
-        const config_setting_t *head = config_setting_get_elem(setting, 0);
-        bool thermal = config_setting_is_group(head) && config_setting_get_member(head, "temperature");
+        bool thermal = config_setting_get_member(config_setting_get_elem(setting, 0), "temperature") != NULL;
         const curve_order *order = thermal ? &TEMPERATURES : &RATES;
         for (int i = 0; i < config_setting_length(setting); i++)
             if (read_entry(reader, config_setting_get_elem(setting, (unsigned)i), order, err) != SF_OK ||

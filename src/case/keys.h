@@ -98,13 +98,13 @@ const char *sf_case_near_name(const sf_key_list *list, const char *group, const 
 
 /* The kinds of entry that the window has for a value. */
 typedef enum sf_case_value_kind {
+    SF_CASE_VALUE_OTHER,  /* a group, or what cannot be entered in one line */
     SF_CASE_VALUE_TEXT,   /* "4.5 m/s", or a name */
     SF_CASE_VALUE_LIST,   /* ["10 mm", "0 mm"] */
     SF_CASE_VALUE_NUMBER, /* 0.5 */
     SF_CASE_VALUE_FLAG,   /* true or false */
     SF_CASE_VALUE_WORD,   /* one of `words` */
     SF_CASE_VALUE_FILE,   /* a path, as the case has it */
-    SF_CASE_VALUE_OTHER,  /* a group, or what cannot be entered in one line */
 } sf_case_value_kind;
 
 /* Strings are valid during the call only, but those of the table: group, name, words, help. */

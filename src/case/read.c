@@ -111,40 +111,34 @@ static void hash_value(sf_case_reader *reader, const sf_key *key, const char *na
 }
 
 /* A kind of key that is not listed is of SF_CASE_VALUE_OTHER. */
-static sf_case_value_kind value_kind(const sf_key *key) {
-    static const struct {
-        sf_key_kind key;
-        sf_case_value_kind value;
-    } kinds[] = {{SF_KEY_QUANTITY, SF_CASE_VALUE_TEXT},   {SF_KEY_UNIT, SF_CASE_VALUE_TEXT},
-                 {SF_KEY_NAME, SF_CASE_VALUE_TEXT},       {SF_KEY_NAMES, SF_CASE_VALUE_LIST},
-                 {SF_KEY_FIELDS, SF_CASE_VALUE_LIST},     {SF_KEY_TIMES, SF_CASE_VALUE_LIST},
-                 {SF_KEY_QUANTITIES, SF_CASE_VALUE_LIST}, {SF_KEY_VECTOR, SF_CASE_VALUE_LIST},
-                 {SF_KEY_PLACE, SF_CASE_VALUE_LIST},      {SF_KEY_COUNTED, SF_CASE_VALUE_LIST},
-                 {SF_KEY_NUMBER, SF_CASE_VALUE_NUMBER},   {SF_KEY_DROPS, SF_CASE_VALUE_NUMBER},
-                 {SF_KEY_BOOL, SF_CASE_VALUE_FLAG},       {SF_KEY_CHOICE, SF_CASE_VALUE_WORD},
-                 {SF_KEY_PATH, SF_CASE_VALUE_FILE},       {SF_KEY_MOTION, SF_CASE_VALUE_FILE}};
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-        if (kinds[k].key == key->kind)
-            return kinds[k].value;
-    return SF_CASE_VALUE_OTHER;
-}
+static const sf_case_value_kind value_kind[SF_KEY_CURVES + 1] = {
+    [SF_KEY_QUANTITY] = SF_CASE_VALUE_TEXT,   [SF_KEY_UNIT] = SF_CASE_VALUE_TEXT,
+    [SF_KEY_NAME] = SF_CASE_VALUE_TEXT,       [SF_KEY_NAMES] = SF_CASE_VALUE_LIST,
+    [SF_KEY_FIELDS] = SF_CASE_VALUE_LIST,     [SF_KEY_TIMES] = SF_CASE_VALUE_LIST,
+    [SF_KEY_QUANTITIES] = SF_CASE_VALUE_LIST, [SF_KEY_VECTOR] = SF_CASE_VALUE_LIST,
+    [SF_KEY_PLACE] = SF_CASE_VALUE_LIST,      [SF_KEY_COUNTED] = SF_CASE_VALUE_LIST,
+    [SF_KEY_NUMBER] = SF_CASE_VALUE_NUMBER,   [SF_KEY_DROPS] = SF_CASE_VALUE_NUMBER,
+    [SF_KEY_BOOL] = SF_CASE_VALUE_FLAG,       [SF_KEY_CHOICE] = SF_CASE_VALUE_WORD,
+    [SF_KEY_PATH] = SF_CASE_VALUE_FILE,       [SF_KEY_MOTION] = SF_CASE_VALUE_FILE,
+};
 
 /* A text without the quotes that its print has. */
 static void tell_value(const sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                        const char *text, bool given) {
     const char *plain = setting ? config_setting_get_string(setting) : NULL;
-    const sf_case_value value = {
-        .group = key->group,
-        .name = key->name,
-        .text = !setting ? ""
-                : plain  ? plain
-                         : text,
-        .given = given,
-        .kind = key->kind == SF_KEY_DROPS && setting && config_setting_is_list(setting) ? SF_CASE_VALUE_OTHER
-                                                                                        : value_kind(key),
-        .of_material = key->in_card || key->kind == SF_KEY_LAW,
-        .words = key->words,
-        .help = key->description};
+    const sf_case_value value = {.group = key->group,
+                                 .name = key->name,
+                                 .text = !setting ? ""
+                                         : plain  ? plain
+                                                  : text,
+                                 .given = given,
+                                 .kind =
+                                     key->kind == SF_KEY_DROPS && setting && config_setting_is_list(setting)
+                                         ? SF_CASE_VALUE_OTHER
+                                         : value_kind[key->kind],
+                                 .of_material = key->in_card || key->kind == SF_KEY_LAW,
+                                 .words = key->words,
+                                 .help = key->description};
     if (reader->listener && !reader->material_only && !reader->list)
         reader->listener->hear(reader->listener->user, &value);
 }
@@ -228,19 +222,13 @@ static sf_status read_keys(sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
-static void normalise(double v[3]) {
-    double length = sqrt(sf_dot3(v, v));
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-}
-
 /* Derives values from those read; the only function that changes values after reading. */
 static void complete(const sf_case_reader *reader, sf_case *c) {
     sf_missile_card *card = &c->missile_card;
     double turn[9];
-    normalise(card->direction);
-    normalise(card->down);
-    normalise(c->up);
+    sf_unit3(card->direction);
+    sf_unit3(card->down);
+    sf_unit3(c->up);
     sf_turn_to_z(c->up, turn);
     sf_mat3_apply(turn, card->direction);
     sf_mat3_apply(turn, card->down);

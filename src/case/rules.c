@@ -327,7 +327,7 @@ static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
     return SF_OK;
 }
 
-static bool in_list(const char *name, int count, const char (*list)[SF_CASE_NAME_SIZE]) {
+bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const char *name) {
     for (int g = 0; g < count; g++)
         if (strcmp(list[g], name) == 0)
             return true;
@@ -356,10 +356,10 @@ static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
         return REFUSE("pad.base", "pad.fixed names no surface that it could apply to");
     for (int g = 0; g < c->fixed_count && sf_case_is_given(reader, "pad", "base"); g++) {
         const char *name = c->fixed_group[g],
-                   *other = strcmp(name, c->contact_group) == 0                   ? "contact"
-                            : in_list(name, c->sliding_count, c->sliding_group)   ? "sliding"
-                            : in_list(name, c->symmetry_count, c->symmetry_group) ? "symmetry"
-                                                                                  : NULL;
+                   *other = strcmp(name, c->contact_group) == 0                            ? "contact"
+                            : sf_case_has_name(c->sliding_count, c->sliding_group, name)   ? "sliding"
+                            : sf_case_has_name(c->symmetry_count, c->symmetry_group, name) ? "symmetry"
+                                                                                           : NULL;
         if (other)
             return REFUSE("pad.base", "the surface group \"%s\" is in pad.fixed and in pad.%s", name, other);
     }

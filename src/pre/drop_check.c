@@ -400,17 +400,9 @@ static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_
 /* ---- symmetry groups that the case does not hold ---- */
 
 static bool holds(const sf_case *c, const char *name) {
-    const struct {
-        int count;
-        const char (*group)[SF_CASE_NAME_SIZE];
-    } list[] = {{c->symmetry_count, c->symmetry_group},
-                {c->fixed_count, c->fixed_group},
-                {c->sliding_count, c->sliding_group}};
-    for (size_t k = 0; k < sizeof list / sizeof list[0]; k++)
-        for (int g = 0; g < list[k].count; g++)
-            if (strcmp(list[k].group[g], name) == 0)
-                return true;
-    return false;
+    return sf_case_has_name(c->symmetry_count, c->symmetry_group, name) ||
+           sf_case_has_name(c->fixed_count, c->fixed_group, name) ||
+           sf_case_has_name(c->sliding_count, c->sliding_group, name);
 }
 
 static void tell_free_planes(const sf_case *c, const sf_mesh *mesh, const sf_sink *sink) {
