@@ -34,7 +34,6 @@ ALLOWED = {
                    "remove": "of files that --force replaces, and of its own"},
     "io/h5": {"library": "opens what has passed the gate (/proc/self/fd), creates new files only"},
     "io/process": {"open": "/dev/null and the log of another program"},
-    "model/model_io": {"remove": "its own partial file"},
     "pre/mesher/confine": {"open": "numbers of its own process in /proc, before it is confined"},
     "pre/mesher/work": {"library": "the process of gmsh, which cannot open files: the gate of softfall-pre does it"},
     "pre/mesh/broker": {"open": "its own sealed copies in memory, anew for each reader"},
