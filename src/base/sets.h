@@ -57,14 +57,15 @@ static inline int64_t sf_list_find(const int32_t *list, int64_t low, int64_t hig
     return low;
 }
 
-/* Replaces numbers from 0 to `all` - 1 by their places in the ascending list of those that occur. Returns the
- * list, owned by the caller, and its length; NULL on failure. `what`: for the sentence. */
+/* Replaces numbers from 0 to `all` - 1 by their places in the ascending list of those that occur; -1 stays.
+ * Returns the list, owned by the caller, and its length; NULL on failure. `what`: for the sentence. */
 static inline int32_t *sf_list_number(int64_t all, int64_t count, int32_t *number, int64_t *length,
                                       const char *what, sf_error *err) {
     SF_OWNED int32_t *place = sf_alloc(err, all, sizeof *place, what);
     int64_t used = 0;
     for (int64_t k = 0; place && k < count; k++)
-        place[number[k]] = 1;
+        if (number[k] >= 0)
+            place[number[k]] = 1;
     for (int64_t i = 0; place && i < all; i++)
         used += place[i];
     int32_t *list = sf_alloc(err, used, sizeof *list, what);
@@ -75,7 +76,7 @@ static inline int32_t *sf_list_number(int64_t all, int64_t count, int32_t *numbe
             list[(*length)++] = (int32_t)i;
         }
     for (int64_t k = 0; place && list && k < count; k++)
-        number[k] = place[number[k]];
+        number[k] = number[k] < 0 ? -1 : place[number[k]];
     return sf_keep(list, err);
 }
 

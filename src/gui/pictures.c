@@ -157,7 +157,7 @@ static void gather(const sf_shape *s, const sf_frame *fields, sf_shape_frame *ou
     const double *u = fields->field[SF_FRAME_DISPLACEMENT], *mises = fields->field[SF_FRAME_VON_MISES];
     for (int64_t k = 0; k < s->pad.node_count; k++) {
         for (int d = 0; d < 3 && u; d++)
-            out->pad[3 * k + d] = u[3 * s->pad_node[k] + d] / s->unit;
+            out->pad[3 * k + d] = u[3 * (int64_t)s->pad_node[k] + d] / s->unit;
         if (mises)
             out->stress[k] = 1e-3 * mises[s->pad_node[k]];
     }

@@ -196,7 +196,7 @@ void sf_cache_wrap(const char *cache, const char *geometry, char *wrap, size_t s
 typedef struct sf_shape {
     double unit; /* m per unit of the pictures */
     sf_body pad;
-    int64_t *pad_node; /* [pad.node_count] node of the model that each node of the skin is; owned */
+    int32_t *pad_node; /* [pad.node_count] node of the model that each node of the skin is; owned */
     sf_body missile;
     int64_t missile_nodes;    /* the first of its nodes, which move */
     double *missile_position; /* [missile.node_count][3] m, at t = 0; owned */

@@ -90,32 +90,19 @@ static int32_t node_of(const sf_cells *c, const sf_cell_face *face, int64_t v) {
     return corner < 0 ? -1 : c->node[c->ptr[face->cell] + corner];
 }
 
-/* Numbers the nodes of the faces in the order of the mesh. */
-static sf_status number_nodes(const sf_cells *c, const sf_cell_face *list, sf_skin_faces *s, sf_error *err) {
-    SF_OWNED int32_t *place = sf_alloc(err, c->node_count, sizeof *place, "the pad's skin");
-    SF_ALLOC_ALL(err, "the pad's skin", SF_ROOM(s->node, c->node_count), SF_ROOM(s->face, s->face_count));
-    for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++)
-        if (node_of(c, &list[k / 4], k % 4) >= 0)
-            place[node_of(c, &list[k / 4], k % 4)] = 1;
-    for (int64_t i = 0; err->status == SF_OK && i < c->node_count; i++)
-        if (place[i]) {
-            place[i] = (int32_t)s->node_count;
-            s->node[s->node_count++] = i;
-        }
-    for (int64_t k = 0; err->status == SF_OK && k < 4 * s->face_count; k++) {
-        int32_t node = node_of(c, &list[k / 4], k % 4);
-        s->face[k / 4][k % 4] = node < 0 ? -1 : place[node];
-    }
-    return err->status;
-}
-
 sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err) {
     int64_t count;
     SF_OWNED sf_cell_face *list = sf_cell_faces(c, NULL, by_nodes, &count, err);
     *s = (sf_skin_faces){0};
     SF_TRY(err->status);
     s->face_count = keep_single(list, count);
-    return number_nodes(c, list, s, err);
+    s->face = sf_alloc(err, s->face_count, sizeof *s->face, "the pad's skin");
+    SF_TRY(err->status);
+    for (int64_t k = 0; k < 4 * s->face_count; k++)
+        s->face[k / 4][k % 4] = node_of(c, &list[k / 4], k % 4);
+    s->node =
+        sf_list_number(c->node_count, 4 * s->face_count, s->face[0], &s->node_count, "the pad's skin", err);
+    return err->status;
 }
 
 void sf_skin_faces_free(sf_skin_faces *s) {
@@ -133,7 +120,7 @@ sf_status sf_skin_triangles(const sf_cells *cells, int64_t *triangles, int32_t *
         for (int half = 0; half < (skin.face[i][3] < 0 ? 1 : 2); half++) {
             const int corner[3] = {0, 1 + half, 2 + half};
             for (int k = 0; k < 3; k++)
-                node[3 * *triangles + k] = (int32_t)skin.node[skin.face[i][corner[k]]];
+                node[3 * *triangles + k] = skin.node[skin.face[i][corner[k]]];
             kind[(*triangles)++] = (uint8_t)(skin.face[i][3] < 0 ? 0 : 1 + half);
         }
     sf_skin_faces_free(&skin);

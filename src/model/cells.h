@@ -52,7 +52,7 @@ sf_cell_face *sf_cell_faces(const sf_cells *cells, int64_t *place,
 typedef struct sf_skin_faces {
     int64_t face_count, node_count;
     int32_t (*face)[4]; /* [face_count] places in `node`, -1 in the fourth place of a triangle; owned */
-    int64_t *node;      /* [node_count] node of the mesh, ascending; owned */
+    int32_t *node;      /* [node_count] node of the mesh, ascending; owned */
 } sf_skin_faces;
 
 /* Release with sf_skin_faces_free, also after a failure. */

@@ -2,6 +2,7 @@
 #include "pre/build.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "model/stability.h"
 
 static const double CLEAR =
@@ -243,18 +244,13 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
  * nodes becomes that of the points. */
 static int32_t *gather_contact(const sf_layers *layers, const sf_model *m, const sf_node_set *set,
                                double *area, int64_t *count, sf_error *err) {
-    SF_OWNED uint8_t *point = sf_alloc(err, m->node_count, 1, "contact points");
-    int32_t *list = sf_alloc(err, set->count, sizeof *list, "contact points");
-    *count = 0;
+    SF_OWNED int32_t *point = sf_alloc(err, set->count, sizeof *point, "contact points");
     for (int64_t k = 0; point && k < set->count; k++) {
-        int32_t node = set->node[k], best = sf_layers_heaviest(layers, m, node);
-        point[best] = 1;
-        area[best] += best == node ? 0 : area[node];
+        int32_t node = set->node[k];
+        point[k] = sf_layers_heaviest(layers, m, node);
+        area[point[k]] += point[k] == node ? 0 : area[node];
     }
-    for (int32_t i = 0; point && list && i < (int32_t)m->node_count; i++)
-        if (point[i])
-            list[(*count)++] = i;
-    return sf_keep(list, err);
+    return point ? sf_list_number(m->node_count, set->count, point, count, "contact points", err) : NULL;
 }
 
 /* Likewise of the resting nodes, 1 in `rest`. */

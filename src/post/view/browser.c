@@ -202,7 +202,7 @@ static void put_skin(page *p) {
     int32_t *face = (int32_t *)p->skin.face;
     sf_json_bool(&p->json, "wide", p->wide);
     for (int64_t k = 0; p->inside && k < 4 * p->skin.face_count; k++)
-        face[k] = face[k] < 0 ? -1 : (int32_t)p->skin.node[face[k]];
+        face[k] = face[k] < 0 ? -1 : p->skin.node[face[k]];
     put_indices(p, "skin", face, 4 * p->skin.face_count);
     if (p->inside)
         return;
