@@ -241,10 +241,9 @@ static sf_status check_mirror(const sf_model *m, int axis, double place, double 
         double x[3] = {own[0], own[1], own[2]}, nearest = INFINITY;
         x[axis] = 2 * place - x[axis];
         for (int64_t t = 0; t < m->surface_triangle_count && nearest > slack; t++) {
-            const int32_t *n = &m->surface_triangle[3 * t];
-            nearest = fmin(nearest, triangle_distance(x, &m->surface_position[3 * (int64_t)n[0]],
-                                                      &m->surface_position[3 * (int64_t)n[1]],
-                                                      &m->surface_position[3 * (int64_t)n[2]]));
+            const double *corner[3];
+            sf_corners(m->surface_position, &m->surface_triangle[3 * t], corner);
+            nearest = fmin(nearest, triangle_distance(x, corner[0], corner[1], corner[2]));
         }
         if (nearest > slack)
             return SF_REFUSE(err,

@@ -115,12 +115,11 @@ static bool meets_face(const sf_model *m, const faces *f, int64_t i, double leng
             place[r] = s->centroid[r] + at * s->normal[r];
         int64_t count = sf_grid_gather(&f->grid, place, step, f->count, near);
         for (int64_t k = 0; k < count; k++) {
-            const int32_t *n = &f->node[3 * (int64_t)near[k]];
+            const double *x[3];
             if (near[k] == i || sf_dot3(f->shape[near[k]].normal, s->normal) > 0)
                 continue;
-            double travel =
-                -sf_triangle_travel(&m->position[3 * (int64_t)n[0]], &m->position[3 * (int64_t)n[1]],
-                                    &m->position[3 * (int64_t)n[2]], s->normal, s->centroid);
+            sf_corners(m->position, &f->node[3 * (int64_t)near[k]], x);
+            double travel = -sf_triangle_travel(x[0], x[1], x[2], s->normal, s->centroid);
             if (travel > 0 && travel < length)
                 return true;
         }

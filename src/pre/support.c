@@ -36,23 +36,21 @@ int sf_group_plane_axis(const sf_model *m, const sf_node_set *set) {
 
 static const double LOWEST = 1e-9; /* of the thickness: on the plane of the base */
 
+/* Holds the nodes in the components of `mask`. */
+static void mark_held(const sf_node_set *set, uint8_t mask, const sf_base_marks *marks) {
+    for (int64_t k = 0; k < set->count; k++) {
+        marks->mask[set->node[k]] |= mask;
+        marks->base[set->node[k]] = 1;
+    }
+}
+
 static sf_status mark_smooth(const char *key, const sf_node_set *set, const sf_model *m,
                              const sf_base_marks *marks, sf_error *err) {
     int axis = sf_group_plane_axis(m, set);
     if (axis < 0)
         return SF_REFUSE(err, "%s: the group \"%s\" is not a plane normal to x, y or z", key, set->name);
-    for (int64_t k = 0; k < set->count; k++) {
-        marks->mask[set->node[k]] |= (uint8_t)(1 << axis);
-        marks->base[set->node[k]] = 1;
-    }
+    mark_held(set, (uint8_t)(1 << axis), marks);
     return SF_OK;
-}
-
-static void mark_glued(const sf_node_set *set, const sf_base_marks *marks) {
-    for (int64_t k = 0; k < set->count; k++) {
-        marks->mask[set->node[k]] = SF_FIX_X | SF_FIX_Y | SF_FIX_Z;
-        marks->base[set->node[k]] = 1;
-    }
 }
 
 static double lowest_node(const sf_model *m) {
@@ -115,7 +113,7 @@ sf_status sf_base_mark(const sf_case *c, const sf_mesh *mesh, const sf_model *m,
         const sf_node_set *set = sf_group_need(mesh, "pad.fixed", c->fixed_group[g], err);
         SF_TRY(err->status);
         if (c->base_rule == SF_BASE_GLUED)
-            mark_glued(set, marks);
+            mark_held(set, SF_FIX_X | SF_FIX_Y | SF_FIX_Z, marks);
         else if (c->base_rule == SF_BASE_SMOOTH)
             mark_smooth("pad.fixed", set, m, marks, err);
         else

@@ -59,11 +59,9 @@ static bool holds_point(const sf_mesh *mesh, int64_t cell, const double centre[3
     const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[cell]);
     const int32_t *node = &mesh->cell_node[mesh->cell_ptr[cell]];
     double r[3], v[8][3], middle[3];
-    for (int c = 0; c < 3; c++) {
-        r[c] = x[c] - centre[c];
-        for (int k = 0; k < shape->vertices; k++)
-            v[k][c] = mesh->position[3 * (int64_t)node[k] + c] - centre[c];
-    }
+    sf_sub3(x, centre, r);
+    for (int k = 0; k < shape->vertices; k++)
+        sf_sub3(&mesh->position[3 * (int64_t)node[k]], centre, v[k]);
     for (int f = 0; f < shape->faces; f++) {
         const int *p = shape->face[f];
         if (sf_cell_face_size(shape, f) == 3 && is_within(r, v[p[0]], v[p[1]], v[p[2]]))
@@ -307,13 +305,11 @@ static sf_status check_plane(const sf_case *c, const sf_mesh *mesh, const sf_dua
     }
     for (int64_t f = 0; member && f < dual->face_count && err->status == SF_OK; f++) {
         const sf_boundary_face *face = &dual->face[f];
-        bool in_plane = true, in_set = true;
-        for (int k = 0; k < face->size; k++) {
+        bool in_plane = true;
+        for (int k = 0; k < face->size; k++)
             in_plane = in_plane && fabs(mesh->position[3 * (int64_t)face->node[k] + axis] - place) <= slack;
-            in_set = in_set && member[face->node[k]];
-        }
         const double *x = &mesh->position[3 * (int64_t)face->node[0]];
-        if (in_plane && !in_set)
+        if (in_plane && !sf_surface_has_face(face, member))
             SF_REFUSE(err,
                       "pad.symmetry: the pad's surface at (%.4g, %.4g, %.4g) mm lies in the plane of the "
                       "group \"%s\" but in none of these groups: it would be free (a crack in a symmetry "

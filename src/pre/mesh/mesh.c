@@ -94,8 +94,7 @@ static void corner_range(const sf_mesh *mesh, int64_t cell, double *low, double 
         const int *v = shape->corner[k];
         double e[3][3];
         for (int a = 0; a < 3; a++)
-            for (int i = 0; i < 3; i++)
-                e[a][i] = x[v[a + 1]][i] - x[v[0]][i];
+            sf_sub3(x[v[a + 1]], x[v[0]], e[a]);
         double jacobian = sf_triple3(e[0], e[1], e[2]);
         *low = fmin(*low, jacobian);
         *high = fmax(*high, jacobian);

@@ -219,14 +219,12 @@ static int allow_some_arguments(scmp_filter_ctx filter) {
 }
 
 static int answer_others(scmp_filter_ctx filter) {
-    static const int opening[] = {SCMP_SYS(open), SCMP_SYS(openat), SCMP_SYS(creat)},
-                     starting[] = {SCMP_SYS(execve), SCMP_SYS(execveat), SCMP_SYS(fork),
-                                   SCMP_SYS(vfork),  SCMP_SYS(pipe),     SCMP_SYS(pipe2)};
+    static const int trapped[] = {SCMP_SYS(open),   SCMP_SYS(openat),   SCMP_SYS(creat),
+                                  SCMP_SYS(execve), SCMP_SYS(execveat), SCMP_SYS(fork),
+                                  SCMP_SYS(vfork),  SCMP_SYS(pipe),     SCMP_SYS(pipe2)};
     int code = 0;
-    for (size_t k = 0; k < sizeof opening / sizeof opening[0] && code == 0; k++)
-        code = seccomp_rule_add(filter, SCMP_ACT_TRAP, opening[k], 0);
-    for (size_t k = 0; k < sizeof starting / sizeof starting[0] && code == 0; k++)
-        code = seccomp_rule_add(filter, SCMP_ACT_TRAP, starting[k], 0);
+    for (size_t k = 0; k < sizeof trapped / sizeof trapped[0] && code == 0; k++)
+        code = seccomp_rule_add(filter, SCMP_ACT_TRAP, trapped[k], 0);
     if (code == 0)
         code = seccomp_rule_add(filter, SCMP_ACT_TRAP, SCMP_SYS(clone), 1,
                                 SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, 0));

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "base/sets.h"
 #include "pre/mesh/mesher_protocol.h"
 
 #define API_AT_LEAST(major, minor)                                                                           \
@@ -190,11 +191,6 @@ static void write_nodes(void) {
     gmshFree(parameter);
 }
 
-static int compare_int(const void *a, const void *b) {
-    const int *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 typedef struct entity_list {
     int *entity;
     size_t count;
@@ -204,7 +200,7 @@ typedef struct entity_list {
 static size_t sort_entities(int *entity, size_t count) {
     size_t kept = 0;
     if (count > 0)
-        qsort(entity, count, sizeof *entity, compare_int);
+        qsort(entity, count, sizeof *entity, sf_by_number);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || entity[i] != entity[i - 1])
             entity[kept++] = entity[i];

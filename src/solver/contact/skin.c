@@ -75,8 +75,7 @@ static sf_status find_normals(sf_skin *skin, sf_error *err) {
     for (int64_t f = 0; err->status == SF_OK && f < skin->facet_count; f++) {
         const double *x[3];
         double *normal = &skin->facet_normal[3 * f];
-        for (int k = 0; k < 3; k++)
-            x[k] = &skin->rest[3 * (int64_t)skin->facet[3 * f + k]];
+        sf_corners(skin->rest, &skin->facet[3 * f], x);
         sf_triangle_normal(x[0], x[1], x[2], normal);
         for (int k = 0; k < 3; k++)
             for (int r = 0; r < 3; r++)
@@ -224,10 +223,7 @@ static bool is_narrow(const sf_skin *skin, int64_t p) {
         turn = fmax(turn, asin(fmin(1, sqrt(sf_dot3(cross, cross)))));
         for (int k = 0; k < 3; k++) {
             int known = 0;
-            double side[3];
-            for (int r = 0; r < 3; r++)
-                side[r] = skin->rest[3 * (int64_t)n[k] + r] - skin->rest[3 * p + r];
-            length = fmax(length, sqrt(sf_dot3(side, side)));
+            length = fmax(length, sf_distance3(&skin->rest[3 * (int64_t)n[k]], &skin->rest[3 * p]));
             while (known < others && other[known] != n[k])
                 known++;
             if (n[k] != p && known == others && others < 64)
