@@ -82,10 +82,10 @@ void sf_release(void *pointer);
 /* Returns the block (from malloc); frees it and returns NULL after a failure. */
 void *sf_keep(void *block, const sf_error *err);
 
-/* Calls free() with each of several pointers. */
+/* Calls free() with each of several pointers; the variables keep their values. */
 #define SF_FREE(...) sf_free_all(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *), (void *[]){__VA_ARGS__})
 
-/* The same with an array of pointers; NULL: there is none. */
+/* The same with an array of pointers, which become NULL; NULL: there is none. */
 void sf_free_all(size_t count, void *pointers);
 
 /* Calls free() with pointers of a record, and fills the record with zeros: SF_CLEAR(curve, curve->strain); */

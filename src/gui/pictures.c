@@ -11,7 +11,7 @@ static sf_status find_skin(const sf_cells *c, sf_shape *s, sf_error *err) {
     if (sf_skin_faces_find(c, &skin, err) == SF_OK)
         s->pad.position = sf_alloc(err, 3 * skin.node_count, sizeof(double), "the pad's picture");
     for (int64_t k = 0; k < 3 * skin.node_count && s->pad.position; k++)
-        s->pad.position[k] = c->position[3 * skin.node[k / 3] + k % 3] / s->unit;
+        s->pad.position[k] = c->position[3 * (int64_t)skin.node[k / 3] + k % 3] / s->unit;
     s->pad.node_count = skin.node_count;
     s->pad.face_count = skin.face_count;
     s->pad.face = (int32_t *)skin.face;

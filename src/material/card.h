@@ -100,7 +100,7 @@ typedef struct sf_law {
     size_t density; /* offset of the double: kg m-3, undeformed */
     size_t length;  /* m, a fixed length of damping, 0: each node's spacing; SIZE_MAX: no such member */
     size_t curves;  /* of sf_law_curves; SIZE_MAX: none */
-    size_t informed; /* -, largest compressive strain about which the data inform; 0: data_end */
+    size_t informed; /* -, largest compressive strain about which the data inform; of a value of 0 data_end */
     double (*rest_modulus)(const void *card); /* Pa: the least stiffness of the stabilisation */
     /* Rules beyond the bounds of each parameter; SF_ERR_MODEL. NULL: none. */
     sf_status (*check)(const void *card, sf_error *err);

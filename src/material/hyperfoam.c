@@ -329,7 +329,7 @@ enum { STEPS = 200 };
 typedef struct path {
     const char *name;
     int held;   /* directions with a given stretch; the others are free of stress */
-    int axes;   /* of them, how many change */
+    int axes;   /* of them, how many change by the strain */
     enum { PRESSED, PULLED, SHEARED } way; /* SHEARED: the second is stretched at constant volume */
 } path;
 static const path paths[] = {

@@ -208,18 +208,20 @@ static const char *pass_part(const char *at) {
 static const char *write_include(const part *p, const char *at, FILE *out, sf_error *err) {
     const char *name = strchr(at, '"') + 1, *end = strchr(name, '"'), *text = strchr(end, '\n') + 1,
                *behind = pass_part(text);
-    SF_OWNED char *asked = strndup(name, (size_t)(end - name));
-    char place[PATH_SIZE], *own = strndup(text, (size_t)(behind - text));
+    SF_OWNED char *asked = strndup(name, (size_t)(end - name)), *own = strndup(text, (size_t)(behind - text));
+    char place[PATH_SIZE];
     SF_OWNED char *path = asked && own ? sf_path_whole(p->f->case_folder, asked, err) : NULL;
     if (!asked || !own)
         SF_NO_MEMORY(err, "the text of a case");
     if (path && find_place(p->f, CASE_NAME, asked, path, "materials", own, place, err) == SF_OK) {
         fprintf(out, "%.*s@include \"%s%.*s", (int)strspn(at, " \t"), at, place, (int)(text - end), end);
         const part inner = {p->f, path, place};
-        if (!find_name(p->f, place) && add_file(p->f, place, path, own, err) == SF_OK)
+        char *kept = own;
+        if (find_name(p->f, place))
+            return behind + 1;
+        own = NULL; /* add_file takes it, also on failure */
+        if (add_file(p->f, place, path, kept, err) == SF_OK)
             write_part(&inner, text, err);
-        else
-            free(own);
     }
     return behind + 1;
 }

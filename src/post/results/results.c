@@ -464,7 +464,6 @@ static sf_status read_frame_list(sf_results *r, sf_error *err) {
     if (r->frame_count > 0 && r->layer_count > 0 &&
         read_layer_sums(r, &r->frames[r->frame_count - 1], &problem) != SF_OK) {
         sf_free_all(SF_LAYER_SUMS, r->layer_sum);
-        memset(r->layer_sum, 0, sizeof r->layer_sum);
         SF_TRY(keep_error(r, &problem, err));
     }
     if (r->frame_count == 0)

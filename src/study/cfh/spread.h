@@ -68,8 +68,8 @@ typedef enum sf_cfh_part {
 } sf_cfh_part;
 
 typedef struct sf_cfh_interval {
-    double low, median, high; /* m, 2.5, 50 and 97.5 %; 0 or INFINITY: beyond the heights looked at */
-    double end[2];            /* m, the lowest and the highest of these */
+    double low, median, high; /* 2.5, 50 and 97.5 %; of heights m, 0 or INFINITY: beyond those looked at */
+    double end[2];            /* the lowest and the highest of these */
 } sf_cfh_interval;
 
 /* The pad that the drops had, for the columns. */

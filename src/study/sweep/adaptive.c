@@ -65,7 +65,7 @@ struct sf_sweep_adaptive {
     const sf_runs *coarse_runs;
     double *base,
         *doubt; /* [rows][TARGETS] outputs of the coarse drops and their standard deviations; owned */
-    int targets;                 /* of the plan */
+    int targets;                 /* figures of the plan, and WATCHED */
     sf_predictor model[TARGETS]; /* the plan's figures, then those that are watched */
     double farthest[TARGETS];    /* largest expectation of the rows that a model has learnt from */
     bool all;                    /* too few rows can be used: every row is simulated */

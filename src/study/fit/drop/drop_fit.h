@@ -56,8 +56,8 @@ typedef struct sf_joint {
  * key; data that are there twice are refused. */
 sf_status sf_joint_read(const sf_config *config, sf_config_item *root, sf_joint *joint, sf_error *err);
 
-/* Reads the key `name` of data; without it they are called by the usual word and their number,
- * "compression 2". */
+/* Reads the key `name` of data; without it they are called by the usual word and their number: `usual` is
+ * "compression " of "compression 2". */
 sf_status sf_fit_name_read(const sf_config *config, sf_config_item *entry, const char *usual, int number,
                            char name[SF_FIT_NAME_SIZE], sf_error *err);
 /* Data and their standard deviations, [rows] each. */
