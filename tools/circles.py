@@ -61,7 +61,7 @@ def symbols(build):
         kind, symbol = symbol_line.split()[-2:]
         if kind == "U":
             used.setdefault(unit_of_object[path], set()).add(symbol)
-        elif kind.isupper() and symbol != "main":
+        elif (kind.isupper() or kind == "i") and symbol != "main":  # i: a kernel with a version for each processor
             defined[symbol] = unit_of_object[path]
     if not defined:
         sys.exit(f"{build}: its object files name no symbol (link-time optimisation?)")
