@@ -119,11 +119,12 @@ void sf_predictor_at(const sf_predictor *predictor, const double *x, double *roo
                      double *deviation);
 
 /* Widens the standard deviations of a process until its 95 % intervals hold 95 % of its points, each eighth
- * of them predicted by a process that has learnt from the others (cross-conformal prediction). The factor, at
- * least 1, is the ceil(0.95 (n + 1))-th of the n residuals over half of their intervals. Of fewer than 39
- * that is the largest, which bounds 95 % of other points only from 19 on. `held` of the points were in their
- * intervals before. `y` [count] are the outputs that the process was fitted to, at least four. Errors as of
- * sf_predictor_fit. */
+ * of them predicted by a process that has learnt from the others (cross-conformal prediction), and less than
+ * 93 % of other points with a probability of at most 0.1. The factor, at least 1, is one of the n residuals
+ * over half of their intervals. Of fewer than 55 that is the largest, which bounds 95 % of other points only
+ * from 19 on, and 93 % with that probability from 32 on. `held` of the points were in their intervals before.
+ * `y` [count] are the outputs that the process was fitted to, at least four. Errors as of sf_predictor_fit.
+ */
 sf_status sf_predictor_validate(sf_predictor *predictor, const double *y, int *held, sf_error *err);
 
 /* Chooses up to `most` of `candidates` points x [candidates][inputs] to be computed next: again and again the

@@ -2,6 +2,7 @@
 #include "study/column.h"
 
 #include <gsl/gsl_blas.h>
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multimin.h>
@@ -12,6 +13,7 @@ enum { MOST_FOR_LENGTHS = 250, STEPS = 60, LEAST_FOR_CALIBRATION = 20, FOLDS = 8
  * of drops over their columns are long; from short ones the search often ends in a worse maximum. */
 static const double LENGTH_MEDIAN = 3, LENGTH_SD = 1.5, NUGGET_MEDIAN = 1e-6, NUGGET_SD = 3;
 static const double LEAST_VARIANCE = 1e-20, LEAST_CALIBRATION = 0.25, SHARE = 0.95;
+static const double LEAST_SHARE = 0.93, RISK = 0.1; /* intervals hold less with at most this probability */
 
 /* ---- correlation ---- */
 
@@ -313,6 +315,15 @@ static sf_status leave_out(const sf_predictor *p, const double *y, int fold, dou
     return SF_OK;
 }
 
+/* The place, from 1, of that residual of n which sets the width: the share of other points that it bounds has
+ * the distribution Beta(k, n + 1 - k) (Wilks 1941, doi:10.1214/aoms/1177731788). */
+static int place_of_width(int n) {
+    int k = (int)fmin(ceil(SHARE * (n + 1)), n);
+    while (k < n && gsl_cdf_beta_P(LEAST_SHARE, k, n + 1 - k) > RISK)
+        k++;
+    return k;
+}
+
 sf_status sf_predictor_validate(sf_predictor *p, const double *y, int *held, sf_error *err) {
     SF_OWNED double *z = sf_alloc(err, p->count, sizeof *z, "a predictor");
     int n = 0;
@@ -322,7 +333,7 @@ sf_status sf_predictor_validate(sf_predictor *p, const double *y, int *held, sf_
     gsl_sort(z, 1, (size_t)n);
     for (*held = 0; *held < n && z[*held] <= SF_PREDICTOR_SIDES;)
         ++*held;
-    p->calibration *= fmax(1, z[(int)fmin(ceil(SHARE * (n + 1)), n) - 1] / SF_PREDICTOR_SIDES);
+    p->calibration *= fmax(1, z[place_of_width(n) - 1] / SF_PREDICTOR_SIDES);
     return SF_OK;
 }
 
