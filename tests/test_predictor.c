@@ -108,12 +108,13 @@ static void intervals_hold_what_they_say(void **state) {
 /* With eight inputs of which three matter, so few points do not tell the lengths, and the process is too
  * sure: over 60 functions its intervals hold less than 93 % of 6000 other points, and 93 to 99.5 % once they
  * are widened by points left out. The share of points left out that they held before is that of the other
- * points. At 21 points the processes that learn seven eighths have too few to be calibrated. */
+ * points. Of 40 points one process in ten holds less than 93 % (one in five by the 95 % quantile of the
+ * points left out). At 21 points the processes that learn seven eighths have too few to be calibrated. */
 static void check_widening(int few) {
     enum { MANY = 8, MOST = 40, TRIALS = 60, OTHERS = 100 };
     const bool numbers[MANY] = {false};
     double x[(MOST + OTHERS) * MANY], y[MOST + OTHERS], room[MOST], mean, deviation;
-    int before = 0, after = 0, left_out = 0;
+    int before = 0, after = 0, left_out = 0, low = 0;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int trial = 0; trial < TRIALS; trial++) {
         sf_error err = SF_ERROR_INIT;
@@ -131,20 +132,26 @@ static void check_widening(int few) {
         assert_int_equal(sf_predictor_validate(&p, y, &held, &err), SF_OK);
         assert_true(p.calibration >= own && held <= few);
         left_out += held;
+        int own_after = 0;
         for (int k = few; k < few + OTHERS; k++) {
             sf_predictor_at(&p, x + k * MANY, room, &mean, &deviation);
             double half = SF_PREDICTOR_SIDES * deviation, off = fabs(y[k] - mean);
-            after += off <= half;
+            own_after += off <= half;
             before += off <= half / p.calibration * own;
         }
+        after += own_after;
+        low += own_after < 93;
         sf_predictor_free(&p);
     }
     double share = 100. * before / (TRIALS * OTHERS), widened = 100. * after / (TRIALS * OTHERS),
            told = 100. * left_out / (TRIALS * few);
-    printf("%d points: intervals hold %.1f %%, of points left out %.1f %%, and widened %.1f %%\n", few, share,
-           told, widened);
+    printf(
+        "%d points: intervals hold %.1f %%, of points left out %.1f %%, and widened %.1f %%; %d of %d less "
+        "than 93 %%\n",
+        few, share, told, widened, low, TRIALS);
     assert_true(share < 93 && fabs(told - share) < 6);
     assert_true(widened > 93 && widened < 99.5);
+    assert_true(few < 32 || low <= 0.15 * TRIALS); /* the largest of less cannot promise that */
     gsl_rng_free(random);
 }
 
