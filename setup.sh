@@ -188,7 +188,7 @@ build)
     build_programs
     ;;
 package)
-    install_packages build run package
+    install_packages build run python package
     build_programs
     make_package
     ;;

@@ -41,14 +41,17 @@ if(TARGET softfall-gui)
     install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 endif()
 
-# Manual pages and bash completions, made from the programs' --help. Scripts go with the Python package.
+# Manual pages and bash completions, made from the programs' --help. Those of Python go with the Python package; the pages of the words of softfall
+# are also those of the programs of their names, such as softfall-protocol.
 find_program(SOFTFALL_HELP2MAN help2man)
 set(from_help "")
 foreach(program ${programs} ${SOFTFALL_PYTHON_PROGRAMS})
     set(file ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/${program})
     set(component COMPONENT Unspecified)
+    set(pages ${CMAKE_BINARY_DIR}/manual/man1)
     if(program IN_LIST SOFTFALL_PYTHON_PROGRAMS)
         set(component COMPONENT python)
+        set(pages ${CMAKE_BINARY_DIR}/manual/python/man1)
     endif()
     set(completion ${CMAKE_BINARY_DIR}/completions/${program})
     add_custom_command(OUTPUT ${completion}
@@ -56,10 +59,10 @@ foreach(program ${programs} ${SOFTFALL_PYTHON_PROGRAMS})
         COMMAND ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${file} >${completion}
         DEPENDS ${file} ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
     list(APPEND from_help ${completion})
-    if(SOFTFALL_HELP2MAN)
+    if(SOFTFALL_HELP2MAN AND NOT program IN_LIST SOFTFALL_WORD_PROGRAMS)
         set(made ${CMAKE_BINARY_DIR}/manual/${program}.made)
         add_custom_command(OUTPUT ${made}
-            COMMAND ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${file} ${CMAKE_BINARY_DIR}/manual/man1 ${programs}
+            COMMAND ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${file} ${pages} ${programs}
             COMMAND ${CMAKE_COMMAND} -E touch ${made}
             DEPENDS ${file} ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
         list(APPEND from_help ${made})
@@ -67,11 +70,8 @@ foreach(program ${programs} ${SOFTFALL_PYTHON_PROGRAMS})
     install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions ${component} OPTIONAL)
 endforeach()
 if(SOFTFALL_HELP2MAN)
-    install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL
-            PATTERN softfall-serve.1.gz EXCLUDE PATTERN softfall-protocol.1.gz EXCLUDE)
-    foreach(program ${SOFTFALL_PYTHON_PROGRAMS})
-        install(FILES ${CMAKE_BINARY_DIR}/manual/man1/${program}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT python OPTIONAL)
-    endforeach()
+    install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
+    install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/python/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT python OPTIONAL)
 else()
     message(STATUS "No manual pages: help2man is missing (packages.txt, section package)")
 endif()

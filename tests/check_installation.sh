@@ -38,7 +38,7 @@ manual=$(sed -n 's/^SOFTFALL_HELP2MAN:[A-Z]*=//p' "$build/CMakeCache.txt")
 programs=$(find "$prefix/bin" -type f -printf '%f\n' | sort)
 for name in $programs; do
     [ -f "$share/bash-completion/completions/$name" ] || fail "$name has no completion"
-    "$prefix/bin/$name" --version | grep -q "^$name [0-9]" || fail "$name does not tell its version"
+    "$prefix/bin/$name" --version | grep -qE "^($name|${name/-/ }) [0-9]" || fail "$name does not tell its version"
     if [ -n "$manual" ]; then
         [ -f "$share/man/man1/$name.1.gz" ] || fail "$name has no manual page"
         said=$(zcat "$share/man/man1/$name.1.gz" | grep -A1 '^\.SH NAME' | tail -n 1)

@@ -28,7 +28,6 @@ page() {
 }
 
 mkdir -p "$dir"
-rm -f "$dir/$name.1.gz" "$dir/$name"-*.1.gz
 page
 for word in $(help_words "$program"); do
     page "$word"

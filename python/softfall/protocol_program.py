@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""softfall-protocol: runs a protocol on a pad, on measured drops, or on both side by side."""
+"""softfall protocol: runs a protocol on a pad, on measured drops, or on both side by side."""
 from __future__ import annotations
 
 import argparse
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from .case import Case
+from .command import Parser
 from .curves import column
 from .drop import read_results
 from .errors import Error, InputError
@@ -139,18 +140,38 @@ def perform(o: argparse.Namespace) -> str:
     return "\n".join(said)
 
 
+def parser(prog: str) -> Parser:
+    """Returns the command line."""
+    made = Parser(prog, "[OPTION...] PROTOCOL -o DIR",
+                  "Runs a test protocol on a simulated pad, on the measured drops of a laboratory,\nor on both side by side. softfall "
+                    "indicates; it certifies nothing.",
+                  "PROTOCOL is a name of --list or a file NAME.toml. After an interruption the\nsame command resumes. docs/protocols.md explains it.")
+    add = made.options.add_argument
+    add("protocol", metavar="PROTOCOL", nargs="?", help=argparse.SUPPRESS)
+    add("--advise", action="store_true", help="tell which drop to do next, by --pad, --posterior and what is measured so far")
+    add("--bound", metavar="SHARE", type=float, help="with --advise: stop at this probability of a wrong decision (default 0.05), or relative interval "
+                                                     "(0.1)")
+    add("--draws", metavar="N", type=int, help="draws of --posterior (default: all)")
+    add("--engine", metavar="NAME", help="what runs the drops: local (default) or snakemake")
+    add("-f", "--force", action="store_true", help="replace the report of an earlier command in DIR; its finished drops are used again")
+    add("-j", "--jobs", metavar="N", type=int, help="drops side by side")
+    add("--laboratory", metavar="FILE", help="laboratory, sample, date, conditioning, photo: a text file of fields")
+    add("--list", action="store_true", help="list the protocols, and end")
+    add("--measured", metavar="DIR", help="measured drops: a folder with list.csv")
+    add("-o", "--output", metavar="DIR", help="write everything there")
+    add("--pad", metavar="CASE", help="simulate the drops on the pad of this case")
+    add("--pattern", metavar="TEXT", help="names of measured files in place of list.csv: \"{position}_{height}_{drop}.csv\"")
+    add("--posterior", metavar="FOLDER", help="draws of the foam: intervals and the probability of passing")
+    add("--profile", metavar="PROFILE", help="with --engine snakemake: a profile of Snakemake")
+    add("--required", metavar="HEIGHT", help="with --advise: the critical height that decides, such as \"1.5 m\"")
+    add("--set", metavar="KEY=VALUE", action="append", default=[], help="a value of the case, as of softfall-pre")
+    add("-t", "--threads", metavar="N", type=int, help="threads of all drops together (default: every processor)")
+    add("--views", metavar="RUNS", help="link report and view of some drops: worst, limit (nearest to it), all or numbers of drops at each "
+        "position; of a critical height the drop at that height, whatever RUNS is")
+    return made
+
+
 def run(o: argparse.Namespace) -> int:
-    """Runs softfall-protocol and returns its exit code."""
-    warnings.showwarning = lambda message, *_, **__: print(f"softfall-protocol: warning: {message}", file=sys.stderr)
-    try:
-        print(perform(o))
-    except (Error, KeyError) as error:
-        print(f"softfall-protocol: {error.args[0]}", file=sys.stderr)
-        return error.code if isinstance(error, Error) else 2
-    except OSError as error:
-        print(f"softfall-protocol: {error.filename}: {error.strerror}", file=sys.stderr)
-        return 3
-    except KeyboardInterrupt:
-        print("softfall-protocol: interrupted; the same command resumes", file=sys.stderr)
-        return 130
+    """Runs a protocol and returns the exit code."""
+    print(perform(o))
     return 0

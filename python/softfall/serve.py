@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""softfall-serve: drops over HTTP by the protocol of UM-Bridge, for tools of uncertainty quantification (docs/python.md)."""
+"""softfall serve: drops over HTTP by the protocol of UM-Bridge, for tools of uncertainty quantification (docs/python.md)."""
 from __future__ import annotations
 
 import argparse
@@ -8,12 +8,12 @@ import math
 import signal
 import sys
 import threading
-import warnings
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any, Sequence
 
 from . import programs
 from .case import Case
+from .command import Parser
 from .errors import Error, InputError
 from .function import Function
 
@@ -84,10 +84,10 @@ class Handler(BaseHTTPRequestHandler):
     timeout = PATIENCE
 
     def log_message(self, format: str, *args: Any) -> None:
-        sys.stderr.write(f"softfall-serve: {self.log_date_time_string()} {format % args}\n")
+        sys.stderr.write(f"softfall serve: {self.log_date_time_string()} {format % args}\n")
 
     def version_string(self) -> str:
-        return "softfall-serve"
+        return "softfall serve"
 
     def _send(self, answer: dict[str, Any], status: int = 200) -> None:
         body = json.dumps(answer).encode()
@@ -142,7 +142,7 @@ class Handler(BaseHTTPRequestHandler):
 
 
 def make(o: argparse.Namespace) -> Server:
-    """Returns the server of a command line (python/softfall-serve.in); a wrong one is an Error or a KeyError."""
+    """Returns the server of a command line (python/softfall serve.in); a wrong one is an Error or a KeyError."""
     for name, least, most in (("port", 0, 65535), ("jobs", 1, 64)):
         if not least <= getattr(o, name) <= most:
             raise InputError(f"--{name} {getattr(o, name)} is outside {least} to {most}")
@@ -159,18 +159,39 @@ def make(o: argparse.Namespace) -> Server:
         raise Error(f"cannot listen on {o.host}, port {o.port}: {error.strerror or error}", 3) from None
 
 
+def parser(prog: str) -> Parser:
+    """Returns the command line."""
+    made = Parser(prog, "[OPTION...] CASE --input=KEY... --output=FIGURE...",
+                  "Serves drops of a case over HTTP by the protocol of UM-Bridge. A request gives\nvalues to the inputs, and the answer has "
+                    "the figures of that drop.",
+                  "It listens on this machine only unless --host says otherwise; there is no\npassword. Runs are kept in softfall-runs/ of "
+               "the present folder and found there\nagain. Ctrl-C or SIGTERM ends it, and the drops that run with a checkpoint.\ndocs/python.md "
+               "explains it.")
+    add = made.options.add_argument
+    made.add_argument("case", metavar="CASE", help=argparse.SUPPRESS)
+    add("--host", metavar="NAME", default="127.0.0.1", help="address to listen on (default 127.0.0.1)")
+    add("--input", metavar="KEY", action="append", required=True,
+        help="a key of the case that a request gives, with its unit: \"missile.velocity [m/s]\"")
+    add("--jobs", metavar="N", type=int, default=1, help="drops at a time, 64 at most (default 1)")
+    add("--name", metavar="NAME", default="drop", help="name of the model (default drop)")
+    add("--option", metavar="KEY", action="append", default=[],
+        help="a key of the case that the config of a request may set (default: none)")
+    add("--output", metavar="FIGURE", action="append", required=True, help="a figure of summary.json, such as hic")
+    add("--port", metavar="N", type=int, default=4242, help="port (default 4242; 0: one that is free)")
+    add("--set", metavar="KEY=VALUE", action="append", default=[], help="a value of the case, as of softfall-pre")
+    add("--threads", metavar="N", type=int, help="threads of a drop (default: every processor)")
+    add("--unusable", metavar="raise|nan", choices=["raise", "nan"], default="raise",
+        help="answer to a drop that is not to be used: an error (raise, default) or NaN")
+    return made
+
+
 def run(o: argparse.Namespace) -> int:
-    """Serves until SIGINT or SIGTERM, and returns the exit code of softfall-serve."""
-    warnings.showwarning = lambda message, *_, **__: print(f"softfall-serve: warning: {message}", file=sys.stderr)
-    try:
-        server = make(o)
-    except (Error, KeyError) as error:
-        print(f"softfall-serve: {error.args[0]}", file=sys.stderr)
-        return error.code if isinstance(error, Error) else 2
+    """Serves until SIGINT or SIGTERM, and returns the exit code."""
+    server = make(o)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: threading.Thread(target=server.shutdown).start())
     host, port = str(server.server_address[0]), server.server_address[1]
-    print(f'softfall-serve: the model "{server.name}" is at http://{host}:{port}', flush=True)
+    print(f'softfall serve: the model "{server.name}" is at http://{host}:{port}', flush=True)
     server.serve_forever()
     programs.stop_all()
     server.server_close()

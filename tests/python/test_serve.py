@@ -168,12 +168,12 @@ def test_wrong_command_lines_end_with_a_sentence(here):
         result = subprocess.run([str(BIN / "softfall-serve"), *words], capture_output=True, text=True)
         return result.returncode, result.stderr
     good = ["pad/case.cfg", "--input=missile.velocity [m/s]", "--output=hic"]
-    assert says("nowhere.cfg", *good[1:]) == (2, f"softfall-serve: the file {here}/nowhere.cfg cannot be read: No such file or directory\n")
-    assert says(*good, "--port=99999") == (2, "softfall-serve: --port 99999 is outside 0 to 65535\n")
-    assert says(*good, "--jobs=0") == (2, "softfall-serve: --jobs 0 is outside 1 to 64\n")
-    assert says(*good, "--set=missile.mass") == (2, "softfall-serve: --set missile.mass: KEY=VALUE is expected\n")
-    assert says(*good, "--option=missile.mas") == (2, "softfall-serve: --option missile.mas: there is no such key of the case\n")
-    assert says(good[0], "--input=missile.velocit", "--output=hic")[0] == 2 and says("pad/case.cfg")[0] == 2
+    assert says("nowhere.cfg", *good[1:]) == (2, f"softfall serve: the file {here}/nowhere.cfg cannot be read: No such file or directory\n")
+    assert says(*good, "--port=99999") == (2, "softfall serve: --port 99999 is outside 0 to 65535\n")
+    assert says(*good, "--jobs=0") == (2, "softfall serve: --jobs 0 is outside 1 to 64\n")
+    assert says(*good, "--set=missile.mass") == (2, "softfall serve: --set missile.mass: KEY=VALUE is expected\n")
+    assert says(*good, "--option=missile.mas") == (2, "softfall serve: --option missile.mas: there is no such key of the case\n")
+    assert says(good[0], "--input=missile.velocit", "--output=hic")[0] == 2 and says("pad/case.cfg")[0] == 64
     assert "cannot listen on 192.0.2.1" in says(*good, "--host=192.0.2.1")[1]
     taken = socket.create_server(("127.0.0.1", 0))
     assert "Address already in use" in says(*good, f"--port={taken.getsockname()[1]}")[1]

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line of softfall: `softfall COMMAND ...` finds the module of the command, reads its options and runs it.
+
+A command is a module with `parser(prog)`, which returns its Parser, and `run(options)`, which returns the exit code.
+"""
+from __future__ import annotations
+
+import argparse
+import difflib
+import importlib
+import os
+import sys
+import warnings
+from typing import Any, Sequence
+
+from . import library
+from .errors import Error
+
+COMMANDS = {  # module within the package, and what the command does
+    "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
+    "serve": ("serve", "answer requests for drops over HTTP, by the protocol of UM-Bridge"),
+}
+USAGE = 64  # exit code of a wrong command line, as of the C programs
+
+
+class _Format(argparse.RawDescriptionHelpFormatter):
+    """Help in the form of the C programs."""
+
+    def add_usage(self, usage: Any, actions: Any, groups: Any, prefix: str | None = None) -> None:
+        super().add_usage(usage, actions, groups, "Usage: ")
+
+    def _format_action_invocation(self, action: argparse.Action) -> str:
+        names = ", ".join(action.option_strings) or str(action.metavar or action.dest)
+        return f"{names}={action.metavar}" if action.option_strings and action.metavar else names
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser with the help and the exit code of the C programs; `options` takes the options of a command."""
+
+    def __init__(self, prog: str, usage: str, description: str, epilog: str = "") -> None:
+        super().__init__(prog=prog, usage=f"{prog} {usage}", description=description, epilog=epilog, add_help=False, allow_abbrev=False,
+                         formatter_class=lambda prog: _Format(prog, max_help_position=27, width=79))
+        self.options = self.add_argument_group("options")
+        self.options.add_argument("-?", "--help", action="help", help="give this help list")
+        self.options.add_argument("-V", "--version", action="store_true", help="print program version")
+
+    def parse_args(self, arguments: Any = None, namespace: Any = None) -> Any:
+        """Reads the command line; --version is answered here, whatever else is missing."""
+        if {"-V", "--version"} & set(arguments):
+            print(f"{self.prog} {library.version()}")
+            self.exit(0)
+        return super().parse_args(arguments, namespace)
+
+    def error(self, message: str) -> Any:
+        """Ends the program with a sentence about the command line."""
+        self.exit(USAGE, f"{self.prog}: {message}\nTry `{self.prog} --help' for more information.\n")
+
+
+def _help() -> str:
+    lines = "\n".join(f"  {name:<12}{text}" for name, (_, text) in sorted(COMMANDS.items()))
+    return ("Usage: softfall WORD [OPTION...]\nPredicts what happens when a missile falls on a foam pad: one command for each task.\n\n"
+            f"{lines}\n\n  -?, --help               give this help list\n  -V, --version            print program version\n\n"
+            "`softfall WORD --help` lists the options of a task. Figures indicate, they do not\ncertify.\n")
+
+
+def _failure(error: Exception) -> tuple[str, int]:
+    """Returns the sentence and the exit code of a failure that the user can mend; raises any other one again."""
+    if isinstance(error, Error):
+        return str(error), error.code
+    if isinstance(error, KeyError):
+        return str(error.args[0]), 2
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror, 3
+    if isinstance(error, ModuleNotFoundError) and not (error.name or "").startswith("softfall"):
+        return f"{sys.executable} has no module {error.name}; packages.txt names its package of Debian", 3
+    raise error
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Runs a command and returns the exit code. A failure is one sentence on stderr."""
+    name = arguments[0] if arguments else ""
+    if name in ("-?", "--help", "help"):
+        print(_help(), end="")
+        return 0
+    if name in ("-V", "--version"):
+        print(f"softfall {library.version()}")
+        return 0
+    if name not in COMMANDS:
+        near = difflib.get_close_matches(name, COMMANDS, 1)
+        hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(sorted(COMMANDS))}"
+        print(f"softfall: unknown command '{name}'; {hint}" if name else _help(), file=sys.stderr)
+        return USAGE
+    prog = f"softfall {name}"
+    warnings.showwarning = lambda message, *_, **__: print(f"{prog}: warning: {message}", file=sys.stderr)
+    try:
+        module = importlib.import_module(f".{COMMANDS[name][0]}", __package__)
+        return int(module.run(module.parser(prog).parse_args(arguments[1:])))
+    except KeyboardInterrupt:
+        print(f"{prog}: interrupted; the same command resumes", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone: nothing is written at the end
+        return 0
+    except Exception as error:
+        sentence, code = _failure(error)
+        print(f"{prog}: {sentence}", file=sys.stderr)
+        return code
