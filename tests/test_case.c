@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: what a good one gives. Its faults: test_case_refusals. */
-#include "material/foam_card.h"
+#include "case/read.h"
+#include "case/values.h"
 #include "case_fixture.h"
 
 #include <math.h>

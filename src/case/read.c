@@ -2,11 +2,14 @@
 /* Reads a case: file, overrides, unknown keys, the rows of the table, then the rules that join several keys.
  */
 
-#include "case/reader.h"
+#include "case/read.h"
 
 #include "base/hash.h"
 #include "base/mat3.h"
 #include "base/text.h"
+#include "case/rules.h"
+#include "case/value.h"
+#include "case/values.h"
 #include "material/laws.h"
 
 enum { NAMED_UNKNOWN = 10 };
@@ -503,14 +506,4 @@ sf_status sf_case_read_material(const char *path, sf_material *material, sf_erro
         scratch.material = (sf_material){0};
     }
     return err->status;
-}
-
-void sf_case_free(sf_case *c) {
-    for (int k = 0; k < SF_SUPPORTS; k++)
-        free(c->support[k].source.path);
-    sf_material_free(&c->material);
-    for (int k = 0; c->layer && k < c->layer_count; k++)
-        sf_material_free(&c->layer[k]);
-    SF_CLEAR(c, c->path, c->text, c->parameters, c->geometry_files, c->pad.path, c->missile.path, c->layer,
-             c->motion_time, c->motion_displacement);
 }

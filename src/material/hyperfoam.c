@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/hyperfoam.h"
 
-/* The entry of the hyperfoam in the table of laws: its parameters and rules. The update of a batch is in
- * hyperfoam_point.c. */
+/* The entry of the hyperfoam in the table of laws: its parameters, its rules and its loading law. The terms
+ * that all foams share are in foam_point.c. */
 
 /* ---- parameters ---- */
 
@@ -328,8 +328,8 @@ enum { STEPS = 200 };
 /* A family of deformations with one parameter, the strain. */
 typedef struct path {
     const char *name;
-    int held;   /* directions with a given stretch; the others are free of stress */
-    int axes;   /* of them, how many change by the strain */
+    int held; /* directions with a given stretch; the others are free of stress */
+    int axes; /* of them, how many change by the strain */
     enum { PRESSED, PULLED, SHEARED } way; /* SHEARED: the second is stretched at constant volume */
 } path;
 static const path paths[] = {

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "model/model.h"
+#include "model/model_io.h"
 
+#include "io/h5_data.h"
 #include "io/replace.h"
 #include "material/laws.h"
+#include "model/model_check.h"
 
 /* Writes a member of the model, or of a law's curves, as the dataset `path`. */
 static sf_status write_field(sf_h5 *h5, const char *path, const sf_model_field *field, const void *record,

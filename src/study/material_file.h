@@ -4,8 +4,8 @@
  * takes it with
  * --set material=@FILE. */
 #pragma once
-#include "model/good_run.h"
 #include "material/card.h"
+#include "model/drop_kind.h"
 
 typedef struct sf_material_text {
     const char *title;      /* first line of both files: a description of the material */
