@@ -47,6 +47,8 @@ typedef struct sf_parameter {
     double unit_size;
     bool (*acts)(const void *card); /* false: the value changes nothing, may be 0, and is not written to a
                                        material file. NULL = always */
+    bool optional; /* where it does not act it is neither stored in a model nor hashed, so that models of
+                      before it keep both */
 } sf_parameter;
 
 /* Compression curves: `curve_count` of them, in ascending strain rate; points of curve k are [curve_ptr[k],
@@ -181,3 +183,5 @@ uint64_t sf_material_hash(uint64_t hash, const sf_material *material);
 
 /* True if the value at `parameter` has an effect. */
 bool sf_parameter_acts(const sf_parameter *parameter, const void *card);
+/* True if the value is a dataset of its own in model.h5, and part of the hash. */
+bool sf_parameter_is_stored(const sf_parameter *parameter, const void *card);
