@@ -29,7 +29,7 @@ typedef struct sf_geo_source {
     int parameter_count;
     sf_geo_parameter parameter[SF_CASE_MAX_PARAMETERS];
     double spacing_factor; /* -, for the parameters with "spacing" in their names; 0: none */
-    double unit; /* m per unit that it has or is to have; 0: not known */
+    double unit;           /* m per unit that it has or is to have; 0: not known */
 } sf_geo_source;
 
 /* A rigid fixed body that the pad may touch: a surface of a geometry, or a plane. */
@@ -158,8 +158,10 @@ bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const ch
 /* Would a case with this material file (the keys of the group `material`) be refused for it, on a pad of this
  * temperature (K; 0: none is given)? The sentence names file, line and key. */
 sf_status sf_case_check_material(const char *path, double temperature, sf_error *err);
-/* The material of such a file; owned by the caller (sf_material_free). */
-sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err);
+/* The material of such a file; owned by the caller (sf_material_free). `parameters`, if not NULL, receives
+ * its lines as of sf_case.parameters, from malloc. */
+sf_status sf_case_read_material(const char *path, double temperature, sf_material *material,
+                                char **parameters, sf_error *err);
 
 /* Bytes of motion_time, and of motion_displacement; 0: the missile is free. */
 size_t sf_case_motion_bytes(const sf_case *c);

@@ -146,6 +146,9 @@ typedef struct sf_law {
      * (s); returns the nominal stress (Pa), compression positive. Without the terms that depend on a
      * length. */
     double (*uniaxial)(const void *numbers, double dt, double strain, struct sf_uniaxial *point);
+    /* Returns the lateral stretch of uniaxial compression with free sides, where the stress of loading across
+     * it vanishes; NaN if there is none. NULL: 1. */
+    double (*lateral)(const void *numbers, double strain);
 } sf_law;
 
 /* sf_material: a law and a card of it. The functions here use the law's declarations and depend on no

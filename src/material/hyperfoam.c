@@ -192,6 +192,11 @@ static double uniaxial(const void *numbers, double dt, double strain, sf_uniaxia
     return -factor * p.t[0] - stretch * sf_foam_axial_viscous(&foam->options, dt, green_rate, point);
 }
 
+static double lateral(const void *numbers, double strain) {
+    double stretch[3] = {1 - strain, 1, 1};
+    return sf_hyperfoam_release(numbers, 1, stretch) ? stretch[1] : NAN;
+}
+
 const sf_law sf_hyperfoam_law = {
     .name = "hyperfoam",
     .description =
@@ -204,6 +209,7 @@ const sf_law sf_hyperfoam_law = {
     .release = free,
     .update = sf_hyperfoam_update,
     .uniaxial = uniaxial,
+    .lateral = lateral,
 };
 
 static double beta_of(const sf_hyperfoam_term *term) {
