@@ -86,11 +86,14 @@ class Material:
     """A foam of a material file: softfall_material_read, and all that it has."""
 
     def __init__(self, path: str, temperature: float = 0.0) -> None:
-        self._handle = c.c_void_p()
+        self._handle, self._free = c.c_void_p(), _load().softfall_material_free
         if "\0" in path:
             raise failure(f"{path!r} has a zero byte", 2)
-        with _one_at_a_time:
-            _call("softfall_material_read", os.fsencode(path), c.c_double(temperature), c.byref(self._handle))
+        try:
+            with _one_at_a_time:
+                _call("softfall_material_read", os.fsencode(path), c.c_double(temperature), c.byref(self._handle))
+        except Error as error:
+            raise failure(str(error).removeprefix(f"--set material=@{path}: "), error.code) from None
         self.values: dict[str, float | str] = {}  # by key within the group, in SI units or a word; without those that are absent
         self.given: set[str] = set()
         for line in _load().softfall_material_parameters(self._handle).decode(errors="replace").splitlines():
@@ -106,8 +109,8 @@ class Material:
             self.curves.append((rate.value, np.array(strain[:count]), np.array(stress[:count])))
 
     def __del__(self) -> None:
-        if self._handle:
-            _load().softfall_material_free(self._handle)
+        if hasattr(self, "_free"):
+            self._free(self._handle)
 
     def compress(self, time: Any, strain: Any, free_sides: bool = False) -> np.ndarray:
         """softfall_compress: nominal stress in Pa; arrays of double of one length."""
