@@ -54,7 +54,7 @@ typedef struct sf_key {
     bool idle;           /* its value cannot change a drop: it does not count in sf_case.values */
 } sf_key;
 
-enum { SF_KEY_MAX = 128 };
+enum { SF_KEY_MAX = 160 };
 
 /* Lists of groups in the case, and where the offsets of their keys lead: sf_case_support,
  * sf_interface_entry. */

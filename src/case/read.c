@@ -498,12 +498,17 @@ sf_status sf_case_check_material(const char *path, double temperature, sf_error 
     return read_alone(path, &scratch, err);
 }
 
-sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err) {
-    SF_OWNED_BY(sf_case_free) sf_case scratch = {0};
+sf_status sf_case_read_material(const char *path, double temperature, sf_material *material,
+                                char **parameters, sf_error *err) {
+    SF_OWNED_BY(sf_case_free) sf_case scratch = {.run.temperature = temperature};
     *material = (sf_material){0};
-    if (read_alone(path, &scratch, err) == SF_OK) {
-        *material = scratch.material;
-        scratch.material = (sf_material){0};
+    if (read_alone(path, &scratch, err) != SF_OK)
+        return err->status;
+    *material = scratch.material;
+    scratch.material = (sf_material){0};
+    if (parameters) {
+        *parameters = scratch.parameters;
+        scratch.parameters = NULL;
     }
-    return err->status;
+    return SF_OK;
 }

@@ -15,8 +15,10 @@ sf_status sf_case_read(const char *path, int count, const char *const *overrides
 /* Would a case with this material file (the keys of the group `material`) be refused for it, on a pad of this
  * temperature (K; 0: none is given)? The sentence names file, line and key. */
 sf_status sf_case_check_material(const char *path, double temperature, sf_error *err);
-/* The material of such a file; owned by the caller (sf_material_free). */
-sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err);
+/* The material of such a file; owned by the caller (sf_material_free). `parameters`, if not NULL, receives
+ * its lines as of sf_case.parameters, from malloc. */
+sf_status sf_case_read_material(const char *path, double temperature, sf_material *material,
+                                char **parameters, sf_error *err);
 
 /* The kinds of entry that the window has for a value. */
 typedef enum sf_case_value_kind {

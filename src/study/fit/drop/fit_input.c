@@ -165,7 +165,7 @@ static sf_status read_material(const sf_config *config, sf_config_item *root, sf
     SF_PRINTED(override, 4096, "material=@%s", in->material_path);
     if (in->drop_count == 0) {
         SF_OWNED_BY(sf_material_free) sf_material material = {0};
-        SF_TRY(sf_case_read_material(in->material_path, &material, err));
+        SF_TRY(sf_case_read_material(in->material_path, 0, &material, NULL, err));
         SF_TRY(take_material(&material, true, in, err));
     }
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
