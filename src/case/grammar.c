@@ -277,6 +277,7 @@ typedef struct walk {
     FILE *out;
     int lines;              /* written */
     sf_case_source *source; /* NULL: not wanted */
+    bool of_case;           /* a line `material = "NAME";` stands for the file of that foam */
     bool marked, whole;     /* as sf_case_load_marked */
     const char *folder;     /* of the case: includes are relative to it */
     int includes;
@@ -390,7 +391,7 @@ static sf_status walk_lines(walk *w, const char *text, size_t size, const char *
         slice include, material = {0};
         w->scan.path = path;
         w->scan.line = line;
-        bool named = depth == 0 && finds_material(&w->scan, (slice){text, length}, &material);
+        bool named = w->of_case && depth == 0 && finds_material(&w->scan, (slice){text, length}, &material);
         SF_TRY(scan_line(&w->scan, text, length, &include, err));
         if (named) {
             SF_TRY(walk_material(w, material, path, line, depth, err));
@@ -436,7 +437,7 @@ static sf_status walk_file(walk *w, const char *path, const char *from, int line
 
 /* A file that stands in place of a group, each line as a comment. */
 static sf_status copy_as_comment(const char *path, FILE *out, sf_error *err) {
-    SF_OWNED char *text = sf_case_load_text(path, 0, NULL, NULL, err);
+    SF_OWNED char *text = sf_case_load_text(path, false, 0, NULL, NULL, err);
     char *rest = text;
     for (char *line = strsep(&rest, "\n"); line && (rest || *line); line = strsep(&rest, "\n"))
         fprintf(out, "#     %s\n", line);
@@ -470,13 +471,13 @@ static char *load(walk *w, const char *path, int count, const char *const *overr
     return sf_keep(text, err);
 }
 
-char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
-                        sf_error *err) {
-    return load(&(walk){.source = source}, path, count, overrides, err);
+char *sf_case_load_text(const char *path, bool of_case, int count, const char *const *overrides,
+                        sf_case_source *source, sf_error *err) {
+    return load(&(walk){.source = source, .of_case = of_case}, path, count, overrides, err);
 }
 
 char *sf_case_load_marked(const char *path, bool whole, sf_error *err) {
-    return load(&(walk){.marked = true, .whole = whole}, path, 0, NULL, err);
+    return load(&(walk){.marked = true, .whole = whole, .of_case = true}, path, 0, NULL, err);
 }
 
 const char *sf_case_syntax_phrase(const char *text) {

@@ -34,9 +34,11 @@ typedef struct sf_case_source {
 } sf_case_source;
 
 /* The text of the case with its includes put in place and the overrides as comments; from malloc. Includes
- * that are missing or no plain files are refused. `source` (may be NULL) is filled. */
-char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
-                        sf_error *err);
+ * that are missing or no plain files are refused. `of_case`: the file is a case, in which a line `material =
+ * "NAME";` stands for the file of that foam; others are left as they are. `source` (may be NULL) is filled.
+ */
+char *sf_case_load_text(const char *path, bool of_case, int count, const char *const *overrides,
+                        sf_case_source *source, sf_error *err);
 /* The text of a case file for case/edit.c: two marks, comments on lines of their own, frame the text of an
  * included file: "#" and SF_CASE_BEGIN with the line of the include behind them, "#" and SF_CASE_END. No
  * other line holds these characters. `whole`: the includes are named from / on. From malloc, NULL on failure.

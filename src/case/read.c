@@ -439,7 +439,7 @@ static sf_status begin_reading(sf_case_reader *reader, int count, const char *co
         if (sf_case_override(&reader->config, material, err) == SF_OK && choose_law(reader, err) == SF_OK)
             check_names(reader, config_root_setting(&reader->config), "", err);
     } else if (err->status == SF_OK &&
-               (c->text = sf_case_load_text(reader->path, count, overrides, &reader->source, err))) {
+               (c->text = sf_case_load_text(reader->path, true, count, overrides, &reader->source, err))) {
         parse_text(reader, count, overrides, err);
     }
     return err->status;
