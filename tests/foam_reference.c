@@ -74,8 +74,6 @@ static void base_law(const sf_foam *foam, principal *p) {
             energy = foam->cutoff * (-strain - 0.5 * yield);
         }
         p->steepest[i] = fabs(strain) < 1e-6 ? rest : p->slope[i];
-        if (strain > 0)
-            p->slope[i] = smaller(p->slope[i], foam->curve[0].firm_slope);
         p->energy += energy;
     }
 }
@@ -121,11 +119,13 @@ static void look_ahead(const sf_foam *foam, double dt, const double e[6], princi
 static double overstress(const sf_foam *foam, double dt, const principal *p, const double e[6], double *rate,
                          double s[3]) {
     double bound = 0, rates = 0, extra[3];
-    int shortest = 0;
-    for (int i = 1; i < 3; i++)
-        shortest = p->stretch[i] < p->stretch[shortest] ? i : shortest;
-    double fastest = fmax(0, -quadratic(p, shortest, e) / p->stretch[shortest]);
-    *rate += -expm1(-dt / foam->filter_time) * (fastest - *rate);
+    double power = 0, size = 0;
+    for (int i = 0; i < 3; i++)
+        if (p->t[i] < 0) {
+            power += p->t[i] * quadratic(p, i, e) / p->stretch[i];
+            size -= p->t[i];
+        }
+    *rate += -expm1(-dt / foam->filter_time) * ((size > 0 ? power / size : 0) - *rate);
     for (int i = 0; i < 3; i++) {
         double slope, rate_slope;
         extra[i] = sf_foam_overstress(foam, 1 - p->stretch[i], *rate, &slope, &rate_slope);

@@ -6,6 +6,7 @@
 
 #include "pre/mesh/gmsh_session.h"
 #include "solver/field/domain_stress.h"
+#include "solver/field/stabilisation.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>
@@ -369,14 +370,15 @@ double fixture_pairs(const fixture *f, const double *stiffness, int64_t i, doubl
                      double couple[9]) {
     sf_pair_sums sums;
     int64_t place = i % SF_GROUP;
-    sf_stabilisation_group(&f->model, &f->operators.pairs, f->state.d, f->state.f, stiffness, i / SF_GROUP,
-                           &sums);
+    const sf_pair_field field = {f->state.d, f->state.f,           stiffness,
+                                 stiffness,  f->state.pair_offset, f->state.pair_offsets};
+    sf_stabilisation_group(&f->model, &f->operators.pairs, &field, i / SF_GROUP, &sums);
     for (int r = 0; r < 3; r++) {
         force[r] = sums.force[place][r];
         for (int c = 0; c < 3; c++)
             couple[3 * r + c] = sums.couple[place][c][r];
     }
-    return sf_stabilisation_energy(&sums, place);
+    return sums.after[place][0] + sums.after[place][1] + sums.after[place][2];
 }
 
 void fixture_set_affine(fixture *f, const double gradient[9], const double shift[3]) {

@@ -87,8 +87,8 @@ void fixture_free(fixture *f);
 void fixture_forces(fixture *f);
 /* Coefficient x (V_I/n_I + V_J/n_J) / (2 |X_J - X_I|^2), m. */
 double fixture_pair_weight(const sf_model *m, int64_t i, int64_t j);
-/* Force (N) and couple (J) of the stabilisation on node i at the present d and F; returns the sum of 1/2
- * weight |e|^2, m3. */
+/* Force (N) and couple (J) of the stabilisation on node i at the present d and F, with this stiffness (Pa)
+ * now and before; returns half the energy of its pairs, J. */
 double fixture_pairs(const fixture *f, const double *stiffness, int64_t i, double force[3], double couple[9]);
 /* d = gradient X + shift. */
 void fixture_set_affine(fixture *f, const double gradient[9], const double shift[3]);

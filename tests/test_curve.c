@@ -250,7 +250,6 @@ static void straight_line_has_its_modulus_and_energy(void **state) {
         assert_relative(slope_at(&curve, strain), 2e5, 1e-10);
         assert_relative(energy_at(&curve, strain), 1e5 * strain * strain, 1e-10);
     }
-    assert_relative(curve.largest_slope, 2e5, 1e-10);
     sf_curve_free(&curve);
 }
 
@@ -378,26 +377,6 @@ static void assert_refused(const point_card *card, sf_status status, const char 
         fail_msg("\"%s\" does not hold \"%s\" and \"%s\"", err.text, part, other);
 }
 
-/* The stabilisation follows ten times the slope at 0.025 before a pole below 1, and the slope there of H1. */
-static void the_firm_slope_is_that_before_the_pole(void **state) {
-    (void)state;
-    for (int h2 = 0; h2 < 2; h2++) {
-        static point_card card;
-        sf_error err = SF_ERROR_INIT;
-        sf_curve curve;
-        double slope, ignored[2];
-        point_card_init(&card);
-        point_card_add_eva(&card, 0, 33, 0.7, 1);
-        card.card.densification_limit = h2 ? 0.8 : 1;
-        card.card.densification_exponent = 1;
-        assert_int_equal(sf_curve_build(&card.card, 0, &curve, &err), SF_OK);
-        sf_densification_evaluate(&curve.beyond, card.card.densification_limit - 0.025, &ignored[0], &slope,
-                                  &ignored[1]);
-        assert_relative(curve.firm_slope, (h2 ? 10 : 1) * slope, 1e-12);
-        sf_curve_free(&curve);
-    }
-}
-
 static void bad_cards_are_refused_with_a_sentence(void **state) {
     (void)state;
     static point_card card;
@@ -445,7 +424,6 @@ int main(void) {
         cmocka_unit_test(a_strong_law_has_no_stop),
         cmocka_unit_test(lanes_are_finite_beyond_the_pole),
         cmocka_unit_test(each_curve_of_a_family_is_built_from_its_own_points),
-        cmocka_unit_test(the_firm_slope_is_that_before_the_pole),
         cmocka_unit_test(bad_cards_are_refused_with_a_sentence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

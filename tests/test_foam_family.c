@@ -113,7 +113,7 @@ static void extension_has_no_overstress(void **state) {
         for (int k = 1; k <= 1000; k++) {
             foam_uniaxial(start + 1e-4 * k, f);
             foam_step(&foam, 1e-6, f, &batch);
-            assert_close(batch.history[SF_FOAM_RATE][0], 0, 0);
+            assert_true(batch.history[SF_FOAM_RATE][0] <= 0);
             assert_close(batch.work[0], 0, 0);
         }
         foam_point elastic = foam_elastic(&foam, f, 0);

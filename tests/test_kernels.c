@@ -284,7 +284,7 @@ static void stabilisation_is_that_of_the_definition(void **state) {
                     double arm = m->position[3 * j + c] - m->position[3 * i + c];
                     e += ((r == c) - 0.5 * (s->f[9 * i + 3 * r + c] + s->f[9 * j + 3 * r + c])) * arm;
                 }
-                sum += 0.5 * fixture_pair_weight(m, i, j) * e * e;
+                sum += 0.25 * weight * e * e;
                 plain_force[r] += weight * e;
                 for (int c = 0; c < 3; c++)
                     plain_couple[3 * r + c] -=

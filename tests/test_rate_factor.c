@@ -66,7 +66,8 @@ static void loading_at_a_constant_rate_is_the_closed_form(void **state) {
     sf_foam_free(&foam);
 }
 
-/* In unloading the factor of hysteresis acts on the curve alone; the gain fades with the filtered rate. */
+/* In unloading the factor of hysteresis acts on the curve alone; the gain ends when the filtered rate, which
+ * has the sign of the motion, falls below the reference. */
 static void unloading_acts_on_the_curve_alone(void **state) {
     (void)state;
     sf_foam foam;
@@ -81,12 +82,12 @@ static void unloading_acts_on_the_curve_alone(void **state) {
     double start = batch.history[SF_FOAM_RATE][0];
     curve_stress(&foam, 0.5, &peak);
     for (int n = 1; n <= 900; n++) {
-        double strain = 0.5 - 1e-4 * n, rate = start * exp(-n * dt / TAU);
+        double strain = 0.5 - 1e-4 * n, rate = start * exp(-n * dt / TAU) + 100 * expm1(-n * dt / TAU);
         foam_uniaxial(1 - strain, f);
         foam_step(&foam, dt, f, &batch);
         double stress = curve_stress(&foam, strain, &energy);
         double factor = 1 - 0.9 * (1 - energy / peak);
-        assert_relative(-batch.p[0][0], stress * (factor + gain_at(rate)), 1e-9);
+        assert_relative(-batch.p[0][0], stress * (factor + gain_at(rate)), 1e-3);
         assert_relative(batch.factor[0], factor, 1e-9);
         assert_relative(batch.stored[0] + batch.lost[0],
                         peak - (peak - energy) * (0.1 + 0.45 * (1 + energy / peak)), 1e-6);
@@ -95,11 +96,9 @@ static void unloading_acts_on_the_curve_alone(void **state) {
 }
 
 /* The work of the gain is what the total work exceeds stored and lost energy by: to second order in the step.
- * It is not given back in a cycle of 10 filter times or more. Shorter ones can give a little back: the gain
- * is still there after the reversal. */
+ */
 typedef struct cycle {
-    double gap, viscous, most,
-        lost; /* J m-3; gap: the largest part of the total work that nothing explains */
+    double gap, viscous, lost; /* J m-3; gap: the largest part of the total work that nothing explains */
 } cycle;
 
 static cycle run_cycle(double time, int steps) {
@@ -117,7 +116,6 @@ static cycle run_cycle(double time, int steps) {
         old = batch.p[0][0];
         before = strain;
         c.viscous += batch.work[0];
-        c.most = larger(c.most, c.viscous);
         c.gap = larger(c.gap, fabs(total - batch.stored[0] - batch.lost[0] - c.viscous));
     }
     c.lost = batch.lost[0];
@@ -132,8 +130,62 @@ static void work_closes_the_balance_and_dissipates(void **state) {
         assert_true(c.gap < 2e-6 * c.lost);
         assert_true(fine.gap < 0.065 * c.gap); /* 1/16 */
         assert_true(fine.viscous > 0.02 * fine.lost);
-        assert_true(time < 80 * TAU || fine.viscous > 0.99 * fine.most); /* the gain fades in about 7 tau */
     }
+}
+
+/* Along random ways, back and forth at up to 1000 /s in uniaxial compression and in random directions, the
+ * work of the gain is never below 0: what it holds after a reversal it has taken before (theory, after eq.
+ * 22). */
+static void no_way_gets_energy_from_the_gain(void **state) {
+    (void)state;
+    const double dt = TAU / 100;
+    sf_foam foam;
+    uint64_t seed = 21;
+    make_foam(0.05, 1, 0, &foam);
+    for (int way = 0; way < 60; way++) {
+        sf_law_batch batch;
+        double f[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, go[9] = {0}, viscous = 0, most = 0, least = 0;
+        bool uniaxial = way % 2 == 0;
+        foam_reset(&batch);
+        for (int n = 0; n < 6000; n++) {
+            if (n % (5 + 20 * (way % 7)) ==
+                0) { /* a new direction and speed, towards the middle of what is allowed */
+                double speed = pow(10, point_random(&seed, 0, 3));
+                for (int k = 0; k < 9; k++)
+                    go[k] = uniaxial ? (k == 0) * speed * (point_random(&seed, 0, 1) < f[0] - 0.1 ? -1 : 1)
+                                     : speed * (point_random(&seed, -1, 1) -
+                                                (k % 4 == 0 ? 1.5 * (f[k] - 0.6) : 1.5 * f[k]));
+            }
+            for (int k = 0; k < 9; k++)
+                f[k] += dt * go[k];
+            f[0] = smaller(larger(f[0], 0.1), 1.05);
+            foam_step(&foam, dt, f, &batch);
+            viscous += batch.work[0];
+            most = larger(most, viscous);
+            least = smaller(least, viscous);
+        }
+        assert_true(most > 0);
+        if (!(least > (uniaxial ? -1e-6 : -1e-3) * most))
+            fail_msg("way %d: the gain has given back %.3g of what it took", way, -least / most);
+    }
+    sf_foam_free(&foam);
+}
+
+/* A vibration beside a slow compression takes energy and leaves the mean rate alone. */
+static void vibration_does_not_raise_the_filtered_rate(void **state) {
+    (void)state;
+    const double dt = 1e-7, slow = 20, amplitude = 1e-4, omega = 2 * M_PI / 5e-6; /* 126 /s to and fro */
+    sf_foam foam;
+    sf_law_batch batch;
+    double f[9];
+    make_foam(0.05, 1, 0, &foam);
+    foam_reset(&batch);
+    for (int n = 1; n <= 20000; n++) {
+        foam_uniaxial(1 - slow * n * dt - amplitude * sin(omega * n * dt), f);
+        foam_step(&foam, dt, f, &batch);
+    }
+    assert_relative(batch.history[SF_FOAM_RATE][0], slow, 0.1);
+    sf_foam_free(&foam);
 }
 
 /* Curves that are the multiples 1 + c k at the reference times 10^k are the same law: stress, work and
@@ -217,6 +269,8 @@ int main(void) {
         cmocka_unit_test(loading_at_a_constant_rate_is_the_closed_form),
         cmocka_unit_test(unloading_acts_on_the_curve_alone),
         cmocka_unit_test(work_closes_the_balance_and_dissipates),
+        cmocka_unit_test(no_way_gets_energy_from_the_gain),
+        cmocka_unit_test(vibration_does_not_raise_the_filtered_rate),
         cmocka_unit_test(curves_that_are_multiples_are_the_same_law),
         cmocka_unit_test(bounds_cover_the_numerical_tangent),
         cmocka_unit_test(both_kinds_of_rate_are_refused),

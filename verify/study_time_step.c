@@ -5,6 +5,7 @@
 #include "extreme.h"
 #include "model_fixture.h"
 #include "solver/field/domain_stress.h"
+#include "solver/field/stabilisation.h"
 #include "solver/step.h"
 #include "solver/time_step.h"
 #include "study.h"

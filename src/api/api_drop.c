@@ -357,6 +357,7 @@ static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
                       .anvil_depth = m->anvil.depth,
                       .density = sf_model_density(m),
                       .given_back = sf_model_whole(m) * d->state.given_back,
+                      .vibration = sf_model_whole(m) * d->state.vibration,
                       .air = m->air,
                       .speed_scatter = m->run.speed_scatter,
                       .thickness_tolerance = m->run.thickness_tolerance,

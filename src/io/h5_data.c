@@ -5,7 +5,7 @@
 #include <string.h>
 
 enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536, SF_H5_COPY_SIZE = 1 << 16 };
-enum { SF_H5_PIECE_SIZE = 1 << 20, SF_H5_DEFLATE = 4 }; /* bytes; level of deflate */
+enum { SF_H5_PIECE_SIZE = 1 << 20, SF_H5_DEFLATE = 1 }; /* bytes; level of deflate */
 
 /* Closes an id of HDF5, if it is not below 0, at the end of its block: KEPT hid_t space = ...; H5Idec_ref
  * would leave the id of a dataset whose last write failed. */

@@ -75,10 +75,6 @@ static sf_status build_densification(const sf_foam_card *foam, double stress, do
         exponent = sf_densification_natural_exponent(start, limit, stress, slope);
     curve->beyond = sf_densification_join(start, limit, exponent, stress, slope, energy);
     curve->straight = straight_end(&curve->beyond);
-    double firm, ignored[2], before = limit - SF_FIRM_ROOM;
-    sf_densification_evaluate(&curve->beyond, fmax(start, before), &ignored[0], &firm, &ignored[1]);
-    firm *= limit < 1 && before > start ? SF_FIRM_TIMES : 1;
-    curve->firm_slope = fmax(curve->largest_slope, firm);
     return SF_OK;
 }
 
@@ -149,7 +145,6 @@ static double build_pieces(double end_stress, double end_slope, sf_curve *curve)
         p->c[2] = (3 * (y1 - y0) / h - 2 * d0 - d1) / h;
         p->c[3] = (2 * (y0 - y1) / h + d0 + d1) / (h * h);
         energy += h * (p->c[0] + h * (p->c[1] / 2 + h * (p->c[2] / 3 + h * p->c[3] / 4)));
-        curve->largest_slope = fmax(curve->largest_slope, fmax(d0, d1));
     }
     return energy;
 }

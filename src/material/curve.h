@@ -28,8 +28,6 @@ enum { SF_CURVE_INTERVALS = 1024 };
 #define SF_STRAIGHT_SLOPE 1e3
 #define SF_STRAIGHT_ROOM_AT_1 0.01 /* the same for eps_L = 1 */
 #define SF_STRAIGHT_SLOPE_AT_1 1e6
-#define SF_FIRM_ROOM 0.025 /* -, strain */
-#define SF_FIRM_TIMES 10   /* -, of the slope there, for eps_L < 1 */
 #define SF_STOP_ENERGY 5e6 /* J m-3 to full compression: that of a solid polymer (2 GPa) at 7 % */
 #define SF_STOP_ROOM 0.05  /* -, strain */
 
@@ -61,12 +59,9 @@ typedef struct sf_curve_line {
 typedef struct sf_curve {
     double step;           /* -, width of a piece */
     double start;          /* -, eps_e */
-    double largest_slope;  /* Pa, of the table */
     sf_curve_piece *piece; /* [SF_CURVE_INTERVALS] owned */
     sf_densification beyond;
     sf_curve_line straight;
-    double firm_slope; /* Pa, the larger of the largest of the table and SF_FIRM_TIMES that of the law at
-                          SF_FIRM_ROOM before its pole */
 } sf_curve;
 
 /* The law from `start` to `limit` that continues stress (Pa), slope (Pa) and energy (J m-3) at the start. */

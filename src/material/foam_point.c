@@ -130,18 +130,33 @@ static void green_rates(double v[9][SF_LANES], double rate_of_e[6][SF_LANES], do
             }
 }
 
-SF_KERNEL void sf_foam_point_filter(const sf_foam_options *foam, double dt, sf_law_batch *b,
-                                    const sf_foam_rate *rate) {
-    double *restrict filtered = b->history[SF_FOAM_RATE], weight = -expm1(-dt / foam->filter_time);
-    SF_EACH_LANE (l) {
-        double shortest = b->stretch[0][l], green = rate->green[0][l];
-        for (int i = 1; i < 3; i++) {
-            bool shorter = b->stretch[i][l] < shortest;
-            green = shorter ? rate->green[i][l] : green;
-            shortest = shorter ? b->stretch[i][l] : shortest;
+/* Part of the stress on which the rate acts: all, or that of compressed directions. */
+static inline double acting(bool compression, double t) {
+    return (compression & (t > 0)) ? 0 : t;
+}
+
+/* Stress by which the power of the stresses is divided for a rate: the sum of compressed directions, which are
+ * columns of their own, or the largest of coupled ones. */
+static void size_of(bool compression, const sf_foam_loading *law, double size[SF_LANES]) {
+    for (int l = 0; l < SF_LANES; l++)
+        size[l] = 0;
+    for (int i = 0; i < 3; i++)
+        SF_EACH_LANE (l) {
+            double t = fabs(acting(compression, law->t[i][l]));
+            size[l] = compression ? size[l] + t : sf_larger(t, size[l]);
         }
-        filtered[l] += weight * (sf_larger(-green / shortest, 0) - filtered[l]);
-    }
+}
+
+SF_KERNEL void sf_foam_point_filter(const sf_foam_options *foam, bool compression, double dt, sf_law_batch *b,
+                                    const sf_foam_loading *law, const sf_foam_rate *rate) {
+    double *restrict filtered = b->history[SF_FOAM_RATE], weight = -expm1(-dt / foam->filter_time);
+    double power[SF_LANES] = {0}, size[SF_LANES];
+    size_of(compression, law, size);
+    for (int i = 0; i < 3; i++)
+        SF_EACH_LANE (l)
+            power[l] += acting(compression, law->t[i][l]) * rate->green[i][l] / b->stretch[i][l];
+    SF_EACH_LANE (l)
+        filtered[l] += weight * ((size[l] > 0 ? power[l] / size[l] : 0) - filtered[l]);
 }
 
 /* The rate factor: loading stresses times 1 + c log10(rate / reference). Its tangent is that of loading times
@@ -149,19 +164,20 @@ SF_KERNEL void sf_foam_point_filter(const sf_foam_options *foam, double dt, sf_l
 static SF_KERNEL void rate_factor(const sf_foam_options *foam, bool compression, double dt, sf_law_batch *b,
                                   const sf_foam_loading *law, sf_foam_rate *rate) {
     double decade = foam->rate_factor / M_LN10, reference = foam->rate_reference, time = foam->filter_time;
-    double gain[SF_LANES], sum[SF_LANES] = {0};
-    sf_foam_point_filter(foam, dt, b, rate);
+    double gain[SF_LANES], sum[SF_LANES] = {0}, size[SF_LANES];
+    size_of(compression, law, size);
+    sf_foam_point_filter(foam, compression, dt, b, law, rate);
     const double *restrict now = b->history[SF_FOAM_RATE];
     SF_EACH_LANE (l)
         gain[l] = decade * sf_lane_log(sf_larger(now[l] / reference, 1));
     for (int i = 0; i < 3; i++)
         SF_EACH_LANE (l) {
-            double t = law->t[i][l], acting = (compression & (t > 0)) ? 0 : t;
-            rate->part[i][l] += gain[l] * acting / b->stretch[i][l];
-            sum[l] += acting * acting;
+            double t = acting(compression, law->t[i][l]);
+            rate->part[i][l] += gain[l] * t / b->stretch[i][l];
+            sum[l] += t * t;
         }
     SF_EACH_LANE (l) {
-        double rise = decade / (sf_larger(now[l], reference) * time) * sqrt(sum[l]);
+        double rise = decade / (sf_larger(now[l], reference) * time) * sum[l] / sf_larger(size[l], 1e-300);
         rate->factor[l] += gain[l];
         rate->extra[l] += gain[l] > 0 ? rise : 0;
     }
@@ -462,7 +478,7 @@ void sf_foam_point_rest(const void *numbers, double pause, double (*history)[SF_
     double left = exp(-foam->maxwell_rate * pause);
     for (int l = 0; l < SF_LANES; l++) {
         sf_memory_point point = memory_of(history, l);
-        sf_memory_rest(&foam->memory, pause, &point);
+        history[SF_FOAM_PEAK][l] *= sf_memory_rest(&foam->memory, pause, &point);
         history[SF_FOAM_MEMORY + 3][l] = point.recovered;
         for (int k = 0; k < 6; k++) {
             history[SF_FOAM_MAXWELL + k][l] *= left;
@@ -491,19 +507,17 @@ double sf_foam_axial_factor(const sf_foam_options *foam, double energy, sf_uniax
     return 1;
 }
 
-double sf_foam_axial_filter(const sf_foam_options *foam, double dt, double green_rate, double stretch,
-                            sf_uniaxial *point) {
-    double *rate = &point->history[SF_FOAM_RATE], fastest = fmax(0, -green_rate / stretch);
-    *rate += -expm1(-dt / foam->filter_time) * (fastest - *rate);
+double sf_foam_axial_filter(const sf_foam_options *foam, double dt, double working, sf_uniaxial *point) {
+    double *rate = &point->history[SF_FOAM_RATE];
+    *rate += -expm1(-dt / foam->filter_time) * (working - *rate);
     return *rate;
 }
 
-double sf_foam_axial_gain(const sf_foam_options *foam, double dt, double green_rate, double stretch,
-                          sf_uniaxial *point) {
+double sf_foam_axial_gain(const sf_foam_options *foam, double dt, double working, sf_uniaxial *point) {
     if (!(foam->rate_factor > 0))
         return 0;
-    double rate = sf_foam_axial_filter(foam, dt, green_rate, stretch, point);
-    return foam->rate_factor * fmax(0, log10(rate / foam->rate_reference));
+    double rate = sf_foam_axial_filter(foam, dt, working, point);
+    return rate > foam->rate_reference ? foam->rate_factor * log10(rate / foam->rate_reference) : 0;
 }
 
 double sf_foam_axial_viscous(const sf_foam_options *foam, double dt, double green_rate, sf_uniaxial *point) {

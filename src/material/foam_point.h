@@ -98,20 +98,21 @@ double sf_foam_point_softening(const void *numbers, double (*history)[SF_LANES],
     .build = build, .energy = energy, .shift = sf_foam_shift, .rest = sf_foam_point_rest,                    \
     .softening = sf_foam_point_softening
 
-/* For an overstress: advances the filtered rate, of the most compressed direction (theory eq. 22). */
-void sf_foam_point_filter(const sf_foam_options *options, double dt, sf_law_batch *batch,
-                          const sf_foam_rate *rate);
+/* For an overstress: advances the filtered rate of working, dW/dt over the sum of the compressive |T_i|
+ * (`compression`), or of all directions over the largest |T_i|: in uniaxial compression the rate of nominal
+ * strain (theory eq. 22). */
+void sf_foam_point_filter(const sf_foam_options *options, bool compression, double dt, sf_law_batch *batch,
+                          const sf_foam_loading *law, const sf_foam_rate *rate);
 
 /* The parts of sf_law.uniaxial, `green_rate` (s-1) from sf_foam_green_rate. The factor of hysteresis at this
  * W (J m-3). */
 double sf_foam_axial_factor(const sf_foam_options *options, double energy, sf_uniaxial *point);
-/* The filtered rate (s-1) after the step. */
-double sf_foam_axial_filter(const sf_foam_options *options, double dt, double green_rate, double stretch,
-                            sf_uniaxial *point);
+/* The filtered rate (s-1) after the step, `working` (s-1) being the rate of working over the stress: that of the
+ * strain in compression, of the stretch in tension, 0 where the rate does not act. */
+double sf_foam_axial_filter(const sf_foam_options *options, double dt, double working, sf_uniaxial *point);
 /* Returns the share that the rate factor adds to the factor on the stress of loading; 0 without one.
  * Advances the filtered rate. */
-double sf_foam_axial_gain(const sf_foam_options *options, double dt, double green_rate, double stretch,
-                          sf_uniaxial *point);
+double sf_foam_axial_gain(const sf_foam_options *options, double dt, double working, sf_uniaxial *point);
 /* Second Piola-Kirchhoff stress (Pa) of Maxwell branch and Kelvin viscosity. */
 double sf_foam_axial_viscous(const sf_foam_options *options, double dt, double green_rate,
                              sf_uniaxial *point);

@@ -186,8 +186,10 @@ static double uniaxial(const void *numbers, double dt, double strain, sf_uniaxia
     const sf_hyperfoam *foam = numbers;
     sf_hyperfoam_point p = confined(foam, strain);
     double stretch = 1 - strain, green_rate = sf_foam_green_rate(dt, strain, point);
+    double largest = fmax(fabs(p.t[0]), fmax(fabs(p.t[1]), fabs(p.t[2]))),
+           working = largest > 0 ? p.t[0] * green_rate / stretch / largest : 0;
     double factor = sf_foam_axial_factor(&foam->options, p.energy, point) +
-                    sf_foam_axial_gain(&foam->options, dt, green_rate, stretch, point);
+                    sf_foam_axial_gain(&foam->options, dt, working, point);
     point->strain = strain;
     return -factor * p.t[0] - stretch * sf_foam_axial_viscous(&foam->options, dt, green_rate, point);
 }

@@ -32,13 +32,10 @@ static double rest_stiffness(const sf_foam *foam) {
     return fmax(foam->modulus, foam->curve[0].piece[0].c[1]);
 }
 
-/* `slope`, which stabilisation and DAMP follow, does not exceed that of the firm foam near the pole: their
- * stiffness has no energy of its own, and one that grows a thousandfold and falls back in a few steps would
- * feed the pad. */
 static SF_KERNEL void base_law(const void *numbers, double stretch[3][SF_LANES], sf_foam_loading *law) {
     const sf_foam *foam = numbers;
     double modulus = foam->modulus, cutoff = foam->cutoff, yield = cutoff / modulus;
-    double rest = rest_stiffness(foam), firm = foam->curve[0].firm_slope;
+    double rest = rest_stiffness(foam);
     memset(law->energy, 0, sizeof law->energy);
     for (int i = 0; i < 3; i++) {
         double strain[SF_LANES], stress[SF_LANES], slope[SF_LANES], energy[SF_LANES];
@@ -52,7 +49,7 @@ static SF_KERNEL void base_law(const void *numbers, double stretch[3][SF_LANES],
             bool squeezed = strain[l] > 0, elastic = pull <= cutoff, still = fabs(strain[l]) < REST;
             t[l] = squeezed ? -stress[l] : elastic ? pull : cutoff;
             double own = squeezed ? slope[l] : elastic ? modulus : 0;
-            tangent[l] = squeezed ? sf_smaller(own, firm) : own;
+            tangent[l] = own;
             steepest[l] = still ? rest : own;
             law->energy[l] += squeezed ? energy[l] : elastic ? work : cutoff * (-strain[l] - 0.5 * yield);
         }
@@ -123,9 +120,8 @@ static double add_overstress(const sf_foam *foam, const sf_law_batch *b, int l, 
 
 static void overstress(const void *numbers, double dt, sf_law_batch *b, const sf_foam_loading *law,
                        sf_foam_rate *rate) {
-    (void)law;
     const sf_foam *foam = numbers;
-    sf_foam_point_filter(&foam->options, dt, b, rate);
+    sf_foam_point_filter(&foam->options, true, dt, b, law, rate);
     for (int l = 0; l < SF_LANES; l++)
         rate->extra[l] = add_overstress(foam, b, l, rate);
 }
@@ -152,12 +148,13 @@ double sf_foam_uniaxial(const void *numbers, double dt, double strain, sf_uniaxi
         stress = fmax(foam->modulus * strain, -foam->cutoff);
         energy = 0.5 * stress * stress / foam->modulus - stress * (stress / foam->modulus - strain);
     }
+    double working = strain > 0 ? -green_rate / stretch : 0;
     double factor = sf_foam_axial_factor(&foam->options, energy, point),
-           gain = sf_foam_axial_gain(&foam->options, dt, green_rate, stretch, point);
+           gain = sf_foam_axial_gain(&foam->options, dt, working, point);
     stress *= strain > 0 ? factor + gain : factor;
     if (foam->curve_count > 1)
         stress += sf_foam_overstress(foam, strain,
-                                     sf_foam_axial_filter(&foam->options, dt, green_rate, stretch, point),
+                                     sf_foam_axial_filter(&foam->options, dt, working, point),
                                      &slope, &rate_slope);
     point->strain = strain;
     return stress - stretch * sf_foam_axial_viscous(&foam->options, dt, green_rate, point);

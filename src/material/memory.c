@@ -116,13 +116,22 @@ double sf_memory_factor(const sf_memory *m, const sf_memory_point *p) {
     return factor_of(m, p->passes, p->recovered);
 }
 
-void sf_memory_rest(const sf_memory *m, double pause, sf_memory_point *p) {
+/* The part of the largest W that a point with a recovered part R of its softening still remembers is 1 - R^4:
+ * all of it, nearly, up to R = 1/2. */
+static double remembered(double recovered) {
+    double square = recovered * recovered;
+    return recovered < 1 ? 1 - square * square : 0;
+}
+
+double sf_memory_rest(const sf_memory *m, double pause, sf_memory_point *p) {
     double most = 1 - m->permanent;
     static const double MOST_DECADES = 300; /* of an earlier rest, beside which every pause is nothing */
     if (!(m->recovery > 0) || p->recovered >= most || p->recovered > MOST_DECADES * m->recovery)
-        return;
-    double before = pow(10, p->recovered / m->recovery), after = log10(before + pause / m->start);
+        return 1;
+    double start = remembered(p->recovered), before = pow(10, p->recovered / m->recovery),
+           after = log10(before + pause / m->start);
     p->recovered = fmin(most, m->recovery * after);
+    return remembered(p->recovered) / start;
 }
 
 /* One step of a point: `z` at the W of the step, `top` the largest Z before it, `risen` the new one if this W

@@ -75,8 +75,9 @@ typedef struct sf_memory_point {
 /* q of the point. */
 double sf_memory_factor(const sf_memory *memory, const sf_memory_point *point);
 
-/* A rest of `pause` (s) without load, in closed form: two rests give the same as one of their sum. */
-void sf_memory_rest(const sf_memory *memory, double pause, sf_memory_point *point);
+/* A rest of `pause` (s) without load, in closed form: two rests give the same as one of their sum. Returns
+ * the part of the largest W that it leaves: 0 once all has recovered, so that the foam is new again. */
+double sf_memory_rest(const sf_memory *memory, double pause, sf_memory_point *point);
 
 /* Evaluates a batch as sf_unloading_lanes does, with memory; rows of `point` are its members. `softening`
  * bounds the derivative of the factor on both sides of a reversal. */

@@ -25,12 +25,14 @@ enum { SF_AS_NUMBER, SF_AS_PERCENT }; /* how a sentence shows a value */
     X(edge, 0.1, 0.5, 1, SF_AS_PERCENT, "edge: change of a_max for 1 % of speed or thickness",                            \
       "the larger of `a_max_change_by_speed` and `a_max_change_by_thickness`, magnitudes",                             \
       "the foam is about to lock up: what no laboratory can set as closely decides the peak")                          \
-    X(stabilisation, 0.01, 0.05, 0.7, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
-      "the stabilisation stiffens the pad, or bears what a foam that locks up should")                                 \
+    X(stabilisation, 0.01, 0.03, 0.7, SF_AS_PERCENT, "stabilisation energy", "`stabilisation_energy_fraction`",             \
+      "the stabilisation, which is not of the foam, bears load: the mesh decides the peak")                             \
     X(contact, 0.01, 0.05, 0, SF_AS_PERCENT, "contact energy", "`contact_energy_fraction`",                               \
       "contact consumes energy that the foam should take")                                                             \
     X(dissipation, 1e-3, 0.01, 0.7, SF_AS_PERCENT, "energy given back by what dissipates", "`negative_dissipation`",         \
       "hysteresis, viscosity, friction or stabilisation creates energy: the foam's curves or the mesh are wrong")      \
+    X(vibration, 2e-5, 1e-3, 0, SF_AS_PERCENT, "energy of motion that alternates from step to step", "`vibration_energy_fraction`", \
+      "the time step is too long for something in the model: try a smaller `solver.step_safety`")                      \
     X(filter, 0.03, 0.25, 0, SF_AS_PERCENT, "raw peak against the filtered one", "`a_max_raw_g` / `a_max_g` - 1; not of a `step_artefact`",                                          \
       "the filter makes the peak, or single steps do")                                                                 \
     X(step_artefact, 0, INFINITY, 0, SF_AS_NUMBER, "raw peak of one or two time steps",                                   \

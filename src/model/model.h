@@ -125,6 +125,7 @@ typedef struct sf_model {
     int64_t edge_nnz;
     int64_t *edge_ptr;  /* [node_count + 1] */
     int32_t *edge_node; /* [edge_nnz] */
+    int64_t edge_pairs; /* of the lists that the solver made of them, when the edges have been dropped */
 
     /* Background mesh, for pictures and integrals over the pad. */
     int64_t cell_count;

@@ -22,8 +22,10 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
     if (owned)
         sf_model_drop_domain_nodes(owned);
     SF_TRY(sf_pairs_build(m, &op->pairs, err));
-    if (owned)
+    if (owned) {
+        owned->edge_pairs = sf_pairs_count(m);
         sf_model_drop_edges(owned);
+    }
     if (sf_constraint_build(m, &op->constraint, err) != SF_OK ||
         sf_contact_rows_build(m, &op->rows, err) != SF_OK ||
         sf_contact_gram_build(m, &op->rows, &op->gram, err) != SF_OK ||

@@ -5,7 +5,7 @@
 #include "solver/constraint/constraint.h"
 #include "solver/contact/rigid_surface.h"
 #include "solver/contact/skin.h"
-#include "solver/field/halo.h"
+#include "solver/field/pairs.h"
 #include "solver/field/membrane.h"
 
 typedef struct sf_operators {

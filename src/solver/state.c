@@ -5,6 +5,7 @@
 #include "material/laws.h"
 #include "model/flight.h"
 #include "model/motion.h"
+#include "solver/field/pairs.h"
 
 static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy, see start_driven */
 
@@ -18,12 +19,15 @@ static const sf_state_array arrays[] = {
     KEPT(v, 'n', 3),
     KEPT(force, 'n', 3),
     KEPT(reaction, 'n', 3),
+    KEPT(kick, 'n', 3),
     KEPT(f, 'n', 9),
     KEPT(stress, 'n', 9),
     KEPT(history, 'h', SF_LANES),
     KEPT(stiffness, 'n', 1),
     KEPT(tangent, 'n', 1),
-    KEPT(pair_sum, 'n', 1),
+    KEPT(pair_energy, 'n', 1),
+    KEPT(pair_offset, 'p', 3),
+    KEPT(pair_offsets, 'g', 1),
     KEPT(pair_stiffness, 'n', 1),
     KEPT(pair_work, 'n', 1),
     KEPT(viscous_work, 'n', 1),
@@ -96,6 +100,10 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
         return model->membrane_count > 0 ? model->node_count : 0;
     case 't':
         return model->membrane_count;
+    case 'p':
+        return sf_pairs_count(model);
+    case 'g':
+        return (model->node_count + SF_GROUP - 1) / SF_GROUP;
     case 'h':
         return blocks * history_rows(model);
     case 'c':
@@ -265,7 +273,7 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const sf_wrench *outside, d
     sf_ledger *l = &s->ledger;
     double back = s->rubbed_back, momentum[3] = {0}, angular[3] = {0}, fastest = 0;
     s->smallest_jacobian = INFINITY;
-    double shortest = INFINITY;
+    double shortest = INFINITY, vibration = 0;
     l->stored = s->membrane.energy;
     l->kinetic_pad = 0;
     l->hysteresis = -l->before;
@@ -277,6 +285,7 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const sf_wrench *outside, d
         l->kinetic_pad += p->kinetic;
         l->stabilisation += p->stabilisation;
         back += p->given_back;
+        vibration += p->vibration;
         shortest = fmin(shortest, p->shortest);
         fastest = fmax(fastest, p->fastest);
         if (p->jacobian < s->smallest_jacobian) {
@@ -291,6 +300,10 @@ void sf_ledger_close(const sf_model *m, sf_state *s, const sf_wrench *outside, d
     s->largest_compression = 1 - shortest;
     s->fastest = sqrt(fastest);
     s->given_back = fmax(s->given_back, back);
+    if (sf_vibration_phase(s) == 1) {
+        s->vibration = fmax(s->vibration, fmin(s->vibration_now, vibration));
+        s->vibration_now = vibration;
+    }
 
     double held = sf_missile_along(m, outside->force), carried = sf_missile_along(m, momentum);
     if (sf_missile_is_driven(m))

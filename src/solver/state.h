@@ -45,12 +45,13 @@ typedef struct sf_partial {
     double angular[3];                  /* kg m2 s-1, angular momentum about the origin */
     double moment[3];                   /* N m, of the constraint reactions about the origin */
     double fastest;                     /* m2 s-2, largest v . v */
-    double stabilisation;               /* J, of this step */
-    double given_back; /* J, by the viscosity or the stabilisation of single nodes, to date */
-    double step;       /* s, smallest stable step */
-    double jacobian;   /* -, smallest */
-    double shortest;   /* -, smallest principal stretch */
-    double load;       /* s-2, largest c (a + 2 eta / dt) */
+    double vibration;     /* J, energy of motion that alternates from step to step, where it is measured */
+    double stabilisation; /* J, of this step */
+    double given_back;    /* J, by the viscosity or the stabilisation of single nodes, to date */
+    double step;          /* s, smallest stable step */
+    double jacobian;      /* -, smallest */
+    double shortest;      /* -, smallest principal stretch */
+    double load;          /* s-2, largest c (a + 2 eta / dt) */
     int64_t jacobian_node;
 } sf_partial;
 
@@ -99,6 +100,8 @@ typedef struct sf_partial {
     X(double, anvil_force, [3], "N", "of the anvil on a resting pad")                                                  \
     X(double, penetration, , "m", "deepest now")                                                                       \
     X(double, rubbed_back, , "J", "given back by the friction of single points, to date")                              \
+    X(double, vibration, , "J", "largest energy so far of motion that alternates from step to step, in two measurements together") \
+    X(double, vibration_now, , "J", "that of the last measurement")                                                    \
     X(double, given_back, , "J", "largest sum so far of what dissipation of single nodes has given back")             \
     X(int64_t, contact_unsettled, , "1", "steps whose sweeps did not reach their tolerance")                           \
     X(double, base_reaction, [3], "N", "of the base on the pad")                                                       \
@@ -130,6 +133,7 @@ typedef struct sf_state {
     double *d;        /* [n][3] m */
     double *v;        /* [n][3] m s-1, at the half step */
     double *force;    /* [n][3] N, all but constraint reactions */
+    double *kick;     /* [n][3] m s-1, change of v in the last step that began a measurement of vibration */
     double *reaction; /* [n][3] N, constraint reactions (G^T lambda) of the last step */
 
     /* Smoothing domains. */
@@ -143,11 +147,13 @@ typedef struct sf_state {
 
     double *viscous_work; /* [n] J, to date */
 
-    /* Stabilisation: sum over the pairs of a node of 1/2 c |e|^2, the stiffness it was last used with, and
-     * the work of the node's share to date. */
-    double *pair_sum;       /* [n] m3 */
+    /* Stabilisation: half the energy of a node's pairs, the stiffness it was last used with, and the work of
+     * the node's share to date; offsets of the pairs' arms. */
+    double *pair_energy;    /* [n] J */
     double *pair_stiffness; /* [n] Pa */
     double *pair_work;      /* [n] J */
+    double *pair_offset;    /* [pairs][3] m, of the inner pairs, then of the outer ones */
+    double *pair_offsets;   /* [groups] 0: the group's pairs have none */
 
     double *compressed; /* [n] -, largest compression to date; only a pad of layers has it */
 
@@ -244,6 +250,15 @@ void sf_wrench_add(sf_wrench *wrench, const double x[3], const double force[3]);
  * the missile's direction and, with that of angular momentum, in space. `dt_v` (s): the distance of the half
  * steps. */
 void sf_ledger_close(const sf_model *model, sf_state *state, const sf_wrench *outside, double dt_v);
+
+/* The vibration from step to step, by which a mild instability shows that no energy balance sees: every 16
+ * steps, the energy of a quarter of the change from one kick of the nodes to the next. A mode of frequency
+ * omega has sin^4(omega dt / 2) of its kinetic energy in it. 0: the kicks of this step are kept; 1: those of
+ * the next are compared with them. */
+enum { SF_VIBRATION_INTERVAL = 16 };
+static inline int64_t sf_vibration_phase(const sf_state *state) {
+    return state->step % SF_VIBRATION_INTERVAL;
+}
 
 /* Internal energy: stored + hysteresis + viscous + stabilisation, J. */
 double sf_ledger_internal(const sf_ledger *ledger);

@@ -5,6 +5,7 @@
 #include "solver/contact/contact.h"
 #include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
+#include "solver/field/stabilisation.h"
 #include "solver/set.h"
 #include "solver/time_step.h"
 
@@ -126,20 +127,31 @@ static sf_status check_passed(const sf_model *m, const sf_state *s, sf_error *er
     return SF_OK;
 }
 
-/* Returns the likely cause of contact or stabilisation that feeds the pad. */
-static const char *cause_of_feeding(const sf_model *m, const sf_state *s) {
+/* Height (m) of the missile's touching surface, along its direction of motion. */
+static double find_surface_height(const sf_model *m) {
+    double low = INFINITY, high = -INFINITY;
+    for (int64_t i = 0; i < m->surface_node_count; i++) {
+        double along = sf_dot3(&m->surface_position[3 * i], m->missile.direction);
+        low = fmin(low, along);
+        high = fmax(high, along);
+    }
+    return high - low;
+}
+
+/* Returns the likely cause of energy that appears in the pad: what the run itself shows first. */
+static const char *find_cause(const sf_model *m, const sf_state *s) {
     static const double CRUSHED = 0.95;
-    return m->skin_count > 0 && !m->skin_alone && m->run.stabilisation < SF_FOLD_STABILISATION &&
-                   s->ledger.stabilisation < s->ledger.contact
-               ? "foam that folds needs a larger kernel.stabilisation, such as 0.3"
-           : s->smallest_jacobian <= 0
-               ? "the foam has turned inside out, as where it folds onto itself or passes "
-                 "through the anvil"
-           : s->largest_compression > CRUSHED
-               ? "the foam is crushed beyond a strain of 0.95, as by a motion beyond the limit of its law, or where "
-                 "it passes through the anvil or through itself"
-               : "the missile is pressed in beyond its touching surface, or the contact is unstable (smaller "
-                 "solver.step_safety)";
+    if (m->skin_count > 0 && !m->skin_alone && m->run.stabilisation < SF_FOLD_STABILISATION)
+        return "foam that folds needs a larger kernel.stabilisation, such as 0.3";
+    if (s->smallest_jacobian <= 0)
+        return "the foam has turned inside out, as where it folds onto itself or passes through the anvil";
+    if (s->largest_compression > CRUSHED)
+        return "the foam is crushed beyond a strain of 0.95, as by a motion beyond the limit of its law, or where it "
+               "passes through the anvil or through itself";
+    if (!sf_missile_is_driven(m) && s->missile.displacement > find_surface_height(m))
+        return "the missile is pressed in beyond its touching surface, which ends at its rim: give it a surface that is "
+               "higher than its way into the pad";
+    return "the run is unstable or the limit too strict; try a smaller solver.step_safety";
 }
 
 /* The energy limit is a stop, not a tolerance: beyond it the run has become unstable. */
@@ -151,22 +163,20 @@ static sf_status check_energy(const sf_model *m, const sf_state *s, sf_error *er
     int64_t node = find_fastest(m, s, &speed);
     const double *x = &m->position[3 * node];
     if (fed)
-        return SF_FAIL(err, SF_ERR_NUMERIC,
-                       "at t = %.6g s (step %lld) contact or stabilisation has put %.3g J into the pad "
-                       "(contact %.3g J, stabilisation %.3g J; limit %.2f %% of the %s); fastest is node "
-                       "%lld at (%.5g, %.5g, %.5g) m, %.3g m/s: %s",
-                       s->time, (long long)s->step, -least, s->ledger.contact, s->ledger.stabilisation,
-                       100 * m->run.energy_limit,
-                       sf_missile_is_driven(m) ? "largest work of the motion" : "impact energy",
-                       (long long)node, x[0], x[1], x[2], speed, cause_of_feeding(m, s));
+        return SF_FAIL(
+            err, SF_ERR_NUMERIC,
+            "at t = %.6g s (step %lld) the %s has put %.3g J into the pad (limit %.2f %% of the %s); "
+            "fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: %s",
+            s->time, (long long)s->step,
+            s->ledger.contact <= s->ledger.stabilisation ? "contact" : "stabilisation", -least,
+            100 * m->run.energy_limit,
+            sf_missile_is_driven(m) ? "largest work of the motion" : "impact energy", (long long)node, x[0],
+            x[1], x[2], speed, find_cause(m, s));
     return SF_FAIL(err, SF_ERR_NUMERIC,
                    "at t = %.6g s (step %lld) the energy balance is off by %.2f %% (limit %.2f %%, time step "
                    "%.3g s); fastest is node %lld at (%.5g, %.5g, %.5g) m, %.3g m/s: %s",
                    s->time, (long long)s->step, 100 * s->ledger.error, 100 * m->run.energy_limit, s->dt,
-                   (long long)node, x[0], x[1], x[2], speed,
-                   m->skin_count > 0
-                       ? cause_of_feeding(m, s)
-                       : "the run is unstable or the limit too strict; try a smaller solver.step_safety");
+                   (long long)node, x[0], x[1], x[2], speed, find_cause(m, s));
 }
 
 /* Angular momentum and moment of the reaction of node i about the origin. */
@@ -186,15 +196,21 @@ static void add_moments(const sf_model *m, const sf_state *s, int64_t i, double 
 /* v += dt_v (force - reaction) / m, with the kinetic energy at the present time, and momentum, angular
  * momentum and largest speed after it. */
 static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
-#pragma omp parallel for if (m->node_count > SF_FEW_NODES) default(none) shared(m, s, dt_v) schedule(static)
+    const int64_t phase = sf_vibration_phase(s);
+#pragma omp parallel for if (m->node_count > SF_FEW_NODES) default(none) shared(m, s, dt_v, phase)           \
+    schedule(static)
     for (int64_t chunk = 0; chunk < s->chunk_count; chunk++) {
-        double kinetic = 0, momentum[3] = {0}, angular[3] = {0}, moment[3] = {0}, fastest = 0;
+        double vibration = 0, kinetic = 0, momentum[3] = {0}, angular[3] = {0}, moment[3] = {0}, fastest = 0;
         for (int64_t i = chunk * SF_CHUNK; i < (chunk + 1) * SF_CHUNK && i < m->node_count; i++) {
             double mass = m->mass[i], factor = dt_v / mass, square = 0;
             for (int c = 0; c < 3; c++) {
                 double old = s->v[3 * i + c];
                 double v = old + factor * (s->force[3 * i + c] - s->reaction[3 * i + c]);
                 s->v[3 * i + c] = v;
+                if (phase == 0)
+                    s->kick[3 * i + c] = v - old;
+                if (phase == 1)
+                    vibration += mass / 32 * pow(v - old - s->kick[3 * i + c], 2);
                 kinetic += 0.5 * mass * old * v;
                 momentum[c] += mass * v;
                 square += v * v;
@@ -203,6 +219,7 @@ static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
             add_moments(m, s, i, angular, moment);
         }
         s->partial[chunk].kinetic = kinetic;
+        s->partial[chunk].vibration = vibration;
         s->partial[chunk].fastest = fastest;
         memcpy(s->partial[chunk].momentum, momentum, sizeof momentum);
         memcpy(s->partial[chunk].angular, angular, sizeof angular);

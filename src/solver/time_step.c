@@ -16,7 +16,7 @@ static const double SETTLED = 1e-4;
 static const double POWER_CHANGE =
     0.1; /* of the bound on the frequency squared, that calls for a measurement */
 /* The iteration converges from below; its estimate of the frequency squared is raised by this factor. */
-static const double POWER_MARGIN = 1.08;
+static const double POWER_MARGIN = 1.0;
 /* The ratio is rounded up to a multiple of 1 / POWER_ROUNDING: rounding errors of the iteration do not change
  * the time steps, and so not the results. */
 static const double POWER_ROUNDING = 16384;
@@ -79,11 +79,11 @@ static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, const 
 
 /* Contributions of one pair for a scalar field: force on i, the opposite on j; the same couple on both. */
 static inline double pull_pair(const sf_model *m, const sf_state *s, const float *gradient, int64_t i,
-                               int64_t j, double weight, double couple[3]) {
+                               int64_t j, double weight, const double *offset, double couple[3]) {
     const double *at = sf_model_coefficients(m);
     double half[3], explained = 0;
     for (int c = 0; c < 3; c++) {
-        half[c] = 0.5 * (at[3 * j + c] - at[3 * i + c]);
+        half[c] = 0.5 * (at[3 * j + c] - at[3 * i + c] + (offset ? offset[c] : 0));
         explained += (gradient[3 * i + c] + gradient[3 * j + c]) * half[c];
     }
     double force = weight * (s->stiffness[i] + s->stiffness[j]) * (s->mode[j] - s->mode[i] - explained);
@@ -99,6 +99,7 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
     int64_t own = sf_halo_first(group), end = sf_halo_end(m, group);
     int64_t inner = pairs->inner_ptr[group], outer = pairs->outer_ptr[group];
     double *out = w->out, flux[3 * SF_GROUP];
+    const double *offset = s->pair_offsets[group] != 0 ? s->pair_offset : NULL;
     memset(&out[own], 0, (size_t)(end - own) * sizeof *out);
     for (int64_t i = own; i < end; i++) {
         const float *g = &w->gradient[3 * i];
@@ -112,7 +113,8 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
         double force = out[i], *q = &flux[3 * (i - own)], sum[3] = {q[0], q[1], q[2]}, couple[3];
         for (; inner < pairs->inner_ptr[group] + pairs->inner_end[i]; inner++) {
             int64_t j = own + pairs->inner_place[inner];
-            double pull = pull_pair(m, s, w->gradient, i, j, pairs->inner_weight[inner], couple);
+            double pull = pull_pair(m, s, w->gradient, i, j, pairs->inner_weight[inner],
+                                    offset ? &offset[3 * inner] : NULL, couple);
             force -= pull;
             out[j] += pull;
             for (int c = 0; c < 3; c++) {
@@ -122,7 +124,8 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
         }
         for (; outer < pairs->outer_ptr[group] + pairs->outer_end[i]; outer++) {
             force -=
-                pull_pair(m, s, w->gradient, i, pairs->outer_node[outer], pairs->outer_weight[outer], couple);
+                pull_pair(m, s, w->gradient, i, pairs->outer_node[outer], pairs->outer_weight[outer],
+                          offset ? &offset[3 * (pairs->inner_ptr[pairs->groups] + outer)] : NULL, couple);
             for (int c = 0; c < 3; c++)
                 sum[c] -= couple[c];
         }

@@ -226,6 +226,7 @@ static void compute_energies(const sf_results *r, sf_figures *f) {
     f->internal_energy_peak_time = e.time;
     f->stabilisation_energy_fraction = e.stabilisation;
     f->contact_energy_fraction = e.contact;
+    f->vibration_energy_fraction = e.peak > 0 ? r->vibration / e.peak : NAN;
     f->negative_dissipation = negative_dissipation(r, e.peak);
 }
 

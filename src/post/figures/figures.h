@@ -103,6 +103,7 @@
       .name = "stabilisation energy", .unit = "% of the internal energy", .format = "%.3f", .shown = 100) \
     X(NUMBER, contact_energy_fraction, "contact_energy_fraction", 1, "energy lost in contact at that time, of that energy", \
       .name = "contact energy", .unit = "% of the internal energy", .format = "%.3f", .shown = 100) \
+    X(NUMBER, vibration_energy_fraction, "vibration_energy_fraction", 1, "largest energy of motion that alternates from step to step, of that energy") \
     X(NUMBER, negative_dissipation, "negative_dissipation", 1, "most that hysteresis, viscosity, friction or stabilisation had given back at any time beyond what it had taken, in the whole or summed over the single nodes that gave, of that energy") \
     X(NUMBER, base_force, "base_force_N", 1, "largest force, along z, that base, anvil and support transmit: base_reaction as a force plate reads it, passed through the filter class of the acceleration (not in a prescribed motion)") \
     X(NUMBER, area, "section_mm2", 1e6, "mean cross-section: volume of the whole pad at rest / its height") \

@@ -379,7 +379,7 @@ static sf_status read_notes(sf_results *r, sf_error *err) {
 
 static sf_status read_summary(sf_results *r, sf_error *err) {
     r->steps = r->threads = r->interactions = -1;
-    r->contact_time = r->wall_time = r->given_back = r->set = r->set_largest = NAN;
+    r->contact_time = r->wall_time = r->given_back = r->vibration = r->set = r->set_largest = NAN;
     r->has_summary = sf_h5_exists(r->file, "/summary/status");
     if (!r->has_summary) {
         note_ending(
@@ -395,6 +395,7 @@ static sf_status read_summary(sf_results *r, sf_error *err) {
     SF_TRY(sf_h5_read_scalar(r->file, "/summary/wall_time", &r->wall_time, err));
     SF_TRY(sf_h5_read_scalar(r->file, "/summary/contact_time", &r->contact_time, err));
     SF_TRY(read_optional(r, "/summary/given_back", &r->given_back, err));
+    SF_TRY(read_optional(r, "/summary/vibration", &r->vibration, err));
     SF_TRY(read_optional(r, "/summary/set", &r->set, err));
     SF_TRY(read_optional(r, "/summary/set_largest", &r->set_largest, err));
     SF_TRY(read_notes(r, err));

@@ -93,6 +93,7 @@ typedef struct sf_results {
     char status[512];        /* "" without summary */
     double contact_time;     /* s, NaN if the bodies never touched */
     double wall_time;        /* s */
+    double vibration;        /* J, see /summary/vibration; NaN: not stored */
     double given_back;       /* J, see /summary/given_back; NaN: not stored */
     double set, set_largest; /* m, see /summary/set and set_largest; NaN: the pad has none */
     int64_t steps;

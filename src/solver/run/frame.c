@@ -3,6 +3,7 @@
 
 #include "io/h5_data.h"
 #include "solver/field/domain_stress.h"
+#include "solver/field/stabilisation.h"
 #include "base/sets.h"
 #include "base/mat3.h"
 
@@ -50,7 +51,9 @@ static void take_stresses(const sf_model *m, const sf_operators *op, const sf_st
                           int64_t first, int64_t end, double *out) {
     sf_pair_sums pairs;
     double sigma[9], mises;
-    sf_stabilisation_group(m, &op->pairs, s->d, s->f, s->stiffness, first / SF_GROUP, &pairs);
+    const sf_pair_field field = {s->d,           s->f,           s->pair_stiffness, s->pair_stiffness,
+                                 s->pair_offset, s->pair_offsets}; /* nothing changes */
+    sf_stabilisation_group(m, &op->pairs, &field, first / SF_GROUP, &pairs);
     for (int64_t i = first; i < end; i++) {
         take_stress(m, s, &pairs, i, sigma, &mises);
         if (kind == SF_FRAME_CAUCHY_STRESS)

@@ -299,7 +299,7 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
     double set[2];
     if (m->set)
         sf_set_measure(m, set);
-    const double given_back = sf_model_whole(m) * s->given_back;
+    const double given_back = sf_model_whole(m) * s->given_back, vibration = sf_model_whole(m) * s->vibration;
     /* Each scalar of /summary is one entry; `told` leaves out what the run does not have. */
     const struct {
         bool told;
@@ -321,6 +321,7 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         {true, {"/summary/restarts", "1", "times that the run went on from a checkpoint"}, &d->r.restarts, SF_H5_I64},
         {true, {"/summary/wall_time", "s", "time of the run"}, &d->run->wall_time, SF_H5_F64},
         {true, {"/summary/given_back", "J", "most that dissipation of single nodes had given back at one time, summed over the nodes"}, &given_back, SF_H5_F64},
+        {true, {"/summary/vibration", "J", "largest energy of motion that alternates from step to step"}, &vibration, SF_H5_F64},
         {true, {"/summary/contact_time", "s", "first contact, NaN if none"}, &s->missile.contact_time, SF_H5_F64},
         /* clang-format on */
     };

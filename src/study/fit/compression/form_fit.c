@@ -52,15 +52,19 @@ static void take_values(const problem *p, const gsl_vector *x, double *value) {
 
 /* Returns the share that the factor of the rate (theory, eq. O4) adds to the curve, over its stress, at
  * point i of a test that began at rest: the rate is behind the low pass (eq. 22), rises in loading and
- * fades in unloading. */
+ * falls towards that of unloading, which is negative. */
 static double rate_excess(const sf_form_request *r, const double *value, const sf_compression_test *t,
                           int i) {
     double time = r->form.base.rate_filter_time, strain = fmax(0, t->strain[i]), filtered = t->rate;
+    bool unloads = i >= t->loading;
     if (time > 0)
-        filtered *= -expm1(-(i < t->loading ? strain : t->largest_strain) / (t->rate * time));
-    if (i >= t->loading)
-        filtered *= time > 0 ? exp(-(t->largest_strain - strain) / (t->rate * time)) : 0;
-    return value[SF_PARAMETER_RATE_FACTOR] * fmax(0, log10(filtered / value[SF_PARAMETER_RATE_REFERENCE]));
+        filtered *= -expm1(-(unloads ? t->largest_strain : strain) / (t->rate * time));
+    if (unloads && !(time > 0))
+        return 0;
+    if (unloads)
+        filtered += (filtered + t->rate) * expm1(-(t->largest_strain - strain) / (t->rate * time));
+    double over = filtered / value[SF_PARAMETER_RATE_REFERENCE];
+    return over > 1 ? value[SF_PARAMETER_RATE_FACTOR] * log10(over) : 0;
 }
 
 /* Deviations of a test's loading; returns their number. */
