@@ -19,8 +19,8 @@ typedef struct sf_hic {
     double t2;    /* s */
 } sf_hic;
 
-/* `window` in s, INFINITY for none. The global maximum: a bounded search over the points of the curve
- * (refined to at least 4096 intervals) leaves no pair out, then both ends are moved continuously. */
+/* Finds the global maximum: from all pairs of 513 to 4097 instants of the curve, as many as it has points,
+ * the ends of the best window are moved between them. `window` in s; INFINITY: no limit. */
 sf_status sf_hic_evaluate(const sf_series *acceleration_g, double window, sf_hic *hic, sf_error *err);
 
 typedef struct sf_injury {
