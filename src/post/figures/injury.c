@@ -132,7 +132,7 @@ static double gadd_interval(double a1, double a2, double dt) {
     return dt * (pow(a1, 2.5) + 4 * pow((a1 + a2) / 2, 2.5) + pow(a2, 2.5)) / 6;
 }
 
-double sf_injury_gadd(const sf_series *curve) {
+static double gadd_index(const sf_series *curve) {
     double sum = 0;
     for (int64_t i = 1; i < curve->count; i++) {
         double a1 = curve->value[i - 1], a2 = curve->value[i], dt = curve->time[i] - curve->time[i - 1];
@@ -174,7 +174,9 @@ static double time_above(const sf_series *curve, double limit, int contiguous) {
     return contiguous ? longest : sum;
 }
 
-double sf_injury_clip(const sf_series *curve, double duration, int contiguous) {
+/* Returns the largest level that the curve reaches or exceeds for `duration` (s), at a stretch or summed over
+ * all stretches; NaN if the whole curve is shorter. */
+static double clip_level(const sf_series *curve, double duration, int contiguous) {
     double low, high;
     gsl_stats_minmax(&low, &high, curve->value, 1, (size_t)curve->count);
     double slack = duration * 1e-12; /* rounding of summed intervals */
@@ -200,8 +202,8 @@ sf_status sf_injury_evaluate(const sf_series *curve, sf_injury *injury, sf_error
     SF_TRY(sf_injury_evaluate_peak(curve, injury, err));
     SF_TRY(sf_hic_evaluate(curve, 15e-3, &injury->hic15, err));
     SF_TRY(sf_hic_evaluate(curve, 36e-3, &injury->hic36, err));
-    injury->gadd = sf_injury_gadd(curve);
-    injury->clip_contiguous_g = sf_injury_clip(curve, clip_duration, 1);
-    injury->clip_cumulative_g = sf_injury_clip(curve, clip_duration, 0);
+    injury->gadd = gadd_index(curve);
+    injury->clip_contiguous_g = clip_level(curve, clip_duration, 1);
+    injury->clip_cumulative_g = clip_level(curve, clip_duration, 0);
     return SF_OK;
 }
