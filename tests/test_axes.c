@@ -134,7 +134,7 @@ static void rotations_take_the_face_upwards(void **state) {
 static void step_files_come_in_the_unit_of_the_case(void **state) {
     const program_place *p = *state;
     int error = 0;
-    assert_int_equal(sf_gmsh_adapter_initialize(), 0);
+    assert_int_equal(sf_work_begin(), 0);
     gmshOptionSetNumber("General.Terminal", 0, &error);
     gmshModelOccAddBox(-100, -100, 0, 200, 200, 50, -1, &error);
     gmshModelOccSynchronize(&error);

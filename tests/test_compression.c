@@ -172,16 +172,18 @@ static void area_in_contact_is_that_of_the_covered_top(void **state) {
     (void)state;
     static const double time[] = {0, 0.004, 0.04}, displacement[] = {0, 0, 0.018};
     fixture f;
-    sf_history history = {0};
+    sf_recorder recorder;
     sf_error err = SF_ERROR_INIT;
     start_cube(&f, 0.3, 3, time, displacement);
     sf_state *s = &f.state;
+    sf_recorder_begin(&recorder);
     for (fixture_step(&f); s->time < 0.03; sf_step_advance(&f.model, s), fixture_step(&f))
-        assert_int_equal(sf_history_add(&history, &f.model, s, &err), SF_OK);
-    for (int64_t i = 0; i < history.rows; i++)
-        assert_true((history.contact_area[i] > 0) == (history.contact_nodes[i] > 0));
-    assert_close(history.contact_area[history.rows - 1], AREA, 1e-15);
-    sf_history_free(&history);
+        assert_int_equal(sf_recorder_add(&recorder, &f.model, s, &err), SF_OK);
+    const sf_history *h = &recorder.history;
+    for (int64_t i = 0; i < h->rows; i++)
+        assert_true((h->contact_area[i] > 0) == (h->contact_nodes[i] > 0));
+    assert_close(h->contact_area[h->rows - 1], AREA, 1e-15);
+    sf_recorder_free(&recorder);
     fixture_free(&f);
 }
 

@@ -118,7 +118,7 @@ static void put_model(FILE *f) {
             fputc(')', f);
         }
         fprintf(f, " | %s | ", m->units);
-        put_meaning(f, m->description, m->optional ? "may be absent" : "");
+        put_meaning(f, m->description, "");
     }
 }
 

@@ -153,26 +153,33 @@ static void hic_of_an_accelerating_curve_is_zero(void **state) {
     sf_series_free(&curve);
 }
 
+static sf_injury figures_of(const sf_series *curve) {
+    sf_error err = SF_ERROR_INIT;
+    sf_injury injury;
+    assert_int_equal(sf_injury_evaluate(curve, &injury, &err), SF_OK);
+    return injury;
+}
+
 /* int sin^2.5 over half a period = T/pi * B(7/4, 1/2); a triangle gives T/3.5. */
 static void gadd_closed_forms(void **state) {
     (void)state;
     sf_series curve = sampled(half_sine, 60, 0.03, FINE);
     double beta = exp(lgamma(1.75) + lgamma(0.5) - lgamma(2.25));
-    assert_relative(sf_injury_gadd(&curve), pow(60, 2.5) * 0.03 / M_PI * beta, 1e-8);
+    assert_relative(figures_of(&curve).gadd, pow(60, 2.5) * 0.03 / M_PI * beta, 1e-8);
     sf_series_free(&curve);
     double time[4] = {0, 0.01, 0.03, 0.05}, value[4] = {0, 60, 0, -60};
     curve = (sf_series){4, time, value};
-    assert_relative(sf_injury_gadd(&curve), pow(60, 2.5) * 0.03 / 3.5, 1e-12);
+    assert_relative(figures_of(&curve).gadd, pow(60, 2.5) * 0.03 / 3.5, 1e-12);
     value[0] = value[1] = value[2] = value[3] = 60;
-    assert_relative(sf_injury_gadd(&curve), pow(60, 2.5) * 0.05, 1e-12);
+    assert_relative(figures_of(&curve).gadd, pow(60, 2.5) * 0.05, 1e-12);
 }
 
 static void clip_of_one_pulse_cuts_3_ms_below_its_top(void **state) {
     (void)state;
     sf_series curve = sampled(half_sine, 100, 0.02, FINE);
     double expected = 100 * cos(M_PI * 1.5 / 20);
-    assert_relative(sf_injury_clip(&curve, 3e-3, 1), expected, 1e-7);
-    assert_relative(sf_injury_clip(&curve, 3e-3, 0), expected, 1e-7);
+    assert_relative(figures_of(&curve).clip_contiguous_g, expected, 1e-7);
+    assert_relative(figures_of(&curve).clip_cumulative_g, expected, 1e-7);
     sf_series_free(&curve);
 }
 
@@ -181,9 +188,11 @@ static void clip_adds_stretches_only_when_cumulative(void **state) {
     /* Two equal triangles of 10 ms: 3 ms at a stretch cuts one at 70 %, 1.5 ms of each at 85 %. */
     double time[5] = {0, 0.005, 0.01, 0.015, 0.02}, value[5] = {0, 100, 0, 100, 0};
     sf_series curve = {5, time, value};
-    assert_relative(sf_injury_clip(&curve, 3e-3, 1), 70, 1e-9);
-    assert_relative(sf_injury_clip(&curve, 3e-3, 0), 85, 1e-9);
-    assert_true(isnan(sf_injury_clip(&curve, 0.03, 1)));
+    assert_relative(figures_of(&curve).clip_contiguous_g, 70, 1e-9);
+    assert_relative(figures_of(&curve).clip_cumulative_g, 85, 1e-9);
+    double brief[5] = {0, 0.0005, 0.001, 0.0015, 0.002};
+    curve.time = brief;
+    assert_true(isnan(figures_of(&curve).clip_contiguous_g));
 }
 
 static void evaluation_gathers_the_same_figures(void **state) {

@@ -70,7 +70,7 @@ static void load_mesh(sf_gmsh *session, sf_geo_source source, sf_mesh *mesh, dou
  * ending: by gmsh in this process, as softfall's own can write nothing. */
 static void convert(const char *from, const char *to, bool mesh) {
     int ierr = 0;
-    if (sf_gmsh_adapter_initialize() != 0)
+    if (sf_work_begin() != 0)
         fail_msg("%s", "gmsh cannot be started");
     gmshOptionSetNumber("General.Terminal", 0, &ierr);
     gmshOptionSetNumber("Mesh.Algorithm3D", 1, &ierr);

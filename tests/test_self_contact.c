@@ -336,21 +336,6 @@ static bool touches(const program_place *p, const char *words) {
     return strstr(r.out, "may touch each other") != NULL;
 }
 
-/* A model of the time before the halves of quadrangles were stored. */
-static void an_older_model_must_be_made_anew(void **state) {
-    const program_place *p = *state;
-    use_tile(p);
-    program_succeed(
-        p, "pre",
-        "case.cfg -o m.h5 --force --set geometry.parameters.spacing=10.0 --set pad.mesh_error_limit=1");
-    hid_t file = H5Fopen(program_path(p, "m.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
-    assert_true(file >= 0 && H5Ldelete(file, "/skin/half", H5P_DEFAULT) >= 0 && H5Fclose(file) >= 0);
-    program_result r = program_run(p, "solve", "m.h5 -o r.h5 --force");
-    assert_int_equal(r.code, 4);
-    assert_non_null(strstr(r.err, "/skin/half is missing: an older version made this model"));
-    assert_non_null(strstr(r.err, "make it anew with softfall-pre"));
-}
-
 static void only_pads_that_can_touch_themselves_have_the_contact(void **state) {
     const program_place *p = *state;
     use_tile(p);
@@ -387,7 +372,6 @@ int main(void) {
         cmocka_unit_test(a_tile_on_feet_comes_down_to_the_floor),
         cmocka_unit_test(the_bits_do_not_depend_on_threads_or_restarts),
         cmocka_unit_test(a_loose_cover_acts_as_a_glued_one_while_it_is_pressed),
-        cmocka_unit_test(an_older_model_must_be_made_anew),
         cmocka_unit_test(only_pads_that_can_touch_themselves_have_the_contact),
     };
     return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);

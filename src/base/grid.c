@@ -5,6 +5,8 @@
 
 #include "base/mat3.h"
 
+#include <string.h>
+
 static int64_t bin_of(const sf_grid *grid, int axis, double x) {
     double b = floor((x - grid->origin[axis]) / grid->width);
     return b < 0 ? 0 : b >= (double)grid->bins[axis] ? grid->bins[axis] - 1 : (int64_t)b;
@@ -15,16 +17,14 @@ static int64_t bin_index(const sf_grid *grid, const double x[3]) {
            bin_of(grid, 2, x[2]);
 }
 
-sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, const double *support,
-                        sf_error *err) {
-    double low[3], high[3];
+/* Sets all but the arrays. The number of bins is bounded: one outsized support would make every bin huge, and
+ * one tiny one would make too many. Returns the number. */
+static int64_t lay_bins(sf_grid *grid, int64_t count, const double *position, const double *support) {
+    double low[3], high[3], volume = 1;
     *grid = (sf_grid){.position = position, .support = support};
     sf_box3(count, position, low, high);
     for (int64_t i = 0; i < count; i++)
         grid->width = fmax(grid->width, support[i]);
-    /* One outsized support would make every bin huge; one tiny one would make too many: bound the number of
-     * bins. */
-    double volume = 1;
     for (int c = 0; c < 3; c++)
         volume *= high[c] - low[c] + grid->width;
     grid->width = fmax(grid->width, cbrt(volume / (4.0 * (double)count + 64)));
@@ -32,19 +32,37 @@ sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, co
         grid->origin[c] = low[c];
         grid->bins[c] = (int64_t)((high[c] - low[c]) / grid->width) + 1;
     }
-    int64_t bins = grid->bins[0] * grid->bins[1] * grid->bins[2];
-    SF_ALLOC_ALL(err, "neighbour grid", SF_ROOM(grid->start, bins + 2), SF_ROOM(grid->node, count));
-    if (err->status != SF_OK) {
-        sf_grid_free(grid);
-        return err->status;
-    }
+    return grid->bins[0] * grid->bins[1] * grid->bins[2];
+}
+
+/* Sorts the nodes by bin; the bins' starts are zeros. */
+static void sort_nodes(sf_grid *grid, int64_t count, int64_t bins) {
     for (int64_t i = 0; i < count; i++)
-        grid->start[bin_index(grid, &position[3 * i]) + 2]++;
+        grid->start[bin_index(grid, &grid->position[3 * i]) + 2]++;
     for (int64_t b = 0; b < bins; b++)
         grid->start[b + 2] += grid->start[b + 1];
     for (int64_t i = 0; i < count; i++)
-        grid->node[grid->start[bin_index(grid, &position[3 * i]) + 1]++] = (int32_t)i;
-    return SF_OK;
+        grid->node[grid->start[bin_index(grid, &grid->position[3 * i]) + 1]++] = (int32_t)i;
+}
+
+sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, const double *support,
+                        sf_error *err) {
+    int64_t bins = lay_bins(grid, count, position, support);
+    SF_ALLOC_ALL(err, "neighbour grid", SF_ROOM(grid->start, bins + 2), SF_ROOM(grid->node, count));
+    if (err->status == SF_OK)
+        sort_nodes(grid, count, bins);
+    else
+        sf_grid_free(grid);
+    return err->status;
+}
+
+void sf_grid_fill(sf_grid *grid, int64_t count, const double *position, const double *support, int64_t *start,
+                  int32_t *node) {
+    int64_t bins = lay_bins(grid, count, position, support);
+    grid->start = start;
+    grid->node = node;
+    memset(start, 0, (size_t)(bins + 2) * sizeof *start);
+    sort_nodes(grid, count, bins);
 }
 
 void sf_grid_free(sf_grid *grid) {

@@ -19,6 +19,12 @@ sf_status sf_grid_build(sf_grid *grid, int64_t count, const double *position, co
                         sf_error *err);
 void sf_grid_free(sf_grid *grid);
 
+/* The same in memory of the caller, who releases it: `start` has SF_GRID_STARTS(count) items, `node` has
+ * `count`. */
+#define SF_GRID_STARTS(count) (4 * (count) + 68) /* at least the bins and 2 */
+void sf_grid_fill(sf_grid *grid, int64_t count, const double *position, const double *support, int64_t *start,
+                  int32_t *node);
+
 /* Writes up to `limit` nodes J with |X_J - centre| < R_J + radius to `out`, ascending; returns how many there
  * are (more than `limit` means that `out` holds only the first ones found). */
 int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius, int64_t limit,

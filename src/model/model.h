@@ -317,8 +317,7 @@ typedef struct sf_model_field {
     const char *path;   /* in model.h5 */
     const char *units;
     const char *description;
-    bool optional; /* a file may lack it: 0, or no rows */
-    bool later;    /* models of release 1.0.0 lack it: left out of the hash where it is 0 */
+    bool later; /* models of release 1.0.0 lack it: left out of the hash where it is 0 */
 } sf_model_field;
 
 /* The table, and its length. Counts come before the arrays that need them. */

@@ -40,7 +40,7 @@ static void name_parameter(int64_t index, const sf_parameter *p, char path[PATH_
 /* The arrays of curves, in the order of sf_law_curves; the counts come first. Their paths begin in the group
  * of the material. */
 #define CURVE(member, type, rows, extra, units, text)                                                        \
-    { offsetof(sf_law_curves, member), type, rows, extra, 1, #member, units, text, false, false }
+    { offsetof(sf_law_curves, member), type, rows, extra, 1, #member, units, text, false }
 static const sf_model_field curve_fields[] = {
     CURVE(curve_count, SF_H5_I64, SIZE_MAX, 0, "1", "number of compression curves"),
     CURVE(curve_points, SF_H5_I64, SIZE_MAX, 0, "1", "number of points of all curves"),
@@ -79,19 +79,12 @@ static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, 
 static sf_status read_field(const sf_h5 *h5, const char *path, const sf_model_field *field, void *record,
                             sf_error *err) {
     char *base = record;
-    bool absent = field->optional && !sf_h5_exists(h5, path);
     if (field->rows_offset == SIZE_MAX)
-        return absent ? SF_OK : sf_h5_read_one(h5, path, field->type, base + field->offset, err);
+        return sf_h5_read_one(h5, path, field->type, base + field->offset, err);
     int64_t rows = *(const int64_t *)(base + field->rows_offset);
     if (rows < 0 || rows > INT64_MAX / 2)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: its count" SF_OUTSIDE("%lld", "0", "%lld"), path,
                        (long long)rows, (long long)(INT64_MAX / 2));
-    if (absent && rows == 0)
-        return SF_OK;
-    if (absent)
-        return SF_FAIL(err, SF_ERR_MODEL,
-                       "%s is missing: an older version made this model; make it anew with softfall-pre",
-                       path);
     int64_t dims[2] = {rows + field->rows_extra, field->columns};
     return sf_h5_read(h5, path, field->type, field->columns > 1 ? 2 : 1, dims,
                       (void **)(base + field->offset), err);

@@ -12,9 +12,11 @@ static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy,
 /* One list of the arrays: allocation, release and checkpoints. */
 static const sf_state_array arrays[] = {
 #define KEPT(member, rows, columns)                                                                          \
-    { #member, offsetof(sf_state, member), rows, (columns) * (int)sizeof(double) }
+    { #member, offsetof(sf_state, member), rows, (columns) * (int)sizeof(double), SF_H5_F64 }
+#define KEPT_NUMBERS(member, rows, columns)                                                                  \
+    { #member, offsetof(sf_state, member), rows, (columns) * (int)sizeof(int32_t), SF_H5_I32 }
 #define SCRATCH(member, rows, bytes)                                                                         \
-    { NULL, offsetof(sf_state, member), rows, (int)(bytes) }
+    { NULL, offsetof(sf_state, member), rows, (int)(bytes), SF_H5_F64 }
     KEPT(d, 'n', 3),
     KEPT(v, 'n', 3),
     KEPT(force, 'n', 3),
@@ -49,7 +51,7 @@ static const sf_state_array arrays[] = {
     SCRATCH(self_motion, 's', 3 * sizeof(double)),
     SCRATCH(self_step, 's', 3 * sizeof(double)),
     KEPT(self_force, 's', 3),
-    KEPT(self_partner, 's', 1),
+    KEPT_NUMBERS(self_partner, 's', 1),
     KEPT(self_weight, 's', 4),
     SCRATCH(self_push, 's', 3 * sizeof(double)),
     SCRATCH(self_candidate, 's', SF_SELF_CANDIDATES * sizeof(int32_t)),
@@ -63,6 +65,7 @@ static const sf_state_array arrays[] = {
     SCRATCH(contact_near, 'c', sizeof(int32_t)),
     SCRATCH(partial, 'k', sizeof(sf_partial)),
 #undef KEPT
+#undef KEPT_NUMBERS
 #undef SCRATCH
 };
 
@@ -194,6 +197,9 @@ bool sf_state_is_finite(const sf_model *m, const sf_state *s) {
 void sf_state_free(sf_state *s) {
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
         free(*(void **)((char *)s + arrays[k].offset));
+    sf_workspace *work = (sf_workspace *)&s->self_work;
+    for (size_t k = 0; k < sizeof s->self_work / sizeof *work; k++)
+        sf_workspace_free(&work[k]);
     memset(s, 0, sizeof *s);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
+#include "base/workspace.h"
 #include "io/process.h"
 #include "solver/field/membrane.h"
 #include "solver/missile.h"
@@ -124,6 +125,13 @@ typedef struct sf_ledger {
 
 enum { SF_SELF_CANDIDATES = 48 };
 
+/* Memory of the contact of the skin with itself, taken in the first step and used again in each. */
+typedef struct sf_self_work {
+    sf_workspace pair, mobility, step, edge_force;                /* self_contact.c */
+    sf_workspace centre, radius, found, used, is_near, near_list; /* candidates.c */
+    sf_workspace grid_start[2], grid_node[2];                     /* of pad and supports */
+} sf_self_work;
+
 typedef struct sf_state {
     SF_STATE_NUMBERS(SF_DECLARE)
     sf_missile missile;
@@ -186,7 +194,7 @@ typedef struct sf_state {
     double *self_motion;     /* [skin][3] m, its last step */
     double *self_step;       /* [skin][3] m, its next step without these forces */
     double *self_force;      /* [skin][3] N, on the node, of the last step */
-    double *self_partner;    /* [skin] facet that it touches; -1: none, -2 - k: plane k (contact/skin.h) */
+    int32_t *self_partner;   /* [skin] facet that it touches; -1: none, -2 - k: plane k (contact/skin.h) */
     double *self_weight;     /* [skin][4] of the facet's nodes, and of the fourth of its quadrangle */
     double *self_push;       /* [n][3] m s-2, acceleration by these forces; zero between steps */
     int32_t *self_candidate; /* [skin][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
@@ -196,6 +204,7 @@ typedef struct sf_state {
     int64_t self_close_count, self_near_count;
     double self_room;        /* m, until the lists are made anew */
     double self_penetration; /* m, deepest now */
+    sf_self_work self_work;
 
     sf_membrane_state membrane;
 
@@ -215,7 +224,8 @@ typedef struct sf_state_array {
     char rows; /* n nodes, l nodes of a pad of layers, u nodes of foam with a set, h rows of history of all
                   blocks of lanes, c contact points, s points and f sides of the skin, m and t nodes and
                   triangles of the membrane, k chunks */
-    int bytes; /* of a row; doubles if it has a name */
+    int bytes; /* of a row */
+    sf_h5_type type; /* of an item that has a name: SF_H5_F64 or SF_H5_I32 */
 } sf_state_array;
 
 /* The table of all arrays, and the number of rows of a kind. */

@@ -69,14 +69,6 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
 sf_status sf_columns_expect(const sf_columns *columns, const sf_material_law *law,
                             double y[SF_COLUMNS_LOGARITHMS], sf_error *err);
 
-/* HIC of a single pulse, a hundred times as fast as the search of post/figures/injury.h, for surrogates. */
-
-/* Computes HIC of a curve that rises to one peak and falls: both ends of the window have the same
- * deceleration, so that the maximum over one level is found instead of that over two instants. The part
- * below a fifth of the peak may have any shape. Any other curve goes to sf_hic_evaluate; so do pulses
- * whose best level is below a quarter of the peak. The window has no limit. */
-sf_status sf_pulse_hic(const sf_series *acceleration_g, sf_hic *hic, sf_error *err);
-
 /* A Gaussian process that predicts one output of a study where it was not computed: ordinary kriging
  * (Rasmussen and Williams 2006, chapters 2 and 5). The correlation of two points is Matern's of smoothness
  * 5/2,

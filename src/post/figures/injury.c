@@ -6,238 +6,121 @@
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
 
-/* Intervals of the search grid, pairs of the first coarse scan per side, relative gap that ends it. */
-enum { GRID_INTERVALS = 4096, SCAN_POINTS = 256, MAX_LEVELS = 40, MAX_SWEEPS = 400 };
-#define SEARCH_GAP 1e-9
-
-/* Cells of level l hold 2^l successive grid points; level 0 is the points themselves. */
-typedef struct level {
-    int64_t count;
-    double *least;    /* [count] smallest integral v in the cell */
-    double *greatest; /* [count] largest integral v */
-    double *peak;     /* [count] largest a */
-} level;
+/* Intervals of the grid that is searched: as many as the curve has, within these bounds. */
+enum { LEAST_INTERVALS = 512, MOST_INTERVALS = 4096, COARSE = 16, POLISHES = 40 };
+static const double CLOSEST = 1e-5; /* of an interval: the smallest move of an end */
 
 typedef struct search {
-    int64_t count;  /* grid points */
-    double *t;      /* [count] s */
-    double *a;      /* [count] g */
-    double *v;      /* [count] g s, integral of a from the start */
-    double *memory; /* of all levels */
-    double window;  /* s */
-    int level_count;
-    level levels[MAX_LEVELS];
-    double best; /* HIC^2 = dv^5 / dt^3 of the best pair so far: saves the powers */
-    double t1, t2;
+    const sf_series *curve;
+    double first, last, longest; /* s, of the curve, and the window's limit */
+    double score, t1, t2;        /* of the best window: HIC^2 = dv^5 / dt^3, which saves the powers; s */
 } search;
 
-static double score(double dv, double dt) {
-    return dv > 0 && dt > 0 ? dv * dv * dv * dv * dv / (dt * dt * dt) : 0;
-}
-
-/* Splits long intervals of the curve (exact, as it is piecewise linear) and integrates it (exact: trapezia).
- */
-static sf_status grid_build(search *s, const sf_series *curve, sf_error *err) {
-    double longest = (curve->time[curve->count - 1] - curve->time[0]) / GRID_INTERVALS;
-    s->count = 1;
-    for (int64_t i = 1; i < curve->count; i++)
-        s->count += (int64_t)fmax(1, ceil((curve->time[i] - curve->time[i - 1]) / longest - 1e-9));
-    s->t = sf_alloc(err, (unsigned long)s->count * 3, sizeof(double), "the HIC grid");
-    SF_TRY(err->status);
-    s->a = s->t + s->count;
-    s->v = s->a + s->count;
-    s->t[0] = curve->time[0];
-    s->a[0] = curve->value[0];
-    int64_t k = 1;
-    for (int64_t i = 1; i < curve->count; i++) {
-        double dt = curve->time[i] - curve->time[i - 1], da = curve->value[i] - curve->value[i - 1];
-        int64_t parts = (int64_t)fmax(1, ceil(dt / longest - 1e-9));
-        for (int64_t j = 1; j <= parts; j++, k++) {
-            double part = (double)j / (double)parts;
-            s->t[k] = j == parts ? curve->time[i] : curve->time[i - 1] + part * dt;
-            s->a[k] = curve->value[i - 1] + part * da;
-            s->v[k] = s->v[k - 1] + (s->t[k] - s->t[k - 1]) * (s->a[k] + s->a[k - 1]) / 2;
-        }
-    }
-    return SF_OK;
-}
-
-static sf_status levels_build(search *s, sf_error *err) {
-    int64_t total = 0;
-    for (int64_t cells = s->count;; cells = (cells + 1) / 2) {
-        s->levels[s->level_count++].count = cells;
-        total += cells;
-        if (cells == 1)
-            break;
-    }
-    s->memory = sf_alloc(err, (unsigned long)total * 3, sizeof(double), "the HIC search");
-    SF_TRY(err->status);
-    double *next = s->memory;
-    for (int l = 0; l < s->level_count; l++) {
-        level *here = &s->levels[l];
-        here->least = next;
-        here->greatest = next + here->count;
-        here->peak = next + 2 * here->count;
-        next += 3 * here->count;
-        for (int64_t c = 0; c < here->count; c++) {
-            if (l == 0) {
-                here->least[c] = here->greatest[c] = s->v[c];
-                here->peak[c] = s->a[c];
-                continue;
-            }
-            const level *below = here - 1;
-            int64_t one = 2 * c, two = 2 * c + 1 < below->count ? 2 * c + 1 : one;
-            here->least[c] = fmin(below->least[one], below->least[two]);
-            here->greatest[c] = fmax(below->greatest[one], below->greatest[two]);
-            here->peak[c] = fmax(below->peak[one], below->peak[two]);
-        }
-    }
-    return SF_OK;
-}
-
 static void offer(search *s, double t1, double t2, double dv) {
-    double value = score(dv, t2 - t1);
-    if (value > s->best) {
-        s->best = value;
+    double dt = t2 - t1, score = dv > 0 && dt > 0 ? dv * dv * dv * dv * dv / (dt * dt * dt) : 0;
+    if (score > s->score) {
+        s->score = score;
         s->t1 = t1;
         s->t2 = t2;
     }
 }
 
-/* Best score that any t1 in cell p and t2 in cell q >= p of level l could have. */
-static double pair_bound(const search *s, int l, int64_t p, int64_t q) {
-    const level *here = &s->levels[l];
-    int64_t p_last = ((p + 1) << l) - 1, q_last = ((q + 1) << l) - 1;
-    if (q_last > s->count - 1)
-        q_last = s->count - 1;
-    double bound = INFINITY;
-    if (p < q) {
-        double shortest = s->t[q << l] - s->t[p_last];
-        if (shortest > s->window)
-            return 0;
-        bound = score(here->greatest[q] - here->least[p], shortest);
-    }
-    if (q - p <= 1) { /* neighbours: the mean is at most the peak of the two */
-        double peak = fmax(here->peak[p], here->peak[q]);
-        double span = fmin(s->t[q_last] - s->t[p << l], s->window);
-        bound = fmin(bound, peak > 0 ? span * span * pow(peak, 5) : 0);
-    }
-    return bound;
+/* Returns the integral of the curve up to `time`; that up to its points is given. */
+static double integral_at(const sf_series *c, const double *integral, double time) {
+    int64_t i = sf_interval_find(c->time, c->count, time);
+    double dt = time - c->time[i], slope = (c->value[i + 1] - c->value[i]) / (c->time[i + 1] - c->time[i]);
+    return integral[i] + dt * (c->value[i] + 0.5 * dt * slope);
 }
 
-static void search_pairs(search *s, int l, int64_t p, int64_t q) {
-    if (pair_bound(s, l, p, q) <= s->best * (1 + SEARCH_GAP))
+/* Offers the pairs of the grid's instants, `stride` apart, that may be better than the best one: the mean of
+ * a window is at most the peak, and its integral at most the greatest one less that before the window. */
+static void scan(search *s, int64_t n, const double *v, double step, int64_t stride) {
+    double peak = s->curve->value[sf_series_peak(s->curve)], greatest = gsl_stats_max(v, 1, (size_t)n + 1);
+    for (int64_t i = 0; i < n && v[i] < greatest; i += stride) {
+        double shortest = fmax((double)stride, sqrt(s->score / pow(peak, 5)) / step);
+        double longest = fmin(s->longest, cbrt(pow(greatest - v[i], 5) / s->score)) / step;
+        int64_t last = i + (int64_t)fmin(longest * (1 + 1e-12), (double)(n - i));
+        for (int64_t j = i + (int64_t)shortest; j <= last; j += stride)
+            offer(s, s->first + (double)i * step, s->first + (double)j * step, v[j] - v[i]);
+    }
+}
+
+/* Moves the ends of the best window, by less and less, until no move makes it better. */
+static void refine(search *s, const double *integral, double step) {
+    for (double move = step; move > CLOSEST * step;) {
+        const search centre = *s;
+        for (int k = 0; k < 9; k++) {
+            double t1 = fmax(s->first, centre.t1 + (k / 3 - 1) * move);
+            double t2 = fmin(fmin(s->last, centre.t2 + (k % 3 - 1) * move), t1 + s->longest);
+            offer(s, t1, t2, integral_at(s->curve, integral, t2) - integral_at(s->curve, integral, t1));
+        }
+        if (!(s->score > centre.score))
+            move /= 2;
+    }
+}
+
+static double slope_at(const sf_series *c, double time) {
+    int64_t i = sf_interval_find(c->time, c->count, time);
+    return (c->value[i + 1] - c->value[i]) / (c->time[i + 1] - c->time[i]);
+}
+
+/* Solves for the ends: a(t1) = a(t2) where the window is as long as it may be, else both are 3/5 of the mean.
+ * The score alone is flat to its rounding over 1e-8 of the window. */
+static void polish(search *s, const double *integral) {
+    bool limited = s->t2 - s->t1 > s->longest * (1 - 1e-9);
+    bool moves_first = s->t1 > s->first, moves_last = s->t2 < s->last;
+    double t1 = s->t1, t2 = s->t2, dv = 0;
+    if (limited && !(moves_first && moves_last))
         return;
-    if (l == 0) {
-        if (s->t[q] - s->t[p] <= s->window)
-            offer(s, s->t[p], s->t[q], s->v[q] - s->v[p]);
-        return;
+    for (int k = 0; k < POLISHES; k++) {
+        double a1 = sf_series_at(s->curve, t1), slope1 = slope_at(s->curve, t1);
+        double a2 = sf_series_at(s->curve, t2), slope2 = slope_at(s->curve, t2);
+        dv = integral_at(s->curve, integral, t2) - integral_at(s->curve, integral, t1);
+        double level = 0.6 * dv / (t2 - t1), shift = (a2 - a1) / (slope1 - slope2);
+        if (moves_first)
+            t1 += limited ? shift : (level - a1) / slope1;
+        if (moves_last)
+            t2 += limited ? shift : (level - a2) / slope2;
     }
-    int64_t limit = s->levels[l - 1].count;
-    for (int64_t i = 2 * p; i <= 2 * p + 1; i++)
-        for (int64_t j = 2 * q; j <= 2 * q + 1; j++)
-            if (i <= j && j < limit)
-                search_pairs(s, l - 1, i, j);
-}
-
-static double a_at(const search *s, double time) {
-    int64_t i = sf_interval_find(s->t, s->count, time);
-    return s->a[i] + (s->a[i + 1] - s->a[i]) * (time - s->t[i]) / (s->t[i + 1] - s->t[i]);
-}
-
-static double v_at(const search *s, double time) {
-    int64_t i = sf_interval_find(s->t, s->count, time);
-    return s->v[i] + (time - s->t[i]) * (s->a[i] + a_at(s, time)) / 2;
-}
-
-/* A first good value: coarse pairs, and all windows of full length that begin or end at a grid point. */
-static void search_start(search *s) {
-    int64_t stride = s->count / SCAN_POINTS + 1;
-    for (int64_t i = 0; i < s->count; i += stride)
-        for (int64_t j = i + stride; j < s->count && s->t[j] - s->t[i] <= s->window; j += stride)
-            offer(s, s->t[i], s->t[j], s->v[j] - s->v[i]);
-    double first = s->t[0], last = s->t[s->count - 1];
-    if (s->window >= last - first)
-        return;
-    for (int64_t i = 0; i < s->count; i++) {
-        double end = s->t[i] + s->window, begin = s->t[i] - s->window;
-        if (end <= last)
-            offer(s, s->t[i], end, v_at(s, end) - s->v[i]);
-        if (begin >= first)
-            offer(s, begin, s->t[i], s->v[i] - v_at(s, begin));
+    double score = pow(dv, 5) / pow(t2 - t1, 3);
+    if (t1 >= s->first && t2 <= s->last && score > s->score * (1 - 1e-13)) {
+        s->score = score;
+        s->t1 = t1;
+        s->t2 = t2;
     }
 }
 
-/* Derivative of HIC along (d1, d2), up to a positive factor: d ln HIC / dt2 ~ a(t2) - 3/5 mean, dt1 the
- * opposite. */
-static double slope(const search *s, double t1, double t2, int d1, int d2) {
-    double mean = (v_at(s, t2) - v_at(s, t1)) / (t2 - t1);
-    return d2 * (a_at(s, t2) - 0.6 * mean) - d1 * (a_at(s, t1) - 0.6 * mean);
-}
-
-/* Moves the window along (d1, d2), at most `reach`, uphill until the slope changes sign. Returns the distance
- * moved. */
-static double climb(search *s, int d1, int d2, double reach) {
-    double first = s->t[0], last = s->t[s->count - 1];
-    double grow = d2 - d1; /* of t2 - t1 per unit */
-    if (d1 < 0)
-        reach = fmin(reach, s->t1 - first);
-    if (d2 > 0)
-        reach = fmin(reach, last - s->t2);
-    if (grow > 0)
-        reach = fmin(reach, (s->window - (s->t2 - s->t1)) / grow);
-    if (grow < 0)
-        reach = fmin(reach, 0.5 * (s->t2 - s->t1) / -grow);
-    if (!(reach > 0) || !(slope(s, s->t1, s->t2, d1, d2) > 0))
-        return 0;
-    double low = 0, high = reach;
-    if (slope(s, s->t1 + d1 * reach, s->t2 + d2 * reach, d1, d2) > 0)
-        low = reach;
-    for (int k = 0; k < 60 && low < high; k++) {
-        double middle = (low + high) / 2;
-        if (slope(s, s->t1 + d1 * middle, s->t2 + d2 * middle, d1, d2) > 0)
-            low = middle;
-        else
-            high = middle;
-    }
-    double t1 = s->t1 + d1 * low, t2 = s->t2 + d2 * low;
-    double value = score(v_at(s, t2) - v_at(s, t1), t2 - t1);
-    if (value < s->best * (1 - 1e-14)) /* rounding may hide the last gains, a real loss is refused */
-        return 0;
-    s->best = fmax(value, s->best);
-    s->t1 = t1;
-    s->t2 = t2;
-    return low;
-}
-
-static void refine(search *s) {
-    static const int directions[6][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}};
-    double reach = 2 * (s->t[s->count - 1] - s->t[0]) / GRID_INTERVALS;
-    for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
-        double moved = 0;
-        for (int k = 0; k < 6; k++)
-            moved += climb(s, directions[k][0], directions[k][1], reach);
-        if (moved < 1e-9 * reach)
-            return;
-    }
-}
-
-sf_status sf_hic_evaluate(const sf_series *acceleration_g, double window, sf_hic *hic, sf_error *err) {
+sf_status sf_hic_evaluate(const sf_series *curve, double window, sf_hic *hic, sf_error *err) {
     *hic = (sf_hic){0, NAN, NAN};
-    search s = {.window = window, .t1 = NAN, .t2 = NAN};
     if (!(window > 0))
         return SF_REFUSE(err, "a HIC window of %g s" SF_NOT_ABOVE_0, window);
-    SF_TRY(sf_series_check(acceleration_g, "the acceleration curve", err));
-    if (grid_build(&s, acceleration_g, err) == SF_OK && levels_build(&s, err) == SF_OK) {
-        search_start(&s);
-        search_pairs(&s, s.level_count - 1, 0, 0);
+    SF_TRY(sf_series_check(curve, "the acceleration curve", err));
+    int64_t count = curve->count;
+    int64_t n = count < LEAST_INTERVALS ? LEAST_INTERVALS : count - 1;
+    if (n > MOST_INTERVALS)
+        n = MOST_INTERVALS;
+    SF_OWNED double *integral = sf_alloc(err, (size_t)(count + n + 1), sizeof *integral, "the HIC search");
+    SF_TRY(err->status);
+    for (int64_t i = 1; i < count; i++)
+        integral[i] = integral[i - 1] +
+                      (curve->time[i] - curve->time[i - 1]) * (curve->value[i] + curve->value[i - 1]) / 2;
+
+    search s = {.curve = curve, .first = curve->time[0], .last = curve->time[count - 1], .longest = window};
+    double step = (s.last - s.first) / (double)n, *v = integral + count;
+    for (int64_t i = 0; i <= n; i++)
+        v[i] = integral_at(curve, integral, s.first + (double)i * step);
+    scan(&s, n, v, step, COARSE);
+    scan(&s, n, v, step, 1);
+    for (int64_t i = 0; i <= n && s.first + (double)i * step + window <= s.last; i++) {
+        double t1 = s.first + (double)i * step;
+        offer(&s, t1, t1 + window, integral_at(curve, integral, t1 + window) - v[i]);
     }
-    if (s.best > 0) {
-        refine(&s);
-        *hic = (sf_hic){sqrt(s.best), s.t1, s.t2};
+    if (s.score > 0) {
+        refine(&s, integral, step);
+        polish(&s, integral);
+        *hic = (sf_hic){sqrt(s.score), s.t1, s.t2};
     }
-    SF_FREE(s.t, s.memory);
-    return err->status;
+    return SF_OK;
 }
 
 /* Integral of a^2.5 over an interval on which a >= 0 runs linearly from `a1` to `a2`. */
@@ -249,7 +132,7 @@ static double gadd_interval(double a1, double a2, double dt) {
     return dt * (pow(a1, 2.5) + 4 * pow((a1 + a2) / 2, 2.5) + pow(a2, 2.5)) / 6;
 }
 
-double sf_injury_gadd(const sf_series *curve) {
+static double gadd_index(const sf_series *curve) {
     double sum = 0;
     for (int64_t i = 1; i < curve->count; i++) {
         double a1 = curve->value[i - 1], a2 = curve->value[i], dt = curve->time[i] - curve->time[i - 1];
@@ -291,7 +174,9 @@ static double time_above(const sf_series *curve, double limit, int contiguous) {
     return contiguous ? longest : sum;
 }
 
-double sf_injury_clip(const sf_series *curve, double duration, int contiguous) {
+/* Returns the largest level that the curve reaches or exceeds for `duration` (s), at a stretch or summed over
+ * all stretches; NaN if the whole curve is shorter. */
+static double clip_level(const sf_series *curve, double duration, int contiguous) {
     double low, high;
     gsl_stats_minmax(&low, &high, curve->value, 1, (size_t)curve->count);
     double slack = duration * 1e-12; /* rounding of summed intervals */
@@ -317,8 +202,8 @@ sf_status sf_injury_evaluate(const sf_series *curve, sf_injury *injury, sf_error
     SF_TRY(sf_injury_evaluate_peak(curve, injury, err));
     SF_TRY(sf_hic_evaluate(curve, 15e-3, &injury->hic15, err));
     SF_TRY(sf_hic_evaluate(curve, 36e-3, &injury->hic36, err));
-    injury->gadd = sf_injury_gadd(curve);
-    injury->clip_contiguous_g = sf_injury_clip(curve, clip_duration, 1);
-    injury->clip_cumulative_g = sf_injury_clip(curve, clip_duration, 0);
+    injury->gadd = gadd_index(curve);
+    injury->clip_contiguous_g = clip_level(curve, clip_duration, 1);
+    injury->clip_cumulative_g = clip_level(curve, clip_duration, 0);
     return SF_OK;
 }

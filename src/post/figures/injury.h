@@ -19,8 +19,8 @@ typedef struct sf_hic {
     double t2;    /* s */
 } sf_hic;
 
-/* `window` in s, INFINITY for none. The global maximum: a bounded search over the points of the curve
- * (refined to at least 4096 intervals) leaves no pair out, then both ends are moved continuously. */
+/* Finds the global maximum: from all pairs of 513 to 4097 instants of the curve, as many as it has points,
+ * the ends of the best window are moved between them. `window` in s; INFINITY: no limit. */
 sf_status sf_hic_evaluate(const sf_series *acceleration_g, double window, sf_hic *hic, sf_error *err);
 
 typedef struct sf_injury {
@@ -29,7 +29,7 @@ typedef struct sf_injury {
     sf_hic hic;               /* no window limit */
     sf_hic hic15;             /* window <= 15 ms */
     sf_hic hic36;             /* window <= 36 ms */
-    double gadd;              /* g^2.5 s, Gadd severity index */
+    double gadd;              /* g^2.5 s, Gadd severity index: integral of a^2.5 where a > 0 */
     double clip_contiguous_g; /* g, exceeded for 3 ms without a break; NaN if the curve is shorter */
     double clip_cumulative_g; /* g, exceeded for 3 ms in all; NaN if the curve is shorter */
 } sf_injury;
@@ -37,10 +37,3 @@ typedef struct sf_injury {
 /* The peak, its time and HIC without a limit alone; the others are 0. */
 sf_status sf_injury_evaluate_peak(const sf_series *acceleration_g, sf_injury *injury, sf_error *err);
 sf_status sf_injury_evaluate(const sf_series *acceleration_g, sf_injury *injury, sf_error *err);
-
-/* Gadd severity index: integral of a^2.5 where a > 0. */
-double sf_injury_gadd(const sf_series *acceleration_g);
-
-/* Largest level that the curve reaches or exceeds for `duration` (s): at a stretch, or summed over all
- * stretches. NaN if the whole curve is shorter. */
-double sf_injury_clip(const sf_series *acceleration_g, double duration, int contiguous);

@@ -95,7 +95,6 @@ static bool find_key(const sf_geo_source *source, uint64_t *key) {
         *key = sf_hash_bytes(*key, p->name, strlen(p->name) + 1);
         *key = sf_hash_bytes(*key, &p->value, sizeof p->value);
     }
-    /* last: an older version, which left defaults as they are, had it before the parameters */
     *key = sf_hash_bytes(*key, &source->spacing_factor, sizeof source->spacing_factor);
     return true;
 }

@@ -11,6 +11,7 @@
 #include "base/sets.h"
 #include "pre/mesh/mesher_protocol.h"
 
+/* The C API of gmsh differs between its versions from 4.8 on; gui/gmsh/window.c tells them apart itself. */
 #define API_AT_LEAST(major, minor)                                                                           \
     (GMSH_API_VERSION_MAJOR > (major) ||                                                                     \
      (GMSH_API_VERSION_MAJOR == (major) && GMSH_API_VERSION_MINOR >= (minor)))
@@ -19,7 +20,8 @@
 #error "softfall needs gmsh 4.8 or newer"
 #endif
 
-int sf_gmsh_adapter_initialize(void) {
+/* Starts gmsh without its configuration files and without its window. Returns its code: 0 on success. */
+static int initialize(void) {
     char name[] = "softfall-pre";
     char *argv[] = {name, NULL};
     int ierr = 0;
@@ -124,7 +126,7 @@ static bool check(int ierr, const char *action) {
 }
 
 int sf_work_begin(void) {
-    int ierr = sf_gmsh_adapter_initialize();
+    int ierr = initialize();
     if (ierr)
         return ierr;
     gmshOptionSetNumber("General.AbortOnError", 0.0, &ierr);

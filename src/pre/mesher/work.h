@@ -2,12 +2,6 @@
 #pragma once
 #include <stdint.h>
 
-/* Differences between the versions of gmsh's C API, from 4.8 on, for the mesher (gui/gmsh/window.c has its
- * own). */
-
-/* Starts gmsh without its configuration files and without its window. Returns gmsh's code: 0 on success. */
-int sf_gmsh_adapter_initialize(void);
-
 /* The only code that calls gmsh (C API): opens the geometry of a request, meshes it if
  * it holds no mesh, and writes the mesh stream. */
 

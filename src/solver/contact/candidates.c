@@ -59,16 +59,10 @@ static bool is_candidate(const sf_skin *skin, const neighbourhood *n, int64_t p,
 /* The facets of pad and support as they lie now, each with its grid. */
 typedef struct facets {
     double *centre, *radius; /* [facet_count] m, of a ball round each */
-    sf_grid pad, support;
-    int64_t first_rigid; /* the support's first facet */
-    int32_t *found;      /* [facet_count] room */
+    sf_grid pad, support;    /* in memory of the state, as all of this */
+    int64_t first_rigid;     /* the support's first facet */
+    int32_t *found;          /* [facet_count] room */
 } facets;
-
-static void facets_free(facets *f) {
-    sf_grid_free(&f->pad);
-    sf_grid_free(&f->support);
-    SF_FREE(f->centre, f->radius, f->found);
-}
 
 static void surround(const sf_skin *skin, const sf_state *s, int64_t f, double centre[3], double *radius) {
     double corner[3][3], square = 0;
@@ -84,21 +78,29 @@ static void surround(const sf_skin *skin, const sf_state *s, int64_t f, double c
     *radius = sqrt(square);
 }
 
-static sf_status facets_find(const sf_skin *skin, const sf_state *s, facets *f, sf_error *err) {
-    unsigned long count = (unsigned long)skin->facet_count;
-    *f = (facets){.centre = sf_alloc(err, 3 * count, sizeof *f->centre, "candidates of contact"),
-                  .radius = sf_alloc(err, count, sizeof *f->radius, "candidates of contact"),
-                  .found = sf_alloc(err, count, sizeof *f->found, "candidates of contact")};
-    for (int64_t k = 0; err->status == SF_OK && k < skin->facet_count; k++) {
+static sf_status facets_find(const sf_skin *skin, sf_state *s, facets *f, sf_error *err) {
+    static const char purpose[] = "candidates of contact";
+    int64_t count = skin->facet_count, starts = SF_GRID_STARTS(count);
+    sf_self_work *work = &s->self_work;
+    f->centre = sf_workspace_take(&work->centre, 3 * count, sizeof *f->centre, purpose, err);
+    f->radius = sf_workspace_take(&work->radius, count, sizeof *f->radius, purpose, err);
+    f->found = sf_workspace_take(&work->found, count, sizeof *f->found, purpose, err);
+    int64_t *start[2];
+    int32_t *node[2];
+    for (int k = 0; k < 2; k++) {
+        start[k] = sf_workspace_take(&work->grid_start[k], starts, sizeof *start[k], purpose, err);
+        node[k] = sf_workspace_take(&work->grid_node[k], count, sizeof *node[k], purpose, err);
+    }
+    SF_TRY(err->status);
+    for (int64_t k = 0; k < count; k++) {
         surround(skin, s, k, &f->centre[3 * k], &f->radius[k]);
         f->first_rigid += !sf_skin_is_rigid(skin, skin->facet[3 * k]);
     }
-    int64_t rigid = skin->facet_count - f->first_rigid;
-    if (err->status == SF_OK)
-        sf_grid_build(&f->pad, f->first_rigid, f->centre, f->radius, err);
-    if (err->status == SF_OK && rigid > 0)
-        sf_grid_build(&f->support, rigid, &f->centre[3 * f->first_rigid], &f->radius[f->first_rigid], err);
-    return err->status;
+    sf_grid_fill(&f->pad, f->first_rigid, f->centre, f->radius, start[0], node[0]);
+    if (count > f->first_rigid)
+        sf_grid_fill(&f->support, count - f->first_rigid, &f->centre[3 * f->first_rigid],
+                     &f->radius[f->first_rigid], start[1], node[1]);
+    return SF_OK;
 }
 
 /* The nearest of facets, by distance (m). */
@@ -194,18 +196,20 @@ static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
 }
 
 sf_status sf_candidates_find(const sf_skin *skin, sf_state *s, sf_error *err) {
-    SF_OWNED_BY(facets_free) facets f = {0};
-    SF_OWNED uint8_t *used = sf_alloc(err, skin->count, 1, "candidates of contact");
-    neighbourhood n = {sf_alloc(err, skin->count, 1, "candidates of contact"),
-                       sf_alloc(err, skin->count, sizeof *n.list, "candidates of contact"), 0};
+    static const char purpose[] = "candidates of contact";
+    facets f = {0};
+    sf_self_work *work = &s->self_work;
+    uint8_t *used = sf_workspace_take(&work->used, skin->count, 1, purpose, err);
+    neighbourhood n = {sf_workspace_take(&work->is_near, skin->count, 1, purpose, err),
+                       sf_workspace_take(&work->near_list, skin->count, sizeof *n.list, purpose, err), 0};
     double reach = s->self_room = NEAR * skin->spacing;
-    if (facets_find(skin, s, &f, err) == SF_OK) {
-        for (int64_t p = 0; p < skin->count; p++)
-            choose_candidates(skin, s, p, reach, &f, &n, used);
-        list_nodes(skin, s, used);
-    }
-    SF_FREE(n.is_near, n.list);
-    return err->status;
+    SF_TRY(facets_find(skin, s, &f, err));
+    memset(used, 0, (size_t)skin->count);
+    memset(n.is_near, 0, (size_t)skin->count);
+    for (int64_t p = 0; p < skin->count; p++)
+        choose_candidates(skin, s, p, reach, &f, &n, used);
+    list_nodes(skin, s, used);
+    return SF_OK;
 }
 
 /* Subtracts what node and facet travel towards each other in a step. */

@@ -239,7 +239,7 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, sf_t
     double spacing = skin->size[p], best = INFINITY, back = -RETURN * s->dt, ahead[3];
     for (int k = 0; k < CANDIDATES && own[k] != NOTHING; k++) {
         sf_touch q;
-        bool on = goes_on(skin, (int64_t)s->self_partner[p], own[k]);
+        bool on = goes_on(skin, s->self_partner[p], own[k]);
         double deepest = on ? DEEPEST : SF_CONTACT_ENTRY;
         if (!meet_facet(skin, s, p, own[k], &q) || fabs(q.gap) >= best)
             continue;
@@ -407,7 +407,7 @@ static double friction_of(const sf_model *m, const sf_skin *skin, int64_t p, int
 /* The pair of node p in the last step; normal and lean are those of the present: the work that they tell of
  * the last forces has an error of the order of their change. */
 static sf_touch last_pair(const sf_model *m, const sf_skin *skin, sf_state *s, int64_t p) {
-    sf_touch q = {.node = p, .facet = (int64_t)s->self_partner[p], .force = &s->self_force[3 * p]};
+    sf_touch q = {.node = p, .facet = s->self_partner[p], .force = &s->self_force[3 * p]};
     q.friction = friction_of(m, skin, p, q.facet);
     memcpy(q.weight, &s->self_weight[4 * p], sizeof q.weight);
     list_parts(skin, &q);
@@ -457,10 +457,10 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         }
         found->friction = friction_of(m, skin, p, found->facet);
         found->force = q;
-        if (s->self_partner[p] != (double)found->facet && found->friction == 0)
+        if (s->self_partner[p] != found->facet && found->friction == 0)
             for (int r = 0; r < 3; r++)
                 q[r] = old * found->normal[r];
-        s->self_partner[p] = (double)found->facet;
+        s->self_partner[p] = (int32_t)found->facet;
         memcpy(&s->self_weight[4 * p], found->weight, sizeof found->weight);
         if (!acts(skin, p, found->facet))
             continue;
@@ -477,6 +477,7 @@ static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         sf_touch *q = &w->pair[w->count];
         q->friction = friction_of(m, skin, q->node, q->facet);
         q->force = w->edge_force[k];
+        memset(q->force, 0, 3 * sizeof *q->force);
         const int32_t corner[3] = {q->part[0], q->part[1], q->part[q->share[3] < -0.5 ? 2 : 3]};
         if (q->friction > 0)
             sf_touch_lean(s, corner, q);
@@ -532,15 +533,18 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
     }
     memset(s->self_push, 0, bytes);
     find_normals(skin, s);
-    unsigned long edges = (unsigned long)skin->edge_count, most = (unsigned long)s->self_close_count + edges;
+    int64_t most = skin->count + skin->edge_count; /* pairs: nothing grows after the first step */
+    sf_self_work *work = &s->self_work;
     solve w = {.shift = s->dt * dt_v,
-               .pair = sf_alloc(err, most, sizeof *w.pair, "pairs in contact"),
-               .mobility = sf_alloc(err, most, sizeof *w.mobility, "pairs in contact"),
-               .step = sf_alloc(err, most, sizeof *w.step, "pairs in contact"),
-               .edge_force = sf_alloc(err, edges, sizeof *w.edge_force, "pairs in contact"),
+               .pair = sf_workspace_take(&work->pair, most, sizeof *w.pair, "pairs in contact", err),
+               .mobility =
+                   sf_workspace_take(&work->mobility, most, sizeof *w.mobility, "pairs in contact", err),
+               .step = sf_workspace_take(&work->step, most, sizeof *w.step, "pairs in contact", err),
+               .edge_force = sf_workspace_take(&work->edge_force, skin->edge_count, sizeof *w.edge_force,
+                                               "pairs in contact", err),
                .passed.node = -1};
-    if (err->status == SF_OK)
-        find_pairs(m, skin, s, &w);
+    SF_TRY(err->status);
+    find_pairs(m, skin, s, &w);
     if (w.passed.node >= 0)
         fail_passed(m, skin, s, &w.passed, err);
     int64_t nodes = w.count;
@@ -561,13 +565,12 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
             book(s, &w.pair[a], motion);
     }
     memset(s->self_push, 0, bytes);
-    SF_FREE(w.pair, w.mobility, w.step, w.edge_force);
     return err->status;
 }
 
 void sf_self_contact_outside(const sf_skin *skin, const sf_state *s, bool symmetry, sf_wrench *outside) {
     for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
-        int64_t p = s->self_close[k], facet = (int64_t)s->self_partner[p];
+        int64_t p = s->self_close[k], facet = s->self_partner[p];
         const double *q = &s->self_force[3 * p];
         bool symmetric = facet < FIRST_PLANE - SF_SKIN_ANVIL;
         if (facet != NOTHING && sf_skin_is_rigid(skin, p)) /* on the facet's nodes */
@@ -585,7 +588,7 @@ void sf_self_contact_outside(const sf_skin *skin, const sf_state *s, bool symmet
 void sf_self_contact_supports(const sf_model *m, const sf_skin *skin, sf_state *s) {
     double force[SF_SUPPORTS][3] = {{0}}, place;
     for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
-        int64_t p = s->self_close[k], facet = (int64_t)s->self_partner[p];
+        int64_t p = s->self_close[k], facet = s->self_partner[p];
         int support = facet != NOTHING ? sf_skin_support(m, skin, p, facet) : -1;
         for (int r = 0; r < 3 && support >= 0; r++)
             force[support][r] +=

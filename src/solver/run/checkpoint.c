@@ -27,7 +27,7 @@ static bool is_kept(const sf_model *m, const sf_state_array *a) {
 static void name_array(const sf_model *m, const sf_state_array *a, char path[64], int64_t dims[2]) {
     snprintf(path, 64, "/state/%s", a->name);
     dims[0] = sf_state_rows(m, a->rows);
-    dims[1] = a->bytes / (int)sizeof(double);
+    dims[1] = a->bytes / (a->type == SF_H5_I32 ? (int)sizeof(int32_t) : (int)sizeof(double));
 }
 
 static sf_status write_state(const sf_model *m, const sf_state *s, sf_h5 *file, sf_error *err) {
@@ -41,7 +41,7 @@ static sf_status write_state(const sf_model *m, const sf_state *s, sf_h5 *file, 
             continue;
         name_array(m, &array[k], path, dims);
         sf_h5_info info = {path, "1", "SI units, sf_state in src/solver/state.h"};
-        sf_h5_write(file, &info, SF_H5_F64, 2, dims, *(void *const *)((const char *)s + array[k].offset),
+        sf_h5_write(file, &info, array[k].type, 2, dims, *(void *const *)((const char *)s + array[k].offset),
                     err);
     }
     return err->status;
@@ -68,7 +68,7 @@ static sf_status read_state(const sf_model *m, sf_state *s, const sf_h5 *file, s
         if (!is_kept(m, &array[k]))
             continue;
         name_array(m, &array[k], path, dims);
-        if (sf_h5_read(file, path, SF_H5_F64, 2, dims, &data, err) != SF_OK)
+        if (sf_h5_read(file, path, array[k].type, 2, dims, &data, err) != SF_OK)
             break;
         void **mine = (void **)((char *)s + array[k].offset);
         free(*mine);

@@ -59,17 +59,6 @@ sf_extremes sf_recorder_extremes(const sf_recorder *r) {
         .contact_share = any ? internal.contact : 0};
 }
 
-sf_status sf_recorder_add(sf_recorder *r, const sf_model *m, const sf_state *s, sf_error *err) {
-    sf_history *h = &r->history;
-    SF_TRY(sf_history_add(h, m, s, err));
-    double value = lasting_value(m, h);
-    if (value > r->peak_value) {
-        r->peak_value = value;
-        r->peak_time = s->time;
-    }
-    return SF_OK;
-}
-
 static bool has_grown(const sf_recorder *r) {
     return r->peak_value > PEAK_GROWTH * r->peak_kept;
 }
@@ -241,12 +230,23 @@ static sf_status grow(sf_history *h, sf_error *err) {
     return SF_OK;
 }
 
-sf_status sf_history_add(sf_history *h, const sf_model *m, const sf_state *s, sf_error *err) {
+static sf_status add_row(sf_history *h, const sf_model *m, const sf_state *s, sf_error *err) {
     double whole = sf_model_whole(m);
     SF_TRY(grow(h, err));
     for (int k = 0; k < SF_HISTORY_COUNT; k++)
         h->column[k][h->rows] = values[k](m, s, whole);
     h->rows++;
+    return SF_OK;
+}
+
+sf_status sf_recorder_add(sf_recorder *r, const sf_model *m, const sf_state *s, sf_error *err) {
+    sf_history *h = &r->history;
+    SF_TRY(add_row(h, m, s, err));
+    double value = lasting_value(m, h);
+    if (value > r->peak_value) {
+        r->peak_value = value;
+        r->peak_time = s->time;
+    }
     return SF_OK;
 }
 

@@ -6,9 +6,6 @@
 #pragma once
 #include "solver/state.h"
 
-/* Adds the present state as a row of a history that began empty ({0}); release with sf_history_free. */
-sf_status sf_history_add(sf_history *history, const sf_model *model, const sf_state *state, sf_error *err);
-
 /* All rows to /history. */
 sf_status sf_history_write(const sf_history *history, sf_h5 *file, sf_error *err);
 
