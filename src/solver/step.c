@@ -129,17 +129,16 @@ static sf_status check_passed(const sf_model *m, const sf_state *s, sf_error *er
 /* Returns the likely cause of contact or stabilisation that feeds the pad. */
 static const char *cause_of_feeding(const sf_model *m, const sf_state *s) {
     static const double CRUSHED = 0.95;
-    return m->skin_count > 0 && !m->skin_alone && m->run.stabilisation < SF_FOLD_STABILISATION &&
-                   s->ledger.stabilisation < s->ledger.contact
-               ? "foam that folds needs a larger kernel.stabilisation, such as 0.3"
-           : s->smallest_jacobian <= 0
-               ? "the foam has turned inside out, as where it folds onto itself or passes "
-                 "through the anvil"
-           : s->largest_compression > CRUSHED
-               ? "the foam is crushed beyond a strain of 0.95, as by a motion beyond the limit of its law, or where "
-                 "it passes through the anvil or through itself"
-               : "the missile is pressed in beyond its touching surface, or the contact is unstable (smaller "
-                 "solver.step_safety)";
+    if (m->skin_count > 0 && !m->skin_alone && m->run.stabilisation < SF_FOLD_STABILISATION &&
+        s->ledger.stabilisation < s->ledger.contact)
+        return "foam that folds needs a larger kernel.stabilisation, such as 0.3";
+    if (s->smallest_jacobian <= 0)
+        return "the foam has turned inside out, as where it folds onto itself or passes through the anvil";
+    if (s->largest_compression > CRUSHED)
+        return "the foam is crushed beyond a strain of 0.95, as by a motion beyond the limit of its law, or where "
+               "it passes through the anvil or through itself";
+    return "the missile is pressed in beyond its touching surface, or the contact is unstable (smaller "
+           "solver.step_safety)";
 }
 
 /* The energy limit is a stop, not a tolerance: beyond it the run has become unstable. */
