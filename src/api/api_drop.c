@@ -149,10 +149,10 @@ static void step(softfall_drop *d) {
         return;
     if (sf_ending_on_anvil(&d->model, &d->state))
         sf_ending_fail_on_anvil(&d->model, &d->state, &d->failure);
+    else if (sf_ending_rebounded(&d->model, &d->state))
+        d->ending = SOFTFALL_REBOUND;
     else
-        d->ending = sf_ending_rebounded(&d->model, &d->state)  ? SOFTFALL_REBOUND
-                    : sf_ending_finished(&d->model, &d->state) ? SOFTFALL_FINISHED
-                                                               : SOFTFALL_RUNNING;
+        d->ending = sf_ending_finished(&d->model, &d->state) ? SOFTFALL_FINISHED : SOFTFALL_RUNNING;
 }
 
 softfall_status softfall_drop_step(softfall_drop *d, softfall_ending *ending, softfall_error *error) {

@@ -9,7 +9,7 @@
 
 static int64_t bin_of(const sf_grid *grid, int axis, double x) {
     double b = floor((x - grid->origin[axis]) / grid->width);
-    return b < 0 ? 0 : b >= (double)grid->bins[axis] ? grid->bins[axis] - 1 : (int64_t)b;
+    return (int64_t)fmin(fmax(0, b), (double)(grid->bins[axis] - 1));
 }
 
 static int64_t bin_index(const sf_grid *grid, const double x[3]) {

@@ -26,7 +26,10 @@ static inline int64_t sf_sets_find(int64_t *parent, int64_t k) {
 static inline void sf_sets_join(int64_t *parent, int64_t a, int64_t b) {
     a = sf_sets_find(parent, a);
     b = sf_sets_find(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
+    if (a > b)
+        parent[a] = b;
+    else
+        parent[b] = a;
 }
 
 /* The order of two numbers, for functions of qsort: -1, 0 or 1. */
@@ -100,7 +103,9 @@ typedef struct sf_half_edge {
 static inline int sf_half_edge_compare(const void *a, const void *b) {
     const sf_half_edge *x = a, *y = b;
     int low = SF_ORDER(x->low, y->low), high = SF_ORDER(x->high, y->high);
-    return low ? low : high ? high : SF_ORDER(x->slot, y->slot);
+    if (low == 0 && high == 0)
+        return SF_ORDER(x->slot, y->slot);
+    return low ? low : high;
 }
 
 /* [3 count] the edges of the triangles, those at the same place together; owned by the caller, NULL on

@@ -138,9 +138,11 @@ static bool read_name(reader *r, char name[NAME]) {
     if (is_name(name))
         return true;
     SF_PRINTED(shown, NAME + 24, "%.*s", (int)(r->at - from), from);
-    return used > 0 ? fail(r, "unknown unit \"%.24s\" (softfall-pre --keys lists them)", shown)
-           : isdigit((unsigned char)*r->at) ? fail(r, "a second number \"%.24s\" follows", r->at)
-                                            : fail(r, "a unit's name is missing before \"%.24s\"", r->at);
+    if (used > 0)
+        return fail(r, "unknown unit \"%.24s\" (softfall-pre --keys lists them)", shown);
+    if (isdigit((unsigned char)*r->at))
+        return fail(r, "a second number \"%.24s\" follows", r->at);
+    return fail(r, "a unit's name is missing before \"%.24s\"", r->at);
 }
 
 /* "2", "-1", "^2", "²", "⁻¹"; 1 if none follows. */
@@ -151,7 +153,7 @@ static bool read_power(reader *r, int *power) {
     } raised[] = {{"\xC2\xB9", 1}, {"\xC2\xB2", 2}, {"\xC2\xB3", 3}, {"\xE2\x81\xB4", 4}};
     bool caret = *r->at == '^', up_minus = !caret && starts(r->at, "\xE2\x81\xBB");
     const char *from = r->at;
-    r->at += caret ? 1 : up_minus ? 3 : 0;
+    r->at += 1 * caret + 3 * up_minus;
     bool minus = !up_minus && *r->at == '-';
     r->at += minus;
     *power = 0;
@@ -165,7 +167,10 @@ static bool read_power(reader *r, int *power) {
     bool given = r->at > from;
     if (given && (*power < 1 || *power > POWER || isdigit((unsigned char)*r->at)))
         return fail(r, "\"%.24s\" is not a power from 1 to 4 or -1 to -4", from);
-    *power = !given ? 1 : minus || up_minus ? -*power : *power;
+    if (!given)
+        *power = 1;
+    else if (minus || up_minus)
+        *power = -*power;
     return true;
 }
 

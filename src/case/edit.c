@@ -219,10 +219,13 @@ static sf_status add(char **text, const sf_edit_settings *settings, char *path, 
     while (group && from > 0 && ((*text)[from - 1] == ' ' || (*text)[from - 1] == '\t'))
         from--;
     bool own = at > 0 && (*text)[from - 1] == '\n';
-    int length = !value   ? -1
-                 : !group ? asprintf(&line, "%s\n%s = %s;\n", own || at == 0 ? "" : "\n", path, value)
-                 : own    ? asprintf(&line, "%.*s    %s\n", (int)(at - from), *text + from, value)
-                          : asprintf(&line, "%s ", value);
+    int length = -1;
+    if (value && !group)
+        length = asprintf(&line, "%s\n%s = %s;\n", own || at == 0 ? "" : "\n", path, value);
+    else if (value && own)
+        length = asprintf(&line, "%.*s    %s\n", (int)(at - from), *text + from, value);
+    else if (value)
+        length = asprintf(&line, "%s ", value);
     if (length < 0)
         no_memory(err);
     else

@@ -115,7 +115,8 @@ static bool is_hexadecimal(char c) {
 static sf_status read_escape(cursor *c) {
     char next = c->at + 1 < c->end ? c->at[1] : '\0';
     bool code = next == 'x' && c->end - c->at > 3 && is_hexadecimal(c->at[2]) && is_hexadecimal(c->at[3]);
-    if (code ? c->at[2] == '0' && c->at[3] == '0' : next == '\0' || !strchr("fnrt\\\"", next))
+    bool known = next != '\0' && strchr("fnrt\\\"", next), zero = code && c->at[2] == '0' && c->at[3] == '0';
+    if (zero || (!code && !known))
         return REFUSE(c, "\\%.*s in a text is not a character (a backslash is written \\\\)", code ? 3 : 1,
                       next ? c->at + 1 : "");
     c->at += code ? 4 : 2;
@@ -242,8 +243,8 @@ sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err) 
 enum { INCLUDE_DEPTH = 10, MOST_INCLUDES = 200, LARGEST_TEXT = 1 << 20 /* bytes, of all files together */ };
 
 char *sf_case_folder_of(const char *path, sf_error *err) {
-    const char *slash = strrchr(path, '/');
-    char *folder = !slash ? strdup(".") : slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
+    size_t length = sf_path_folder_length(path);
+    char *folder = length > 0 ? strndup(path, length) : strdup(".");
     if (!folder)
         SF_NO_MEMORY(err, "the path %s", path);
     return folder;

@@ -129,16 +129,16 @@ static const sf_case_value_kind value_kind[SF_KEY_CURVES + 1] = {
 static void tell_value(const sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
                        const char *text, bool given) {
     const char *plain = setting ? config_setting_get_string(setting) : NULL;
+    bool list = key->kind == SF_KEY_DROPS && setting && config_setting_is_list(setting);
+    if (!setting)
+        text = "";
+    else if (plain)
+        text = plain;
     const sf_case_value value = {.group = key->group,
                                  .name = key->name,
-                                 .text = !setting ? ""
-                                         : plain  ? plain
-                                                  : text,
+                                 .text = text,
                                  .given = given,
-                                 .kind =
-                                     key->kind == SF_KEY_DROPS && setting && config_setting_is_list(setting)
-                                         ? SF_CASE_VALUE_OTHER
-                                         : value_kind[key->kind],
+                                 .kind = list ? SF_CASE_VALUE_OTHER : value_kind[key->kind],
                                  .of_material = key->in_card || key->kind == SF_KEY_LAW,
                                  .words = key->words,
                                  .help = key->description};
@@ -254,7 +254,11 @@ static sf_status choose_law(sf_case_reader *reader, sf_error *err) {
     SF_PRINTED(path, SF_CASE_GROUP_SIZE, "%s.law", reader->material_group);
     const config_setting_t *setting = config_lookup(&reader->config, path);
     const char *name = setting ? config_setting_get_string(setting) : NULL;
-    const sf_law *law = setting ? (name ? sf_law_find(name) : NULL) : sf_law_get(0);
+    const sf_law *law = NULL;
+    if (!setting)
+        law = sf_law_get(0);
+    else if (name)
+        law = sf_law_find(name);
     if (!law) {
         char known[256] = "";
         for (int k = 0; sf_law_get(k); k++)
@@ -314,8 +318,9 @@ static sf_status check_support(const sf_case_reader *reader, const config_settin
         return SF_REFUSE_AT(reader, group, err,
                             "a support is either the surface of a file, { file = \"post.geo\"; }, or a plane "
                             "with the normal towards the pad, { plane = [0.0, 0.0, 1.0]; }");
-    const config_setting_t *wrong =
-        group ? config_setting_get_member(group, plane ? "parameters" : "place") : NULL;
+    const config_setting_t *wrong = NULL;
+    if (group)
+        wrong = config_setting_get_member(group, plane ? "parameters" : "place");
     if (group && plane && !wrong)
         wrong = config_setting_get_member(group, "group");
     if (wrong)

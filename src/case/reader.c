@@ -22,9 +22,11 @@ char *sf_case_resolve(const sf_case_reader *reader, const config_setting_t *sett
     char *out = NULL;
     const sf_case_origin *origin = config_setting_get_hook(setting);
     int line = (int)config_setting_source_line(setting);
-    const char *file = origin && origin->line > 0 ? origin->text
-                       : !origin && line > 0      ? sf_case_source_find(&reader->source, line, &line)
-                                                  : reader->path;
+    const char *file = reader->path;
+    if (origin && origin->line > 0)
+        file = origin->text;
+    else if (!origin && line > 0)
+        file = sf_case_source_find(&reader->source, line, &line);
     SF_OWNED char *folder = sf_case_folder_of(file, err);
     bool below = *path != '/';
     if (folder && asprintf(&out, "%s%s%s", below ? folder : "", below ? "/" : "", path) < 0)

@@ -39,10 +39,11 @@ typedef struct sf_case_origin {
 
 /* The structure of which a key's value is a member. */
 static inline char *sf_case_home(sf_case_reader *reader, const sf_key *key) {
-    return key->in_card                      ? reader->material->card
-           : key->list == SF_LIST_SUPPORTS   ? (char *)&reader->out->support[reader->item]
-           : key->list == SF_LIST_INTERFACES ? (char *)&reader->entry
-                                             : (char *)reader->out;
+    if (key->in_card)
+        return reader->material->card;
+    if (key->list == SF_LIST_SUPPORTS)
+        return (char *)&reader->out->support[reader->item];
+    return key->list == SF_LIST_INTERFACES ? (char *)&reader->entry : (char *)reader->out;
 }
 
 /* "file:line", or "--set key=value" for a setting that came from the command line. */

@@ -341,11 +341,13 @@ static sf_status check_base(const sf_case_reader *reader, sf_error *err) {
     if (sf_case_is_given(reader, "pad", "base") && c->fixed_count == 0)
         return REFUSE("pad.base", "pad.fixed names no surface that it could apply to");
     for (int g = 0; g < c->fixed_count && sf_case_is_given(reader, "pad", "base"); g++) {
-        const char *name = c->fixed_group[g],
-                   *other = strcmp(name, c->contact_group) == 0                            ? "contact"
-                            : sf_case_has_name(c->sliding_count, c->sliding_group, name)   ? "sliding"
-                            : sf_case_has_name(c->symmetry_count, c->symmetry_group, name) ? "symmetry"
-                                                                                           : NULL;
+        const char *name = c->fixed_group[g], *other = NULL;
+        if (strcmp(name, c->contact_group) == 0)
+            other = "contact";
+        else if (sf_case_has_name(c->sliding_count, c->sliding_group, name))
+            other = "sliding";
+        else if (sf_case_has_name(c->symmetry_count, c->symmetry_group, name))
+            other = "symmetry";
         if (other)
             return REFUSE("pad.base", "the surface group \"%s\" is in pad.fixed and in pad.%s", name, other);
     }
@@ -390,15 +392,17 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
     sf_case *c = reader->out;
     bool series = c->drops > 1, single = !series && sf_case_is_given(reader, "series", "drops"),
          has_interval = sf_case_is_given(reader, "series", "interval");
-    const char *wrong =
-        c->drops != floor(c->drops)          ? "the number of drops is a whole number"
-        : !series && !single && has_interval ? "an interval belongs to a series: give series.drops, from 2 on"
-        : c->drop[0].interval > 0            ? "nothing was before the first drop: it has no interval"
-        : series && c->motion_count > 0
-            ? "a prescribed motion is no series of drops: put its cycles into missile.motion"
-        : series && !c->run.stop_after_rebound
-            ? "a series needs solver.stop_after_rebound: each drop ends when the missile has left"
-            : NULL;
+    const char *wrong = NULL;
+    if (c->drops != floor(c->drops))
+        wrong = "the number of drops is a whole number";
+    else if (!series && !single && has_interval)
+        wrong = "an interval belongs to a series: give series.drops, from 2 on";
+    else if (c->drop[0].interval > 0)
+        wrong = "nothing was before the first drop: it has no interval";
+    else if (series && c->motion_count > 0)
+        wrong = "a prescribed motion is no series of drops: put its cycles into missile.motion";
+    else if (series && !c->run.stop_after_rebound)
+        wrong = "a series needs solver.stop_after_rebound: each drop ends when the missile has left";
     for (int k = 1; k < c->drops && !wrong; k++) {
         c->drop[k].interval = c->drop[k].interval > 0 ? c->drop[k].interval : c->interval;
         if (!(c->drop[k].interval > 0))
@@ -412,7 +416,8 @@ static sf_status check_series(const sf_case_reader *reader, sf_error *err) {
                          "series.counted: the last drop that it names is not the last of the series "
                          "(series.drops = %g)",
                          c->drops);
-    c->counted = c->counted ? c->counted : ((int64_t)1 << (int)c->drops) - (series ? 2 : 1);
+    if (!c->counted)
+        c->counted = ((int64_t)1 << (int)c->drops) - (series ? 2 : 1);
     return SF_OK;
 }
 

@@ -40,7 +40,15 @@ void sf_case_print_setting(FILE *file, const config_setting_t *setting) {
         break;
     }
     bool group = type == CONFIG_TYPE_GROUP;
-    fputs(group ? "{ " : type == CONFIG_TYPE_ARRAY ? "[" : "(", file);
+    const char *brackets[2] = {"(", ")"};
+    if (group) {
+        brackets[0] = "{ ";
+        brackets[1] = "}";
+    } else if (type == CONFIG_TYPE_ARRAY) {
+        brackets[0] = "[";
+        brackets[1] = "]";
+    }
+    fputs(brackets[0], file);
     for (int i = 0; i < config_setting_length(setting); i++) {
         const config_setting_t *item = config_setting_get_elem(setting, (unsigned)i);
         if (group)
@@ -51,7 +59,7 @@ void sf_case_print_setting(FILE *file, const config_setting_t *setting) {
         if (group)
             fputs("; ", file);
     }
-    fputs(group ? "}" : type == CONFIG_TYPE_ARRAY ? "]" : ")", file);
+    fputs(brackets[1], file);
 }
 
 /* Prints how a value of the key is written. */

@@ -17,11 +17,22 @@ static void let_go(hid_t *id) {
         H5Idec_ref(*id);
 }
 
+size_t sf_h5_size(sf_h5_type type) {
+    static const size_t size[] = {[SF_H5_F64] = 8, [SF_H5_I32] = 4, [SF_H5_I64] = 8, [SF_H5_U8] = 1};
+    return size[type];
+}
+
 static hid_t native_type(sf_h5_type type) {
-    return type == SF_H5_I32   ? H5T_NATIVE_INT32
-           : type == SF_H5_I64 ? H5T_NATIVE_INT64
-           : type == SF_H5_U8  ? H5T_NATIVE_UINT8
-                               : H5T_NATIVE_DOUBLE;
+    switch (type) {
+    case SF_H5_I32:
+        return H5T_NATIVE_INT32;
+    case SF_H5_I64:
+        return H5T_NATIVE_INT64;
+    case SF_H5_U8:
+        return H5T_NATIVE_UINT8;
+    default:
+        return H5T_NATIVE_DOUBLE;
+    }
 }
 
 /* The type of a text. */
@@ -259,7 +270,7 @@ static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h
         return SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
                        expected == H5T_FLOAT ? "floating-point" : "integer");
     SF_TRY(check_shape(file, path, set, size, rank, dims, &count, err));
-    *data = sf_alloc(err, count, type == SF_H5_U8 ? 1 : type == SF_H5_I32 ? 4 : 8, path);
+    *data = sf_alloc(err, count, sf_h5_size(type), path);
     if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0)
         SF_FAIL(err, SF_ERR_IO, "%s: %s cannot be read", file->path, path);
     *data = sf_keep(*data, err);

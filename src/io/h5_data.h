@@ -4,6 +4,9 @@
 #pragma once
 #include "io/h5.h"
 
+/* Returns the bytes of an item. */
+size_t sf_h5_size(sf_h5_type type);
+
 /* Writes a whole dataset, row-major `dims[rank]`. Rank 0 is a scalar. */
 sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank, const int64_t *dims,
                       const void *data, sf_error *err);

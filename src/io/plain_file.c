@@ -95,11 +95,18 @@ void sf_plain_clear(void) {
 /* ---- opening ---- */
 
 const char *sf_plain_kind(mode_t mode) {
-    return S_ISREG(mode)    ? NULL
-           : S_ISDIR(mode)  ? "a folder"
-           : S_ISFIFO(mode) ? "a pipe"
-           : S_ISSOCK(mode) ? "a socket"
-                            : "a device";
+    switch (mode & S_IFMT) {
+    case S_IFREG:
+        return NULL;
+    case S_IFDIR:
+        return "a folder";
+    case S_IFIFO:
+        return "a pipe";
+    case S_IFSOCK:
+        return "a socket";
+    default:
+        return "a device";
+    }
 }
 
 /* The file system makes the contents up while they are read. */
@@ -330,7 +337,9 @@ static char *no_memory(const char *path, sf_error *err) {
 
 size_t sf_path_folder_length(const char *path) {
     const char *slash = strrchr(path, '/');
-    return !slash ? 0 : slash == path ? 1 : (size_t)(slash - path);
+    if (!slash)
+        return 0;
+    return slash == path ? 1 : (size_t)(slash - path);
 }
 
 const char *sf_path_split(const char *path, char folder[PATH_MAX]) {

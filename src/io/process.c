@@ -256,7 +256,10 @@ sf_status sf_process_pool(int count, int jobs, sf_process_work work, sf_process_
     job at[SF_PROCESS_JOBS] = {{0}};
     int next = 0, busy = 0, ended = 0;
     notice_children();
-    jobs = jobs < 1 ? 1 : jobs > SF_PROCESS_JOBS ? SF_PROCESS_JOBS : jobs;
+    if (jobs < 1)
+        jobs = 1;
+    else if (jobs > SF_PROCESS_JOBS)
+        jobs = SF_PROCESS_JOBS;
     for (int k = 0; k < count; k++)
         result[k] = (sf_error)SF_ERROR_INIT;
     do {

@@ -4,7 +4,7 @@
 #define HAS(name, condition)                                                                                 \
     bool sf_foam_has_##name(const void *card) {                                                              \
         const sf_foam_shared *foam = card;                                                                   \
-        return foam->condition;                                                                              \
+        return condition;                                                                                    \
     }
 SF_FOAM_ACTS(HAS)
 
@@ -25,14 +25,17 @@ sf_status sf_foam_check_shared(const void *card, sf_error *err) {
 /* All keys of one of the two laws of a shift, or none, and rates for it. */
 static sf_status check_shift(const sf_foam_shared *foam, bool rates, sf_error *err) {
     bool wlf = sf_foam_has_wlf(foam), arrhenius = sf_foam_has_arrhenius(foam);
-    const char *wrong =
-        wlf && arrhenius ? "has C1 and C2 of WLF and E_a of Arrhenius: a foam has one of the two laws"
-        : wlf && !(foam->shift_c1 > 0 && foam->shift_c2 > 0) ? "needs both C1 and C2"
-        : (wlf || arrhenius) != sf_foam_has_shift(foam)      ? "needs T_ref, and with it C1 and C2, or E_a"
-        : sf_foam_has_shift(foam) && !rates && !(foam->rate_factor > 0) && !(foam->maxwell_modulus > 0) &&
-                !(foam->kelvin_viscosity > 0)
-            ? "moves nothing: this material has no curves at several rates, rate_factor, ED or eta"
-            : NULL;
+    bool has_rates =
+        rates || foam->rate_factor > 0 || foam->maxwell_modulus > 0 || foam->kelvin_viscosity > 0;
+    const char *wrong = NULL;
+    if (wlf && arrhenius)
+        wrong = "has C1 and C2 of WLF and E_a of Arrhenius: a foam has one of the two laws";
+    else if (wlf && !(foam->shift_c1 > 0 && foam->shift_c2 > 0))
+        wrong = "needs both C1 and C2";
+    else if ((wlf || arrhenius) != sf_foam_has_shift(foam))
+        wrong = "needs T_ref, and with it C1 and C2, or E_a";
+    else if (sf_foam_has_shift(foam) && !has_rates)
+        wrong = "moves nothing: this material has no curves at several rates, rate_factor, ED or eta";
     return wrong ? SF_REFUSE(err, "material.shift %s", wrong) : SF_OK;
 }
 

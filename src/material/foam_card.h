@@ -58,20 +58,20 @@ static inline sf_foam_card *sf_foam_card_of(const sf_material *material) {
 /* Parameters that the foam laws share, as rows of their lists: members of sf_foam_shared, with which each
  * card begins. And the rules that join them. */
 
-/* X(name, condition): sf_foam_has_NAME(card) says whether a parameter acts. */
+/* X(name, condition on the card `foam`): sf_foam_has_NAME(card) says whether a parameter acts. */
 #define SF_FOAM_ACTS(X)                                                                                      \
-    X(length, damp_length > 0)                                                                               \
-    X(maxwell, maxwell_modulus > 0)                                                                          \
-    X(kelvin, kelvin_viscosity > 0)                                                                          \
-    X(rate_factor, rate_factor > 0)                                                                          \
-    X(informed, informed_strain > 0)                                                                         \
-    X(wlf, shift_c1 + foam->shift_c2 > 0)                                                                    \
-    X(arrhenius, shift_energy > 0)                                                                           \
-    X(shift, shift_reference > 0)                                                                            \
-    X(memory, memory.reload + foam->memory.recovery > 0)                                                     \
-    X(recovery, memory.recovery > 0)                                                                         \
-    X(rest, memory.recovery + foam->memory.set * foam->memory.set_recovery > 0)                              \
-    X(set, memory.set > 0)
+    X(length, foam->damp_length > 0)                                                                         \
+    X(maxwell, foam->maxwell_modulus > 0)                                                                    \
+    X(kelvin, foam->kelvin_viscosity > 0)                                                                    \
+    X(rate_factor, foam->rate_factor > 0)                                                                    \
+    X(informed, foam->informed_strain > 0)                                                                   \
+    X(wlf, foam->shift_c1 + foam->shift_c2 > 0)                                                              \
+    X(arrhenius, foam->shift_energy > 0)                                                                     \
+    X(shift, foam->shift_reference > 0)                                                                      \
+    X(memory, foam->memory.reload + foam->memory.recovery > 0)                                               \
+    X(recovery, foam->memory.recovery > 0)                                                                   \
+    X(rest, foam->memory.recovery + foam->memory.set * foam->memory.set_recovery > 0)                        \
+    X(set, foam->memory.set > 0)
 #define SF_FOAM_HAS(name, condition) bool sf_foam_has_##name(const void *card);
 SF_FOAM_ACTS(SF_FOAM_HAS)
 #undef SF_FOAM_HAS

@@ -47,11 +47,13 @@ static SF_KERNEL void base_law(const void *numbers, double stretch[3][SF_LANES],
         SF_EACH_LANE (l) {
             double pull = -strain[l] * modulus, work = 0.5 * strain[l] * strain[l] * modulus;
             bool squeezed = strain[l] > 0, elastic = pull <= cutoff, still = fabs(strain[l]) < REST;
-            t[l] = squeezed ? -stress[l] : elastic ? pull : cutoff;
-            double own = squeezed ? slope[l] : elastic ? modulus : 0;
+            double drawn = elastic ? pull : cutoff, drawn_slope = elastic ? modulus : 0;
+            double drawn_energy = elastic ? work : cutoff * (-strain[l] - 0.5 * yield);
+            t[l] = squeezed ? -stress[l] : drawn;
+            double own = squeezed ? slope[l] : drawn_slope;
             tangent[l] = own;
             steepest[l] = still ? rest : own;
-            law->energy[l] += squeezed ? energy[l] : elastic ? work : cutoff * (-strain[l] - 0.5 * yield);
+            law->energy[l] += squeezed ? energy[l] : drawn_energy;
         }
     }
 }

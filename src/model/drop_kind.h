@@ -8,22 +8,25 @@
 #pragma once
 #include <stdbool.h>
 
-/* X(name, key in the fit file, key in response_error, default of the standard deviation, standard deviation
- * of the model's error at kappa = 1, stem and unit in fit.json, name and unit in reports, digits there,
- * always shown, what it needs of a drop, is it above every value where the foam collapses, meaning). The key
- * of a standard deviation is SF_DROP_SD(key in response_error), in both files. */
+/* X(name, key in the fit file, key in response_error, members of sf_drop_kind_info). The key of a standard
+ * deviation is SF_DROP_SD(key in response_error), in both files. */
 /* clang-format off */
-#define SF_DROP_KINDS(X)                                                                                       \
-    X(A_MAX, "a_max_g", "a_max", 0.02, 0.01, "a_max", "_g", "a_max", "g", 1, true, "contact", true,                     \
-      "largest deceleration")                                                                                          \
-    X(HIC, "HIC", "HIC", 0.04, 0.02, "hic", "", "HIC", "", 0, true, "contact", true,                                    \
-      "head injury criterion, no limit of the window")                                                                 \
-    X(WINDOW, "HIC_window_ms", "HIC_window", 0.03, 0.02, "hic_window", "_ms", "HIC window", "ms", 2, true, "contact", false, \
-      "length t_2 − t_1 of the window of HIC")                                                                         \
-    X(REBOUND, "v_rebound_m_s", "v_rebound", 0.03, 0.02, "v_rebound", "_m_s", "rebound speed", "m/s", 3, false, "rebound", false, \
-      "speed upwards when contact ends")                                                                               \
-    X(CONTACT, "contact_time_ms", "contact_time", 0.03, 0.02, "contact_time", "_ms", "contact time", "ms", 2, false, "rebound", false, \
-      "from first contact to the end of contact")
+#define SF_DROP_KINDS(X) \
+    X(A_MAX, "a_max_g", "a_max", .sd = 0.02, .model_sd = 0.01, .stem = "a_max", .suffix = "_g", .name = "a_max", \
+      .unit = "g", .digits = 1, .always = true, .needs = "contact", .above_all = true, \
+      .meaning = "largest deceleration") \
+    X(HIC, "HIC", "HIC", .sd = 0.04, .model_sd = 0.02, .stem = "hic", .suffix = "", .name = "HIC", \
+      .unit = "", .digits = 0, .always = true, .needs = "contact", .above_all = true, \
+      .meaning = "head injury criterion, no limit of the window") \
+    X(WINDOW, "HIC_window_ms", "HIC_window", .sd = 0.03, .model_sd = 0.02, .stem = "hic_window", .suffix = "_ms", .name = "HIC window", \
+      .unit = "ms", .digits = 2, .always = true, .needs = "contact", .above_all = false, \
+      .meaning = "length t_2 − t_1 of the window of HIC") \
+    X(REBOUND, "v_rebound_m_s", "v_rebound", .sd = 0.03, .model_sd = 0.02, .stem = "v_rebound", .suffix = "_m_s", .name = "rebound speed", \
+      .unit = "m/s", .digits = 3, .always = false, .needs = "rebound", .above_all = false, \
+      .meaning = "speed upwards when contact ends") \
+    X(CONTACT, "contact_time_ms", "contact_time", .sd = 0.03, .model_sd = 0.02, .stem = "contact_time", .suffix = "_ms", .name = "contact time", \
+      .unit = "ms", .digits = 2, .always = false, .needs = "rebound", .above_all = false, \
+      .meaning = "from first contact to the end of contact")
 /* clang-format on */
 #define SF_DROP_SD(key) key "_sd"
 
@@ -32,14 +35,14 @@
 typedef enum sf_drop_kind { SF_DROP_KINDS(SF_DROP_KIND_NAME) SF_FIT_SAMPLES } sf_drop_kind;
 
 typedef struct sf_drop_kind_info {
-    const char *key, *error_key, *sd_key;
-    double sd;       /* default, relative */
-    double model_sd; /* of the logarithm, see study/fit/drop/inference.h */
-    const char *stem, *suffix;
-    const char *name, *unit;
-    int digits;
-    bool always; /* in reports, measured or not */
-    const char *needs;
+    const char *key, *error_key, *sd_key; /* in the fit file and in response_error */
+    double sd;                            /* default of the standard deviation, relative */
+    double model_sd; /* of the logarithm, of the model's error at kappa = 1 (study/fit/drop/inference.h) */
+    const char *stem, *suffix; /* of its key in fit.json: the suffix has the unit */
+    const char *name, *unit;   /* in reports */
+    int digits;                /* there */
+    bool always;               /* in reports, measured or not */
+    const char *needs;         /* of a drop */
     /* True if a collapsed foam counts as above every value, as of peaks. False: the number has no order,
      * as a pulse that has no end has no window. */
     bool above_all;

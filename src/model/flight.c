@@ -7,9 +7,10 @@ static const double LARGEST_TURN =
     2e-3; /* rad, of one step of the rotation: its error is below 1e-6 rad a turn */
 
 void sf_flight_gravity(const sf_missile_card *card, double g[3]) {
-    bool given = sf_dot3(card->down, card->down) > 0;
+    static const double along_z[3] = {0, 0, -1};
+    const double *down = sf_dot3(card->down, card->down) > 0 ? card->down : along_z;
     for (int k = 0; k < 3; k++)
-        g[k] = given ? card->gravity * card->down[k] : k == 2 ? -card->gravity : 0;
+        g[k] = card->gravity * down[k];
 }
 
 double sf_flight_pull(const sf_missile_card *card) {

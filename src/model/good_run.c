@@ -9,8 +9,8 @@ const sf_good_run *sf_good_run_limits(void) {
 }
 
 const sf_good_run_rule *sf_good_run_rule_get(int k) {
-#define RULE(name, remark, refuse, sure, shown, title, figures, why)                                         \
-    {#name, title, remark, refuse, sure, shown == SF_AS_PERCENT, figures, why},
+#define RULE(name, bound, about, value, reason, ...)                                                         \
+    {.key = #name, .remark = bound, .title = about, .figures = value, .why = reason, __VA_ARGS__},
     static const sf_good_run_rule rules[SF_CHECKS] = {SF_GOOD_RUN(RULE)};
 #undef RULE
     return &rules[k];

@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/sets.h"
 #include "base/mat3.h"
+#include "io/h5_data.h"
 #include "model/cells.h"
 
 #include "model/flight.h"
@@ -370,10 +371,6 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
     return check_mesh(m, err);
 }
 
-static size_t item_size(sf_h5_type type) {
-    return type == SF_H5_U8 ? 1 : type == SF_H5_I32 ? 4 : 8;
-}
-
 static uint64_t hash_of(const sf_model *model) {
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);
@@ -382,19 +379,19 @@ static uint64_t hash_of(const sf_model *model) {
     for (size_t k = 0; k < count; k++) {
         const char *member = base + field[k].offset;
         static const char zero[8];
-        if (field[k].later && memcmp(member, zero, item_size(field[k].type)) == 0)
+        if (field[k].later && memcmp(member, zero, sf_h5_size(field[k].type)) == 0)
             continue;
         if (field[k].later) /* one of those that are left out must not pass for another */
             hash = sf_hash_identity(hash, &k, sizeof k);
         if (field[k].rows_offset == SIZE_MAX) {
-            hash = sf_hash_identity(hash, member, item_size(field[k].type));
+            hash = sf_hash_identity(hash, member, sf_h5_size(field[k].type));
             continue;
         }
         const void *data = *(void *const *)member;
         int64_t rows = *(const int64_t *)(base + field[k].rows_offset) + field[k].rows_extra;
         if (data)
             hash = sf_hash_identity(hash, data,
-                                    (size_t)rows * (size_t)field[k].columns * item_size(field[k].type));
+                                    (size_t)rows * (size_t)field[k].columns * sf_h5_size(field[k].type));
     }
     for (int64_t k = 0; k < model->material_count; k++)
         hash = sf_material_hash(hash, &model->material[k]);

@@ -119,23 +119,33 @@ static double volume_of(const sf_mesh *mesh) {
     return sum;
 }
 
-/* Spacing, supports, domains and masses of a layer, whose nodes begin at number `first`; the dual's edges
- * move. `volume`: m3, of the mesh. */
-static sf_status build_layer(const sf_case *c, const sf_mesh *mesh, sf_dual *dual, double volume,
-                             const sf_material *material, int64_t first, sf_model *m, sf_build_report *report,
+/* A layer of the pad, or all of it. */
+typedef struct layer {
+    const sf_mesh *mesh;
+    sf_dual *dual; /* its edges move to the model */
+    double volume; /* m3, of the mesh */
+    const sf_material *material;
+    int64_t first; /* number of its first node in the model */
+} layer;
+
+/* Spacing, supports, domains and masses of a layer. */
+static sf_status build_layer(const sf_case *c, const layer *l, sf_model *m, sf_build_report *report,
                              sf_error *err) {
     SF_OWNED_BY(sf_domains_free) sf_domains domains = {0};
-    int64_t n = mesh->node_count;
+    const sf_mesh *mesh = l->mesh;
+    sf_dual *dual = l->dual;
+    int64_t n = mesh->node_count, first = l->first;
     double *spacing = m->spacing + first, *support = m->support + first;
     sf_cloud_spacing(mesh, dual, spacing);
     for (int64_t i = 0; i < n; i++)
         support[i] = c->support_ratio * spacing[i];
     if (sf_domain_store_build(c->store, mesh, dual, c->condition_limit, support, &domains, err) == SF_OK &&
-        sf_invariants_measure(mesh, dual, &domains, spacing, volume, &report->invariants, err) == SF_OK &&
+        sf_invariants_measure(mesh, dual, &domains, spacing, l->volume, &report->invariants, err) == SF_OK &&
         sf_invariants_check(&report->invariants, err) == SF_OK &&
-        sf_cloud_masses(mesh, dual, &domains, sf_material_density(material), m->mass + first, err) == SF_OK) {
-        domains.figures.hidden_count =
-            c->layer_count > 1 ? 0 : domains.figures.hidden_count; /* report_gaps */
+        sf_cloud_masses(mesh, dual, &domains, sf_material_density(l->material), m->mass + first, err) ==
+            SF_OK) {
+        if (c->layer_count > 1)
+            domains.figures.hidden_count = 0; /* report_gaps */
         report_domains(&domains.figures, &report->domains);
         take_domains(&domains, dual, first, n, m, err);
     }
@@ -164,8 +174,8 @@ static sf_status build_layers(const sf_case *c, const sf_mesh *mesh, const sf_la
         sf_dual dual = {0};
         if (sf_layers_part(mesh, layers, k, &part, err) == SF_OK &&
             sf_dual_build(&part, &dual, err) == SF_OK &&
-            build_layer(c, &part, &dual, volume_of(&part), &c->layer[k], layers->first[k], m, report, err) ==
-                SF_OK)
+            build_layer(c, &(layer){&part, &dual, volume_of(&part), &c->layer[k], layers->first[k]}, m,
+                        report, err) == SF_OK)
             memset(m->node_material + layers->first[k], k, (size_t)(layers->first[k + 1] - layers->first[k]));
         sf_dual_free(&dual);
         sf_mesh_free(&part);
@@ -212,8 +222,8 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
         SF_TRY(report_gaps(mesh, &dual, layers, m, report, err));
         SF_TRY(sf_layers_split(mesh, &dual, layers, err));
     } else {
-        SF_TRY(build_layer(c, mesh, &dual, report->mesh_volume, c->layer ? c->layer : &c->material, 0, m,
-                           report, err));
+        const layer whole = {mesh, &dual, report->mesh_volume, c->layer ? c->layer : &c->material, 0};
+        SF_TRY(build_layer(c, &whole, m, report, err));
         m->slit_fraction = (double)report->domains.hidden_count / (double)mesh->node_count;
     }
     take_mesh(mesh, m, report);

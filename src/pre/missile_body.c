@@ -12,13 +12,13 @@ static const int ROW[6] = {0, 1, 2, 0, 1, 0}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
 
 static sf_status refuse_edge(const sf_half_edge *s, int64_t count, const double *position, sf_error *err) {
     const double *a = &position[3 * (int64_t)s->low], *b = &position[3 * (int64_t)s->high];
+    static const char *const meeting[] = {"it ends", "one triangle faces outwards and the next inwards",
+                                          "more than two triangles meet"};
     return SF_FAIL(err, SF_ERR_MODEL,
                    "the surface bounds no solid: %s at the edge from (%.6g, %.6g, %.6g) to (%.6g, %.6g, "
                    "%.6g) mm",
-                   count == 1   ? "it ends"
-                   : count == 2 ? "one triangle faces outwards and the next inwards"
-                                : "more than two triangles meet",
-                   1e3 * a[0], 1e3 * a[1], 1e3 * a[2], 1e3 * b[0], 1e3 * b[1], 1e3 * b[2]);
+                   meeting[(count < 3 ? count : 3) - 1], 1e3 * a[0], 1e3 * a[1], 1e3 * a[2], 1e3 * b[0],
+                   1e3 * b[1], 1e3 * b[2]);
 }
 
 static sf_status check_nodes(int64_t node_count, int64_t triangle_count, const int32_t *triangle,

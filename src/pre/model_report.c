@@ -231,12 +231,13 @@ void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_
         (long long)m->contact_count);
     if (m->rest_count > 0)
         sf_text_add(last(out), SF_MODEL_REPORT_VALUE, ", %lld rest on the anvil", (long long)m->rest_count);
-    if (!m->skin_alone ? m->skin_count > 0 : m->support_triangle_count > 0)
-        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, ", %lld faces may touch %s%s", (long long)m->skin_count,
-                    m->skin_alone ? "" : "each other or the anvil",
-                    m->support_triangle_count == 0 ? ""
-                    : m->skin_alone                ? "the support"
-                                                   : ", and the support");
+    const char *support = m->support_triangle_count == 0 ? "" : ", and the support";
+    if (!m->skin_alone && m->skin_count > 0)
+        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, ", %lld faces may touch each other or the anvil%s",
+                    (long long)m->skin_count, support);
+    else if (m->skin_alone && m->support_triangle_count > 0)
+        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, ", %lld faces may touch the support",
+                    (long long)m->skin_count);
     if (m->skin_count > 0 && !m->skin_alone && !m->skin_centroids && sf_model_skin_triangles(m) > 0)
         add(out, "triangles_touch", "triangles that may touch",
             "where they lie on faces that do not match, the stress may be off (16 %% at a node of a test): "

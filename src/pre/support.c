@@ -257,7 +257,9 @@ static void find_normal(const triangles *s, int64_t t, bool unit, double out[3])
 
 /* Corner of the triangle at the lower or the higher node of its edge. */
 static int64_t corner_at(const sf_half_edge *e, bool low) {
-    return e->rises == low ? e->slot : e->slot % 3 == 2 ? e->slot - 2 : e->slot + 1;
+    if (e->rises == low)
+        return e->slot;
+    return e->slot % 3 == 2 ? e->slot - 2 : e->slot + 1;
 }
 
 /* Joins the corners at the ends of the edges that are not sharp. */
@@ -457,11 +459,11 @@ sf_status sf_support_plane(const sf_case_support *plane, const sf_mesh *mesh, sf
     *out = (sf_surface){.position = sf_alloc(err, 12, sizeof *out->position, "support"),
                         .triangle = sf_alloc(err, 6, sizeof *out->triangle, "support")};
     SF_TRY(err->status);
+    static const double corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     for (int k = 0; k < 4; k++)
         for (int r = 0; r < 3; r++)
             out->position[3 * k + r] =
-                middle[r] - height * n[r] +
-                width * ((k == 1 || k == 2 ? 1 : -1) * turn[r] + (k >= 2 ? 1 : -1) * turn[3 + r]);
+                middle[r] - height * n[r] + width * (corner[k][0] * turn[r] + corner[k][1] * turn[3 + r]);
     memcpy(out->triangle, triangle, sizeof triangle);
     out->node_count = 4;
     out->triangle_count = 2;

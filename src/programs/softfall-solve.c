@@ -73,12 +73,14 @@ static const sf_option list[] = {
 
 static const char *find_fault(const sf_command *command) {
     const options *o = command->list[0].values;
-    return o->restart && o->output ? "--restart RESULTS writes to RESULTS: -o is not allowed with it"
-           : !o->restart && (!o->model || !o->output) ? "usage: softfall-solve model.h5 -o results.h5"
-           : !o->earlier.results != !(o->earlier.pause > 0) || (o->restart && o->earlier.results)
-               ? "a run on the pad of an earlier one needs --start-from RESULTS and --pause TIME, and no --restart: "
-                 "what is resumed knows its pad"
-               : NULL;
+    if (o->restart && o->output)
+        return "--restart RESULTS writes to RESULTS: -o is not allowed with it";
+    if (!o->restart && (!o->model || !o->output))
+        return "usage: softfall-solve model.h5 -o results.h5";
+    if (!o->earlier.results != !(o->earlier.pause > 0) || (o->restart && o->earlier.results))
+        return "a run on the pad of an earlier one needs --start-from RESULTS and --pause TIME, and no --restart: "
+               "what is resumed knows its pad";
+    return NULL;
 }
 
 /* ---- texts before and after a run ---- */
@@ -176,7 +178,10 @@ static sf_status read_model(const options *o, const sf_checkpoint *from, sf_mode
 }
 
 static sf_status set_end_time(const options *o, const sf_checkpoint *from, sf_model *model, sf_error *err) {
-    model->run.end_time = o->end_time > 0 ? o->end_time : o->restart ? from->end_time : model->run.end_time;
+    if (o->end_time > 0)
+        model->run.end_time = o->end_time;
+    else if (o->restart)
+        model->run.end_time = from->end_time;
     if (o->restart && from->time_before >= model->run.end_time)
         return SF_REFUSE(err, "%s is past %.6g s already, beyond the end time %.6g s", from->path,
                          from->time_before, model->run.end_time);

@@ -31,7 +31,7 @@ typedef struct job {
     level fine, coarse;                     /* the second is zero where the plan asks for none */
     char folder[PATH_MAX], drops[PATH_MAX]; /* of the coarse ones: DIR/coarse and DIR/coarse/runs */
     sf_analysis analysis;
-    char names[24][32];  /* of the pictures */
+    char names[24][32]; /* of the pictures */
     const char *list[24 + 4];
 } job;
 
@@ -144,7 +144,9 @@ static sf_status estimate(const sf_study *study, const job *j, level *l, sf_erro
     }
     fflush(stdout);
     l->drop_seconds = cost.seconds;
-    int abreast = !elsewhere ? study->jobs : open < SF_MANIFEST_GROUPS ? (int)open : SF_MANIFEST_GROUPS;
+    int abreast = open < SF_MANIFEST_GROUPS ? (int)open : SF_MANIFEST_GROUPS;
+    if (!elsewhere)
+        abreast = study->jobs;
     if (sf_sweep_cost_check_disk(&cost, study->directory, abreast, &small) == SF_OK)
         return SF_OK;
     if (j->yes)

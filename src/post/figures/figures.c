@@ -495,11 +495,11 @@ static void estimate_edge(const sf_results *r, sf_figures *f) {
 
 /* Names the acceleration that the curves show, and what it has passed. */
 static void name_acceleration(sf_figures *f) {
-    f->acceleration =
-        f->turns       ? f->kinematic ? "resultant kinematic acceleration of the centre of mass"
-                                      : "resultant acceleration of the centre of mass as an accelerometer reads it"
-        : f->kinematic ? "kinematic deceleration"
-                       : "acceleration as an accelerometer reads it";
+    static const char *const names[2][2] = {
+        {"acceleration as an accelerometer reads it", "kinematic deceleration"},
+        {"resultant acceleration of the centre of mass as an accelerometer reads it",
+         "resultant kinematic acceleration of the centre of mass"}};
+    f->acceleration = names[f->turns][f->kinematic];
     if (f->chain.mount_frequency > 0)
         sf_text_add(f->passed, sizeof f->passed, ", on a mount of %.4g Hz (damping %.3g)",
                     f->chain.mount_frequency, f->chain.mount_damping);
@@ -567,10 +567,13 @@ static const double ORDER = 1.3, LEAST_ERROR = 0.005, MOST_CORRECTION = 0.1;
 sf_status sf_figure_refine(double fine, double coarse, double ratio, double cells, double refined[2],
                            sf_error *err) {
     double correction = (fine - coarse) / (pow(ratio, ORDER) - 1);
-    const char *cause = !isfinite(correction)                             ? "no number"
-                        : !(cells > ratio * ratio)                        ? "parts of the mesh are no coarser"
-                        : fabs(correction) > MOST_CORRECTION * fabs(fine) ? "too far apart: take a finer mesh"
-                                                                          : NULL;
+    const char *cause = NULL;
+    if (!isfinite(correction))
+        cause = "no number";
+    else if (!(cells > ratio * ratio))
+        cause = "parts of the mesh are no coarser";
+    else if (fabs(correction) > MOST_CORRECTION * fabs(fine))
+        cause = "too far apart: take a finer mesh";
     refined[0] = refined[1] = NAN;
     if (cause)
         return SF_REFUSE(err, "%.4g, and %.4g with %g times the spacing: %s", fine, coarse, ratio, cause);

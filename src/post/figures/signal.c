@@ -263,7 +263,10 @@ sf_status sf_signal_parse_mount(const char *text, sf_signal_chain *chain, sf_err
     char unit[4] = "", rest = 0;
     double f = 0, damping = 0;
     int count = sscanf(text, " f = %lf %3[A-Za-z] , damping = %lf %c", &f, unit, &damping, &rest);
-    f *= strcmp(unit, "kHz") == 0 ? 1e3 : strcmp(unit, "Hz") == 0 ? 1 : 0;
+    if (strcmp(unit, "kHz") == 0)
+        f *= 1e3;
+    else if (strcmp(unit, "Hz") != 0)
+        f = 0;
     if (count != 3 || !(f >= LEAST && f <= MOST) || !(damping > 0 && damping < 1))
         return SF_REFUSE(err,
                          "\"%s\" is not a mount: write for example \"f = 420 Hz, damping = 0.05\", with a "

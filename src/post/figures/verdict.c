@@ -86,9 +86,9 @@ static void show(double value, bool percent, char text[32]) {
 void sf_check_judge(sf_check *c, bool percent) {
     double size = fabs(c->value);
     char value[32], bound[32];
-    c->grade = size > c->use_bound ? SF_GRADE_DO_NOT_USE
-               : size > c->bound   ? SF_GRADE_REMARKS
-                                   : SF_GRADE_VALID;
+    c->grade = size > c->bound ? SF_GRADE_REMARKS : SF_GRADE_VALID;
+    if (size > c->use_bound)
+        c->grade = SF_GRADE_DO_NOT_USE;
     bool refused = c->grade == SF_GRADE_DO_NOT_USE;
     show(c->value, percent, value);
     show(refused ? c->use_bound : c->bound, percent, bound);
@@ -114,18 +114,23 @@ static bool ended_on_anvil(const sf_results *r) {
     return r->has_summary && strncmp(r->status, reason, sizeof reason - 1) == 0;
 }
 
+static const char *describe_ending(const sf_results *r, const sf_figures *f, bool failed) {
+    if (ended_on_anvil(r))
+        return r->status;
+    if (!f->touched)
+        return "the missile never touched the pad";
+    if (!r->has_summary)
+        return "the run has no end: it still runs or was killed";
+    return failed ? "the run failed" : "the run was interrupted";
+}
+
 /* Writes the findings that are not only a value and its bound. */
 static void describe(const sf_results *r, const sf_figures *f, sf_check *c) {
     if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_notes)->key)
         snprintf(c->text, sizeof c->text, "%.0f of the programs' notes, the first: %.*s", c->value,
                  sf_utf8_cut(first_note(r), 200), first_note(r));
     else if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_ending)->key)
-        snprintf(c->text, sizeof c->text, "%.250s",
-                 ended_on_anvil(r)         ? r->status
-                 : !f->touched             ? "the missile never touched the pad"
-                 : !r->has_summary         ? "the run has no end: it still runs or was killed"
-                 : c->value > c->use_bound ? "the run failed"
-                                           : "the run was interrupted");
+        snprintf(c->text, sizeof c->text, "%.250s", describe_ending(r, f, c->value > c->use_bound));
     else if (isnan(c->value) && f->turns && c->key == sf_good_run_rule_get(SF_CHECK_edge)->key)
         snprintf(c->text, sizeof c->text,
                  "edge and scatter: not estimated of a free missile, as the estimate knows no rotation");
@@ -153,7 +158,9 @@ static void fill_row(int k, const sf_results *r, const sf_figures *f, sf_check *
 }
 
 const char *sf_limit_phrase(const sf_limit *limit) {
-    return !limit->judged ? "not judged" : limit->passed ? "passed" : "failed";
+    if (!limit->judged)
+        return "not judged";
+    return limit->passed ? "passed" : "failed";
 }
 
 /* Peak and HIC window may lie in the part of the drop that was not computed. */

@@ -125,8 +125,12 @@ sf_status sf_paraview_check_film(const char *kind, const char **film, sf_error *
         {"pvbatch", "the package paraview", "draws its pictures"},
         {"ffmpeg", "the package ffmpeg", "puts them together"},
         {"xvfb-run", "the packages xvfb and xauth", "stands in for a display, as there is none here"}};
-    *film = !kind || strcmp(kind, "mp4") == 0 ? "pad.mp4" : strcmp(kind, "gif") == 0 ? "pad.gif" : NULL;
-    if (!*film)
+    *film = NULL;
+    if (!kind || strcmp(kind, "mp4") == 0)
+        *film = "pad.mp4";
+    else if (strcmp(kind, "gif") == 0)
+        *film = "pad.gif";
+    else
         return SF_REFUSE(err, "--film=%s: a film is mp4 or gif", kind);
     for (size_t k = 0; k < sizeof needed / sizeof needed[0]; k++)
         if (!(k == 2 && uses_display()) && !sf_process_is_in_path(needed[k].program))

@@ -95,11 +95,10 @@ static sf_status put(const store *s, const sf_h5_info *info, int64_t rows, int c
     return sf_h5_write_packed(s->file, info, SF_H5_F64, !s->full, columns > 1 ? 2 : 1, dims, value, err);
 }
 
-static sf_status put_integers(const store *s, const char *path, const char *description, sf_h5_type type,
-                              int64_t rows, int64_t columns, const void *value, sf_error *err) {
-    const int64_t dims[2] = {rows, columns};
-    const sf_h5_info info = {path, "1", description};
-    return sf_h5_write_packed(s->file, &info, type, false, columns > 1 ? 2 : 1, dims, value, err);
+/* Writes numbers without unit, `dims` of them: rows and columns. */
+static sf_status put_integers(const store *s, const sf_h5_info *info, sf_h5_type type, const int64_t dims[2],
+                              const void *value, sf_error *err) {
+    return sf_h5_write_packed(s->file, info, type, false, dims[1] > 1 ? 2 : 1, dims, value, err);
 }
 
 /* XDMF mixed topology: for each cell its code, then its vertices. */
@@ -112,11 +111,13 @@ static sf_status write_topology(const store *s, sf_error *err) {
         for (int64_t v = r->cell_ptr[c]; v < r->cell_ptr[c + 1]; v++)
             mixed[k++] = r->cell_node[v];
     }
-    put_integers(s, "/pad/topology", "XDMF mixed topology: code of each cell, then its vertices", SF_H5_I32,
-                 length, 1, mixed, err);
+    static const sf_h5_info topology = {"/pad/topology", "1",
+                                        "XDMF mixed topology: code of each cell, then its vertices"},
+                            triangles = {"/missile/triangle", "1", "triangles of the missile's surface"};
+    const int64_t of_pad[2] = {length, 1}, of_missile[2] = {r->surface_triangle_count, 3};
+    put_integers(s, &topology, SF_H5_I32, of_pad, mixed, err);
     if (err->status == SF_OK && r->surface_triangle_count > 0)
-        put_integers(s, "/missile/triangle", "triangles of the missile's surface", SF_H5_I32,
-                     r->surface_triangle_count, 3, r->surface_triangle, err);
+        put_integers(s, &triangles, SF_H5_I32, of_missile, r->surface_triangle, err);
     return err->status;
 }
 
@@ -127,12 +128,13 @@ static sf_status write_materials(const store *s, sf_error *err) {
     SF_OWNED uint8_t *material = sf_alloc(err, r->cell_count, sizeof *material, "materials of cells");
     for (int64_t c = 0; c < r->cell_count && err->status == SF_OK; c++)
         material[c] = r->layer_count > 0 ? r->node_layer[r->cell_node[r->cell_ptr[c]]] : 0;
-    if (err->status == SF_OK &&
-        put_integers(s, "/pad/material", "number of the material of each cell, as that of the layer",
-                     SF_H5_U8, r->cell_count, 1, material, err) == SF_OK &&
+    static const sf_h5_info by_cell = {"/pad/material", "1",
+                                       "number of the material of each cell, as that of the layer"},
+                            by_node = {"/pad/layer", "1", "number of the layer of each node"};
+    const int64_t cells[2] = {r->cell_count, 1}, nodes[2] = {r->node_count, 1};
+    if (err->status == SF_OK && put_integers(s, &by_cell, SF_H5_U8, cells, material, err) == SF_OK &&
         r->layer_count > 0)
-        put_integers(s, "/pad/layer", "number of the layer of each node", SF_H5_U8, r->node_count, 1,
-                     r->node_layer, err);
+        put_integers(s, &by_node, SF_H5_U8, nodes, r->node_layer, err);
     return err->status;
 }
 
@@ -154,8 +156,9 @@ static sf_status write_supports(const store *s, sf_error *err) {
     const sf_results *r = s->results;
     if (r->support_triangle_count == 0)
         return SF_OK;
-    SF_TRY(put_integers(s, "/support/triangle", "triangles of the rigid supports", SF_H5_I32,
-                        r->support_triangle_count, 3, r->support_triangle, err));
+    const int64_t dims[2] = {r->support_triangle_count, 3};
+    SF_TRY(put_integers(s, &(sf_h5_info){"/support/triangle", "1", "triangles of the rigid supports"},
+                        SF_H5_I32, dims, r->support_triangle, err));
     return write_points(s, &(sf_h5_info){"/support/position", "m", "positions of their nodes"},
                         r->support_node_count, r->support_position, NULL, NULL, err);
 }
@@ -294,10 +297,9 @@ static void put_grid_start(const scene *x, const char *name, double time) {
 }
 
 static void put_attribute(const scene *x, int64_t index, const char *name, int64_t rows, int components) {
+    static const char *const names[] = {[1] = "Scalar", [3] = "Vector", [9] = "Tensor"};
     fprintf(x->file, "          <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", name,
-            components == 1   ? "Scalar"
-            : components == 3 ? "Vector"
-                              : "Tensor");
+            names[components]);
     put_float_item(x, index, name, rows, components);
     fputs("</Attribute>\n", x->file);
 }

@@ -13,7 +13,9 @@ typedef struct raw_edge {
 static int by_edge(const void *a, const void *b) {
     const raw_edge *x = a, *y = b;
     int low = SF_ORDER(x->low, y->low), high = SF_ORDER(x->high, y->high);
-    return low ? low : high ? high : SF_ORDER(x->use.cell, y->use.cell);
+    if (low == 0 && high == 0)
+        return SF_ORDER(x->use.cell, y->use.cell);
+    return low ? low : high;
 }
 
 static sf_status build_edges(const sf_mesh *mesh, sf_dual *dual, sf_error *err) {

@@ -136,8 +136,9 @@ static claim *list_claims(const sf_geo_data *data, int dimension, bool names, si
     *count = 0;
     for (size_t g = 0; list && g < data->group_count; g++) {
         const sf_geo_group *group = &data->group[g];
-        size_t members = group->dimension != dimension || !*group->name ? 0 : names ? 1 : group->count;
-        for (size_t i = 0; i < members; i++)
+        if (group->dimension != dimension || !*group->name)
+            continue;
+        for (size_t i = 0; i < (names ? 1 : group->count); i++)
             list[(*count)++] = (claim){names ? 0 : group->entity[i], group};
     }
     if (*count > 0)
@@ -204,8 +205,8 @@ static sf_status add_elements(const sf_gmsh *session, const destination *to, con
     int vertices = 0, code = 0;
     if (block->dimension == 3)
         code = cell_code(block->type, &vertices);
-    else
-        vertices = block->type == 2 ? 3 : block->type == 3 ? 4 : 0;
+    else if (block->type == 2 || block->type == 3)
+        vertices = block->type + 1;
     if (vertices == 0)
         return SF_REFUSE(err,
                          "%s: %s %d has elements of the type \"%s\"; only linear tetrahedra, pyramids, "

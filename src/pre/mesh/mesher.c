@@ -418,9 +418,9 @@ __attribute__((format(printf, 3, 4))) static sf_status fail(const conversation *
 
 static sf_status judge_ending(const conversation *c, sf_error *err) {
     int signal_number = WIFSIGNALED(c->status) ? WTERMSIG(c->status) : 0;
-    const char *line = *c->error_line                          ? c->error_line
-                       : strncmp(c->last_line, "Info", 4) == 0 ? ""
-                                                               : c->last_line;
+    const char *line = strncmp(c->last_line, "Info", 4) == 0 ? "" : c->last_line;
+    if (*c->error_line)
+        line = c->error_line;
     if (c->no_filter)
         return SF_FAIL(err, SF_ERR_IO,
                        "%s: this kernel cannot keep gmsh from harm (seccomp: %s); SOFTFALL_UNCONFINED=1 in "

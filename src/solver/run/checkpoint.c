@@ -27,7 +27,7 @@ static bool is_kept(const sf_model *m, const sf_state_array *a) {
 static void name_array(const sf_model *m, const sf_state_array *a, char path[64], int64_t dims[2]) {
     snprintf(path, 64, "/state/%s", a->name);
     dims[0] = sf_state_rows(m, a->rows);
-    dims[1] = a->bytes / (a->type == SF_H5_I32 ? (int)sizeof(int32_t) : (int)sizeof(double));
+    dims[1] = (int64_t)a->bytes / (int64_t)sf_h5_size(a->type);
 }
 
 static sf_status write_state(const sf_model *m, const sf_state *s, sf_h5 *file, sf_error *err) {
@@ -151,12 +151,11 @@ static sf_status check_ending(const sf_h5 *results, const sf_h5 *checkpoint, con
 }
 
 /* Compares an array of the earlier pad with this one's. */
-static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type type, int64_t columns,
-                             const void *mine, const sf_model *m, const char *path, sf_error *err) {
-    int64_t dims[2] = {m->node_count, columns};
-    size_t bytes = (size_t)(m->node_count * columns) * (type == SF_H5_U8 ? 1 : 8);
+static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type type, int64_t dims[2],
+                             const void *mine, const char *path, sf_error *err) {
+    size_t bytes = (size_t)(dims[0] * dims[1]) * sf_h5_size(type);
     SF_OWNED void *data = NULL;
-    sf_status status = sf_h5_read(file, name, type, columns > 1 ? 2 : 1, dims, &data, SF_IGNORED);
+    sf_status status = sf_h5_read(file, name, type, dims[1] > 1 ? 2 : 1, dims, &data, SF_IGNORED);
     if (status != SF_OK || memcmp(data, mine, bytes) != 0)
         SF_REFUSE(
             err,
@@ -167,11 +166,12 @@ static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type typ
 }
 
 static sf_status check_pad(const sf_h5 *file, const sf_model *m, const char *path, sf_error *err) {
-    SF_TRY(check_array(file, "/model/position", SF_H5_F64, 3, m->position, m, path, err));
-    SF_TRY(check_array(file, "/model/volume", SF_H5_F64, 1, m->volume, m, path, err));
-    return m->material_count > 1
-               ? check_array(file, "/model/node_layer", SF_H5_U8, 1, m->node_material, m, path, err)
-               : SF_OK;
+    int64_t vectors[2] = {m->node_count, 3}, numbers[2] = {m->node_count, 1};
+    SF_TRY(check_array(file, "/model/position", SF_H5_F64, vectors, m->position, path, err));
+    SF_TRY(check_array(file, "/model/volume", SF_H5_F64, numbers, m->volume, path, err));
+    if (m->material_count > 1)
+        check_array(file, "/model/node_layer", SF_H5_U8, numbers, m->node_material, path, err);
+    return err->status;
 }
 
 static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const char *path, sf_state *s,

@@ -78,10 +78,10 @@ static void take_law_field(const sf_model *m, const sf_operators *op, const sf_s
             memcpy(&out[3 * (i - first)], stretch, sizeof stretch);
         else if (kind == SF_FRAME_SOFTENING)
             out[i - first] = law->law->softening(law->numbers, b.history, lane);
+        else if (kind == SF_FRAME_LARGEST_COMPRESSION)
+            out[i - first] = 1 - stretch[0];
         else
-            out[i - first] = kind == SF_FRAME_LARGEST_COMPRESSION ? 1 - stretch[0]
-                             : kind == SF_FRAME_ENERGY_DENSITY    ? b.energy[lane]
-                                                                  : b.factor[lane];
+            out[i - first] = kind == SF_FRAME_ENERGY_DENSITY ? b.energy[lane] : b.factor[lane];
     }
 }
 
@@ -130,12 +130,12 @@ static void take_field(const sf_model *m, const sf_operators *op, const sf_state
     }
 }
 
-static sf_status write_item(sf_h5 *file, const char *group, const char *name, const char *units,
-                            const char *description, int rank, const int64_t *dims, const double *data,
-                            sf_error *err) {
-    SF_PRINTED(path, 128, "%s/%s", group, name);
-    sf_h5_info info = {path, units, description};
-    return sf_h5_write(file, &info, SF_H5_F64, rank, dims, data, err);
+/* Writes `count` numbers, or with 0 a scalar, as `item` of the group. */
+static sf_status write_item(sf_h5 *file, const char *group, const sf_h5_info *item, int64_t count,
+                            const double *data, sf_error *err) {
+    SF_PRINTED(path, 128, "%s/%s", group, item->path);
+    sf_h5_info info = {path, item->units, item->description};
+    return sf_h5_write(file, &info, SF_H5_F64, count > 0, &count, data, err);
 }
 
 /* Sums by layer, of the whole pad: a row of each. */
@@ -158,12 +158,11 @@ static void sum_layers(const sf_model *m, const sf_operators *op, const sf_state
 /* By layer, if the pad has several. */
 static sf_status write_layers(const sf_model *m, const sf_operators *op, const sf_state *s, const char *path,
                               sf_h5 *file, sf_error *err) {
-    static const struct {
-        const char *name, *units, *description;
-    } rows[] = {{"layer_stored", "J", "recoverable energy of each layer"},
-                {"layer_hysteresis", "J", "lost by the unloading rule in each layer"},
-                {"layer_viscous", "J", "viscous work in each layer to date"},
-                {"layer_compression", "1", "largest compression in each layer to date"}};
+    static const sf_h5_info rows[] = {
+        {"layer_stored", "J", "recoverable energy of each layer"},
+        {"layer_hysteresis", "J", "lost by the unloading rule in each layer"},
+        {"layer_viscous", "J", "viscous work in each layer to date"},
+        {"layer_compression", "1", "largest compression in each layer to date"}};
     int64_t count = m->material_count;
     if (count < 2)
         return SF_OK;
@@ -171,29 +170,30 @@ static sf_status write_layers(const sf_model *m, const sf_operators *op, const s
     if (sums)
         sum_layers(m, op, s, sums);
     for (int k = 0; k < 4 && err->status == SF_OK; k++)
-        write_item(file, path, rows[k].name, rows[k].units, rows[k].description, 1, &count, &sums[k * count],
-                   err);
+        write_item(file, path, &rows[k], count, &sums[k * count], err);
     return err->status;
 }
 
 /* The data of a frame beside its fields. */
 static sf_status write_head(const sf_model *m, const sf_state *s, const char *path, sf_h5 *file,
                             sf_error *err) {
-    const int64_t three = 3, four = 4;
+    static const sf_h5_info time = {"time", "s", "time"},
+                            reading = {"acceleration", "m s-2",
+                                       "specific force on the missile, against its direction of motion"},
+                            translation = {"missile_displacement", "m",
+                                           "translation of the missile's centre since t = 0"},
+                            quaternion = {"missile_quaternion", "1",
+                                          "orientation of the missile, w, x, y, z"},
+                            base = {"base_reaction", "N", "force of the base on the pad"};
     double acceleration = sf_missile_reading(m, &s->missile), displacement[3], reaction[3];
     sf_missile_translation(m, &s->missile, displacement);
     for (int c = 0; c < 3; c++)
         reaction[c] = sf_model_whole(m) * s->base_reaction[c];
-    SF_TRY(write_item(file, path, "time", "s", "time", 0, NULL, &s->time, err));
-    SF_TRY(write_item(file, path, "acceleration", "m s-2",
-                      "specific force on the missile, against its direction of motion", 0, NULL,
-                      &acceleration, err));
-    SF_TRY(write_item(file, path, "missile_displacement", "m",
-                      "translation of the missile's centre since t = 0", 1, &three, displacement, err));
-    SF_TRY(write_item(file, path, "missile_quaternion", "1", "orientation of the missile, w, x, y, z", 1,
-                      &four, s->missile.quaternion, err));
-    return write_item(file, path, "base_reaction", "N", "force of the base on the pad", 1, &three, reaction,
-                      err);
+    SF_TRY(write_item(file, path, &time, 0, &s->time, err));
+    SF_TRY(write_item(file, path, &reading, 0, &acceleration, err));
+    SF_TRY(write_item(file, path, &translation, 3, displacement, err));
+    SF_TRY(write_item(file, path, &quaternion, 4, s->missile.quaternion, err));
+    return write_item(file, path, &base, 3, reaction, err);
 }
 
 /* One field of all nodes, through a buffer for a slab. */

@@ -2,6 +2,7 @@
 #include "solver/run/output.h"
 
 #include "io/h5_data.h"
+#include "io/plain_file.h"
 #include "model/flight.h"
 #include "solver/run/frame.h"
 #include <errno.h>
@@ -224,17 +225,22 @@ void sf_output_abandon(const sf_output *o) {
     sf_folder_leave(o->folder); /* stays if an earlier run has files in it */
 }
 
-/* The present state as the group of a file of the folder, whose size is added to `*size` (NULL: to none). */
+/* A file of the folder that holds a state. */
+typedef struct state_file {
+    const char *name, *group;
+    int64_t fields; /* bits of sf_frame_field */
+    int64_t size;   /* bytes, once it is written */
+} state_file;
+
 static sf_status write_state(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
-                             int64_t fields, const char *name, const char *group, int64_t *size,
-                             sf_error *err) {
+                             state_file *to, sf_error *err) {
     char path[NAME_SIZE], partial[SF_PATH_SIZE];
     sf_h5 *file = NULL;
-    if (place(o, name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
+    if (place(o, to->name, path, partial, err) != SF_OK || sf_h5_create(partial, &file, err) != SF_OK)
         return err->status;
-    sf_frame_write(m, op, s, fields, group, file, err);
-    if (sf_output_seal(&file, partial, path, err) == SF_OK && size)
-        *size += size_of(path);
+    sf_frame_write(m, op, s, to->fields, to->group, file, err);
+    if (sf_output_seal(&file, partial, path, err) == SF_OK)
+        to->size = size_of(path);
     return err->status;
 }
 
@@ -242,12 +248,16 @@ sf_status sf_output_frame(sf_output *o, const sf_model *m, const sf_operators *o
                           int64_t index, sf_error *err) {
     char name[32], group[32];
     name_frame(index, name, group);
-    return write_state(o, m, op, s, m->run.output_fields, name, group, &o->fresh, err);
+    state_file frame = {.name = name, .group = group, .fields = m->run.output_fields};
+    write_state(o, m, op, s, &frame, err);
+    o->fresh += frame.size;
+    return err->status;
 }
 
 sf_status sf_output_peak(const sf_output *o, const sf_model *m, const sf_operators *op, const sf_state *s,
                          sf_error *err) {
-    return write_state(o, m, op, s, SF_FIELD_ALL, PEAK, PEAK_GROUP, NULL, err);
+    state_file peak = {.name = PEAK, .group = PEAK_GROUP, .fields = SF_FIELD_ALL};
+    return write_state(o, m, op, s, &peak, err);
 }
 
 /* The group of another file as a file of the folder. */
@@ -305,9 +315,8 @@ bool sf_output_is_due(const sf_output *o, int64_t rows) {
 /* One object of a file in the folder, linked or copied. */
 static sf_status take(const sf_output *o, bool copied, const char *name, const char *const *objects,
                       sf_h5 *file, sf_error *err) {
-    const char *slash = strrchr(o->folder, '/');
     sf_h5 *part = NULL;
-    SF_PRINTED(path, NAME_SIZE, "%s/%s", copied ? o->folder : slash ? slash + 1 : o->folder, name);
+    SF_PRINTED(path, NAME_SIZE, "%s/%s", copied ? o->folder : sf_path_name(o->folder), name);
     if (copied && (sf_seal_check(path, true, err) != SF_OK || sf_h5_open_alone(path, &part, err) != SF_OK))
         return err->status;
     for (; *objects && err->status == SF_OK; objects++) {

@@ -82,10 +82,11 @@ static void tell_rates(const sf_model *m, const sf_sink *sink) {
         const sf_foam_shared *foam = m->material[k].card;
         const sf_law_curves *c = sf_material_curves(&m->material[k]);
         bool curves = c && c->curve_count > 1;
-        double low = curves                  ? c->curve_rate[0]
-                     : foam->rate_factor > 0 ? foam->rate_reference
-                                             : 0,
-               high = curves ? c->curve_rate[c->curve_count - 1] : INFINITY;
+        double low = foam->rate_factor > 0 ? foam->rate_reference : 0, high = INFINITY;
+        if (curves) {
+            low = c->curve_rate[0];
+            high = c->curve_rate[c->curve_count - 1];
+        }
         if (rate < low || rate > high)
             sf_sink_tell(sink, SF_WARNING,
                          "at %g degC the rate of the impact, speed over thickness, is %.3g s-1, %s rate of "
@@ -450,11 +451,8 @@ static void end_run(drop *d, const sf_error *failure, const sf_error *end, sf_er
     d->run->shown = sf_state_is_finite(d->m, d->s);
     if (d->run->checkpoints && !d->run->shown)
         replay(d, &unsaved);
-    bool whole = conclude(d,
-                          failed                 ? failure->text
-                          : end->status != SF_OK ? end->text
-                                                 : d->run->ending,
-                          late) == SF_OK;
+    const char *ending = end->status != SF_OK ? end->text : d->run->ending;
+    bool whole = conclude(d, failed ? failure->text : ending, late) == SF_OK;
     /* After another failure the results show the failed step, and the checkpoint is the step before. */
     if (d->run->checkpoints && failed && d->run->shown)
         replay(d, &unsaved);
