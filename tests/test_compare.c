@@ -379,7 +379,7 @@ static void coarse_or_inverted_measurement_is_refused(void **state) {
     sf_reference_options options = {
         .path = path, .cfc = 1000, .unfiltered_option = "--none", .invert_option = "--turn"};
     assert_int_equal(sf_reference_read(&options, &reference, &err), SF_ERR_INPUT);
-    assert_non_null(strstr(err.text, ":3: samples 0.2 ms apart are too coarse for CFC 1000"));
+    assert_non_null(strstr(err.text, ": sample 2: samples 0.2 ms apart are too coarse for CFC 1000"));
     assert_non_null(strstr(err.text, "--none"));
     assert_null(reference.raw.time);
     unlink(path);

@@ -215,9 +215,15 @@ SOFTFALL_API softfall_status softfall_cfc(const double *time, const double *valu
                                           double filter, double *filtered, softfall_error *error);
 /* A figure at ever finer meshes and its error, `refined`, from those at a spacing and at `ratio` times it
  * (docs/python.md, "Two meshes for one answer"). `cells`: the finer mesh's number of cells over the coarser
- * one's; INFINITY: not known. SOFTFALL_INPUT, and NaN, where the pair tells no value; the sentence says why. */
+ * one's; INFINITY: not known. SOFTFALL_INPUT, and NaN, where the pair tells no value; the sentence says why.
+ */
 SOFTFALL_API softfall_status softfall_refine(double fine, double coarse, double ratio, double cells,
                                              double refined[2], softfall_error *error);
+
+/* Reads a quantity with its unit, such as "10 mph", into SI; `*unit` is the SI unit of its kind ("m s-1"),
+ * static. */
+SOFTFALL_API softfall_status softfall_units_read(const char *text, double *value, const char **unit,
+                                                 softfall_error *error);
 
 /* A measured record of one impact in a file of a laboratory, read, filtered and judged as softfall-post does
  * with
@@ -227,6 +233,18 @@ SOFTFALL_API softfall_status softfall_refine(double fine, double coarse, double 
 typedef struct softfall_record softfall_record;
 SOFTFALL_API softfall_status softfall_record_read(const char *path, const char *const *options, int count,
                                                   softfall_record **out, softfall_error *error);
+/* The samples of a file that the caller has read. */
+typedef struct softfall_samples {
+    const char *name;    /* of the file, for sentences */
+    const char *reading; /* how it was read, in words */
+    int64_t count;
+    const double *time;     /* [count] s, ascending */
+    int axes;               /* 1: the deceleration; 2 or 3: axes, whose resultant it is */
+    const double *value[3]; /* [axes][count] g */
+} softfall_samples;
+/* The record of such samples, by the same options except column, columns, heading, scale and rate. */
+SOFTFALL_API softfall_status softfall_record_make(const softfall_samples *samples, const char *const *options,
+                                                  int count, softfall_record **out, softfall_error *error);
 SOFTFALL_API void softfall_record_free(softfall_record *record);
 /* The filtered curve: time in s on the clock of the file, deceleration in g; returns the number of points.
  * The arrays are the record's. */

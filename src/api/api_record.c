@@ -91,10 +91,12 @@ static sf_status read_record(softfall_record *r, const sf_reference_options *opt
     return SF_OK;
 }
 
-softfall_status softfall_record_read(const char *path, const char *const *options, int count,
-                                     softfall_record **out, softfall_error *error) {
+static softfall_status make_record(const char *path, const sf_reference_samples *samples,
+                                   const char *const *options, int count, softfall_record **out,
+                                   softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     settings s = {.options = {.path = path,
+                              .samples = samples,
                               .cfc = 1000,
                               .column_option = "column=HEADING",
                               .unfiltered_option = "filter=none",
@@ -108,6 +110,25 @@ softfall_status softfall_record_read(const char *path, const char *const *option
     }
     sf_free_all((size_t)s.count, s.texts);
     return softfall_return(&err, error);
+}
+
+softfall_status softfall_record_read(const char *path, const char *const *options, int count,
+                                     softfall_record **out, softfall_error *error) {
+    return make_record(path, NULL, options, count, out, error);
+}
+
+softfall_status softfall_record_make(const softfall_samples *samples, const char *const *options, int count,
+                                     softfall_record **out, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_reference_samples s = {samples->count, samples->time, samples->axes, {NULL}, samples->reading};
+    if (s.axes < 1 || s.axes > SF_REFERENCE_AXES || s.count < 1) {
+        *out = NULL;
+        SF_REFUSE(&err, "%s: %lld samples of %d axes: a record has samples of 1 to %d axes", samples->name,
+                  (long long)s.count, s.axes, SF_REFERENCE_AXES);
+        return softfall_return(&err, error);
+    }
+    memcpy(s.value, samples->value, sizeof s.value);
+    return make_record(samples->name, &s, options, count, out, error);
 }
 
 void softfall_record_free(softfall_record *r) {
@@ -132,6 +153,22 @@ const char *softfall_record_verdict(const softfall_record *r) {
 
 const char *softfall_record_interpretation(const softfall_record *r) {
     return r->reference.interpretation;
+}
+
+softfall_status softfall_units_read(const char *text, double *value, const char **unit,
+                                    softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_units *units = NULL;
+    *unit = NULL;
+    if (sf_units_open(&units, &err) != SF_OK)
+        return softfall_return(&err, error);
+    for (int k = 0; k < SF_QUANTITY_COUNT && !*unit; k++) {
+        err = (sf_error)SF_ERROR_INIT;
+        if (sf_units_parse(units, text, (sf_quantity)k, value, &err) == SF_OK)
+            *unit = sf_quantity_unit((sf_quantity)k);
+    }
+    sf_units_close(&units);
+    return softfall_return(&err, error);
 }
 
 softfall_status softfall_record_figure(const softfall_record *r, const char *key, double *value,

@@ -74,11 +74,21 @@ void sf_record_line(const sf_record_verdict *verdict, char *text, size_t size);
 
 enum { SF_REFERENCE_INTERPRETATION = 1024, SF_REFERENCE_AXES = 3 };
 
+/* Samples that were read already. All borrowed. */
+typedef struct sf_reference_samples {
+    int64_t count;
+    const double *time;                     /* [count] s */
+    int axes;                               /* 1 to SF_REFERENCE_AXES */
+    const double *value[SF_REFERENCE_AXES]; /* [axes][count] g */
+    const char *reading;                    /* how their file was read */
+} sf_reference_samples;
+
 /* The texts tell the user, in sentences, how to choose otherwise ("--reference-filter none"). All borrowed.
  */
 typedef struct sf_reference_options {
     const char *path;
-    const char *column; /* heading of the acceleration; NULL: the only one */
+    const sf_reference_samples *samples; /* of the path; NULL: it is read */
+    const char *column;                  /* heading of the acceleration; NULL: the only one */
     const char
         *columns; /* headings of two or three axes, "x,y,z", of which the resultant is taken; or NULL */
     const char *heading; /* of a file without one; or NULL */
@@ -146,11 +156,11 @@ typedef struct sf_fit {
 
 typedef struct sf_compare_options {
     sf_reference_options reference;
-    bool left;                /* the model's curve ends with the missile off the pad */
-    double flight;            /* g: the model's curve in free flight */
-    double shift;             /* s; NaN = align the contacts */
-    sf_region window;         /* NaN = HIC window of the measured curve */
-    sf_region *regions;       /* [region_count], besides the window; the caller's */
+    bool left;          /* the model's curve ends with the missile off the pad */
+    double flight;      /* g: the model's curve in free flight */
+    double shift;       /* s; NaN = align the contacts */
+    sf_region window;   /* NaN = HIC window of the measured curve */
+    sf_region *regions; /* [region_count], besides the window; the caller's */
     int64_t region_count;
 } sf_compare_options;
 

@@ -158,9 +158,24 @@ static sf_status read_axis(record *r, const char *column, sf_error *err) {
     return SF_OK;
 }
 
+/* Copies samples that were read already, which must be finite and ascend in time. */
+static sf_status take_samples(record *r, const sf_reference_samples *s, sf_error *err) {
+    for (int k = 0; k < s->axes; k++) {
+        SF_TRY(sf_series_create(s->count, &r->axis[k], err));
+        r->axes++;
+        memcpy(r->axis[k].time, s->time, (size_t)s->count * sizeof(double));
+        memcpy(r->axis[k].value, s->value[k], (size_t)s->count * sizeof(double));
+        SF_TRY(sf_series_check(&r->axis[k], r->options->path, err));
+    }
+    snprintf(r->interpretation, sizeof r->interpretation, "%s", s->reading);
+    return SF_OK;
+}
+
 static sf_status read_axes(record *r, sf_error *err) {
     const sf_reference_options *o = r->options;
     char list[256], *rest = list, *name;
+    if (o->samples)
+        return take_samples(r, o->samples, err);
     if (!o->columns)
         return read_axis(r, o->column, err);
     if (snprintf(list, sizeof list, "%s", o->columns) >= (int)sizeof list)
@@ -212,7 +227,8 @@ static sf_status cut_out(record *r, sf_reference *reference, double from, double
     for (int k = 0; k < r->axes; k++)
         cut_series(&r->axis[k], first, count);
     cut_series(&reference->raw, first, count);
-    memmove(r->line, r->line + first, (size_t)count * sizeof *r->line);
+    if (r->line)
+        memmove(r->line, r->line + first, (size_t)count * sizeof *r->line);
     return SF_OK;
 }
 
@@ -298,9 +314,10 @@ static sf_status check_sampling(const record *r, const sf_series *raw, sf_error 
     for (int64_t i = 1; (double)coarse > SHARE * (double)raw->count && i < raw->count; i++)
         if (gap_before(raw, i) > ROUNDING * most)
             return SF_REFUSE(err,
-                             "%s:%d: samples %.4g ms apart are too coarse for CFC %g, which needs %.4g ms "
-                             "(%g kHz) or less: choose a lower class, or %s if the curve is filtered already",
-                             o->path, r->line[i], gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
+                             "%s: sample %lld: samples %.4g ms apart are too coarse for CFC %g, which needs "
+                             "%.4g ms (%g kHz) or less: choose a lower class, or %s if the curve is filtered "
+                             "already",
+                             o->path, (long long)i + 1, gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
                              SAMPLES_PER_CLASS * o->cfc * 1e-3, o->unfiltered_option);
     return SF_OK;
 }
@@ -361,7 +378,8 @@ static void describe(const record *r, sf_reference *reference) {
     else
         ADD(reference, "not filtered");
     if (r->axes > 1)
-        ADD(reference, ", resultant of the columns %.100s", o->columns);
+        ADD(reference, ", resultant of the %s%.100s", o->columns ? "columns " : "axes",
+            o->columns ? o->columns : "");
     if (o->sensitivity > 0)
         ADD(reference, ", at a sensitivity of %.6g mV/(m/s2) as given", 1e3 * o->sensitivity);
     if (o->invert)
