@@ -228,7 +228,8 @@ SOFTFALL_API softfall_status softfall_units_read(const char *text, double *value
 /* A measured record of one impact in a file of a laboratory, read, filtered and judged as softfall-post does
  * with
  * --reference. `options` [count]: "filter=600" or "filter=none" (default 1000), "column=HEADING",
- * "columns=x,y,z", "heading=TEXT", "scale=0.1 mV/(m/s2)", "rate=20 kHz", "impact=2", "invert", "zero". `out`
+ * "columns=x,y,z", "heading=TEXT", "scale=0.1 mV/(m/s2)", "rate=20 kHz", "impact=2", "invert", "zero",
+ * "speed=4.5 m/s" (known at contact), "range=200 g" (of the channel). `out`
  * is owned by the caller. */
 typedef struct softfall_record softfall_record;
 SOFTFALL_API softfall_status softfall_record_read(const char *path, const char *const *options, int count,

@@ -14,7 +14,7 @@ from .errors import InputError
 
 GRADES = ("valid", "valid with remarks", "do not use")
 READ = ("column", "columns", "heading", "units", "scale", "rate", "specimen", "cycle", "sheet")  # options of the file
-JUDGED = ("filter", "impact", "invert", "zero")  # options of the record
+JUDGED = ("filter", "impact", "invert", "zero", "speed", "range")  # options of the record
 
 
 class Record:
@@ -38,8 +38,9 @@ def read_record(path: str | os.PathLike[str], **options: Any) -> Record:
     """Reads a measured curve from a file of a laboratory (docs/formats.md) and judges it.
 
     `options` are those of softfall read (column="a", columns="x,y,z", heading=..., units="ms,g", scale="0.1 mV/(m/s2)", rate="20 kHz",
-    specimen="2", sheet=...) and of softfall-post --reference: filter=600 or "none" (1000 by default), impact=2, invert=True, zero=True. A
-    file that cannot be read as a record is an InputError.
+    specimen="2", sheet=...) and of softfall-post --reference: filter=600 or "none" (1000 by default), impact=2, invert=True, zero=True;
+    speed="4.5 m/s", known at contact, and range="200 g" of the channel are what the record is judged against. A file that cannot be read as
+    a record is an InputError.
     """
     unknown = next((name for name in options if name not in READ + JUDGED), None)
     if unknown:

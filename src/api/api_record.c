@@ -52,6 +52,10 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
         sf_reference_parse_sensitivity(value, &o->sensitivity, err);
     else if (strcmp(name, "rate") == 0)
         sf_reference_parse_rate(value, &o->rate, err);
+    else if (strcmp(name, "range") == 0)
+        sf_reference_parse_range(value, &o->range, err);
+    else if (strcmp(name, "speed") == 0)
+        sf_units_read(value, SF_SPEED, &o->speed, err);
     else if (strcmp(name, "filter") == 0 && strcmp(value, "none") == 0)
         o->cfc = 0;
     else if (strcmp(name, "filter") == 0)
@@ -65,7 +69,7 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
     else if (err->status == SF_OK)
         SF_REFUSE(err,
                   "a record has no option \"%.80s\"; there are column, columns, heading, scale, rate, "
-                  "filter, impact, invert and zero",
+                  "filter, impact, invert, zero, speed and range",
                   name);
     return err->status;
 }

@@ -99,6 +99,7 @@ READER(read_mount, sf_signal_parse_mount)
 READER(read_coupling, sf_signal_parse_coupling)
 READER(read_sensitivity, sf_reference_parse_sensitivity)
 READER(read_rate, sf_reference_parse_rate)
+READER(read_range, sf_reference_parse_range)
 READER(read_region, sf_region_parse)
 
 #define AT(member) offsetof(options, member)
@@ -154,6 +155,8 @@ static const sf_option list[] = {
      .member = AT(compare.reference.rate), .read = read_rate, TUNES},
     {"reference-heading", 0, "TEXT", "heading of a file without one, such as \"Time (ms), Acceleration (g)\"",
      .member = AT(compare.reference.heading), TUNES},
+    {"reference-range", 0, "RANGE", "range of its channel, such as \"200 g\": a peak at its end is marked",
+     .member = AT(compare.reference.range), .read = read_range, TUNES},
     {"reference-invert", 0, NULL,
      "its channel is inverted: positive must mean that the missile is slowed down",
      .member = AT(compare.reference.invert), TUNES},
@@ -322,6 +325,9 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     sf_compare_options compare = o->compare;
     compare.left = j->figures.rebounded;
     compare.flight = j->figures.free_flight;
+    bool glances =
+        j->figures.turns && j->results.missile_direction[2] > -0.9; /* and keeps most of its speed */
+    compare.reference.speed = glances ? 0 : j->figures.v0;
     if (o->comparing && sf_compare_run(&compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
         return err->status;
     sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);

@@ -9,6 +9,7 @@
 enum { FEWEST_POINTS = 3 };
 static const double SAMPLES_PER_CLASS = 10; /* least sampling rate over the class (SAE J211) */
 static const double ROUNDING = 1.05;        /* of written times: 0.105 ms counts as 0.1 ms */
+static const double MS_UNDER_S = 100;       /* times too coarse: their unit is another one */
 static const double UNEVEN = 1.5; /* largest over mean distance of samples that are told as uneven */
 
 /* The columns of the file while it becomes a reference. */
@@ -56,6 +57,17 @@ sf_status sf_reference_parse_rate(const char *text, double *rate, sf_error *err)
             return SF_OK;
         }
     return SF_REFUSE(err, "\"%s\" is not a sampling rate: write for example \"20 kHz\"", text);
+}
+
+sf_status sf_reference_parse_range(const char *text, double *range, sf_error *err) {
+    const char *unit = sf_decimal_read(text, range);
+    if (!unit || strcmp(unit + strspn(unit, " "), "g") != 0) {
+        SF_TRY(sf_units_read(text, SF_ACCELERATION, range, err));
+        *range /= SF_STANDARD_GRAVITY;
+    }
+    return *range > 0 && isfinite(*range)
+               ? SF_OK
+               : SF_REFUSE(err, "\"%s\" is no range of a channel: write for example \"200 g\"", text);
 }
 
 /* ---- the file ---- */
@@ -316,9 +328,12 @@ static sf_status check_sampling(const record *r, const sf_series *raw, sf_error 
             return SF_REFUSE(err,
                              "%s: sample %lld: samples %.4g ms apart are too coarse for CFC %g, which needs "
                              "%.4g ms (%g kHz) or less: choose a lower class, or %s if the curve is filtered "
-                             "already",
+                             "already%s",
                              o->path, (long long)i + 1, gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
-                             SAMPLES_PER_CLASS * o->cfc * 1e-3, o->unfiltered_option);
+                             SAMPLES_PER_CLASS * o->cfc * 1e-3, o->unfiltered_option,
+                             gap_before(raw, i) > MS_UNDER_S * most
+                                 ? "; the times look like ms under a heading of s"
+                                 : "");
     return SF_OK;
 }
 
@@ -414,7 +429,8 @@ static sf_status make(record *r, sf_reference *reference, sf_error *err) {
     SF_TRY(filter_axes(r, reference, err));
     SF_TRY(check_sign(o, &reference->curve, err));
     describe(r, reference);
-    return sf_record_judge(&reference->raw, &reference->curve, r->other, &reference->record, err);
+    const sf_record_facts facts = {r->other, o->speed, o->range};
+    return sf_record_judge(&reference->raw, &reference->curve, &facts, &reference->record, err);
 }
 
 sf_status sf_reference_read(const sf_reference_options *options, sf_reference *reference, sf_error *err) {
