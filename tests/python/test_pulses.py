@@ -2,7 +2,7 @@
 """Records are judged well: synthetic pulses, true and damaged, with counted false alarms and misses.
 
 The bounds of the checks saturation, gap and removed (src/post/figures/compare.h, record.c) were chosen on many more: SF_PULSES=8 and pytest -s count the rates
-that docs/verification.md states.
+that docs/formats.md states.
 """
 import os
 
