@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "machine.h"
 
-#include "solver/state.h"
+#include "io/process.h"
 #include <omp.h>
 #include <stdint.h>
 #include <stdlib.h>

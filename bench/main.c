@@ -3,13 +3,13 @@
  * from what the machine can do. Writes JSON; docs/performance.md explains it. */
 #include "build_info.h"
 #include "base/program.h"
-#include "model/model.h"
+#include "case/read.h"
 #include "machine.h"
+#include "model/model_io.h"
 #include "report/row.h"
 #include "pre/build.h"
 #include "pre/mesh/gmsh_session.h"
 #include "solver/step.h"
-#include "solver/state.h"
 #include "traffic.h"
 
 #include <argp.h>

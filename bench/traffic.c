@@ -3,9 +3,9 @@
 
 enum { WORD = 8 }; /* bytes of a double */
 
-/* Operations of the foam law at one point, counted in foam.c with three sweeps of the eigenvalues. */
+/* Operations of the foam law at one point, counted in foam_point.c with three sweeps of the eigenvalues. */
 static const double LAW = 1100;
-/* Of one pair in stabilisation.c, and of its scalar form. */
+/* Of one pair in domain_stress.c, and of its scalar form. */
 static const double PAIR = 84, SCALAR_PAIR = 33;
 
 /* Reading B, the places of its nodes, and the groups' lists of others. */

@@ -4,7 +4,6 @@
 #ifndef SF_BENCH_TRAFFIC_H
 #define SF_BENCH_TRAFFIC_H
 
-#include "model/model.h"
 #include "solver/operators.h"
 #include "solver/state.h"
 

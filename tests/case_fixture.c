@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case_fixture.h"
 
+#include "case/read.h"
 #include "program_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fuzz_readers.h"
+#include "case/curves.h"
+#include "case/read.h"
 #include "material/laws.h"
 
 #include "study/batch.h"
@@ -7,16 +9,11 @@
 #include "material/curve.h"
 #include "study/fit/compression/compression_config.h"
 #include "study/fit/drop/drop_fit.h"
-#include "model/model.h"
 #include "io/plain_file.h"
+#include "model/model_io.h"
 #include "post/figures/compare.h"
-#include "post/figures/figures.h"
-#include "post/results/results.h"
-#include "case/case.h"
-#include "case/reader.h"
 #include "pre/mesh/geo_parameters.h"
 #include "pre/mesh/gmsh_session.h"
-#include "pre/mesh/mesher.h"
 #include "study/sweep/analysis.h"
 #include <ftw.h>
 #include <hdf5.h>

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model_fixture.h"
 
+#include "case/read.h"
 #include "extreme.h"
 
 #include "pre/mesh/gmsh_session.h"
-#include "solver/field/field.h"
+#include "solver/field/domain_stress.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Comparisons of doubles for the tests of src/post: cmocka 1.1.5 compares in single precision. Include after
- * cmocka.h. */
+ * the header of cmocka. */
 #ifndef SF_TESTS_POST_CHECK_H
 #define SF_TESTS_POST_CHECK_H
 

@@ -2,10 +2,9 @@
 #include "post_fixture.h"
 
 #include "base/units.h"
-#include "io/h5.h"
+#include "io/h5_data.h"
 #include "io/provenance.h"
-#include "post/figures/signal.h"
-#include "post/results/results.h"
+#include "model/columns.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

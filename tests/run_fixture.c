@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run_fixture.h"
 
+#include "io/h5_data.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

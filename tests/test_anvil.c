@@ -5,7 +5,7 @@
 #include "resting_fixture.h"
 
 #include "base/mat3.h"
-#include "base/units.h"
+#include "case/read.h"
 #include "solver/step.h"
 #include <math.h>
 #include <omp.h>

@@ -5,6 +5,7 @@
 #include "run_fixture.h"
 
 #include "base/units.h"
+#include "io/h5_data.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

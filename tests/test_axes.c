@@ -5,7 +5,6 @@
 
 #include "base/mat3.h"
 #include "base/units.h"
-#include "model/model.h"
 #include "pre/mesher/work.h"
 #include "post/figures/figures.h"
 #include <gmshc.h>

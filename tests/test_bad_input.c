@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Wrong command lines, wrong cases, damaged files: each is refused with one sentence that says what is wrong
  * and a code that is not 0, and files from before stay as they were, byte by byte. */
+#include "io/h5_data.h"
+#include "model/model_io.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 
-#include "model/model.h"
 #include <errno.h>
 #include <math.h>
 #include <setjmp.h>

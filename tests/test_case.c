@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: what a good one gives. Its faults: test_case_refusals. */
-#include "material/foam_card.h"
+#include "case/read.h"
+#include "case/values.h"
 #include "case_fixture.h"
 
 #include <math.h>
@@ -246,6 +247,35 @@ static void include_may_be_absolute(void **state) {
     case_assert_refused(text, NULL, "case.cfg:5: syntax error", NULL);
 }
 
+/* `material = "NAME";` is the group of that foam of softfall, or of a material file; a line of its own. */
+static void material_may_be_a_name(void **state) {
+    (void)state;
+    static const char *const lines[] = {"material = \"leap\";\n", "  material : \"leap\" ; # a foam\n",
+                                        "material = \"materials/leap.cfg\"\n"};
+    sf_case c, same;
+    char text[4096];
+    case_write("materials/leap.cfg", "density = \"100 kg/m3\"; E = \"0.96 MPa\"; curve = \"../foam.csv\";\n");
+    snprintf(text, sizeof text, "%smaterial: {\n@include \"%s/examples/materials/leap.cfg\"\n};\n%s%s",
+             GEOMETRY, getenv("SF_SOURCE_DIR"), MISSILE, SOLVER);
+    case_read_good(text, NULL, &same);
+    for (int k = 0; k < 3; k++) {
+        snprintf(text, sizeof text, "%s%s%s%s", GEOMETRY, lines[k], MISSILE, SOLVER);
+        case_read_good(text, "material.DAMP=0.1", &c);
+        assert_true(sf_material_density(&c.material) == 100);
+        assert_int_equal(sf_material_curves(&c.material)->curve_points ==
+                             sf_material_curves(&same.material)->curve_points,
+                         k < 2);
+        sf_case_free(&c);
+    }
+    sf_case_free(&same);
+    case_assert_refused(GEOMETRY "material = \"laep\";\n" MISSILE SOLVER, NULL,
+                        "case.cfg:2: ", "no foam \"laep\"", "softfall foam list", NULL);
+    case_assert_refused(GEOMETRY "material = \"leap\"; missile: { };\n" SOLVER, NULL,
+                        "case.cfg:2: ", "must be a group", NULL);
+    case_assert_refused(GEOMETRY "material = \"leap\";\n" MISSILE "solver: { end_time = 3; };\n", NULL,
+                        "case.cfg:4: ", NULL);
+}
+
 static void h2_takes_limit_and_exponent(void **state) {
     (void)state;
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
@@ -322,6 +352,7 @@ int main(void) {
         cmocka_unit_test(response_errors_that_cannot_be_meant_are_refused),
         cmocka_unit_test(include_brings_its_own_folder_for_the_curve),
         cmocka_unit_test(include_may_be_absolute),
+        cmocka_unit_test(material_may_be_a_name),
         cmocka_unit_test(h2_takes_limit_and_exponent),
         cmocka_unit_test(examples_are_the_drops_they_are_called),
         cmocka_unit_test(reference_is_the_table),

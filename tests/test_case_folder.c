@@ -3,7 +3,6 @@
 #include "program_fixture.h"
 
 #include "study/case_folder.h"
-#include "case/case.h"
 #include "model_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case files: the sentence that each fault gets. */
+#include "case/read.h"
 #include "material/hyperfoam.h"
 #include "case_fixture.h"
 

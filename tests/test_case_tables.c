@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables that a case names: compression curves and motions, what they give and the sentence that each
  * fault gets. */
+#include "case/curves.h"
+#include "case/read.h"
 #include "case_fixture.h"
-#include "material/foam_card.h"
 
-#include "case/reader.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -5,7 +5,6 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "case/case.h"
 #include "study/cfh/cfh_report.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>

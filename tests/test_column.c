@@ -4,7 +4,6 @@
  * softfall-post does it. */
 #include "extreme.h"
 #include "foam_fixture.h"
-#include "post/figures/signal.h"
 #include "study/column.h"
 #include "study/fit/form/form.h"
 #include "post_check.h"

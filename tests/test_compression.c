@@ -6,8 +6,8 @@
 
 #include "material/curve.h"
 #include "base/mat3.h"
-#include "model/model.h"
-#include "solver/run/run.h"
+#include "model/motion.h"
+#include "solver/run/recorder.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>

@@ -2,7 +2,6 @@
 /* A pad must be one body: parts, overlaps, hinges and doubled cells are refused with their place. */
 #include "model_fixture.h"
 
-#include "pre/cloud/cloud.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

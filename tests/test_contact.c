@@ -6,7 +6,7 @@
 
 #include "base/mat3.h"
 #include "solver/contact/contact.h"
-#include "solver/run/run.h"
+#include "solver/run/frame.h"
 #include "solver/step.h"
 #include <math.h>
 #include <setjmp.h>

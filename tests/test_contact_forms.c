@@ -2,8 +2,11 @@
 /* Contact of the pad with itself and with a support against closed forms: two bars exchange their speeds, a
  * block that hits a plane or a block aslant, Hertz' contact of a sphere. The foam is linear elastic, its
  * Poisson's ratio is zero. */
+#include "case/read.h"
 #include "extreme.h"
 #include "layer_fixture.h"
+#include "model/model_check.h"
+#include "pre/make.h"
 #include "program_fixture.h"
 
 #include <math.h>
@@ -16,8 +19,6 @@
 #include <cmocka.h>
 
 #include "post_check.h"
-#include "pre/build.h"
-#include "solver/state.h"
 #include "solver/step.h"
 
 static const double MODULUS = 1e6, DENSITY = 100;           /* Pa, kg m-3 */

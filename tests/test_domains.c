@@ -7,7 +7,6 @@
 #include "model_fixture.h"
 
 #include "pre/cloud/cloud.h"
-#include "pre/cloud/dual.h"
 #include <math.h>
 #include <omp.h>
 #include <setjmp.h>

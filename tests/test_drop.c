@@ -6,7 +6,6 @@
 
 #include "material/curve.h"
 #include "base/hash.h"
-#include "solver/state.h"
 #include "solver/step.h"
 #include <math.h>
 #include <omp.h>

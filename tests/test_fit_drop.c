@@ -5,7 +5,6 @@
 #include "study/fit/form/form.h"
 #include "foam_fixture.h"
 #include "io/folder.h"
-#include "post/figures/signal.h"
 #include "post_check.h"
 #include "fit_fixture.h"
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The foam on the missile's path: the thickness of pads that are no flat blocks, parts of a missile that pass
  * between the nodes, missiles that are not symmetric about a plane of the pad. */
+#include "model/model_io.h"
 #include "program_fixture.h"
 
-#include "model/model.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -3,11 +3,9 @@
  * `<!-- end -->` is written from the lists in src/. With SF_WRITE_DOCS=1 in the environment the documents are
  * brought up to date instead. */
 #include "base/text.h"
-#include "model/columns.h"
-#include "model/good_run.h"
+#include "model/drop_kind.h"
 #include "model/model.h"
-#include "post/figures/figures.h"
-#include "post/figures/compare.h"
+#include "post/figures/record.h"
 #include "study/fit/form/form.h"
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,13 +2,12 @@
 /* The files of a run's folder: damaged, foreign, and how many bytes are written for them. Kills:
  * test_restart. */
 #include "check.h"
+#include "model/model_io.h"
 #include "program_fixture.h"
 #include "run_fixture.h"
 
 #include "model_fixture.h"
 
-#include "model/model.h"
-#include "io/replace.h"
 #include "post/results/results.h"
 #include "solver/run/run.h"
 #include <hdf5.h>

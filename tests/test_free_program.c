@@ -6,8 +6,7 @@
 #include "run_fixture.h"
 
 #include "base/mat3.h"
-#include "base/units.h"
-#include "model/model.h"
+#include "model/model_io.h"
 #include "post/figures/figures.h"
 #include <math.h>
 #include <setjmp.h>

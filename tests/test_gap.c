@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The case says how the missile arrives: no figure of the impact depends on missile.gap. */
+#include "model/flight.h"
 #include "program_fixture.h"
 
-#include "base/units.h"
-#include "model/model.h"
 #include "post/figures/figures.h"
 #include <math.h>
 #include <setjmp.h>

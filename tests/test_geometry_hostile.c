@@ -5,6 +5,7 @@
 #include "program_fixture.h"
 
 #include "pre/mesh/gmsh_session.h"
+#include "pre/mesh/mesh_store.h"
 
 #include <errno.h>
 #include <seccomp.h>

@@ -2,9 +2,9 @@
 /* The parts of the window that need no window: activities, names of a geometry's parameters, programs that
  * run beside it, files that change, what is read from the programs' words, and the skin of a mesh. The window
  * itself: test_gui. */
+#include "case/read.h"
 #include "program_fixture.h"
 
-#include "case/keys.h"
 #include "gui/session.h"
 #include "io/process.h"
 #include <errno.h>

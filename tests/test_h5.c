@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What an HDF5 file of a stranger may hold beside damage: claims of any size, links and data that lead to
  * other files, compressed bombs, texts that are arrays. None is followed, none is allocated. */
-#include "io/h5.h"
+#include "io/h5_data.h"
 #include "io/replace.h"
 #include "program_fixture.h"
 

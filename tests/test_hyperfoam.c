@@ -29,11 +29,14 @@ static sf_hyperfoam_card simple_card(double alpha, double nu) {
                                .term = {{.mu = 2e5, .alpha = alpha, .nu = nu}}};
 }
 
-/* Three terms, one of them softening. */
+/* Six terms, one of them softening. */
 static sf_hyperfoam_card rich_card(void) {
     sf_hyperfoam_card card = simple_card(9, 0.25);
     card.term[1] = (sf_hyperfoam_term){.mu = 8e4, .alpha = -1.5, .beta = 0.05};
     card.term[2] = (sf_hyperfoam_term){.mu = -3e4, .alpha = 3, .nu = 0};
+    card.term[3] = (sf_hyperfoam_term){.mu = 2e4, .alpha = 16, .nu = 0.1};
+    card.term[4] = (sf_hyperfoam_term){.mu = 1e4, .alpha = -4, .nu = 0.02};
+    card.term[5] = (sf_hyperfoam_term){.mu = 5e3, .alpha = 2, .beta = 0.3};
     return card;
 }
 
@@ -81,7 +84,7 @@ static void logarithm_and_exponential_are_those_of_the_library(void **state) {
 /* dW by stretch i, as the formula stands in the books; nu not 0. */
 static double book_stress(const sf_hyperfoam_card *card, const double x[3], int i) {
     double sum = 0, volume = x[0] * x[1] * x[2];
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < SF_HYPERFOAM_TERMS; k++) {
         const sf_hyperfoam_term *t = &card->term[k];
         if (t->mu != 0)
             sum += 2 * t->mu / t->alpha / x[i] *
@@ -92,7 +95,7 @@ static double book_stress(const sf_hyperfoam_card *card, const double x[3], int 
 
 static double book_energy(const sf_hyperfoam_card *card, const double x[3]) {
     double sum = 0, volume = x[0] * x[1] * x[2];
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < SF_HYPERFOAM_TERMS; k++) {
         const sf_hyperfoam_term *t = &card->term[k];
         double a = t->alpha, beta = t->beta + t->nu / (1 - 2 * t->nu);
         if (t->mu != 0)
@@ -235,7 +238,7 @@ static void small_strains_are_linear_elastic(void **state) {
     sf_hyperfoam_card card = rich_card();
     sf_hyperfoam foam = sf_hyperfoam_build(&card);
     double mu = 0, lame = 0;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < foam.count; k++) {
         mu += foam.mu[k];
         lame += 2 * foam.mu[k] * foam.beta[k];
     }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit compression with law = "hyperfoam": tests of a known law, the measured VN600, refusals; and a
  * cube of the material, pressed by the solver, against the closed form. */
+#include "case/read.h"
 #include "study/fit/compression/compression_kind.h"
-#include "case/case.h"
 #include "extreme.h"
 #include "post/results/results.h"
 #include "program_fixture.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-fit compression: its spline, its model against the solver's law and against its
  * own derivatives, and a fit from the files of tests to a material that softfall-pre reads. */
+#include "case/read.h"
 #include "material/low_density_foam.h"
 #include "study/fit/compression/table_fit.h"
 #include "material/laws.h"
-#include "case/case.h"
 
 #include <math.h>
 #include <setjmp.h>

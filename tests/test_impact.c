@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* missile.position: where the missile's lowest point arrives at the pad's top. */
 #include "model_fixture.h"
-#include "pre/build.h"
+#include "pre/missile_body.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,8 +2,8 @@
 /* Indentation and mean strain refer to the plane of the undeformed top, from which the thickness is measured,
  * and not to the first contact: over a hole the missile touches the rim when it is below that plane already.
  */
-#include "model/columns.h"
-#include "model/model.h"
+#include "io/h5_data.h"
+#include "model/model_io.h"
 #include "program_fixture.h"
 
 #include <math.h>

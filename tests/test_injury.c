@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "extreme.h"
-#include "post/figures/signal.h"
+#include "post/figures/injury.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,9 +3,8 @@
 #include "extreme.h"
 #include "foam_fixture.h"
 #include "model_fixture.h"
-
-#include "solver/field/field.h"
-#include "solver/state.h"
+#include "solver/field/domain_stress.h"
+#include "solver/time_step.h"
 
 #include <math.h>
 #include <omp.h>

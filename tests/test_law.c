@@ -3,10 +3,9 @@
 #include "extreme.h"
 #include "model_fixture.h"
 
-#include "material/foam_card.h"
 #include "point_fixture.h"
-#include "solver/field/field.h"
 #include "material/hyperfoam.h"
+#include "model/model_check.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

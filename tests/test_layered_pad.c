@@ -2,6 +2,7 @@
 /* A pad of layers through the three programs: its figures by layer, the same bits for any number of threads
  * and after a restart, and what is refused. */
 #include "extreme.h"
+#include "io/h5_data.h"
 #include "program_fixture.h"
 
 #include <math.h>

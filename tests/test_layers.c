@@ -3,6 +3,7 @@
  * stacks. verify/study_layers.c has the closed forms of slow compression and waves. */
 #include "extreme.h"
 #include "layer_fixture.h"
+#include "model/model_check.h"
 
 #include "pre/cloud/cloud.h"
 #include "solver/constraint/constraint.h"

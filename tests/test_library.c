@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* include/softfall/softfall.h as a host sees it, against what the programs compute. */
+#include "io/h5_data.h"
 #include "program_fixture.h"
 
 #include "model_fixture.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A fit writes no material that softfall-pre refuses. */
+#include "case/read.h"
 #include "study/material_file.h"
-#include "case/case.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 

@@ -2,7 +2,9 @@
 /* Membranes: forces and energy of a homogeneous strain, also of a fabric, the bound on the step, the bulge of
  * a clamped circle (Hencky 1915), a drop on a mat against a cover of cells, momentum, energy, threads and
  * restart, wrong keys. */
+#include "case/read.h"
 #include "model_fixture.h"
+#include "pre/make.h"
 #include "program_fixture.h"
 
 #include <math.h>
@@ -15,9 +17,7 @@
 #include <cmocka.h>
 
 #include "post_check.h"
-#include "pre/build.h"
 #include "solver/constraint/constraint.h"
-#include "solver/field/field.h"
 
 static const char *const COVER[] = {
     "membrane.faces=[\"top\"]",  "membrane.E=10 MPa",           "membrane.nu=0.3",

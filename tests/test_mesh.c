@@ -4,9 +4,7 @@
 #include "model_fixture.h"
 #include "program_fixture.h"
 
-#include "model/model.h"
 #include "pre/mesher/work.h"
-#include "pre/mesh/mesh.h"
 #include "pre/mesh/gmsh_session.h"
 
 #include <gmshc.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A mesh that is too coarse for its drop: refused, or named and marked in the files, by the law of
- * pre/build.h. */
+ * pre/drop_check.h. */
+#include "io/h5_data.h"
 #include "model_fixture.h"
-#include "pre/build.h"
 #include "program_fixture.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "solver/missile.h"
 
 #include "base/mat3.h"
-#include "model/model.h"
+#include "model/motion.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Is the missile a sphere, and where does it touch first? */
 #include "extreme.h"
-#include "pre/mesh/mesh.h"
+#include "pre/mesh/missile_shape.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The missiles of geo/missiles through gmsh: volume, centroid and inertia of their closed surfaces against
  * closed forms, and that their facets converge to them. */
-#include "pre/build.h"
 #include "model_fixture.h"
 #include "pre/mesh/gmsh_session.h"
+#include "pre/missile_body.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shape functions and the neighbour grid on random clouds. */
-#include "base/sets.h"
 
-#include "pre/cloud/cloud.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,6 +11,7 @@
 
 #include "point_fixture.h"
 #include "post_check.h"
+#include "pre/cloud/mls.h"
 
 enum { SIDE = 7, NODES = SIDE * SIDE * SIDE };
 

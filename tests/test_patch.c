@@ -6,7 +6,6 @@
 #include "model_fixture.h"
 
 #include "solver/constraint/constraint.h"
-#include "solver/field/field.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

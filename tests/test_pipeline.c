@@ -2,12 +2,12 @@
 /* The three programs in a row on the example case with a coarse pad, judged by the files that they leave. */
 #include "check.h"
 #include "extreme.h"
+#include "io/h5_data.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 
 #include "model/good_run.h"
-#include "io/h5.h"
-#include "model/model.h"
+#include "model/model_io.h"
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>

@@ -2,7 +2,7 @@
 /* Pad and missile that do not face each other: exchanged groups, a pad upside down, a missile inside the pad,
  * a surface turned away or without sides. */
 #include "model_fixture.h"
-#include "pre/mesh/mesh.h"
+#include "pre/mesh/missile_shape.h"
 #include "program_fixture.h"
 
 #include <math.h>

@@ -2,8 +2,6 @@
 /* softfall-post as a user runs it, on synthetic results with a closed-form history. */
 #include "check.h"
 #include "base/units.h"
-#include "post/figures/signal.h"
-#include "post/results/results.h"
 #include "post/view/cut.h"
 #include "post_fixture.h"
 

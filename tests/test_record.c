@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A measured record is judged before it is compared with: what laboratories' records suffer from. */
 #include "extreme.h"
-#include "post/figures/compare.h"
+#include "post/figures/reference.h"
 #include "program_fixture.h"
 
 #include <math.h>

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* report.html and its pictures: what stands in them, and that nothing has to be loaded to read them. */
 #include "check.h"
+#include "post/results/origin.h"
 #include "report/chart.h"
-#include "report/html.h"
 #include "post/view/cut.h"
-#include "post/results/results.h"
-#include "post/view/report.h"
+#include "post/view/plot.h"
 #include "post_fixture.h"
 #include "program_fixture.h"
 

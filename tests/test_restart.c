@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interrupted, killed, failed and prolonged runs of softfall-solve: the file always opens, nothing is lost,
  * and the bits are those of one run. SF_KILLS sets the number of kills (default 10). */
+#include "io/h5_data.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 #include "run_fixture.h"
 
-#include "io/h5.h"
-#include "model/model.h"
-#include "io/provenance.h"
 #include "io/replace.h"
-#include "material/foam_card.h"
+#include "model/model_io.h"
 #include "post/results/results.h"
 #include <hdf5.h>
 #include <math.h>

@@ -2,15 +2,15 @@
 /* Drops one after the other on the same pad: a series, the same drops run one by one, resumed, with other
  * threads, and what is refused. */
 #include "extreme.h"
+#include "io/h5_data.h"
 #include "model_fixture.h"
 #include "post_check.h"
 #include "program_fixture.h"
 #include "run_fixture.h"
 
-#include "base/units.h"
 #include "material/laws.h"
+#include "model/model_io.h"
 #include "study/column.h"
-#include "model/model.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,14 +2,14 @@
 /* The permanent set: the reference that it moves, its recovery, later drops on it against a thinner pad,
  * resumed and run one by one, and what is refused. */
 #include "extreme.h"
+#include "io/h5_data.h"
+#include "model/model_io.h"
 #include "model_fixture.h"
 #include "post_check.h"
 #include "program_fixture.h"
 #include "run_fixture.h"
+#include "solver/set.h"
 
-#include "base/units.h"
-#include "model/model.h"
-#include "solver/state.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

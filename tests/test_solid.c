@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Volume, centroid and inertia of closed surfaces, against closed forms. */
-#include "pre/build.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -12,6 +11,7 @@
 #include "body_fixture.h"
 #include "point_fixture.h"
 #include "post_check.h"
+#include "pre/missile_body.h"
 
 enum { BOX_NODES = 8, BOX_TRIANGLES = 12 };
 

@@ -3,8 +3,8 @@
  * its forces are the gradient of its energy. */
 #include "extreme.h"
 #include "model_fixture.h"
+#include "solver/field/domain_stress.h"
 
-#include "solver/field/field.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mesh and the domains of a geometry are made once for all drops with it: the model is the same, bit by
  * bit, and nothing is shared where something differs. */
+#include "io/h5_data.h"
+#include "model/model_io.h"
 #include "program_fixture.h"
 
-#include "model/model.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -5,9 +5,8 @@
 #include "post_check.h"
 #include "program_fixture.h"
 
-#include "material/foam_card.h"
 #include "material/laws.h"
-#include "model/model.h"
+#include "model/model_io.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -6,7 +6,7 @@
 
 #include "material/hyperfoam.h"
 #include "solver/step.h"
-#include "solver/state.h"
+#include "solver/time_step.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

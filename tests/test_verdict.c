@@ -2,7 +2,6 @@
 /* The verdict on a run: its rows from figures at and beyond their bounds, and softfall-post as it shows them
  * on synthetic results. */
 #include "post/figures/verdict.h"
-#include "post/results/results.h"
 #include "post_fixture.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 /* view.html of softfall-post: what it holds, how large it is, and how it works in a browser; how report.html
  * prints, and the words of a case about the test. What needs Chromium is skipped without it. */
 #include "check.h"
-#include "base/error.h"
+#include "io/h5_data.h"
 #include "model_fixture.h"
 #include "post/results/results.h"
 #include "program_fixture.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The kernel does not reach across a slit: a block with a slit of 4 mm, narrower than its supports of 17 mm.
  */
-#include "base/sets.h"
 #include "model_fixture.h"
 
 #include "pre/cloud/cloud.h"
+#include "pre/cloud/mls.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -5,7 +5,6 @@
 #ifndef SF_VERIFY_COLUMN_H
 #define SF_VERIFY_COLUMN_H
 
-#include "base/error.h"
 #include "material/foam_card.h"
 #include "post/figures/signal.h"
 

@@ -6,8 +6,8 @@
 
 #include "calculix/ccx.h"
 #include "calculix/indentation.h"
+#include "case/read.h"
 #include "material/curve.h"
-#include "case/case.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -8,7 +8,6 @@
 #include "model_fixture.h"
 #include "order.h"
 #include "base/program.h"
-#include "solver/state.h"
 #include "solver/step.h"
 #include "study.h"
 

@@ -5,10 +5,9 @@
 #include "mms_field.h"
 #include "model_fixture.h"
 #include "order.h"
+#include "solver/time_step.h"
 #include "study.h"
 
-#include "solver/constraint/constraint.h"
-#include "solver/state.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>

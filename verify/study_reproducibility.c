@@ -2,7 +2,7 @@
 /* Same input, same bits: threads, repeated runs, builds, units, mesh. And a quarter against the whole. */
 #include "extreme.h"
 #include "drop.h"
-#include "io/h5.h"
+#include "io/h5_data.h"
 #include "study.h"
 
 #include <math.h>

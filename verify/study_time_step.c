@@ -4,9 +4,9 @@
  * whole drop, and the power iteration at a size where nothing can be assembled. */
 #include "extreme.h"
 #include "model_fixture.h"
-#include "solver/field/field.h"
+#include "solver/field/domain_stress.h"
 #include "solver/step.h"
-#include "solver/state.h"
+#include "solver/time_step.h"
 #include "study.h"
 
 #include <gsl/gsl_eigen.h>

@@ -6,7 +6,7 @@
  * A case (case.cfg, docs/case.md) and its geometry give a model, which never changes after that. A drop is
  * the solution of a model as it advances in time. The figures are those of softfall-post, digit for digit.
  *
- * Two libraries: libsoftfall has all functions but those under "Building a model", which are in
+ * Two libraries: libsoftfall has all functions but those under "Building a model" and "Foams", which are in
  * libsoftfall-build, the only one that needs gmsh.
  *
  * Units are SI (m, kg, s, N, J, Pa), accelerations in figures are in g = 9.80665 m/s2. The frame is that of
@@ -89,6 +89,30 @@ SOFTFALL_API const char *softfall_case_parameters(const softfall_case *c);
  * freed. */
 SOFTFALL_API softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink,
                                                   softfall_model **out, softfall_error *error);
+
+/* ---- Foams (libsoftfall-build) ---- */
+
+typedef struct softfall_material softfall_material;
+
+/* Reads and checks a material file, which holds the keys of the group `material` of a case. `temperature`: of
+ * the pad, K; 0: none is given. */
+SOFTFALL_API softfall_status softfall_material_read(const char *path, double temperature,
+                                                    softfall_material **out, softfall_error *error);
+SOFTFALL_API void softfall_material_free(softfall_material *material);
+/* Its values, as softfall_case_parameters has them; owned by the material. */
+SOFTFALL_API const char *softfall_material_parameters(const softfall_material *material);
+/* The compression curve number `index` from 0, of ascending rates: the number of its points, 0: there is no
+ * such curve. `rate` is in 1/s, 0 if the material has one curve; `strain` and `stress` (Pa) are the
+ * material's. */
+SOFTFALL_API int64_t softfall_material_curve(const softfall_material *material, int index, double *rate,
+                                             const double **strain, const double **stress);
+/* Presses a point of the foam, from rest at the first point: `strain` over `time` (s) [count], straight
+ * between the points; fills `stress` [count], nominal, in Pa. Compression is positive. Strains are from -1 to
+ * below 1 and begin with 0, times ascend. `free_sides` 1: the foam bulges freely, 0: its sides are held, as
+ * those of a large pad. DAMP, which depends on the mesh, is left out. */
+SOFTFALL_API softfall_status softfall_compress(const softfall_material *material, int free_sides,
+                                               const double *time, const double *strain, int64_t count,
+                                               double *stress, softfall_error *error);
 
 /* ---- Models ---- */
 

@@ -64,7 +64,8 @@ class Advice:
 
     `probability` that the pad passes (NaN: nothing is required of its height), critical height with its 95 % interval (m; inf: above the heights
     looked at), `loss` (probability of a wrong decision, or relative length of the interval), `decision` (True, False, or None: go on), and
-    the choices from the best one on. `problem`: why nothing can be said.
+    the choices from the best one on. `problem`: why nothing can be said. `expected`: the pad is expected to pass, and no drop has shown it; the
+    choices are the drops that would.
     """
 
     probability: float
@@ -75,6 +76,7 @@ class Advice:
     stop: bool
     choices: list[Choice] = field(default_factory=list)
     problem: str = ""
+    expected: bool = False
 
 
 @dataclass(frozen=True)
@@ -380,8 +382,11 @@ def _median_height(pads: Pads, q: Question, place: Place, weight: np.ndarray, ju
     return min(float(quantiles(np.argsort(height), height, weight)[1]), place.highest / 1.2)
 
 
-def advise(pads: Pads, q: Question, tests: Sequence[Test] = ()) -> Advice:
-    """Returns the state of knowledge and the choices, among them compression tests."""
+def advise(pads: Pads, q: Question, tests: Sequence[Test] = (), unshown: Sequence[tuple[str, float]] = ()) -> Advice:
+    """Returns the state of knowledge and the choices, among them compression tests.
+
+    `unshown`: places and heights (m) where a passing pad lacks a measured drop that meets the limits; while there are any, it has not passed.
+    """
     for place in pads.judged:
         low, high = place.ends
         for h in (*q.heights, *([] if math.isnan(q.required) else [q.required])):
@@ -398,6 +403,8 @@ def advise(pads: Pads, q: Question, tests: Sequence[Test] = ()) -> Advice:
                        "none of them. Then give these drops to softfall-fit drop, and begin anew with its posterior and without them")
     if any(place.freedom == 0 for place in pads.judged):
         return replace(known, problem="the error of the columns is not known, as no draw was simulated with success")
+    if now <= q.bound and q.decides and share > 0.5 and unshown:
+        return replace(known, expected=True, choices=[_drop_choice(pads, loss, weight, now, *at) for at in unshown if at[0] in pads.places])
     if now <= q.bound:
         return replace(known, decision=share > 0.5 if q.decides else None, stop=True)
     choices = [_drop_choice(pads, loss, weight, now, name, h) for name, place in pads.places.items()

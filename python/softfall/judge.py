@@ -44,17 +44,23 @@ class Outcome:
     notes: list[str] = field(default_factory=list)
     probability: tuple[float, float, float] | None = None
     meaning: str = "value"  # of the lines' values
+    expected: bool = False  # the pad is expected to pass, and no measured drop has shown it
 
 
-def judge(p: Protocol, drops: Drops) -> Outcome:
-    """Returns the result of the drops by the rules of the protocol."""
+_PASSES = {False: "passed", True: "expected to pass"}
+
+
+def judge(p: Protocol, drops: Drops, simulated: bool = False) -> Outcome:
+    """Returns the result of the drops by the rules of the protocol. Only measured drops pass; simulated ones are expected to."""
     made = {"pass": _judge_pass, "critical height": _judge_height, "cushion curve": _judge_cushion}[p.kind](p, drops)
     made.notes += drops.missing
     alone = ["in what was simulated"] if any("is not simulated" in note for note in drops.missing) else []
     alone += ["by the first drop"] if drops.stands_in and 1 not in p.counted else []  # later drops on a spot are mostly harder
     if alone:
-        made.stated = f"not decided: passed {' and '.join(alone)} alone" if made.passed else f"{made.stated}, {' and '.join(alone)} alone"
+        made.stated = f"not decided: {_PASSES[simulated]} {' and '.join(alone)} alone" if made.passed else f"{made.stated}, {' and '.join(alone)} alone"
         made.passed = None if made.passed else made.passed
+    if made.passed and simulated:
+        made.passed, made.expected, made.stated = None, True, f"{_PASSES[True]}, by simulation; measured drops have to show it"
     if drops.doubt:
         made.passed, made.value, made.low, made.high = None, math.nan, math.nan, math.nan
         made.stated = f"not decided, as {drops.doubt} (as they are listed: {made.stated})"
@@ -106,6 +112,8 @@ def _judge_pass(p: Protocol, drops: Drops) -> Outcome:
         made.passed, made.stated = False, "not passed"
     elif any(passed is None for passed in judged):
         made.stated = f"not decided: {_why(made.lines)}"
+    elif not judged:
+        made.stated = f"not decided: {'no figure of the protocol has a limit' if made.lines else 'there is no drop'}"
     else:
         made.passed, made.stated = True, "passed"
     made.probability = _probability(p, drops)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes as c
 import functools
 import locale
+import os
+import re
 import threading
 from typing import Any, NamedTuple, Sequence
 
@@ -13,6 +15,8 @@ import numpy as np
 from . import programs
 from .errors import Error, failure
 
+_PARAMETER = re.compile(r'material\.(\S+)\s+("(?:[^"\\]|\\.)*"|\(.*\)|\S+)\s+(.*?)\s+(given|default)$')
+_NUMBER = re.compile(r"[-+]?[\d.]+(?:e[-+]?\d+)?")
 _one_at_a_time = threading.Lock()  # files are read by one thread at a time
 
 
@@ -32,7 +36,9 @@ def _load() -> c.CDLL:
             library.softfall_case_parameters.argtypes = library.softfall_case_free.argtypes = [c.c_void_p]
             for text in (library.softfall_record_verdict, library.softfall_record_interpretation):
                 text.restype, text.argtypes = c.c_char_p, [c.c_void_p]
-            library.softfall_record_curve.restype = c.c_int64
+            library.softfall_record_curve.restype = library.softfall_material_curve.restype = c.c_int64
+            library.softfall_material_parameters.restype = c.c_char_p
+            library.softfall_material_parameters.argtypes = library.softfall_material_free.argtypes = [c.c_void_p]
             library.softfall_record_grade.argtypes = library.softfall_record_free.argtypes = [c.c_void_p]
             return library
     raise Error(f"there is no library libsoftfall-build.so in {prefix}/lib, beside the programs of {programs.folder()}", 3)
@@ -86,6 +92,43 @@ def quantity(text: str) -> tuple[float, str]:
     with _one_at_a_time:
         _call("softfall_units_read", text.encode(), c.byref(value), c.byref(unit))
     return value.value, (unit.value or b"").decode()
+
+
+class Material:
+    """A foam of a material file: softfall_material_read, and all that it has."""
+
+    def __init__(self, path: str, temperature: float = 0.0) -> None:
+        self._handle, self._free = c.c_void_p(), _load().softfall_material_free
+        if "\0" in path:
+            raise failure(f"{path!r} has a zero byte", 2)
+        try:
+            with _one_at_a_time:
+                _call("softfall_material_read", os.fsencode(path), c.c_double(temperature), c.byref(self._handle))
+        except Error as error:
+            raise failure(str(error).removeprefix(f"--set material=@{path}: "), error.code) from None
+        self.values: dict[str, float | str] = {}  # by key within the group, in SI units or a word; without those that are absent
+        self.given: set[str] = set()
+        for line in _load().softfall_material_parameters(self._handle).decode(errors="replace").splitlines():
+            name, text, value, origin = _PARAMETER.match(line).groups()  # type: ignore[union-attr]
+            if text != "(absent)":
+                number = _NUMBER.match(value)
+                self.values[name] = float(number[0]) if number and name not in ("law", "curve", "curves") else text.strip('"')
+            if origin == "given":
+                self.given.add(name)
+        self.curves: list[tuple[float, np.ndarray, np.ndarray]] = []  # rate in 1/s (0: there is one curve), strain, stress in Pa
+        rate, strain, stress = c.c_double(), c.POINTER(c.c_double)(), c.POINTER(c.c_double)()
+        while count := _load().softfall_material_curve(self._handle, c.c_int(len(self.curves)), c.byref(rate), c.byref(strain), c.byref(stress)):
+            self.curves.append((rate.value, np.array(strain[:count]), np.array(stress[:count])))
+
+    def __del__(self) -> None:
+        if hasattr(self, "_free"):
+            self._free(self._handle)
+
+    def compress(self, time: Any, strain: Any, free_sides: bool = False) -> np.ndarray:
+        """softfall_compress: nominal stress in Pa; arrays of double of one length."""
+        stress = np.empty_like(strain)
+        _call("softfall_compress", self._handle, c.c_int(free_sides), _array(time), _array(strain), c.c_int64(strain.size), _array(stress))
+        return stress
 
 
 def hic(time: Any, deceleration: Any, window: float) -> tuple[float, float, float]:

@@ -15,7 +15,7 @@ from .errors import InputError, NumericError
 from .foam_draws import compression_stresses
 from .judge import Line, Outcome
 from .protocol import Condition, Figure, Missile, Position, Protocol
-from .protocol_drops import Drop, Drops, Search, case_at, folder_name, search, search_notes
+from .protocol_drops import Drop, Drops, Search, Spot, case_at, figures_of, folder_name, search, search_notes
 
 LISTED = 10
 
@@ -60,6 +60,27 @@ def _measured(p: Protocol, drops: Drops, pads: advice.Pads, notes: list[str]) ->
         else:
             made.append(advice.Drop(at, drop.spot.height, (_value(drop, p.figures, "a_max_g"), _value(drop, p.figures, "hic"))))
     return made
+
+
+def _shown(p: Protocol, measured: Drops, required: float) -> tuple[list[tuple[str, float]], list[str]]:
+    """Returns the places and heights (m) that lack a drop which shows that the pad passes, and measured spots that exceed a limit, in words.
+
+    Such a drop is counted, from the height asked for or above, and below every limit; a limit that is exceeded counts up to that height.
+    """
+    spots: dict[Spot, list[Drop]] = {}
+    for drop in measured.drops:
+        if not drop.spot.missile:
+            spots.setdefault(drop.spot, []).append(drop)
+    means = {spot: [(figures_of(group, f.label, p.counted), f.limit) for f in p.figures if f.limit is not None] for spot, group in spots.items()}
+    lacking, exceeded = [], []
+    for condition, position in ((c.name, q.name) for c in p.conditions for q in p.positions):
+        there = {spot: values for spot, values in means.items() if (spot.condition, spot.position) == (condition, position)}
+        for height in p.heights if p.kind == "pass" else (required,):
+            meets = any(values and all(value < limit for value, limit in values) for spot, values in there.items() if spot.height >= height - 1e-3)
+            lacking += [] if meets else [(_place_name(condition, position, ""), height)]
+            exceeded += [f"the measured drop at {spot} exceeds a limit" for spot, values in there.items()
+                         if spot.height <= height + 1e-3 and any(value >= limit for value, limit in values)]
+    return lacking, sorted(set(exceeded))
 
 
 def _expected(pads: advice.Pads, question: advice.Question, drop: advice.Drop) -> Iterator[Line]:
@@ -150,34 +171,40 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
     for drop in _measured(p, measured, pads, notes):
         lines += _expected(pads, question, drop)
         pads.learn(drop)
-    told = advice.advise(pads, question, _tests(p, Path(posterior), notes))
+    lacking, exceeded = _shown(p, measured, required) if question.decides else ([], [])
+    told = advice.advise(pads, question, _tests(p, Path(posterior), notes), lacking)
     notes += measured.missing
     notes.append(f"{pads.effective_draws:.0f} of {pads.draws} draws are left after what was measured")
-    unexpected = sum(bool(line.note) for line in lines)
+    unexpected, partial = sum(bool(line.note) for line in lines), any("is not simulated" in note for note in notes)
     doubts = [measured.doubt] if measured.doubt else []
     if unexpected:
         doubts.append(f"{unexpected} of {len(lines)} measured figures were not expected: check height and scale of the record, or the foam is none of the draws")
+    doubts += exceeded if told.decision or told.expected else []
     if doubts:
-        told = replace(told, decision=None, stop=False)
-    outcome = Outcome(_stated(p, question, told), told.decision, told.height[1], told.height[0], told.height[2], lines, notes,
-                      meaning="measured; the interval was expected before the drop")
+        told = replace(told, decision=None, stop=False, expected=False)
+    elif told.decision and (partial or 1 not in p.counted):
+        told = replace(told, decision=None, stop=False, expected=True)
+    stated = _stated(question, told, lacking)
     if doubts and not told.problem:
-        outcome.stated += f"; but {' and '.join(doubts)}"
-    if any("is not simulated" in note for note in notes) and told.decision:
-        outcome.passed, outcome.stated = None, outcome.stated + " in what was simulated, and not decided for the rest"
+        stated += f"; but {' and '.join(doubts)}"
+    if partial and told.expected:
+        stated += "; a part of the protocol is not simulated"
     if 1 not in p.counted:
-        outcome.passed = None if outcome.passed else outcome.passed
-        outcome.stated += "; this is of first drops, and those that count are not decided"
-    told = replace(told, decision=outcome.passed)
+        stated += "; this is of first drops, and those that count are not decided"
+    outcome = Outcome(stated, told.decision, told.height[1], told.height[0], told.height[2], lines, notes,
+                      meaning="measured; the interval was expected before the drop", expected=told.expected)
     notes += search_notes(p, searches)
     return told, outcome, Drops(searches=searches)
 
 
-def _stated(p: Protocol, question: advice.Question, told: advice.Advice) -> str:
+def _stated(question: advice.Question, told: advice.Advice, lacking: list[tuple[str, float]]) -> str:
     """Returns the state of knowledge in words."""
     known = f"probability of passing {told.probability:.2f}" if question.decides else f"interval of {100 * told.loss:.3g} % of the height"
     if told.problem:
         return f"not decided: {told.problem}"
+    if told.expected:
+        drops = " and ".join(f"a drop from {height:g} m, {place}" for place, height in lacking)
+        return f"not decided: expected to pass, not shown ({known})" + (f"; {drops} would show it" if drops else "")
     if told.stop:
         return f"{'passed' if told.decision else 'not passed'} ({known}); stop" if question.decides else f"stop ({known})"
     if not told.choices:

@@ -130,7 +130,7 @@ def perform(o: argparse.Namespace) -> str:
         else:
             parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, parts.get("measured"), **options)
     if not o.advise:
-        outcomes = {what: judge(p, drops) for what, drops in parts.items()}
+        outcomes = {what: judge(p, drops, what == "simulated") for what, drops in parts.items()}
         pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
     output.mkdir(parents=True, exist_ok=True)
     write(p, parts, outcomes, pairs, laboratory, photo, output, told, {**set_up, **({"measured records": str(o.measured)} if o.measured else {}), "command": " ".join(sys.argv[1:])})

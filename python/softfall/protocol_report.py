@@ -164,14 +164,14 @@ def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Out
         return [{key: _plain(value) for key, value in vars(line).items()} for line in outcome.lines]
 
     return {"caution": CAUTION, "protocol": p.name, "title": p.title, "standard": p.standard, "laboratory": dict(laboratory),
-            "results": {what: {"stated": o.stated, "passed": o.passed, "value_m": _plain(o.value), "low_m": _plain(o.low), "high_m": _plain(o.high),
+            "results": {what: {"stated": o.stated, "passed": o.passed, "expected_to_pass": o.expected, "value_m": _plain(o.value), "low_m": _plain(o.low), "high_m": _plain(o.high),
                                "probability": o.probability, "lines": lines(o), "notes": o.notes} for what, o in outcomes.items()},
             "drops": [{"kind": what, "condition": d.spot.condition, "position": d.spot.position, "missile": d.spot.missile, "height_m": d.spot.height, "mass": d.spot.mass,
                        "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "grade": d.grade, "note": d.note,
                        "source": d.source, "reading": d.reading, "view": None if d.view is None else str(d.view)} for what, drops in parts.items() for d in drops.all],
             "comparison": [{key: _plain(value) for key, value in pair.items()} for pair in pairs],
             "advice": advice and {"probability": _plain(advice.probability), "height_m": [_plain(h) for h in advice.height], "loss": _plain(advice.loss),
-                                  "bound": advice.bound, "stop": advice.stop, "decision": advice.decision, "problem": advice.problem,
+                                  "bound": advice.bound, "stop": advice.stop, "decision": advice.decision, "expected_to_pass": advice.expected, "problem": advice.problem,
                                   "choices": [{key: _plain(value) for key, value in vars(choice).items()} for choice in advice.choices]},
             "unconfirmed": [{"of": c.of, "text": c.text, "source": c.source} for c in p.unconfirmed]}
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* libsoftfall-build: cases, and models made of them. */
 #include "api/api.h"
-
-#include "pre/build.h"
+#include "case/read.h"
+#include "pre/make.h"
 
 struct softfall_case {
     sf_case data;

@@ -2,8 +2,14 @@
 /* libsoftfall: drops, their results and figures, models in files. */
 #include "api/api.h"
 #include "build_info.h"
+#include "io/h5_data.h"
+#include "model/flight.h"
+#include "model/model_check.h"
+#include "model/model_io.h"
 #include "post/figures/figures.h"
+#include "solver/run/frame.h"
 #include "solver/run/run.h"
+#include "solver/set.h"
 #include "solver/step.h"
 
 #include <omp.h>

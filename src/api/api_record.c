@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* libsoftfall: measured records of one impact. */
 #include "api/api.h"
-
-#include "post/figures/compare.h"
+#include "post/figures/reference.h"
 
 struct softfall_record {
     sf_reference reference;

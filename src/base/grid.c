@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/grid.h"
+
 #include "base/sets.h"
 
 #include "base/mat3.h"

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 
-/* Quantities with units: "4.5 m/s" to 4.5, "160 mm" to 0.16. UDUNITS-2 knows the size of each unit; the only
- * file that includes udunits2.h is units.c. Error messages quote the text and name its kind and the kind
+/* Quantities with units: "4.5 m/s" to 4.5, "160 mm" to 0.16. UDUNITS-2 knows the size of each unit; only
+ * units.c includes its header. Error messages quote the text and name its kind and the kind
  * expected. */
 
 /* m s-2: the g of a_max and of drop heights (CGPM 1901), and as the text of a quantity. */

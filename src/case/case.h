@@ -3,7 +3,7 @@
  * base/units.h. docs/case.md lists groups and keys.
  */
 #pragma once
-#include "model/good_run.h"
+#include "model/drop_kind.h"
 #include "model/model.h"
 
 enum {
@@ -29,7 +29,7 @@ typedef struct sf_geo_source {
     int parameter_count;
     sf_geo_parameter parameter[SF_CASE_MAX_PARAMETERS];
     double spacing_factor; /* -, for the parameters with "spacing" in their names; 0: none */
-    double unit; /* m per unit that it has or is to have; 0: not known */
+    double unit;           /* m per unit that it has or is to have; 0: not known */
 } sf_geo_source;
 
 /* A rigid fixed body that the pad may touch: a surface of a geometry, or a plane. */
@@ -141,29 +141,14 @@ typedef struct sf_case {
     int64_t counted;                   /* drops by which a series is judged: bit k for drop k + 1; 0: none */
 } sf_case;
 
-/* Reads and checks a case. `overrides`: `count` strings "group.key=value" as given to --set (value in
- * libconfig syntax or bare text, which is taken as a string). Refuses unknown groups and keys (naming file,
- * line and what exists), missing keys, wrong types, units of another dimension and values out of bounds.
- * Paths are relative to the file that holds the key (the case, or a file that it includes); @include is
- * relative to the case file's folder. Warnings and notes go to `sink`. On failure `*out` is zeroed. */
-sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
-                       sf_case *out, sf_error *err);
+/* Releases what a case owns. */
 void sf_case_free(sf_case *c);
+
 /* The interface of two layers, in either order; NULL: the case does not name it, and it is tied. */
 const sf_case_interface *sf_case_interface_find(const sf_case *c, int layer, int other);
 
 /* True if a list of groups has the name. */
 bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const char *name);
 
-/* Would a case with this material file (the keys of the group `material`) be refused for it, on a pad of this
- * temperature (K; 0: none is given)? The sentence names file, line and key. */
-sf_status sf_case_check_material(const char *path, double temperature, sf_error *err);
-/* The material of such a file; owned by the caller (sf_material_free). */
-sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err);
-
 /* Bytes of motion_time, and of motion_displacement; 0: the missile is free. */
 size_t sf_case_motion_bytes(const sf_case *c);
-
-/* Writes the table of all keys (value, bounds, default, meaning) as Markdown: `softfall-pre --keys`,
- * docs/case.md. */
-void sf_case_print_keys(FILE *file);

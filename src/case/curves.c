@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/reader.h"
+#include "case/curves.h"
 
+#include "model/motion.h"
 #include <gsl/gsl_sort.h>
 
 sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
@@ -368,8 +369,4 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
                        sf_case_where(reader, setting, where));
     snprintf(detail, size, "%lld points, to %g s", (long long)table.count, table.value[0][table.count - 1]);
     return SF_OK;
-}
-
-size_t sf_case_motion_bytes(const sf_case *c) {
-    return (size_t)c->motion_count * sizeof *c->motion_time;
 }

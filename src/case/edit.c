@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "case/edit.h"
+
 #include "case/grammar.h"
 
 #include "base/text.h"
-#include "case/keys.h"
+
+#include <string.h>
+
+#include "case/values.h"
 #include "io/plain_file.h"
 
 static sf_status no_memory(sf_error *err) {

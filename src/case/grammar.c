@@ -3,10 +3,12 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <limits.h>
 #include <string.h>
 
 #include "base/text.h"
 #include "io/plain_file.h"
+#include "io/process.h"
 #include "io/provenance.h"
 
 enum { MOST_WORDS = 20000, DEEPEST = 32, LONGEST = 4096 /* characters of a string */ };
@@ -275,6 +277,7 @@ typedef struct walk {
     FILE *out;
     int lines;              /* written */
     sf_case_source *source; /* NULL: not wanted */
+    bool of_case;           /* a line `material = "NAME";` stands for the file of that foam */
     bool marked, whole;     /* as sf_case_load_marked */
     const char *folder;     /* of the case: includes are relative to it */
     int includes;
@@ -329,16 +332,70 @@ static sf_status walk_include(walk *w, slice text, slice name, const char *path,
     return err->status;
 }
 
+/* The text in quotes of a line `material = "TEXT";` outside of groups; false: it is another line. */
+static bool finds_material(const scan_state *scan, slice line, slice *text) {
+    cursor c = {.at = line.text, .end = line.text + line.length};
+    if (scan->open || scan->depth > 0)
+        return false;
+    c.at += blanks(&c);
+    if (!begins(&c, "material"))
+        return false;
+    c.at += strlen("material");
+    c.at += blanks(&c);
+    if (!begins(&c, "=") && !begins(&c, ":"))
+        return false;
+    c.at++;
+    c.at += blanks(&c);
+    const char *end = begins(&c, "\"") ? memchr(c.at + 1, '"', (size_t)(c.end - c.at) - 1) : NULL;
+    if (!end)
+        return false;
+    *text = (slice){c.at + 1, (size_t)(end - c.at) - 1};
+    c.at = end + 1;
+    c.at += blanks(&c);
+    c.at += begins(&c, ";");
+    c.at += blanks(&c);
+    return c.at == c.end || begins(&c, "#") || begins(&c, "//") || begins(&c, "\r");
+}
+
+/* Puts the group of a material file in place of a line `material = "NAME";`: that of a foam which comes with
+ * softfall, or of a path, which has a dot or a slash. */
+static sf_status walk_material(walk *w, slice name, const char *path, int line, int depth, sf_error *err) {
+    static const char FOAMS[] = "examples/materials";
+    char file[PATH_MAX];
+    SF_OWNED char *include = NULL;
+    bool is_path = memchr(name.text, '.', name.length) || memchr(name.text, '/', name.length);
+    SF_PRINTED(shared, PATH_MAX, "%s/%.*s.cfg", FOAMS, (int)name.length, name.text);
+    if (is_path)
+        snprintf(file, sizeof file, "%.*s", (int)name.length, name.text);
+    else if (name.length == 0 || sf_process_find_shared(shared, file, sizeof file, SF_IGNORED) != SF_OK)
+        return SF_REFUSE(err,
+                         "%s:%d: material: there is no foam \"%.*s\"; `softfall foam list` lists them, and a "
+                         "material file has a name such as \"foam/material.cfg\"",
+                         path, line, (int)name.length, name.text);
+    if (asprintf(&include, "@include \"%s\"", file) < 0)
+        return no_memory(path, err);
+    fputs("material: {\n", w->out);
+    w->lines++;
+    SF_TRY(walk_include(w, (slice){include, strlen(include)}, (slice){include + 10, strlen(file)}, path, line,
+                        depth, err));
+    fputs("};\n", w->out);
+    w->lines++;
+    return begin_piece(w, path, line + 1, err);
+}
+
 static sf_status walk_lines(walk *w, const char *text, size_t size, const char *path, int depth,
                             sf_error *err) {
     for (int line = 1; size > 0; line++) {
         const char *end = memchr(text, '\n', size);
         size_t length = end ? (size_t)(end - text) : size;
-        slice include;
+        slice include, material = {0};
         w->scan.path = path;
         w->scan.line = line;
+        bool named = w->of_case && depth == 0 && finds_material(&w->scan, (slice){text, length}, &material);
         SF_TRY(scan_line(&w->scan, text, length, &include, err));
-        if (include.text) {
+        if (named) {
+            SF_TRY(walk_material(w, material, path, line, depth, err));
+        } else if (include.text) {
             SF_TRY(walk_include(w, (slice){text, length}, include, path, line, depth, err));
         } else {
             if (w->marked && (memchr(text, SF_CASE_BEGIN, length) || memchr(text, SF_CASE_END, length)))
@@ -380,7 +437,7 @@ static sf_status walk_file(walk *w, const char *path, const char *from, int line
 
 /* A file that stands in place of a group, each line as a comment. */
 static sf_status copy_as_comment(const char *path, FILE *out, sf_error *err) {
-    SF_OWNED char *text = sf_case_load_text(path, 0, NULL, NULL, err);
+    SF_OWNED char *text = sf_case_load_text(path, false, 0, NULL, NULL, err);
     char *rest = text;
     for (char *line = strsep(&rest, "\n"); line && (rest || *line); line = strsep(&rest, "\n"))
         fprintf(out, "#     %s\n", line);
@@ -414,13 +471,13 @@ static char *load(walk *w, const char *path, int count, const char *const *overr
     return sf_keep(text, err);
 }
 
-char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
-                        sf_error *err) {
-    return load(&(walk){.source = source}, path, count, overrides, err);
+char *sf_case_load_text(const char *path, bool of_case, int count, const char *const *overrides,
+                        sf_case_source *source, sf_error *err) {
+    return load(&(walk){.source = source, .of_case = of_case}, path, count, overrides, err);
 }
 
 char *sf_case_load_marked(const char *path, bool whole, sf_error *err) {
-    return load(&(walk){.marked = true, .whole = whole}, path, 0, NULL, err);
+    return load(&(walk){.marked = true, .whole = whole, .of_case = true}, path, 0, NULL, err);
 }
 
 const char *sf_case_syntax_phrase(const char *text) {

@@ -16,7 +16,7 @@ sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err);
 const char *sf_case_syntax_phrase(const char *libconfig_text);
 
 /* The text of a file in libconfig syntax with its includes put in place, and where each of its lines comes
- * from; looked over by case/grammar.h. libconfig's own @include takes no absolute paths beside relative ones,
+ * from; looked over as above. libconfig's own @include takes no absolute paths beside relative ones,
  * and its scanner ends the process on a folder. */
 
 enum { SF_CASE_WHERE_SIZE = 512 /* of a text that says where a setting stands */ };
@@ -34,9 +34,11 @@ typedef struct sf_case_source {
 } sf_case_source;
 
 /* The text of the case with its includes put in place and the overrides as comments; from malloc. Includes
- * that are missing or no plain files are refused. `source` (may be NULL) is filled. */
-char *sf_case_load_text(const char *path, int count, const char *const *overrides, sf_case_source *source,
-                        sf_error *err);
+ * that are missing or no plain files are refused. `of_case`: the file is a case, in which a line `material =
+ * "NAME";` stands for the file of that foam; others are left as they are. `source` (may be NULL) is filled.
+ */
+char *sf_case_load_text(const char *path, bool of_case, int count, const char *const *overrides,
+                        sf_case_source *source, sf_error *err);
 /* The text of a case file for case/edit.c: two marks, comments on lines of their own, frame the text of an
  * included file: "#" and SF_CASE_BEGIN with the line of the include behind them, "#" and SF_CASE_END. No
  * other line holds these characters. `whole`: the includes are named from / on. From malloc, NULL on failure.
@@ -56,34 +58,3 @@ char *sf_case_folder_of(const char *path, sf_error *err);
 /* The file of a text "group=@file" or "materials.NAME=@file", NULL for "group.key=value". Relative to the
  * working directory. */
 const char *sf_case_override_file(const char *text);
-
-/* The text of a case with its includes in place, to be changed and written at another place: its lines stay
- * as they are but for the values of --set texts and the names of files. Only of cases that sf_case_read took
- * with the same texts. sf_case_load_marked reads it. */
-
-/* Puts a --set text, "group.key=value" or "group=@file", where it belongs; the names of files in it become
- * paths from /. `*text` is from malloc and may move; `path` is that of the case. */
-sf_status sf_case_edit_set(char **text, const char *path, const char *set, sf_error *err);
-
-enum { SF_EDIT_PATH_SIZE = 256 };
-
-/* The value of a setting: text[begin, end), with the brackets of a group, list or array. */
-typedef struct sf_edit_setting {
-    char path[SF_EDIT_PATH_SIZE]; /* "group.key"; within a list that of the list, and the names below it */
-    size_t begin, end;
-} sf_edit_setting;
-
-typedef struct sf_edit_settings {
-    int count;
-    sf_edit_setting *setting; /* [count] in the order of the text, a group before the settings in it; owned */
-} sf_edit_settings;
-
-/* Finds the settings, or those that name files. Release with free(settings->setting), also on failure. */
-sf_status sf_case_edit_find(const char *text, bool only_files, sf_edit_settings *settings, sf_error *err);
-
-/* The new name of the file that the setting `path` calls `name`; from malloc, NULL on failure. */
-typedef char *sf_edit_rename(void *context, const char *path, const char *name, sf_error *err);
-
-/* Writes text[begin, end) with new names of the files. SF_ERR_INPUT: one of the names does not end there. */
-sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const sf_edit_settings *files,
-                             sf_edit_rename *rename, void *context, FILE *out, sf_error *err);

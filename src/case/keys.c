@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/keys.h"
 
+#include "model/motion.h"
 #include <assert.h>
 
 #define AT(member) .offset = offsetof(sf_case, member)

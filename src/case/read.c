@@ -2,11 +2,14 @@
 /* Reads a case: file, overrides, unknown keys, the rows of the table, then the rules that join several keys.
  */
 
-#include "case/reader.h"
+#include "case/read.h"
 
 #include "base/hash.h"
 #include "base/mat3.h"
 #include "base/text.h"
+#include "case/rules.h"
+#include "case/value.h"
+#include "case/values.h"
 #include "material/laws.h"
 
 enum { NAMED_UNKNOWN = 10 };
@@ -436,7 +439,7 @@ static sf_status begin_reading(sf_case_reader *reader, int count, const char *co
         if (sf_case_override(&reader->config, material, err) == SF_OK && choose_law(reader, err) == SF_OK)
             check_names(reader, config_root_setting(&reader->config), "", err);
     } else if (err->status == SF_OK &&
-               (c->text = sf_case_load_text(reader->path, count, overrides, &reader->source, err))) {
+               (c->text = sf_case_load_text(reader->path, true, count, overrides, &reader->source, err))) {
         parse_text(reader, count, overrides, err);
     }
     return err->status;
@@ -495,22 +498,17 @@ sf_status sf_case_check_material(const char *path, double temperature, sf_error 
     return read_alone(path, &scratch, err);
 }
 
-sf_status sf_case_read_material(const char *path, sf_material *material, sf_error *err) {
-    SF_OWNED_BY(sf_case_free) sf_case scratch = {0};
+sf_status sf_case_read_material(const char *path, double temperature, sf_material *material,
+                                char **parameters, sf_error *err) {
+    SF_OWNED_BY(sf_case_free) sf_case scratch = {.run.temperature = temperature};
     *material = (sf_material){0};
-    if (read_alone(path, &scratch, err) == SF_OK) {
-        *material = scratch.material;
-        scratch.material = (sf_material){0};
+    if (read_alone(path, &scratch, err) != SF_OK)
+        return err->status;
+    *material = scratch.material;
+    scratch.material = (sf_material){0};
+    if (parameters) {
+        *parameters = scratch.parameters;
+        scratch.parameters = NULL;
     }
-    return err->status;
-}
-
-void sf_case_free(sf_case *c) {
-    for (int k = 0; k < SF_SUPPORTS; k++)
-        free(c->support[k].source.path);
-    sf_material_free(&c->material);
-    for (int k = 0; c->layer && k < c->layer_count; k++)
-        sf_material_free(&c->layer[k]);
-    SF_CLEAR(c, c->path, c->text, c->parameters, c->geometry_files, c->pad.path, c->missile.path, c->layer,
-             c->motion_time, c->motion_displacement);
+    return SF_OK;
 }

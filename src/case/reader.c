@@ -170,7 +170,7 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
     SF_OWNED_BY(config_destroy) config_t scratch;
     config_init(&scratch);
     SF_OWNED_BY(sf_case_source_free) sf_case_source lines = {0};
-    SF_OWNED char *whole = sf_case_load_text(path, 0, NULL, &lines, err);
+    SF_OWNED char *whole = sf_case_load_text(path, false, 0, NULL, &lines, err);
     if (whole) {
         const copy_source source = {.source = &lines};
         const char *dot = strchr(name, '.'), *member = dot ? dot + 1 : name;

@@ -4,7 +4,6 @@
 #pragma once
 #include "case/keys.h"
 #include "case/grammar.h"
-#include "io/table_csv.h"
 
 typedef struct sf_case_reader {
     const char *path; /* of the case file, as given */
@@ -65,70 +64,9 @@ bool sf_case_is_given(const sf_case_reader *reader, const char *group, const cha
 /* Records that the key is missing. */
 sf_status sf_case_missing_key(const sf_case_reader *reader, const sf_key *key, sf_error *err);
 
-/* The rules that join several keys of a case, or a key with the law of the material. Each refusal is
- * SF_ERR_INPUT with place, key, value and bound. Internal to src/case. */
-
-/* Puts an entry of the list `interfaces`, that of the reader, into the case; `group`: its settings. */
-sf_status sf_case_add_interface(const sf_case_reader *reader, const config_setting_t *group, sf_error *err);
-/* The card of the reader's material, and the law as the solver will build it. */
-sf_status sf_case_check_card(const sf_case_reader *reader, sf_error *err);
-/* The values as they are given. */
-sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err);
-/* The complete case; warnings go to the reader's sink. */
-sf_status sf_case_check_complete(const sf_case_reader *reader, sf_error *err);
-
-/* One setting of each kind of key. Internal to src/case. */
-
-/* Reads one setting into the case. `detail` receives the SI value for the listing. */
-sf_status sf_case_read_value(sf_case_reader *reader, const sf_key *key, const config_setting_t *setting,
-                             char *detail, size_t size, sf_error *err);
-
-/* The group response_error of a material, which belongs to no law: softfall-fit drop writes it into the draws
- * of a posterior, softfall-cfh uses it, the other programs check it and leave it. Internal to src/case. */
-
-#define SF_RESPONSE_ERROR "response_error"
-
-/* True if this is the group `response_error` in the group of the reader's material. */
-bool sf_case_is_response_error(const sf_case_reader *reader, const char *group, const char *name);
-
-/* Reads it into the case, if the material has it. SF_ERR_INPUT: no group, an unknown key, a value that is no
- * number or out of bounds, an error without its standard deviation. Of a layer it is checked only. */
-sf_status sf_case_read_response_error(sf_case_reader *reader, sf_error *err);
-
 /* Values from the command line. Internal to src/case. */
 
 /* Puts one --set text into the configuration, whose destructor must be free(). */
 sf_status sf_case_override(config_t *config, const char *text, sf_error *err);
 /* Puts what the list `series.drops` says of a drop, from 1, into the group `missile`. */
 sf_status sf_case_take_drop(sf_case_reader *reader, int drop, sf_error *err);
-
-/* A compression curve from a CSV file (io/table_csv.h): columns `strain` or `strain_percent` and `stress_Pa`,
- * `stress_kPa` or `stress_MPa`, or a strain and a stress with units; then one point per line. Engineering
- * strain and nominal stress, positive in compression. */
-
-enum { SF_CURVE_MIN_POINTS = 4 };
-#define SF_CURVE_MIN_END 0.2 /* a shorter table does not cover the strains of an impact */
-
-typedef struct sf_case_curve {
-    int64_t count;
-    double *strain;                               /* [count] -, strictly increasing from 0, below 1; owned */
-    double *stress;                               /* [count] Pa, from 0, non-decreasing, finite; owned */
-    char interpretation[SF_TABLE_INTERPRETATION]; /* how the file was read; empty: plainly */
-    bool extended; /* the file began above zero strain and (0, 0) was put before it */
-} sf_case_curve;
-
-/* Returns the layout of a curve file, also of tests with unloading; `what` names the file in sentences. */
-sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check);
-
-/* Reads and checks a curve; SF_ERR_INPUT names file, line and value. On failure `*curve` is zeroed. */
-sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *err);
-void sf_case_curve_free(sf_case_curve *curve);
-
-/* The keys material.curve and material.curves. Internal to src/case. */
-
-/* The readers of SF_KEY_CURVE and SF_KEY_CURVES. */
-sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
-                              size_t size, sf_error *err);
-/* The reader of SF_KEY_MOTION, the displacement over time of a missile that a machine drives. */
-sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *setting, char *detail,
-                              size_t size, sf_error *err);

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "case/reader.h"
+#include "case/rules.h"
 
 #include "base/mat3.h"
 #include "material/laws.h"
+#include "model/flight.h"
+#include "model/motion.h"
 
 #define AT(path) sf_case_setting(reader, path)
 #define REFUSE_AT(path, ...) SF_REFUSE_AT(reader, AT(path), err, __VA_ARGS__)
@@ -234,15 +236,6 @@ static int find_layer(const sf_case *c, const char *name, size_t length) {
     return -1;
 }
 
-const sf_case_interface *sf_case_interface_find(const sf_case *c, int layer, int other) {
-    for (int k = 0; k < c->interface_count; k++) {
-        const int *own = c->interface[k].layer;
-        if ((own[0] == layer && own[1] == other) || (own[0] == other && own[1] == layer))
-            return &c->interface[k];
-    }
-    return NULL;
-}
-
 sf_status sf_case_add_interface(const sf_case_reader *reader, const config_setting_t *group, sf_error *err) {
     static const char *const kind[] = {"tied", "sliding", "loose"};
     const sf_interface_entry *entry = &reader->entry;
@@ -325,13 +318,6 @@ static sf_status check_layers(const sf_case_reader *reader, sf_error *err) {
                  c->layer[k].name);
     }
     return SF_OK;
-}
-
-bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const char *name) {
-    for (int g = 0; g < count; g++)
-        if (strcmp(list[g], name) == 0)
-            return true;
-    return false;
 }
 
 /* Friction and weight belong to a pad that rests. */

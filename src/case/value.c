@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 
+#include "case/value.h"
+
 #include <ctype.h>
 #include <gsl/gsl_sort.h>
 
 #include "base/text.h"
-#include "case/reader.h"
+
+#include "case/curves.h"
 #include "io/plain_file.h"
 
 /* Reads one value of each kind of sf_key_kind into the case. */

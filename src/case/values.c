@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "case/values.h"
+
 #include "case/keys.h"
 
 #include "material/laws.h"

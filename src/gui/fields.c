@@ -4,7 +4,7 @@
 #include <ctype.h>
 
 #include "base/text.h"
-#include "case/keys.h"
+#include "case/read.h"
 #include "io/plain_file.h"
 #include "pre/mesh/geo_parameters.h"
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/session.h"
+#include "io/h5_data.h"
 
 #include "io/plain_file.h"
-#include "pre/build.h"
+#include "model/model_io.h"
+#include "pre/model_report.h"
 
 /* ---- shape of a drop ---- */
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gui/session.h"
 
+#include "case/read.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/replace.h"

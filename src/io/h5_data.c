@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "io/h5.h"
+#include "io/h5_data.h"
 
 #include "io/h5_file.h"
 #include <string.h>
@@ -412,31 +412,4 @@ sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error
     if (H5Lcreate_external(target, path, file->id, path, links, H5P_DEFAULT) < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: no link %s to %s can be made", file->path, path, target);
     return SF_OK;
-}
-
-const char *sf_h5_version(void) {
-    return &H5_VERS_INFO[sizeof "HDF5 library version: " - 1];
-}
-
-sf_status sf_members_write(sf_h5 *file, const char *group, const sf_member *member, size_t count,
-                           const void *base, sf_error *err) {
-    for (size_t k = 0; k < count && err->status == SF_OK; k++) {
-        int64_t items = member[k].count;
-        SF_PRINTED(path, 128, "%s/%s", group, member[k].name);
-        sf_h5_info info = {path, member[k].units, member[k].description};
-        sf_h5_write(file, &info, member[k].type, 1, &items, (const char *)base + member[k].offset, err);
-    }
-    return err->status;
-}
-
-sf_status sf_members_read(const sf_h5 *file, const char *group, const sf_member *member, size_t count,
-                          void *base, sf_error *err) {
-    for (size_t k = 0; k < count && err->status == SF_OK; k++) {
-        SF_OWNED void *data = NULL;
-        int64_t items = member[k].count;
-        SF_PRINTED(path, 128, "%s/%s", group, member[k].name);
-        if (sf_h5_read(file, path, member[k].type, 1, &items, &data, err) == SF_OK)
-            memcpy((char *)base + member[k].offset, data, (size_t)items * 8);
-    }
-    return err->status;
 }

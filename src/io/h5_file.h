@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An open HDF5 file and the objects in it. Internal to src/io: h5.c opens files and finds objects, h5_data.c
- * reads and writes what they hold. */
+/* An open HDF5 file, and how an object is found in it and in the files of its run's folder. Internal to
+ * src/io: h5.c opens files, h5_data.c reads and writes what the objects hold. */
 #pragma once
+#include "base/error.h"
 #include <hdf5.h>
 #include <limits.h>
-#include <stdbool.h>
-#include <stdint.h>
 
 typedef struct sf_h5 {
     hid_t id;
@@ -13,6 +12,11 @@ typedef struct sf_h5 {
     bool alone;                 /* no link is followed, not even into its own folder */
     char checked[NAME_MAX + 1]; /* the file of that folder whose seal was checked last */
 } sf_h5;
+
+/* Opens a file that passes the gate; -1 on failure. HDF5 gets the descriptor by its name in /proc: it opens
+ * the very file that was looked at, whatever stands at `path` meanwhile. Without /proc it looks for the path.
+ */
+hid_t sf_h5_open_plain(const char *path, sf_error *err);
 
 /* A path leads to its object not at all, by hard links, by another link, or into a damaged file. */
 enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE, LINK_DAMAGED };

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/process.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <spawn.h>
+#include <stdint.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -35,12 +37,28 @@ sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *e
     return SF_OK;
 }
 
+static bool is_shared_below(const char *folder, const char *way, const char *name, char *path, size_t size) {
+    return snprintf(path, size, "%s/%s/share/softfall/%s", folder, way, name) < (int)size &&
+           access(path, R_OK) == 0;
+}
+
 sf_status sf_process_find_shared(const char *name, char *path, size_t size, sf_error *err) {
-    char folder[PATH_MAX];
+    char folder[PATH_MAX], library[PATH_MAX];
+    Dl_info here; /* of a library in the process of a host */
     SF_TRY(find_folder(folder, err));
-    if (snprintf(path, size, "%s/../share/softfall/%s", folder, name) >= (int)size || access(path, R_OK) != 0)
-        return SF_FAIL(err, SF_ERR_IO, "%s, which comes with softfall, is missing: install it again", path);
-    return SF_OK;
+    if (is_shared_below(folder, "..", name, path, size))
+        return SF_OK;
+    const char *given = getenv("SF_BIN_DIR"); /* is believed: nothing is looked for elsewhere */
+    if (!(given && *given) && dladdr((const void *)(uintptr_t)sf_process_find_shared, &here) != 0 &&
+        realpath(here.dli_fname, library)) {
+        *strrchr(library, '/') = '\0';
+        if (is_shared_below(library, "..", name, path, size) ||
+            is_shared_below(library, "../..", name, path, size))
+            return SF_OK;
+    }
+    return SF_FAIL(err, SF_ERR_IO,
+                   "%s/../share/softfall/%s, which comes with softfall, is missing: install it again", folder,
+                   name);
 }
 
 bool sf_process_is_in_path(const char *name) {

@@ -11,8 +11,8 @@
  * program. SF_ERR_IO if it is not there. */
 sf_status sf_process_find(const char *name, char *path, size_t size, sf_error *err);
 
-/* A file or folder that comes with softfall: share/softfall/`name` beside the folder of the programs.
- * SF_ERR_IO if it is not there. */
+/* A file or folder that comes with softfall: share/softfall/`name` beside the folder of the programs, or of
+ * the library. SF_ERR_IO if it is not there. */
 sf_status sf_process_find_shared(const char *name, char *path, size_t size, sf_error *err);
 
 /* True if there is a program of this name in PATH. */

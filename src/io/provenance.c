@@ -2,6 +2,7 @@
 #include "io/provenance.h"
 
 #include "build_info.h"
+#include "io/h5_data.h"
 #include <string.h>
 #include <time.h>
 

@@ -2,6 +2,8 @@
 #include "io/table_csv.h"
 
 #include "base/text.h"
+#include "io/table_heading.h"
+#include "io/table_text.h"
 #include <ctype.h>
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "io/table_csv.h"
+#include "io/table_heading.h"
 
 #include "base/text.h"
 #include "io/plain_file.h"

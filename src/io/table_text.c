@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The text of a table's file, its lines and its numbers with groups of digits. */
-#include "io/table_csv.h"
+#include "io/table_text.h"
 
 #include "base/text.h"
 #include "io/plain_file.h"
+#include "io/table_heading.h"
 
 #include <iconv.h>
 #include <math.h>

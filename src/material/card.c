@@ -52,6 +52,10 @@ bool sf_parameter_acts(const sf_parameter *p, const void *card) {
     return !p->acts || p->acts(card);
 }
 
+bool sf_parameter_is_stored(const sf_parameter *p, const void *card) {
+    return p->kind <= SF_PARAMETER_CHOICE && (!p->optional || sf_parameter_acts(p, card));
+}
+
 /* ---- checks ---- */
 
 static sf_status check_parameter(const sf_material *m, const sf_parameter *p, int64_t index, sf_error *err) {
@@ -148,7 +152,7 @@ uint64_t sf_material_hash(uint64_t hash, const sf_material *m) {
     hash = sf_hash_identity(hash, m->name, strlen(m->name));
     hash = sf_hash_identity(hash, m->law->name, strlen(m->law->name));
     for (int k = 0; k < m->law->parameter_count; k++)
-        if (m->law->parameter[k].kind <= SF_PARAMETER_CHOICE) /* 8 bytes each */
+        if (sf_parameter_is_stored(&m->law->parameter[k], m->card)) /* 8 bytes each */
             hash = sf_hash_identity(hash, (const char *)m->card + m->law->parameter[k].offset, 8);
     const sf_law_curves *c = sf_material_curves(m);
     if (!c || c->curve_count == 0)

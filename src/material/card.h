@@ -47,6 +47,8 @@ typedef struct sf_parameter {
     double unit_size;
     bool (*acts)(const void *card); /* false: the value changes nothing, may be 0, and is not written to a
                                        material file. NULL = always */
+    bool optional; /* where it does not act it is neither stored in a model nor hashed, so that models of
+                      before it keep both */
 } sf_parameter;
 
 /* Compression curves: `curve_count` of them, in ascending strain rate; points of curve k are [curve_ptr[k],
@@ -144,6 +146,9 @@ typedef struct sf_law {
      * (s); returns the nominal stress (Pa), compression positive. Without the terms that depend on a
      * length. */
     double (*uniaxial)(const void *numbers, double dt, double strain, struct sf_uniaxial *point);
+    /* Returns the lateral stretch of uniaxial compression with free sides, where the stress of loading across
+     * it vanishes; NaN if there is none. NULL: 1. */
+    double (*lateral)(const void *numbers, double strain);
 } sf_law;
 
 /* sf_material: a law and a card of it. The functions here use the law's declarations and depend on no
@@ -181,3 +186,5 @@ uint64_t sf_material_hash(uint64_t hash, const sf_material *material);
 
 /* True if the value at `parameter` has an effect. */
 bool sf_parameter_acts(const sf_parameter *parameter, const void *card);
+/* True if the value is a dataset of its own in model.h5, and part of the hash. */
+bool sf_parameter_is_stored(const sf_parameter *parameter, const void *card);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "material/hyperfoam.h"
 
-/* The entry of the hyperfoam in the table of laws: its parameters and rules. The update of a batch is in
- * hyperfoam_point.c. */
+/* The entry of the hyperfoam in the table of laws: its parameters, its rules and its loading law. The terms
+ * that all foams share are in foam_point.c. */
 
 /* ---- parameters ---- */
 
@@ -24,19 +24,23 @@ static const sf_hyperfoam_term *term(const void *card, int k) {
 ACTS(0)
 ACTS(1)
 ACTS(2)
+ACTS(3)
+ACTS(4)
+ACTS(5)
 
 #define AT(member) .offset = offsetof(sf_hyperfoam_card, member)
 /* clang-format off */
-#define TERM(k, group, no_mu, no_alpha) \
+#define TERM(k, group, no_mu, no_alpha, late) \
     {group, "mu", SF_PARAMETER_QUANTITY, no_mu, AT(term[k].mu), \
      "shear modulus of the term, at rest; those of all terms add up; may be negative", .quantity = SF_PRESSURE, \
-     .low = -1e12, .high = 1e12, SF_FOAM_IN("kPa", 1e3), .acts = has_term_##k}, \
+     .low = -1e12, .high = 1e12, SF_FOAM_IN("kPa", 1e3), .acts = has_term_##k, .optional = late}, \
     {group, "alpha", SF_PARAMETER_NUMBER, no_alpha, AT(term[k].alpha), \
-     "exponent of the stretches, not 0", .low = -50.0, .high = 50.0, .acts = has_term_##k}, \
+     "exponent of the stretches, not 0", .low = -50.0, .high = 50.0, .acts = has_term_##k, .optional = late}, \
     {group, "nu", SF_PARAMETER_NUMBER, "0.0", AT(term[k].nu), \
-     "Poisson ratio of the term; beta = nu/(1 - 2 nu)", .low = -0.9, .high = 0.49, .acts = has_nu_##k}, \
+     "Poisson ratio of the term; beta = nu/(1 - 2 nu)", .low = -0.9, .high = 0.49, .acts = has_nu_##k, .optional = late}, \
     {group, "beta", SF_PARAMETER_NUMBER, "0.0", AT(term[k].beta), \
-     "instead of nu", .low = -0.33, .high = 25.0, .acts = has_beta_##k}
+     "instead of nu", .low = -0.33, .high = 25.0, .acts = has_beta_##k, .optional = late}
+#define NEXT_TERM(k, group, late) TERM(k, group, "\"0 kPa\"", "2.0", late)
 static const sf_parameter parameters[] = {
     SF_FOAM_DENSITY,
     {"material", "stable_to", SF_PARAMETER_NUMBER, "0.9", AT(stable_to),
@@ -47,9 +51,12 @@ static const sf_parameter parameters[] = {
     SF_FOAM_RATE_FILTER("in `rate_factor`", sf_foam_has_rate_factor),
     SF_FOAM_SHIFTS,
     SF_FOAM_INFORMED,
-    TERM(0, "material.term_1", NULL, NULL),
-    TERM(1, "material.term_2", "\"0 kPa\"", "2.0"),
-    TERM(2, "material.term_3", "\"0 kPa\"", "2.0"),
+    TERM(0, "material.term_1", NULL, NULL, false),
+    NEXT_TERM(1, "material.term_2", false),
+    NEXT_TERM(2, "material.term_3", false),
+    NEXT_TERM(3, "material.term_4", true),
+    NEXT_TERM(4, "material.term_5", true),
+    NEXT_TERM(5, "material.term_6", true),
 };
 /* clang-format on */
 
@@ -67,7 +74,8 @@ static sf_status check_term(const sf_hyperfoam_term *t, const char *name, sf_err
 }
 
 static const char *const groups[SF_HYPERFOAM_TERMS] = {"material.term_1", "material.term_2",
-                                                       "material.term_3"};
+                                                       "material.term_3", "material.term_4",
+                                                       "material.term_5", "material.term_6"};
 
 /* Terms and stability; `*place` is the key or group that is wrong. */
 static sf_status check_terms(const sf_hyperfoam_card *card, const char **place, sf_error *err) {
@@ -184,10 +192,15 @@ static double uniaxial(const void *numbers, double dt, double strain, sf_uniaxia
     return -factor * p.t[0] - stretch * sf_foam_axial_viscous(&foam->options, dt, green_rate, point);
 }
 
+static double lateral(const void *numbers, double strain) {
+    double stretch[3] = {1 - strain, 1, 1};
+    return sf_hyperfoam_release(numbers, 1, stretch) ? stretch[1] : NAN;
+}
+
 const sf_law sf_hyperfoam_law = {
     .name = "hyperfoam",
     .description =
-        "Ogden-Storakers hyperfoam of 1 to 3 terms: lateral strain; hysteresis, Maxwell branch, rate",
+        "Ogden-Storakers hyperfoam of 1 to 6 terms: lateral strain; hysteresis, Maxwell branch, rate",
     SF_FOAM_LAW(sf_hyperfoam_card),
     .curves = SIZE_MAX,
     .data_end_words = "the terms are known to be stable up to",
@@ -196,6 +209,7 @@ const sf_law sf_hyperfoam_law = {
     .release = free,
     .update = sf_hyperfoam_update,
     .uniaxial = uniaxial,
+    .lateral = lateral,
 };
 
 static double beta_of(const sf_hyperfoam_term *term) {
@@ -328,8 +342,8 @@ enum { STEPS = 200 };
 /* A family of deformations with one parameter, the strain. */
 typedef struct path {
     const char *name;
-    int held;   /* directions with a given stretch; the others are free of stress */
-    int axes;   /* of them, how many change by the strain */
+    int held; /* directions with a given stretch; the others are free of stress */
+    int axes; /* of them, how many change by the strain */
     enum { PRESSED, PULLED, SHEARED } way; /* SHEARED: the second is stretched at constant volume */
 } path;
 static const path paths[] = {

@@ -2,11 +2,11 @@
 #pragma once
 #include "material/foam_point.h"
 
-/* Compressible hyperfoam of Ogden and Storakers (theory, section "Hyperfoam"), of 1 to 3 terms:
+/* Compressible hyperfoam of Ogden and Storakers (theory, section "Hyperfoam"), of 1 to 6 terms:
  *     W = sum 2 mu/alpha^2 [l1^alpha + l2^alpha + l3^alpha - 3 + (J^(-alpha beta) - 1)/beta]
  * with the hysteresis and viscosity of the foam laws (foam_point.h). Pure functions. */
 
-enum { SF_HYPERFOAM_TERMS = 3 };
+enum { SF_HYPERFOAM_TERMS = 6 };
 
 /* A term has either nu or beta; the other one is 0. mu = 0: the term is absent. */
 typedef struct sf_hyperfoam_term {

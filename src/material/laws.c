@@ -106,6 +106,36 @@ void sf_material_point_drive(const sf_material_law *law, double rate, double ste
     }
 }
 
+/* Sets F of every lane to `strain` along z. */
+static void strain_point(const sf_material_law *law, bool is_free, double strain, double f[9][SF_LANES]) {
+    double side = is_free && law->law->lateral ? law->law->lateral(law->numbers, strain) : 1;
+    sf_material_point_stretch(f, 1 - strain);
+    for (int l = 0; l < SF_LANES; l++)
+        f[0][l] = f[4][l] = side;
+}
+
+sf_status sf_material_point_follow(const sf_material_law *law, const sf_point_path *path, double *stress,
+                                   sf_error *err) {
+    static const double STEP = 1e-3; /* of strain */
+    sf_law_batch batch;
+    memset(&batch, 0, sizeof batch);
+    strain_point(law, path->is_free, 0, batch.f);
+    for (int64_t i = 0; i < path->count; i++) {
+        double from = i ? path->strain[i - 1] : 0, change = path->strain[i] - from;
+        int steps = (int)fmax(1, ceil(fabs(change) / STEP));
+        for (int k = 1; i > 0 && k <= steps; k++) {
+            memcpy(batch.f_old, batch.f, sizeof batch.f);
+            strain_point(law, path->is_free, from + change * k / steps, batch.f);
+            law->law->update(law->numbers, (path->time[i] - path->time[i - 1]) / steps, &batch);
+        }
+        stress[i] = 0 - batch.p[8][0]; /* not -0 */
+        if (!isfinite(stress[i]))
+            return SF_FAIL(err, SF_ERR_NUMERIC, "the law %s has no stress at a strain of %g", law->law->name,
+                           path->strain[i]);
+    }
+    return SF_OK;
+}
+
 void sf_material_point_rest(const sf_material_law *law, double pause, sf_uniaxial *point) {
     double rows[SF_LAW_HISTORY][SF_LANES] = {{0}};
     law->law->uniaxial(law->numbers, 1, 0, point);

@@ -89,5 +89,18 @@ void sf_material_point_stretch(double f[9][SF_LANES], double stretch);
 void sf_material_point_drive(const sf_material_law *law, double rate, double step, int count,
                              const double *strain, double *stress);
 
+/* A path of a material point: `strain` over `time` (s) [count], straight between its points, from rest at the
+ * first. Times ascend, strains are below 1. */
+typedef struct sf_point_path {
+    int64_t count;
+    const double *time, *strain;
+    bool is_free; /* the sides bulge freely, as sf_law.lateral has it; false: they are held */
+} sf_point_path;
+
+/* Takes the point along the path; `stress` [count] receives the compressive nominal stress (Pa), without the
+ * terms that depend on a length. SF_ERR_NUMERIC: the law has none somewhere. */
+sf_status sf_material_point_follow(const sf_material_law *law, const sf_point_path *path, double *stress,
+                                   sf_error *err);
+
 /* Unloads a point, and leaves it at rest for `pause` (s). */
 void sf_material_point_rest(const sf_material_law *law, double pause, sf_uniaxial *point);

@@ -51,12 +51,12 @@ void sf_unloading_lanes(const sf_unloading *u, const double energy[SF_LANES], do
 
 /* Parameters; a foam with `reload` and `recovery` 0 has no memory beyond the largest W: q = 0. */
 typedef struct sf_memory {
-    double reload;    /* -, q of the second loading, 0 .. 1 */
-    double drift;     /* -, q of loading n + 1 is reload / (1 + drift (n - 1)) */
-    double recovery;  /* -, part of the softening that a decade of time at rest takes back */
-    double start;     /* s, time at rest from which decades count */
-    double permanent; /* -, part that stays for ever */
-    double set;       /* -, part of a drop's largest displacement that is left at once (solver/state.h) */
+    double reload;       /* -, q of the second loading, 0 .. 1 */
+    double drift;        /* -, q of loading n + 1 is reload / (1 + drift (n - 1)) */
+    double recovery;     /* -, part of the softening that a decade of time at rest takes back */
+    double start;        /* s, time at rest from which decades count */
+    double permanent;    /* -, part that stays for ever */
+    double set;          /* -, part of a drop's largest displacement that is left at once (solver/set.h) */
     double set_recovery; /* -, part of the set that a decade of time at rest takes back */
 } sf_memory;
 

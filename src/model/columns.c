@@ -2,7 +2,7 @@
 #include "model/columns.h"
 
 #include "base/error.h"
-#include "model/good_run.h"
+#include <math.h>
 #include <string.h>
 
 const sf_frame_field_info *sf_frame_field_get(sf_frame_field field) {
@@ -23,27 +23,6 @@ const sf_history_column *sf_history_column_get(int k) {
 #undef COLUMN
     };
     return &columns[k];
-}
-
-const sf_good_run *sf_good_run_limits(void) {
-#define LIMIT(name, remark, ...) .name = remark,
-    static const sf_good_run limits = {SF_GOOD_RUN(LIMIT)};
-#undef LIMIT
-    return &limits;
-}
-
-const sf_good_run_rule *sf_good_run_rule_get(int k) {
-#define RULE(name, remark, refuse, sure, shown, title, figures, why)                                         \
-    {#name, title, remark, refuse, sure, shown == SF_AS_PERCENT, figures, why},
-    static const sf_good_run_rule rules[SF_CHECKS] = {SF_GOOD_RUN(RULE)};
-#undef RULE
-    return &rules[k];
-}
-
-const sf_drop_kind_info *sf_drop_kind_get(int kind) {
-#define SF_DROP_KIND_INFO(name, key, error_key, ...) {key, error_key, SF_DROP_SD(error_key), __VA_ARGS__},
-    static const sf_drop_kind_info info[] = {SF_DROP_KINDS(SF_DROP_KIND_INFO)};
-    return &info[kind];
 }
 
 void sf_history_free(sf_history *h) {

@@ -45,7 +45,7 @@ typedef struct sf_missile_card {
     double clearance;        /* m, height of its lowest point above the top of the undeformed pad, its highest
                                 point, at t = 0; negative over a hole */
     int64_t impact_known;    /* 1: the next line holds; models of older versions do not say */
-    double impact[2];        /* m, x and y of the impact point (pre/steps.h) */
+    double impact[2];        /* m, x and y of the impact point (pre/missile_body.h) */
     int64_t shape;           /* SF_SHAPE_* */
     double sphere_centre[3]; /* m, at t = 0 (SF_SHAPE_SPHERE) */
     double sphere_radius;    /* m */
@@ -160,13 +160,13 @@ typedef struct sf_model {
     int32_t *skin_triangle; /* [skin_count][3] nodes */
     uint8_t *skin_half;     /* [skin_count] 1, 2: halves of a quadrangle, one after the other, with its nodes
                                0, 1, 2 and 0, 2, 3; 0: a triangle */
-    double skin_friction; /* -, Coulomb coefficient between them */
-    int64_t pair_count;   /* pairs of materials between whose faces the friction is another */
-    uint8_t *pair_layer;  /* [pair_count][2] numbers of the materials, ascending */
-    double *pair_friction; /* [pair_count] - */
-    int64_t skin_alone;    /* 1: they touch the supports only */
+    double skin_friction;   /* -, Coulomb coefficient between them */
+    int64_t pair_count;     /* pairs of materials between whose faces the friction is another */
+    uint8_t *pair_layer;    /* [pair_count][2] numbers of the materials, ascending */
+    double *pair_friction;  /* [pair_count] - */
+    int64_t skin_alone;     /* 1: they touch the supports only */
     int64_t skin_centroids; /* 1: those of its triangles that are no halves are points of contact, too */
-    int64_t skin_watched;  /* 1: they pass through each other, which ends the run */
+    int64_t skin_watched;   /* 1: they pass through each other, which ends the run */
 
     /* Rigid fixed bodies that the skin may touch; triangles turned outwards, of one support after the other.
      * Nodes at sharp edges are there once for each side. */
@@ -193,7 +193,7 @@ typedef struct sf_model {
     double *surface_position;  /* [surface_node_count][3] m */
     int32_t *surface_triangle; /* [surface_triangle_count][3] */
 
-    /* Prescribed motion of the missile along its direction, piecewise linear (model/model.h): both columns
+    /* Prescribed motion of the missile along its direction, piecewise linear (model/motion.h): both columns
      * begin with 0, the times ascend to run.end_time or beyond. */
     int64_t motion_count;        /* 0 = the missile is free; else 2 or more */
     double *motion_time;         /* [motion_count] s */
@@ -211,7 +211,7 @@ typedef struct sf_model {
     int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness; /* m, of the foam under the contact, along the missile's path, its vertical part */
     double air;       /* m, on the same way: gaps of a pad with a skin, which close first */
-    double expected_mesh_error; /* fraction of a_max, see pre/steps.h; 0 = not estimated */
+    double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; 0 = not estimated */
     double slit_fraction;       /* of the nodes: those at a slit, hole or gap narrower than their supports */
     int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */
     sf_material *material;      /* [material_count] owned */
@@ -219,7 +219,7 @@ typedef struct sf_model {
     sf_anvil_card anvil;
     sf_run_options run;
 
-    /* The permanent set of earlier drops (solver/state.h), not in model.h5; NULL: none. `position`, `volume`
+    /* The permanent set of earlier drops (solver/set.h), not in model.h5; NULL: none. `position`, `volume`
      * and `domain_b` are then those of the pad with it. */
     double *set; /* [node_count][3] m, coefficients of its field; then [node_count] -, parts that rests have
                     taken back; then [node_count][3] m, coefficients of the field of places; then m, z of the
@@ -299,20 +299,11 @@ void sf_model_free(sf_model *model);
 /* Releases the background mesh: the solver no longer needs it once it is in the results. */
 void sf_model_drop_mesh(sf_model *model);
 
-/* The hash of every field, with the mesh, in hex digits: are two models the same, is a file as it was
- * written? */
-enum { SF_MODEL_HASH_SIZE = 17 };
-void sf_model_hash(const sf_model *model, char text[SF_MODEL_HASH_SIZE]);
-
 /* Releases domain_node and support: the solver's groups have local numbers for the nodes of their domains. */
 void sf_model_drop_domain_nodes(sf_model *model);
 
 /* Releases the edges, once the solver has made its pairs. */
 void sf_model_drop_edges(sf_model *model);
-
-/* True if sizes, index ranges, finiteness, CSR monotonicity and the physical bounds of the cards hold;
- * otherwise records SF_ERR_MODEL with the first violation. Everything that reads a model.h5 calls it. */
-sf_status sf_model_check(const sf_model *model, sf_error *err);
 
 /* One array or scalar of the model, but for its materials. The table drives reading, writing, checking and
  * release. */
@@ -346,65 +337,3 @@ bool sf_model_skin_is_quadrangle(const sf_model *model, int64_t k);
  * skin_centroids or where the skin touches the supports only. */
 int64_t sf_model_skin_triangles(const sf_model *model);
 int64_t sf_model_skin_centroids(const sf_model *model);
-
-/* The prescribed motion of a missile driven by a machine (model->motion_*): displacement along its direction,
- * linear between the points of the table, independent of the forces. Only for models whose missile is driven
- * (sf_missile_is_driven). */
-
-/* Relative rounding of times that come from different units. */
-#define SF_MOTION_SLACK 1e-12
-#define SF_MOTION_MAX_SPEED 200.0 /* m s-1 */
-
-/* Displacement (m) at `time` >= 0 (s). Extrapolates the last piece beyond the end of the table: the last step
- * of a run passes its end time by less than a step. */
-double sf_motion_displacement(const sf_model *model, double time);
-/* Velocity (m s-1) of the piece that begins at or before `time`. */
-double sf_motion_velocity(const sf_model *model, double time);
-
-typedef struct sf_motion_range {
-    int64_t points;      /* of the table; 0 of a free missile, and all else 0 */
-    double end_time;     /* s, of the table */
-    double displacement; /* m, largest; at least 0 */
-    double speed;        /* m s-1, largest of all pieces */
-} sf_motion_range;
-
-/* For free missiles too. */
-sf_motion_range sf_motion_measure(const sf_model *model);
-
-/* model.h5: the model's field table and its provenance (docs/formats.md). */
-
-/* Writes a model under a temporary name beside `path` and renames it: on failure an earlier file stays. */
-sf_status sf_model_write(const char *path, const sf_model *model, const sf_provenance *provenance,
-                         sf_error *err);
-
-/* Reads and checks (sf_model_check) a model. On success the caller owns `*model` (sf_model_free) and, if
- * `file` is not NULL, the open file (sf_h5_close), for its provenance. On failure both are empty. */
-sf_status sf_model_read(const char *path, sf_model *model, sf_h5 **file, sf_error *err);
-
-/* The free flight of the missile over `missile.gap`. The case says how it arrives: its speed, its pose and
- * its angular velocity are those of first contact, whatever the gap. The flight is followed backwards from
- * there to t = 0, under gravity and without torque. Without a gap, and with a prescribed motion, nothing is
- * to be done. The model's surface stands in the pose of arrival, `gap` away along the direction. */
-
-/* Acceleration of the missile by gravity (m s-2), and its part along the direction. */
-void sf_flight_gravity(const sf_missile_card *card, double gravity[3]);
-double sf_flight_pull(const sf_missile_card *card);
-
-/* Time of flight (s); NaN: a fall over the gap alone makes the missile faster than its speed. */
-double sf_flight_time(const sf_missile_card *card);
-
-/* Speed (m s-1) along the direction at t = 0. */
-double sf_flight_start_speed(const sf_missile_card *card);
-
-/* Velocity (m s-1) of the centre at t = 0; a guided missile moves along its direction. */
-void sf_flight_start_velocity(const sf_missile_card *card, double velocity[3]);
-
-/* The place of the missile `before` (s) its arrival, against the model's surface: the displacement (m) of its
- * centre, and of a free missile the rotation of its axes about it (base/mat3.h). */
-void sf_flight_displacement(const sf_missile_card *card, double before, double displacement[3]);
-void sf_flight_orientation(const sf_missile_card *card, double before, double quaternion[4]);
-
-/* The energy (J) and the momentum (kg m s-1, along the direction) that gravity adds to a missile of this mass
- * (kg) from t = 0 to its arrival. */
-double sf_flight_energy(const sf_missile_card *card, double mass);
-double sf_flight_momentum(const sf_missile_card *card, double mass);

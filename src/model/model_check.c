@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 
+#include "model/model_check.h"
+
 #include "base/hash.h"
 #include "base/sets.h"
 #include "base/mat3.h"
 #include "model/cells.h"
-#include "model/model.h"
+
+#include "model/flight.h"
+#include "model/motion.h"
 
 /* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
 static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr,

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "model/model.h"
+#include "model/model_io.h"
 
+#include "io/h5_data.h"
 #include "io/replace.h"
 #include "material/laws.h"
+#include "model/model_check.h"
 
 /* Writes a member of the model, or of a law's curves, as the dataset `path`. */
 static sf_status write_field(sf_h5 *h5, const char *path, const sf_model_field *field, const void *record,
@@ -58,7 +60,7 @@ static sf_status write_material(sf_h5 *h5, const sf_material *m, int64_t index, 
         sf_h5_write_text(h5, &(sf_h5_info){path, "1", "layer of the material"}, m->name, err);
     for (int k = 0; k < m->law->parameter_count && err->status == SF_OK; k++) {
         const sf_parameter *p = &m->law->parameter[k];
-        if (p->kind > SF_PARAMETER_CHOICE)
+        if (!sf_parameter_is_stored(p, m->card))
             continue;
         name_parameter(index, p, path);
         sf_h5_info info = {path, p->kind == SF_PARAMETER_QUANTITY ? sf_quantity_unit(p->quantity) : "1",
@@ -122,6 +124,8 @@ static sf_status read_material(const sf_h5 *h5, sf_material *m, int64_t index, s
         if (p->kind > SF_PARAMETER_CHOICE)
             continue;
         name_parameter(index, p, path);
+        if (p->optional && !sf_h5_exists(h5, path))
+            continue;
         sf_h5_read_one(h5, path, p->kind == SF_PARAMETER_CHOICE ? SF_H5_I64 : SF_H5_F64,
                        (char *)m->card + p->offset, err);
     }

@@ -3,7 +3,16 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
+#include "model/model_check.h"
+#include "model/motion.h"
 #include "model/stability.h"
+#include "pre/cloud/cloud.h"
+#include "pre/cloud/connectivity.h"
+#include "pre/foam_path.h"
+#include "pre/free_faces.h"
+#include "pre/mesh/missile_shape.h"
+#include "pre/missile_body.h"
+#include "pre/support.h"
 
 static const double CLEAR =
     0.05; /* of the anvil's depth: way from the first touch to the anvil that is a drop */

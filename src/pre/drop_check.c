@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/steps.h"
+#include "pre/drop_check.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
+#include "model/flight.h"
+#include "model/good_run.h"
+#include "pre/mesh/missile_shape.h"
+#include "pre/missile_body.h"
+#include "pre/support.h"
 
 static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
 static const double EARLY = 0.1; /* steps of depth before that */

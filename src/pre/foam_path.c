@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/steps.h"
+#include "pre/foam_path.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
+#include "pre/mesh/missile_shape.h"
+#include "pre/missile_body.h"
+#include "pre/support.h"
 
 enum { MOST_RAYS = 200, MOST_HITS = 256 };
 static const double FACING = 0.1; /* least cosine between the missile's direction and a face it touches */

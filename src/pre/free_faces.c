@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/steps.h"
+#include "pre/free_faces.h"
 
+#include "base/grid.h"
 #include "base/mat3.h"
+#include "pre/mesh/missile_shape.h"
+#include "pre/support.h"
 
 /* ---- faces that may touch ---- */
 

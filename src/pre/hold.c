@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/steps.h"
+#include "pre/hold.h"
 
+#include "base/sets.h"
+#include "pre/mesh/mesh.h"
 #include <gsl/gsl_eigen.h>
 
 #include "base/mat3.h"

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/build.h"
+#include "pre/make.h"
 
 #include "base/mat3.h"
 #include "pre/mesh/gmsh_session.h"
+#include "pre/support.h"
 
 /* The pad of the open geometry. */
 static sf_status read_pad(sf_gmsh *session, const sf_case *c, sf_mesh *mesh, sf_error *err) {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/steps.h"
+#include "pre/missile_body.h"
 
+#include "base/sets.h"
+#include "pre/mesh/missile_shape.h"
 #include <gsl/gsl_sort.h>
 
 #include "base/mat3.h"

@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/build.h"
+#include "pre/model_report.h"
 
 #include "base/mat3.h"
 #include "base/text.h"
+#include "model/flight.h"
+#include "model/motion.h"
+#include "pre/mesh/missile_shape.h"
+#include "pre/missile_body.h"
 
 /* For the estimate only (docs/performance.md): node-steps per second on two cores, and the steps of a drop
  * that rebounds half-way to the end time, over those that the guaranteed steps would need to the end. */

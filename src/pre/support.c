@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/steps.h"
+#include "pre/support.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "base/text.h"
+#include "pre/mesh/missile_shape.h"
+#include "pre/missile_body.h"
 
 const sf_node_set *sf_group_need(const sf_mesh *mesh, const char *key, const char *name, sf_error *err) {
     const sf_node_set *set = sf_mesh_find_set(mesh, name);

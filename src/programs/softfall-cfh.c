@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-cfh CASE -o DIR: critical fall height of a pad, from drops that it simulates. */
 #include "base/text.h"
+#include "case/read.h"
 #include "study/cfh/cfh_report.h"
 #include "study/setup.h"
 
@@ -130,7 +131,7 @@ typedef struct setting {
     sf_cfh_foams foams;
     char *text, *parameters; /* of the case; owned */
     char counted[SF_RUNNER_COUNTED];
-    sf_material material;    /* with --posterior: the case's own; owned, as its law and the draws */
+    sf_material material; /* with --posterior: the case's own; owned, as its law and the draws */
     sf_material_law law;
     sf_cfh_draws draws;
 } setting;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-mesh: runs gmsh on a geometry that may be hostile, confined, for softfall-pre and
  * libsoftfall-build (pre/mesh/mesher.h), which start it. It is of no use by hand. */
-#include "pre/mesher/work.h"
 #include "pre/mesh/mesher_protocol.h"
+#include "pre/mesher/confine.h"
+#include "pre/mesher/work.h"
 
 #include <dlfcn.h>
 #include <stddef.h>

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-post RESULTS -o DIR: injury figures, curves, pictures and ParaView files from a results.h5. */
-#include "base/text.h"
 #include "base/program.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "io/provenance.h"
+#include "post/view/browser.h"
+#include "post/view/csv.h"
+#include "post/view/overlay.h"
+#include "post/view/paraview.h"
+#include "post/view/plot.h"
 #include "post/view/report.h"
 
 #include <assert.h>

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-pre: CASE -> model.h5. */
 #include "base/program.h"
+#include "case/read.h"
+#include "case/values.h"
 #include "io/replace.h"
-#include "case/keys.h"
-#include "pre/build.h"
+#include "model/model_check.h"
+#include "model/model_io.h"
+#include "pre/make.h"
+#include "pre/model_report.h"
 
 #include <omp.h>
 

@@ -9,6 +9,8 @@
 #include "base/program.h"
 #include "build_info.h"
 #include "model/good_run.h"
+#include "model/model_check.h"
+#include "model/model_io.h"
 #include "solver/run/run.h"
 
 /* ---- the command line ---- */

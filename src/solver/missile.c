@@ -2,6 +2,8 @@
 #include "solver/missile.h"
 
 #include "base/mat3.h"
+#include "model/flight.h"
+#include "model/motion.h"
 
 static double mobility(const sf_model *m) {
     return sf_missile_is_driven(m) ? 0 : sf_model_whole(m) / m->missile.mass;

@@ -13,9 +13,10 @@
  * symmetry; sf_model_whole is the factor to the whole. Points and vectors are in the geometry's frame. A
  * scalar "along" is the component in the direction of the missile card. */
 #pragma once
+#include "io/members.h"
 #include "solver/contact/rigid_surface.h"
 
-/* The numbers of the missile in a checkpoint (io/h5.h). */
+/* The numbers of the missile in a checkpoint (io/members.h). */
 /* clang-format off */
 #define SF_MISSILE_NUMBERS(X)                                                                                          \
     X(double, displacement, , "m", "along, since t = 0")                                                               \

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* sf_operators: data derived from the model before the first step, constant afterwards. */
 #pragma once
+#include "material/laws.h"
 #include "solver/constraint/constraint.h"
 #include "solver/contact/rigid_surface.h"
 #include "solver/contact/skin.h"
-#include "solver/field/field.h"
+#include "solver/field/halo.h"
+#include "solver/field/membrane.h"
 
 typedef struct sf_operators {
     int64_t law_count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/state.h"
+#include "solver/set.h"
 
 #include "base/mat3.h"
 #include "solver/constraint/constraint.h"

@@ -2,6 +2,9 @@
 #include "solver/state.h"
 
 #include "base/mat3.h"
+#include "material/laws.h"
+#include "model/flight.h"
+#include "model/motion.h"
 
 static const double LEAST_WORK = 0.01; /* of the evenly compressed pad's energy, see start_driven */
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include "io/process.h"
-#include "solver/field/field.h"
+#include "solver/field/membrane.h"
 #include "solver/missile.h"
 
 /* Wall time of the phases of a step, for the benchmark. */
@@ -55,8 +55,8 @@ typedef struct sf_partial {
 } sf_partial;
 
 /* The numbers of the state that a checkpoint keeps: X(type, name, array size, units, meaning). Each list
- * declares the members of a struct; the checkpoint writes and reads them by the list (run/state_io.c). To add
- * a number: a line here. */
+ * declares the members of a struct; the checkpoint writes and reads them by the list (run/checkpoint.c). To
+ * add a number: a line here. */
 /* clang-format off */
 
 /* Energies at the current time and the momentum balance, of the modelled part. */
@@ -73,7 +73,7 @@ typedef struct sf_partial {
     X(double, external, , "J", "work of gravity on the missile, or of its prescribed motion")                           \
     X(double, weight, , "J", "work of gravity on a resting pad")                                                       \
     X(double, anvil, , "J", "part of `contact` and `friction` that is lost at the anvil")                              \
-    X(double, reference, , "J", "to which errors refer: total at first contact; see state.h")                                 \
+    X(double, reference, , "J", "to which errors refer: total at first contact; see below")                                 \
     X(double, error, , "1", "of the balance, over `reference`")                                                        \
     X(double, largest_error, , "1", "largest |error| so far")                                                          \
     X(double, momentum_reference, , "kg m s-1", "along the missile's direction, to which the momentum error refers")   \
@@ -158,7 +158,7 @@ typedef struct sf_state {
 
     /* Power iteration (sf_time_step_power). */
     double *mode;       /* [n] its vector */
-    float *directional; /* [n][6] Pa, tangent by direction (law.h), when sf_time_step_due */
+    float *directional; /* [n][6] Pa, tangent by direction (material/laws.h), when sf_time_step_due */
 
     /* Contact points: sf_model_points of the model, those of the missile before those of the anvil. */
     double *contact_position; /* [contacts][3] m, physical, now */
@@ -174,7 +174,7 @@ typedef struct sf_state {
                                  up; arrays of other points are not up to date */
     int64_t contact_near_count;
 
-    /* Contact of the skin with itself (contact/contact.h); by point of the skin, only a pad with one has
+    /* Contact of the skin with itself (contact/self_contact.h); by point of the skin, only a pad with one has
      * these. */
     double *self_position;   /* [skin][3] m, physical, now; of nodes in self_near, as the next two */
     double *self_motion;     /* [skin][3] m, its last step */
@@ -247,42 +247,3 @@ void sf_ledger_close(const sf_model *model, sf_state *state, const sf_wrench *ou
 
 /* Internal energy: stored + hysteresis + viscous + stabilisation, J. */
 double sf_ledger_internal(const sf_ledger *ledger);
-
-/* Permanent set (theory, M7): a displacement field that drops leave, and that changes only while the pad is
- * at rest. A drop runs on the reference that the set has moved, which is free of stress, with the same
- * masses: X' = X + u_s, F_s = I + sum_J u_s(J) B_J^T, B' = F_s^-T B, V' = det(F_s) V. */
-
-/* Takes the coefficients at the largest indentation so far. */
-void sf_set_watch(const sf_model *model, sf_state *state);
-
-/* Moves the reference of a model by a set as in sf_model. With `peak` (sf_state.set_peak) by what is left of
- * it `pause` (s) after that drop: node by node the larger counts of the set so far and the part of the drop's
- * displacement; held and tied components are projected. SF_ERR_INPUT where det(F_s) is below 0.3. */
-sf_status sf_set_move(sf_model *model, const double *set, const double *peak, double pause, sf_error *err);
-
-/* SF_ERR_INPUT if the set has moved foam into the missile at t = 0 by more than SF_CONTACT_ENTRY. */
-sf_status sf_set_check_missile(const sf_model *model, const sf_missile_surface *surface, sf_error *err);
-
-/* Depth (m) of the set at the contact node next to the impact point, not down a hole, and the largest.
- */
-void sf_set_measure(const sf_model *model, double set[2]);
-
-/* The time step: a bound that holds in every step (model/stability.h), tightened by the ratio of the true
- * highest frequency to the bound. A warm-started Lanczos iteration measures that ratio when the bound has
- * moved by 10 %, and at least every 40 steps (theory, section "Time step"). Contact and constraints are
- * kinematic and do not limit the step. */
-
-/* True if the frequency is measured in this step; it then needs state->directional. */
-bool sf_time_step_due(const sf_state *state);
-
-/* Chooses state->dt from the partial sums of the domains: shrinks at once; between measurements it does not
- * grow, and from step to step by at most 2 %; never beyond run.step_limit. Updates bound_step, bound_load,
- * tightness. */
-void sf_time_step_choose(const sf_model *model, const sf_operators *operators, sf_state *state);
-
-/* Highest eigenvalue (s-2) of M^-1 K for the scalar operator K = sum V B^T A B plus the stabilisation, with A
- * = state->directional, by Lanczos cycles from state->mode with at most `products` products in all; a Ritz
- * value, which converges from below. Ends early when a cycle, or a product within it, adds less than
- * `settled` of the value; 0: never. */
-double sf_time_step_power(const sf_model *model, const sf_operators *operators, sf_state *state, int products,
-                          double settled);

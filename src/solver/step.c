@@ -3,6 +3,10 @@
 
 #include "base/mat3.h"
 #include "solver/contact/contact.h"
+#include "solver/contact/self_contact.h"
+#include "solver/field/domain_stress.h"
+#include "solver/set.h"
+#include "solver/time_step.h"
 
 /* Steps between measurements of |G v|, and between looks for foam that passed through something. */
 enum { RESIDUAL_INTERVAL = 16, PASSAGE_INTERVAL = 16 };

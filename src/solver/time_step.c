@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/operators.h"
-#include "solver/state.h"
+#include "solver/time_step.h"
 
 #include "model/stability.h"
 
@@ -23,8 +22,8 @@ static const double POWER_MARGIN = 1.08;
 static const double POWER_ROUNDING = 16384;
 static const double GROWTH = 1.02;
 
-/* Arrays of the iteration in what other passes work in (field/field.h): 8 doubles per node, or more where
- * `waiting` needs them. Single precision is far within POWER_MARGIN. */
+/* Arrays of the iteration in what other passes work in (solver/field/halo.h): 8 doubles per node, or more
+ * where `waiting` needs them. Single precision is far within POWER_MARGIN. */
 typedef struct power_work {
     double *out;     /* [n] product of the stiffness and the mode, kg s-2 times it */
     float *basis;    /* [BASIS][n] Lanczos vectors */

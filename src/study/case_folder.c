@@ -5,8 +5,11 @@
 #include "study/run_folder.h"
 #include "case/grammar.h"
 #include "base/hash.h"
+#include "case/edit.h"
+#include "case/read.h"
 #include "io/plain_file.h"
 #include "io/process.h"
+#include "pre/mesh/mesher.h"
 
 #define CASE_NAME "case.cfg"
 #define README_NAME "README.md"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include "material/laws.h"
-#include "model/good_run.h"
+#include "model/drop_kind.h"
 #include "model/model.h"
-#include "post/figures/signal.h"
+#include "post/figures/injury.h"
 #include "post/results/results.h"
 
 #include <gsl/gsl_matrix.h>
@@ -24,9 +24,9 @@ typedef struct sf_columns {
     double speed;     /* m s-1 at contact, downwards */
     double thickness; /* m, H */
     int count;
-    double area[SF_COLUMNS]; /* m2, of the whole pad, A_k */
-    double gap[SF_COLUMNS];  /* m, g_k: height above the missile's lowest point, ascending */
-    int before;              /* drops like this one before it on the pad; 0: the foam is new */
+    double area[SF_COLUMNS];      /* m2, of the whole pad, A_k */
+    double gap[SF_COLUMNS];       /* m, g_k: height above the missile's lowest point, ascending */
+    int before;                   /* drops like this one before it on the pad; 0: the foam is new */
     double pause[SF_SERIES_MOST]; /* [before] s, at rest after each of them */
     double informed;              /* -, strain up to which data inform the foam; 0: without bound */
 } sf_columns;
@@ -46,8 +46,8 @@ typedef struct sf_columns_figures {
     double beyond; /* -, share of the work on the foam, at that indentation, in columns beyond `informed` */
 } sf_columns_figures;
 
-/* Their natural logarithms: of the numbers that may be measured (model/good_run.h), window and contact in ms,
- * and of the strain; and the share of work as it is. */
+/* Their natural logarithms: of the numbers that may be measured (model/drop_kind.h), window and contact in
+ * ms, and of the strain; and the share of work as it is. */
 enum { SF_COLUMNS_STRAIN = SF_FIT_SAMPLES, SF_COLUMNS_BEYOND, SF_COLUMNS_LOGARITHMS };
 void sf_columns_scale(const sf_columns_figures *figures, double y[SF_COLUMNS_LOGARITHMS]);
 
@@ -69,7 +69,7 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
 sf_status sf_columns_expect(const sf_columns *columns, const sf_material_law *law,
                             double y[SF_COLUMNS_LOGARITHMS], sf_error *err);
 
-/* HIC of a single pulse, a hundred times as fast as the search of post/figures/signal.h, for surrogates. */
+/* HIC of a single pulse, a hundred times as fast as the search of post/figures/injury.h, for surrogates. */
 
 /* Computes HIC of a curve that rises to one peak and falls: both ends of the window have the same
  * deceleration, so that the maximum over one level is found instead of that over two instants. The part

@@ -26,7 +26,7 @@ sf_status sf_config_open(const char *path, sf_config *config, sf_error *err) {
     *config = (sf_config){.path = path};
     config_init(&config->config);
     config->folder = sf_case_folder_of(path, err);
-    SF_OWNED char *text = config->folder ? sf_case_load_text(path, 0, NULL, &config->source, err) : NULL;
+    SF_OWNED char *text = config->folder ? sf_case_load_text(path, false, 0, NULL, &config->source, err) : NULL;
     if (text && !config_read_string(&config->config, text)) {
         int line = 0;
         const char *file = sf_case_source_find(&config->source, config_error_line(&config->config), &line);

@@ -3,7 +3,7 @@
 
 #include "io/plain_file.h"
 #include "base/text.h"
-#include "case/case.h"
+#include "case/read.h"
 #include "io/replace.h"
 #include <unistd.h>
 

@@ -4,8 +4,13 @@
  * takes it with
  * --set material=@FILE. */
 #pragma once
-#include "model/good_run.h"
 #include "material/card.h"
+#include "model/drop_kind.h"
+
+/* The sentence by which a page of a fit offers the material to other solvers (docs/cards.md). */
+#define SF_MATERIAL_ELSEWHERE                                                                                \
+    "For another solver: softfall foam export material.cfg --format=dyna (or abaqus, radioss) "              \
+    "--units=mm-ms-kg-GPa -o FILE writes the card, and lists what it cannot say."
 
 typedef struct sf_material_text {
     const char *title;      /* first line of both files: a description of the material */

@@ -4,11 +4,14 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "build_info.h"
+#include "case/read.h"
 #include "io/folder.h"
+#include "io/h5_data.h"
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "io/replace.h"
 #include "material/laws.h"
+#include "pre/mesh/mesh_store.h"
 
 #include <assert.h>
 #include <errno.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key of a drop, its folder, and the figures of a finished drop. */
 #pragma once
+#include "case/case.h"
 #include "post/figures/verdict.h"
-#include "pre/mesh/mesher.h"
 #include <limits.h>
 
 /* Figures of a finished drop, cached beside its results in a small text, figures.txt. It is read in place
@@ -12,7 +12,7 @@ typedef struct sf_run_record {
     sf_grade grade;
     const char *verdict;  /* sf_verdict_line */
     const char *status;   /* /summary/status */
-    const char *geometry; /* the list of what the geometries read (pre/mesh/mesher.h) */
+    const char *geometry; /* the list of what the geometries read (pre/mesh/mesh_store.h) */
     double *figure;       /* [of sf_figure_at] sf_figure_number; owned */
     char *text;           /* that the strings are parts of; owned */
 } sf_run_record;

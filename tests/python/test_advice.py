@@ -231,6 +231,8 @@ def test_measuring_stops_and_decides():
     pads.learn(advice.Drop("centre", 1.1, (math.nan, 850.0)))
     told = advice.advise(pads, QUESTION)
     assert told.stop and told.decision is True and told.loss < 0.05 and not told.choices
+    told = advice.advise(pads, QUESTION, unshown=[("centre", QUESTION.required)])
+    assert told.expected and not told.stop and told.decision is None and [choice.height for choice in told.choices] == [QUESTION.required]
     pads = pads_of([place()])
     pads.learn(advice.Drop("centre", 1.1, (math.nan, 1600.0)))
     assert advice.advise(pads, QUESTION).decision is False
@@ -338,6 +340,13 @@ def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
     assert "none of them" in after["advice"]["problem"] or after["advice"]["height_m"][2] - after["advice"]["height_m"][0] < high - low
     page = (tmp_path / "out/report.html").read_text()
     assert "advice:" in page and (after["advice"]["stop"] or after["advice"]["problem"] or "not expected" in page or "The next measurement" in page)
+    # without a measured drop the pad is expected to pass, and has not passed
+    (tmp_path / "lab/list.csv").write_text("file,height,drop\n")
+    empty = softfall_protocol(asked, *common, "--required", f"{1.02 * math.exp(curves.log_height[0]):.4g} m", "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    assert empty.returncode == 0 and "not decided: expected to pass, not shown (probability of passing" in empty.stdout, empty.stdout + empty.stderr
+    expected = json.loads((tmp_path / "out/protocol.json").read_text())
+    assert expected["results"]["advice"]["passed"] is None and expected["advice"]["decision"] is None and expected["advice"]["expected_to_pass"]
+    assert "passed" not in re.sub("<style>.*</style>", "", (tmp_path / "out/report.html").read_text())
     # of drops that look exchanged nothing is decided, in the words and in the data
     heights, k = (0.85 * median, 0.9 * median), int(np.argmin(abs(curves.log_height - math.log(0.85 * median))))
     for number, (height, part) in enumerate(zip(heights, (1.08, 1.0)), 1):

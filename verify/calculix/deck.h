@@ -5,7 +5,6 @@
 #define SF_VERIFY_DECK_H
 
 #include "calculix/ogden.h"
-#include "base/error.h"
 #include "pre/mesh/mesh.h"
 
 #include <stdbool.h>

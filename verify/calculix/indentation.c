@@ -3,9 +3,9 @@
 #include "calculix/indentation.h"
 
 #include "calculix/ccx.h"
+#include "case/read.h"
 #include "drop.h"
 #include "post/results/results.h"
-#include "case/case.h"
 #include "pre/mesh/gmsh_session.h"
 #include <math.h>
 #include <stdlib.h>

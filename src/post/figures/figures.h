@@ -5,7 +5,7 @@
  * To add a figure: a line in the list, and its computation in figures.c. The list declares its member of
  * sf_figures and drives summary.json and the table in docs/formats.md. */
 #pragma once
-#include "post/figures/signal.h"
+#include "post/figures/injury.h"
 #include "post/figures/strain_field.h"
 
 /* X(kind, member, key in summary.json, factor from SI to the unit in the key, meaning), in the order of
@@ -156,7 +156,7 @@ typedef struct sf_figures {
     char passed[128];         /* ", on a mount of 420 Hz (damping 0.05)", the chain; or empty */
     double free_flight;       /* g: what both are while nothing touches the missile */
     sf_injury injury_raw;
-    sf_injury injury;            /* of the filtered curve */
+    sf_injury injury; /* of the filtered curve */
     sf_rim_cut cut;
     sf_layer_figures *layers;    /* [results->layer_count] owned; NULL: one material, or no contact */
     SF_FIGURES(SF_FIGURE_MEMBER) /* SI */

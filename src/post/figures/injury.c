@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/figures/signal.h"
+#include "post/figures/injury.h"
 
 #include "base/sets.h"
 

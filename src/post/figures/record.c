@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/figures/compare.h"
+#include "post/figures/record.h"
 
 #include <gsl/gsl_sort.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/figures/compare.h"
+#include "post/figures/reference.h"
 
 #include <string.h>
 
@@ -317,7 +317,7 @@ static double largest_gap(const sf_series *s) {
 }
 
 static sf_status check_sampling(const record *r, const sf_series *raw, sf_error *err) {
-    static const double SHARE = 0.1; /* of the intervals: a gap alone is judged by post/figures/compare.h */
+    static const double SHARE = 0.1; /* of the intervals: a gap alone is judged by post/figures/record.h */
     const sf_reference_options *o = r->options;
     double most = 1 / (SAMPLES_PER_CLASS * o->cfc);
     int64_t coarse = 0;

@@ -23,10 +23,10 @@ void sf_series_free(sf_series *series);
  * ascending. */
 sf_status sf_series_check(const sf_series *series, const char *name, sf_error *err);
 
-/* Linear interpolation at `time` (s); the end values outside the curve. */
 /* Returns the index of the largest value, the first of equal ones. */
 int64_t sf_series_peak(const sf_series *series);
 
+/* Linear interpolation at `time` (s); the end values outside the curve. */
 double sf_series_at(const sf_series *series, double time);
 
 /* The curve with `lead` (s) of the value `level` before its first point, where it jumps. */
@@ -69,47 +69,3 @@ sf_status sf_signal_filter_cfc(const sf_series *uniform, double cfc, sf_series *
 /* The same filter of any curve: at its own rate if its times are uniform but for their rounding, because
  * interpolation between samples would be a filter of its own; else the curve is resampled. */
 sf_status sf_signal_filter(const sf_series *raw, double cfc, sf_series *filtered, sf_error *err);
-
-/* Head injury criterion of a piecewise-linear deceleration curve (FMVSS 208; theory, section "Injury
- * figures"):
- *
- *     HIC = max over t1 < t2, t2 - t1 <= window, of (t2 - t1) [ 1/(t2 - t1) int_t1^t2 a dt ]^2.5,   a in g, t
- * in s.
- *
- * t1 and t2 are continuous, not bound to sample points. At an optimum inside the curve and below the window
- * limit a(t1) = a(t2) = 3/5 of the mean. */
-
-typedef struct sf_hic {
-    double value; /* g^2.5 s, by custom written without unit; 0 if the curve never decelerates */
-    double t1;    /* s, window on the clock of the curve; NaN when value is 0 */
-    double t2;    /* s */
-} sf_hic;
-
-/* `window` in s, INFINITY for none. The global maximum: a bounded search over the points of the curve
- * (refined to at least 4096 intervals) leaves no pair out, then both ends are moved continuously. */
-sf_status sf_hic_evaluate(const sf_series *acceleration_g, double window, sf_hic *hic, sf_error *err);
-
-/* Injury figures of a deceleration curve in g. All are exact for the piecewise-linear curve through the
- * points. They are indicative: nothing here is a certification. */
-
-typedef struct sf_injury {
-    double a_max_g;           /* g */
-    double a_max_time;        /* s */
-    sf_hic hic;               /* no window limit */
-    sf_hic hic15;             /* window <= 15 ms */
-    sf_hic hic36;             /* window <= 36 ms */
-    double gadd;              /* g^2.5 s, Gadd severity index */
-    double clip_contiguous_g; /* g, exceeded for 3 ms without a break; NaN if the curve is shorter */
-    double clip_cumulative_g; /* g, exceeded for 3 ms in all; NaN if the curve is shorter */
-} sf_injury;
-
-/* The peak, its time and HIC without a limit alone; the others are 0. */
-sf_status sf_injury_evaluate_peak(const sf_series *acceleration_g, sf_injury *injury, sf_error *err);
-sf_status sf_injury_evaluate(const sf_series *acceleration_g, sf_injury *injury, sf_error *err);
-
-/* Gadd severity index: integral of a^2.5 where a > 0. */
-double sf_injury_gadd(const sf_series *acceleration_g);
-
-/* Largest level that the curve reaches or exceeds for `duration` (s): at a stretch, or summed over all
- * stretches. NaN if the whole curve is shorter. */
-double sf_injury_clip(const sf_series *acceleration_g, double duration, int contiguous);

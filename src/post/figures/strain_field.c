@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/figures/strain_field.h"
 
-#include "base/sets.h"
+#include "base/grid.h"
 #include "model/cells.h"
 #include <gsl/gsl_sort.h>
 #include <string.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/results/results.h"
+#include "post/results/origin.h"
 
 #include "base/text.h"
+#include "io/h5_data.h"
 #include "io/provenance.h"
 #include <string.h>
 

@@ -2,6 +2,7 @@
 #include "post/results/results.h"
 
 #include "base/text.h"
+#include "io/h5_data.h"
 #include "io/replace.h"
 #include "model/cells.h"
 #include "model/model.h"

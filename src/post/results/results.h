@@ -52,7 +52,7 @@ typedef struct sf_results {
                                  say */
     double thickness;         /* m */
     double density;           /* kg m-3, mean */
-    double expected_mesh_error; /* fraction of a_max, see pre/steps.h; NaN: not estimated */
+    double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; NaN: not estimated */
     double air;                 /* m, gaps on the way of the thickness, which close first; NaN: not stored */
     double speed_scatter, thickness_tolerance; /* -, m: standard deviations; NaN: not stored */
     double lock_up, lock_begin; /* -, see sf_model_lock_up; NaN: none, or the file does not say */
@@ -67,8 +67,8 @@ typedef struct sf_results {
     uint8_t *node_layer; /* [node_count] number of the layer */
     char **layer_name;   /* [layer_count] parts of layer_names */
     char *layer_names;
-    double *layer_density;     /* [layer_count] kg m-3 */
-    double *layer_informed;    /* [layer_count] as informed_strain */
+    double *layer_density;            /* [layer_count] kg m-3 */
+    double *layer_informed;           /* [layer_count] as informed_strain */
     double *layer_sum[SF_LAYER_SUMS]; /* [layer_count] of the last frame; all NULL: no frame has them */
     double impact_x, impact_y; /* m, where the missile's lowest point arrives at the pad's top; NaN: the file
                                   does not say */
@@ -89,11 +89,11 @@ typedef struct sf_results {
     bool has_peak;
     sf_frame_head peak;
 
-    bool has_summary;    /* false: the members below are empty, NaN or -1 */
-    char status[512];    /* "" without summary */
-    double contact_time; /* s, NaN if the bodies never touched */
-    double wall_time;    /* s */
-    double given_back;   /* J, see /summary/given_back; NaN: not stored */
+    bool has_summary;        /* false: the members below are empty, NaN or -1 */
+    char status[512];        /* "" without summary */
+    double contact_time;     /* s, NaN if the bodies never touched */
+    double wall_time;        /* s */
+    double given_back;       /* J, see /summary/given_back; NaN: not stored */
     double set, set_largest; /* m, see /summary/set and set_largest; NaN: the pad has none */
     int64_t steps;
     int64_t threads;
@@ -137,36 +137,3 @@ bool sf_results_ended_well(const sf_results *results);
 
 /* Adds a sentence to the notes; further ones are dropped when they are full. */
 void sf_results_note(sf_results *results, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-/* The texts of /provenance in results.h5 about its case, for a report. */
-
-/* A text of the file ("/provenance/model/case_text"); from malloc, owned by the caller; "" if the file does
- * not hold it, NULL only without memory. */
-char *sf_origin_text(const sf_results *results, const char *path);
-
-enum { SF_ORIGIN_NAME_SIZE = 160 };
-
-/* A line of /provenance/model/parameters. */
-typedef struct sf_origin_key {
-    char name[SF_ORIGIN_NAME_SIZE];
-    char value[512]; /* as used, a text without its quotes */
-    char si[64];     /* in SI units, or what was read; "-": the same */
-    bool given;      /* in the case; else the default */
-} sf_origin_key;
-
-/* The line at `*text`, and the next one there; false at the end. */
-bool sf_origin_next(const char **text, sf_origin_key *key);
-/* The line of that name. */
-bool sf_origin_find(const char *parameters, const char *name, sf_origin_key *key);
-
-/* The keys of the group `report` of a case, words about the test. */
-enum { SF_ORIGIN_REPORT_KEYS = 3 };
-extern const char *const sf_origin_report_keys[SF_ORIGIN_REPORT_KEYS];
-/* The line of report.NAME; false if the case does not give it. */
-bool sf_origin_find_report(const char *parameters, const char *name, sf_origin_key *key);
-
-/* The comments at the begin of the case, and those in its group material (of the file that --set put in its
- * place), without '#', a line each; from malloc, owned by the caller; "" if there are none, NULL only without
- * memory. `layer`: the comments of its group in `materials`; NULL: of the one material. */
-char *sf_origin_title(const char *case_text);
-char *sf_origin_material(const char *case_text, const char *layer);

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/view/browser.h"
+
+#include "post/view/paraview.h"
 #include "post/view/report.h"
 
 #include <float.h>

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "post/view/overlay.h"
+
+#include "io/h5_data.h"
+#include "post/view/report_picture.h"
 #include "post/view/report.h"
 
 #include "build_info.h"

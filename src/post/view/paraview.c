@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/report.h"
+#include "post/view/paraview.h"
 
 #include "io/plain_file.h"
 #include "io/process.h"

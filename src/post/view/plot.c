@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/report.h"
+#include "post/view/plot.h"
 
 #include "base/text.h"
 #include "report/chart.h"

@@ -4,6 +4,9 @@
 #include "build_info.h"
 #include "base/text.h"
 #include "model/model.h"
+#include "post/results/origin.h"
+#include "post/view/plot.h"
+#include "post/view/report_picture.h"
 #include "report/chart.h"
 
 /* Without the brackets and quotes of the case's syntax. */

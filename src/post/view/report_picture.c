@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/report.h"
+#include "post/view/report_picture.h"
 
+#include "post/view/csv.h"
+#include "post/view/plot.h"
 #include "base/text.h"
 #include "report/chart.h"
 #include "post/view/cut.h"

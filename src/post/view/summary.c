@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/report.h"
+#include "post/view/summary.h"
 
 #include "build_info.h"
+#include "post/results/origin.h"
 #include <assert.h>
 
 static const char caution[] = "indicative, not a certification";

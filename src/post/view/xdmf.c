@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "post/view/report.h"
+#include "post/view/xdmf.h"
 
+#include "io/h5_data.h"
+#include "post/figures/figures.h"
 #include <dirent.h>
 #include <float.h>
 #include <string.h>

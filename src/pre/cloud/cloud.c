@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "io/folder.h"
 #include "io/plain_file.h"
 

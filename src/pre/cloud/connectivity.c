@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/cloud/cloud.h"
+#include "pre/cloud/connectivity.h"
 
+#include "base/grid.h"
 #include "base/mat3.h"
+#include "base/sets.h"
 #include <gsl/gsl_sort.h>
 
 #define ADVICE                                                                                                 \

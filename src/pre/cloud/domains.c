@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/cloud/cloud.h"
+#include "pre/cloud/domains.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
+#include "pre/cloud/mls.h"
+#include <string.h>
 
 enum { MAX_ENLARGEMENTS = 12 };
 static const double ENLARGEMENT = 1.15;

@@ -3,6 +3,7 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
+#include <string.h>
 
 typedef struct raw_edge {
     int32_t low, high;

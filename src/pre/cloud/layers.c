@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/cloud/cloud.h"
+#include "pre/cloud/layers.h"
 
 #include "base/mat3.h"
+#include "base/sets.h"
 
 enum { ALL = SF_FIX_X | SF_FIX_Y | SF_FIX_Z };
 

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/cloud/cloud.h"
+#include "pre/cloud/mls.h"
+
+#include "base/sets.h"
+#include <math.h>
+#include <string.h>
 
 /* A path may lead as far away as this times the distance of its ends: around the tip of a slit, not around
  * the slit. */

@@ -2,7 +2,9 @@
 #include "pre/mesh/gmsh_session.h"
 
 #include "base/sets.h"
+#include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesher_protocol.h"
+#include "pre/mesh/missile_shape.h"
 
 #include <unistd.h>
 

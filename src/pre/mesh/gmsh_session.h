@@ -9,7 +9,7 @@
 typedef struct sf_gmsh {
     sf_mesher_limits limits; /* for each geometry; zeros: those of mesher.h */
     const char *store;       /* folder from which meshes are taken if they are there, and where they are kept
-                                (pre/mesh/mesher.h); borrowed; NULL: none */
+                                (pre/mesh/mesh_store.h); borrowed; NULL: none */
     char version[64];        /* of the gmsh that meshed the last geometry: "4.8.4", "4.8.4 (unconfined)" */
     /* Every file that the geometries so far read; owned, NULL: no geometry. A line SF_GMSH_FILES_OF for each
      * geometry, then a line for each file: hash of its content (16 hexadecimal digits), blank, path as it was

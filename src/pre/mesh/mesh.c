@@ -3,6 +3,7 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
+#include <string.h>
 
 enum { MAX_VERTICES = 8 };
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/mesh/mesh.h"
+#include "pre/mesh/mesh_raw.h"
 
 #include "base/mat3.h"
 #include "base/sets.h"
 #include <gsl/gsl_sort.h>
+#include <string.h>
 
 void sf_raw_mesh_free(sf_raw_mesh *raw) {
     sf_free_all((size_t)raw->group_count, raw->group_name);

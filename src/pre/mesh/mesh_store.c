@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/mesh/mesher.h"
+#include "pre/mesh/mesh_store.h"
 
 #include <inttypes.h>
 #include <unistd.h>

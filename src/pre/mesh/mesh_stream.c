@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/mesh/mesher.h"
+#include "pre/mesh/mesh_stream.h"
 
 #include "base/sets.h"
 #include "pre/mesh/mesher_protocol.h"
 #include <assert.h>
+#include <math.h>
 
 /* The unread rest. `bad` once something was missing or out of range; then all reads give zero. */
 typedef struct reader {

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 
+#include "pre/mesh/missile_shape.h"
+
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>
 #include <gsl/gsl_sort.h>
 
 #include "base/mat3.h"
 #include "base/sets.h"
-#include "pre/mesh/mesh.h"
 
 static const double EDGE_ON = 1e-3; /* share of the area: below it a surface faces neither way */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pre/mesher/work.h"
+#include "pre/mesher/confine.h"
 
 #include "pre/mesh/mesher_protocol.h"
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/contact/touch.h"
+#include "solver/contact/candidates.h"
 
-#include "base/sets.h"
+#include "base/grid.h"
 #include "base/mat3.h"
 
 enum { CANDIDATES = SF_SELF_CANDIDATES };

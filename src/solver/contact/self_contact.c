@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/contact/contact.h"
+#include "solver/contact/self_contact.h"
 
 #include "base/mat3.h"
+#include "solver/contact/candidates.h"
 #include "solver/contact/touch.h"
 
 /* Partners of a node: a facet, or one of these. */
@@ -323,12 +324,12 @@ static double mobility_of(const sf_model *m, const sf_skin *skin, const sf_touch
 typedef struct solve {
     int64_t count;
     sf_touch *pair;
-    double *mobility;  /* kg-1 */
-    double (*step)[3]; /* m */
+    double *mobility;        /* kg-1 */
+    double (*step)[3];       /* m */
     double (*edge_force)[3]; /* N */
     bool centroids;          /* take part: over-relaxation of the normal forces */
-    double shift;      /* s2, dt times the distance of the half steps */
-    sf_touch passed;   /* a pair whose node has passed through the facet; node -1: there is none */
+    double shift;            /* s2, dt times the distance of the half steps */
+    sf_touch passed;         /* a pair whose node has passed through the facet; node -1: there is none */
 } solve;
 
 /* One Gauss-Seidel update of the force on a pair's node; returns the size of its change. */

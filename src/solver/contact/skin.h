@@ -3,7 +3,7 @@
 #include "solver/contact/contact_rows.h"
 
 /* The faces of the pad that may touch the pad itself, the anvil, a symmetry plane or the rigid support, with
- * those of the support behind them, as the solver needs them (solver/contact/contact.h). */
+ * those of the support behind them, as the solver needs them (solver/contact/self_contact.h). */
 
 /* A plane that stops the pad: that of the anvil, and those of symmetry, beyond which its mirror image is. */
 enum { SF_SKIN_ANVIL, SF_SKIN_SYMMETRY_X, SF_SKIN_SYMMETRY_Y, SF_SKIN_PLANES };
@@ -36,12 +36,12 @@ typedef struct sf_skin {
     /* The sharp convex edges of a pad that touches itself: two nodes, and the third nodes of both facets; -1
      * or -2 for the mirror image of the first facet, beyond the symmetry plane normal to x or y. */
     int64_t edge_count;
-    int32_t *edge;     /* [edge_count][4] */
-    int32_t *edge_of;  /* [facet_count][3] from a facet's node to its next, at one facet; -1: none */
-    uint8_t *held;     /* [count] SF_FIX_* bits; of a support's node those of the symmetry planes it is on */
-    uint8_t *passive;  /* [count] 1: touches no support: on a flat part of one, or a centroid */
-    uint8_t *rests;    /* [count] 1: the anvil presses the node in the missile's solve (contact.h) */
-    double *normal;    /* [count][3] outward at rest, unit */
+    int32_t *edge;    /* [edge_count][4] */
+    int32_t *edge_of; /* [facet_count][3] from a facet's node to its next, at one facet; -1: none */
+    uint8_t *held;    /* [count] SF_FIX_* bits; of a support's node those of the symmetry planes it is on */
+    uint8_t *passive; /* [count] 1: touches no support: on a flat part of one, or a centroid */
+    uint8_t *rests;   /* [count] 1: the anvil presses the node in the missile's solve (contact.h) */
+    double *normal;   /* [count][3] outward at rest, unit */
     double *facet_normal; /* [facet_count][3] likewise */
     bool alone;           /* the pad touches the supports only */
     bool watched;         /* its pairs with itself have no forces */

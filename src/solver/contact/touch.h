@@ -13,10 +13,10 @@ typedef struct sf_touch {
     int32_t part[7];
     double share[7];
     double lean[7][3]; /* a force q acts on a part as share q + (lean . q) normal: zeros without friction */
-    double normal[3]; /* outward from the facet */
-    double gap;       /* m, now; of a depth the part that the step takes back */
-    double friction;  /* -, Coulomb coefficient */
-    double *force;    /* [3] N, on the point; borrowed */
+    double normal[3];  /* outward from the facet */
+    double gap;        /* m, now; of a depth the part that the step takes back */
+    double friction;   /* -, Coulomb coefficient */
+    double *force;     /* [3] N, on the point; borrowed */
 } sf_touch;
 
 /* Displacement of the point relative to its partner, of a field over the skin. */
@@ -33,14 +33,3 @@ void sf_touch_drop_traces(double weight[4]);
 /* Writes the pairs of edges that close in the next step to `pair` [edge_count], without friction and force;
  * returns their number. `back` (m): the part of a depth that a step takes back. */
 int64_t sf_touch_edges(const sf_skin *skin, const sf_state *state, double back, sf_touch *pair);
-
-/* The facets that each node of the skin may touch soon: the broad phase of contact.h, made anew when the
- * fastest node may have left its list (candidates.c). */
-enum { SF_NO_CANDIDATE = -1 };
-
-/* Sets the lists of candidates, of the nodes that have some or can reach a plane, and of those whose
- * positions these need. Needs self_position of all nodes. */
-sf_status sf_candidates_find(const sf_skin *skin, sf_state *state, sf_error *err);
-
-/* Takes the last step's travel off the room of the lists; false: they must be made anew. */
-bool sf_candidates_last(const sf_skin *skin, sf_state *state);

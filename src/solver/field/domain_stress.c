@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/operators.h"
-#include "solver/state.h"
+#include "solver/field/domain_stress.h"
 
+#include "solver/time_step.h"
 #include "model/stability.h"
 
 /* Columns of F - I of domain l, from the coefficients d that its group sees. Two sums run side by side,

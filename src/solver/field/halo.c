@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/field/field.h"
+#include "solver/field/halo.h"
 
 /* Lists the nodes of other groups that group g sees, marked in `seen` (zero on entry and exit), into `list`
  * if that is not NULL, and returns how many. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/field/field.h"
+#include "solver/field/membrane.h"
 
 #include "base/mat3.h"
 #include "base/sets.h"

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/run.h"
+#include "solver/run/checkpoint.h"
 
+#include "io/h5_data.h"
+#include "solver/field/domain_stress.h"
+#include "solver/set.h"
 #include <errno.h>
 #include <unistd.h>
 

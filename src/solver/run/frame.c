@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/run.h"
+#include "solver/run/frame.h"
 
+#include "io/h5_data.h"
+#include "solver/field/domain_stress.h"
 #include "base/sets.h"
 #include "base/mat3.h"
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/run.h"
+#include "solver/run/output.h"
 
+#include "io/h5_data.h"
+#include "model/flight.h"
+#include "solver/run/frame.h"
 #include <errno.h>
 #include <sys/file.h>
 #include <sys/stat.h>

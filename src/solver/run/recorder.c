@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/run/run.h"
+#include "solver/run/recorder.h"
 
 #include "base/mat3.h"
+#include "io/h5_data.h"
 
 static const double PEAK_GROWTH = 1.001; /* of the acceleration from one kept maximum to the next */
 

@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "io/h5_data.h"
 #include "material/low_density_foam.h"
+#include "model/motion.h"
+#include "solver/set.h"
 #include "solver/step.h"
 
 static const double REBOUND_WAIT = 1e-3; /* s, without contact before the run may end */

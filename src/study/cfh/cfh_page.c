@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "build_info.h"
+#include "post/results/origin.h"
 #include "post/view/report.h"
 #include "report/chart.h"
 

@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "case/read.h"
 #include "study/material_file.h"
 #include <unistd.h>
 

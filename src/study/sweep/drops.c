@@ -4,7 +4,8 @@
 #include "io/folder.h"
 #include "io/plain_file.h"
 #include "io/process.h"
-#include "pre/build.h"
+#include "pre/make.h"
+#include "pre/model_report.h"
 
 #include <gsl/gsl_sort.h>
 #include <sys/statvfs.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/sweep/plan.h"
 
-#include "case/keys.h"
 #include "base/text.h"
+#include "case/values.h"
 #include "io/plain_file.h"
 #include "study/fit/posterior/mixture.h"
 #include "study/material_file.h"

@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "case/read.h"
 #include "io/plain_file.h"
 #include "pre/mesh/geo_parameters.h"
 #include <gsl/gsl_statistics.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "model/flight.h"
 #include "study/sweep/adaptive.h"
 
 #include <gsl/gsl_multifit.h>

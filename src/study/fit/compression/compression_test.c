@@ -2,7 +2,7 @@
 #include "study/fit/compression/compression_test.h"
 
 #include "base/text.h"
-#include "case/reader.h"
+#include "case/curves.h"
 
 static const double STRAIN_ZERO = 2e-3; /* strains from minus this on are zero with scatter */
 static const double STRESS_ZERO = 0.01; /* stresses likewise, as a part of the largest */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "case/curves.h"
 #include "study/fit/compression/form_fit.h"
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_statistics_double.h>
 
-#include "case/reader.h"
 #include "material/low_density_foam.h"
 
 /* ---- the record ---- */

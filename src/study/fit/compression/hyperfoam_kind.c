@@ -10,7 +10,7 @@
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_errno.h>
 
-enum { STARTS = 6, MISFIT_SIZE = 256 };
+enum { STARTS = 6, MOST_TERMS = 3, MISFIT_SIZE = 256 };
 static const char AT_BOUND_WORDS[] = " (at its bound)";
 static const double LARGEST_NU = 0.45, LARGEST_ALPHA = 49, LEAST_ALPHA = 0.02;
 static const double AT_BOUND = 1e-3;                          /* of the range */
@@ -115,7 +115,7 @@ static sf_status read_test(const sf_config *file, sf_config_item *root, sf_hyper
 sf_status sf_hyperfoam_request_read(const sf_config *file, sf_config_item *root, sf_hyperfoam_request *r,
                                     sf_compression_test *test, sf_error *err) {
     double terms = 2;
-    SF_TRY(sf_config_number(file, root, "terms", false, 1, SF_HYPERFOAM_TERMS, &terms, err));
+    SF_TRY(sf_config_number(file, root, "terms", false, 1, MOST_TERMS, &terms, err));
     SF_TRY(sf_config_number(file, root, "nu", false, 0, 0.45, &r->nu, err));
     r->terms = (int)terms;
     if (r->terms != terms)

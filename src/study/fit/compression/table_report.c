@@ -5,6 +5,7 @@
 
 #include "build_info.h"
 #include "report/chart.h"
+#include "study/material_file.h"
 #include "study/setup.h"
 
 static const char *const rates[SF_RATE_MODELS] = {
@@ -219,6 +220,7 @@ static void put_parameters(FILE *out, const sf_compression_fit *fit) {
             sf_html_line(&table, e->name, "%s|%s|%s|%s", shown.value, shown.error, shown.interval, e->note);
     }
     sf_html_table_end(&table);
+    sf_html_note(out, SF_MATERIAL_ELSEWHERE);
     sf_html_note(out,
                  "E is the slope of a straight line through the loading of the slowest test (of several "
                  "temperatures: of that nearest to 23 degC) below a strain of %g; where the curve bends "

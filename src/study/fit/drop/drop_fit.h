@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "post/figures/compare.h"
+#include "post/figures/reference.h"
 #include "study/column.h"
 #include "study/fit/form/form.h"
 #include "study/fit/space_mapping.h"
@@ -81,7 +81,7 @@ typedef struct sf_fit_drop {
     bool predicted;
     int number;                   /* of the drop in the series of its case, from 1; 0: the case has none */
     double pause[SF_SERIES_MOST]; /* [number - 1] s, after each of the drops before it */
-    double value[SF_FIT_SAMPLES]; /* measured, in the unit of its key (kinds.h); NaN: not */
+    double value[SF_FIT_SAMPLES]; /* measured, in the unit of its key (model/drop_kind.h); NaN: not */
     double sd[SF_FIT_SAMPLES];    /* relative standard deviations */
     double speed;                 /* m s-1, of the case; 0: a machine drives the missile */
     double speed_sd;              /* its relative standard deviation; 0: it is known */
@@ -139,8 +139,8 @@ void sf_drop_input_free(sf_fit_drop *drop);
  * mapping, and the conclusions from the result.
  *
  * Scaled variables: u = ln(value / SI unit) of the unknown parameters; responses per drop: logarithms
- * of the numbers of kinds.h, then the samples of a measured curve over its peak, then the logarithm of the
- * largest indentation over the thickness, which is no datum but bounded. Measured or not, every drop
+ * of the numbers of model/drop_kind.h, then the samples of a measured curve over its peak, then the logarithm
+ * of the largest indentation over the thickness, which is no datum but bounded. Measured or not, every drop
  * has the numbers; one that is not defined (no rebound within the end time) and was not measured is NaN. */
 
 /* The cache of a fit between its drops, in a file of its folder, so that a run that was killed does not

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "io/plain_file.h"
+#include "post/figures/compare.h"
 
 static const double SAMPLE_INTERVAL = 0.5e-3; /* s, of a measured curve */
 static const double SAMPLE_LEVEL = 0.05;      /* of its peak: samples below are left out */

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "build_info.h"
 #include "report/chart.h"
+#include "study/material_file.h"
 
 static const double SIDES = 1.959963984540054; /* standard deviations on each side of a 95 % interval */
 
@@ -264,6 +265,7 @@ static void put_parameters(FILE *f, const sf_drop_fit *fit) {
                      e.about->description);
     }
     sf_html_table_end(&table);
+    sf_html_note(f, SF_MATERIAL_ELSEWHERE);
     sf_html_paragraph(f, "Correlation of their logarithms:");
     table = begin_matrix(f, in, "");
     for (int j = 0; j < in->unknown_count; j++) {

@@ -8,6 +8,7 @@
 #include "io/process.h"
 #include "io/replace.h"
 #include "material/low_density_foam.h"
+#include "post/figures/compare.h"
 #include <sys/file.h>
 #include <unistd.h>
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/program.h"
+#include "case/read.h"
 #include "study/fit/drop/drop_fit.h"
 
 #include "io/plain_file.h"
@@ -164,7 +165,7 @@ static sf_status read_material(const sf_config *config, sf_config_item *root, sf
     SF_PRINTED(override, 4096, "material=@%s", in->material_path);
     if (in->drop_count == 0) {
         SF_OWNED_BY(sf_material_free) sf_material material = {0};
-        SF_TRY(sf_case_read_material(in->material_path, &material, err));
+        SF_TRY(sf_case_read_material(in->material_path, 0, &material, NULL, err));
         SF_TRY(take_material(&material, true, in, err));
     }
     for (int k = 0; k < in->drop_count; k++) { /* every case is checked before the first simulation */
@@ -247,10 +248,9 @@ static sf_status check_term(const sf_config *config, sf_config_item *item, sf_co
     if (sf_config_choice(config, model, "rate", SF_FORM_RATE_WORDS, &rate, err) != SF_OK || rate < 0 ||
         (rate & term) == term)
         return err->status;
-    return sf_config_refuse(config, item, err,
-                            "%s is of the %s, which a model with rate = \"%s\" does not have", what,
-                            term == SF_FORM_RATE_FACTOR ? "rate factor" : "Maxwell branch",
-                            sf_form_rate_names[rate]);
+    return sf_config_refuse(
+        config, item, err, "%s is of the %s, which a model with rate = \"%s\" does not have", what,
+        term == SF_FORM_RATE_FACTOR ? "rate factor" : "Maxwell branch", sf_form_rate_names[rate]);
 }
 
 /* The start values of the model alone; those of all models may be for other models. */

@@ -10,16 +10,16 @@
  * curve over the form's at SF_DISCREPANCY_PLACES strains, a Gaussian process of standard deviation tau and
  * correlation length 0.12; J are the columns' derivatives at the maximum. x are the model's other errors
  * (rate, unloading, surrogate): of every drop and number, and one of each number that all drops share, with
- * standard deviations of kappa times model_sd (kinds.h). e are the measurements' errors and those of the
- * speeds, whose effect is taken as linear. So delta, x and the speeds are integrated in closed form, and
- * drawn where predictions need them. */
+ * standard deviations of kappa times model_sd (model/drop_kind.h). e are the measurements' errors and those
+ * of the speeds, whose effect is taken as linear. So delta, x and the speeds are integrated in closed form,
+ * and drawn where predictions need them. */
 
 enum { SF_DISCREPANCY_PLACES = 20 }; /* strains 0, 0.05, ..., 0.95 */
 
 /* A number of a predicted drop: quantity of the chains, in logarithms. */
 typedef struct sf_drop_quantity {
     int drop;
-    int kind; /* kinds.h */
+    int kind; /* sf_drop_kind */
 } sf_drop_quantity;
 
 typedef struct sf_drop_inference {
@@ -110,8 +110,9 @@ enum { SF_ALL_MODELS = -1, SF_SINGLE_DROP = -2 };
 
 /* Quantiles of a predicted number (index of the inference's quantities), in its unit, of one model, or of
  * SF_ALL_MODELS or SF_SINGLE_DROP. A draw whose foam collapses counts as above every value of a
- * number that is `above_all` (drop_kinds.h), and a quantile among these is INFINITY; of the other numbers the
- * quantiles are those of the draws that have a value. NaN if none counts, or the scatter is not known. */
+ * number that is `above_all` (model/drop_kind.h), and a quantile among these is INFINITY; of the other
+ * numbers the quantiles are those of the draws that have a value. NaN if none counts, or the scatter is not
+ * known. */
 sf_status sf_drop_average_quantiles(const sf_drop_average *average, int model, int quantity, int count,
                                     const double *probability, double *value, sf_error *err);
 /* Weight of the draws that have no value of it: the foam of the columns collapses, or there are none. */

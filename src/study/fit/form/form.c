@@ -2,6 +2,7 @@
 #include "study/fit/form/form.h"
 
 #include "material/curve.h"
+#include "model/drop_kind.h"
 
 static const sf_parameter_info info[SF_PARAMETER_COUNT] = {
 #define SF_FIT_PARAMETER_ROW(id, name, quantity, unit, per_unit, low, high, prior_sd, description)           \

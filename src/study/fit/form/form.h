@@ -91,7 +91,7 @@ sf_form_rate sf_form_rate_of(sf_foam_parameter parameter);
 /* Forms of the loading curve of a foam, for identification: nominal stress against compressive strain as a
  * function of a few parameters, with what is known of them beforehand (theory, section "Forms of the loading
  * curve"). Each is an entry of SF_CURVE_FORM_LIST. Pure functions of a set of values [SF_PARAMETER_COUNT] in
- * SI (parameter.h). */
+ * SI, by sf_foam_parameter. */
 
 /* A parameter of a form. */
 typedef struct sf_form_entry {

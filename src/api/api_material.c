@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* libsoftfall-build: foams of material files, and points of them under compression. */
+#include "api/api.h"
+
+#include "case/read.h"
+#include "material/laws.h"
+#include <math.h>
+
+struct softfall_material {
+    sf_material data;
+    char *parameters; /* owned */
+};
+
+softfall_status softfall_material_read(const char *path, double temperature, softfall_material **out,
+                                       softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    *out = sf_alloc(&err, 1, sizeof **out, "a material");
+    if (*out && sf_case_read_material(path, temperature, &(*out)->data, &(*out)->parameters, &err) != SF_OK) {
+        free(*out);
+        *out = NULL;
+    }
+    return softfall_return(&err, error);
+}
+
+void softfall_material_free(softfall_material *material) {
+    if (material) {
+        sf_material_free(&material->data);
+        free(material->parameters);
+    }
+    free(material);
+}
+
+const char *softfall_material_parameters(const softfall_material *material) {
+    return material->parameters;
+}
+
+int64_t softfall_material_curve(const softfall_material *material, int index, double *rate,
+                                const double **strain, const double **stress) {
+    const sf_law_curves *curves = sf_material_curves(&material->data);
+    if (!curves || index < 0 || index >= curves->curve_count)
+        return 0;
+    *rate = curves->curve_rate[index];
+    *strain = &curves->curve_strain[curves->curve_ptr[index]];
+    *stress = &curves->curve_stress[curves->curve_ptr[index]];
+    return curves->curve_ptr[index + 1] - curves->curve_ptr[index];
+}
+
+static sf_status check_path(const sf_point_path *path, sf_error *err) {
+    enum { MOST = 10000000 };
+    if (path->count < 2 || path->count > MOST)
+        return SF_REFUSE(err, "the path of strain has %lld points; it must have 2 to %d",
+                         (long long)path->count, MOST);
+    if (path->strain[0] != 0)
+        return SF_REFUSE(err, "the first strain is %g; a path of strain begins with 0", path->strain[0]);
+    for (int64_t i = 0; i < path->count; i++) {
+        if (!(path->strain[i] >= -1 && path->strain[i] < 1))
+            return SF_REFUSE(err, "strain %lld is %g; it must be from -1 to below 1", (long long)i + 1,
+                             path->strain[i]);
+        if (!isfinite(path->time[i]) || (i > 0 && !(path->time[i] > path->time[i - 1])))
+            return SF_REFUSE(err, "time %lld is %g s; times are finite and ascend", (long long)i + 1,
+                             path->time[i]);
+    }
+    return SF_OK;
+}
+
+softfall_status softfall_compress(const softfall_material *material, int free_sides, const double *time,
+                                  const double *strain, int64_t count, double *stress,
+                                  softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_material_law law = {0};
+    const sf_point_path path = {count, time, strain, free_sides != 0};
+    if (check_path(&path, &err) == SF_OK && sf_material_law_build(&material->data, &law, &err) == SF_OK)
+        sf_material_point_follow(&law, &path, stress, &err);
+    sf_material_law_free(&law);
+    return softfall_return(&err, error);
+}

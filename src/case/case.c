@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "case/case.h"
+
+void sf_case_free(sf_case *c) {
+    for (int k = 0; k < SF_SUPPORTS; k++)
+        free(c->support[k].source.path);
+    sf_material_free(&c->material);
+    for (int k = 0; c->layer && k < c->layer_count; k++)
+        sf_material_free(&c->layer[k]);
+    SF_CLEAR(c, c->path, c->text, c->parameters, c->geometry_files, c->pad.path, c->missile.path, c->layer,
+             c->motion_time, c->motion_displacement);
+}
+
+const sf_case_interface *sf_case_interface_find(const sf_case *c, int layer, int other) {
+    for (int k = 0; k < c->interface_count; k++) {
+        const int *own = c->interface[k].layer;
+        if ((own[0] == layer && own[1] == other) || (own[0] == other && own[1] == layer))
+            return &c->interface[k];
+    }
+    return NULL;
+}
+
+bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const char *name) {
+    for (int g = 0; g < count; g++)
+        if (strcmp(list[g], name) == 0)
+            return true;
+    return false;
+}
+
+size_t sf_case_motion_bytes(const sf_case *c) {
+    return (size_t)c->motion_count * sizeof *c->motion_time;
+}
