@@ -146,7 +146,7 @@ def test_a_rate_that_the_times_contradict_is_refused_and_the_remedies_work(read)
         read(stated)
     is_record(read(stated, rate="1.2 kHz"))
     rounded = table("Time (s),Acc (g)", [f"{t:.1f}" for t in TIME], ACCELERATION)
-    with pytest.raises(softfall.InputError, match='too coarse for the samples: give their rate, such as rate='):
+    with pytest.raises(softfall.InputError, match='too coarse for the samples: give the rate of the logger, such as rate='):
         read(rounded)
     is_record(read(rounded, rate="1.2 kHz"))
 
@@ -158,6 +158,7 @@ def test_a_rate_that_the_times_contradict_is_refused_and_the_remedies_work(read)
     ("Strain (µm/m),Stress (kPa)", 1e6, 1), ("Strain (µε),Stress (MPa)", 1e6, 1e-3), ("Strain (microstrain),Stress (kPa)", 1e6, 1), ("Axial strain (%),Stress (kPa)", 100, 1),
     ("Compressive strain [%],Compressive stress [kPa]", 100, 1), ("Engineering strain (-),Engineering stress (N/mm²)", 1, 1e-3),
     ("Stauchung in %,Druckspannung in kPa", 100, 1), ("strain,stress_kPa", 1, 1), ("strain_percent,stress_MPa", 100, 1e-3), ("strain_1,stress_kPa", 1, 1),
+    ("Compressive strain,Compressive stress\n%,kPa", 100, 1), ("Engineering strain [1],Engineering stress (kPa)", 1, 1),
     ("Strain (%),Quasi-static stress (kPa)", 100, 1), ("Compressive strain (Displacement),Compressive stress\n(%),(MPa)", 100, 1e-3),
     ("Déformation (%),Contrainte (kPa)", 100, 1),
 ])
@@ -179,11 +180,23 @@ def test_headings_of_curves_are_read(read, heading, strain, stress):
     ("rho/rho0-1 (-),Pressure (MPa)", "mu = density"), ("Stretch (-),Stress (kPa)", "nominal strain = 1 - stretch"), ("Strain (%),Tangent modulus (MPa)", "a modulus"),
     ("Strain (%),von Mises stress (MPa)", "another measure"), ("Green-Lagrange strain (-),PK2 stress (MPa)", "another measure"), ("Strain (%),Hydrostatic pressure (kPa)", "a hydrostatic"),
     ("Strain (%),Stress SD (kPa)", "a scatter"), ("Compression set (%),Stress (kPa)", "a plastic"), ("Querdehnung (%),Spannung (kPa)", "a lateral strain"),
+    ("eps_p (-),sigma_y (MPa)", "a plastic"), ("strain,sigma_y (MPa)", "a yield stress"), ("ε_p,σ_y", "a yield stress"), ("PEEQ (-),Stress (MPa)", "a plastic"),
+    ("LE22 (-),Stress (MPa)", "a true"), ("Strain (-),S22 (MPa)", "a true stress"), ("eps_v (-),p (MPa)", "a volumetric strain"),
+    ("Extension (mm),Tensile force (N)", "a tensile force"), ("Elongation (mm),Force (N)", "a tensile displacement"), ("Velocity (m/s),Acceleration (g)", "has no column of time"),
     ("Plastische Dehnung (-),Fließspannung (MPa)", "a yield stress"), ("Wahre Dehnung (1),Spannung (kPa)", "a true"), ("Dehnung (%),Schubspannung (kPa)", "a shear stress"),
 ])
 def test_another_quantity_is_refused_with_its_name(read, heading, what):
     with pytest.raises(softfall.InputError, match=f'lab.csv:1: .*" is {what}|{what}.*" is |{what}'):
         read(table(heading, STRAIN, STRESS))
+
+
+@pytest.mark.parametrize("title", ["True stress - true strain curve", "# yield stress, plastic strain", "*PLASTIC, Yield stress"])
+def test_a_title_of_another_curve_is_refused(read, title):
+    text = table("Strain (-),Stress (MPa)", STRAIN, STRESS / 1e3)
+    with pytest.raises(softfall.InputError, match="lab.csv:1: .* stands above the table, and .* is no nominal stress or strain.*: .* leave that line out"):
+        read(f"{title}\n{text}")
+    is_curve(read(text))
+    is_curve(read(f"Test report\nYield stress: 12 kPa\n\n{text}"))
 
 
 def test_the_nominal_pair_is_taken_beside_the_true_one(read):
@@ -231,6 +244,7 @@ def test_axial_and_lateral_strain_are_told_apart(read):
 @pytest.mark.parametrize("kind, text, frame", [
     ("motion", "time_ms,displacement_mm\n0,0\n80,40\n", {"time_s": [0, 0.08], "displacement_mm": [0, 40]}),
     ("rig", "Höhe (m);Geschwindigkeit (m/s)\n0,5;3,1\n1,0;4,4\n", {"height_m": [0.5, 1], "speed_m_s": [3.1, 4.4]}),
+    ("lateral", "Strain (%);Transverse strain (%)\n1;0.3\n2;0.6\n", {"strain": [0.01, 0.02], "lateral_strain": [0.003, 0.006]}),
     ("cushion", "Static stress (kPa),Peak deceleration (g)\n2,68.67\n3,54.76\n", {"static_stress_kPa": [2, 3], "peak_g": [68.67, 54.76]}),
 ])
 def test_other_kinds_are_read_when_asked_for(read, kind, text, frame):
@@ -294,10 +308,10 @@ def test_parts_are_chosen_and_listed(read, text, options, refused):
 
 
 @pytest.mark.parametrize("text, refused", [
-    ("b\n1\n", ":1: the header has no column"), ("Time (s),Acc (g)\n1\n", ":2: 1 values where the header has 2 columns"),
-    ("Time (s),Acc (g)\n1,2,3\n", ":2: 3 values where the header has 2 columns"), ("Time (s),Acc (g)\n1,2\n#\n1.5.1,2\n", ':4: time "1.5.1" is not a number'),
+    ("b\n1\n", ":1: the heading has no column"), ("Time (s),Acc (g)\n1\n", ":2: 1 values where the heading has 2 columns"),
+    ("Time (s),Acc (g)\n1,2,3\n", ":2: 3 values where the heading has 2 columns"), ("Time (s),Acc (g)\n1,2\n#\n1.5.1,2\n", ':4: time "1.5.1" is not a number'),
     ("Time (s),Acc (g)\n1,\n", "(the cell is empty)"), ("Time (s),Acc (g)\n1,inf\n", '"inf" is not finite'),
-    ("Time (s),Acc (g)\n1,5,2,5\n", ":2: 4 values where the header has 2 columns (with decimal commas, separate the columns by semicolons)"),
+    ("Time (s),Acc (g)\n1,5,2,5\n", ":2: 4 values where the heading has 2 columns (with decimal commas, separate the columns by semicolons)"),
     ('time_s,acceleration_g\n1,"1,234"\n', "holds a comma, which separates the columns"),
     ("time_s;acceleration_g\n1;1,234\n2;5,678\n", ':2: "1,234" and every other number with a comma could hold'),
     ("time_s;acceleration_g\n1.5;2\n2;5,67\n", ':3: acceleration "5,67" has a comma where the file has decimal points'),
@@ -325,11 +339,11 @@ def test_what_could_be_read_in_two_ways_is_refused(read, text, refused):
     (table("Time (ms),Acc (g)", TIME, ACCELERATION), {"rate": "20"}, "is not a sampling rate"), (table("Time (ms),Acc (g)", TIME, ACCELERATION), {"column": "Axx"}, "there are 'Time (ms)'"),
     (table("Time (ms),Acc (g)", TIME, ACCELERATION), {"heading": "Time (ms), Acc (g)"}, ":1: the file has a heading of its own"),
     (table("1;2;3", TIME, TIME, TIME, separator=";"), {"heading": "Time (ms);Acc (g)"}, ":1: 3 values where heading names 2 columns"),
-    (table("1;2", TIME, TIME, separator=";"), {"heading": "Time (ms);Mass (kg)"}, "the header has no column"), (table("Strain (%),Stress (kPa)", STRAIN, STRESS), {"side": "5 cm"}, "leave the area"),
+    (table("1;2", TIME, TIME, separator=";"), {"heading": "Time (ms);Mass (kg)"}, "the heading has no column"), (table("Strain (%),Stress (kPa)", STRAIN, STRESS), {"side": "5 cm"}, "leave the area"),
     (table("Displacement (mm),Force (N)", STRAIN, STRESS), {"side": "5 cm"}, "give the thickness of the specimen, too"), (table("Strain (%),Stress (kPa)", STRAIN, STRESS), {"specimen": "1"}, "holds one specimen"),
     (table("Displacement (mm),Force (N)", STRAIN, STRESS), {"side": "5 cm", "diameter": "5 cm", "thickness": "5 cm"}, "give side"), (table("Strain (%),Stress (kPa)", STRAIN, STRESS), {"sheet": "A"}, "no spreadsheet"),
     (table("Time (s),Displacement (mm),Force (N),Acc (g)", STRAIN, STRAIN, STRESS, STRESS), {}, 'choose one with kind="acceleration" or kind="compression"'),
-    (table("Strain (%),Stress (kPa)", -STRAIN, -STRESS), {}, 'strain is negative; compression is positive: change the sign with invert="strain"'),
+    (table("Strain (%),Stress (kPa)", -STRAIN, -STRESS), {}, 'strain and stress are negative; compression is positive: change the sign with invert="both"'),
     (table("Time (ms),Acc (g)", TIME, ACCELERATION), {"kind": "drop"}, 'there is no kind of table "drop"'),
 ])
 def test_options_that_contradict_the_file_are_refused(read, text, options, refused):
@@ -397,3 +411,49 @@ def test_a_record_of_any_file_is_judged(tmp_path):
     assert softfall.read_record(tmp_path / "axes.csv", column="ax").figures["a_max_g"] == pytest.approx(90, rel=1e-3)
     with pytest.raises(softfall.InputError, match='called "aq"|no column is called "aq"'):
         softfall.read_record(tmp_path / "axes.csv", columns="ax,ay,aq")
+
+
+def test_an_offset_is_taken_away_as_the_report_advises(tmp_path):
+    time = np.arange(-0.02, 0.04, 1e-4)
+    (tmp_path / "lab.csv").write_text(table("time_s,acceleration_g", time, 5 + 90 * np.sin(np.pi * np.clip(time / 0.012, 0, 1))))
+    before, after = softfall.read_record(tmp_path / "lab.csv"), softfall.read_record(tmp_path / "lab.csv", zero=True)
+    assert "offset before contact" in before.verdict.remarks[0] and after.verdict == "valid"
+    assert before.figures["a_max_g"] - after.figures["a_max_g"] == pytest.approx(5, rel=0.01)
+
+
+# ---- every remedy that a sentence names works ----
+
+@pytest.mark.parametrize("text, options", [
+    (table("Time,Acc", 1e3 * TIME, ACCELERATION), {}), (table("Time,Acc (g)", 1e3 * TIME, ACCELERATION), {}), (table("Strain,Stress (kPa)", 100 * STRAIN, STRESS), {}),
+    (table("Strain 1 (%),Strain 2 (%),Stress (kPa)", 100 * STRAIN, 30 * STRAIN, STRESS), {}), (table("Eyy (%),Stress (kPa)", 100 * STRAIN, STRESS), {}),
+    (table("Time (s),Acc X (g),Time (s),Acc Y (g)", TIME, ACCELERATION, TIME, ACCELERATION), {}), (table("Time (s),Time 2 (s),Acc (g)", TIME, 2 * TIME, ACCELERATION), {}),
+    (table("Time (ms),Acc (counts)", 1e3 * TIME, ACCELERATION), {}), (table("Time (ms),Acc (mV)", 1e3 * TIME, ACCELERATION), {}), (table("Strain (%),Force (mV)", 100 * STRAIN, FORCE), {}),
+    (table("Time (ms),Acc (g)", 1e3 * TIME, ACCELERATION), {"rate": "20 kHz"}), (table("Sample rate: 5 kHz\nTime (ms),Acc (g)", 1e3 * TIME, ACCELERATION), {}),
+    (table("Time (s),Acc (g)", [f"{t:.1f}" for t in TIME], ACCELERATION), {}), (table("Time (s),Acc (g)", [f"{t:.3f}" for t in TIME], ACCELERATION), {}),
+    (table("Strain (%),Stress (kPa)", -100 * STRAIN, -STRESS), {}), (table("Strain (%),Stress (kPa)", -100 * STRAIN, STRESS), {}), (PARTS["column"], {}), (PARTS["cycles"], {}),
+    (PARTS["two below"], {}), (PARTS["beside"], {}), (table("Time (s),Displacement (mm),Force (N),Acc (g)", TIME, TIME, ACCELERATION, ACCELERATION), {}),
+    (table("", 1e3 * TIME, ACCELERATION)[1:], {}), (table("Time (ms),Acc (g)", 1e3 * TIME, ACCELERATION), {"heading": "Time (ms), Acc (g)"}),
+    (table("Time (ms),Acc (g)", 1e3 * TIME, ACCELERATION), {"scale": "10 mV/g"}), (table("Strain (%),Stress (kPa)", 100 * STRAIN, STRESS), {"specimen": "2"}),
+    (table("Time (ms),Acc (g)", 1e3 * TIME, ACCELERATION), {"cycle": "2"}),
+])
+def test_a_remedy_that_is_named_works(read, text, options):
+    try:
+        reading = read(text, **options)
+        assert not options and "even times" in reading.words  # needs no remedy
+        return
+    except softfall.InputError as error:
+        said = str(error)
+    left_out = re.search(r'leave (\w+)(?:="[^"]*")? out', said)
+    tried = [{name: value for name, value in options.items() if name != left_out[1]}] if left_out else []
+    offered = re.findall(r'(?<!leave )\b(\w+)="([^"]*)"', said)
+    tried += [{**options, name: value} for name, value in offered if name in ("column", "specimen", "cycle", "kind", "units", "scale", "rate", "invert", "heading")]
+    assert tried, said
+    for changed in tried:
+        try:
+            read(text, **changed)
+        except softfall.InputError as error:  # one of several steps: another sentence
+            assert str(error) != said and changed != options, str(error)
+            more = dict(re.findall(r'\b(units|invert)="([^"]*)"', str(error)))
+            if "units" in more:
+                more["units"] = ",".join(a or b for a, b in zip((changed["units"] + ",,").split(","), (more["units"] + ",,").split(",")))
+            read(text, **{**changed, **more})

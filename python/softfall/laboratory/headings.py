@@ -32,23 +32,26 @@ class Role:
 _SCATTER = ("sd|std|stdev|deviation|*abweichung|error|*fehler|uncertainty|*unsicherheit|scatter|cov|variance", "a scatter")
 _ACROSS = "lateral*|transvers*|quer*|radial*|width|breite*|poisson*|hoop|circumferential|diamet*"
 _WORK = ("energy|energie|energía|energia|énergie|work|toughness|resilience", "an energy")
+_EPS, _SIGMA = "(?:eps|epsilon|ε|strain) ?", "(?:sig|sigma|σ|stress) ?"  # with an index, such as eps_p
 _STRAINS = (
-    ("plast*|inelast*|bleibend*|permanent*|compression set|residual|recover*", "a plastic (permanent) strain"),
-    ("true|log|logarithm*|ln|hencky|natural|wahre*|vraie|verdadera|vera", "a true (logarithmic) strain"),
-    ("volum*|vol|dilat*|bulk", "a volumetric strain"), ("shear*|scher*|schub*|gamma|γ|cisaillement|cortante|taglio", "a shear strain"),
+    (f"plast*|inelast*|bleibend*|permanent*|compression set|residual|recover*|peeq|pe[123]{{2}}|{_EPS}(?:p|pl|eqpl|inel)", "a plastic (permanent) strain"),
+    (f"true|log|logarithm*|ln|hencky|natural|wahre*|vraie|verdadera|vera|le[123]{{2}}|{_EPS}(?:t|tr|ln|h)", "a true (logarithmic) strain"),
+    (f"volum*|vol|dilat*|bulk|{_EPS}(?:v|vv|kk)", "a volumetric strain"), ("shear*|scher*|schub*|gamma|γ|cisaillement|cortante|taglio", "a shear strain"),
     ("tens*|zug|zugdehnung|elong*|traction|tracción|trazione|pull", "a tensile strain"), ("stretch*|streckung|lambda|λ", "a stretch (nominal strain = 1 - stretch)"),
     (_ACROSS, "a lateral strain"), ("*rate|rates|speed|velocity|*geschwindigkeit|vitesse|velocidad|velocità", "a strain rate"), _WORK,
     ("mu|μ|µ|rho|rho0|ρ|ρ0|density|*dichte", "a compression of the volume, mu = density / first density - 1"),
     ("green|lagrang*|almansi|equivalent|effective|mises|vergleichs*", "a strain of another measure"), ("thermal|creep", "a strain of another cause"), _SCATTER)
 _STRESSES = (
-    ("plast*|yield*|flow|flie*|streckgrenze|fluencia|snervamento", "a yield stress"), ("true|cauchy|kirchhoff|wahre*|vraie|verdadera|vera", "a true stress"),
+    (f"plast*|yield*|flow|flie*|streckgrenze|fluencia|snervamento|sy|fy|rp0|rp02|yld|sigy|{_SIGMA}(?:y|ys|f|0)", "a yield stress"),
+    (f"true|cauchy|kirchhoff|wahre*|vraie|verdadera|vera|s(?:11|22|33)|{_SIGMA}(?:t|tr)", "a true stress"),
     ("hydro*|volum*", "a hydrostatic pressure"), ("shear*|scher*|schub*|tau|τ|cisaillement|cortante|taglio", "a shear stress"),
     ("tensile|tension|zug|zugspannung|traction|tracción|trazione", "a tensile stress"), (_ACROSS + "|confin*|wall", "a lateral stress"),
     ("mises|equivalent|effective|deviator*|vergleichs*|piola|pk2", "a stress of another measure"), _WORK, ("*rate|rates", "a stress rate"),
     ("*modul*|stiffness|tangent|secant|young*|*steifigkeit|module|rigidez", "a modulus"), ("quasi static", ""),
     ("static|residual|thermal", "a stress of another test"), _SCATTER)
-_LENGTHS = ((_ACROSS, "a lateral displacement"), ("*rate|speed|velocity", "a speed"), _SCATTER)
-_FORCES = ((_ACROSS + "|shear*|friction|reibung*|side", "a lateral force"), ("preload|prestress|limit|vorkraft|trigger", "a set value"), _SCATTER)
+_TENSILE = "tens*|zug*|elong*|traction|tracción|trazione|pull|dehnweg"
+_LENGTHS = ((_TENSILE, "a tensile displacement"), (_ACROSS, "a lateral displacement"), ("*rate|speed|velocity", "a speed"), _SCATTER)
+_FORCES = ((_TENSILE + "|tension", "a tensile force"), (_ACROSS + "|shear*|friction|reibung*|side", "a lateral force"), ("preload|prestress|limit|vorkraft|trigger", "a set value"), _SCATTER)
 _ACCELERATIONS = (("limit|threshold|trigger|grenz*", "a set value"), ("angular|*winkel*|rotation*", "an angular acceleration"), _SCATTER)
 
 _WAYS = ("displacement|displ|disp|extension|crosshead|traverse*|position|pos|travel|stroke|deformation|deflection|deflexion|compression|compressive|indentation|"
@@ -78,6 +81,19 @@ SPEED = Role("speed", "speed", "speed", "speed|velocity|v|*geschwindigkeit|vites
 STATIC_STRESS = Role("static_stress", "static stress", "pressure", "static*|stress|load*|pressure|*spannung|*belastung", (), True,
                      (("static_stress_Pa", "Pa"), ("static_stress_kPa", "kPa")))
 PEAK = Role("peak", "peak deceleration", "acceleration", "peak|deceleration|acceleration|*beschleunigung|*verzögerung|g", (), True, (("peak_g", "g"), ("G", "g")))
+
+
+_TITLE = re.compile(r"(?i)\b(?:true|cauchy|hencky|log(?:arithmic)?|plastic|volumetric|yield|shear|wahre|plastische)[ -](?:strain|stress|dehnung|spannung)")
+
+
+def other_title(line: str) -> str:
+    """Returns what a line without numbers says that the curve below it is, if that is no nominal stress or strain.
+
+    >>> other_title("# True stress - true strain curve"), other_title("Yield stress: 12 kPa"), other_title("nominal, from true stress")
+    ('True stress', '', '')
+    """
+    found = None if re.search(r"(?i)\d|nominal|engineering|technisch", line) else _TITLE.search(line)
+    return found[0] if found else ""
 
 
 @functools.lru_cache(maxsize=None)
@@ -150,15 +166,16 @@ def _titles(heading: str) -> list[tuple[str, str]]:
         if between:
             found.append((name.strip(), unit.strip()))
     for match in re.finditer(r"(?<=[^_])_", heading):  # acc_m_s2: what follows an underscore, the next one read as a slash
-        if heading[match.end():] != "1" or heading[:match.start()].casefold().endswith("strain"):
+        if heading[match.end():].casefold() != "strain" and heading[match.end():] != "1" or heading[:match.start()].casefold().endswith("strain"):
             found.append((heading[:match.start()], heading[match.end():].replace("_", "/", 1)))
     name, blank, unit = heading.rpartition(" ")
-    if blank and re.search(r"[^\W\d]|%", unit):
+    if blank and re.search(r"[^\W\d]|%", unit) and unit.casefold() != "strain":
         found.append((name.strip(), unit))
     known = [title for title in found if any(factor(title[1], quantity) is not None for quantity in _QUANTITIES)]
     return [*known, *([] if known else bracketed), (heading, "")]
 
 
+_ALSO_ELSEWHERE = ("a strain rate", "a stress rate", "a scatter")  # words of them stand in other columns and lines, too
 _QUANTITIES = ("time", "acceleration", "force", "length", "pressure", "ratio", "speed", "count", "voltage")
 
 
@@ -177,8 +194,12 @@ def fits(column: Column, role: Role, chosen: bool = False, scaled: bool = False)
     instead = next((what for words, what in others if column.holds(words)), "")
     if role.is_pressing:
         written = " ".join((*(text for _, text in column.titles), column.below, column.above))
-        instead = "an energy" if re.search(r"J\b", written) else "a strain rate" if re.search(r"/ ?(?:s|sec|min|h)\b|s-1|s\^-1|s⁻¹", written) else instead
-        if instead and (unit or not written.strip() or "J" in written or "s" in written):
+        energy, per_time = re.search(r"J\b", written), re.search(r"/ ?(?:s|sec|min|h)\b|s-1|s\^-1|s⁻¹", written)
+        if energy or (per_time and (named or column.holds("*rate|rates"))):
+            instead = "an energy" if energy else "a strain rate"
+        elif not named and instead in _ALSO_ELSEWHERE:
+            instead = ""
+        if instead and (unit or not written.strip() or energy or per_time):
             return instead
     if not (named or (unit and role.by_unit)):
         return None

@@ -49,20 +49,22 @@ def _wanted(role: Role) -> str:
 
 def problem_of(role: Role, other: Sequence[tuple[Column, str]], unfit: Sequence[Column], o: Options, columns: Sequence[Column] = ()) -> str:
     """Returns why no column has the role; of `columns` one with a unit of its kind may be it."""
+    near = [(column, fits(column, role, True)) for column in columns if column.unit(role.quantity)] if not (other or unfit) else []
+    able = next((column for column, what in near if what == ""), None)
+    other = other or [(column, what) for column, what in near if what and able is None]
     if other:
         column, what = other[0]
         formula = f": {FORMULAS[what]}" if what in FORMULAS else ""
         return f'"{column.heading}" is {what}, not {f"the {role.label}" if role.is_pressing else PHRASES[role.quantity][0]}{formula}'
     if not unfit:
-        near = next((column for column in columns if column.unit(role.quantity)), None)
-        return f"the header has no column of {_wanted(role)}" + (f'; if "{near.heading}" is one, name it with {o.spell("column", near.heading)}' if near else "")
+        return f"the heading has no column of {_wanted(role)}" + (f'; if "{able.heading}" is one, name it with {o.spell("column", able.heading)}' if able else "")
     column = unfit[0]
     phrase, unit = PHRASES[role.quantity]
     written = next((text for _, text in column.titles if text), "") or column.below or column.above
     if written:
-        return f'the header has no column of {_wanted(role)}: "{column.heading}" is in "{written.strip("()[]<>")}", which is not a unit of {phrase}'
+        return f'the heading has no column of {_wanted(role)}: "{column.heading}" is in "{written.strip("()[]<>")}", which is not a unit of {phrase}'
     given = ",".join([*("" for _ in range(column.place)), unit])
-    return (f'the header has no column of {_wanted(role)}: "{column.heading}" names no unit (write "{column.heading} ({unit})", or the unit in the next line, '
+    return (f'the heading has no column of {_wanted(role)}: "{column.heading}" names no unit (write "{column.heading} ({unit})", or the unit in the next line, '
             f"or give it with {o.spell('units', given)})")
 
 
@@ -139,7 +141,7 @@ def _acceleration(columns: Sequence[Column], o: Options) -> Choice:
         problem, values = two(headings.ACCELERATION, values, o) + ", as each has its own time", []
     if o.columns and values:
         missing = next((name for name in o.columns if not any(column.is_called(name) for column in values)), None)
-        problem = f'the header has no column of an acceleration called "{missing}"' if missing else problem
+        problem = f'the heading has no column of an acceleration called "{missing}"' if missing else problem
         values = [column for name in o.columns for column in values if column.is_called(name)]
     if o.rate and not times:
         time_problem, time_seen = "", True
@@ -165,7 +167,7 @@ def _compression(columns: Sequence[Column], o: Options) -> Choice:
     lateral, _, _ = sort_out([column for column in columns if column not in taken], headings.LATERAL)
     named = [column for column in columns if o.lateral and column.is_called(o.lateral)]
     if o.lateral and not (len(named) == 1 and named[0].unit("ratio")):
-        choice.problem = choice.problem or f'the header has no lateral strain called "{o.lateral}"'
+        choice.problem = choice.problem or f'the heading has no lateral strain called "{o.lateral}"'
     if named or len(lateral) == 1:
         choice.columns["lateral_strain"] = named or lateral
     times, _, _ = sort_out(columns, headings.TIME)
@@ -176,6 +178,7 @@ def _compression(columns: Sequence[Column], o: Options) -> Choice:
 
 KINDS: dict[str, Callable[[Sequence[Column], Options], Choice]] = {
     "acceleration": _acceleration, "compression": _compression, "motion": _pair(headings.TIME, headings.DISPLACEMENT),
+    "lateral": _pair(headings.STRAIN, headings.LATERAL),
     "rig": _pair(headings.HEIGHT, headings.SPEED), "cushion": _pair(headings.STATIC_STRESS, headings.PEAK)}
 USUAL = ("acceleration", "compression")  # kinds that a file is looked through for; the others are asked for
 ROLES = {role.key: role for role in (headings.TIME, headings.ACCELERATION, headings.STRAIN, headings.STRESS, headings.DISPLACEMENT, headings.FORCE, headings.GAP,

@@ -16,7 +16,7 @@ from ..curves import STANDARD_GRAVITY
 from ..errors import InputError, missing
 from .cells import LOST, Array, Marks, is_clock
 from .files import Sheet, sheets
-from .headings import Column, Role
+from .headings import Column, Role, other_title
 from .kinds import KINDS, PHRASES, ROLES, USUAL, Options, problem_of, two
 from .tables import PREAMBLE, Table, choose_table, find, part_rows, rows_of, with_heading
 from .times import Times, are_times_of_day, parse_rate, quantum, stated_rates
@@ -25,6 +25,7 @@ from .units import factor, parse_scale, quantity
 CLEAN = {"time": ("time_s", 1.0), "acceleration": ("acceleration_g", STANDARD_GRAVITY), "strain": ("strain", 1.0), "stress": ("stress_kPa", 1e3),
          "displacement": ("displacement_mm", 1e-3), "gap": ("displacement_mm", 1e-3), "force": ("force_N", 1.0), "lateral_strain": ("lateral_strain", 1.0), "height": ("height_m", 1.0),
          "speed": ("speed_m_s", 1.0), "static_stress": ("static_stress_kPa", 1e3), "peak": ("peak_g", STANDARD_GRAVITY)}
+READ = "# softfall read "  # begins the line of a clean table that says how it was read
 SEPARATOR_WORDS = {"\t": "tab", " ": "blanks"}
 INVERSIONS = {"acceleration": ("acceleration",), "compression": ("strain", "stress", "both")}
 _ZERO_ROW = re.compile(r"(?i)data zero.*|zero.*(?:counts?|cnts?)\)?|offset.*(?:counts?|cnts?)\)?")
@@ -46,7 +47,7 @@ class Reading:
 
     def text(self) -> str:
         """Returns the table as the CSV that the programs read, with how it was read in a comment above it."""
-        return f"# softfall read {os.path.basename(self.path)}: {self.words}\n{self.frame.to_csv(index=False, float_format='%.15g')}"
+        return f"{READ}{os.path.basename(self.path)}: {self.words}\n{self.frame.to_csv(index=False)}"
 
     def write(self, path: str | os.PathLike[str]) -> Path:
         """Writes the table as the CSV that the programs read."""
@@ -245,6 +246,10 @@ class _Reader:
 
     def _compression(self, data: dict[str, Array]) -> list[str]:
         keys = [key for key in self.columns if key not in ("time", "lateral_strain") and self.columns[key]]
+        for place, line in enumerate(self.table.sheet.lines[:max(self.table.place, 0)]):
+            if other := other_title(line) if not line.startswith(READ) else "":
+                raise InputError(f'{self.path}:{place + 1}: "{line.strip("# ,;")[:80]}" stands above the table, and {other.lower()} is no nominal stress or strain in compression: '
+                                 "if the table holds the nominal ones, leave that line out")
         words, value = [], dict[str, Array]()
         places = [self.columns[key][0].place + 1 for key in keys]
         for k, key in enumerate(keys):
@@ -259,10 +264,12 @@ class _Reader:
             if way is not value[first]:
                 words.append(f'displacement = {value[first][0]:.6g} mm, the first gap, less "{self.columns[first][0].heading}"')
             value = {"displacement": way, second: value[second]}
-        for key, number in value.items():
-            if -np.min(number) > np.max(number):
-                what = "strain" if key in ("strain", "displacement") else "stress"
-                raise InputError(f"{self.path}: {key} is negative; compression is positive: change the sign with {self.o.spell('invert', what)}, or of both with {self.o.spell('invert', 'both')}")
+        negative = {"strain" if key in ("strain", "displacement") else "stress": key for key, number in value.items() if -np.min(number) > np.max(number)}
+        if negative:
+            given = set(INVERSIONS["compression"][:2] if self.o.invert == "both" else [self.o.invert] if self.o.invert else [])
+            wanted = given ^ set(negative)  # channels whose sign is to be changed then
+            how = f"change the sign with {self.o.spell('invert', 'both' if len(wanted) == 2 else min(wanted))}" if wanted else f"leave {self.o.spell('invert', self.o.invert or '')} out"
+            raise InputError(f"{self.path}: {' and '.join(negative.values())} {'is' if len(negative) == 1 else 'are'} negative; compression is positive: {how}")
         value = self._of_specimen(value, words)
         for key, number in value.items():
             data[CLEAN[key][0]] = number

@@ -130,7 +130,12 @@ def _best(sheet: Sheet, place: int, choose: Chooser, units: Sequence[str]) -> Ta
     line = sheet.lines[place]
     tables = [_try(sheet, place, separator, choose, units) for separator in SEPARATORS
               if separator == "," or separator in line or (separator == " " and "\t" in line)]
-    return max(tables, key=lambda table: (table.choice.is_good and _is_followed(table), table.choice.found, _is_followed(table), table.choice.is_good))
+    return max(tables, key=lambda table: (table.choice.is_good and _is_followed(table), table.choice.found, _is_even(table), _is_followed(table), table.choice.is_good))
+
+
+def _is_even(table: Table) -> bool:
+    """True if the first row below has as many cells as the heading, of several."""
+    return table.width > 1 and table.first < len(table.sheet.lines) and len(table.cells(table.first)) == table.width
 
 
 def _needed(table: Table) -> list[int]:
@@ -320,4 +325,4 @@ def _check_width(table: Table, place: int, cells: list[str], ragged: bool, last:
     if len(cells) == table.width or (ragged and last < len(cells) < table.width):
         return
     hint = " (with decimal commas, separate the columns by semicolons)" if table.separator == "," and len(cells) > table.width else ""
-    raise InputError(f"{table.sheet.path}:{place + 1}: {len(cells)} values where the header has {table.width} columns{hint}")
+    raise InputError(f"{table.sheet.path}:{place + 1}: {len(cells)} values where the heading has {table.width} columns{hint}")

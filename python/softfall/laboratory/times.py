@@ -13,7 +13,7 @@ from .cells import Array, clock, is_clock
 AGREE = 0.02  # relative difference between a rate and the times
 SHORT = 0.005  # share of the span that rounded times may be wrong by
 UNEVEN = 0.05  # share of an interval by which even times differ
-_KEY = re.compile(r"(?i)\b(?:sampl\w*|scan|daq|acquisition|abtast|mess|data)[ _-]*(?:rate|freq\w*|frequenz)\b|\bfs\b")
+_KEY = re.compile(r"(?i)\b(?:sampl\w*|scan|daq|acquisition|abtast|mess|data)[ _-]*(?:rate|freq\w*|frequenz)\b|\bfs\b|^\W*rate\b(?=.*(?:hz|s/s|sps)\b)")
 _INTERVAL = re.compile(r"(?i)\b(?:sampl\w*|scan|abtast)[ _-]*(?:interval\w*|period\w*|time)\b|\b(?:time step|delta[ _]?[tx]|dt)\b|Δt\b")
 _RATE_UNIT = re.compile(r"(?i)\b(?:([km]?)(?:hz|s/s|sps|sa/s|samples/s|samples per second))\b")
 _TIME_UNIT = re.compile(r"\b([mnu]?s(?:ec)?)\b|µs")
@@ -109,7 +109,7 @@ class Times:
             rate = rate or (next(iter(stated)) if len(stated) == 1 else None)
             if rate is None:
                 raise InputError(f"{self.path}:{self.lines[0]}: the times are written in steps of {step:g} s, too coarse for the samples: "
-                                 f"give their rate, such as {self.spell_rate.format('20 kHz')}")
+                                 f"give the rate of the logger, such as {self.spell_rate.format(_hertz(own) if own else '20 kHz')}")
             self.words = f"even times at {_hertz(rate)} as {f'line {stated[rate]} states' if rate in stated else 'given'}, as those in the file are rounded to {step:.3g} s"
             return self.by_rate(rate)
         wrong = {known: line for known, line in stated.items() if own and not abs(known / own - 1) < slack}
