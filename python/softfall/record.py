@@ -13,7 +13,7 @@ from .drop import Figures, Verdict
 from .errors import InputError
 
 GRADES = ("valid", "valid with remarks", "do not use")
-READ = ("column", "columns", "heading", "units", "scale", "rate", "specimen", "cycle", "sheet")  # options of the file
+READ = laboratory.RECORD
 JUDGED = ("filter", "impact", "invert", "zero", "speed", "range")  # options of the record
 
 

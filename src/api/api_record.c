@@ -45,12 +45,6 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
         o->column = value;
     else if (strcmp(name, "columns") == 0)
         o->columns = value;
-    else if (strcmp(name, "heading") == 0)
-        o->heading = value;
-    else if (strcmp(name, "scale") == 0)
-        sf_reference_parse_sensitivity(value, &o->sensitivity, err);
-    else if (strcmp(name, "rate") == 0)
-        sf_reference_parse_rate(value, &o->rate, err);
     else if (strcmp(name, "range") == 0)
         sf_reference_parse_range(value, &o->range, err);
     else if (strcmp(name, "speed") == 0)
@@ -67,8 +61,8 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
         o->zero = true;
     else if (err->status == SF_OK)
         SF_REFUSE(err,
-                  "a record has no option \"%.80s\"; there are column, columns, heading, scale, rate, "
-                  "filter, impact, invert, zero, speed and range",
+                  "a record has no option \"%.80s\"; there are column, columns, filter, impact, "
+                  "invert, zero, speed and range",
                   name);
     return err->status;
 }
@@ -102,9 +96,9 @@ static softfall_status make_record(const char *path, const sf_reference_samples 
                               .samples = samples,
                               .cfc = 1000,
                               .column_option = "column=HEADING",
-                              .unfiltered_option = "filter=none",
+                              .filter_option = "filter=",
                               .invert_option = "invert",
-                              .heading_option = "heading=TEXT"}};
+                              .zero_option = "zero"}};
     *out = sf_alloc(&err, 1, sizeof **out, "a record");
     if (*out &&
         (take_options(&s, options, count, &err) != SF_OK || read_record(*out, &s.options, &err) != SF_OK)) {

@@ -28,7 +28,6 @@ static const quantity_info quantities[SF_QUANTITY_COUNT] = {
     [SF_INERTIA] = {"a moment of inertia", "kg m2", "0.012 kg m2"},
     [SF_ANGULAR_VELOCITY] = {"an angular velocity", "rad s-1", "20 rad/s"},
     [SF_VOLTAGE] = {"a voltage", "V", "10 mV"},
-    [SF_SENSITIVITY] = {"a sensitivity of an accelerometer", "V s2 m-1", "0.102 mV/(m/s2)"},
     [SF_TEMPERATURE] = {"a temperature", "K", "23 degC"},
     [SF_MOLAR_ENERGY] = {"an activation energy", "J mol-1", "80 kJ/mol"},
     [SF_FORCE] = {"a force", "N", "2.5 kN"},

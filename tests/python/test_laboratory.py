@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files of laboratories: what is read of them, as which values, what is refused with its name, and that every remedy works."""
 import gzip
+import os
 import re
+import shlex
+import subprocess
 
 import numpy as np
 import pytest
 
 import softfall
 from softfall import laboratory
+from conftest import BIN
 from test_command import says
 
 TIME = np.linspace(0, 0.05, 61)  # s, at 1.2 kHz
@@ -457,3 +461,125 @@ def test_a_remedy_that_is_named_works(read, text, options):
             if "units" in more:
                 more["units"] = ",".join(a or b for a, b in zip((changed["units"] + ",,").split(","), (more["units"] + ",,").split(",")))
             read(text, **{**changed, **more})
+
+
+def advised(text, place, *more):
+    """Runs the command that a sentence names, and returns what it made."""
+    words = shlex.split(re.search(r"(softfall read .+? -o clean2?\.csv(?: --(?!column NAME)\w+ \S+)?)", text)[1])
+    subprocess.run([str(BIN / words[0]), *words[1:], *more, "--force"], cwd=place, check=True, capture_output=True)
+    return place / words[words.index("-o") + 1]
+
+
+def test_programs_name_the_command_that_reads_the_file(drop, tmp_path):
+    time = np.arange(-0.02, 0.04, 1e-4)
+    pulse = 90 * np.sin(np.pi * np.clip((time - 0.0) / 0.012, 0, 1))
+    (tmp_path / "Kai's lab.csv").write_text(table("Zeit [ms];a [m/s²]", 1e3 * time, 9.80665 * pulse, separator=";").replace(".", ","))
+    (tmp_path / "axes.csv").write_text(table("Time (ms);Acc X (g);Acc Y (g)", 1e3 * time, pulse, 0 * time, separator=";"))
+
+    def post(reference, *more):
+        return subprocess.run([str(BIN / "softfall-post"), drop.results, "-o", "out", "--view", "0", "--force", "--reference", reference, *more], cwd=tmp_path, capture_output=True, text=True)
+    refused = post("Kai's lab.csv")
+    assert refused.returncode == 2
+    accepted = post(advised(refused.stderr, tmp_path))
+    assert accepted.returncode == 0 and "(softfall read Kai's lab.csv: separator" in accepted.stdout, accepted.stderr
+    axes = post(advised(post("axes.csv").stderr, tmp_path))
+    assert axes.returncode == 2 and 'name one of "Acc X", "Acc Y" with --reference-column' in axes.stderr
+    assert post("clean.csv", "--reference-column", "Acc X").returncode == 0 and post("clean.csv", "--reference-columns", "Acc X,Acc Y").returncode == 0
+    assert drop.post(tmp_path / "python", view=0, reference=tmp_path / "Kai's lab.csv")["reference"]["a_max_g"] == pytest.approx(90, rel=0.01)
+    with pytest.raises(softfall.InputError, match='leave reference_rate="20 kHz" out, or give reference_rate="10 kHz"'):
+        drop.post(tmp_path / "python", view=0, reference=tmp_path / "axes.csv", reference_column="Acc X (g)", reference_rate="20 kHz")
+    drop.post(tmp_path / "python", view=0, force=True, reference=tmp_path / "axes.csv", reference_column="Acc X (g)", reference_rate="10 kHz")
+
+
+@pytest.mark.parametrize("change, option", [
+    (lambda t, a: (t, -a), "invert"), (lambda t, a: (t[::4], a[::4]), "filter"), (lambda t, a: (t[::40], a[::40]), "filter"),
+])
+def test_remedies_for_records_change_the_outcome(drop, tmp_path, change, option):
+    """Each option that a refused record names is tried, as softfall-post and Python spell it."""
+    time = np.arange(-0.02, 0.04, 1e-4)
+    time, value = change(time, 90 * np.sin(np.pi * np.clip(time / 0.012, 0, 1)))
+    (tmp_path / "lab.csv").write_text(table("time_s,acceleration_g", time, value))
+    command = [str(BIN / "softfall-post"), drop.results, "-o", "out", "--view", "0", "--force", "--reference", "lab.csv"]
+    refused = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    named = re.findall(rf"--reference-{option}(?: \w+)?(?=,| if|$)", refused.stderr.strip(), re.M)
+    assert refused.returncode == 2 and named, refused.stderr
+    for words in named:
+        made = subprocess.run([*command, *words.split()], cwd=tmp_path, capture_output=True, text=True)
+        assert made.returncode == 0, made.stderr
+    with pytest.raises(softfall.InputError) as caught:
+        softfall.read_record(tmp_path / "lab.csv")
+    for name, text in re.findall(rf"\b({option})(?:=(\w+))?(?=,| if|$)", str(caught.value)):
+        softfall.read_record(tmp_path / "lab.csv", **{name: text or True})
+
+
+def test_a_zero_line_that_cannot_be_taken_away_is_left_out(tmp_path):
+    (tmp_path / "lab.csv").write_text(table("time_s,acceleration_g", TIME[12:], ACCELERATION[12:]))
+    with pytest.raises(softfall.InputError, match="take the zero line from: leave zero out"):
+        softfall.read_record(tmp_path / "lab.csv", zero=True, filter="none")
+    softfall.read_record(tmp_path / "lab.csv", filter="none")
+
+
+def test_a_curve_of_a_case_is_read_from_any_file(case, tmp_path):
+    case = case.copy()
+    (tmp_path / "lab.csv").write_text(table("Compression (%);Druckspannung (kPa)", 100 * STRAIN, STRESS, separator=";").replace(".", ","))
+    (tmp_path / "yield.csv").write_text(table("Yield stress (MPa),Plastic strain (-)", STRESS / 1e3, STRAIN))
+    refused = subprocess.run([str(BIN / "softfall-pre"), case.path, "-o", tmp_path / "m.h5", "--set", f"material.curve={tmp_path}/lab.csv"], capture_output=True, text=True)
+    assert refused.returncode == 2 and "what is read is nominal stress over nominal strain in compression" in refused.stderr
+    clean = advised(refused.stderr, tmp_path)
+    accepted = subprocess.run([str(BIN / "softfall-pre"), case.path, "-o", tmp_path / "m.h5", "--set", f"material.curve={clean}"], capture_output=True, text=True)
+    assert accepted.returncode == 0 and "nominal stress over nominal strain in compression, columns 1 and 2" in accepted.stdout
+    case["material.curve"] = tmp_path / "lab.csv"
+    assert np.allclose(laboratory.read(case["material.curve"]).frame["stress_kPa"], STRESS, rtol=1e-7)
+    with pytest.raises(softfall.InputError, match='"Plastic strain \\(-\\)" is a plastic .* strain.*"Yield stress \\(MPa\\)" is a yield stress'):
+        case["material.curve"] = tmp_path / "yield.csv"
+    (tmp_path / "two.csv").write_text("Specimen;Strain (%);Stress (kPa)\n" + "".join(f"{k};{100 * a:.9g};{b:.9g}\n" for k in (1, 2) for a, b in zip(STRAIN, STRESS)))
+    with pytest.raises(softfall.InputError, match="holds the specimens 1, 2: choose one with softfall read") as caught:
+        case["material.curve"] = tmp_path / "two.csv"
+    case["material.curve"] = advised(str(caught.value), tmp_path)
+
+
+def test_the_file_of_a_case_may_name_curves_of_any_form(case, tmp_path):
+    (tmp_path / "slow.csv").write_text(table("Compression (%);Druckspannung (kPa)", 100 * STRAIN, STRESS, separator=";").replace(".", ","))
+    (tmp_path / "fast.csv").write_text(table("Deflection (%),Stress (kPa)", 100 * STRAIN, 2 * STRESS))
+    text, lists = case.path.read_text(), 'curves = ( { rate = "0.01 1/s"; file = "slow.csv"; }, { rate = "1 1/s"; file = "fast.csv"; } );'
+    folder = case.path.parent
+    for name, curve in (("one.cfg", 'curve = "slow.csv";'), ("both.cfg", lists)):
+        for file in ("slow.csv", "fast.csv"):
+            (folder / file).write_bytes((tmp_path / file).read_bytes())
+        (folder / name).write_text(re.sub(r"(?s)material\s*[=:]\s*(\{.*?\}|\"[^\"]*\")\s*;", f'material = {{ law = "low_density_foam"; density = "35 kg/m3"; E = "1 MPa"; {curve} }};', text))
+        made = softfall.Case(folder / name)
+        clean = made.overrides["material.curve" if name == "one.cfg" else "material.curves"]
+        assert clean.count("softfall-runs/tables/") == (1 if name == "one.cfg" else 2)
+        assert made.copy().overrides == made.overrides
+
+
+@pytest.mark.parametrize("heading, columns, specimen", [
+    ("Gap (mm),Force (N)", (GAP, FORCE), True), ("Strain (%),Force (N)", (100 * STRAIN, FORCE), True), ("Displacement (mm),Stress (kPa)", (50 * STRAIN, STRESS), True),
+    ("Deflection (%);Druckspannung (kPa)", (100 * STRAIN, STRESS), False),
+])
+def test_fits_read_any_file(tmp_path, heading, columns, specimen):
+    rows = [np.interp(np.linspace(0, 1, 200), np.linspace(0, 1, STRAIN.size), column) for column in columns]
+    (tmp_path / "lab.csv").write_text(table(heading, *rows, separator=";" if ";" in heading else ","))
+    size = 'specimen = { side = "50 mm"; thickness = "50 mm"; }; ' if specimen else ""
+    (tmp_path / "fit.cfg").write_text(f'name = "t"; density = "35 kg/m3"; {size}rate_model = "none"; E_range = 0.1;\ntests = ( {{ file = "lab.csv"; rate = "0.1 1/min"; }} );\n')
+    made = softfall.fit_compression(tmp_path / "fit.cfg", tmp_path / "out")
+    assert made.summary["tests"][0]["largest_strain"] == pytest.approx(0.59 if "Gap" in heading else 0.6, abs=1e-3)
+    if "Gap" in heading:
+        assert "the first gap, less" in (tmp_path / "out/report.html").read_text()
+    assert os.path.exists(made.summary["tests"][0]["file"])
+
+
+def test_a_hyperfoam_takes_axial_and_lateral_strain_from_one_file(tmp_path):
+    """The file of which a message once named an unknown key as the remedy."""
+    rows = [np.linspace(0.004, 0.6, 150), 0.25 * np.linspace(0.004, 0.6, 150), 600 * (1 - (1 - np.linspace(0.004, 0.6, 150)) ** 0.5)]
+    (tmp_path / "dic.csv").write_text(table("Axial strain (%),Lateral strain (%),Stress (kPa)", 100 * rows[0], 100 * rows[1], rows[2]))
+    (tmp_path / "fit.cfg").write_text('law = "hyperfoam"; name = "t"; density = "100 kg/m3"; terms = 1;\ntests = ( { file = "dic.csv"; rate = "0.01 1/s"; lateral = "dic.csv"; } );\n')
+    (tmp_path / "old.cfg").write_text((tmp_path / "fit.cfg").read_text().replace("lateral =", 'specimen_number = "1"; lateral ='))
+    refused = subprocess.run([str(BIN / "softfall-fit"), "compression", "old.cfg", "-o", "out"], cwd=tmp_path, capture_output=True, text=True)
+    assert refused.returncode == 2 and 'in its place: softfall read "dic.csv" --specimen "1" -o clean.csv' in refused.stderr
+    refused = subprocess.run([str(BIN / "softfall-fit"), "compression", "fit.cfg", "-o", "out"], cwd=tmp_path, capture_output=True, text=True)
+    assert refused.returncode == 2 and '"Lateral strain (%)"' in refused.stderr
+    advised(refused.stderr, tmp_path)
+    (tmp_path / "clean.cfg").write_text((tmp_path / "fit.cfg").read_text().replace("dic.csv", "clean.csv"))
+    assert subprocess.run([str(BIN / "softfall-fit"), "compression", "clean.cfg", "-o", "out"], cwd=tmp_path, capture_output=True).returncode in (0, 5)
+    assert softfall.fit_compression(tmp_path / "fit.cfg", tmp_path / "python").summary["law"] == "hyperfoam"

@@ -6,11 +6,14 @@ import os
 from typing import Any
 
 from ..errors import missing
+from .advice import Advice as Advice
+from .advice import advised as advised
 from .kinds import Options
 from .reading import Reading
 from .reading import read as _read
 
 _NAMES = tuple(name for name in Options.__dataclass_fields__ if name != "stated_at")
+RECORD = ("column", "columns", "heading", "units", "scale", "rate", "specimen", "cycle", "sheet")  # options of a record's file
 _LISTS = ("column", "columns", "units", "scale")
 
 

@@ -239,8 +239,8 @@ static double other_impact_value(const record *r) {
     return most / r->peak;
 }
 
-/* Where the filtered curve is high ringing and noise average out, but what the filter took from the pulse
- * does not. */
+/* Compares means near the filtered peak: ringing and noise average out there, what the filter took from the
+ * pulse does not. */
 static double removed_value(const record *r) {
     static const double HIGH = 0.9;
     int64_t top = sf_series_peak(r->curve), first = top, last = top;

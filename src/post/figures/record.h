@@ -49,7 +49,7 @@ typedef struct sf_record_verdict {
     sf_check rows[SF_RECORD_CHECKS]; /* value NaN: the record does not tell */
 } sf_record_verdict;
 
-/* What is known of a record besides its samples. */
+/* Facts about a record besides its samples. */
 typedef struct sf_record_facts {
     double other; /* highest of the other impacts that were left out, over the peak; 0: none */
     double speed; /* m/s, of the missile at contact; 0: unknown */
