@@ -71,7 +71,7 @@ static sf_status read_motion(const char *path, sf_error *err) {
 
 static sf_status read_reference(const char *path, sf_error *err) {
     sf_reference_options options = {
-        .path = path, .column_option = "x", .unfiltered_option = "y", .invert_option = "z"};
+        .path = path, .column_option = "x", .filter_option = "y=", .invert_option = "z", .zero_option = "u"};
     sf_reference reference;
     sf_error coarse = SF_ERROR_INIT;
     double instant;
@@ -301,7 +301,8 @@ void fuzz_begin(void) {
         {"pad.geo", "DefineConstant[ side = 1, quarter = 0 ];\n"},
         {"foam.csv", "strain,stress_kPa\n0,0\n0.1,20\n0.5,100\n0.8,900\n"},
         {"motion.csv", "time_ms,displacement_mm\n0,0\n50,10\n"},
-        {"measured.csv", "time_ms,acceleration_g\n0,0\n1,20\n2,80\n3,20\n4,0\n"},
+        {"measured.csv",
+         "time_ms,acceleration_g\n0,0\n0.5,0\n1,0\n1.5,0\n2,0\n2.5,7.84\n3,15.6\n3.5,23.2\n4,30.6\n4.5,37.7\n5,44.4\n5.5,50.8\n6,56.6\n6.5,61.8\n7,66.5\n7.5,70.6\n8,73.9\n8.5,76.6\n9,78.5\n9.5,79.6\n10,80\n10.5,79.6\n11,78.5\n11.5,76.6\n12,73.9\n12.5,70.6\n13,66.5\n13.5,61.8\n14,56.6\n14.5,50.8\n15,44.4\n15.5,37.7\n16,30.6\n16.5,23.2\n17,15.6\n17.5,7.84\n18,9.8e-15\n18.5,9.8e-15\n19,9.8e-15\n19.5,9.8e-15\n20,9.8e-15\n20.5,9.8e-15\n21,9.8e-15\n21.5,9.8e-15\n22,9.8e-15\n"},
         {"pressing.csv", PRESSING},
         {"quick.csv", QUICK},
         {"material.cfg", MATERIAL},

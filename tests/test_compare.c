@@ -46,8 +46,9 @@ static sf_status read_text(const char *text, sf_series *curve, sf_error *err) {
     sf_reference reference;
     const sf_reference_options options = {.path = path,
                                           .column_option = "--reference-column",
-                                          .unfiltered_option = "--reference-filter none",
-                                          .invert_option = "--reference-invert"};
+                                          .filter_option = "--reference-filter ",
+                                          .invert_option = "--reference-invert",
+                                          .zero_option = "--reference-zero"};
     sf_status status = sf_reference_read(&options, &reference, err);
     *curve = reference.curve;
     reference.curve = (sf_series){0};
@@ -295,40 +296,6 @@ static void reference_units_are_taken_from_the_heading(void **state) {
     sf_series_free(&curve);
 }
 
-/* The same drop in four laboratories' forms. */
-static void laboratory_forms_are_one_curve(void **state) {
-    (void)state;
-    static const struct {
-        const char *text, *interpretation;
-    } forms[] = {
-        {"\xef\xbb\xbfTime (ms);Acceleration (m/s\xc2\xb2)\r\n0,0;0\r\n0,5;98,0665\r\n1,0;0\r\n",
-         "separator \";\", decimal comma, time in ms, acceleration in m/s\xc2\xb2, 3 samples at 2 kHz, 0 to 1 ms"},
-        {"Lab 3\t\nOperator\tsomebody\nZeit\tBeschleunigung\n[s]\t[m/s^2]\n0\t0\n0.0005\t98.0665\n.001\t0\n",
-         "separator tab, decimal point, time in s, acceleration in m/s^2, heading in line 3, 3 samples"},
-        {"t / us   a [g]\n  0   0\n500 10\n1000  0\n",
-         "separator blanks, decimal point, time in us, acceleration in g"},
-        {"\"Time [s]\",\"Head\",\"Acc X [km/s\xb2]\"\n\"0\",x,0\n0.5e-3,,0.0980665\n1e-3,y,0\n",
-         "separator \",\", decimal point, time in s, acceleration in km/s\xc2\xb2"},
-        {"Time;CH1\nms;g\n0;0\n0,5;10\n1;0\n", "time in ms, acceleration in g (\"CH1\")"},
-    };
-    for (size_t k = 0; k < sizeof forms / sizeof *forms; k++) {
-        char path[256];
-        sf_reference reference;
-        sf_error err = SF_ERROR_INIT;
-        write_text(path, forms[k].text);
-        const sf_reference_options options = {.path = path};
-        if (sf_reference_read(&options, &reference, &err) != SF_OK)
-            fail_msg("%zu: %s", k, err.text);
-        unlink(path);
-        assert_int_equal(reference.curve.count, 3);
-        assert_close(reference.curve.time[1], 0.5e-3, 1e-15);
-        assert_close(reference.curve.value[1], 10, 1e-12);
-        if (!strstr(reference.interpretation, forms[k].interpretation))
-            fail_msg("%zu: %s", k, reference.interpretation);
-        sf_reference_free(&reference);
-    }
-}
-
 /* Half-sine of 40 g over 15 ms with a disturbance of 10 g at 4 kHz, every `step` ms. */
 static void write_noisy(char *path, double step, double sign) {
     static char text[400000];
@@ -376,12 +343,20 @@ static void coarse_or_inverted_measurement_is_refused(void **state) {
     sf_error err = SF_ERROR_INIT;
     sf_reference reference;
     write_noisy(path, 0.2, 1);
-    sf_reference_options options = {
-        .path = path, .cfc = 1000, .unfiltered_option = "--none", .invert_option = "--turn"};
+    sf_reference_options options = {.path = path,
+                                    .cfc = 1000,
+                                    .filter_option = "--filter ",
+                                    .invert_option = "--turn",
+                                    .zero_option = "--zero"};
     assert_int_equal(sf_reference_read(&options, &reference, &err), SF_ERR_INPUT);
-    assert_non_null(strstr(err.text, ":3: samples 0.2 ms apart are too coarse for CFC 1000"));
-    assert_non_null(strstr(err.text, "--none"));
+    assert_non_null(strstr(err.text, ": sample 2: samples 0.2 ms apart are too coarse for CFC 1000"));
+    assert_non_null(strstr(err.text, "give --filter 180, or --filter none if"));
     assert_null(reference.raw.time);
+    err = (sf_error)SF_ERROR_INIT;
+    options.cfc = 180;
+    assert_int_equal(sf_reference_read(&options, &reference, &err), SF_OK);
+    sf_reference_free(&reference);
+    options.cfc = 1000;
     unlink(path);
     write_noisy(path, 0.02, -1);
     err = (sf_error)SF_ERROR_INIT;
@@ -412,79 +387,63 @@ static double axis_pulse(int i) {
 static const double axis_direction[3] = {0.6, -0.64, 0.48};
 static const double axis_offset[3] = {2, 0, -1.5}; /* g */
 
-/* What the rows of a record hold. */
-enum { ROWS_OF_AXES, ROWS_IN_VOLTS, ROWS_ALONE };
-
-static char *write_rows(int kind) {
+static char *write_axes(void) {
     static char text[AXIS_SAMPLES * 80];
-    size_t used = (size_t)snprintf(text, sizeof text, "%s",
-                                   kind == ROWS_OF_AXES    ? "Time (ms);ax (g);ay (g);az (m/s2)\n"
-                                   : kind == ROWS_IN_VOLTS ? "Sample;CH1 (mV)\n"
-                                                           : "");
+    size_t used = (size_t)snprintf(text, sizeof text, "Time (ms),ax (g),ay_g,az (m/s2)\n");
     for (int i = 0; i < AXIS_SAMPLES; i++) {
         double p = axis_pulse(i), a[3];
         for (int k = 0; k < 3; k++)
             a[k] = axis_direction[k] * p + axis_offset[k];
-        if (kind == ROWS_OF_AXES)
-            used += (size_t)snprintf(text + used, sizeof text - used, "%.2f;%.6f;%.6f;%.6f\n", 0.05 * i, a[0],
-                                     a[1], 9.80665 * a[2]);
-        else if (kind == ROWS_IN_VOLTS)
-            used += (size_t)snprintf(text + used, sizeof text - used, "%d;%.8f\n", i, 10 * p);
-        else
-            used += (size_t)snprintf(text + used, sizeof text - used, "%.6f\n", p);
+        used += (size_t)snprintf(text + used, sizeof text - used, "%.2f,%.6f,%.6f,%.6f\n", 0.05 * i, a[0],
+                                 a[1], 9.80665 * a[2]);
     }
     return text;
 }
 
-/* Axes with offsets, volts with a sensitivity, rows with a rate: the same pulse each time. */
-static void a_record_in_other_forms_is_the_same(void **state) {
+/* Axes with offsets are the pulse; so are samples that were read already. */
+static void axes_with_offsets_are_the_pulse(void **state) {
     (void)state;
-    static const struct {
-        int rows;
-        sf_reference_options options;
-        const char *scale, *told;
-    } cases[] = {
-        {ROWS_OF_AXES, {.columns = "ax, ay,az", .zero = true, .cfc = 1000}, NULL, "resultant of the columns"},
-        {ROWS_IN_VOLTS, {.rate = 20e3, .cfc = 1000}, "10 mV/g", "at a sensitivity of 1.01972 mV/(m/s2)"},
-        {ROWS_ALONE, {.rate = 20e3, .heading = "a (g)", .cfc = 1000}, NULL, "at 20 kHz as given"},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        char path[256];
-        sf_error err = SF_ERROR_INIT;
-        sf_reference r;
-        sf_reference_options o = cases[k].options;
-        o.path = path;
-        o.heading_option = "--reference-heading";
-        write_text(path, write_rows(cases[k].rows));
-        if (cases[k].scale)
-            assert_int_equal(sf_reference_parse_sensitivity(cases[k].scale, &o.sensitivity, &err), SF_OK);
-        if (sf_reference_read(&o, &r, &err) != SF_OK || !strstr(r.interpretation, cases[k].told))
-            fail_msg("%zu: %s%s", k, err.text, r.interpretation);
+    char path[256];
+    sf_error err = SF_ERROR_INIT;
+    sf_reference r;
+    double time[AXIS_SAMPLES], value[3][AXIS_SAMPLES];
+    for (int i = 0; i < AXIS_SAMPLES; i++) {
+        time[i] = i / 20e3;
+        for (int k = 0; k < 3; k++)
+            value[k][i] = axis_direction[k] * axis_pulse(i) + axis_offset[k];
+    }
+    const sf_reference_samples samples = {AXIS_SAMPLES, time, 3, {value[0], value[1], value[2]}, "of memory"};
+    write_text(path, write_axes());
+    for (int k = 0; k < 2; k++) {
+        const sf_reference_options o = {.path = path,
+                                        .samples = k ? &samples : NULL,
+                                        .columns = k ? NULL : "ax, ay,az",
+                                        .zero = true,
+                                        .cfc = 1000};
         double away = 0;
+        if (sf_reference_read(&o, &r, &err) != SF_OK ||
+            !strstr(r.interpretation, k ? "of memory, 1000 samples at 20 kHz" : "resultant of the columns"))
+            fail_msg("%s%s", err.text, r.interpretation);
         for (int i = 0; i < AXIS_SAMPLES; i++)
             away = larger(away, fabs(r.raw.value[i] - axis_pulse(i)));
         assert_true(r.raw.count == AXIS_SAMPLES && away < 1e-5);
         assert_close(sf_series_at(&r.curve, 0.017), 80, 0.08);
-        assert_close(r.offset, k == 0 ? 2.5 : 0, 1e-5);
+        assert_close(r.offset, 2.5, 1e-5);
         sf_reference_free(&r);
-        unlink(path);
     }
+    unlink(path);
 }
 
 static void contradicting_options_of_a_record_are_refused(void **state) {
     (void)state;
     static const struct {
-        int rows;
         sf_reference_options options;
         const char *expected;
     } cases[] = {
-        {ROWS_OF_AXES, {.columns = "ax"}, "not a list of two or three columns"},
-        {ROWS_OF_AXES, {.columns = "ax,,az"}, "not a list of two or three columns"},
-        {ROWS_OF_AXES, {.columns = "ax,ay,aq"}, "the header has no column acceleration_g"},
-        {ROWS_OF_AXES, {.columns = "ax,ay", .invert = true}, "leave --reference-invert out"},
-        {ROWS_OF_AXES, {.column = "ax", .rate = 1e3}, "has a column of time"},
-        {ROWS_IN_VOLTS, {.rate = 1e3}, "the header has no column acceleration_g"},
-        {ROWS_OF_AXES, {.column = "ax", .sensitivity = 1}, "is in \"g\", which is not a unit of a voltage"},
+        {{.columns = "ax"}, "not a list of two or three columns"},
+        {{.columns = "ax,,az"}, "not a list of two or three columns"},
+        {{.columns = "ax,ay,aq"}, "no column of acceleration called aq"},
+        {{.columns = "ax,ay", .invert = true}, "leave --reference-invert out"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char path[256];
@@ -494,19 +453,21 @@ static void contradicting_options_of_a_record_are_refused(void **state) {
         o.path = path;
         o.invert_option = "--reference-invert";
         o.column_option = "--reference-column";
-        write_text(path, write_rows(cases[k].rows));
+        write_text(path, write_axes());
         if (sf_reference_read(&o, &r, &err) != SF_ERR_INPUT || !strstr(err.text, cases[k].expected))
             fail_msg("%zu: %s", k, err.text);
         unlink(path);
     }
-    static const char *const bad[] = {"10 mV", "10 mm/g", "-10 mV/g", "0,102 mV/(m/s2)", "/g", ""};
+    double range;
+    sf_error err = SF_ERROR_INIT;
+    assert_int_equal(sf_reference_parse_range("200 g", &range, &err), SF_OK);
+    assert_close(range, 200, 0);
+    assert_int_equal(sf_reference_parse_range("1961.33 m/s2", &range, &err), SF_OK);
+    assert_close(range, 200, 1e-9);
+    static const char *const bad[] = {"200", "200 mm", "-10 g", ""};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-        sf_error err = SF_ERROR_INIT;
-        double value;
-        if (sf_reference_parse_sensitivity(bad[k], &value, &err) == SF_OK)
-            fail_msg("\"%s\" is %g", bad[k], value);
         err = (sf_error)SF_ERROR_INIT;
-        assert_int_equal(sf_reference_parse_rate(bad[k], &value, &err), SF_ERR_INPUT);
+        assert_int_equal(sf_reference_parse_range(bad[k], &range, &err), SF_ERR_INPUT);
     }
 }
 
@@ -515,25 +476,19 @@ static void bad_references_name_file_and_line(void **state) {
     const struct {
         const char *text, *expected;
     } bad[] = {
-        {"", "at least 3"},
-        {"time,acceleration_g\n0,1\n", ":1: the header has no column time_s"},
-        {"# x\ntime_ms,a\n0,1\n", ":2: the header has no column acceleration_g"},
-        {"time_ms,acceleration_g\n0,1\n1,two\n", ":3: acceleration \"two\" is not a number"},
-        {"time_ms,acceleration_g\n0,1\n1\n", ":3: 1 values where the header has 2 columns"},
-        {"time_ms,acceleration_g\n0,1\n1,nan\n", " has 1 points"},
+        {"", "is empty"},
+        {"time,acceleration_g\n0,1\n", ":1: the heading has no column of time, such as time_ms"},
+        {"# x\ntime_ms,a\n0,1\n", ":2: the heading has no column of acceleration, such as acceleration_g"},
+        {"time_ms,acceleration_g\n0,1\n1,two\n", ":3: acceleration \"two\" is not a finite number"},
+        {"time_ms,acceleration_g\n0,1\n1\n", ":3: 1 values where the heading has 2 columns"},
+        {"time_ms,acceleration_g\n0,1\n1,nan\n", ":3: acceleration \"nan\" is not"},
         {"time_ms,acceleration_g\n0,1\n1,2\n1,3\n", ":4: time 1 ms does not follow 1 ms"},
         {"time_ms,acceleration_g\n0,1\n1,2\n", "2 points"},
         {"time_ms,acceleration_g,acceleration_m_s2\n0,1,2\n",
          ":1: two acceleration columns (\"acceleration_g\" and \"acceleration_m_s2\"): name one with "
          "--reference-column"},
-        {"Time (ms);Acc X (g);Acc Y (g)\n0;1;2\n",
-         "two acceleration columns (\"Acc X (g)\" and \"Acc Y (g)\")"},
-        {"Time (mm);Acc (g)\n0;1\n",
-         ":1: the header has no column time_s, time_ms or time_us (or \"Time (ms)\"): "
-         "\"Time (mm)\" is in \"mm\", which is not a unit of a time"},
-        {"Time;Acc (g)\n0;1\n", "\"Time\" names no unit"},
-        {"Time (ms);Acc (g)\ns;g\n0;1\n", "give different units"},
-        {"0;1\n1;2\n2;3\n", ":1: numbers begin here without a heading"},
+        {"Time (ms);Acc (g)\n0;1\n", "-o clean.csv reads other forms"},
+        {"0,1\n1,2\n2,3\n", ":1: the heading has no column of time"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         sf_error err;
@@ -561,10 +516,9 @@ int main(void) {
         cmocka_unit_test(regions_are_bounded),
         cmocka_unit_test(regions_are_parsed_in_ms),
         cmocka_unit_test(reference_units_are_taken_from_the_heading),
-        cmocka_unit_test(laboratory_forms_are_one_curve),
         cmocka_unit_test(measurement_is_filtered_with_the_class),
         cmocka_unit_test(coarse_or_inverted_measurement_is_refused),
-        cmocka_unit_test(a_record_in_other_forms_is_the_same),
+        cmocka_unit_test(axes_with_offsets_are_the_pulse),
         cmocka_unit_test(contradicting_options_of_a_record_are_refused),
         cmocka_unit_test(bad_references_name_file_and_line),
     };

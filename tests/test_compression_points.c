@@ -27,11 +27,11 @@ static double law(double strain) {
 }
 
 static void put(sheet *s, double strain, double stress) {
-    s->used += (size_t)snprintf(s->text + s->used, TEXT - s->used, "%.6f;%.6f\n", strain, stress);
+    s->used += (size_t)snprintf(s->text + s->used, TEXT - s->used, "%.6f,%.6f\n", strain, stress);
 }
 
 static void begin(sheet *s) {
-    s->used = (size_t)snprintf(s->text, TEXT, "strain;stress_kPa\n");
+    s->used = (size_t)snprintf(s->text, TEXT, "strain,stress_kPa\n");
 }
 
 /* From one strain to another in steps of 0.005, the first left out. */
@@ -144,7 +144,7 @@ static void crosshead_counts_from_a_contact_force(void **state) {
     sf_error err;
     const double thickness = 50, area = 25e-4;
     sf_compression_source source = {.area = area, .thickness = 0.05, .invert = SF_INVERT_STRAIN};
-    s.used = (size_t)snprintf(s.text, TEXT, "Position (mm);Force (N)\n");
+    s.used = (size_t)snprintf(s.text, TEXT, "displacement_mm,force_N\n");
     for (double strain = -1.4; strain < 0.6; strain += 0.005)
         put(&s, 50 - thickness * strain, strain > 0 ? 1e3 * area * law(strain) : 0.01);
     for (double strain = 0.6; strain > -1; strain -= 0.005)

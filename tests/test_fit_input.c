@@ -29,11 +29,11 @@ static void put_case(const program_place *place) {
 static void put_measured(const program_place *place, const char *name, double sign, double noise) {
     FILE *file = fopen(program_path(place, name), "w");
     assert_non_null(file);
-    fputs("Zeit;Beschleunigung\r\nms;m/s2\r\n", file);
+    fputs("time_ms,acceleration_m_s2\r\n", file);
     for (int i = 0; i <= 600; i++) {
         double t = 0.05 * i, x = (t - 5) / 20;
         double a = (x > 0 && x < 1 ? 60 * sin(M_PI * x) : 0) + noise * sin(M_PI / 2 * i);
-        fprintf(file, "%d,%02d;%.0f\r\n", i / 20, i % 20 * 5, sign * 9.80665 * a);
+        fprintf(file, "%d.%02d,%.0f\r\n", i / 20, i % 20 * 5, sign * 9.80665 * a);
     }
     assert_int_equal(fclose(file), 0);
 }
@@ -268,7 +268,7 @@ static void measured_curves_are_read_and_filtered(void **state) {
         {"curve = \"noise.csv\";", "a foam cannot be fitted to this record: do not use: noise", 0, 0},
         {"curve = \"lab.csv\"; curve_filter = \"500\";", "it must be one of none, 60", 0, 0},
         {"curve = \"lab.csv\"; curve_invert = 1;", "curve_invert must be true or false", 0, 0},
-        {"curve = \"lab.csv\"; curve_column = \"CH2\";", "lab.csv:1: the header has no column", 0, 0},
+        {"curve = \"lab.csv\"; curve_column = \"CH2\";", "lab.csv:1: the heading has no column", 0, 0},
     };
     program_place place;
     program_set_up(&place);
@@ -288,8 +288,7 @@ static void measured_curves_are_read_and_filtered(void **state) {
         if (!sentence && !(fabs(input.drop[0].sample_scale - cases[k].peak) < cases[k].slack))
             fail_msg("%s: peak %g g", cases[k].text, input.drop[0].sample_scale);
         if (!sentence)
-            assert_non_null(
-                strstr(input.drop[0].interpretation, "separator \";\", decimal comma, time in ms"));
+            assert_non_null(strstr(input.drop[0].interpretation, "time in ms, acceleration in m/s2"));
         sf_fit_input_free(&input);
     }
     program_tear_down(&place);

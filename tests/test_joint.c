@@ -71,7 +71,7 @@ static void put_test(const program_place *place, const sf_material_law *law) {
 static void put_cushion(const program_place *place, const sf_material_law *law) {
     FILE *file = fopen(program_path(place, "cushion.csv"), "w");
     assert_non_null(file);
-    fputs("Static stress (kPa);Peak deceleration (g)\n", file);
+    fputs("Static stress (kPa),Peak deceleration (g)\n", file);
     for (int k = 0; k < 6; k++) {
         double s = 1e3 * (2 + 2 * k);
         const sf_columns block = {.mass = s / 9.80665,
@@ -82,7 +82,7 @@ static void put_cushion(const program_place *place, const sf_material_law *law) 
         sf_columns_figures figures;
         sf_error err = SF_ERROR_INIT;
         assert_int_equal(sf_columns_respond(&block, law, &figures, NULL, &err), SF_OK);
-        fprintf(file, "%g;%.5g\n", 1e-3 * s, figures.a_max_g);
+        fprintf(file, "%g,%.5g\n", 1e-3 * s, figures.a_max_g);
     }
     assert_int_equal(fclose(file), 0);
 }

@@ -33,7 +33,7 @@ static sf_record_verdict judge(double *time, double *value, int count) {
     sf_record_verdict v;
     sf_error err = SF_ERROR_INIT;
     assert_int_equal(sf_signal_filter_cfc(&raw, 1000, &curve, &err), SF_OK);
-    assert_int_equal(sf_record_judge(&raw, &curve, 0, &v, &err), SF_OK);
+    assert_int_equal(sf_record_judge(&raw, &curve, &(sf_record_facts){0}, &v, &err), SF_OK);
     sf_series_free(&curve);
     return v;
 }
@@ -47,7 +47,7 @@ static void a_clean_record_is_valid(void **state) {
     sf_record_line(&v, line, sizeof line);
     assert_string_equal(line, "valid");
     for (int k = 0; k < SF_RECORD_CHECKS; k++)
-        assert_true(v.rows[k].value <= 0.02);
+        assert_true(isnan(v.rows[k].value) || v.rows[k].value <= 0.02);
 }
 
 /* Quantised in steps of 0.5 g: several equal samples at the top are no rail. */
@@ -154,7 +154,7 @@ static void a_gap_in_the_pulse_is_found(void **state) {
     const sf_series raw = {.count = count, .time = time, .value = value};
     sf_record_verdict v;
     sf_error err = SF_ERROR_INIT;
-    assert_int_equal(sf_record_judge(&raw, &raw, 0, &v, &err), SF_OK);
+    assert_int_equal(sf_record_judge(&raw, &raw, &(sf_record_facts){0}, &v, &err), SF_OK);
     assert_int_equal(v.rows[SF_RECORD_gap].grade, SF_GRADE_DO_NOT_USE);
 }
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of two columns (io/table_csv.h). The sentences of its users: test_case_refusals, test_compare, test_cfh. */
+/* Tables of two columns (io/table_csv.h). The sentences of its users: test_case_refusals, test_compare,
+ * test_cfh; the files of laboratories, which softfall read makes such tables of:
+ * tests/python/test_laboratory.py. */
 #include "program_fixture.h"
 
 #include "io/table_csv.h"
@@ -18,13 +20,10 @@ static sf_status check(const sf_table_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_table_name names[] = {{"a_m", 0, 1, NULL}, {"a_mm", 0, 1e-3, NULL}, {"b", 1, 1, NULL}};
-static const sf_table_layout strict = {.what = "thing",
-                                       .column = {"place", "value"},
-                                       .wanted = {"a_m or a_mm", "b"},
-                                       .names = names,
-                                       .name_count = 3,
-                                       .check = check};
+static const sf_table_layout thing = {.what = "thing",
+                                      .kind = "compression",
+                                      .column = {&sf_column_displacement, &sf_column_force},
+                                      .check = check};
 
 static void read_text(const program_place *p, const char *text, const sf_table_layout *layout,
                       sf_table *table, sf_error *err) {
@@ -35,36 +34,73 @@ static void read_text(const program_place *p, const char *text, const sf_table_l
 static void columns_are_found_by_name_and_scaled(void **state) {
     sf_table table;
     sf_error err;
-    read_text(*state, "\xEF\xBB\xBF# one\n\n \"b\" , other,a_mm\r\n 3,x,1000\r\n # two\n\"4\",,2e3", &strict,
-              &table, &err);
-    assert_int_equal(err.status, SF_OK);
+    read_text(
+        *state,
+        "\xEF\xBB\xBF# one\n\n \"force_N\" , other,displacement_mm\r\n 3,x,1000\r\n # two\n,,\n\"4\",,2e3,",
+        &thing, &table, &err);
+    assert_string_equal(err.text, "");
     assert_int_equal(table.count, 2);
     assert_true(table.value[0][0] == 1 && table.value[0][1] == 2);
     assert_true(table.value[1][0] == 3 && table.value[1][1] == 4);
     assert_int_equal(table.line[0], 4);
-    assert_int_equal(table.line[1], 6);
+    assert_int_equal(table.line[1], 7);
     assert_true(table.scale[0] == 1e-3 && table.scale[1] == 1);
+    assert_string_equal(table.interpretation, "displacement in mm, force in N");
     sf_table_free(&table);
     assert_null(table.value[0]);
+}
+
+static void headings_have_their_units(void **state) {
+    static const struct {
+        const char *heading;
+        double scale[2];
+    } cases[] = {
+        {"displacement_m,force_kN", {1, 1e3}},
+        {"Displacement (mm),Force [N]", {1e-3, 1}},
+        {"DISPLACEMENT [in],force (lbf)", {0.0254, 4.4482216152605}},
+        {"displacement_um,force_N", {1e-6, 1}},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[128];
+        sf_table table;
+        sf_error err;
+        snprintf(text, sizeof text, "%s\n1,1\n", cases[k].heading);
+        read_text(*state, text, &thing, &table, &err);
+        assert_string_equal(err.text, "");
+        for (int c = 0; c < 2; c++)
+            assert_true(fabs(table.value[c][0] / cases[k].scale[c] - 1) < 1e-14);
+        sf_table_free(&table);
+    }
 }
 
 static void faults_are_named_with_line_and_cell(void **state) {
     static const struct {
         const char *text, *part;
     } cases[] = {
-        {"b\n1\n", "table.csv:1: the header has no column a_m or a_mm"},
-        {"a_m,a_mm,b\n", ":1: two place columns (\"a_m\" and \"a_mm\")"},
-        {"a_m,b\n1\n", ":2: 1 values where the header has 2 columns"},
-        {"a_m,b\n1,2,3\n", ":2: 3 values where the header has 2 columns"},
-        {"a_m,b\n1,2\n#\n1.5.1,2\n", ":4: place \"1.5.1\" is not a number"},
-        {"a_m,b\n1,\n", ":2: value \"\" is not a number"},
-        {"a_m,b\n1,inf\n", ":2: value \"inf\" is not finite"},
-        {"b,a_mm\n1,2\n1,2\n", ":3: 2 after 2"},
+        {"force_N\n1\n",
+         "table.csv:1: the heading has no column of displacement, such as displacement_mm; it has \"force_N\""},
+        {"displacement_m,displacement_mm,force_N\n",
+         ":1: two displacement columns (\"displacement_m\" and \"displacement_mm\")"},
+        {"displacement_m,force_N\n1\n", ":2: 1 values where the heading has 2 columns: softfall read"},
+        {"displacement_m,force_N\n1,2,3\n", ":2: 3 values where the heading has 2 columns"},
+        {"displacement_m,force_N\n1,2\n#\n1.5.1,2\n", ":4: displacement \"1.5.1\" is not a finite number"},
+        {"displacement_m,force_N\n1,\n", ":2: force \"\" is not a finite number"},
+        {"displacement_m,force_N\n1,inf\n", ":2: force \"inf\" is not a finite"},
+        {"force_N,displacement_mm\n1,2\n1,2\n", ":3: 2 after 2"},
+        {"displacement_m;force_N\n1;2\n", "table.csv --kind compression -o clean.csv reads other forms"},
+        {"displacement_m\tforce_N\n1\t2\n", "table.csv --kind compression -o clean.csv reads other forms"},
+        {"1,2\n3,4\n",
+         ":1: the heading has no column of displacement, such as displacement_mm; it has \"1\", \"2\""},
+        {"Lateral displacement (mm),Force (N)\n1,2\n", "no column of displacement"},
+        {"Displacement,Force\nmm,N\n1,2\n", "no column of displacement"},
+        {"Displacement (N),Force (mm)\n1,2\n", "no column of displacement"},
+        {"displacement_mm,force_N\n\"1,5\",2\n", ":2: 3 values where the heading has 2 columns"},
+        {"# only a comment\n", "table.csv is empty: it needs a heading and rows of numbers"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         sf_table table;
         sf_error err;
-        read_text(*state, cases[k].text, &strict, &table, &err);
+        read_text(*state, cases[k].text, &thing, &table, &err);
         if (err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].part))
             fail_msg("%zu: status %d, expected \"%s\": %s", k, err.status, cases[k].part, err.text);
         assert_true(table.count == 0 && !table.value[0] && !table.line);
@@ -72,312 +108,155 @@ static void faults_are_named_with_line_and_cell(void **state) {
 }
 
 static void rows_of_measured_tables_may_be_short(void **state) {
-    sf_table_layout loose = strict;
+    sf_table_layout loose = thing;
     sf_table table;
     sf_error err;
     loose.ragged = true;
-    read_text(*state, "a_m,b,c\n1,2\n3,4,5,,\n,,\n", &loose, &table, &err);
+    read_text(*state, "displacement_m,force_N,c\n1,2\n3,4,5,,\n,,\n", &loose, &table, &err);
     assert_int_equal(err.status, SF_OK);
     assert_int_equal(table.count, 2);
     assert_true(table.value[0][1] == 3 && table.value[1][1] == 4);
     sf_table_free(&table);
-    read_text(*state, "a_m,b\n1\n", &loose, &table, &err);
+    read_text(*state, "displacement_m,force_N\n1\n", &loose, &table, &err);
     assert_non_null(strstr(err.text, ":2: 1 values"));
-    read_text(*state, "a_m,b\n1,5,2,5\n", &loose, &table, &err); /* 1.5 and 2.5, not 1 and 5 */
-    assert_non_null(strstr(err.text, ":2: 4 values where the header has 2 columns (with decimal commas"));
+    read_text(*state, "displacement_m,force_N\n1,5,2,5\n", &loose, &table,
+              &err); /* 1.5 and 2.5, not 1 and 5 */
+    assert_non_null(strstr(err.text, ":2: 4 values where the heading has 2 columns"));
+    read_text(*state, "displacement_m,force_N,c,d\n\"1,5\",2,3\n", &loose, &table, &err);
+    assert_non_null(strstr(err.text, ":2: displacement \"\"1\" is not a finite number"));
 }
 
-static const sf_table_layout measured = {.what = "thing",
-                                         .column = {"time", "force"},
-                                         .wanted = {"time_s", "force_N"},
-                                         .names = NULL,
-                                         .words = {"time|t|*zeit", "force|*kraft"},
-                                         .kind = {SF_TIME, SF_FORCE},
-                                         .ragged = true};
-
-static void laboratory_tables_are_read_and_told(void **state) {
+static void a_column_is_chosen_by_its_heading(void **state) {
+    static const char text[] = "displacement_m,Force 1 (N),Force 2 (kN),force_3_N\n1,2,3,4\n";
     static const struct {
-        const char *text, *interpretation;
-    } cases[] = {
-        {"Time (ms);Force (kN)\n1,5;0,25\n", "separator \";\", decimal comma, time in ms, force in kN"},
-        {"\xEF\xBB\xBFTime [ms]\tForce [N]\r\n1.5\t250\r\n",
-         "separator tab, decimal point, time in ms, force in N"},
-        {"t/ms Kraft/kN\n1.5 0.25\n", "separator blanks, decimal point, time in ms, force in kN"},
-        {"Messzeit;Standardkraft\nms;N\n1,5;250\n", "decimal comma, time in ms, force in N"},
-        {"time_ms,force_kN,x\n1.5,0.25,a\n", "separator \",\", decimal point, time in ms, force in kN"},
-        {"Machine 7;;\nDate;1.2.2024;\n\nTime (s);Pos;Force (N)\n0,0015;1;250\n", "heading in line 4"},
-        {"Time (ms);Channel 1 (N)\n1,5;250\n", "force in N (\"Channel 1 (N)\")"},
-        {"Time in ms;\"Force, N\"\r1,5;250\r", "decimal comma"},
-    };
+        const char *chosen;
+        double value;
+    } cases[] = {{"Force 1", 2}, {"Force 2 (kN)", 3000}, {"force_3", 4}, {"force_3_N", 4}, {"Force 4", 0}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        sf_table_layout chosen = thing;
         sf_table table;
         sf_error err;
-        read_text(*state, cases[k].text, &measured, &table, &err);
-        if (err.status != SF_OK || !strstr(table.interpretation, cases[k].interpretation))
-            fail_msg("%zu: %s%s", k, err.text, table.interpretation);
-        assert_int_equal(table.count, 1);
-        assert_true(fabs(table.value[0][0] - 1.5e-3) < 1e-15 && fabs(table.value[1][0] - 250) < 1e-9);
+        chosen.chosen = cases[k].chosen;
+        read_text(*state, text, &chosen, &table, &err);
+        if (cases[k].value == 0)
+            assert_non_null(strstr(err.text, "no column of force called Force 4, such as force_N"));
+        else
+            assert_true(table.value[1][0] == cases[k].value);
+        sf_table_free(&table);
+    }
+    sf_table_layout layout = thing;
+    sf_table table;
+    sf_error err;
+    layout.choice = "--force";
+    read_text(*state, "displacement_m,force_N,force_kN\n1,2,3\n", &layout, &table, &err);
+    assert_non_null(
+        strstr(err.text, "two force columns (\"force_N\" and \"force_kN\"): name one with --force"));
+    read_text(*state, "displacement_m,Cell A (N),Area (mm2),Cell B [kN]\n1,2,3,4\n", &layout, &table, &err);
+    assert_non_null(
+        strstr(err.text, "no column is called force: name one of \"Cell A\", \"Cell B\" with --force"));
+    read_text(*state, "displacement_m,displacement_mm,force_N\n1,2,3\n", &layout, &table, &err);
+    assert_non_null(strstr(err.text, "table.csv --kind compression -o clean.csv --column NAME"));
+}
+
+/* A comment can give a curve with plain headings another meaning. */
+static void a_curve_with_another_title_is_refused(void **state) {
+    sf_table_layout layout = {.what = "curve",
+                              .kind = "compression",
+                              .column = {&sf_column_strain, &sf_column_stress},
+                              .means = "nominal stress over nominal strain"};
+    static const struct {
+        const char *title;
+        bool refused;
+    } cases[] = {{"True stress over true strain", true},  {"yield stress, plastic strain", true},
+                 {"Yield stress: 12 kPa", false},         {"nominal, made of true stress", false},
+                 {"foam of the plastics company", false}, {"stress and strain", false}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[128];
+        sf_table table;
+        sf_error err;
+        snprintf(text, sizeof text, "# %s\nstrain,stress_kPa\n0,0\n", cases[k].title);
+        read_text(*state, text, &layout, &table, &err);
+        assert_int_equal(err.status != SF_OK, cases[k].refused);
+        assert_true(!cases[k].refused || strstr(err.text, ":1: \""));
         sf_table_free(&table);
     }
 }
 
-/* What could mean two things is not guessed. */
-static void ambiguous_tables_are_refused(void **state) {
-    static const struct {
-        const char *text, *part;
-    } cases[] = {
-        {"time_s,force_N\n1,\"1,234\"\n", ":2: force \"1,234\" holds a comma, which separates the columns"},
-        {"time_s;force_N\n1;1,234\n2;5,678\n",
-         ":2: \"1,234\" and every other number with a comma could hold"},
-        {"time_s;force_N\n1.5;2\n2;5,67\n",
-         ":3: force \"5,67\" has a comma where the file has decimal points"},
-        {"time_s;force_N\n1,5;2\n2;5.67\n",
-         ":3: force \"5.67\" has a decimal point after numbers with a decimal"},
-        {"time_s;force_N\n1;1,234,567\n", "\"1,234,567\" is not a number"},
-        {"Time (s);Force\n1;2\n", "\"Force\" names no unit"},
-        {"Time (s);Force (N);Force (kN)\n1;2;3\n", "two force columns"},
-        {"Time (s);Force (mm)\n1;2\n", "\"Force (mm)\" is in \"mm\", which is not a unit of a force"},
-        {"Time;Force\ns;kg\n1;2\n", "is in \"kg\", which is not a unit of a force"},
-        {"1;2\nTime (s);Force (N)\n1;2\n", ":1: numbers begin here without a heading"},
-        {"Rig 7;a\nSensor;b\nMoment;Wert\ns;?\n1;2\n", ":3: the header has no column"},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        sf_table table;
-        sf_error err;
-        read_text(*state, cases[k].text, &measured, &table, &err);
-        if (err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].part))
-            fail_msg("%zu: status %d, expected \"%s\": %s", k, err.status, cases[k].part, err.text);
-        assert_true(table.count == 0 && !table.value[0]);
-    }
+/* The command that a refusal names can be typed, and writes another file than it reads. */
+static void the_remedy_can_be_typed(void **state) {
+    const program_place *p = *state;
+    sf_table table;
+    sf_error err = SF_ERROR_INIT;
+    sf_table_read(program_write_text(p, "my test (1).csv", "a;b\n1;2\n"), &thing, &table, &err);
+    assert_non_null(strstr(err.text, "softfall read '"));
+    assert_non_null(strstr(err.text, "my test (1).csv' --kind compression -o clean.csv"));
+    err = (sf_error)SF_ERROR_INIT;
+    sf_table_read(program_write_text(p, "clean.csv", "a;b\n1;2\n"), &thing, &table, &err);
+    assert_non_null(strstr(err.text, "clean.csv --kind compression -o clean2.csv"));
 }
 
-static void column_can_be_chosen(void **state) {
-    sf_table_layout chosen = measured;
+/* What softfall read says of the laboratory's file stays with the table. */
+static void what_softfall_read_said_is_told(void **state) {
+    sf_table_layout layout = thing;
     sf_table table;
     sf_error err;
-    chosen.chosen[1] = "Force 2";
-    read_text(*state, "Time (s);Force 1 (N);Force 2 (kN)\n1;2;3\n", &chosen, &table, &err);
-    assert_int_equal(err.status, SF_OK);
-    assert_true(table.value[1][0] == 3000);
+    layout.means = "force over displacement";
+    read_text(
+        *state,
+        "# softfall read gap.csv: displacement = 49.9 mm less \"Gap (mm)\"\ndisplacement_mm,force_N\n1,2\n",
+        &layout, &table, &err);
+    assert_string_equal(table.interpretation,
+                        "force over displacement, columns 1 and 2, displacement in mm, force in N "
+                        "(softfall read gap.csv: displacement = 49.9 mm less \"Gap (mm)\")");
     sf_table_free(&table);
 }
 
-/* Bluehill, data loggers, spreadsheets and ISO-MME. */
-static void exports_of_laboratories_are_read(void **state) {
-    static const struct {
-        const char *text, *interpretation;
-        int count;
-        double last[2];
-    } cases[] = {
-        {"Results Table 1\n,Maximum Force\n,(N)\n1,\"1682.35\"\n\nTime,Displacement,Force\n(s),(mm),(N)\n"
-         "\"0.0\",\"0.0\",\"0.5\"\n\"2.0\",\"1.0\",\"1,017.76\"\n",
-         "heading in line 6",
-         2,
-         {2, 1017.76}},
-        {"Time,Compressive force (Load cell)\n(s),(N)\n\"1.5\",\"1,017\"\n", "force in N", 1, {1.5, 1017}},
-        {"Zeit (s);Kraft (N)\n1,5;1.017,76\n", "decimal comma", 1, {1.5, 1017.76}},
-        {"Time (s),Force (N)\n1,2\n2,3\n\nPeak,150.0\nHIC,1142.6\n",
-         "without what stands from line 5 on",
-         2,
-         {2, 3}},
-        {"Time (s),Force (N)\n1,2\n2,NaN\n3,4\n", "1 lost samples (NaN)", 2, {3, 4}},
-        {"Test object number :1\r\nName of the channel :Load, cell\r\nUnit :kN\r\nSampling interval :5.0E-05\r\n"
-         "Time of first sample :-1.0E-04\r\nNumber of samples :3\r\n1.0\r\nNOVALUE\r\n3.0E+00\r\n",
-         "force in kN (\"Load  cell (kN)\")",
-         2,
-         {0, 3000}},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        sf_table t;
-        sf_error err;
-        read_text(*state, cases[k].text, &measured, &t, &err);
-        if (err.status != SF_OK || !strstr(t.interpretation, cases[k].interpretation))
-            fail_msg("%zu: %s, %s", k, err.text, t.interpretation);
-        assert_int_equal(t.count, cases[k].count);
-        for (int c = 0; c < 2; c++)
-            assert_true(fabs(t.value[c][t.count - 1] - cases[k].last[c]) < 1e-12 * (1 + cases[k].last[c]));
-        sf_table_free(&t);
-    }
-}
-
-/* Specimens and cycles: in columns, side by side, one below the other. */
-static void parts_are_chosen_and_listed(void **state) {
-    static const struct {
-        const char *text, *specimen, *cycle, *expected; /* a fault, or NULL: the last point is (3 s, 30 N) */
-    } cases[] = {
-        {"Specimen;Time (s);Force (N)\n1;1;1\n1;2;2\n2;1;10\n2;3;30\n", "2", NULL, NULL},
-        {"Specimen No;Time (s);Force (N)\nA-7;1;1\nB;3;30\n", "B", NULL, NULL},
-        {"Specimen;Time (s);Force (N)\n1;1;1\n2;1;10\n", NULL, NULL,
-         "holds the specimens 1, 2: choose one with specimen = N"},
-        {"Specimen;Time (s);Force (N)\n1;1;1\n2;1;10\n", "3", NULL,
-         "\"3\" was asked for; it holds the specimens 1, 2"},
-        {"Time (s);Force (N);Cycle count\n1;1;1\n2;2;1\n2.5;5;2\n3;30;2.0\n", NULL, "2", NULL},
-        {"Time (s);Force (N);Cycle count\n1;1;1\n2;2;2\n", NULL, NULL,
-         "holds the cycles 1, 2: choose one with cycle = N"},
-        {"Specimen;Cycle;Time (s);Force (N)\n1;1;1;1\n1;2;2;2\n2;1;3;30\n2;2;4;40\n", "2", "1", NULL},
-        {"Specimen;Cycle;Time (s);Force (N)\n1;1;1;1\n1;2;2;2\n2;1;3;30\n", "2", NULL, NULL},
-        {"Time (s);Force (N);Time (s);Force (N)\n1;1;3;30\n", "2", NULL, NULL},
-        {"Time (s);Force (N);Force (N)\n3;1;30\n", "2", NULL, NULL},
-        {"Time (s);Force (N);Time (s);Force (N)\n1;1;3;30\n", "3", NULL, "has columns of 2"},
-        {"Time (s);Force (N);Time (s);Force (N)\n1;1;3;30\n", NULL, NULL,
-         "choose a specimen with specimen = N"},
-        {"Test 1\nTime (s);Force (N)\n1;1\n2;2\nTest 2\nTime;Force\n(s);(N)\n1;10\n3;30\n\nMean;9\n\nTest 3\n"
-         "Time (s);Force (N)\n1;5\n",
-         "2", NULL, NULL},
-        {"Time (s);Force (N)\n1;1\nTime (s);Force (N)\n3;30\n", NULL, NULL,
-         ":3: another table begins here, the file holds 2: choose one with specimen = N"},
-        {"Time (s);Force (N)\n1;1\nTime (s);Force (N)\n3;30\n", "4", NULL, "holds 2 tables"},
-        {"Cycle;Time (s);Force (N)\n1;1;1\n2;2;2\n3;2.1;2\n4;2.2;2\n5;2.3;2\n6;2.4;2\n7;2.5;2\n8;2.6;2\n9;3;30\n",
-         NULL, NULL, NULL},
-        {"Specimen;Time (s);Force (N)\n1;3;30\nMean;-;\n", NULL, NULL, NULL},
-        {"Time (s);Force (N);Specimen height (mm);cycle height (mm)\n1;1;50;3\n3;30;49;4\n", NULL, NULL,
-         NULL},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        sf_table t;
-        sf_error err;
-        sf_table_layout layout = measured;
-        layout.part[SF_TABLE_SPECIMEN] = cases[k].specimen;
-        layout.part[SF_TABLE_CYCLE] = cases[k].cycle;
-        layout.part_option[SF_TABLE_SPECIMEN] = "specimen = N";
-        layout.part_option[SF_TABLE_CYCLE] = "cycle = N";
-        read_text(*state, cases[k].text, &layout, &t, &err);
-        bool fault = cases[k].expected != NULL;
-        if (fault ? err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].expected) : err.status != SF_OK)
-            fail_msg("%zu: status %d: %s", k, err.status, err.text);
-        if (fault)
-            continue;
-        if (t.value[0][t.count - 1] != 3 || t.value[1][t.count - 1] != 30)
-            fail_msg("%zu: (%g, %g)", k, t.value[0][t.count - 1], t.value[1][t.count - 1]);
-        assert_true(t.part_taken[SF_TABLE_SPECIMEN] == (cases[k].specimen != NULL));
-        assert_true(t.part_taken[SF_TABLE_CYCLE] == (cases[k].cycle != NULL));
-        sf_table_free(&t);
-    }
-}
-
-/* A heading from the user, and samples that are only numbered. */
-static void what_a_file_does_not_say_can_be_given(void **state) {
-    static const struct {
-        const char *text, *heading;
-        bool counted;
-        const char *expected; /* a fault, or NULL: the last point is (0.003 s, 30 N) */
-    } cases[] = {
-        {"1,10\n3,30\n", "t (ms), F (N)", false, NULL},
-        {"rig 7\n\n1\t10\n3\t30\n", "Time (ms); Force (N)", false, NULL},
-        {"1 10 5\n3 30 6\n", "Time (ms);Force (N);other", false, NULL},
-        {"1;10;5\n3;30;6\n", "Time (ms);Force (N)", false, ":1: 3 values where"},
-        {"Time (s);Force (N)\n1;2\n", "Time (ms);Force (N)", false, ":1: the file has a heading of its own"},
-        {"1;2\n", "Time (ms);Mass (kg)", false,
-         "--heading \"Time (ms);Mass (kg)\": the header has no column"},
-        {"Force (N)\n1\n2\n3\n30\n", NULL, true, NULL},
-        {"1\n2\n3,5\n30\n", "Force (N)", true, NULL},
-        {"Sample no;Force (N);x\n1;5;1\n3;30;1\n", NULL, true, NULL},
-        {"Force (N)\n1\nNaN\n3\n30\nPeak;7\n", NULL, true, NULL},
-        {"1\n2\n", NULL, false, ":1: numbers begin here without a heading"},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        sf_table t;
-        sf_error err;
-        sf_table_layout layout = measured;
-        layout.heading = cases[k].heading;
-        layout.heading_option = "--heading";
-        layout.counted = cases[k].counted;
-        layout.unit[0] = cases[k].counted ? 1e-3 : 0;
-        read_text(*state, cases[k].text, &layout, &t, &err);
-        bool fault = cases[k].expected != NULL;
-        if (fault ? err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].expected) : err.status != SF_OK)
-            fail_msg("%zu: status %d: %s", k, err.status, err.text);
-        if (fault)
-            continue;
-        if (fabs(t.value[0][t.count - 1] - 3e-3) > 1e-15 || t.value[1][t.count - 1] != 30)
-            fail_msg("%zu: (%g, %g)", k, t.value[0][t.count - 1], t.value[1][t.count - 1]);
-        sf_table_free(&t);
-    }
-}
-
-/* No remark may hide data. */
-static void what_looks_like_a_remark_is_refused_before_data(void **state) {
-    static const struct {
-        const char *text, *part;
-    } cases[] = {
-        {"Time (s),Force (N)\n1,2\nPeak,3\n3,4\n", ":3: time \"Peak\" is not a number"},
-        {"Time (s),Force (N)\n1,2\n2,x\n", ":3: force \"x\" is not a number"},
-        {"Time (s);Force (N)\n1,5;0.123,4\n", ":2: force \"0.123,4\" is not a number"},
-        {"Time (s);Force (N)\n1;2\n2;1,017\n", "could hold a decimal comma or a mark of thousands"},
-        {"Test object number :1\nUnit :N\nSampling interval :1E-3\nNumber of samples :3\n1\n2\n",
-         "3 samples; it holds 2 samples"},
-        {"Test object number :1\nSampling interval :1E-3\nNumber of samples :1\n1\n", "the unit \"\""},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        sf_table t;
-        sf_error err;
-        read_text(*state, cases[k].text, &measured, &t, &err);
-        if (err.status != SF_ERR_INPUT || !strstr(err.text, cases[k].part))
-            fail_msg("%zu: status %d, expected \"%s\": %s", k, err.status, cases[k].part, err.text);
-    }
-}
-
-static void text_in_utf16_is_read(void **state) {
+static void the_first_layout_that_fits_is_taken(void **state) {
     const program_place *p = *state;
-    static const char text[] = "Time (s);Force (N)\n1.5;2\n";
-    char bytes[2 * sizeof text + 2];
-    for (int big = 0; big < 2; big++) {
-        sf_table t;
-        sf_error err = SF_ERROR_INIT;
-        size_t size = 2;
-        memcpy(bytes, big ? "\xFE\xFF" : "\xFF\xFE", 2);
-        for (const char *c = text; *c; c++) {
-            bytes[size + (size_t)big] = *c;
-            bytes[size + !big] = 0;
-            size += 2;
-        }
-        program_write_file(program_path(p, "wide.csv"), bytes, size);
-        assert_int_equal(sf_table_read(program_path(p, "wide.csv"), &measured, &t, &err), SF_OK);
-        assert_true(t.count == 1 && t.value[0][0] == 1.5 && t.value[1][0] == 2);
-        sf_table_free(&t);
-    }
+    const sf_table_layout layouts[] = {
+        {.what = "test", .kind = "compression", .column = {&sf_column_strain, &sf_column_stress}}, thing};
+    sf_table table;
+    int which;
+    sf_error err = SF_ERROR_INIT;
+    sf_table_read_any(
+        program_write_text(p, "table.csv", "strain_percent,displacement_mm,force_N,stress_MPa\n5,1,2,3\n"),
+        layouts, 2, &which, &table, &err);
+    assert_true(which == 0 && table.value[0][0] == 0.05 && table.value[1][0] == 3e6);
+    sf_table_free(&table);
+    sf_table_read_any(program_write_text(p, "table.csv", "strain,displacement_mm,force_N\n0.05,1,2\n"),
+                      layouts, 2, &which, &table, &err);
+    assert_true(which == 1 && table.value[0][0] == 1e-3);
+    sf_table_free(&table);
 }
 
-static void broken_utf16_is_refused(void **state) {
+static void what_is_no_plain_text_is_refused(void **state) {
     const program_place *p = *state;
-    static const char bytes[] = "\xFF\xFEt\0_\0s\0\xD8";
-    const char *path = program_path(p, "wide.csv");
+    static const char wide[] = "\xFF\xFEt\0_\0s\0";
     sf_table table;
     sf_error err = SF_ERROR_INIT;
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fwrite(bytes, 1, sizeof bytes - 1, file);
-    assert_int_equal(fclose(file), 0);
-    assert_int_equal(sf_table_read(path, &strict, &table, &err), SF_ERR_INPUT);
-    assert_non_null(strstr(err.text, "begins like UTF-16, but is not"));
-}
-
-static void what_is_no_plain_file_is_refused(void **state) {
-    const program_place *p = *state;
-    sf_table table;
-    sf_error err = SF_ERROR_INIT;
-    assert_int_equal(sf_table_read(p->folder, &strict, &table, &err), SF_ERR_INPUT);
+    program_write_file(program_path(p, "wide.csv"), wide, sizeof wide - 1);
+    assert_int_equal(sf_table_read(program_path(p, "wide.csv"), &thing, &table, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "holds zero bytes: it is not a text in UTF-8: softfall read"));
+    err = (sf_error)SF_ERROR_INIT;
+    assert_int_equal(sf_table_read(p->folder, &thing, &table, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "is not a plain file"));
     err = (sf_error)SF_ERROR_INIT;
-    assert_int_equal(sf_table_read("/no/such/table.csv", &strict, &table, &err), SF_ERR_INPUT);
+    assert_int_equal(sf_table_read("/no/such/table.csv", &thing, &table, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "the thing /no/such/table.csv cannot be read: No such file"));
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(columns_are_found_by_name_and_scaled),
+        cmocka_unit_test(headings_have_their_units),
         cmocka_unit_test(faults_are_named_with_line_and_cell),
         cmocka_unit_test(rows_of_measured_tables_may_be_short),
-        cmocka_unit_test(laboratory_tables_are_read_and_told),
-        cmocka_unit_test(ambiguous_tables_are_refused),
-        cmocka_unit_test(column_can_be_chosen),
-        cmocka_unit_test(exports_of_laboratories_are_read),
-        cmocka_unit_test(parts_are_chosen_and_listed),
-        cmocka_unit_test(what_a_file_does_not_say_can_be_given),
-        cmocka_unit_test(what_looks_like_a_remark_is_refused_before_data),
-        cmocka_unit_test(text_in_utf16_is_read),
-        cmocka_unit_test(broken_utf16_is_refused),
-        cmocka_unit_test(what_is_no_plain_file_is_refused),
+        cmocka_unit_test(a_column_is_chosen_by_its_heading),
+        cmocka_unit_test(a_curve_with_another_title_is_refused),
+        cmocka_unit_test(the_remedy_can_be_typed),
+        cmocka_unit_test(what_softfall_read_said_is_told),
+        cmocka_unit_test(the_first_layout_that_fits_is_taken),
+        cmocka_unit_test(what_is_no_plain_text_is_refused),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

@@ -59,6 +59,13 @@ static void quantities_become_si(void **state) {
     assert_value(u, "20 \xC2\xB5s", SF_TIME, 2e-5);
     assert_value(u, "9.80665 m/s2", SF_ACCELERATION, 9.80665);
     assert_value(u, "-3 mm", SF_LENGTH, -0.003);
+    assert_value(u, "2.2 pcf", SF_DENSITY, 2.2 * 0.45359237 / (0.3048 * 0.3048 * 0.3048));
+    assert_value(u, "10 mph", SF_SPEED, 4.4704);
+    assert_value(u, "16 oz", SF_MASS, 0.45359237);
+    assert_value(u, "1 lbm", SF_MASS, 0.45359237);
+    assert_value(u, "500 mil", SF_LENGTH, 0.0127);
+    assert_value(u, "144 psf", SF_PRESSURE, 4.4482216152605 / (0.0254 * 0.0254));
+    assert_refused(u, "16 oz", SF_FORCE, "is a mass");
 }
 
 static void every_example_is_of_its_kind(void **state) {
@@ -162,16 +169,10 @@ static void every_name_of_the_table_is_a_unit(void **state) {
     static const struct {
         const char *kind;
         sf_quantity quantity;
-    } kinds[] = {{"length", SF_LENGTH},
-                 {"mass", SF_MASS},
-                 {"time", SF_TIME},
-                 {"force", SF_FORCE},
-                 {"pressure", SF_PRESSURE},
-                 {"voltage", SF_VOLTAGE},
-                 {"temperature", SF_TEMPERATURE},
-                 {"energy", SF_MOLAR_ENERGY},
-                 {"amount", SF_MOLAR_ENERGY},
-                 {"angle", SF_ANGULAR_VELOCITY}};
+    } kinds[] = {{"length", SF_LENGTH},       {"mass", SF_MASS},           {"time", SF_TIME},
+                 {"force", SF_FORCE},         {"pressure", SF_PRESSURE},   {"density", SF_DENSITY},
+                 {"speed", SF_SPEED},         {"voltage", SF_VOLTAGE},     {"temperature", SF_TEMPERATURE},
+                 {"energy", SF_MOLAR_ENERGY}, {"amount", SF_MOLAR_ENERGY}, {"angle", SF_ANGULAR_VELOCITY}};
     char *table = NULL, *rest, kind[16] = "";
     size_t size = 0;
     int names = 0;

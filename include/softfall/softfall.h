@@ -244,14 +244,31 @@ SOFTFALL_API softfall_status softfall_cfc(const double *time, const double *valu
 SOFTFALL_API softfall_status softfall_refine(double fine, double coarse, double ratio, double cells,
                                              double refined[2], softfall_error *error);
 
-/* A measured record of one impact in a file of a laboratory, read, filtered and judged as softfall-post does
- * with
- * --reference. `options` [count]: "filter=600" or "filter=none" (default 1000), "column=HEADING",
- * "columns=x,y,z", "heading=TEXT", "scale=0.1 mV/(m/s2)", "rate=20 kHz", "impact=2", "invert", "zero". `out`
+/* Reads a quantity with its unit, such as "10 mph", into SI; `*unit` is the SI unit of its kind ("m s-1"),
+ * static. */
+SOFTFALL_API softfall_status softfall_units_read(const char *text, double *value, const char **unit,
+                                                 softfall_error *error);
+
+/* A measured record of one impact in a CSV file (docs/formats.md), read, filtered and judged as softfall-post
+ * does with --reference. `options` [count]: "filter=600" or "filter=none" (default 1000), "column=HEADING",
+ * "columns=x,y,z", "impact=2", "invert", "zero",
+ * "speed=4.5 m/s" (known at contact), "range=200 g" (of the channel). `out`
  * is owned by the caller. */
 typedef struct softfall_record softfall_record;
 SOFTFALL_API softfall_status softfall_record_read(const char *path, const char *const *options, int count,
                                                   softfall_record **out, softfall_error *error);
+/* The samples of a file that the caller has read. */
+typedef struct softfall_samples {
+    const char *name;    /* of the file, for sentences */
+    const char *reading; /* how it was read, in words */
+    int64_t count;
+    const double *time;     /* [count] s, ascending */
+    int axes;               /* 1: the deceleration; 2 or 3: axes, whose resultant it is */
+    const double *value[3]; /* [axes][count] g */
+} softfall_samples;
+/* The record of such samples, by the same options except column and columns. */
+SOFTFALL_API softfall_status softfall_record_make(const softfall_samples *samples, const char *const *options,
+                                                  int count, softfall_record **out, softfall_error *error);
 SOFTFALL_API void softfall_record_free(softfall_record *record);
 /* The filtered curve: time in s on the clock of the file, deceleration in g; returns the number of points.
  * The arrays are the record's. */

@@ -16,7 +16,7 @@ from typing import Any, Callable, Iterator, Mapping, MutableMapping, NamedTuple
 import h5py
 import numpy as np
 
-from . import library, programs
+from . import laboratory, library, programs
 from .drop import Drop, as_str, later_results
 from .errors import Error, InputError, NumericError, SoftfallWarning, find
 
@@ -70,6 +70,21 @@ def _as_value(text: str) -> Any:
     return {"true": True, "false": False, "(absent)": None}.get(text, text)
 
 
+def _cleaned(advice: laboratory.Advice, sentence: str) -> dict[str, str]:
+    """Returns the values of a case with a clean table in place of a file, by the keys of the configuration file that the sentence names."""
+    named = re.search(r"\(named at (.+):\d+\)", sentence)
+    if not named or not Path(named[1]).is_file():
+        return {}
+    folder, group, found = Path(named[1]).parent, "material", {}
+    text = Path(named[1]).read_text(encoding="utf-8", errors="replace")
+    for name, key, value in re.findall(r'(\w+)\s*[=:]\s*\{|\b(curves?|motion)\s*=\s*("[^"]*"|\([^)]*\))', text):
+        group = name or group
+        if key and advice.stands_in(value, folder):
+            place = group if group in ("material", "missile") else f"materials.{group}"
+            found[f"{place}.{key}"] = advice.clean() if value.startswith('"') else advice.swap(value, folder)
+    return found
+
+
 class Case(MutableMapping[str, Any]):
     """A case file (docs/case.md) whose values can be changed; the file stays as it is.
 
@@ -108,7 +123,7 @@ class Case(MutableMapping[str, Any]):
                 raise InputError(f"{key!r} is no key of a case, such as missile.velocity")
             trial.pop(key, None)  # of two that touch the same value, such as a group and its key, the later one counts
             trial[key] = as_text(value)
-        listing = library.case_parameters(str(self.path), [f"{key}={text}" for key, text in trial.items()])
+        trial, listing = self._listing(trial)
         self._overrides = trial
         self._values: dict[str, Any] = {}
         for line in listing.splitlines():
@@ -116,6 +131,25 @@ class Case(MutableMapping[str, Any]):
             self._values[name] = _as_value(text)
             if text.startswith("{"):
                 self._values.update((f"{name}.{key}", _as_value(item)) for key, item in _MEMBER.findall(text))
+
+    def _listing(self, trial: dict[str, str]) -> tuple[dict[str, str], str]:
+        """Returns values and the list of parameters with them, after `softfall read` of curves and motions in another form than the programs read."""
+        try:
+            return trial, library.case_parameters(str(self.path), [f"{key}={text}" for key, text in trial.items()])
+        except InputError as error:
+            advice, failed = laboratory.advised(error), error
+        if advice is None:
+            raise failed
+        values = {key: advice.clean() if advice.is_file(text) else advice.swap(text, "") for key, text in trial.items() if advice.stands_in(text, "")}
+        if values:
+            return self._listing({**trial, **values})
+        values = _cleaned(advice, str(failed))
+        if not values or values.items() <= trial.items():
+            raise failed
+        try:
+            return self._listing({**trial, **values})
+        except InputError:
+            raise failed from None
 
     def __getitem__(self, key: str) -> Any:
         """Returns the value of a key, also a default: a text with its unit, a number or a bool; None if it is absent."""

@@ -19,6 +19,7 @@ from .errors import Error
 COMMANDS = {  # module within the package, and what the command does
     "foam": ("foam_command", "convert foam cards of other solvers and back, and show foams"),
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
+    "read": ("read_program", "turn any laboratory's file into the CSV that the programs read, and say how it was read"),
     "serve": ("serve", "answer requests for drops over HTTP, by the protocol of UM-Bridge"),
 }
 USAGE = 64  # exit code of a wrong command line, as of the C programs

@@ -12,7 +12,7 @@ from typing import Any, Iterator, Mapping, Sequence
 import h5py
 import numpy as np
 
-from . import library, programs
+from . import laboratory, library, programs
 from .curves import STANDARD_GRAVITY, Column, column
 from .errors import Error, InputError, find, missing
 
@@ -207,7 +207,8 @@ class Drop:
         """Runs softfall-post with its options by their names, and returns its summary.json as a dict.
 
         drop.post("compared", reference="lab.csv", limit_g=160) runs `softfall-post RESULTS -o compared --reference=lab.csv
-        --limit-g=160`; without a folder its files are temporary. Figures, verdict, plot and report are of the last call. Files of other
+        --limit-g=160`, after `softfall read` where the file has another form, whose options are reference_scale="10 mV/g",
+        reference_rate="20 kHz" and the like; without a folder its files are temporary. Figures, verdict, plot and report are of the last call. Files of other
         results in `output` are replaced only with force=True.
         """
         with self.open():
@@ -221,9 +222,27 @@ class Drop:
         if options and place == self._home:
             raise InputError(f"{place} is for the figures without options: give another output")
         chosen = {"force": self._kept(place) is not None, **options}
-        programs.run("post", [str(self.results), f"--output={place}", *programs.options(chosen)])
+        self._run_post(place, chosen)
         self._shown, self._summary = place, json.loads((place / "summary.json").read_text(encoding="utf-8"))
         return dict(self._summary or {})
+
+    def _run_post(self, place: Path, options: dict[str, Any]) -> None:
+        """Runs softfall-post, after `softfall read` where the reference has another form than the programs read."""
+        def run(chosen: dict[str, Any]) -> None:
+            programs.run("post", [str(self.results), f"--output={place}", *programs.options(chosen)])
+        given = {name: options[f"reference_{name}"] for name in laboratory.RECORD if f"reference_{name}" in options}
+        try:
+            if "reference" not in options or set(given) <= {"column", "columns"}:
+                return run(options)
+        except InputError as error:
+            if laboratory.advised(error) is None:
+                raise
+        with tempfile.TemporaryDirectory(prefix="softfall-") as scratch:
+            reading = laboratory.read(options["reference"], kind="acceleration", spell=lambda option, value: f'reference_{option}="{value}"', **given)
+            names = [name.removesuffix(" (g)") for name in reading.frame.columns[1:]]
+            chosen = {name: value for name, value in options.items() if name.removeprefix("reference_") not in given}
+            chosen["reference"] = reading.write(Path(scratch) / f"{Path(options['reference']).stem}.csv")
+            run({**chosen, "reference_columns": ",".join(names)} if "columns" in given else chosen)
 
     def _kept(self, place: Path) -> dict[str, Any] | None:
         """Returns the summary.json in a folder if it is of these results, perhaps of an earlier run of them."""

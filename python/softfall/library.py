@@ -82,6 +82,18 @@ def _array(values: Any) -> Any:
     return values.ctypes.data_as(c.POINTER(c.c_double))
 
 
+def quantity(text: str) -> tuple[float, str]:
+    """softfall_units_read: a quantity in SI, and the SI unit of its kind.
+
+    >>> quantity("10 mph")
+    (4.4704, 'm s-1')
+    """
+    value, unit = c.c_double(), c.c_char_p()
+    with _one_at_a_time:
+        _call("softfall_units_read", text.encode(), c.byref(value), c.byref(unit))
+    return value.value, (unit.value or b"").decode()
+
+
 class Material:
     """A foam of a material file: softfall_material_read, and all that it has."""
 
@@ -153,12 +165,17 @@ class RecordParts(NamedTuple):
 RECORD_FIGURES = ("a_max_g", "a_max_time_ms", "hic", "hic_t1_ms", "hic_t2_ms", "hic15", "hic36", "gadd", "clip_3ms_g", "clip_3ms_cumulative_g")
 
 
-def read_record(path: str, options: Sequence[str]) -> RecordParts:
-    """softfall_record_read, and all that it has."""
+class _Samples(c.Structure):
+    _fields_ = [("name", c.c_char_p), ("reading", c.c_char_p), ("count", c.c_int64), ("time", c.POINTER(c.c_double)), ("axes", c.c_int),
+                ("value", c.POINTER(c.c_double) * 3)]
+
+
+def make_record(name: str, reading: str, time: Any, axes: Sequence[Any], options: Sequence[str]) -> RecordParts:
+    """softfall_record_make, and all that it has: `time` (s) and one to three axes (g) are arrays of double of one length."""
     texts = (c.c_char_p * max(1, len(options)))(*(text.encode() for text in options))
+    samples = _Samples(name.encode(), reading.encode(), time.size, _array(time), len(axes), (c.POINTER(c.c_double) * 3)(*map(_array, axes)))
     record, time, value = c.c_void_p(), c.POINTER(c.c_double)(), c.POINTER(c.c_double)()
-    with _one_at_a_time:
-        _call("softfall_record_read", path.encode(), texts, c.c_int(len(options)), c.byref(record))
+    _call("softfall_record_make", c.byref(samples), texts, c.c_int(len(options)), c.byref(record))
     try:
         count = _load().softfall_record_curve(record, c.byref(time), c.byref(value))
         figures, number = {}, c.c_double()

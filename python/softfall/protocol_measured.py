@@ -16,8 +16,8 @@ from .protocol_drops import Drop, Drops, Spot, take_figures
 from .record import read_record
 
 NAMED = ("condition", "position", "height", "drop", "mass", "missile")
-OPTIONS = ("column", "columns", "heading", "scale", "rate", "impact", "invert", "zero")
-WITH_NUMBERS = ("height", "mass", "scale", "rate", "impact")  # which may have a decimal comma
+OPTIONS = ("column", "columns", "heading", "units", "scale", "rate", "range", "sheet", "specimen", "impact", "invert", "zero")
+WITH_NUMBERS = ("height", "mass", "scale", "rate", "range", "impact")  # which may have a decimal comma
 
 
 def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: bool = True) -> Drops:
@@ -30,12 +30,13 @@ def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: boo
     if not folder.is_dir():
         raise InputError(f"there is no folder {folder}")
     rows = _listed(folder) if (folder / "list.csv").exists() and not pattern else _matched(folder, pattern)
-    files: dict[str, str] = {}
+    files: dict[object, str] = {}
     for where, row in rows:
-        if row["file"] in files:
-            raise InputError(f"{where}: {row['file']} is the record of {files[row['file']]} already")
-        files[row["file"]] = where
+        _take(files, _file(folder / row["file"]), where, f"{where}: {row['file']} is the record")
     made = Drops([_measured(p, folder, where, row, complete) for where, row in rows])
+    for drop, (where, row) in zip(made.drops, rows):
+        if drop.curve is not None:
+            _take(files, np.asarray(drop.curve[1]).tobytes(), where, f"{where}: {row['file']} holds the samples of the record")
     seen: dict[tuple[Spot, int], str] = {}
     for drop in made.drops:
         key = (drop.spot, drop.number)
@@ -46,10 +47,24 @@ def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: boo
         _refuse_missing(p, folder, set(seen))
     made.missing += [f"records have no {figure.label}" for figure in p.figures if made.drops and all(figure.label not in drop.figures for drop in made.drops)]
     _mark_exchanged(p.counted if complete else (1,), made)  # --advise learns from first drops
-    for drop in made.drops:
-        _check_pulse(drop)
     _mark_others(made)
     return made
+
+
+def _file(path: Path) -> object:
+    """Returns what a file is known by, however its path is written."""
+    try:
+        state = path.stat()
+        return state.st_dev, state.st_ino
+    except OSError:
+        return str(path)
+
+
+def _take(known: dict[object, str], key: object, where: str, said: str) -> None:
+    """Refuses a record that another row has: one drop would count as several."""
+    if key in known:
+        raise InputError(f"{said} of {known[key]} already: each drop has a record of its own")
+    known[key] = where
 
 
 ALIKE = 1.2  # factor within which drops from one height change their velocity: the rebound differs by less
@@ -77,9 +92,10 @@ MOST_FALL = 3.0  # factor of a_max between heights that are exchanged; a greater
 def _mark_exchanged(counted: tuple[int, ...], made: Drops) -> None:
     """Marks drops of one place and number whose a_max falls with the height: the two of the largest fall look exchanged.
 
-    Nothing is decided by drops that count then.
+    Nothing is decided by drops that count then. A record that another height would explain is one of those that may be exchanged.
     """
-    peak = {id(drop): float(np.max(drop.curve[1])) for drop in made.drops if drop.curve is not None and drop.is_usable}
+    peak = {id(drop): float(np.max(drop.curve[1])) for drop in made.drops
+            if drop.curve is not None and (drop.is_usable or drop.note.startswith("do not use: its velocity changes"))}
     groups: dict[tuple[Any, ...], list[Drop]] = {}
     for drop in made.drops:
         if peak.get(id(drop), 0.0) > 0:
@@ -190,7 +206,7 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
                 raise InputError(f"{where}: {flag} is yes or no, not {options[flag]!r}")
             options[flag] = options[flag] == "yes"
     try:
-        record = read_record(path, filter=int(p.filter), **options)
+        record = read_record(path, filter=int(p.filter), speed=f"{speed(height):.9g} m/s", **options)
     except Error as error:
         raise InputError(f"{where}: {error}") from None
     curve = (record.time, record.deceleration)
@@ -215,9 +231,6 @@ def _missile(p: Protocol, where: str, name: str, complete: bool) -> str:
     return name
 
 
-LEAST_CHANGE, MOST_CHANGE = 0.7, 2.2  # of the velocity, over that of a free fall: a guided fall without rebound, an elastic one
-
-
 def _change(drop: Drop) -> float:
     """Returns the change of velocity (m/s) of a record."""
     time, value = (np.asarray(part, float) for part in drop.curve or ((), ()))
@@ -227,14 +240,6 @@ def _change(drop: Drop) -> float:
 def _refuse(drop: Drop, why: str) -> None:
     drop.grade = "do not use"
     drop.note = "; ".join(part for part in (drop.note, why) if part)
-
-
-def _check_pulse(drop: Drop) -> None:
-    """Takes a record that cannot be of a fall from its height as one that is not to be used: of another unit, or of another drop."""
-    ratio = _change(drop) / speed(drop.spot.height)
-    if not LEAST_CHANGE <= ratio <= MOST_CHANGE:
-        _refuse(drop, f"its velocity changes by {_change(drop):.3g} m/s, {ratio:.2g} times that of a fall from {drop.spot.height:g} m; "
-                      f"{LEAST_CHANGE:g} to {MOST_CHANGE:g} can be: another unit, or another drop")
 
 
 def _refuse_missing(p: Protocol, folder: Path, seen: set[tuple[Spot, int]]) -> None:

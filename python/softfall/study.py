@@ -6,12 +6,13 @@ import csv
 import importlib.util
 import json
 import os
+import tempfile
 from pathlib import Path
 from typing import Any, Iterator, Mapping
 
 import numpy as np
 
-from . import programs
+from . import laboratory, programs
 from .case import as_text
 from .errors import InputError, find
 
@@ -136,8 +137,21 @@ def fit_compression(tests: str | os.PathLike[str] | Mapping[str, Any], output: s
 
     `tests`: a configuration file, or a dict with its words, such as {"name": "foam", "density": "35 kg/m3", "specimen": {"side": "50 mm",
     "thickness": "50 mm"}, "tests": [{"file": "slow.csv", "rate": "0.1 1/min"}]}, whose paths begin beside `output`. `output`: a folder, by
-    default NAME-fit in the present one, whose files are replaced with force=True. `options` are those of the program.
+    default NAME-fit in the present one, whose files are replaced with force=True. `options` are those of the program. Files of another
+    form than the program reads are read by `softfall read` first.
     """
     config, folder = _prepare(tests, output, "fit")
-    programs.run("fit", ["compression", str(config), f"--output={folder}", *programs.options(options)])
-    return Fit(folder)
+    with tempfile.TemporaryDirectory(prefix="softfall-") as scratch:
+        while True:
+            try:
+                programs.run("fit", ["compression", str(config), f"--output={folder}", *programs.options(options)])
+                return Fit(folder)
+            except InputError as error:
+                advice = laboratory.advised(error)
+                if advice is None:
+                    raise
+                text = config.read_text(encoding="utf-8")
+                if not advice.stands_in(text, config.parent):
+                    raise
+                clean, config = advice.swap(text, config.parent), Path(scratch) / config.name
+                config.write_text(clean, encoding="utf-8")

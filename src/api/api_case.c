@@ -11,7 +11,8 @@ struct softfall_case {
 
 static void tell(void *user, sf_severity severity, const char *sentence) {
     const softfall_sink *sink = user;
-    sink->tell(sink->user, severity == SF_WARNING ? SOFTFALL_WARNING : SOFTFALL_NOTE, sentence);
+    if (severity != SF_FACT)
+        sink->tell(sink->user, severity == SF_WARNING ? SOFTFALL_WARNING : SOFTFALL_NOTE, sentence);
 }
 
 /* The result refers to `copy`. */

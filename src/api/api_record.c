@@ -45,12 +45,10 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
         o->column = value;
     else if (strcmp(name, "columns") == 0)
         o->columns = value;
-    else if (strcmp(name, "heading") == 0)
-        o->heading = value;
-    else if (strcmp(name, "scale") == 0)
-        sf_reference_parse_sensitivity(value, &o->sensitivity, err);
-    else if (strcmp(name, "rate") == 0)
-        sf_reference_parse_rate(value, &o->rate, err);
+    else if (strcmp(name, "range") == 0)
+        sf_reference_parse_range(value, &o->range, err);
+    else if (strcmp(name, "speed") == 0)
+        sf_units_read(value, SF_SPEED, &o->speed, err);
     else if (strcmp(name, "filter") == 0 && strcmp(value, "none") == 0)
         o->cfc = 0;
     else if (strcmp(name, "filter") == 0)
@@ -63,8 +61,8 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
         o->zero = true;
     else if (err->status == SF_OK)
         SF_REFUSE(err,
-                  "a record has no option \"%.80s\"; there are column, columns, heading, scale, rate, "
-                  "filter, impact, invert and zero",
+                  "a record has no option \"%.80s\"; there are column, columns, filter, impact, "
+                  "invert, zero, speed and range",
                   name);
     return err->status;
 }
@@ -90,15 +88,17 @@ static sf_status read_record(softfall_record *r, const sf_reference_options *opt
     return SF_OK;
 }
 
-softfall_status softfall_record_read(const char *path, const char *const *options, int count,
-                                     softfall_record **out, softfall_error *error) {
+static softfall_status make_record(const char *path, const sf_reference_samples *samples,
+                                   const char *const *options, int count, softfall_record **out,
+                                   softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     settings s = {.options = {.path = path,
+                              .samples = samples,
                               .cfc = 1000,
                               .column_option = "column=HEADING",
-                              .unfiltered_option = "filter=none",
+                              .filter_option = "filter=",
                               .invert_option = "invert",
-                              .heading_option = "heading=TEXT"}};
+                              .zero_option = "zero"}};
     *out = sf_alloc(&err, 1, sizeof **out, "a record");
     if (*out &&
         (take_options(&s, options, count, &err) != SF_OK || read_record(*out, &s.options, &err) != SF_OK)) {
@@ -107,6 +107,25 @@ softfall_status softfall_record_read(const char *path, const char *const *option
     }
     sf_free_all((size_t)s.count, s.texts);
     return softfall_return(&err, error);
+}
+
+softfall_status softfall_record_read(const char *path, const char *const *options, int count,
+                                     softfall_record **out, softfall_error *error) {
+    return make_record(path, NULL, options, count, out, error);
+}
+
+softfall_status softfall_record_make(const softfall_samples *samples, const char *const *options, int count,
+                                     softfall_record **out, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_reference_samples s = {samples->count, samples->time, samples->axes, {NULL}, samples->reading};
+    if (s.axes < 1 || s.axes > SF_REFERENCE_AXES || s.count < 1) {
+        *out = NULL;
+        SF_REFUSE(&err, "%s: %lld samples of %d axes: a record has samples of 1 to %d axes", samples->name,
+                  (long long)s.count, s.axes, SF_REFERENCE_AXES);
+        return softfall_return(&err, error);
+    }
+    memcpy(s.value, samples->value, sizeof s.value);
+    return make_record(samples->name, &s, options, count, out, error);
 }
 
 void softfall_record_free(softfall_record *r) {
@@ -131,6 +150,22 @@ const char *softfall_record_verdict(const softfall_record *r) {
 
 const char *softfall_record_interpretation(const softfall_record *r) {
     return r->reference.interpretation;
+}
+
+softfall_status softfall_units_read(const char *text, double *value, const char **unit,
+                                    softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_units *units = NULL;
+    *unit = NULL;
+    if (sf_units_open(&units, &err) != SF_OK)
+        return softfall_return(&err, error);
+    for (int k = 0; k < SF_QUANTITY_COUNT && !*unit; k++) {
+        err = (sf_error)SF_ERROR_INIT;
+        if (sf_units_parse(units, text, (sf_quantity)k, value, &err) == SF_OK)
+            *unit = sf_quantity_unit((sf_quantity)k);
+    }
+    sf_units_close(&units);
+    return softfall_return(&err, error);
 }
 
 softfall_status softfall_record_figure(const softfall_record *r, const char *key, double *value,

@@ -147,6 +147,7 @@ bool sf_grow(void *array, size_t count, size_t size);
  * the programs print. */
 
 typedef enum sf_severity {
+    SF_FACT,    /* how an input was read, for a program that reports it */
     SF_NOTE,    /* a choice that was made for the user */
     SF_WARNING, /* the input is legal but probably not intended */
 } sf_severity;

@@ -327,7 +327,8 @@ int sf_error_report(const sf_error *err, const char *program) {
 
 static void print(void *user, sf_severity severity, const char *sentence) {
     const char *program = user;
-    fprintf(stderr, "%s: %s: %s\n", program, severity == SF_WARNING ? "warning" : "note", sentence);
+    if (severity != SF_FACT)
+        fprintf(stderr, "%s: %s: %s\n", program, severity == SF_WARNING ? "warning" : "note", sentence);
 }
 
 sf_sink sf_program_sink(const char *program) {

@@ -28,7 +28,6 @@ static const quantity_info quantities[SF_QUANTITY_COUNT] = {
     [SF_INERTIA] = {"a moment of inertia", "kg m2", "0.012 kg m2"},
     [SF_ANGULAR_VELOCITY] = {"an angular velocity", "rad s-1", "20 rad/s"},
     [SF_VOLTAGE] = {"a voltage", "V", "10 mV"},
-    [SF_SENSITIVITY] = {"a sensitivity of an accelerometer", "V s2 m-1", "0.102 mV/(m/s2)"},
     [SF_TEMPERATURE] = {"a temperature", "K", "23 degC"},
     [SF_MOLAR_ENERGY] = {"an activation energy", "J mol-1", "80 kJ/mol"},
     [SF_FORCE] = {"a force", "N", "2.5 kN"},
@@ -80,9 +79,11 @@ static const struct {
     {"length",
      "metre|metres|meter|meters|centimetre|centimetres|centimeter|centimeters|millimetre|millimetres", ""},
     {"length",
-     "millimeter|millimeters|micrometre|micrometres|micrometer|micrometers|in|inch|inches|ft|foot|feet", ""},
+     "millimeter|millimeters|micrometre|micrometres|micrometer|micrometers|in|inch|inches|ft|foot|feet|mil",
+     ""},
     {"mass", "g", "umk"},
-    {"mass", "gram|grams|milligram|milligrams|kilogram|kilograms|t|tonne|tonnes|lb|pound|pounds", ""},
+    {"mass", "gram|grams|milligram|milligrams|kilogram|kilograms|t|tonne|tonnes|lb|lbm|pound|pounds", ""},
+    {"mass", "oz|ounce|ounces", ""},
     {"time", "s", "num"},
     {"time", "sec|second|seconds|msec|millisecond|milliseconds|usec|microsecond|microseconds", ""},
     {"temperature", "K", ""},
@@ -92,6 +93,9 @@ static const struct {
     {"pressure", "Pa", "hkMG"},
     {"pressure", "pascal|pascals|kilopascal|kilopascals|megapascal|megapascals|psi|ksi", ""},
     {"pressure", "bar", "mk"},
+    {"pressure", "psf", ""},
+    {"density", "pcf", ""},
+    {"speed", "mph", ""},
     {"voltage", "V", "umk"},
     {"energy", "J", "k"},
     {"amount", "mol", ""},
@@ -338,11 +342,26 @@ static void describe_unit(const sf_units *units, const ut_unit *unit, char *out,
         snprintf(out, size, "is measured in %s", length > 0 ? base : "something else");
 }
 
+/* Returns how the database knows a name: its own oz is a fluid ounce, others it lacks. */
+static const char *database_name(const char *name) {
+    static const struct {
+        const char *names, *known;
+    } other[] = {{"oz|ounce|ounces", "0.0625 lb"},
+                 {"lbm", "lb"},
+                 {"psf", "lbf/ft2"},
+                 {"pcf", "lb/ft3"},
+                 {"mph", "international_mile/hour"}};
+    for (size_t k = 0; k < sizeof other / sizeof *other; k++)
+        if (sf_word_find(other[k].names, name) >= 0)
+            return other[k].known;
+    return name;
+}
+
 /* The product of the factors; NULL if the database lacks one. */
 static ut_unit *make_unit(const sf_units *units, const unit_text *text) {
     ut_unit *product = ut_get_dimensionless_unit_one(units->system);
     for (int k = 0; k < text->count && product; k++) {
-        ut_unit *name = ut_parse(units->system, text->factor[k].name, UT_ASCII);
+        ut_unit *name = ut_parse(units->system, database_name(text->factor[k].name), UT_ASCII);
         ut_unit *power = name ? ut_raise(name, text->factor[k].power) : NULL;
         ut_unit *next = power ? ut_multiply(product, power) : NULL;
         ut_free(name);

@@ -29,7 +29,6 @@ typedef enum sf_quantity {
     SF_AREA,
     SF_INERTIA,
     SF_VOLTAGE,
-    SF_SENSITIVITY,      /* of an accelerometer */
     SF_TEMPERATURE,      /* K, or degC of the scale that begins at SF_CELSIUS */
     SF_MOLAR_ENERGY,     /* of an activation */
     SF_ANGULAR_VELOCITY, /* last: UDUNITS takes a radian for 1, so that it has the dimension of a rate */

@@ -5,26 +5,11 @@
 #include <gsl/gsl_sort.h>
 
 sf_table_layout sf_case_curve_layout(const char *what, sf_table_check *check) {
-    static const sf_table_name names[] = {{"strain", 0, 1.0, "1"},
-                                          {"strain_percent", 0, 0.01, "%"},
-                                          {"stress_Pa", 1, 1.0, "Pa"},
-                                          {"stress_kPa", 1, 1e3, "kPa"},
-                                          {"stress_MPa", 1, 1e6, "MPa"}};
-    return (sf_table_layout){
-        .what = what,
-        .column = {"strain", "stress"},
-        .wanted = {"\"strain\" or \"strain_percent\"", "\"stress_Pa\", \"stress_kPa\" or \"stress_MPa\""},
-        SF_TABLE_NAMES(names),
-        .words = {"strain|*dehnung|*stauchung|deformation|déformation|deformación|deformazione",
-                  "stress|*spannung|contrainte|tensión|esfuerzo|sforzo|tensione"},
-        .unfit = {"true|log|ln|logarithmic|hencky|natural|wahre|logarithmische", "true|cauchy|wahre"},
-        .unfit_why =
-            "is not the engineering strain or the nominal stress: of a logarithmic strain e the engineering "
-            "strain is 1 - exp(-e), of a true stress the nominal one is true stress x present area / "
-            "first area, the same for a foam without lateral strain",
-        .kind = {SF_TABLE_RATIO, SF_PRESSURE},
-        .check = check,
-    };
+    return (sf_table_layout){.what = what,
+                             .kind = "compression",
+                             .column = {&sf_column_strain, &sf_column_stress},
+                             .means = "nominal stress over nominal strain in compression",
+                             .check = check};
 }
 
 void sf_case_curve_free(sf_case_curve *curve) {
@@ -82,8 +67,7 @@ sf_status sf_case_curve_read(const char *path, sf_case_curve *curve, sf_error *e
                   table.value[0][table.count - 1], SF_CURVE_MIN_END);
     else
         take_points(&table, curve, err);
-    if (!table.plain)
-        memcpy(curve->interpretation, table.interpretation, sizeof curve->interpretation);
+    memcpy(curve->interpretation, table.interpretation, sizeof curve->interpretation);
     if (err->status != SF_OK)
         sf_case_curve_free(curve);
     return err->status;
@@ -146,8 +130,7 @@ static sf_status read_file(sf_case_reader *reader, const config_setting_t *setti
     if (sf_case_curve_read(path, &curve, &inner) != SF_OK || check_slopes(path, &curve, &inner) != SF_OK)
         return SF_FAIL(err, inner.status, "%s (named at %s)", inner.text,
                        sf_case_where(reader, setting, where));
-    if (curve.interpretation[0])
-        sf_sink_tell(reader->sink, SF_NOTE, "curve %s: %s", path, curve.interpretation);
+    sf_sink_tell(reader->sink, SF_FACT, "%s: %s", path, curve.interpretation);
     if (curve.extended)
         sf_sink_tell(reader->sink, SF_NOTE, "%s begins at strain %g; the point (0, 0) was put before it",
                      path, curve.strain[1]);
@@ -317,22 +300,10 @@ static sf_status check_motion_point(const sf_table_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_table_name motion_names[] = {{"time_s", 0, 1.0, "s"},
-                                             {"time_ms", 0, 1e-3, "ms"},
-                                             {"displacement_m", 1, 1.0, "m"},
-                                             {"displacement_mm", 1, 1e-3, "mm"}};
-
-static const sf_table_layout motion_layout = {
-    .what = "motion",
-    .column = {"time", "displacement"},
-    .wanted = {"\"time_s\" or \"time_ms\"", "\"displacement_m\" or \"displacement_mm\""},
-    SF_TABLE_NAMES(motion_names),
-    .words =
-        {"time|t|*zeit|temps|tiempo|tempo",
-         "displacement|extension|crosshead|position|travel|stroke|*weg|desplazamiento|déplacement|spostamento"},
-    .kind = {SF_TIME, SF_LENGTH},
-    .check = check_motion_point,
-};
+static const sf_table_layout motion_layout = {.what = "motion",
+                                              .kind = "motion",
+                                              .column = {&sf_column_time, &sf_column_displacement},
+                                              .check = check_motion_point};
 
 static sf_status check_motion_table(const char *path, const sf_table *table, sf_error *err) {
     double largest = 0.0;
@@ -358,8 +329,6 @@ sf_status sf_case_read_motion(sf_case_reader *reader, const config_setting_t *se
     sf_error inner = SF_ERROR_INIT;
     if (sf_table_read(path, &motion_layout, &table, &inner) == SF_OK)
         check_motion_table(path, &table, &inner);
-    if (inner.status == SF_OK && !table.plain)
-        sf_sink_tell(reader->sink, SF_NOTE, "motion %s: %s", path, table.interpretation);
     c->motion_count = table.count;
     c->motion_time = table.value[0];
     c->motion_displacement = table.value[1];

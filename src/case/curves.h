@@ -15,7 +15,7 @@ typedef struct sf_case_curve {
     int64_t count;
     double *strain;                               /* [count] -, strictly increasing from 0, below 1; owned */
     double *stress;                               /* [count] Pa, from 0, non-decreasing, finite; owned */
-    char interpretation[SF_TABLE_INTERPRETATION]; /* how the file was read; empty: plainly */
+    char interpretation[SF_TABLE_INTERPRETATION]; /* how the file was read */
     bool extended; /* the file began above zero strain and (0, 0) was put before it */
 } sf_case_curve;
 

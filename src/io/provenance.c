@@ -75,6 +75,14 @@ sf_status sf_provenance_copy(const sf_h5 *from, sf_h5 *to, sf_error *err) {
     return SF_OK;
 }
 
+/* Writes a word between single quotes, those within it as a shell reads them. */
+static void put_quoted(FILE *stream, const char *word) {
+    fputc('\'', stream);
+    for (; *word; word++)
+        fputs(*word == '\'' ? "'\\''" : (char[]){*word, '\0'}, stream);
+    fputc('\'', stream);
+}
+
 char *sf_command_line(int argc, char *const *argv) {
     SF_TEXT_STREAM(stream, text, size);
     if (!stream)
@@ -82,7 +90,11 @@ char *sf_command_line(int argc, char *const *argv) {
     for (int k = 0; k < argc; k++) {
         const char *word = k == 0 && strrchr(argv[0], '/') ? strrchr(argv[0], '/') + 1 : argv[k];
         bool quote = *word == '\0' || strpbrk(word, " \t\"'\\$`*?[]{}()<>|&;#") != NULL;
-        fprintf(stream, quote ? "%s'%s'" : "%s%s", k ? " " : "", word);
+        fputs(k ? " " : "", stream);
+        if (quote)
+            put_quoted(stream, word);
+        else
+            fputs(word, stream);
     }
     fclose(stream);
     return text;

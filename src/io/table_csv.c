@@ -1,35 +1,53 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/table_csv.h"
 
-#include "base/text.h"
-#include "io/table_heading.h"
-#include "io/table_text.h"
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
 
-enum { PREAMBLE = 200 }; /* lines among which the heading must stand */
-static const char SEPARATORS[] = ";\t, ";
+#include "base/text.h"
+#include "io/plain_file.h"
+#include "io/provenance.h"
 
-/* The file being read: its text, data for the messages and the growing arrays. */
+enum { COLUMNS = 256, TITLE = 96, UNIT = 32, SHOWN = 160, READING_SHOWN = 480 };
+static const char READING[] = "# softfall read ";
+#define OTHER_FORMS ": %s reads other forms, or says why not"
+
+const sf_table_column
+    sf_column_time = {"time", "time|t", SF_TIME, 1, "time_ms"},
+    sf_column_acceleration = {"acceleration", "acceleration|deceleration|a", SF_ACCELERATION,
+                              SF_STANDARD_GRAVITY, "acceleration_g"},
+    sf_column_strain = {"strain", "strain", SF_TABLE_RATIO, 1, "strain"},
+    sf_column_stress = {"stress", "stress", SF_PRESSURE, 1, "stress_kPa"},
+    sf_column_lateral_strain = {"lateral strain",
+                                "lateral strain|lateral_strain|transverse strain|transverse_strain",
+                                SF_TABLE_RATIO, 1, "lateral_strain"},
+    sf_column_displacement = {"displacement", "displacement", SF_LENGTH, 1, "displacement_mm"},
+    sf_column_force = {"force", "force", SF_FORCE, 1, "force_N"},
+    sf_column_height = {"height", "height|h|h_m", SF_LENGTH, 1, "height_m"},
+    sf_column_speed = {"speed", "speed|v|v_test", SF_SPEED, 1, "speed_m_s"},
+    sf_column_static_stress = {"static stress", "static stress|static_stress", SF_PRESSURE, 1,
+                               "static_stress_kPa"},
+    sf_column_peak = {"peak deceleration", "peak|peak deceleration", SF_ACCELERATION, SF_STANDARD_GRAVITY,
+                      "peak_g"};
+
+/* The file being read. */
 typedef struct csv {
     const char *path;
     const sf_table_layout *layout;
-    char *text;  /* whole file, zero-terminated; owned */
-    char *next;  /* the line that follows */
-    char *end;   /* where the table ends: another one or the end of the file */
-    int line;    /* number of the last one */
-    int64_t row; /* rows so far, lost samples too */
-    bool passed; /* lines without a column stand before the heading */
-    char separator;
-    sf_table_heading heading;
-    bool point, comma; /* marks that numbers held */
-    bool decimal;      /* a comma that can only be a decimal one */
-    int comma_line;    /* first number with a comma */
-    char comma_text[32];
-    int lost;        /* rows whose value is NaN: samples that were lost */
-    sf_units *units; /* NULL until needed; owned */
+    char *next; /* the line that follows, in the text */
+    int line;   /* number of the last one */
+    char *cell[COLUMNS];
+    int cells;
+    int columns;  /* of the heading */
+    int place[2]; /* of the two columns */
+    char unit[2][UNIT];
+    const char *reading; /* what softfall read said; NULL: nothing */
+    const char *title;   /* comment above the heading that gives the curve another meaning; NULL: none */
+    int title_line;
+    const char *remedy; /* command that reads other forms */
+    sf_units *units;    /* owned */
     sf_table *table;
 } csv;
 
@@ -37,539 +55,325 @@ void sf_table_free(sf_table *table) {
     SF_CLEAR(table, table->value[0], table->value[1], table->line);
 }
 
-/* ---- lines ---- */
+/* ---- lines and cells ---- */
 
-/* The next line, ended in place; NULL after the last. */
-static char *next_line(csv *file) {
-    char *line = file->next;
-    if (!line || !*line || (file->end && line >= file->end))
-        return NULL;
-    char *end = line + strcspn(line, "\r\n");
-    file->next = *end == '\r' && end[1] == '\n' ? end + 2 : *end ? end + 1 : end;
-    *end = '\0';
-    file->line++;
-    return line;
+/* True of a comment without numbers that gives the curve below another meaning, such as "# true stress". */
+static bool is_other_title(const char *comment) {
+    static const char *const others[] = {"true str",        "cauchy str", "hencky str",
+                                         "logarithmic str", "log str",    "plastic str",
+                                         "yield str",       "shear str",  "volumetric str"};
+    if (strpbrk(comment, "0123456789") || strcasestr(comment, "nominal") ||
+        strcasestr(comment, "engineering"))
+        return false;
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        if (strcasestr(comment, others[k]))
+            return true;
+    return false;
 }
 
-/* The next line that is neither empty nor a comment. */
+/* The next line that is neither empty nor a comment, ended in place; NULL after the last. */
 static char *next_content(csv *file) {
-    char *line;
-    while ((line = next_line(file)) && sf_table_line_is_empty(line))
-        ;
-    return line;
+    while (*file->next) {
+        char *line = file->next, *end = line + strcspn(line, "\r\n");
+        file->next = *end == '\r' && end[1] == '\n' ? end + 2 : *end ? end + 1 : end;
+        *end = '\0';
+        file->line++;
+        if (strncmp(line, READING, sizeof READING - 1) == 0)
+            file->reading = line + 2;
+        else if (*line == '#' && file->columns == 0 && is_other_title(line)) {
+            file->title = line;
+            file->title_line = file->line;
+        }
+        line += strspn(line, " \t");
+        if (*line && *line != '#' && line[strspn(line, " \t,")])
+            return line;
+    }
+    return NULL;
+}
+
+static char *trim_blanks(char *text) {
+    while (isspace((unsigned char)*text))
+        text++;
+    for (char *end = text + strlen(text); end > text && isspace((unsigned char)end[-1]);)
+        *--end = '\0';
+    return text;
+}
+
+/* Removes blanks and a pair of quotes; of "1,5", which a comma splits, each half keeps its quote. */
+static char *trim(char *text) {
+    text = trim_blanks(text);
+    size_t length = strlen(text);
+    if (length < 2 || text[0] != '"' || text[length - 1] != '"')
+        return text;
+    text[length - 1] = '\0';
+    return trim_blanks(text + 1);
+}
+
+/* Splits a line into cells; empty ones at its end do not count beyond the heading. */
+static void split(csv *file, char *line) {
+    file->cells = 0;
+    for (char *rest = line; rest && file->cells < COLUMNS;)
+        file->cell[file->cells++] = trim(strsep(&rest, ","));
+    while (file->cells > file->columns && !*file->cell[file->cells - 1])
+        file->cells--;
 }
 
 /* ---- heading ---- */
 
-/* The separator by which numbers begin the line, one where samples are counted and two elsewhere; 0: it is no
- * line of data. */
-static char data_separator(const csv *file, const char *line) {
-    char found = 0;
-    for (const char *s = SEPARATORS; *s && !found; s++) {
-        sf_table_cells cells;
-        SF_OWNED char *copy = strdup(line);
-        if (!copy)
-            return 0;
-        sf_table_split(copy, *s, false, &cells);
-        bool data = cells.count > !file->layout->counted && cells.count <= SF_TABLE_COLUMNS &&
-                    sf_table_number(cells.cell[0], NULL) &&
-                    (cells.count < 2 || sf_table_number(cells.cell[1], NULL));
-        found = data ? *s : 0;
+/* SI value of a unit; 0 if the text is no unit of the kind. */
+static double unit_value(const csv *file, const char *text, int kind) {
+    double value = 0;
+    if (kind == SF_TABLE_RATIO)
+        return sf_word_find("%|percent", text) >= 0 ? 0.01 : sf_word_find("1|-", text) >= 0;
+    if (kind == SF_ACCELERATION && strcmp(text, "g") == 0)
+        return SF_STANDARD_GRAVITY;
+    SF_PRINTED(quantity, UNIT + 8, "1 %s", text);
+    return sf_units_parse(file->units, quantity, (sf_quantity)kind, &value, SF_IGNORED) == SF_OK ? value : 0;
+}
+
+/* The SI value of the unit at the end of a heading such as "Name (unit)", which is cut off `name`; else 0. */
+static double bracketed_unit(const csv *file, char *name, int kind, char unit[UNIT]) {
+    size_t length = strlen(name);
+    char *open = length > 0 && strchr(")]", name[length - 1])
+                     ? strrchr(name, name[length - 1] == ')' ? '(' : '[')
+                     : NULL;
+    if (!open || open == name)
+        return 0;
+    name[length - 1] = '\0';
+    snprintf(unit, UNIT, "%.31s", open + 1);
+    *open = '\0';
+    return unit_value(file, unit, kind);
+}
+
+static bool is_named(const char *name, const char *names) {
+    char lower[TITLE];
+    size_t k = 0;
+    for (; name[k] && k + 1 < sizeof lower; k++)
+        lower[k] = (char)tolower((unsigned char)name[k]);
+    lower[k] = '\0';
+    return sf_word_find(names, lower) >= 0;
+}
+
+/* The SI value of the unit of a cell that holds the column, by its names or the user's choice; else 0. */
+static double cell_scale(const csv *file, const char *cell, const sf_table_column *column, const char *chosen,
+                         char unit[UNIT]) {
+    char name[TITLE];
+    size_t length = strlen(cell);
+    bool whole = chosen && strcmp(cell, chosen) == 0;
+    if (length == 0 || length >= sizeof name)
+        return 0;
+    memcpy(name, cell, length + 1);
+    if (strchr(")]", name[length - 1])) {
+        double value = bracketed_unit(file, name, column->kind, unit);
+        char *plain = trim(name);
+        bool fits = chosen ? whole || strcmp(plain, chosen) == 0 : is_named(plain, column->names);
+        return fits ? value : 0;
     }
-    return found;
-}
-
-/* Reads the line as a heading of the layout, split at the separator. */
-static sf_status try_heading(csv *file, const char *line, const char *below, char separator,
-                             const sf_table_layout *layout, sf_table_heading *heading, sf_error *err) {
-    sf_table_cells cells, below_cells = {0};
-    SF_OWNED char *text = sf_table_utf8_copy(line), *under = sf_table_utf8_copy(below);
-    *heading = (sf_table_heading){.place = {-1, -1}, .part = {-1, -1}};
-    if (!text || (below && !under)) {
-        SF_NO_MEMORY(err, "the %s %s", file->layout->what, file->path);
-    } else {
-        sf_table_split(text, separator, true, &cells);
-        if (under)
-            sf_table_split(under, separator, false, &below_cells);
-        if (cells.count > SF_TABLE_COLUMNS)
-            snprintf(heading->problem, sizeof heading->problem, "more than %d columns", SF_TABLE_COLUMNS);
-        else
-            sf_table_heading_read(layout, &cells, below_cells.count <= SF_TABLE_COLUMNS ? &below_cells : NULL,
-                                  &file->units, heading, err);
+    for (char *at = strchr(name, '_'); at; at = strchr(at + 1, '_')) { /* name_unit, its next _ read as / */
+        snprintf(unit, UNIT, "%.31s", at + 1);
+        char *slash = strchr(unit, '_');
+        if (slash)
+            *slash = '/';
+        *at = '\0';
+        double value = (chosen ? whole || strcmp(name, chosen) == 0 : is_named(name, column->names))
+                           ? unit_value(file, unit, column->kind)
+                           : 0;
+        *at = '_';
+        if (value > 0)
+            return value;
     }
-    return err->status;
+    snprintf(unit, UNIT, "1");
+    return column->kind == SF_TABLE_RATIO && (chosen ? whole : is_named(name, column->names));
 }
 
-static bool is_good(const sf_table_heading *heading) {
-    return heading->found == 2 && !heading->problem[0];
-}
-
-/* The best heading that the line can be, of any layout and separator; `rest` is the text below it. */
-static sf_status try_line(csv *file, const char *line, const char *rest, const sf_table_layout *layouts,
-                          int count, int *which, sf_table_heading *best, char *separator, sf_error *err) {
-    SF_OWNED char *below = sf_table_content_copy(rest);
-    *best = (sf_table_heading){.found = -1};
-    for (const char *s = SEPARATORS; *s && err->status == SF_OK; s++)
-        for (int k = 0; k < count && err->status == SF_OK; k++) {
-            sf_table_heading heading;
-            if (*s != ',' && !strchr(line, *s) && !(*s == ' ' && strchr(line, '\t')))
-                continue;
-            if (try_heading(file, line, below, *s, &layouts[k], &heading, err) != SF_OK)
-                break;
-            if (heading.found > best->found ||
-                (heading.found == best->found && is_good(&heading) && !is_good(best))) {
-                *best = heading;
-                *which = k;
-                *separator = *s;
-            }
-        }
-    return err->status;
-}
-
-/* Every cell is as short as a unit. */
-static bool is_short(const char *line) {
-    enum { UNIT = 6 };
-    size_t longest = 0;
-    for (; *line; line += strspn(line, ";\t,\"")) {
-        size_t length = strcspn(line, ";\t,\"");
-        longest = length > longest ? length : longest;
-        line += length;
-    }
-    return longest <= UNIT;
-}
-
-static sf_status refuse_headless(const csv *file, sf_error *err) {
-    const char *option = file->layout->heading_option;
-    return SF_REFUSE(err,
-                     "%s:%d: numbers begin here without a heading, which names the columns %s and %s and "
-                     "their units: write one above them%s%s",
-                     file->path, file->line, file->layout->column[0], file->layout->column[1],
-                     option ? ", or give it with " : "", option ? option : "");
-}
-
-/* The first line that is a heading; a table of results may stand above it, with an empty line between. Else
- * what is wrong with the line that is most like one: the last before the data among those that hold as many
- * of the columns. */
-static sf_status find_heading(csv *file, const sf_table_layout *layouts, int count, int *which,
-                              sf_error *err) {
-    sf_table_heading best = {.found = -1};
-    int best_line = 0, lines = 0;
-    bool below_data = false, any_data = false; /* the line follows on one of numbers; on any */
-    char *line;
-    while (lines++ < PREAMBLE && (line = next_content(file))) {
-        sf_table_heading heading;
-        bool data = data_separator(file, line) != 0;
-        SF_TRY(try_line(file, line, file->next, layouts, count, which, &heading, &file->separator, err));
-        if (is_good(&heading) && below_data)
-            break;
-        if (is_good(&heading) && !data) {
-            file->heading = heading;
-            file->layout = &layouts[*which];
-            file->passed = lines > 1;
-            file->separator = heading.columns == 1 ? ';' : file->separator;
-            return SF_OK;
-        }
-        if (lines == 1 && heading.found <= 0 && (data || sf_table_number(line, NULL)))
-            return refuse_headless(file, err);
-        any_data = any_data || data;
-        if (heading.found > best.found || (heading.found == best.found && !any_data && !is_short(line))) {
-            best = heading;
-            best_line = file->line;
-        }
-        below_data = data && file->next && !strchr("\r\n", *file->next);
-    }
-    return best_line ? SF_REFUSE(err, "%s:%d: %s", file->path, best_line, best.problem) : SF_OK;
-}
-
-/* The user's heading, of a file that begins with numbers after lines that are none. */
-static sf_status take_heading(csv *file, const sf_table_layout *layouts, int count, int *which,
-                              sf_error *err) {
-    const char *text = layouts[0].heading, *option = layouts[0].heading_option, *at = file->next;
-    SF_TRY(try_line(file, text, NULL, layouts, count, which, &file->heading, &file->separator, err));
-    if (!is_good(&file->heading))
-        return SF_REFUSE(err, "%s \"%.200s\": %s", option, text,
-                         file->heading.found < 0 ? "names no columns" : file->heading.problem);
-    file->layout = &layouts[*which];
-    for (int lines = 0; lines < PREAMBLE; lines++) {
-        const char *line = at;
-        SF_OWNED char *copy = sf_table_line_copy(&at);
-        sf_table_heading own;
-        sf_table_cells cells;
-        char separator = 0;
-        int other;
-        if (!copy)
-            break;
-        file->separator = sf_table_line_is_empty(copy) ? 0 : data_separator(file, copy);
-        if (!file->separator && !sf_table_line_is_empty(copy))
-            try_line(file, copy, at, layouts, count, &other, &own, &separator, err);
-        if (file->separator)
-            sf_table_split(copy, file->separator, false, &cells);
-        if (separator && is_good(&own))
-            return SF_REFUSE(err, "%s:%d: the file has a heading of its own: leave %s out", file->path,
-                             file->line + 1, option);
-        if (file->separator && cells.count != file->heading.columns)
-            return SF_REFUSE(err, "%s:%d: %d values where %s names %d columns", file->path, file->line + 1,
-                             cells.count, option, file->heading.columns);
-        if (file->separator) {
-            file->next = file->text + (line - file->text);
-            return SF_OK;
-        }
-        file->line++;
-    }
-    return SF_REFUSE(err, "%s: no line begins with numbers", file->path);
-}
-
-/* ---- parts of a file that holds several ---- */
-
-enum { MOST_PARTS = 64, PART_TEXT = 24, MOST_ROWS_ALONE = 8 };
-
-/* A letter begins the line, after a quote perhaps: no number. */
-static bool begins_with_letter(const char *line) {
-    const char *first = line + strspn(line, " \t\"");
-    return (unsigned char)*first >= 0x80 || isalpha((unsigned char)*first);
-}
-
-/* The headings below the first table. Starts the chosen table, and ends it where the next begins. */
-static sf_status choose_table(csv *file, const sf_table_layout *layouts, int count, int *which,
-                              sf_error *err) {
-    const char *chosen = file->layout->part[SF_TABLE_SPECIMEN],
-               *option = file->layout->part_option[SF_TABLE_SPECIMEN];
-    double number = 0;
-    int tables = 1, wanted = chosen && sf_table_number(chosen, &number) ? (int)fmin(number, 1e6) : 0;
-    int line_number = file->line, second = 0, found = 0;
-    bool data = false;
-    const char *start = file->next;
-    char *copy;
-    for (const char *rest = file->next, *line = rest; (copy = sf_table_line_copy(&rest)); line = rest) {
-        sf_table_heading heading = {.found = -1};
-        char separator;
-        line_number++;
-        if (data && begins_with_letter(copy))
-            try_line(file, copy, rest, layouts, count, &found, &heading, &separator, err);
-        data = data ||
-               (!sf_table_line_is_empty(copy) && !begins_with_letter(copy) && data_separator(file, copy));
-        free(copy);
-        SF_TRY(err->status);
-        if (!is_good(&heading))
+/* Finds a column in the heading; `*count`: cells that could be it. */
+static sf_status find_column(csv *file, int c, int *count, sf_error *err) {
+    const sf_table_column *column = file->layout->column[c];
+    const char *chosen = c == 1 ? file->layout->chosen : NULL, *choice = file->layout->choice;
+    *count = 0;
+    for (int i = 0; i < file->cells; i++) {
+        char unit[UNIT];
+        double scale = cell_scale(file, file->cell[i], column, chosen, unit);
+        if (!(scale > 0))
             continue;
-        data = false;
-        second = second ? second : line_number;
-        if (tables == wanted || (tables == 1 && wanted == 0))
-            file->end = file->text + (line - file->text);
-        if (++tables == wanted) {
-            file->heading = heading;
-            file->separator = heading.columns == 1 ? ';' : separator;
-            *which = found;
-            file->layout = &layouts[found];
-            file->line = line_number;
-            start = rest;
-        }
+        if (++*count > 1)
+            return SF_REFUSE(err, "%s:%d: two %s columns (\"%.80s\" and \"%.80s\"): name one with %s%s",
+                             file->path, file->line, column->name, file->cell[file->place[c]], file->cell[i],
+                             choice && c == 1 ? choice : file->remedy,
+                             choice && c == 1 ? "" : " --column NAME");
+        file->place[c] = i;
+        file->table->scale[c] = scale / column->unit;
+        memcpy(file->unit[c], unit, sizeof unit);
     }
-    if (tables == 1)
+    return SF_OK;
+}
+
+/* Refuses a heading whose columns in a unit of the quantity have other names, of which the user may choose.
+ */
+static sf_status name_choice(const csv *file, const sf_table_layout *layout, sf_error *err) {
+    char shown[SHOWN] = "", name[TITLE], unit[UNIT];
+    for (int i = 0; i < file->cells && strlen(shown) + 60 < sizeof shown; i++) {
+        snprintf(name, sizeof name, "%.95s", file->cell[i]);
+        if (bracketed_unit(file, name, layout->column[1]->kind, unit) > 0)
+            sf_text_add(shown, sizeof shown, "%s\"%.40s\"", shown[0] ? ", " : "", trim(name));
+    }
+    return shown[0] ? SF_REFUSE(err, "%s:%d: no column is called %s: name one of %s with %s", file->path,
+                                file->line, layout->column[1]->name, shown, layout->choice)
+                    : SF_OK;
+}
+
+/* Names the headings that the file has. */
+static sf_status refuse_heading(const csv *file, const sf_table_layout *layout, int c, sf_error *err) {
+    char shown[SHOWN] = "";
+    for (int i = 0; i < file->cells && strlen(shown) + 60 < sizeof shown; i++)
+        if (*file->cell[i])
+            sf_text_add(shown, sizeof shown, "%s\"%.40s\"", shown[0] ? ", " : "", file->cell[i]);
+    const char *called = c == 1 ? layout->chosen : NULL;
+    if (c == 1 && !called && layout->choice)
+        SF_TRY(name_choice(file, layout, err));
+    return SF_REFUSE(err, "%s:%d: the heading has no column of %s%s%s, such as %s; it has %s%s%s" OTHER_FORMS,
+                     file->path, file->line, layout->column[c]->name, called ? " called " : "",
+                     called ? called : "", layout->column[c]->example, shown,
+                     layout->means ? ", and what is read is " : "", layout->means ? layout->means : "",
+                     file->remedy);
+}
+
+/* A curve of nominal stress or strain has no title of another one. */
+static sf_status check_title(const csv *file, sf_error *err) {
+    const sf_table_layout *layout = file->layout;
+    if (!file->title || !layout->means ||
+        (layout->column[0] != &sf_column_strain && layout->column[1] != &sf_column_stress))
         return SF_OK;
-    if (!chosen)
-        return SF_REFUSE(err, "%s:%d: another table begins here, the file holds %d: %s%s", file->path, second,
-                         tables, option ? "choose one with " : "give each a file of its own",
-                         option ? option : "");
-    if (wanted < 1 || wanted > tables || number != wanted)
-        return SF_REFUSE(err, "%s: specimen %s was asked for; the file holds %d tables", file->path, chosen,
-                         tables);
-    file->next = file->text + (start - file->text);
-    file->table->part_taken[SF_TABLE_SPECIMEN] = true;
-    return SF_OK;
+    return SF_REFUSE(err,
+                     "%s:%d: \"%.80s\" stands above the table, but what is read is %s: if the table holds "
+                     "that, leave the line out",
+                     file->path, file->title_line, file->title + strspn(file->title, "# "), layout->means);
 }
 
-/* The same text, or the same number. */
-static bool is_part(const char *cell, const char *chosen) {
-    double a, b;
-    return strcmp(cell, chosen) == 0 || (sf_table_number(cell, &a) && sf_table_number(chosen, &b) && a == b);
-}
-
-/* The cell of column `c` is a number, or the number of its row. */
-static bool holds_number(const csv *file, const sf_table_cells *cells, int c) {
-    int place = file->heading.place[c];
-    return place == SF_TABLE_ROW || (cells->count > place && cells->count <= SF_TABLE_COLUMNS &&
-                                     sf_table_number(cells->cell[place], NULL));
-}
-
-/* Lists what the column holds, each text once, in the rows of the other chosen part; -1 if it numbers no
- * parts: numbers that are no counts, or another one in every second row, as of a logger. */
-static int list_parts(const csv *file, int k, char list[MOST_PARTS][PART_TEXT]) {
-    int listed = 0, rows = 0, other = !k, place = file->heading.part[k];
-    const char *chosen = file->layout->part[other];
-    char *copy;
-    for (const char *rest = file->next;
-         (!file->end || rest < file->end) && (copy = sf_table_line_copy(&rest));) {
-        sf_table_cells cells;
-        double number = 0;
-        bool known = false;
-        sf_table_split(copy, file->separator, false, &cells);
-        bool use = !sf_table_line_is_empty(copy) && cells.count <= SF_TABLE_COLUMNS && cells.count > place &&
-                   cells.cell[place][0] && holds_number(file, &cells, 0) && holds_number(file, &cells, 1) &&
-                   (!chosen || file->heading.part[other] < 0 || cells.count <= file->heading.part[other] ||
-                    is_part(cells.cell[file->heading.part[other]], chosen));
-        bool count = !use || !sf_table_number(cells.cell[place], &number) || number == floor(number);
-        for (int i = 0; use && i < listed; i++)
-            known = known || is_part(cells.cell[place], list[i]);
-        rows += use;
-        if (use && !known && listed < MOST_PARTS)
-            snprintf(list[listed++], PART_TEXT, "%s", cells.cell[place]);
-        free(copy);
-        if (!count)
-            return -1;
-    }
-    return listed == MOST_PARTS || (rows > MOST_ROWS_ALONE && 2 * listed > rows) ? -1 : listed;
-}
-
-/* Checks the choice against the columns that number specimens and cycles. */
-static sf_status choose_rows(csv *file, sf_error *err) {
-    static const char *const names[SF_TABLE_PARTS] = {"specimens", "cycles"};
-    char list[MOST_PARTS][PART_TEXT], line[256] = "";
-    for (int k = 0; k < SF_TABLE_PARTS; k++) {
-        const char *chosen = file->layout->part[k], *option = file->layout->part_option[k];
-        int *place = &file->heading.part[k];
-        if (*place < 0 || *place == file->heading.place[0] || *place == file->heading.place[1]) {
-            *place = -1;
-            continue;
+/* Reads the first line with content as the heading of the first layout that it fits. */
+static sf_status read_heading(csv *file, const sf_table_layout *layouts, int count, int *which,
+                              sf_error *err) {
+    int found[2] = {0}, best = -1, missing = 0;
+    char *line = next_content(file);
+    if (!line)
+        return SF_REFUSE(err, "%s is empty: it needs a heading and rows of numbers", file->path);
+    file->columns = COLUMNS;
+    split(file, line);
+    file->columns = file->cells;
+    for (int k = 0; k < count; k++) {
+        file->layout = &layouts[k];
+        for (int c = 0; c < 2; c++)
+            SF_TRY(find_column(file, c, &found[c], err));
+        if (found[0] && found[1]) {
+            *which = k;
+            return check_title(file, err);
         }
-        int listed = list_parts(file, k, list);
-        bool there = false;
-        *line = '\0';
-        if (listed < 0)
-            *place = -1;
-        for (int i = 0; i < listed; i++) {
-            there = there || (chosen && is_part(list[i], chosen));
-            sf_text_add(line, sizeof line, "%s%s", i ? ", " : "", list[i]);
+        if (found[0] + found[1] > best) {
+            best = found[0] + found[1];
+            *which = k;
+            missing = found[0] ? 1 : 0;
         }
-        if (listed > 1 && !chosen)
-            return SF_REFUSE(err, "%s holds the %s %s: %s%s", file->path, names[k], line,
-                             option ? "choose one with " : "give each a file of its own",
-                             option ? option : "");
-        if (listed > 0 && chosen && !there)
-            return SF_REFUSE(err, "%s: %s \"%.40s\" was asked for; it holds the %s %s", file->path,
-                             k == SF_TABLE_CYCLE ? "cycle" : "specimen", chosen, names[k], line);
-        file->table->part_taken[k] = file->table->part_taken[k] || (listed > 0 && chosen);
     }
+    return refuse_heading(file, &layouts[*which], missing, err);
+}
+
+/* ---- rows ---- */
+
+static sf_status read_number(const csv *file, int c, double *value, sf_error *err) {
+    const char *text = file->cell[file->place[c]], *name = file->layout->column[c]->name;
+    if (!sf_decimal_is(text, value) || !isfinite(*value))
+        return SF_REFUSE(err, "%s:%d: %s \"%.40s\" is not a finite number such as 12.5" OTHER_FORMS,
+                         file->path, file->line, name, text, file->remedy);
     return SF_OK;
 }
 
-/* ---- numbers and rows ---- */
-
-/* A comma with other than three digits after it, or none but zeros before it, is no mark of thousands. */
-static bool is_decimal(const char *text) {
-    const char *comma = strchr(text, ','), *first = text + strspn(text, "+-");
-    return first == comma || *first == '0' || strspn(comma + 1, "0123456789") != 3 || comma - first > 3;
-}
-
-/* Takes the mark of the number, a decimal point or a comma, into account. */
-static sf_status check_mark(csv *file, const char *name, const char *text, sf_error *err) {
-    file->point = file->point || strchr(text, '.');
-    if (!strchr(text, ','))
-        return file->point && file->comma
-                   ? SF_REFUSE(err,
-                               "%s:%d: %s \"%s\" has a decimal point after numbers with a "
-                               "decimal comma (line %d, \"%s\")",
-                               file->path, file->line, name, text, file->comma_line, file->comma_text)
-                   : SF_OK;
-    if (file->separator == ',')
-        return SF_REFUSE(err,
-                         "%s:%d: %s \"%s\" holds a comma, which separates the columns here: write a decimal "
-                         "point, or separate by semicolons",
-                         file->path, file->line, name, text);
-    if (file->point)
-        return SF_REFUSE(err,
-                         "%s:%d: %s \"%s\" has a comma where the file has decimal points: it could be a "
-                         "decimal comma or a mark of thousands",
-                         file->path, file->line, name, text);
-    if (!file->comma) {
-        file->comma_line = file->line;
-        snprintf(file->comma_text, sizeof file->comma_text, "%.31s", text);
-    }
-    file->comma = true;
-    file->decimal = file->decimal || is_decimal(text);
-    return SF_OK;
-}
-
-static sf_status read_number(csv *file, const char *name, const char *text, double *value, sf_error *err) {
-    char plain[64];
-    if (sf_table_has_thousands(text, file->separator == ',' && file->point, plain, sizeof plain))
-        text = plain;
-    if (!sf_table_number(text, value))
-        return SF_REFUSE(err, "%s:%d: %s \"%s\" is not a number%s", file->path, file->line, name, text,
-                         *text ? " (expected a number such as 12.5)" : " (the cell is empty)");
-    SF_TRY(check_mark(file, name, text, err));
-    if (!isfinite(*value))
-        return SF_REFUSE(err, "%s:%d: %s \"%s\" is not finite", file->path, file->line, name, text);
-    return SF_OK;
-}
-
-static sf_status append(csv *file, const double value[2], sf_error *err) {
+static sf_status append(const csv *file, const double value[2], sf_error *err) {
     sf_table *table = file->table;
-    if (!sf_grow(&table->value[0], (size_t)table->count, sizeof *value) ||
-        !sf_grow(&table->value[1], (size_t)table->count, sizeof *value) ||
-        !sf_grow(&table->line, (size_t)table->count, sizeof *table->line))
+    size_t n = (size_t)table->count;
+    if (!sf_grow(&table->value[0], n, sizeof *value) || !sf_grow(&table->value[1], n, sizeof *value) ||
+        !sf_grow(&table->line, n, sizeof *table->line))
         return SF_NO_MEMORY(err, "the %s %s", file->layout->what, file->path);
-    for (int c = 0; c < 2; c++)
-        table->value[c][table->count] = value[c];
-    table->line[table->count] = file->line;
+    table->value[0][n] = value[0];
+    table->value[1][n] = value[1];
+    table->line[n] = file->line;
     table->count++;
     return SF_OK;
 }
 
-/* Empty cells at the end of a row do not count beyond the heading. */
-static int count_cells(const csv *file, const sf_table_cells *cells) {
-    int count = cells->count <= SF_TABLE_COLUMNS ? cells->count : SF_TABLE_COLUMNS + 1;
-    while (count > file->heading.columns && count <= SF_TABLE_COLUMNS && !cells->cell[count - 1][0])
-        count--;
-    return count;
-}
-
-static bool is_blank_row(const sf_table_cells *cells) {
-    for (int i = 0; i < cells->count && i < SF_TABLE_COLUMNS; i++)
-        if (cells->cell[i][0])
-            return false;
-    return cells->count > 1;
-}
-
-static sf_status check_count(const csv *file, int count, sf_error *err) {
-    const int *place = file->heading.place;
-    int needed = place[0] > place[1] ? place[0] : place[1];
-    if (count == file->heading.columns ||
-        (file->layout->ragged && count > needed && count < file->heading.columns))
-        return SF_OK;
-    return SF_REFUSE(err, "%s:%d: %d values where the header has %d columns%s", file->path, file->line, count,
-                     file->heading.columns,
-                     file->separator == ',' && count > file->heading.columns
-                         ? " (with decimal commas, separate the columns by semicolons)"
-                         : "");
-}
-
-static sf_status read_point(csv *file, char *line, sf_error *err) {
-    sf_table_cells cells;
+static sf_status read_row(csv *file, char *line, sf_error *err) {
     const sf_table *table = file->table;
-    sf_table_point point = {.path = file->path, .line = file->line, .index = table->count};
-    sf_table_split(line, file->separator, false, &cells);
-    if (is_blank_row(&cells))
-        return SF_OK;
-    SF_TRY(check_count(file, count_cells(file, &cells), err));
-    for (int k = 0; k < SF_TABLE_PARTS; k++)
-        if (file->heading.part[k] >= 0 && file->layout->part[k] && cells.count > file->heading.part[k] &&
-            !is_part(cells.cell[file->heading.part[k]], file->layout->part[k]))
-            return SF_OK;
-    int64_t row = file->row++;
-    if (file->layout->ragged && strcasecmp(cells.cell[file->heading.place[1]], "nan") == 0) {
-        file->lost++;
-        return SF_OK;
-    }
+    sf_table_point point = {
+        .path = file->path, .line = file->line, .index = table->count, .remedy = file->remedy};
+    int last = file->place[0] > file->place[1] ? file->place[0] : file->place[1];
+    split(file, line);
+    if (file->cells != file->columns &&
+        !(file->layout->ragged && file->cells > last && file->cells < file->columns))
+        return SF_REFUSE(err, "%s:%d: %d values where the heading has %d columns" OTHER_FORMS, file->path,
+                         file->line, file->cells, file->columns, file->remedy);
     for (int c = 0; c < 2; c++) {
-        double scale = file->heading.scale[c];
-        bool counted = file->heading.place[c] == SF_TABLE_ROW;
-        point.value[c] = (double)row;
-        point.text[c] = counted ? "" : cells.cell[file->heading.place[c]];
-        if (!counted &&
-            read_number(file, file->layout->column[c], point.text[c], &point.value[c], err) != SF_OK)
-            return err->status;
-        point.value[c] *= scale;
-        if (table->count == 0)
-            continue;
-        point.before[c] = table->value[c][table->count - 1];
-        point.last[c] = point.before[c] / scale;
+        point.text[c] = file->cell[file->place[c]];
+        SF_TRY(read_number(file, c, &point.value[c], err));
+        point.value[c] *= table->scale[c];
+        if (table->count > 0) {
+            point.before[c] = table->value[c][table->count - 1];
+            point.last[c] = point.before[c] / table->scale[c];
+        }
     }
-    if (file->layout->check && file->layout->check(&point, err) != SF_OK)
-        return err->status;
+    if (file->layout->check)
+        SF_TRY(file->layout->check(&point, err));
     return append(file, point.value, err);
 }
 
-static bool holds_point(const csv *file, char *line) {
-    sf_table_cells cells;
-    sf_table_split(line, file->separator, false, &cells);
-    return holds_number(file, &cells, 0) && holds_number(file, &cells, 1);
-}
-
-/* A line that begins with a letter, holds no number in the first column, and after which no line holds a
- * point: results or remarks of the laboratory below the data, or the title of the next table. */
-static bool ends_table(const csv *file, const char *line) {
-    sf_table_cells cells;
-    int c = file->heading.place[0] == SF_TABLE_ROW;
-    char *copy = strdup(line);
-    if (!copy)
-        return false;
-    sf_table_split(copy, file->separator, false, &cells);
-    bool text = cells.count > 0 && begins_with_letter(line) && !holds_number(file, &cells, c);
-    free(copy);
-    for (const char *rest = file->next;
-         text && (!file->end || rest < file->end) && (copy = sf_table_line_copy(&rest)); free(copy))
-        text = !holds_point(file, copy);
-    return text;
-}
-
 static void describe(const csv *file) {
-    const sf_table_heading *h = &file->heading;
-    const char *separator = file->separator == '\t' ? "tab" : file->separator == ' ' ? "blanks" : NULL;
     char *out = file->table->interpretation;
-    size_t size = SF_TABLE_INTERPRETATION;
-    if (separator)
-        snprintf(out, size, "separator %s", separator);
-    else
-        snprintf(out, size, "separator \"%c\"", file->separator);
-    sf_text_add(out, size, ", decimal %s", file->comma ? "comma" : "point");
-    for (int c = 0; c < 2; c++) {
-        sf_text_add(out, size, ", %s", file->layout->column[c]);
-        if (h->unit[c][0])
-            sf_text_add(out, size, " in %s", h->unit[c]);
-        if (h->title[c][0])
-            sf_text_add(out, size, " (\"%s\")", h->title[c]);
-    }
+    const sf_table_column *const *column = file->layout->column;
+    if (file->layout->means)
+        sf_text_add(out, SF_TABLE_INTERPRETATION, "%s, columns %d and %d, ", file->layout->means,
+                    file->place[0] + 1, file->place[1] + 1);
+    sf_text_add(out, SF_TABLE_INTERPRETATION, "%s in %s, %s in %s", column[0]->name, file->unit[0],
+                column[1]->name, file->unit[1]);
+    if (file->reading)
+        sf_text_add(out, SF_TABLE_INTERPRETATION, " (%.*s)", sf_utf8_cut(file->reading, READING_SHOWN),
+                    file->reading);
 }
 
 static sf_status read_all(csv *file, const sf_table_layout *layouts, int count, int *which, sf_error *err) {
     char *line;
-    SF_TRY(sf_table_text_read(file->path, file->layout->what, &file->text, err));
-    file->next = file->text + (strncmp(file->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0); /* byte order mark */
-    SF_TRY((layouts[0].heading ? take_heading : find_heading)(file, layouts, count, which, err));
-    file->table->part_taken[SF_TABLE_SPECIMEN] = file->heading.side_by_side > 1;
-    if (!layouts[0].heading && file->heading.side_by_side < 2 && file->heading.part[SF_TABLE_SPECIMEN] < 0)
-        SF_TRY(choose_table(file, layouts, count, which, err));
-    int heading_line = file->line;
-    if (file->heading.unit_line)
-        next_content(file);
-    SF_TRY(choose_rows(file, err));
-    for (int c = 0; c < 2; c++)
-        file->table->scale[c] = file->heading.scale[c];
-    while ((line = next_content(file))) {
-        if (file->table->count > 0 && ends_table(file, line))
-            break;
-        SF_TRY(read_point(file, line, err));
-    }
-    int footer = line ? file->line : 0;
-    if (file->comma && !file->decimal)
-        return SF_REFUSE(err,
-                         "%s:%d: \"%s\" and every other number with a comma could hold a decimal comma or a "
-                         "mark of thousands: write decimal points",
-                         file->path, file->comma_line, file->comma_text);
-    const sf_table_heading *h = &file->heading;
-    file->table->plain =
-        file->separator == ',' && h->exact[0] && h->exact[1] && !file->passed && !h->unit_line;
-    if (h->columns > 0)
-        describe(file);
-    char *told = file->table->interpretation;
-    if (file->passed)
-        sf_text_add(told, SF_TABLE_INTERPRETATION, ", heading in line %d", heading_line);
-    if (footer)
-        sf_text_add(told, SF_TABLE_INTERPRETATION, ", without what stands from line %d on", footer);
-    if (file->lost)
-        sf_text_add(told, SF_TABLE_INTERPRETATION, ", %d lost samples (NaN)", file->lost);
+    SF_TRY(sf_units_open(&file->units, err));
+    SF_TRY(read_heading(file, layouts, count, which, err));
+    while ((line = next_content(file)))
+        SF_TRY(read_row(file, line, err));
+    describe(file);
     return SF_OK;
+}
+
+/* The command that reads other forms of a file. */
+static char *remedy_of(const char *path, const char *kind) {
+    const char *name = strrchr(path, '/');
+    bool same = strcmp(name ? name + 1 : path, "clean.csv") == 0;
+    char out[] = "clean2.csv",
+         *word[] = {"softfall", "read", (char *)path, "--kind", (char *)kind, "-o", same ? out : "clean.csv"};
+    return sf_command_line(sizeof word / sizeof *word, word);
 }
 
 sf_status sf_table_read_any(const char *path, const sf_table_layout *layouts, int count, int *which,
                             sf_table *table, sf_error *err) {
+    SF_OWNED char *text = NULL;
+    size_t length = 0;
+    csv file = {.path = path, .table = table};
     memset(table, 0, sizeof *table);
     *which = 0;
-    csv file = {.path = path, .layout = layouts, .table = table, .heading = {.part = {-1, -1}}};
+    SF_OWNED char *remedy = remedy_of(path, layouts[0].kind);
+    if (!remedy)
+        return SF_NO_MEMORY(err, "the %s %s", layouts[0].what, path);
+    file.remedy = remedy;
+    SF_TRY(sf_plain_read(path, layouts[0].what, SF_PLAIN_TEXT, &text, &length, err));
+    if (strlen(text) < length)
+        return SF_REFUSE(err, "the %s %s holds zero bytes: it is not a text in UTF-8" OTHER_FORMS,
+                         layouts[0].what, path, remedy);
+    file.next = text + (strncmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0); /* byte order mark */
     sf_status status = read_all(&file, layouts, count, which, err);
     sf_units_close(&file.units);
-    free(file.text);
     if (status != SF_OK)
         sf_table_free(table);
     return status;

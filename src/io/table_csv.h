@@ -1,33 +1,67 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of two columns in CSV files (curves, motions, measurements), as laboratories write them:
+/* Tables of two columns in CSV files (curves, motions, measurements), in the one form that the programs read:
+ * UTF-8, commas between the cells, decimal points, one heading row; lines that begin with '#' are comments
+ * and empty rows do not count. `softfall read` makes such a table from any laboratory's file, and refusals
+ * name that command.
  *
- * - separators comma, semicolon, tab or runs of blanks, found by the heading; UTF-8, with or without a byte
- *   order mark, UTF-16 with one, or Latin-1 in the heading; any line ends; cells may be quoted;
- * - lines that begin with '#' are comments; other lines before the heading are passed over, numbers only if
- * an empty line follows on them; remarks below the data are left out, if no data follow on them;
- * - groups of thousands where another mark is the decimal one ("1,017.76");
- * - several specimens or cycles, of which the layout chooses; a heading that the user gives instead of the
- *   file; the number of the sample in place of a first column;
- * - a channel in ISO-MME (ISO/TS 13499), with its unit, its interval and its first time;
- * - the heading names the two columns exactly ("time_ms"), or by a word with a unit: "Time (ms)", "Zeit
- * [ms]", "t / ms", "acc_m_s2", or the unit in the line below. Other columns are ignored;
- * - decimal point or, unless the comma separates, decimal comma; the same throughout.
- *
- * What could be read in two ways is refused. Each sentence names file, line and cell. */
+ * A column is found by its heading: a name of the quantity with its unit, as "time_ms", "acceleration_m_s2",
+ * "strain_percent", "Time (ms)" or "Time [ms]", or of a ratio the name alone. The case of the name does not
+ * matter. Other columns are ignored. */
 #pragma once
-#include "io/table_layout.h"
+#include "base/units.h"
+#include <stdint.h>
 
-enum { SF_TABLE_INTERPRETATION = 384 };
+enum { SF_TABLE_RATIO = SF_QUANTITY_COUNT }; /* kind of a column without dimension: "%" or "1" */
+
+/* A quantity that a column may hold. */
+typedef struct sf_table_column {
+    const char *name;    /* for sentences: "stress" */
+    const char *names;   /* in headings: "stress" or "time|t" */
+    int kind;            /* sf_quantity or SF_TABLE_RATIO */
+    double unit;         /* SI value of the unit of the table's values */
+    const char *example; /* "stress_kPa" */
+} sf_table_column;
+
+extern const sf_table_column sf_column_time, sf_column_acceleration, sf_column_strain, sf_column_stress,
+    sf_column_lateral_strain, sf_column_displacement, sf_column_force, sf_column_height, sf_column_speed,
+    sf_column_static_stress, sf_column_peak;
+
+/* A line that was read: values, and the cells as written, so that the user finds them in the file. */
+typedef struct sf_table_point {
+    const char *path;
+    int line;
+    int64_t index; /* of the point, from 0 */
+    double value[2];
+    const char *text[2];
+    double before[2];   /* the point before; zero at the first */
+    double last[2];     /* the same in the file's own units */
+    const char *remedy; /* command that reads the file in other forms */
+} sf_table_point;
+
+/* Refuses a point. */
+typedef sf_status sf_table_check(const sf_table_point *point, sf_error *err);
+
+typedef struct sf_table_layout {
+    const char *what; /* "curve" */
+    const char *kind; /* of tables, as `softfall read --kind` names it */
+    const sf_table_column *column[2];
+    const char *means; /* what both columns are together, for the interpretation; NULL: their names say it */
+    const char
+        *chosen; /* heading of the second column, with or without its unit; NULL: the only one that fits */
+    const char *choice;    /* how the user chooses it, for messages; NULL: not possible */
+    bool ragged;           /* a row may be shorter than the heading as long as it holds both columns */
+    sf_table_check *check; /* NULL: none */
+} sf_table_layout;
+
+enum { SF_TABLE_INTERPRETATION = 640 };
 
 typedef struct sf_table {
     int64_t count;
-    double *value[2];                /* [count] SI, or the layout's units; owned */
-    int *line;                       /* [count] in the file; owned */
-    double scale[2];                 /* from the file's units to those of the values */
-    bool part_taken[SF_TABLE_PARTS]; /* the file held several, of which the layout's choice was read */
-    bool plain;                      /* commas, decimal points and exact names: nothing to tell */
-    char
-        interpretation[SF_TABLE_INTERPRETATION]; /* 'separator ";", decimal comma, time in ms, force in kN' */
+    double *value[2];                             /* [count] in the units of the columns; owned */
+    int *line;                                    /* [count] in the file; owned */
+    double scale[2];                              /* from the file's units to those of the values */
+    char interpretation[SF_TABLE_INTERPRETATION]; /* "time in ms, acceleration in g", and what softfall read
+                                                     said */
 } sf_table;
 
 /* Reads a table; SF_ERR_INPUT names file, line and value. On failure `*table` is zeroed. */

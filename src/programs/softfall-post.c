@@ -102,8 +102,7 @@ static sf_status read_regions(const char *option, const char *text, void *values
 READER(read_film, sf_paraview_check_film)
 READER(read_mount, sf_signal_parse_mount)
 READER(read_coupling, sf_signal_parse_coupling)
-READER(read_sensitivity, sf_reference_parse_sensitivity)
-READER(read_rate, sf_reference_parse_rate)
+READER(read_range, sf_reference_parse_range)
 READER(read_region, sf_region_parse)
 
 #define AT(member) offsetof(options, member)
@@ -140,8 +139,8 @@ static const sf_option list[] = {
     {"limit-hic", 0, "HIC", "limit of HIC (default " SF_UNITS_QUOTE(SF_DEFAULT_LIMIT_HIC) ")",
      .member = AT(limits.hic), .read = sf_program_read_limit},
     {"reference", 0, "CSV",
-     "compare with a measured curve: columns such as time_ms and acceleration_g, or \"Time (ms)\" and "
-     "\"Acceleration (m/s2)\"; separators , ; tab or blanks",
+     "compare with a measured curve: columns such as time_ms and acceleration_g; `softfall read' makes such a file of any "
+     "laboratory's",
      .member = AT(compare.reference.path), .group = 1, .noted = AT(comparing)},
     {"reference-filter", 0, "CFC",
      "filter of the measured curve: none if the file is filtered already (default: that of --filter)",
@@ -151,14 +150,8 @@ static const sf_option list[] = {
     {"reference-columns", 0, "X,Y,Z",
      "headings of two or three axes: their resultant, each filtered, is the acceleration",
      .member = AT(compare.reference.columns), TUNES},
-    {"reference-scale", 0, "SENSITIVITY",
-     "its column is in volts: sensitivity of the accelerometer, such as \"0.102 mV/(m/s2)\" or \"10 mV/g\"",
-     .member = AT(compare.reference.sensitivity), .read = read_sensitivity, TUNES},
-    {"reference-rate", 0, "RATE",
-     "it has no time, but a sample in each row, perhaps numbered: the sampling rate, such as \"20 kHz\"",
-     .member = AT(compare.reference.rate), .read = read_rate, TUNES},
-    {"reference-heading", 0, "TEXT", "heading of a file without one, such as \"Time (ms), Acceleration (g)\"",
-     .member = AT(compare.reference.heading), TUNES},
+    {"reference-range", 0, "RANGE", "range of its channel, such as \"200 g\": a peak at its end is marked",
+     .member = AT(compare.reference.range), .read = read_range, TUNES},
     {"reference-invert", 0, NULL,
      "its channel is inverted: positive must mean that the missile is slowed down",
      .member = AT(compare.reference.invert), TUNES},
@@ -192,9 +185,9 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
                                              .from = -INFINITY,
                                              .to = INFINITY,
                                              .column_option = "--reference-column",
-                                             .unfiltered_option = "--reference-filter none",
+                                             .filter_option = "--reference-filter ",
                                              .invert_option = "--reference-invert",
-                                             .heading_option = "--reference-heading"},
+                                             .zero_option = "--reference-zero"},
                                .shift = NAN,
                                .window = {NAN, NAN}}};
     const sf_command command = {
@@ -327,6 +320,9 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     sf_compare_options compare = o->compare;
     compare.left = j->figures.rebounded;
     compare.flight = j->figures.free_flight;
+    bool glances =
+        j->figures.turns && j->results.missile_direction[2] > -0.9; /* and keeps most of its speed */
+    compare.reference.speed = glances ? 0 : j->figures.v0;
     if (o->comparing && sf_compare_run(&compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
         return err->status;
     sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);

@@ -44,6 +44,15 @@ static sf_status check_output(const options *o, const char *path, sf_error *err)
     return SF_OK;
 }
 
+/* Facts go to the report of the model. */
+static void tell(void *user, sf_severity severity, const char *sentence) {
+    const sf_sink *sink = user;
+    if (severity == SF_FACT)
+        printf("%-26s%s\n", "curve", sentence);
+    else
+        sink->tell(sink->user, severity, sentence);
+}
+
 static sf_status read_drop(const options *o, int drop, const sf_sink *sink, sf_case *c, sf_error *err) {
     return sf_case_read_values(o->case_path, drop, o->overrides.count, o->overrides.text, sink, NULL, c, err);
 }
@@ -68,7 +77,8 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
     sf_build_report report;
     sf_model_report table;
     char libraries[SF_LIBRARIES_SIZE], output[SF_PATH_SIZE], hash[SF_MODEL_HASH_SIZE] = "0";
-    const sf_sink sink = sf_program_sink("softfall-pre");
+    sf_sink program = sf_program_sink("softfall-pre");
+    const sf_sink sink = {tell, &program};
     int64_t own[SF_SERIES_MOST] = {0};
     sf_model_series_file(o->output, drop, output, sizeof output);
     if (check_output(o, output, err) != SF_OK ||

@@ -26,7 +26,8 @@ sf_status sf_config_open(const char *path, sf_config *config, sf_error *err) {
     *config = (sf_config){.path = path};
     config_init(&config->config);
     config->folder = sf_case_folder_of(path, err);
-    SF_OWNED char *text = config->folder ? sf_case_load_text(path, false, 0, NULL, &config->source, err) : NULL;
+    SF_OWNED char *text =
+        config->folder ? sf_case_load_text(path, false, 0, NULL, &config->source, err) : NULL;
     if (text && !config_read_string(&config->config, text)) {
         int line = 0;
         const char *file = sf_case_source_find(&config->source, config_error_line(&config->config), &line);
@@ -51,6 +52,23 @@ static void list_words(const char *words, char *out, size_t size) {
     }
 }
 
+/* The command that does what a key of tables did before, "" of other keys. */
+static const char *successor(const config_setting_t *group, const config_setting_t *item, char *text,
+                             size_t size) {
+    static const char keys[] = "specimen_number|heading|curve_heading|curve_scale|curve_rate",
+                      options[] = "specimen|heading|heading|scale|rate";
+    int place = sf_word_find(keys, config_setting_name(item)), length = 0;
+    const char *file = NULL, *value = config_setting_get_string(item);
+    *text = '\0';
+    if (place < 0 || (!config_setting_lookup_string(group, "file", &file) &&
+                      !config_setting_lookup_string(group, "curve", &file)))
+        return text;
+    const char *option = sf_word_at(options, place, &length);
+    snprintf(text, size, "; in its place: softfall read \"%.300s\" --%.*s \"%.100s\" -o clean.csv", file,
+             length, option, value ? value : "...");
+    return text;
+}
+
 sf_status sf_config_names(const sf_config *config, const config_setting_t *group, const char *names,
                           sf_error *err) {
     enum { NAMED = 10 };
@@ -72,8 +90,10 @@ sf_status sf_config_names(const sf_config *config, const config_setting_t *group
     list_words(names, list, sizeof list);
     if (unknown > NAMED)
         snprintf(more, sizeof more, " and %d more", unknown - NAMED);
-    return sf_config_refuse(config, first, err, "unknown key \"%.80s\"%s%s; the keys here are %s",
-                            config_setting_name(first), others, more, list);
+    char command[480];
+    return sf_config_refuse(config, first, err, "unknown key \"%.80s\"%s%s; the keys here are %s%s",
+                            config_setting_name(first), others, more, list,
+                            successor(group, first, command, sizeof command));
 }
 
 /* The setting; records the failure if a required one is missing. */

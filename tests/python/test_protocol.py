@@ -244,7 +244,24 @@ def test_a_record_of_another_unit_or_height_decides_nothing(measured, tmp_path):
     (measured / "corner-0.9-3.csv").write_text("\n".join([text[0], *(",".join([row.split(",")[0], f"{float(row.split(',')[1]) / 9.80665:.6g}"]) for row in text[1:])]))
     result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 0 and "not determined" in result.stdout, result.stdout + result.stderr
-    assert "another unit, or another drop" in (tmp_path / "out/report.html").read_text()
+    assert "too small by 9.8, as those in g under a heading of m/s2" in (tmp_path / "out/report.html").read_text()
+
+
+@pytest.mark.parametrize("spelling", ["./{}", ".//{}", "../measured/{}", "link-{}", "hard-{}", "copy-{}"])
+def test_one_record_is_no_two_drops(measured, tmp_path, spelling):
+    first, second = "corner-0.9-1.csv", "corner-0.9-2.csv"
+    other = measured / spelling.format(first)
+    if spelling.startswith("link"):
+        other.symlink_to(measured / first)
+    elif spelling.startswith("hard"):
+        os.link(measured / first, other)
+    elif spelling.startswith("copy"):
+        other.write_text((measured / first).read_text().replace("time (ms)", "Time [ms]"))
+    text = (measured / "list.csv").read_text()
+    assert f"\n{second}," in text
+    (measured / "list.csv").write_text(text.replace(f"\n{second},", f"\n{spelling.format(first)},"))
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 2 and "already: each drop has a record of its own" in result.stderr and result.stderr.count("\n") == 1, result.stderr
 
 
 def test_a_limit_within_the_error_of_the_mesh_is_not_decided():

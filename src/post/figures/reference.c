@@ -9,6 +9,7 @@
 enum { FEWEST_POINTS = 3 };
 static const double SAMPLES_PER_CLASS = 10; /* least sampling rate over the class (SAE J211) */
 static const double ROUNDING = 1.05;        /* of written times: 0.105 ms counts as 0.1 ms */
+static const double MS_UNDER_S = 100;       /* times too coarse: their unit is another one */
 static const double UNEVEN = 1.5; /* largest over mean distance of samples that are told as uneven */
 
 /* The columns of the file while it becomes a reference. */
@@ -16,7 +17,6 @@ typedef struct record {
     const sf_reference_options *options;
     int axes;                          /* 1: the acceleration itself */
     sf_series axis[SF_REFERENCE_AXES]; /* s and g; owned */
-    int *line;                         /* of the samples, in the file; owned */
     double other; /* highest of the other impacts, over the peak, if none was asked for; else 0 */
     char interpretation[SF_TABLE_INTERPRETATION];
 } record;
@@ -24,143 +24,67 @@ typedef struct record {
 static void record_free(record *r) {
     for (int k = 0; k < SF_REFERENCE_AXES; k++)
         sf_series_free(&r->axis[k]);
-    free(r->line);
 }
 
 /* ---- options ---- */
 
-/* A number and a unit; a "/g" at the end of the unit means per standard gravity. */
-sf_status sf_reference_parse_sensitivity(const char *text, double *sensitivity, sf_error *err) {
-    size_t length = strlen(text);
-    bool per_g = length > 2 && length < 64 && strcmp(text + length - 2, "/g") == 0;
-    SF_PRINTED(volts, 64, "%.*s", (int)(length - 2), per_g ? text : "");
-    SF_TRY(sf_units_read(per_g ? volts : text, per_g ? SF_VOLTAGE : SF_SENSITIVITY, sensitivity, err));
-    *sensitivity /= per_g ? SF_STANDARD_GRAVITY : 1;
-    return *sensitivity > 0 ? SF_OK
-                            : SF_REFUSE(err,
-                                        "the sensitivity %s is not above 0 (--reference-invert changes a "
-                                        "sign)",
-                                        text);
-}
-
-sf_status sf_reference_parse_rate(const char *text, double *rate, sf_error *err) {
-    static const struct {
-        const char *name;
-        double value;
-    } known[] = {{"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"1/s", 1}};
-    const char *unit = sf_decimal_read(text, rate);
-    unit = unit ? unit + strspn(unit, " ") : "";
-    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-        if (strcmp(unit, known[k].name) == 0 && *rate > 0 && isfinite(*rate)) {
-            *rate *= known[k].value;
-            return SF_OK;
-        }
-    return SF_REFUSE(err, "\"%s\" is not a sampling rate: write for example \"20 kHz\"", text);
+sf_status sf_reference_parse_range(const char *text, double *range, sf_error *err) {
+    const char *unit = sf_decimal_read(text, range);
+    if (!unit || strcmp(unit + strspn(unit, " "), "g") != 0) {
+        SF_TRY(sf_units_read(text, SF_ACCELERATION, range, err));
+        *range /= SF_STANDARD_GRAVITY;
+    }
+    return *range > 0 && isfinite(*range)
+               ? SF_OK
+               : SF_REFUSE(err, "\"%s\" is no range of a channel: write for example \"200 g\"", text);
 }
 
 /* ---- the file ---- */
 
-static const sf_table_name names[] = {
-    {"time_s", 0, 1, "s"},
-    {"time_ms", 0, 1e-3, "ms"},
-    {"time_us", 0, 1e-6, "us"},
-    {"acceleration_g", 1, 1, "g"},
-    {"acceleration_m_s2", 1, 1 / SF_STANDARD_GRAVITY, "m/s2"},
-    {"acceleration_km_s2", 1, 1e3 / SF_STANDARD_GRAVITY, "km/s2"},
-};
-
 static sf_status check_point(const sf_table_point *p, sf_error *err) {
     if (p->index > 0 && !(p->value[0] > p->before[0]))
-        return SF_REFUSE(err, "%s:%d: time %g ms does not follow %g ms of the row before", p->path, p->line,
-                         p->value[0] * 1e3, p->before[0] * 1e3);
+        return SF_REFUSE(err,
+                         "%s:%d: time %g ms does not follow %g ms of the row before (%s makes rounded "
+                         "times even)",
+                         p->path, p->line, p->value[0] * 1e3, p->before[0] * 1e3, p->remedy);
     return SF_OK;
 }
 
-static sf_table_layout layout_of(const sf_reference_options *o, const char *column) {
-    sf_table_layout layout = {
-        .what = "reference",
-        .column = {"time", "acceleration"},
-        .wanted = {"time_s, time_ms or time_us (or \"Time (ms)\")",
-                   "acceleration_g, acceleration_m_s2 or acceleration_km_s2 (or \"Acceleration (g)\")"},
-        SF_TABLE_NAMES(names),
-        .words = {"time|t|*zeit|temps|tiempo|tempo",
-                  "acceleration|deceleration|accel|acc|a|*beschleunigung|accélération|aceleración|"
-                  "accelerazione"},
-        .kind = {SF_TIME, SF_ACCELERATION},
-        .unit = {1, SF_STANDARD_GRAVITY},
-        .chosen = {NULL, column},
-        .choice = o->column_option,
-        .heading = o->heading,
-        .heading_option = o->heading_option,
-        .ragged = true,
-        .check = check_point,
-    };
-    if (o->sensitivity > 0) {
-        layout.column[1] = "voltage";
-        layout.wanted[1] = "\"Voltage (mV)\"";
-        layout.words[1] = "voltage|volt|volts|u|channel|ch|signal|output|acceleration|accel|acc|a|*spannung|"
-                          "tension|tensión|tensione";
-        layout.kind[1] = SF_VOLTAGE;
-        layout.unit[1] = o->sensitivity * SF_STANDARD_GRAVITY;
-    }
-    return layout;
-}
-
-/* One column; of a file whose rate is given, over the number of the sample. */
-static sf_status read_column(const sf_reference_options *o, const char *column, sf_table *table,
-                             sf_error *err) {
-    sf_table_layout layout = layout_of(o, column);
-    if (!(o->rate > 0))
-        return sf_table_read(o->path, &layout, table, err);
-    if (sf_table_read(o->path, &layout, table, SF_IGNORED) == SF_OK) {
-        sf_table_free(table);
-        return SF_REFUSE(err, "%s has a column of time: leave its sampling rate out", o->path);
-    }
-    layout.counted = true;
-    layout.column[0] = "sample";
-    layout.unit[0] = 1 / o->rate;
-    return sf_table_read(o->path, &layout, table, err);
-}
-
-/* Keeps the samples of the axes before that `table` holds too: others were lost in one of the axes. */
-static void keep_common(record *r, sf_table *table) {
-    int64_t kept = 0, i = 0;
-    for (int64_t k = 0; k < table->count; k++) {
-        while (i < r->axis[0].count && r->line[i] < table->line[k])
-            i++;
-        if (i == r->axis[0].count || r->line[i] != table->line[k])
-            continue;
-        for (int a = 0; a < r->axes; a++) {
-            r->axis[a].time[kept] = r->axis[a].time[i];
-            r->axis[a].value[kept] = r->axis[a].value[i];
-        }
-        r->line[kept] = r->line[i];
-        table->value[0][kept] = table->value[0][k];
-        table->value[1][kept++] = table->value[1][k];
-    }
-    table->count = kept;
-    for (int a = 0; a < r->axes; a++)
-        r->axis[a].count = kept;
-}
-
 static sf_status read_axis(record *r, const char *column, sf_error *err) {
+    const sf_table_layout layout = {.what = "reference",
+                                    .kind = "acceleration",
+                                    .column = {&sf_column_time, &sf_column_acceleration},
+                                    .chosen = column,
+                                    .choice = r->options->column_option,
+                                    .ragged = true,
+                                    .check = check_point};
     SF_OWNED_BY(sf_table_free) sf_table table = {0};
-    SF_TRY(read_column(r->options, column, &table, err));
-    if (r->axes > 0)
-        keep_common(r, &table);
+    SF_TRY(sf_table_read(r->options->path, &layout, &table, err));
+    if (r->axes == 0)
+        memcpy(r->interpretation, table.interpretation, sizeof r->interpretation);
     r->axis[r->axes++] = (sf_series){.count = table.count, .time = table.value[0], .value = table.value[1]};
     table.value[0] = table.value[1] = NULL;
-    if (!r->line) {
-        r->line = table.line;
-        table.line = NULL;
-        memcpy(r->interpretation, table.interpretation, sizeof r->interpretation);
+    return SF_OK;
+}
+
+/* Copies samples that were read already, which must be finite and ascend in time. */
+static sf_status take_samples(record *r, const sf_reference_samples *s, sf_error *err) {
+    for (int k = 0; k < s->axes; k++) {
+        SF_TRY(sf_series_create(s->count, &r->axis[k], err));
+        r->axes++;
+        memcpy(r->axis[k].time, s->time, (size_t)s->count * sizeof(double));
+        memcpy(r->axis[k].value, s->value[k], (size_t)s->count * sizeof(double));
+        SF_TRY(sf_series_check(&r->axis[k], r->options->path, err));
     }
+    snprintf(r->interpretation, sizeof r->interpretation, "%s", s->reading);
     return SF_OK;
 }
 
 static sf_status read_axes(record *r, sf_error *err) {
     const sf_reference_options *o = r->options;
     char list[256], *rest = list, *name;
+    if (o->samples)
+        return take_samples(r, o->samples, err);
     if (!o->columns)
         return read_axis(r, o->column, err);
     if (snprintf(list, sizeof list, "%s", o->columns) >= (int)sizeof list)
@@ -212,7 +136,6 @@ static sf_status cut_out(record *r, sf_reference *reference, double from, double
     for (int k = 0; k < r->axes; k++)
         cut_series(&r->axis[k], first, count);
     cut_series(&reference->raw, first, count);
-    memmove(r->line, r->line + first, (size_t)count * sizeof *r->line);
     return SF_OK;
 }
 
@@ -265,9 +188,8 @@ static sf_status take_zero_away(record *r, sf_reference *reference, sf_error *er
         SF_TRY(sf_record_offset(&pulse, &r->axis[k], &offset, err));
         if (isnan(offset))
             return SF_REFUSE(err,
-                             "%s: too few samples before contact to take the zero line from: leave "
-                             "--reference-zero out",
-                             r->options->path);
+                             "%s: too few samples before contact to take the zero line from: leave %s out",
+                             r->options->path, r->options->zero_option);
         for (int64_t i = 0; i < pulse.count; i++)
             r->axis[k].value[i] -= offset;
         reference->offset = r->axes == 1 ? offset : hypot(reference->offset, offset);
@@ -288,21 +210,39 @@ static double largest_gap(const sf_series *s) {
     return gap;
 }
 
-static sf_status check_sampling(const record *r, const sf_series *raw, sf_error *err) {
+/* The first sample that is too far from the one before it for the class, if a tenth of all are; 0: none. */
+static int64_t first_coarse(const sf_series *raw, double cfc) {
     static const double SHARE = 0.1; /* of the intervals: a gap alone is judged by post/figures/record.h */
+    int64_t coarse = 0, first = 0;
+    for (int64_t i = raw->count - 1; cfc > 0 && i > 0; i--)
+        if (gap_before(raw, i) > ROUNDING / (SAMPLES_PER_CLASS * cfc)) {
+            coarse++;
+            first = i;
+        }
+    return (double)coarse > SHARE * (double)raw->count ? first : 0;
+}
+
+static sf_status check_sampling(const record *r, const sf_series *raw, sf_error *err) {
+    static const char *const classes[] = {"1000", "600", "180", "60", "none"};
     const sf_reference_options *o = r->options;
+    int64_t first = first_coarse(raw, o->cfc);
     double most = 1 / (SAMPLES_PER_CLASS * o->cfc);
-    int64_t coarse = 0;
-    for (int64_t i = 1; o->cfc > 0 && i < raw->count; i++)
-        coarse += gap_before(raw, i) > ROUNDING * most;
-    for (int64_t i = 1; (double)coarse > SHARE * (double)raw->count && i < raw->count; i++)
-        if (gap_before(raw, i) > ROUNDING * most)
-            return SF_REFUSE(err,
-                             "%s:%d: samples %.4g ms apart are too coarse for CFC %g, which needs %.4g ms "
-                             "(%g kHz) or less: choose a lower class, or %s if the curve is filtered already",
-                             o->path, r->line[i], gap_before(raw, i) * 1e3, o->cfc, most * 1e3,
-                             SAMPLES_PER_CLASS * o->cfc * 1e-3, o->unfiltered_option);
-    return SF_OK;
+    int k = 0;
+    if (first == 0)
+        return SF_OK;
+    while (first_coarse(raw, atof(classes[k])) > 0)
+        k++;
+    const char *quote = strchr(o->filter_option, '"') ? "\"" : "";
+    char lower[64] = "";
+    if (atof(classes[k]) > 0)
+        snprintf(lower, sizeof lower, "%.31s%s%s, or ", o->filter_option, classes[k], quote);
+    return SF_REFUSE(
+        err,
+        "%s: sample %lld: samples %.4g ms apart are too coarse for CFC %g, which needs %.4g ms "
+        "(%g kHz) or less: give %s%snone%s if the curve is filtered already%s",
+        o->path, (long long)first + 1, gap_before(raw, first) * 1e3, o->cfc, most * 1e3,
+        SAMPLES_PER_CLASS * o->cfc * 1e-3, lower, o->filter_option, quote,
+        gap_before(raw, first) > MS_UNDER_S * most ? "; the times look like ms under a heading of s" : "");
 }
 
 static sf_status filter(double cfc, const sf_series *raw, sf_series *curve, sf_error *err) {
@@ -349,21 +289,19 @@ static void describe(const record *r, sf_reference *reference) {
     const sf_reference_options *o = r->options;
     const sf_series *s = &reference->raw;
     double span = s->time[s->count - 1] - s->time[0], mean = span / (double)(s->count - 1);
-    ADD(reference, "%s%.383s, %lld samples ", o->heading ? "with a heading that was given for it, " : "",
-        r->interpretation, (long long)s->count);
+    ADD(reference, "%s, %lld samples ", r->interpretation, (long long)s->count);
     if (largest_gap(s) > UNEVEN * mean)
         ADD(reference, "unevenly, up to %.4g ms apart", largest_gap(s) * 1e3);
     else
-        ADD(reference, "at %.4g kHz%s", 1e-3 / mean, o->rate > 0 ? " as given" : "");
+        ADD(reference, "at %.4g kHz", 1e-3 / mean);
     ADD(reference, ", %.6g to %.6g ms, ", s->time[0] * 1e3, s->time[s->count - 1] * 1e3);
     if (o->cfc > 0)
         ADD(reference, "filtered with CFC %g", o->cfc);
     else
         ADD(reference, "not filtered");
     if (r->axes > 1)
-        ADD(reference, ", resultant of the columns %.100s", o->columns);
-    if (o->sensitivity > 0)
-        ADD(reference, ", at a sensitivity of %.6g mV/(m/s2) as given", 1e3 * o->sensitivity);
+        ADD(reference, ", resultant of the %s%.100s", o->columns ? "columns " : "axes",
+            o->columns ? o->columns : "");
     if (o->invert)
         ADD(reference, ", inverted as asked for");
     if (reference->origin != 0)
@@ -396,7 +334,8 @@ static sf_status make(record *r, sf_reference *reference, sf_error *err) {
     SF_TRY(filter_axes(r, reference, err));
     SF_TRY(check_sign(o, &reference->curve, err));
     describe(r, reference);
-    return sf_record_judge(&reference->raw, &reference->curve, r->other, &reference->record, err);
+    const sf_record_facts facts = {r->other, o->speed, o->range};
+    return sf_record_judge(&reference->raw, &reference->curve, &facts, &reference->record, err);
 }
 
 sf_status sf_reference_read(const sf_reference_options *options, sf_reference *reference, sf_error *err) {

@@ -9,24 +9,32 @@
 #pragma once
 #include "post/figures/record.h"
 
-enum { SF_REFERENCE_INTERPRETATION = 1024, SF_REFERENCE_AXES = 3 };
+enum { SF_REFERENCE_INTERPRETATION = 1280, SF_REFERENCE_AXES = 3 };
+
+/* Samples that were read already. All borrowed. */
+typedef struct sf_reference_samples {
+    int64_t count;
+    const double *time;                     /* [count] s */
+    int axes;                               /* 1 to SF_REFERENCE_AXES */
+    const double *value[SF_REFERENCE_AXES]; /* [axes][count] g */
+    const char *reading;                    /* how their file was read */
+} sf_reference_samples;
 
 /* The texts tell the user, in sentences, how to choose otherwise ("--reference-filter none"). All borrowed.
  */
 typedef struct sf_reference_options {
     const char *path;
-    const char *column; /* heading of the acceleration; NULL: the only one */
+    const sf_reference_samples *samples; /* of the path; NULL: it is read */
+    const char *column;                  /* heading of the acceleration; NULL: the only one */
     const char
         *columns; /* headings of two or three axes, "x,y,z", of which the resultant is taken; or NULL */
-    const char *heading; /* of a file without one; or NULL */
-    double sensitivity;  /* V / (m/s2), of a column in volts; 0: the column is an acceleration */
-    double rate;         /* Hz, of a file whose samples are numbered or not told apart; 0: it has a time */
-    double cfc;          /* channel frequency class; 0: the file is filtered already and used as it is */
-    bool invert;         /* the file has the other sign */
-    bool zero;           /* take the median before contact away */
+    double cfc;   /* channel frequency class; 0: the file is filtered already and used as it is */
+    bool invert;  /* the file has the other sign */
+    bool zero;    /* take the median before contact away */
+    double speed, range; /* m/s and g: facts of the record (sf_record_facts); 0: unknown */
     double from, to;     /* s, the part to be used, on the record's clock; 0, 0: all of it */
     int impact;          /* the one to be used, from 1; 0: the highest */
-    const char *column_option, *unfiltered_option, *invert_option, *heading_option;
+    const char *column_option, *filter_option, *invert_option, *zero_option; /* "--reference-filter " */
 } sf_reference_options;
 
 typedef struct sf_reference {
@@ -46,8 +54,5 @@ typedef struct sf_reference {
 sf_status sf_reference_read(const sf_reference_options *options, sf_reference *reference, sf_error *err);
 void sf_reference_free(sf_reference *reference);
 
-/* "0.102 mV/(m/s2)", "10 mV/g" (g: standard gravity) to V / (m/s2); SF_ERR_INPUT names the text. */
-sf_status sf_reference_parse_sensitivity(const char *text, double *sensitivity, sf_error *err);
-
-/* "20 kHz", "20000 Hz", "20000 1/s" to Hz; SF_ERR_INPUT names the text. */
-sf_status sf_reference_parse_rate(const char *text, double *rate, sf_error *err);
+/* "200 g" (standard gravity), "2 km/s2" to g; SF_ERR_INPUT names the text. */
+sf_status sf_reference_parse_range(const char *text, double *range, sf_error *err);

@@ -56,23 +56,11 @@ static sf_status check_pair(const sf_table_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static const sf_table_name names[] = {{"height_m", 0, 1, "m"},
-                                      {"h_m", 0, 1, "m"},
-                                      {"h_m_m", 0, 1, "m"},
-                                      {"speed_m_s", 1, 1, "m/s"},
-                                      {"v_test_m_s", 1, 1, "m/s"}};
-
-static const sf_table_layout layout = {
-    .what = "rig",
-    .column = {"height", "speed"},
-    .wanted = {"height_m, h_m or h_m_m", "speed_m_s or v_test_m_s"},
-    SF_TABLE_NAMES(names),
-    .words = {"height|h|*höhe|*hoehe|hauteur|altura|altezza",
-              "speed|velocity|v|*geschwindigkeit|vitesse|velocidad|velocità"},
-    .kind = {SF_LENGTH, SF_SPEED},
-    .ragged = true,
-    .check = check_pair,
-};
+static const sf_table_layout layout = {.what = "rig",
+                                       .kind = "rig",
+                                       .column = {&sf_column_height, &sf_column_speed},
+                                       .ragged = true,
+                                       .check = check_pair};
 
 sf_status sf_cfh_rig_read(const char *path, sf_cfh_rig *rig, sf_error *err) {
     SF_OWNED_BY(sf_table_free) sf_table table = {0};
@@ -319,20 +307,20 @@ void sf_cfh_evaluate(const sf_cfh_points *points, const double *limit, sf_cfh_re
 
 /* ---- the heights to simulate next ---- */
 
-static const double MIN_HEIGHT = 0.01;  /* m */
-static const double GRAIN = 1e-3;       /* m, heights are multiples of it on the user's scale */
-static const double FIRST_SLOPE = 1.2;  /* of ln(a_max) over ln(height), before two points tell */
-static const double OVERSHOOT = 1.1;    /* so that a step to the limit goes a bit beyond it */
-static const double LEAST_STEP = 0.1;   /* of ln(height) */
-static const double LARGEST_STEP = 0.8; /* likewise */
-static const double CLOSEST = 0.04;     /* ln(height) between two points of the search */
-static const double COLLAPSE_GAP = 0.1; /* ln(height) between the last success and a failure */
+static const double MIN_HEIGHT = 0.01;    /* m */
+static const double GRAIN = 1e-3;         /* m, heights are multiples of it on the user's scale */
+static const double FIRST_SLOPE = 1.2;    /* of ln(a_max) over ln(height), before two points tell */
+static const double OVERSHOOT = 1.1;      /* so that a step to the limit goes a bit beyond it */
+static const double LEAST_STEP = 0.1;     /* of ln(height) */
+static const double LARGEST_STEP = 0.8;   /* likewise */
+static const double CLOSEST = 0.04;       /* ln(height) between two points of the search */
+static const double COLLAPSE_GAP = 0.1;   /* ln(height) between the last success and a failure */
 static const double EXCEEDING_GAP = 0.02; /* likewise, where the failure exceeds a limit all the same */
-static const double GOOD_MARGIN = 0.01; /* of the interval of the crossing */
-static const double NEAR = 0.15;        /* ln(height): a point beside the crossing */
-static const double FIRST_GAP = 0.5;    /* of ln(height) between the first two drops */
-static const double BESIDE = 0.08;      /* ln(height) of the first points beside the crossing */
-static const double LEAST_GAP = 0.12;   /* of ln(height) between the two drops of a step */
+static const double GOOD_MARGIN = 0.01;   /* of the interval of the crossing */
+static const double NEAR = 0.15;          /* ln(height): a point beside the crossing */
+static const double FIRST_GAP = 0.5;      /* of ln(height) between the first two drops */
+static const double BESIDE = 0.08;        /* ln(height) of the first points beside the crossing */
+static const double LEAST_GAP = 0.12;     /* of ln(height) between the two drops of a step */
 
 /* The points nearest to the limits; NULL if there is none. */
 typedef struct bracket {

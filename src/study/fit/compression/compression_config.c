@@ -317,9 +317,7 @@ sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entr
     SF_TRY(sf_config_flag(file, entry, "toe_correction", &source->toe, err));
     SF_TRY(sf_config_choice(file, entry, "invert", "none|strain|stress|both", &invert, err));
     SF_TRY(sf_config_quantity(file, entry, "contact_force", SF_FORCE, false, 0, &source->contact_force, err));
-    SF_TRY(sf_config_text(file, entry, "specimen_number", false, &source->specimen, err));
     SF_TRY(sf_config_text(file, entry, "cycle", false, &source->cycle, err));
-    SF_TRY(sf_config_text(file, entry, "heading", false, &source->heading, err));
     if (source->contact_force > 0 && !(specimen.area > 0))
         return sf_config_refuse(file, config_setting_get_member(entry, "contact_force"), err,
                                 "contact_force is given: the test must have force and displacement of a "

@@ -94,8 +94,8 @@ typedef struct sf_compression_config {
     sf_form_request form;           /* which form of the loading curve; its curve is NULL: a free spline */
     sf_hyperfoam_request hyperfoam; /* its terms are 0: another law */
     int record_count;               /* of cycles; of a form */
-    sf_cycle_record cycles[SF_CYCLE_RECORDS]; /* several cycles of one specimen each */
-    int predicted_count;            /* tests that a form is to predict, not fitted */
+    sf_cycle_record cycles[SF_CYCLE_RECORDS];            /* several cycles of one specimen each */
+    int predicted_count;                                 /* tests that a form is to predict, not fitted */
     sf_compression_test predicted[SF_COMPRESSION_TESTS]; /* owned */
 } sf_compression_config;
 
@@ -109,8 +109,7 @@ sf_status sf_compression_config_read(const char *path, sf_compression_config *co
 void sf_compression_config_free(sf_compression_config *config);
 
 /* The keys of one test beside its file, for other files with such tests; `path` is the caller's. */
-#define SF_COMPRESSION_SOURCE_KEYS                                                                           \
-    "rate|specimen|specimen_number|cycle|heading|contact_force|toe_correction|invert"
+#define SF_COMPRESSION_SOURCE_KEYS "rate|specimen|cycle|contact_force|toe_correction|invert"
 /* Reads them; `specimen` and `source->toe` are those of tests without their own. */
 sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entry,
                                      sf_compression_specimen specimen, sf_compression_source *source,

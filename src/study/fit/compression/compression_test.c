@@ -226,47 +226,18 @@ typedef struct table_terms {
     double scale[2]; /* from the file's units to strain and Pa */
 } table_terms;
 
-static sf_table_layout machine_layout(void) {
-    static const sf_table_name names[] = {{"displacement_m", 0, 1, "m"},
-                                          {"displacement_mm", 0, 1e-3, "mm"},
-                                          {"force_N", 1, 1, "N"},
-                                          {"force_kN", 1, 1e3, "kN"}};
-    return (sf_table_layout){
-        .what = "test",
-        .column = {"displacement", "force"},
-        .wanted = {"\"displacement_mm\"", "\"force_N\""},
-        SF_TABLE_NAMES(names),
-        .words =
-            {"displacement|extension|crosshead|position|travel|stroke|deformation|deflection|compression|*weg|"
-             "*verformung|*stauchung|desplazamiento|déplacement|spostamento",
-             "force|load|f|*kraft|fuerza|carga|forza|carico"},
-        .kind = {SF_LENGTH, SF_FORCE},
-    };
-}
-
-/* A cycle that no column numbers is one of the strain. */
-static sf_status take_parts(const sf_compression_source *source, const sf_table *table,
-                            sf_compression_test *t, sf_error *err) {
-    if (source->specimen && !table->part_taken[SF_TABLE_SPECIMEN])
-        return SF_REFUSE(err, "%s holds one specimen, not several to choose from: leave specimen_number out",
-                         t->path);
-    t->cycle = source->cycle && table->part_taken[SF_TABLE_CYCLE];
-    return SF_OK;
-}
-
-/* Displacement and force become strain and stress. */
-static sf_status take_terms(const sf_compression_source *source, bool machine, const sf_table *table,
-                            table_terms *t, sf_error *err) {
-    *t = (table_terms){{"strain", "stress"}, {table->scale[0], table->scale[1]}};
-    if (!machine)
-        return SF_OK;
-    if (!(source->area > 0) || !(source->thickness > 0))
+/* Displacement becomes strain by the thickness, force becomes stress by the area. */
+static sf_status take_terms(const sf_compression_source *source, const sf_table_layout *layout,
+                            const sf_table *table, table_terms *t, sf_error *err) {
+    bool way = layout->column[0] == &sf_column_displacement, force = layout->column[1] == &sf_column_force;
+    if ((force && !(source->area > 0)) || (way && !(source->thickness > 0)))
         return SF_REFUSE(err,
-                         "%s holds displacement and force: give the specimen, for example specimen = { side "
+                         "%s holds %s and %s: give the specimen, for example specimen = { side "
                          "= \"50 mm\"; thickness = \"50 mm\"; } (or diameter, or area)",
-                         source->path);
-    *t = (table_terms){{"displacement", "force"},
-                       {table->scale[0] / source->thickness, table->scale[1] / source->area}};
+                         source->path, layout->column[0]->name, layout->column[1]->name);
+    *t = (table_terms){
+        {layout->column[0]->name, layout->column[1]->name},
+        {table->scale[0] / (way ? source->thickness : 1), table->scale[1] / (force ? source->area : 1)}};
     return SF_OK;
 }
 
@@ -489,7 +460,7 @@ static sf_status check_test(const sf_compression_source *source, sf_compression_
         lowest = fmin(lowest, t->strain[i]);
     for (int i = 0; i < t->count && -lowest > t->largest_strain; i++) /* tension, not a later cycle */
         SF_TRY(check_row(t, i, terms, err));
-    SF_TRY(take_cycle(t->cycle ? NULL : source->cycle, t, err));
+    SF_TRY(take_cycle(source->cycle, t, err));
     for (int i = 0; i < t->count; i++)
         SF_TRY(check_row(t, i, terms, err));
     leave_rests_out(t);
@@ -531,12 +502,14 @@ static void condense(sf_compression_test *t) {
 }
 
 #define ADD(...) sf_text_add(t->interpretation, sizeof t->interpretation, __VA_ARGS__)
-static void describe(const sf_compression_source *source, bool machine, const sf_table *table,
+static void describe(const sf_compression_source *source, const table_terms *terms, const sf_table *table,
                      sf_compression_test *t) {
     static const char *const inverted[] = {"", ", strain inverted", ", stress inverted", ", both inverted"};
-    ADD("%.383s", table->interpretation);
-    if (machine)
-        ADD(", over %.5g mm2 and %.5g mm", 1e6 * source->area, 1e3 * source->thickness);
+    ADD("%s", table->interpretation);
+    if (strcmp(terms->name[1], "force") == 0)
+        ADD(", over %.5g mm2", 1e6 * source->area);
+    if (strcmp(terms->name[0], "displacement") == 0)
+        ADD("%s %.5g mm", strcmp(terms->name[1], "force") == 0 ? " and" : ", over", 1e3 * source->thickness);
     ADD(", %d points of loading and %d of unloading%s", t->loading, t->count - t->loading,
         inverted[source->invert]);
     if (t->cycles > 1)
@@ -563,26 +536,30 @@ static void describe(const sf_compression_source *source, bool machine, const sf
 sf_status sf_compression_test_read(const sf_compression_source *source, sf_compression_test *test,
                                    sf_error *err) {
     *test = (sf_compression_test){.path = strdup(source->path), .rate = source->rate};
-    sf_table_layout layouts[2] = {sf_case_curve_layout("test", NULL), machine_layout()};
+    const sf_table_layout layouts[] = {sf_case_curve_layout("test", NULL),
+                                       {.what = "test",
+                                        .kind = "compression",
+                                        .column = {&sf_column_displacement, &sf_column_force},
+                                        .means = "force over displacement in compression"},
+                                       {.what = "test",
+                                        .kind = "compression",
+                                        .column = {&sf_column_strain, &sf_column_force},
+                                        .means = "force over nominal strain in compression"},
+                                       {.what = "test",
+                                        .kind = "compression",
+                                        .column = {&sf_column_displacement, &sf_column_stress},
+                                        .means = "nominal stress over displacement in compression"}};
     SF_OWNED_BY(sf_table_free) sf_table table = {0};
-    table_terms terms;
+    table_terms terms = {0};
     int which;
     if (!test->path)
         return SF_NO_MEMORY(err, "the path %s", source->path);
-    for (int k = 0; k < 2; k++) {
-        layouts[k].part[SF_TABLE_SPECIMEN] = source->specimen;
-        layouts[k].part[SF_TABLE_CYCLE] = source->cycle;
-        layouts[k].part_option[SF_TABLE_SPECIMEN] = "specimen_number = \"N\"";
-        layouts[k].part_option[SF_TABLE_CYCLE] = "cycle = \"N\"";
-        layouts[k].heading = source->heading;
-        layouts[k].heading_option = "heading = \"...\"";
-    }
-    if (sf_table_read_any(source->path, layouts, 2, &which, &table, err) == SF_OK &&
-        take_parts(source, &table, test, err) == SF_OK &&
-        take_terms(source, which == 1, &table, &terms, err) == SF_OK &&
+    if (sf_table_read_any(source->path, layouts, sizeof layouts / sizeof *layouts, &which, &table, err) ==
+            SF_OK &&
+        take_terms(source, &layouts[which], &table, &terms, err) == SF_OK &&
         take_table(source, &terms, &table, test, err) == SF_OK &&
         check_test(source, test, &terms, err) == SF_OK) {
-        describe(source, which == 1, &table, test);
+        describe(source, &terms, &table, test);
         condense(test);
     }
     if (err->status != SF_OK)

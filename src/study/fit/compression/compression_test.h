@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A compression test from a CSV file (io/table_csv.h): loading, then perhaps unloading, at a constant nominal
- * rate. Strain and stress (engineering strain, nominal stress), or displacement and force of a specimen of
- * known area and thickness; positive in compression, with the scatter of a measurement. Where the file holds
+ * rate. Strain and stress (engineering strain, nominal stress), or displacement or force of a specimen of
+ * known thickness or area; positive in compression, with the scatter of a measurement. Where the file holds
  * all four, strain and stress are taken.
  *
  * Toe correction (ISO 844, ASTM D1621): the steepest straight part at small strains is extended to zero
@@ -19,7 +19,7 @@
 enum { SF_COMPRESSION_LOADING_POINTS = 20, SF_COMPRESSION_UNLOADING_POINTS = 8 }; /* the least of them */
 enum { SF_COMPRESSION_BRANCH_POINTS = 500 };
 
-enum { SF_COMPRESSION_INTERPRETATION = 768 };
+enum { SF_COMPRESSION_INTERPRETATION = 1024 };
 
 /* Which channels have the other sign. */
 typedef enum sf_inversion { SF_INVERT_NONE, SF_INVERT_STRAIN, SF_INVERT_STRESS, SF_INVERT_BOTH } sf_inversion;
@@ -32,10 +32,8 @@ typedef struct sf_compression_source {
     double thickness; /* m; 0: unknown */
     bool toe;         /* correct the toe */
     sf_inversion invert;
-    double contact_force;         /* N, displacement is zero where the force rises to it; 0: as in the file */
-    const char *specimen, *cycle; /* of a file that holds several (io/table_csv.h); NULL: the only one,
-                                     and the first cycle */
-    const char *heading;          /* of a file without one; NULL */
+    double contact_force; /* N, displacement is zero where the force rises to it; 0: as in the file */
+    const char *cycle;    /* number of the cycle of the strain; NULL: the first */
 } sf_compression_source;
 
 typedef struct sf_compression_test {

@@ -16,17 +16,6 @@ static const double UNLOADED = 0.1;    /* the same of a pause */
 static const double LONGEST_STEP = 20; /* mean steps of time, above which a step is a pause */
 static const double LIMIT = 0.98;      /* strain */
 
-static sf_table_layout time_layout(void) {
-    static const sf_table_name names[] = {{"time_s", 0, 1, "s"},
-                                          {"time_ms", 0, 1e-3, "ms"},
-                                          {"strain", 1, 1, "1"},
-                                          {"strain_percent", 1, 0.01, "%"}};
-    return (sf_table_layout){.what = "record of cycles",
-                             .column = {"time", "strain"},
-                             .wanted = {"\"time_s\"", "\"strain\" or \"strain_percent\""},
-                             SF_TABLE_NAMES(names)};
-}
-
 /* The pause (s) before point i; 0: none. */
 static double pause_before(const sf_cycle_record *r, int i) {
     double mean = (r->time[r->count - 1] - r->time[0]) / (r->count - 1), largest = r->strain[r->turn[1]];
@@ -37,7 +26,9 @@ static double pause_before(const sf_cycle_record *r, int i) {
 }
 
 static sf_status take_tables(const char *path, sf_cycle_record *r, sf_error *err) {
-    const sf_table_layout layouts[2] = {sf_case_curve_layout("record of cycles", NULL), time_layout()};
+    const sf_table_layout layouts[2] = {
+        sf_case_curve_layout("record of cycles", NULL),
+        {.what = "record of cycles", .kind = "compression", .column = {&sf_column_time, &sf_column_strain}}};
     SF_OWNED_BY(sf_table_free) sf_table stress = {0}, time = {0};
     SF_TRY(sf_table_read(path, &layouts[0], &stress, err));
     SF_TRY(sf_table_read(path, &layouts[1], &time, err));

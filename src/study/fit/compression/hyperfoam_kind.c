@@ -46,24 +46,12 @@ static sf_status check_lateral(const sf_table_point *p, sf_error *err) {
     return SF_OK;
 }
 
-static sf_table_layout lateral_layout(void) {
-    static const sf_table_name names[] = {{"strain", 0, 1, "1"},
-                                          {"strain_percent", 0, 0.01, "%"},
-                                          {"lateral_strain", 1, 1, "1"},
-                                          {"lateral_strain_percent", 1, 0.01, "%"},
-                                          {"transverse_strain", 1, 1, "1"},
-                                          {"transverse_strain_percent", 1, 0.01, "%"}};
-    return (sf_table_layout){
-        .what = "test",
-        .column = {"strain", "lateral strain"},
-        .wanted = {"\"strain\" or \"strain_percent\"", "\"lateral_strain\" or \"lateral_strain_percent\""},
-        SF_TABLE_NAMES(names),
-        .check = check_lateral};
-}
-
 /* Rows up to the largest strain: loading. Ascending afterwards. */
 static sf_status read_lateral(const char *path, sf_hyperfoam_request *data, sf_error *err) {
-    const sf_table_layout layout = lateral_layout();
+    const sf_table_layout layout = {.what = "test",
+                                    .kind = "lateral",
+                                    .column = {&sf_column_strain, &sf_column_lateral_strain},
+                                    .check = check_lateral};
     SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(sf_table_read(path, &layout, &table, err));
     int64_t end = 0;

@@ -45,23 +45,16 @@ static sf_status read_curve(const sf_config *config, sf_config_item *group, sf_f
                             sf_error *err) {
     static const double classes[] = {0, 60, 180, 600, 1000};
     sf_reference_options o = {.column_option = "curve_column = \"...\"",
-                              .unfiltered_option = "curve_filter = \"none\"",
+                              .filter_option = "curve_filter = \"",
                               .invert_option = "curve_invert = true",
-                              .heading_option = "curve_heading = \"...\""};
+                              .zero_option = "curve_zero = true"};
     sf_error inner = SF_ERROR_INIT;
     int class = 4;
-    const char *scale = NULL, *rate = NULL;
     SF_TRY(sf_config_choice(config, group, "curve_filter", "none|60|180|600|1000", &class, err));
     SF_TRY(sf_config_text(config, group, "curve_column", false, &o.column, err));
     SF_TRY(sf_config_flag(config, group, "curve_invert", &o.invert, err));
     SF_TRY(sf_config_flag(config, group, "curve_zero", &o.zero, err));
     SF_TRY(sf_config_text(config, group, "curve_columns", false, &o.columns, err));
-    SF_TRY(sf_config_text(config, group, "curve_heading", false, &o.heading, err));
-    SF_TRY(sf_config_text(config, group, "curve_scale", false, &scale, err));
-    SF_TRY(sf_config_text(config, group, "curve_rate", false, &rate, err));
-    if ((scale && sf_reference_parse_sensitivity(scale, &o.sensitivity, &inner) != SF_OK) ||
-        (rate && sf_reference_parse_rate(rate, &o.rate, &inner) != SF_OK))
-        return sf_config_refuse(config, group, err, "%s", inner.text);
     SF_TRY(sf_config_file(config, group, "curve", false, &drop->curve_path, err));
     if (!drop->curve_path)
         return SF_OK;
@@ -199,7 +192,7 @@ sf_status sf_drop_input_read(const sf_config *config, sf_config_item *group, boo
                              sf_fit_drop *drop, sf_error *err) {
     static const char *const names[2] = {
         "name|case|drop|" SF_DROP_KINDS(
-            KIND_KEYS) "HIC_window_resolution_ms|speed_sd|curve|curve_sd|curve_filter|curve_column|curve_columns|curve_heading|curve_scale|curve_rate|curve_invert|curve_zero",
+            KIND_KEYS) "HIC_window_resolution_ms|speed_sd|curve|curve_sd|curve_filter|curve_column|curve_columns|curve_invert|curve_zero",
         "name|case|drop"};
     sf_fit_drop *last = &drop[count];
     double number = 0;

@@ -197,18 +197,8 @@ static sf_status read_test(const sf_config *config, sf_config_item *entry, sf_jo
 /* ---- cushion curves ---- */
 
 static sf_status read_table(const char *path, sf_joint_cushion *out, sf_error *err) {
-    static const sf_table_name names[] = {{"static_stress_Pa", 0, 1, "Pa"},
-                                          {"static_stress_kPa", 0, 1e3, "kPa"},
-                                          {"peak_g", 1, 1, "g"},
-                                          {"G", 1, 1, "g"}};
-    const sf_table_layout layout = {.what = "cushion curve",
-                                    .column = {"static stress", "peak deceleration"},
-                                    .wanted = {"\"static_stress_kPa\"", "\"peak_g\""},
-                                    SF_TABLE_NAMES(names),
-                                    .words = {"static stress|stress|load|pressure|*spannung|*belastung",
-                                              "peak|deceleration|acceleration|*beschleunigung|*verzögerung"},
-                                    .kind = {SF_PRESSURE, SF_ACCELERATION},
-                                    .unit = {0, SF_STANDARD_GRAVITY}};
+    const sf_table_layout layout = {
+        .what = "cushion curve", .kind = "cushion", .column = {&sf_column_static_stress, &sf_column_peak}};
     SF_OWNED_BY(sf_table_free) sf_table table = {0};
     SF_TRY(sf_table_read(path, &layout, &table, err));
     if (table.count > SF_JOINT_POINTS)
