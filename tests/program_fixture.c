@@ -201,6 +201,16 @@ void program_assert_unchanged(const char *path, program_bytes *before) {
     *before = (program_bytes){0};
 }
 
+double program_history_largest(const program_place *p, const char *column) {
+    program_result r = program_shell(
+        p,
+        "awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) if ($k == \"%s\") c = k; next } { v = $c < 0 ? -$c : $c; "
+        "if (v > m) m = v } END { print m + 0 }' out/history.csv",
+        column);
+    assert_int_equal(r.code, 0);
+    return strtod(r.out, NULL);
+}
+
 void program_assert_page(const program_place *place, const char *page, const char *words) {
     static const char code[] =
         "import re, sys, xml.etree.ElementTree as tree\n"

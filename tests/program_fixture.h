@@ -68,6 +68,8 @@ const char *program_write_text(const program_place *place, const char *name, con
 double program_json_number(const char *json, const char *after, const char *key);
 /* The same of the file folder/name. */
 double program_file_number(const program_place *place, const char *name, const char *key);
+/* The largest magnitude of a column of folder/out/history.csv. */
+double program_history_largest(const program_place *place, const char *column);
 /* Fails unless folder/page is well-formed, loads nothing, runs nothing, has each id once and shows the words.
  */
 void program_assert_page(const program_place *place, const char *page, const char *words);

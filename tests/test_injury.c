@@ -96,6 +96,26 @@ static void half_sine_100_g_40_ms(void **state) {
     sf_series_free(&curve);
 }
 
+/* The best window of a half-sine of 60 ms has 40 ms, so that 15 and 36 ms bound it: around the middle the
+ * mean over w is 2 T / (pi w) sin(pi w / 2 T) of the peak. */
+static void windows_of_15_and_36_ms_bound_a_long_pulse(void **state) {
+    (void)state;
+    sf_error err = SF_ERROR_INIT;
+    sf_injury injury;
+    const double peak = 50, duration = 0.06;
+    sf_series curve = sampled(half_sine, peak, duration, FINE);
+    assert_int_equal(sf_injury_evaluate(&curve, &injury, &err), SF_OK);
+    const sf_hic found[2] = {injury.hic15, injury.hic36};
+    const double window[2] = {0.015, 0.036};
+    for (int k = 0; k < 2; k++) {
+        double half = M_PI * window[k] / (2 * duration), mean = peak * sin(half) / half;
+        assert_relative(found[k].value, window[k] * pow(mean, 2.5), 1e-7);
+        assert_relative(found[k].t2 - found[k].t1, window[k], 1e-9);
+    }
+    assert_relative(injury.hic.t2 - injury.hic.t1, 0.6702296636 * duration, 1e-6);
+    sf_series_free(&curve);
+}
+
 static void optimum_window_has_equal_ends_and_mean_of_five_thirds(void **state) {
     (void)state;
     /* Skew and double-peaked: no symmetry helps. */
@@ -215,6 +235,7 @@ int main(void) {
         cmocka_unit_test(hic_closed_forms_of_pulses),
         cmocka_unit_test(hic_of_a_three_point_triangle_is_exact),
         cmocka_unit_test(half_sine_100_g_40_ms),
+        cmocka_unit_test(windows_of_15_and_36_ms_bound_a_long_pulse),
         cmocka_unit_test(optimum_window_has_equal_ends_and_mean_of_five_thirds),
         cmocka_unit_test(hic_search_is_never_below_brute_force),
         cmocka_unit_test(hic_of_an_accelerating_curve_is_zero),

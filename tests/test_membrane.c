@@ -182,16 +182,6 @@ static void a_clamped_circle_bulges_as_hencky_says(void **state) {
 
 /* ---- drops ---- */
 
-static double largest_in_history(const program_place *p, const char *column) {
-    program_result r = program_shell(
-        p,
-        "awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) if ($k == \"%s\") c = k; next } { v = $c < 0 ? -$c : $c; "
-        "if (v > m) m = v } END { print m + 0 }' out/history.csv",
-        column);
-    assert_int_equal(r.code, 0);
-    return strtod(r.out, NULL);
-}
-
 /* A mat of a hard and a soft foam, with a cover of cells of `cover` mm, or none. */
 static void write_mat(const program_place *p, double cover) {
     char text[2048];
@@ -223,9 +213,9 @@ static double drop(const program_place *p, const char *overrides, double *hic) {
     program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
     program_succeed(p, "post", "r.h5 -o out --force");
-    assert_true(largest_in_history(p, "energy_error_1") < 1e-3);
-    assert_true(largest_in_history(p, "momentum_error_space_1") < 1e-12);
-    assert_true(largest_in_history(p, "angular_momentum_error_1") < 1e-12);
+    assert_true(program_history_largest(p, "energy_error_1") < 1e-3);
+    assert_true(program_history_largest(p, "momentum_error_space_1") < 1e-12);
+    assert_true(program_history_largest(p, "angular_momentum_error_1") < 1e-12);
     *hic = program_file_number(p, "out/summary.json", "hic");
     return program_file_number(p, "out/summary.json", "a_max_g");
 }

@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <cmocka.h>
@@ -30,6 +32,36 @@ static void write_partial(const char *partial, const char *text) {
     assert_non_null(file);
     fputs(text, file);
     fclose(file);
+}
+
+/* In place of the C library's: keeps what was brought to the disk last, and whether `watched` had its new
+ * content then. */
+static struct stat synced;
+static const char *watched;
+static bool was_new;
+int fsync(int file) {
+    fstat(file, &synced);
+    program_bytes held = watched ? program_read_file(watched) : (program_bytes){0};
+    was_new = held.data && strcmp(held.data, "new") == 0;
+    free(held.data);
+    return (int)syscall(SYS_fsync, file);
+}
+
+/* A name that only the memory holds is lost with the power: the folder is synced after the rename. */
+static void the_folder_of_a_new_name_is_on_the_disk(void **state) {
+    const program_place *p = *state;
+    char path[1024], partial[SF_PATH_SIZE];
+    sf_error err = SF_ERROR_INIT;
+    struct stat folder;
+    program_write_text(p, "named", "old");
+    snprintf(path, sizeof path, "%s", program_path(p, "named"));
+    assert_int_equal(sf_replace_begin(path, partial, &err), SF_OK);
+    write_partial(partial, "new");
+    watched = path;
+    assert_int_equal(sf_replace_commit(partial, path, &err), SF_OK);
+    watched = NULL;
+    assert_int_equal(stat(p->folder, &folder), 0);
+    assert_true(S_ISDIR(synced.st_mode) && synced.st_ino == folder.st_ino && was_new);
 }
 
 static void the_new_file_takes_the_place_of_the_old_one(void **state) {
@@ -259,6 +291,7 @@ static void files_of_a_known_name_but_strange_content_stay(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_new_file_takes_the_place_of_the_old_one),
+        cmocka_unit_test(the_folder_of_a_new_name_is_on_the_disk),
         cmocka_unit_test(a_name_that_is_taken_is_neither_followed_nor_overwritten),
         cmocka_unit_test(what_is_no_file_keeps_its_name_and_the_new_file_goes),
         cmocka_unit_test(a_file_that_was_not_written_is_an_error),

@@ -20,27 +20,17 @@ typedef struct figures {
     double a_max, force, base, energy, momentum, angular, penetration;
 } figures;
 
-static double largest_in_history(const program_place *p, const char *column) {
-    program_result r = program_shell(
-        p,
-        "awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) if ($k == \"%s\") c = k; next } { v = $c < 0 ? -$c : $c; "
-        "if (v > m) m = v } END { print m + 0 }' out/history.csv",
-        column);
-    assert_int_equal(r.code, 0);
-    return strtod(r.out, NULL);
-}
-
 static figures run(const program_place *p, const char *overrides) {
     program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 %s", overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
     program_succeed(p, "post", "r.h5 -o out --force");
     figures f = {.a_max = program_file_number(p, "out/summary.json", "a_max_g"),
-                 .force = largest_in_history(p, "contact_force_N"),
+                 .force = program_history_largest(p, "contact_force_N"),
                  .base = program_file_number(p, "out/summary.json", "base_force_N"),
-                 .energy = largest_in_history(p, "energy_error_1"),
-                 .momentum = largest_in_history(p, "momentum_error_space_1"),
-                 .angular = largest_in_history(p, "angular_momentum_error_1"),
-                 .penetration = largest_in_history(p, "penetration_mm")};
+                 .energy = program_history_largest(p, "energy_error_1"),
+                 .momentum = program_history_largest(p, "momentum_error_space_1"),
+                 .angular = program_history_largest(p, "angular_momentum_error_1"),
+                 .penetration = program_history_largest(p, "penetration_mm")};
     print_message(
         "a_max %.3f g, force %.2f N, base %.2f N; errors of energy %.1e, momentum %.1e, angular %.1e; "
         "penetration %.2g mm: %.60s\n",
@@ -94,7 +84,7 @@ static void several_supports_share_the_load(void **state) {
             plane = run(p, COARSE_PAD "--set pad.fixed=[] --set support.plane='[0.0, 0.0, 2.0]' --set "
                                       "support.friction=0.0");
     assert_relative(plane.a_max, slab.a_max, 1e-4);
-    assert_relative(largest_in_history(p, "support_force_1_N"), plane.base, 1e-5);
+    assert_relative(program_history_largest(p, "support_force_1_N"), plane.base, 1e-5);
     program_write_text(
         p, "strips.cfg",
         "@include \"case.cfg\"\nsupports = ( { file = \"geo/strip.geo\"; parameters = { from = -45; to = 45; }; "
@@ -106,13 +96,13 @@ static void several_supports_share_the_load(void **state) {
                                         "out/pad_paraview.py", "\"support\": True"};
     for (int k = 0; k < 8; k += 2)
         assert_int_equal(program_shell(p, "grep -qF -- '%s' %s", shown[k + 1], shown[k]).code, 0);
-    double inner = largest_in_history(p, "support_force_1_N"),
-           outer = largest_in_history(p, "support_force_2_N");
+    double inner = program_history_largest(p, "support_force_1_N"),
+           outer = program_history_largest(p, "support_force_2_N");
     print_message("forces %.1f and %.1f N of %.1f N\n", inner, outer, both.base);
     assert_relative(both.a_max, slab.a_max, 0.01);
     assert_true(inner > 0.2 * both.base && outer > 0.02 * both.base &&
                 inner + outer >= both.base * (1 - 1e-9));
-    assert_true(inner < both.base && largest_in_history(p, "support_force_3_N") == 0);
+    assert_true(inner < both.base && program_history_largest(p, "support_force_3_N") == 0);
 }
 
 /* The bits do not depend on the threads, nor on where a run is resumed. */
