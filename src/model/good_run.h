@@ -31,7 +31,7 @@
     X(stabilisation, 0.01, "stabilisation energy", \
       "`stabilisation_energy_fraction`", \
       "the stabilisation, which is not of the foam, bears load: the mesh decides the peak", \
-      .refuse = 0.03, .sure = 0.7, .percent = true) \
+      .refuse = 0.04, .sure = 0.7, .percent = true) \
     X(contact, 0.01, "contact energy", \
       "`contact_energy_fraction`", \
       "contact consumes energy that the foam should take", \
