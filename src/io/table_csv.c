@@ -16,8 +16,10 @@ static const char READING[] = "# softfall read ";
 
 const sf_table_column
     sf_column_time = {"time", "time|t", SF_TIME, 1, "time_ms"},
-    sf_column_acceleration = {"acceleration", "acceleration|deceleration|a", SF_ACCELERATION,
-                              SF_STANDARD_GRAVITY, "acceleration_g"},
+    sf_column_acceleration =
+        {"acceleration",
+         "acceleration|deceleration|a|acceleration_cfc1000|acceleration_cfc600|acceleration_cfc180|acceleration_cfc60",
+         SF_ACCELERATION, SF_STANDARD_GRAVITY, "acceleration_g"},
     sf_column_strain = {"strain", "strain", SF_TABLE_RATIO, 1, "strain"},
     sf_column_stress = {"stress", "stress", SF_PRESSURE, 1, "stress_kPa"},
     sf_column_lateral_strain = {"lateral strain",
