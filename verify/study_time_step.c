@@ -512,11 +512,11 @@ static void power_iteration(sf_study *s) {
     sf_study_text(
         s,
         "The same drop with %lld nodes. At every measurement the study compares the square of "
-        "the frequency in use (from up to 80 Lanczos products at first, then 4 to 8 each time, with "
-        "a margin of 8 %%) with the result of 240 more products. The drop took %lld products in %lld "
-        "steps.\n\n",
+        "the frequency in use (from up to 80 Lanczos products at first, then 4 to 8 each time) with the result of "
+        "240 more products. What it lacks is covered by the safety of 0.95, which is 0.90 on the square. The drop "
+        "took %lld products in %lld steps.\n\n",
         (long long)n, (long long)products, (long long)st->step);
-    sf_study_check(s, low, 1, INFINITY, "smallest square of the frequency in use / converged");
+    sf_study_check(s, low, 0.95, INFINITY, "smallest square of the frequency in use / converged");
     sf_study_check(s, high, 1, 1.1, "largest square of the frequency in use / converged");
     fixture_free(&f);
 }

@@ -15,15 +15,14 @@ enum {
 static const double SETTLED = 1e-4;
 static const double POWER_CHANGE =
     0.1; /* of the bound on the frequency squared, that calls for a measurement */
-/* The iteration converges from below; its estimate of the frequency squared is raised by this factor. */
-static const double POWER_MARGIN = 1.0;
-/* The ratio is rounded up to a multiple of 1 / POWER_ROUNDING: rounding errors of the iteration do not change
- * the time steps, and so not the results. */
+/* The iteration converges from below, by less than the safety of the step. The ratio is rounded up to a
+ * multiple of 1 / POWER_ROUNDING: rounding errors of the iteration do not change the time steps, and so not
+ * the results. */
 static const double POWER_ROUNDING = 16384;
 static const double GROWTH = 1.02;
 
 /* Arrays of the iteration in what other passes work in (solver/field/halo.h): 8 doubles per node, or more
- * where `waiting` needs them. Single precision is far within POWER_MARGIN. */
+ * where `waiting` needs them. Single precision is far within the safety of the step. */
 typedef struct power_work {
     double *out;     /* [n] product of the stiffness and the mode, kg s-2 times it */
     float *basis;    /* [BASIS][n] Lanczos vectors */
@@ -303,7 +302,7 @@ void sf_time_step_choose(const sf_model *m, const sf_operators *op, sf_state *s)
     if (due) {
         seed_mode(m, op, s);
         double power = sf_time_step_power(m, op, s, s->step == 0 ? POWER_FIRST : POWER_WARM, SETTLED);
-        double tightness = ceil(POWER_ROUNDING * POWER_MARGIN * power / s->bound_load) / POWER_ROUNDING;
+        double tightness = ceil(POWER_ROUNDING * power / s->bound_load) / POWER_ROUNDING;
         if (!(power > 0)) /* nothing came of it: the bound is safe alone */
             tightness = 1;
         double change = s->tightness / tightness;
