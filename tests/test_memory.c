@@ -99,7 +99,8 @@ static void cycles_follow_the_closed_form(void **state) {
                 q += recovered * (1 - q);
             }
             double stress = go(&v, 0.4, &point), expected = (f + q * (1 - f)) * first;
-            if (!(fabs(stress / expected - 1) < (cycle == 4 ? 1e-3 : 1e-6))) /* after the rests W_max is (1 - R^4) of it */
+            if (!(fabs(stress / expected - 1) <
+                  (cycle == 4 ? 1e-3 : 1e-6))) /* after the rests W_max is (1 - R^4) of it */
                 fail_msg("law %d, cycle %g: %.9g Pa, not %.9g", n, cycle, stress, expected);
             go(&v, cycle == 4 ? 0.59 : 0.6 - 1e-9, &point);
         }

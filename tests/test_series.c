@@ -227,7 +227,8 @@ static void first_frame_shows_what_is_left(void **state) {
         sf_h5_read(second, "/frames/000000/softening", SF_H5_F64, 1, &count, (void **)&now, &err), SF_OK);
     assert_int_equal(
         sf_h5_read(late, "/frames/000000/softening", SF_H5_F64, 1, &count, (void **)&rested, &err), SF_OK);
-    /* q is reload plus what recovery R gives back of the rest, log10(1 + t / 1 s) decades, 0.1 each; W_max is (1 - R^4) of it */
+    /* q is reload plus what recovery R gives back of the rest, log10(1 + t / 1 s) decades, 0.1 each; W_max is
+     * (1 - R^4) of it */
     double r = 0.1 * log10(1 + 90), s = 0.1 * log10(1 + 8 * 3600.0), fresh = (1 - r) * (1 - pow(r, 4)),
            later = (1 - s) * (1 - pow(s, 4));
     for (int64_t k = 0; k < count; k++) {

@@ -205,7 +205,8 @@ static void power_iteration_finds_the_highest_frequency(void **state) {
         assert_true(estimate <= exact * (1 + 5e-4)); /* a Rayleigh quotient */
         assert_relative(estimate, exact, 0.02);
         assert_relative(sf_time_step_power(&f.model, &f.operators, &f.state, 2000, 0), exact, 1e-6);
-        /* It comes from below by 2 % at most, and the step safety keeps the step within the limit of leap-frog. */
+        /* It comes from below by 2 % at most, and the step safety keeps the step within the limit of
+         * leap-frog. */
         assert_true(f.state.dt <= 1.01 * f.model.run.step_safety * 2 / sqrt(exact));
         assert_true(f.state.dt >= 0.9 * f.model.run.step_safety * 2 / sqrt(exact)); /* and is not wasteful */
         fixture_free(&f);

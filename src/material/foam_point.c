@@ -135,8 +135,8 @@ static inline double acting(bool compression, double t) {
     return (compression & (t > 0)) ? 0 : t;
 }
 
-/* Stress by which the power of the stresses is divided for a rate: the sum of compressed directions, which are
- * columns of their own, or the largest of coupled ones. */
+/* Stress by which the power of the stresses is divided for a rate: the sum of compressed directions, which
+ * are columns of their own, or the largest of coupled ones. */
 static void size_of(bool compression, const sf_foam_loading *law, double size[SF_LANES]) {
     for (int l = 0; l < SF_LANES; l++)
         size[l] = 0;

@@ -107,8 +107,8 @@ void sf_foam_point_filter(const sf_foam_options *options, bool compression, doub
 /* The parts of sf_law.uniaxial, `green_rate` (s-1) from sf_foam_green_rate. The factor of hysteresis at this
  * W (J m-3). */
 double sf_foam_axial_factor(const sf_foam_options *options, double energy, sf_uniaxial *point);
-/* The filtered rate (s-1) after the step, `working` (s-1) being the rate of working over the stress: that of the
- * strain in compression, of the stretch in tension, 0 where the rate does not act. */
+/* The filtered rate (s-1) after the step, `working` (s-1) being the rate of working over the stress: that of
+ * the strain in compression, of the stretch in tension, 0 where the rate does not act. */
 double sf_foam_axial_filter(const sf_foam_options *options, double dt, double working, sf_uniaxial *point);
 /* Returns the share that the rate factor adds to the factor on the stress of loading; 0 without one.
  * Advances the filtered rate. */

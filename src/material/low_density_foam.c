@@ -155,8 +155,7 @@ double sf_foam_uniaxial(const void *numbers, double dt, double strain, sf_uniaxi
            gain = sf_foam_axial_gain(&foam->options, dt, working, point);
     stress *= strain > 0 ? factor + gain : factor;
     if (foam->curve_count > 1)
-        stress += sf_foam_overstress(foam, strain,
-                                     sf_foam_axial_filter(&foam->options, dt, working, point),
+        stress += sf_foam_overstress(foam, strain, sf_foam_axial_filter(&foam->options, dt, working, point),
                                      &slope, &rate_slope);
     point->strain = strain;
     return stress - stretch * sf_foam_axial_viscous(&foam->options, dt, green_rate, point);

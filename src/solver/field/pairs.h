@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pairs of nodes that the stabilisation sees: the edges of the background mesh, by groups of nodes. A pair
- * within a group is listed once, at its node of the lower number. A pair between two groups is listed in both,
- * so that each group writes to its own nodes only. */
+/* The pairs of nodes that the stabilisation sees: the edges of the background mesh, by groups of nodes. A
+ * pair within a group is listed once, at its node of the lower number. A pair between two groups is listed in
+ * both, so that each group writes to its own nodes only. */
 #pragma once
 #include "solver/field/halo.h"
 

@@ -21,7 +21,7 @@ void sf_stabilisation(const sf_model *model, const sf_operators *operators, sf_s
 typedef struct sf_pair_field {
     const double *d, *f;              /* [n][3] m; [n][9] */
     const double *stiffness, *before; /* [n] Pa, now and when the pairs were last evaluated */
-    double *offset;            /* [pairs][3] m, of the arms: of the inner pairs, then of the outer ones; updated */
+    double *offset; /* [pairs][3] m, of the arms: of the inner pairs, then of the outer ones; updated */
     const double *has_offsets; /* [groups] 0: all offsets of the group's pairs are 0 */
 } sf_pair_field;
 
