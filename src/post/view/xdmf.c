@@ -366,10 +366,10 @@ static void put_missile(const scene *x, const sf_results *r, int fields, double 
 typedef void (*put_body)(const scene *x, const sf_results *r, int fields, double time, int64_t index);
 
 static void put_frames(const scene *x, const sf_results *r, const sf_shown *shown, const char *name,
-                       put_body put) {
+                       put_body body) {
     fprintf(x->file, "    <Grid Name=\"%s\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", name);
     for (int64_t k = 0; k < shown->count; k++)
-        put(x, r, shown->fields[k], shown->head[k]->time, k);
+        body(x, r, shown->fields[k], shown->head[k]->time, k);
     fputs("    </Grid>\n", x->file);
 }
 
