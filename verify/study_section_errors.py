@@ -5,8 +5,8 @@
     verify/study_section_errors.py [DIR] [--only NAME...] [--spacings MM...] [--truth MM]
 
 Every drop runs on each spacing (10 and 5 mm) with the errors that softfall-pre finds, and on two finer meshes, of twice --truth (1.25 mm) and of that: the truth is the last
-plus a third of the step to it (order 2). An error holds if it is at least the true one; it is narrow if it is at most three times the true one, or below 0.15 % of the figure,
-where the truth itself is not known. It writes DIR/section_errors.md. Exit code 1: fewer than nine of ten errors hold, or are narrow.
+plus a third of the step to it (order 2). An error holds if it is at least the true one; it is narrow if it is at most three times the true one, or below 0.3 % of the figure,
+where the truth itself is hardly known. It writes DIR/section_errors.md. Exit code 1: of a figure fewer than nine of ten errors hold, or are narrow.
 """
 import argparse
 import json
@@ -18,7 +18,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BIN = pathlib.Path(os.environ.get("SF_BIN_DIR", ROOT / "build/bin"))
 FIGURES = {"a_max_g": "a_max_mesh_error", "hic": "hic_mesh_error", "max_indentation_mm": "max_indentation_mesh_error"}
-WIDE, UNKNOWN, PART = 3, 0.0015, 0.9
+WIDE, UNKNOWN, PART = 3, 0.003, 0.9
 PAD = ["geometry.parameters.radius=150.0", "geometry.parameters.zone_radius=80.0"]
 
 
@@ -98,19 +98,20 @@ def main():
     folder = pathlib.Path(o.folder)
     lines = ["| drop | spacing, mm | figure | value | printed error, % | true error, % | |", "|---|---|---|---|---|---|---|"]
     print("\n".join(lines))
-    found = []
+    found = {figure: [] for figure in FIGURES}
     for name in o.only or CASES:
         for spacing, figure, value, printed, true in judge(folder, name, o.spacings, o.truth):
-            found.append((holds(printed, true), is_narrow(printed, true)))
-            remark = ("" if found[-1][0] else "too small ") + ("" if found[-1][1] else "too wide")
+            row = holds(printed, true), is_narrow(printed, true)
+            found[figure].append(row)
+            remark = " ".join(text for text, good in zip(("too small", "too wide"), row) if not good)
             lines.append(f"| {name} | {spacing:g} | {figure} | {value:.2f} | {100 * printed:.2f} | {100 * true:.2f} | {remark} |")
             print(lines[-1], flush=True)
-    parts = [sum(row[k] for row in found) / len(found) for k in (0, 1)]
+    parts = {figure: [sum(row[k] for row in rows) / len(rows) for k in (0, 1)] for figure, rows in found.items()}
     folder.mkdir(parents=True, exist_ok=True)
-    lines.append(f"\n{len(found)} errors: {100 * parts[0]:.0f} % hold, {100 * parts[1]:.0f} % are narrow")
+    lines += ["", *(f"{figure}: {len(found[figure])} errors, {100 * part[0]:.0f} % hold, {100 * part[1]:.0f} % are narrow" for figure, part in parts.items())]
     (folder / "section_errors.md").write_text("\n".join(lines) + "\n")
-    print(lines[-1])
-    return min(parts) < PART
+    print("\n".join(lines[-len(parts):]))
+    return min(min(part) for part in parts.values()) < PART
 
 
 if __name__ == "__main__":
