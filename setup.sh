@@ -7,8 +7,7 @@ usage() {
     cat <<'TEXT'
 usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
 
-  demo     build, then run examples/eva50-v4.5 through all three programs into out/eva50-v4.5, and
-           its drop on its own spacings and on twice these for the error of the mesh
+  demo     build, then run examples/eva50-v4.5 through all three programs into out/eva50-v4.5
   test     build, then run the tests (all but the slow ones)
   slow     build, then run the slow tests
   build    build only: the programs are in build/bin
@@ -94,33 +93,18 @@ build_programs() {
     build --target programs
 }
 
-# refine PLAN DIR: the drop of a plan of one row on its own mesh and on twice the spacings, and the lines of softfall-sweep
-# that hold both.
-refine() {
-    echo
-    echo "The figures for ever finer meshes (± their error), from this drop on its own spacings and on twice these:"
-    build/bin/softfall-sweep "$1" -o "$2" --jobs 1 --threads "$(processors)" >"$2.log" ||
-        fail "softfall-sweep failed: see above and $2.log"
-    grep -A 1 '^  run .*±' "$2.log" || fail "$2.log has no row of refined figures"
-}
-
-# refined.txt is the last file: it stands for a demo that ran to its end.
 demo() {
-    local dir=out/eva50-v4.5 report=out/eva50-v4.5/report.txt refined=out/eva50-v4.5/refined.txt
-    if [ "$force" = no ] && [ -f "$report" ] && [ -f "$refined" ] &&
+    local dir=out/eva50-v4.5 report=out/eva50-v4.5/report.txt
+    if [ "$force" = no ] && [ -f "$report" ] &&
         [ -z "$(find build/bin geo examples -type f -newer "$report" -print -quit)" ]; then
         echo "The results in $dir are up to date; ./setup.sh demo --force runs the drops again."
-        cat "$report" "$refined"
+        cat "$report"
     else
-        rm -rf "$refined" "$dir/refined"
         tools/run_case.sh examples/eva50-v4.5/case.cfg "$dir"
-        refine examples/eva50-v4.5/refine.cfg "$dir/refined" | tee "$refined.part"
-        mv "$refined.part" "$refined"
     fi
     echo "  $dir/model.h5           the model of softfall-pre"
     echo "  $dir/results.h5         the results of softfall-solve"
     echo "  $report         the figures above"
-    echo "  $dir/refined/report.html   the report of both meshes, from examples/eva50-v4.5/refine.cfg"
     echo "The files are in $PWD. Next: docs/guide.md explains how to read the results and change the case."
 }
 

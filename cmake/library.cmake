@@ -19,7 +19,7 @@ endfunction()
 
 softfall_shared(softfall_api softfall softfall
     SOURCES src/api/api_drop.c src/api/api_record.c
-    PRIVATE softfall_solver softfall_post)
+    PRIVATE softfall_drop)
 softfall_shared(softfall_api_build softfall-build build
     SOURCES src/api/api_case.c src/api/api_material.c src/api/api_variant.c
     PRIVATE softfall_pre

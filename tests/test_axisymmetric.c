@@ -7,6 +7,7 @@
 
 #include "model/stability.h"
 #include "post/results/revolution.h"
+#include "pre/mesh/refine.h"
 #include "pre/mesh/section.h"
 #include "solver/step.h"
 
@@ -475,8 +476,48 @@ static void profile_is_exact_in_the_half_plane(void **state) {
     sf_surface_free(&surface);
 }
 
+static double volume_of(const sf_mesh *mesh, int layer) {
+    double sum = 0;
+    for (int64_t c = 0; c < mesh->cell_count; c++)
+        sum += mesh->cell_layer[c] == layer ? sf_mesh_cell_volume(mesh, c) : 0;
+    return sum;
+}
+
+/* Four cells of each, the layers' volumes and the sides of a group kept, and the middles on these. */
+static void halving_keeps_layers_and_sides(void **state) {
+    (void)state;
+    section s = JITTERED;
+    sf_mesh mesh, fine = {0};
+    sf_error err = SF_ERROR_INIT;
+    s.lower = 2;
+    make_mesh(&s, &mesh);
+    sf_node_set *top = &mesh.set[1];
+    top->face = calloc(4 * (size_t)s.cells[0], sizeof *top->face);
+    for (top->face_count = 0; top->face_count < s.cells[0]; top->face_count++)
+        memcpy(&top->face[4 * top->face_count],
+               (const int32_t[4]){-1, -1, top->node[top->face_count], top->node[top->face_count + 1]},
+               4 * sizeof *top->face);
+    assert_int_equal(sf_section_refine(&mesh, &fine, &err), SF_OK);
+    assert_int_equal(fine.cell_count, 4 * mesh.cell_count);
+    for (int layer = 0; layer < 2; layer++)
+        assert_relative(volume_of(&fine, layer), volume_of(&mesh, layer), 1e-12);
+    const sf_node_set *halves = sf_mesh_find_set(&fine, "top");
+    assert_int_equal(halves->face_count, 2 * s.cells[0]);
+    assert_int_equal(halves->count, 2 * s.cells[0] + 1);
+    for (int64_t k = 0; k < halves->count; k++)
+        assert_close(fine.position[3 * (int64_t)halves->node[k] + 2], s.cells[1] * s.spacing, 1e-15);
+    double volume;
+    assert_int_equal(sf_mesh_check(&fine, &volume, &err), SF_OK);
+    top->face[3] = 0; /* from the top to a node that is no neighbour */
+    sf_mesh_free(&fine);
+    assert_int_equal(sf_section_refine(&mesh, &fine, &err), SF_ERR_INPUT);
+    assert_non_null(strstr(err.text, "the group \"top\" has a side that no cell of the section has"));
+    sf_mesh_free(&mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(halving_keeps_layers_and_sides),
         cmocka_unit_test(rings_fill_the_volume_and_rows_are_complete),
         cmocka_unit_test(uniform_stretches_are_exact),
         cmocka_unit_test(axial_motion_makes_no_force),

@@ -437,7 +437,7 @@ static void start_domes(const program_place *p, double depth, int count, const c
     if (sf_case_read(program_path(p, "case.cfg"), count, overrides, NULL, &c, &err) != SF_OK)
         fail_msg("%s", err.text);
     layers_make_linear(&c.material, MODULUS, DENSITY);
-    if (sf_model_make(&c, &out->model, &out->report, libraries, NULL, &err) != SF_OK)
+    if (sf_model_make(&c, &out->model, &out->report, libraries, NULL, NULL, &err) != SF_OK)
         fail_msg("%s", err.text);
     sf_case_free(&c);
     fixture_start(out);

@@ -169,7 +169,7 @@ static void a_clamped_circle_bulges_as_hencky_says(void **state) {
         "membrane: { faces = [\"top\"]; E = \"10 MPa\"; nu = 0.3; thickness = \"0.5 mm\"; density = "
         "\"1200 kg/m3\"; };\nsolver: { end_time = \"14 ms\"; };\n");
     if (sf_case_read(program_path(p, "case.cfg"), 0, NULL, NULL, &c, &err) != SF_OK ||
-        sf_model_make(&c, &f.model, &f.report, libraries, NULL, &err) != SF_OK)
+        sf_model_make(&c, &f.model, &f.report, libraries, NULL, NULL, &err) != SF_OK)
         fail_msg("%s", err.text);
     sf_case_free(&c);
     fixture_start(&f);

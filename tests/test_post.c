@@ -222,7 +222,7 @@ static void peak_is_a_frame_once(void **state) {
     for (int peak = 0; peak < 2; peak++) {
         write_fixture(p, (fixture_options){.no_peak = !peak});
         assert_int_equal(run_post(p, "--force").code, 0);
-        outcome count = run_shell("grep -c 'Name=\"frame_' '%s/pad.xdmf'", p->output);
+        outcome count = run_shell("grep -c 'Name=\"pad\" GridType=\"Uniform' '%s/pad.xdmf'", p->output);
         assert_int_equal(atoi(count.text), FIXTURE_FRAMES);
     }
 }

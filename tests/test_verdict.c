@@ -86,7 +86,7 @@ static void a_figure_beyond_its_bound_is_a_remark_and_far_beyond_not_to_be_used(
         {"anvil", &run.figures.max_mean_strain},
         {"informed", &run.figures.energy_beyond_data},
         {"local_collapse", &run.figures.local_collapse},
-        {"mesh", &run.results.expected_mesh_error},
+        {"mesh", &run.figures.a_max_mesh_error},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         double sound = *cases[k].figure;

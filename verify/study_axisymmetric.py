@@ -51,7 +51,7 @@ def run(folder, case, overrides, *options):
             raise RuntimeError(f"{program}: {done.stderr.strip().splitlines()[-1] if done.stderr.strip() else done.returncode}")
     folder.mkdir(parents=True, exist_ok=True)
     sets = [word for text in ["pad.mesh_error_limit=1", 'output.frame_interval="30 ms"', *overrides] for word in ("--set", text)]
-    call("softfall-pre", str(ROOT / "examples" / case / "case.cfg"), "-o", str(folder / "model.h5"), "--force", *options, *sets)
+    call("softfall-pre", str(ROOT / "examples" / case / "case.cfg"), "-o", str(folder / "model.h5"), "--force", "--estimate", *options, *sets)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     call("softfall-solve", str(folder / "model.h5"), "-o", str(folder / "results.h5"), "--force")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

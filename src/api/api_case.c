@@ -68,7 +68,7 @@ softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink
     softfall_model *m = sf_alloc(&err, 1, sizeof *m, "a model");
     if (m) {
         c->used_up = true;
-        if (sf_model_make(&c->data, &m->model, &report, m->libraries, &inner, &err) == SF_OK)
+        if (sf_model_make(&c->data, &m->model, &report, m->libraries, NULL, &inner, &err) == SF_OK)
             keep_texts(c, &report, m, &err);
         m->kernel = (sf_kernel){c->data.support_ratio, c->data.condition_limit};
     }

@@ -2,31 +2,28 @@
 /* libsoftfall: drops, their results and figures, models in files. */
 #include "api/api.h"
 #include "build_info.h"
+#include "drop/drop.h"
 #include "io/h5_data.h"
-#include "model/flight.h"
 #include "model/model_check.h"
 #include "model/model_io.h"
-#include "post/figures/figures.h"
 #include "solver/run/frame.h"
-#include "solver/run/run.h"
-#include "solver/set.h"
-#include "solver/step.h"
 
 #include <omp.h>
 
 /* A drop behind its handle. */
-
 struct softfall_drop {
-    sf_model model;      /* arrays borrowed from the caller's model, but for the reference of a set */
-    sf_model undeformed; /* borrowed altogether */
-    sf_operators operators;
-    sf_state state;
-    sf_recorder recorder;
+    sf_drop drop;
     int threads; /* 0: as OpenMP would */
-    softfall_ending ending;
-    sf_error failure; /* of a step */
     softfall_quantity column[SF_HISTORY_COUNT], field[SF_FRAME_FIELDS];
 };
+
+_Static_assert((int)SOFTFALL_RUNNING == SF_DROP_RUNS && (int)SOFTFALL_REBOUND == SF_DROP_REBOUND &&
+                   (int)SOFTFALL_FINISHED == SF_DROP_FINISHED,
+               "the two lists of endings are one");
+
+static softfall_ending ending_of(const softfall_drop *d) {
+    return (softfall_ending)d->drop.ending;
+}
 
 /* Sets the number of threads of the drop and returns the number before. */
 static int enter(const softfall_drop *drop) {
@@ -60,41 +57,21 @@ static sf_status check_options(const softfall_drop_options *o, sf_error *err) {
     return SF_OK;
 }
 
-/* The permanent set of the drop before; the reference becomes the drop's own. */
-static sf_status take_set(softfall_drop *d, const sf_state *before, double pause, sf_error *err) {
-    sf_model *m = &d->model;
-    double **own[] = {&m->position, &m->volume, &m->domain_b};
-    const int64_t count[] = {3 * m->node_count, m->node_count, 3 * m->domain_nnz};
-    if (!before || !(sf_model_set(m) > 0))
-        return SF_OK;
-    for (int k = 0; k < 3; k++) {
-        const double *from = *own[k];
-        if ((*own[k] = sf_alloc(err, count[k], sizeof *from, "the reference of a drop")))
-            memcpy(*own[k], from, (size_t)count[k] * sizeof *from);
-    }
-    SF_TRY(err->status);
-    return sf_set_move(m, before->set, before->set_peak, pause, err);
-}
-
-/* The drop of a model; `before` and `pause`: as of sf_series_continue, NULL: on a new pad. */
+/* The drop of a model; `before` and `pause`: as of sf_drop_begin. */
 static sf_status create(const sf_model *model, int threads, const softfall_drop *before, double pause,
                         softfall_drop **out, sf_error *err) {
     softfall_drop *d = sf_alloc(err, 1, sizeof *d, "a drop");
     SF_TRY(err->status);
-    d->model = d->undeformed = *model;
     d->threads = threads;
-    sf_recorder_begin(&d->recorder);
     list_quantities(d);
     int usual = enter(d);
-    if (d->model.series_count > 1)
+    if (model->series_count > 1)
         SF_REFUSE(err,
                   "the model is a series of %lld drops; the library solves one after another: make the model "
                   "of the case with series.drops = 1, and its later drops with softfall_drop_next",
-                  (long long)d->model.series_count);
-    if (err->status == SF_OK && sf_model_check(&d->model, err) == SF_OK &&
-        take_set(d, before ? &before->state : NULL, pause, err) == SF_OK &&
-        sf_operators_build(&d->model, &d->operators, err) == SF_OK)
-        sf_series_continue(before ? &before->state : NULL, pause, &d->model, &d->operators, &d->state, err);
+                  (long long)model->series_count);
+    if (err->status == SF_OK && sf_model_check(model, err) == SF_OK)
+        sf_drop_begin(model, before ? &before->drop : NULL, pause, &d->drop, err);
     omp_set_num_threads(usual);
     if (err->status == SF_OK)
         *out = d;
@@ -122,67 +99,48 @@ softfall_status softfall_drop_next(const softfall_drop *before, double pause, so
     *out = NULL;
     if (!(pause > 0) || !isfinite(pause))
         SF_REFUSE(&err, "pause: %g s" SF_NOT_ABOVE_0, pause);
-    else if (before->ending == SOFTFALL_RUNNING || before->failure.status != SF_OK ||
-             before->state.contact_count > 0)
+    else if (before->drop.ending == SF_DROP_RUNS || before->drop.failure.status != SF_OK ||
+             before->drop.state.contact_count > 0)
         SF_REFUSE(&err, "the drop before has not ended, or its missile still touches the pad");
     else
-        create(&before->undeformed, before->threads, before, pause, out, &err);
+        create(&before->drop.undeformed, before->threads, before, pause, out, &err);
     return softfall_return(&err, error);
 }
 
 void softfall_drop_free(softfall_drop *d) {
-    if (!d)
-        return;
-    sf_recorder_free(&d->recorder);
-    sf_state_free(&d->state);
-    sf_operators_free(&d->operators);
-    if (d->model.position != d->undeformed.position)
-        SF_FREE(d->model.position, d->model.volume, d->model.domain_b);
-    SF_FREE(d->model.set, d);
-}
-
-static void step(softfall_drop *d) {
-    if (d->recorder.history.rows > 0)
-        sf_step_advance(&d->model, &d->state);
-    if (sf_step_evaluate(&d->model, &d->operators, &d->state, &d->failure) != SF_OK ||
-        sf_recorder_add(&d->recorder, &d->model, &d->state, &d->failure) != SF_OK)
-        return;
-    if (sf_ending_on_anvil(&d->model, &d->state))
-        sf_ending_fail_on_anvil(&d->model, &d->state, &d->failure);
-    else if (sf_ending_rebounded(&d->model, &d->state))
-        d->ending = SOFTFALL_REBOUND;
-    else
-        d->ending = sf_ending_finished(&d->model, &d->state) ? SOFTFALL_FINISHED : SOFTFALL_RUNNING;
+    if (d)
+        sf_drop_free(&d->drop);
+    free(d);
 }
 
 softfall_status softfall_drop_step(softfall_drop *d, softfall_ending *ending, softfall_error *error) {
-    if (d->ending == SOFTFALL_RUNNING && d->failure.status == SF_OK) {
+    if (d->drop.ending == SF_DROP_RUNS && d->drop.failure.status == SF_OK) {
         int before = enter(d);
-        step(d);
+        sf_drop_step(&d->drop);
         omp_set_num_threads(before);
     }
     if (ending)
-        *ending = d->ending;
-    return softfall_return(&d->failure, error);
+        *ending = ending_of(d);
+    return softfall_return(&d->drop.failure, error);
 }
 
 softfall_status softfall_drop_run(softfall_drop *d, int (*observe)(void *user, const softfall_drop *drop),
                                   void *user, softfall_ending *ending, softfall_error *error) {
-    softfall_status status = softfall_return(&d->failure, error);
+    softfall_status status = softfall_return(&d->drop.failure, error);
     bool stopped = false;
-    while (status == SOFTFALL_OK && d->ending == SOFTFALL_RUNNING && !stopped) {
+    while (status == SOFTFALL_OK && d->drop.ending == SF_DROP_RUNS && !stopped) {
         status = softfall_drop_step(d, NULL, error);
         stopped = status == SOFTFALL_OK && observe && observe(user, d) != 0;
     }
     if (ending)
-        *ending = d->ending;
+        *ending = ending_of(d);
     return status;
 }
 
 /* ---- results of a drop: its last step, its history, the fields over its nodes ---- */
 
 int64_t softfall_drop_steps(const softfall_drop *d) {
-    return d->recorder.history.rows;
+    return d->drop.recorder.history.rows;
 }
 
 double softfall_drop_latest(const softfall_drop *d, const char *name) {
@@ -199,8 +157,8 @@ const softfall_quantity *softfall_drop_columns(const softfall_drop *d, int *coun
 int64_t softfall_drop_history(const softfall_drop *d, const char *name, const double **values) {
     for (int k = 0; k < SF_HISTORY_COUNT; k++)
         if (strcmp(d->column[k].name, name) == 0) {
-            *values = d->recorder.history.column[k];
-            return d->recorder.history.rows;
+            *values = d->drop.recorder.history.column[k];
+            return d->drop.recorder.history.rows;
         }
     return -1;
 }
@@ -217,13 +175,13 @@ static sf_status take_field(const softfall_drop *d, const char *name, double *va
         field++;
     if (field == SF_FRAME_FIELDS)
         return SF_REFUSE(err, "unknown field \"%.80s\" of the nodes", name);
-    int64_t needed = d->model.node_count * d->field[field].components;
+    int64_t needed = d->drop.model.node_count * d->field[field].components;
     if (size != needed)
         return SF_REFUSE(err, "the field \"%s\" has %lld values, room was given for %lld", name,
                          (long long)needed, (long long)size);
-    if (d->recorder.history.rows == 0 || d->failure.status != SF_OK)
+    if (d->drop.recorder.history.rows == 0 || d->drop.failure.status != SF_OK)
         return SF_REFUSE(err, "the drop has no good step whose fields could be read");
-    sf_frame_take(&d->model, &d->operators, &d->state, (sf_frame_field)field, values);
+    sf_frame_take(&d->drop.model, &d->drop.operators, &d->drop.state, (sf_frame_field)field, values);
     return SF_OK;
 }
 
@@ -338,51 +296,12 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
     return err->status;
 }
 
-/* The drop as its results file would show it; the arrays stay the drop's. */
-static sf_status view(const softfall_drop *d, sf_results *r, sf_error *err) {
-    const sf_model *m = &d->undeformed;
-    double lock_begin, lock_up = sf_model_lock_up(m, &lock_begin), set[2] = {NAN, NAN};
-    if (d->model.set)
-        sf_set_measure(&d->model, set);
-    *r = (sf_results){.node_count = m->node_count,
-                      .position = m->position,
-                      .set = set[0],
-                      .set_largest = set[1],
-                      .volume = m->volume,
-                      .symmetry_factor = m->symmetry_factor,
-                      .thickness = m->thickness,
-                      .informed_strain = sf_model_informed_strain(m),
-                      .expected_mesh_error = m->expected_mesh_error > 0 ? m->expected_mesh_error : NAN,
-                      .slit_fraction = m->slit_fraction,
-                      .anvil_depth = m->anvil.depth,
-                      .density = sf_model_density(m),
-                      .given_back = sf_model_whole(m) * d->state.given_back,
-                      .vibration = sf_model_whole(m) * d->state.vibration,
-                      .air = m->air,
-                      .speed_scatter = m->run.speed_scatter,
-                      .thickness_tolerance = m->run.thickness_tolerance,
-                      .lock_up = lock_up,
-                      .lock_begin = lock_begin,
-                      .impact_x = m->missile.impact_known ? m->missile.impact[0] : NAN,
-                      .impact_y = m->missile.impact_known ? m->missile.impact[1] : NAN,
-                      .missile_mass = m->missile.mass,
-                      .missile_speed = m->missile.speed,
-                      .gravity_along = sf_flight_pull(&m->missile),
-                      .kinematic = m->run.kinematic != 0,
-                      .driven = sf_missile_is_driven(m),
-                      .history = d->recorder.history};
-    sf_flight_gravity(&m->missile, r->gravity);
-    if (r->history.rows < 3)
-        return SF_REFUSE(err, "the drop has %lld steps" SF_AT_LEAST("3"), (long long)r->history.rows);
-    return SF_OK;
-}
-
 softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, softfall_figures **out,
                                       softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     sf_results r;
     *out = NULL;
-    if (view(drop, &r, &err) == SF_OK)
+    if (sf_drop_results(&drop->drop, &r, &err) == SF_OK)
         compute(&r, filter, out, &err);
     return softfall_return(&err, error);
 }

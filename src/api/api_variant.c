@@ -18,6 +18,7 @@ static sf_status apply(const softfall_model *from, const softfall_variant *v, sf
     SF_TRY(check_value("thickness", v->thickness, 1e3, err));
     if ((v->speed > 0 || v->mass > 0) && sf_missile_is_driven(m))
         return SF_REFUSE(err, "speed, mass: the missile has a prescribed motion, and no mass or speed");
+    m->section = (sf_section_drop){0}; /* of another drop */
     m->missile.speed = v->speed > 0 ? v->speed : m->missile.speed;
     m->missile.mass = v->mass > 0 ? v->mass : m->missile.mass;
     if (v->material)

@@ -61,7 +61,7 @@
       "nodes with 0.5 % of the energy collapse or carry the missile alone: the foam is unstable or the mesh too coarse", \
       .refuse = 0.3) \
     X(mesh, 0.03, "expected error of a_max from the mesh", \
-      "`/model/expected_mesh_error` of results.h5", \
+      "`a_max_mesh_error`", \
       "the spacing under the missile is too coarse for its pad", \
       .refuse = 0.25, .sure = 1, .percent = true) \
     X(slit, 0, "nodes at a slit, hole or gap narrower than their supports", \

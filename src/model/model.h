@@ -105,6 +105,28 @@ typedef struct sf_run_options {
     double temperature;         /* K, of the pad, to which its materials are taken; 0: not given */
 } sf_run_options;
 
+/* X(member, unit, meaning): the axisymmetric drop of a plate that a body of revolution hits straight
+ * (accuracy/section_drop.h). */
+/* clang-format off */
+#define SF_SECTION_DROP(X) \
+    X(a_max_g, "9.80665 m s-2", "a_max of the drop's section for ever finer meshes, CFC 1000; 0: it was not simulated") \
+    X(hic, "1", "HIC of it") \
+    X(indentation, "m", "largest indentation of it") \
+    X(a_max_error, "1", "uncertainty of that a_max, over it") \
+    X(hic_error, "1", "of that HIC") \
+    X(indentation_error, "1", "of that indentation") \
+    X(a_max_by_speed, "1", "relative change of a_max in a drop 1 % faster; 0: it is not known") \
+    X(hic_by_speed, "1", "of HIC") \
+    X(a_max_by_thickness, "1", "relative change of a_max on a pad 1 mm thinner; 0: it is not known") \
+    X(hic_by_thickness, "1", "of HIC")
+/* clang-format on */
+#define SF_SECTION_DROP_THINNER 1e-3 /* m, of the pad for `..._by_thickness` */
+#define SF_SECTION_DROP_MEMBER(member, ...) double member;
+typedef struct sf_section_drop {
+    SF_SECTION_DROP(SF_SECTION_DROP_MEMBER)
+} sf_section_drop;
+#undef SF_SECTION_DROP_MEMBER
+
 typedef struct sf_model {
     /* Cloud: nodes of the background mesh, those of a material together, in a locality-preserving order. */
     int64_t node_count;
@@ -224,8 +246,9 @@ typedef struct sf_model {
     double air;       /* m, on the same way: gaps of a pad with a skin, which close first */
     double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; 0 = not estimated */
     double slit_fraction;       /* of the nodes: those at a slit, hole or gap narrower than their supports */
-    int64_t material_count;     /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */
-    sf_material *material;      /* [material_count] owned */
+    sf_section_drop section;
+    int64_t material_count; /* 1 to SF_MATERIAL_MAX; of several, each is a layer with its own cloud */
+    sf_material *material;  /* [material_count] owned */
     sf_missile_card missile;
     sf_anvil_card anvil;
     sf_run_options run;

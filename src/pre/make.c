@@ -3,6 +3,7 @@
 
 #include "base/mat3.h"
 #include "pre/mesh/gmsh_session.h"
+#include "pre/mesh/refine.h"
 #include "pre/mesh/section.h"
 #include "pre/support.h"
 
@@ -90,13 +91,54 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
     return err->status;
 }
 
+/* ---- sections beside the model ---- */
+
+void sf_sections_free(sf_sections *s) {
+    for (int k = 0; k < SF_SECTIONS; k++) {
+        sf_mesh_free(&s->mesh[k]);
+        sf_surface_free(&s->missile[k]);
+    }
+}
+
+static sf_status copy_sections(const sf_mesh *mesh, const sf_surface *missile, sf_sections *s,
+                               sf_error *err) {
+    SF_TRY(sf_section_refine(mesh, &s->mesh[SF_SECTION_FINE], err));
+    SF_TRY(sf_surface_copy(missile, &s->missile[SF_SECTION_FINE], err));
+    return s->mesh[SF_SECTION_EQUAL].node_count > 0
+               ? sf_surface_copy(missile, &s->missile[SF_SECTION_EQUAL], err)
+               : SF_OK;
+}
+
+/* This tells nothing of a drop that has none. */
+static void take_sections(const sf_case *c, const sf_mesh *mesh, const sf_surface *missile, sf_sections *s) {
+    sf_mesh *equal = &s->mesh[SF_SECTION_EQUAL];
+    sf_error none = SF_ERROR_INIT;
+    *s = (sf_sections){0};
+    if (c->motion_count > 0 || sf_section_check_case(c, &none) != SF_OK ||
+        (!c->axisymmetric && sf_section_cut(c, mesh, equal, &none) != SF_OK))
+        return;
+    if ((c->axisymmetric ? mesh : equal)->node_count > SF_SECTIONS_MOST ||
+        copy_sections(c->axisymmetric ? mesh : equal, missile, s, &none) != SF_OK)
+        sf_sections_free(s);
+}
+
+sf_status sf_sections_build(sf_sections *s, int which, sf_case *c, sf_model *model, sf_error *err) {
+    sf_build_report report;
+    c->axisymmetric = 1;
+    c->mesh_error_limit = INFINITY;
+    c->drops = 1;
+    return sf_model_build(c, &s->mesh[which], &s->missile[which], model, &report, NULL, err);
+}
+
 sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
-                        char libraries[SF_LIBRARIES_SIZE], const sf_sink *sink, sf_error *err) {
+                        char libraries[SF_LIBRARIES_SIZE], sf_sections *sections, const sf_sink *sink,
+                        sf_error *err) {
     sf_surface surface = {0}, support[SF_SUPPORTS] = {0};
     sf_mesh mesh = {0};
     memset(model, 0, sizeof *model);
-    if (read_geometry(c, &mesh, &surface, support, libraries, sink, err) == SF_OK &&
-        sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
+    if (read_geometry(c, &mesh, &surface, support, libraries, sink, err) == SF_OK && sections)
+        take_sections(c, &mesh, &surface, sections);
+    if (err->status == SF_OK && sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
         if (sf_hold_check(&report->hold, c->separate, model, err) == SF_OK && report->contact_held)
             SF_REFUSE(err,
                       "pad.contact: every node of the group \"%s\" is held along z by pad.fixed or "

@@ -409,9 +409,10 @@ static void name_failed_drop(const sf_run_folder *at, sf_error *err) {
 static sf_status simulate(const sf_run_folder *at, const char *case_path, int count,
                           const char *const *overrides, int threads, const int *held, sf_error *err) {
     char pre[PATH_MAX], solve[PATH_MAX], thread_text[16], share[SF_RUN_PATH_SIZE];
-    const char *build[MAX_ARGUMENTS] = {pre, case_path, "-o", at->model, "--force", "--share", share};
-    assert(7 + 2 * count < MAX_ARGUMENTS);
-    int n = 7;
+    const char *build[MAX_ARGUMENTS] = {pre,       case_path, "-o",  at->model,
+                                        "--force", "--share", share, "--estimate"};
+    assert(8 + 2 * count < MAX_ARGUMENTS);
+    int n = 8;
     snprintf(share, sizeof share, "%.*s" SF_RUN_SHARED, (int)(strrchr(at->path, '/') + 1 - at->path),
              at->path);
     for (int k = 0; k < count; k++) {

@@ -68,6 +68,48 @@ def test_later_drops_on_a_pad_with_set_are_those_of_the_quarter(tmp_path):
         assert later[1][key] == pytest.approx(later[0][key], rel=bound), key
 
 
+ERRORS = {"a_max_g": "a_max_mesh_error", "hic": "hic_mesh_error", "max_indentation_mm": "max_indentation_mesh_error"}
+FINE = ["geometry.parameters.fine_spacing=2.5", "geometry.parameters.outer_spacing=5.0"]
+
+
+def test_errors_hold_against_finer_meshes(tmp_path):
+    """verify/study_section_errors.py has more drops; a quarter takes its errors from the section, too."""
+    truth = figures(tmp_path, QUARTER, *FINE, options=["--axisymmetric", "--estimate"])
+    assert truth["hic_mesh_error"] is None and truth["a_max_mesh_error"] < 0.003  # by the formula
+    for options in (["--axisymmetric"], []):
+        told = figures(tmp_path, QUARTER, "geometry.parameters.outer_spacing=20.0", options=options)
+        for key, error in ERRORS.items():
+            true = abs(truth[key] / told[key] - 1)
+            assert true <= told[error] <= max(3 * true, 0.003), (options, key)
+        check = next(row for row in told["verdict"]["checks"] if row["key"] == "mesh")
+        assert check["value"] == told["a_max_mesh_error"]
+
+
+def test_edge_is_that_of_drops(tmp_path):
+    """Also of a foam that locks up, where the slope of the force sees no cliff."""
+    for locks in ([], ['missile.velocity="5.148 m/s"', 'material.densification={rule="H2"; start=0.76; limit=0.83; exponent=1.0;}']):
+        told = figures(tmp_path, SECTION, *locks)
+        speed = 5.148 if locks else 4.5
+        faster = figures(tmp_path, SECTION, *locks, f'missile.velocity="{1.01 * speed} m/s"', options=["--estimate"])
+        thinner = figures(tmp_path, SECTION, *locks, "geometry.parameters.thickness=49.0", options=["--estimate"])
+        for key in ("a_max", "hic"):
+            figure = {"a_max": "a_max_g", "hic": "hic"}[key]
+            assert told[f"{key}_change_by_speed"] == pytest.approx(faster[figure] / told[figure] - 1, abs=1e-4)
+            assert told[f"{key}_change_by_thickness"] == pytest.approx(-0.5 * (thinner[figure] / told[figure] - 1), abs=3e-3)
+        assert told["a_max_change_by_speed"] > (0.1 if locks else 0.02)
+
+
+def test_the_section_is_of_a_new_pad_and_a_wide_one(tmp_path):
+    """A later drop, and a pad with its sides near the contact, have the formula's error."""
+    figures(tmp_path, ROOT / "examples/series/case.cfg", "series.drops=2", options=["--axisymmetric"])
+    done = call("softfall-post", tmp_path / "r-2.h5", "-o", tmp_path / "second", "--force")
+    assert done.returncode == 0, done.stderr
+    first, second = (json.loads((tmp_path / name / "summary.json").read_text()) for name in ("out", "second"))
+    assert first["hic_mesh_error"] is not None and second["hic_mesh_error"] is None and second["a_max_mesh_error"] > 0
+    narrow = ["geometry.parameters.side=160.0", "geometry.parameters.zone_side=120.0", "geometry.parameters.outer_spacing=10.0"]
+    assert figures(tmp_path, QUARTER, *narrow)["hic_mesh_error"] is None
+
+
 @pytest.mark.parametrize("text, why", [
     ("missile.direction=[0.1, 0.0, -1.0]", "missile.direction is oblique"), ('missile.freedom="free"', 'missile.freedom is "free"'),
     ('missile.position=["5 mm", "0 mm"]', "missile.position lies off the axis"), ("pad.separate=true", "pad.separate lets bodies lie loose"),

@@ -54,8 +54,12 @@
       .name = "a_max, scatter of drops", .shown = 100, .unit = "%", .format = "%.2f") \
     X(NUMBER, hic_scatter, "hic_scatter", 1, "the same of HIC", \
       .name = "HIC, scatter of drops", .shown = 100, .unit = "%", .format = "%.2f") \
-    X(FACT, expected_mesh_error, "a_max_mesh_error", 1, "expected error of a_max by the mesh, over it, from the spacing and the size of the contact; undefined where softfall-pre estimates none", \
-      .name = "a_max, by the mesh", .shown = 100, .unit = "%", .format = "%.1f") \
+    X(NUMBER, a_max_mesh_error, "a_max_mesh_error", 1, "expected error of a_max by the mesh, over it: from drops of the section on finer meshes where the drop is axisymmetric (theory.md, section 14), else from the spacing and the size of the contact; undefined where softfall-pre estimates none", \
+      .name = "a_max, by the mesh", .shown = 100, .unit = "%", .format = "%.2g") \
+    X(NUMBER, hic_mesh_error, "hic_mesh_error", 1, "the same of HIC; only where the drop is axisymmetric", \
+      .name = "HIC, by the mesh", .shown = 100, .unit = "%", .format = "%.2g") \
+    X(NUMBER, indentation_mesh_error, "max_indentation_mesh_error", 1, "the same of the largest indentation", \
+      .name = "indentation, by the mesh", .shown = 100, .unit = "%", .format = "%.2g") \
     X(COUNT, raw_peak_rows, "a_max_raw_rows", 1, "rows around that peak above half of it: 1 or 2 are an artefact of the time step") \
     X(NUMBER, peak_resultant, "peak_resultant_g", 1, "largest resultant acceleration of the centre of mass of a free missile, its axes filtered: a_max_g of it; like the next ones undefined of a guided one") \
     X(NUMBER, peak_angular_acceleration, "peak_angular_acceleration_rad_s2", 1, "largest resultant angular acceleration, its axes filtered", \

@@ -245,6 +245,13 @@ static sf_status read_optional(const sf_results *r, const char *path, double *va
     return err->status;
 }
 
+static sf_status read_section(sf_results *r, sf_error *err) {
+#define READ(member, ...) SF_TRY(read_optional(r, "/model/section/" #member, &r->section.member, err));
+    SF_SECTION_DROP(READ)
+#undef READ
+    return SF_OK;
+}
+
 /* Files of earlier versions have it along -z only. */
 static sf_status read_gravity(sf_results *r, sf_error *err) {
     SF_TRY(sf_h5_read_scalar(r->file, "/model/gravity_along", &r->gravity_along, err));
@@ -385,6 +392,7 @@ static sf_status read_model(sf_results *r, sf_error *err) {
     SF_TRY(sf_h5_read_scalar(r->file, "/model/expected_mesh_error", &r->expected_mesh_error, err));
     if (!(r->expected_mesh_error > 0))
         r->expected_mesh_error = NAN; /* the law of the mesh error does not apply */
+    SF_TRY(read_section(r, err));
     SF_TRY(read_optional(r, "/model/informed_strain", &r->informed_strain, err));
     SF_TRY(read_optional(r, "/model/impact_x", &r->impact_x, err));
     SF_TRY(read_optional(r, "/model/impact_y", &r->impact_y, err));

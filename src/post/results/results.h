@@ -10,6 +10,7 @@
 #include "base/mat3.h"
 #include "io/h5.h"
 #include "model/columns.h"
+#include "model/model.h"
 #include "post/results/revolution.h"
 
 typedef struct sf_frame_head {
@@ -58,6 +59,7 @@ typedef struct sf_results {
     double thickness;         /* m */
     double density;           /* kg m-3, mean */
     double expected_mesh_error; /* fraction of a_max, see pre/drop_check.h; NaN: not estimated */
+    sf_section_drop section;    /* of the drop's section; NaN: it was not simulated */
     double air;                 /* m, gaps on the way of the thickness, which close first; NaN: not stored */
     double speed_scatter, thickness_tolerance; /* -, m: standard deviations; NaN: not stored */
     double lock_up, lock_begin; /* -, see sf_model_lock_up; NaN: none, or the file does not say */

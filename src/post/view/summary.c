@@ -138,7 +138,7 @@ sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_err
 static const char *const drop_keys[] = {
     "a_max_g", "a_max_raw_g", "hic", "hic15", "hic36", "gadd", "clip_3ms_g", "v_rebound_m_s",
     "absorbed_energy_fraction", "a_max_change_by_speed", "a_max_change_by_thickness", "a_max_scatter",
-    "hic_scatter", "a_max_mesh_error", NULL};
+    "hic_scatter", "a_max_mesh_error", "hic_mesh_error", "max_indentation_mesh_error", NULL};
 /* clang-format on */
 static const char *const rotation_keys[] = {"peak_angular_acceleration_rad_s2", "peak_angular_velocity_rad_s",
                                             "bric", NULL};

@@ -263,22 +263,31 @@ static sf_status check_rectangle(const sf_mesh *mesh, sf_error *err) {
                      100 * volume / whole);
 }
 
-sf_status sf_section_take_pad(const sf_case *c, sf_mesh *mesh, sf_error *err) {
-    bool drawn = sf_mesh_is_section(mesh);
-    if (!drawn) {
-        sf_mesh section = {0};
-        double volume;
-        if (sf_mesh_check(mesh, &volume, err) == SF_OK)
-            cut(c, mesh, &section, err);
-        sf_mesh_free(mesh);
-        *mesh = section;
-        SF_TRY(err->status);
-    }
-    SF_TRY(place_nodes(mesh, drawn, err));
-    sf_mesh_orient(mesh);
+/* Moves the section onto the axis and judges it. */
+static sf_status finish(sf_mesh *section, bool drawn, sf_error *err) {
     double volume;
-    SF_TRY(sf_mesh_check(mesh, &volume, err));
-    return check_rectangle(mesh, err);
+    SF_TRY(place_nodes(section, drawn, err));
+    sf_mesh_orient(section);
+    SF_TRY(sf_mesh_check(section, &volume, err));
+    return check_rectangle(section, err);
+}
+
+sf_status sf_section_cut(const sf_case *c, const sf_mesh *solid, sf_mesh *section, sf_error *err) {
+    double volume;
+    if (sf_mesh_check(solid, &volume, err) != SF_OK || cut(c, solid, section, err) != SF_OK ||
+        finish(section, false, err) != SF_OK)
+        sf_mesh_free(section);
+    return err->status;
+}
+
+sf_status sf_section_take_pad(const sf_case *c, sf_mesh *mesh, sf_error *err) {
+    if (sf_mesh_is_section(mesh))
+        return finish(mesh, true, err);
+    sf_mesh section = {0};
+    sf_section_cut(c, mesh, &section, err);
+    sf_mesh_free(mesh);
+    *mesh = section;
+    return err->status;
 }
 
 /* ---- the missile ---- */

@@ -15,6 +15,8 @@ sf_status sf_section_check_case(const sf_case *c, sf_error *err);
  * its symmetry plane y = 0 become the cells, and its groups their sides there. SF_ERR_INPUT: the section
  * crosses the axis or does not reach it; it is no rectangle, or the pad no plate; there is no such plane. */
 sf_status sf_section_take_pad(const sf_case *c, sf_mesh *mesh, sf_error *err);
+/* The same of a solid pad, which stays; `section` is empty before and, on failure, again. */
+sf_status sf_section_cut(const sf_case *c, const sf_mesh *solid, sf_mesh *section, sf_error *err);
 
 /* Makes the missile's surface one of revolution by its profile: its points where it has no triangles, or the
  * nodes of the surface, whole or a part of it, by radius and height. Its facets touch the profile in the half

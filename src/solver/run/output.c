@@ -82,6 +82,19 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
     return SF_OK;
 }
 
+/* The results hold what the model says of the drop of its section. */
+static sf_status write_section(const sf_model *m, sf_h5 *file, sf_error *err) {
+#define WRITE(member, units, text)                                                                           \
+    if (err->status == SF_OK)                                                                                \
+        sf_h5_write(file, &(sf_h5_info){"/model/section/" #member, units, text}, SF_H5_F64, 0, NULL,         \
+                    &m->section.member, err);
+    if (m->section.a_max_g > 0) {
+        SF_SECTION_DROP(WRITE)
+    }
+#undef WRITE
+    return err->status;
+}
+
 /* The layers of a pad of several materials. */
 static sf_status write_layers(const sf_model *m, sf_h5 *file, sf_error *err) {
     double density[SF_MATERIAL_MAX], informed[SF_MATERIAL_MAX];
@@ -113,7 +126,7 @@ static sf_status create_results(const char *path, const sf_model *m, const sf_h5
     SF_TRY(sf_h5_create(path, file, err));
     if (sf_provenance_write(*file, "softfall-results", provenance, err) == SF_OK &&
         sf_provenance_copy(model_file, *file, err) == SF_OK && write_arrays(m, *file, err) == SF_OK &&
-        write_layers(m, *file, err) == SF_OK)
+        write_section(m, *file, err) == SF_OK && write_layers(m, *file, err) == SF_OK)
         return SF_OK;
     sf_h5_drop(file);
     return err->status;

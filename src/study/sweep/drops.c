@@ -232,7 +232,7 @@ static sf_status from_model(const sf_plan *p, sf_sweep_cost *c, sf_error *err) {
     char libraries[SF_LIBRARIES_SIZE];
     sf_error refused = SF_ERROR_INIT;
     SF_TRY(sf_sweep_read_case(p, 0, &first, err));
-    if (sf_model_make(&first, &model, &report, libraries, NULL, &refused) == SF_OK) {
+    if (sf_model_make(&first, &model, &report, libraries, NULL, NULL, &refused) == SF_OK) {
         double nodes = first.drops * (double)model.node_count;
         c->seconds = SETUP_SECONDS + 2 * first.drops * sf_report_seconds(&model, &report); /* of two cores */
         c->bytes = RUN_BYTES + NODE_BYTES * nodes;
