@@ -201,10 +201,11 @@ static long try_pipe(void) {
     X(clone3)                                                                                                \
     X(write)                                                                                                 \
     X(create)                                                                                                \
-    X(append) X(device) X(folder) X(path) X(temporary) X(openat2) X(socket) X(socketpair) X(ptrace)          \
-        X(attach) X(memory_of_parent) X(kill) X(tgkill) X(pidfd) X(memfd) X(executable) X(mprotect) X(prctl) \
-            X(mount) X(unlink) X(rename) X(mkdir) X(rmdir) X(truncate) X(chmod) X(chown) X(link) X(symlink)  \
-                X(mkfifo) X(utime) X(chdir) X(chroot) X(setuid) X(limit) X(sigsys) X(ioctl) X(duplicate)     \
+    X(append)                                                                                                \
+    X(device) X(folder) X(path) X(temporary) X(openat2) X(socket) X(socketpair) X(ptrace) X(attach)          \
+        X(memory_of_parent) X(kill) X(tgkill) X(pidfd) X(memfd) X(executable) X(mprotect) X(prctl) X(mount)  \
+            X(unlink) X(rename) X(mkdir) X(rmdir) X(truncate) X(chmod) X(chown) X(link) X(symlink) X(mkfifo) \
+                X(utime) X(chdir) X(chroot) X(setuid) X(limit) X(sigsys) X(ioctl) X(duplicate)               \
                     X(nonblocking) X(bpf) X(io_uring) X(userfaultfd) X(keyring) X(unshare) X(pipe)
 #define ROW(name) {#name, try_##name},
 static const struct {

@@ -3,6 +3,8 @@
  * that names the thing, its value and what it may be, and every file of an earlier run stays as it was. */
 #include "program_fixture.h"
 
+#include "io/h5_data.h"
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -191,11 +193,21 @@ static void geometries(void **state) {
         {"--set geometry.parameters.thickness=-50.0", {"pad.geo", "thickness", "must be above 0"}},
         {"--set geometry.parameters.fine_spacing=0.0", {"pad.geo", "fine_spacing", "must be above 0"}},
         {"--set geometry.length_unit=nm",
-         {"pad is 5e-08 m thick", "1e-06 to 1000 m", "geometry.length_unit"}},
+         {"pad is 5e-05 mm thick", "0.5 to 5000 mm", "geometry.length_unit is 1e-09 m"}},
+        {"--set geometry.length_unit=m", {"pad is 50000 mm thick", "5000 mm", "geometry.length_unit is 1 m"}},
+        {"--set geometry.missile_length_unit=m",
+         {"1.6e+05 x 1.6e+05 x 8e+04 mm", "geometry.missile_length_unit is 1 m", "sizes cannot belong"}},
+        {"--set geometry.missile_length_unit=um", {"0.16 x 0.16 x 0.08 mm", "sizes cannot belong"}},
+        {"--set geometry.missile_file= --set geometry.missile_parameters= --set geometry.missile_length_unit=m",
+         {"geometry.missile_file"}},
         {"--set missile.mass='1 mg'", {"missile.mass", "1e-06 kg", "the heaviest node"}},
         {"--set material.eta='1e9 Pa s'", {"first stable time step", "1e-09 of solver.end_time", "eta"}},
         {"--set geometry.parameters.quarter=0 --set missile.shape=surface",
          {"cut open", "x = 0 mm", "whole pad"}},
+        {"--set geometry.parameters.quarter=0", {"missile is cut open", "x = 0 mm", "whole pad"}},
+        {"--set pad.symmetry='[\"symmetry_x\"]'", {"missile is cut open", "y = 0 mm", "pad.symmetry"}},
+        {"--set pad.symmetry='[\"symmetry_y\"]' --set geometry.missile_parameters.quarter=0",
+         {"pad is cut open", "x = 0 mm", "pad.symmetry"}},
         {"--set pad.fixed='[\"floor\"]'", {"pad.fixed", "\"floor\"", "\"base\""}},
         {"--set pad.fixed='[\"top\", \"base\"]'", {"pad.contact", "every node", "\"top\""}},
         {"--set pad.sliding='[\"top\"]'", {"pad.contact", "held along z", "pad.sliding"}},
@@ -220,6 +232,51 @@ static void geometries(void **state) {
     if (!SANITIZED)
         REFUSE_ALL(*state, "pre", before, large);
     unsetenv("SOFTFALL_MEMORY_MB");
+}
+
+/* A place at the edge may be meant; it is told, with the key that moves it. */
+static void impacts_on_an_edge_are_told(void **state) {
+    const struct {
+        const char *words, *said;
+    } rows[] = {
+        {"", "(0, 0) mm, lies 0 mm inside"},
+        {"--set missile.position='[\"100 mm\", \"10 mm\"]'", "(100, 10) mm, lies 10 mm inside"},
+        {"--set missile.position='[\"100 mm\", \"100 mm\"]'", NULL},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        program_result r = program_run(
+            *state, "pre",
+            "good.cfg -o edge.h5 --force %s --set pad.symmetry='[]' --set geometry.missile_parameters.quarter=0 %s",
+            program_coarse(20), rows[k].words);
+        const char *told = strstr(r.err, "the missile falls on the edge of the pad");
+        assert_int_equal(r.code, 0);
+        if (!rows[k].said)
+            assert_null(told);
+        else if (!told || !strstr(told, rows[k].said) ||
+                 !strstr(told, "missile.position = [\"100 mm\", \"100 mm\"]"))
+            fail_msg("%s: said: %s", rows[k].words, r.err);
+    }
+}
+
+/* A drawing in centimetres beside one in millimetres: each file has its own unit. */
+static void files_may_have_units_of_their_own(void **state) {
+    char before[512];
+    snprintf(before, sizeof before, "good.cfg --force %s", program_coarse(20));
+    program_succeed(*state, "pre", "%s -o mm.h5", before);
+    program_succeed(*state, "pre",
+                    "%s -o cm.h5 --set geometry.missile_length_unit=cm --set "
+                    "geometry.missile_parameters.diameter=16 --set "
+                    "geometry.missile_parameters.element_size=2",
+                    before);
+    sf_error err = SF_ERROR_INIT;
+    double radius[2] = {0};
+    for (int k = 0; k < 2; k++) {
+        sf_h5 *file = program_open_h5(*state, k ? "cm.h5" : "mm.h5");
+        sf_h5_read_scalar(file, "/missile/sphere_radius", &radius[k], &err);
+        sf_h5_close(&file, &err);
+    }
+    assert_int_equal(err.status, SF_OK);
+    assert_true(radius[0] > 0.0799 && fabs(radius[1] / radius[0] - 1) < 1e-9);
 }
 
 static void command_lines_and_files(void **state) {
@@ -278,8 +335,12 @@ static void campaigns(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_of_a_case), cmocka_unit_test(curves_and_motions),
-        cmocka_unit_test(geometries),       cmocka_unit_test(command_lines_and_files),
+        cmocka_unit_test(values_of_a_case),
+        cmocka_unit_test(curves_and_motions),
+        cmocka_unit_test(geometries),
+        cmocka_unit_test(impacts_on_an_edge_are_told),
+        cmocka_unit_test(files_may_have_units_of_their_own),
+        cmocka_unit_test(command_lines_and_files),
         cmocka_unit_test(campaigns),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);

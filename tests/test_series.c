@@ -154,8 +154,9 @@ static void another_pad_is_refused(void **state) {
     assert_int_equal(
         make_model(p, "other.h5", "--set material.memory.reload=0.0 --set material.memory.recovery=0.0").code,
         0);
-    expect(program_run(p, "solve", "other.h5 -o x.h5 --start-from s.h5 --pause '9 s'"),
-           "remembers other things");
+    expect(program_run(p, "solve", "other.h5 -o x.h5 --start-from s.h5 --pause '9 s'"), "has another foam");
+    assert_int_equal(make_model(p, "stiffer.h5", "--set material.E='\"0.9 MPa\"'").code, 0);
+    expect(program_run(p, "solve", "stiffer.h5 -o x.h5 --start-from s.h5 --pause '9 s'"), "has another foam");
     program_succeed(p, "solve", "other.h5 -o plain.h5 --threads 1");
     program_succeed(p, "solve", "other.h5 -o plain-2.h5 --start-from plain.h5 --pause '9 s' --threads 1");
     assert_non_null(
@@ -167,6 +168,35 @@ static void another_pad_is_refused(void **state) {
     assert_int_not_equal(access(program_path(p, "x.h5"), F_OK), 0);
     expect(program_run(p, "post", "series one.h5 -o x"), "is no series");
     expect(program_run(p, "post", "series s.h5 s-3.h5 -o x"), "not drop 2");
+}
+
+/* A second drop that began on the pad of another run is none of this series, whatever its number says. */
+static void drops_of_another_run_are_refused(void **state) {
+    const program_place *p = *state;
+    assert_int_equal(make_model(p, "slow.h5",
+                                "--set series.drops=2 --set series.interval='\"90 s\"' --set "
+                                "missile.velocity='\"3 m/s\"'")
+                         .code,
+                     0);
+    program_succeed(p, "solve", "slow.h5 -o slow-run.h5 --threads 1");
+    program_succeed(p, "post", "series slow-run.h5 -o slow");
+    program_shell(p, "cp s-2.h5 slow-run-2.h5");
+    expect(program_run(p, "post", "series slow-run.h5 -o x"), "is of another run");
+    expect(program_run(p, "post", "series slow-run.h5 s-2.h5 -o x"), "is of another run");
+}
+
+/* The pad of a run is an input: no output replaces it, whatever it is called. */
+static void the_run_before_is_not_replaced(void **state) {
+    const program_place *p = *state;
+    program_shell(
+        p, "cp s.h5 kept.h5; cp s.h5.restart kept.h5.restart; ln -s kept.h5 soft.h5; ln kept.h5 hard.h5");
+    for (int k = 0; k < 5; k++) {
+        static const char *const output[] = {"kept.h5", "./kept.h5", "soft.h5", "hard.h5", "kept.h5.restart"};
+        char line[256];
+        snprintf(line, sizeof line, "single.h5 -o %s --force --start-from kept.h5 --pause '9 s'", output[k]);
+        expect(program_run(p, "solve", line), "would replace an input");
+    }
+    program_shell(p, "cmp s.h5 kept.h5 && cmp s.h5.restart kept.h5.restart && rm kept.h5* soft.h5 hard.h5");
 }
 
 /* A number of a CSV row by the name of its column. */
@@ -356,6 +386,8 @@ int main(void) {
         cmocka_unit_test(a_series_anew_does_not_go_on_in_the_one_before),
         cmocka_unit_test(wrong_series_are_refused),
         cmocka_unit_test(another_pad_is_refused),
+        cmocka_unit_test(drops_of_another_run_are_refused),
+        cmocka_unit_test(the_run_before_is_not_replaced),
         cmocka_unit_test(drops_of_a_list_are_their_own),
         cmocka_unit_test(first_frame_shows_what_is_left),
         cmocka_unit_test(wrong_lists_are_refused),

@@ -16,7 +16,7 @@ from typing import Any, Callable, Iterator, Mapping, MutableMapping, NamedTuple
 import h5py
 import numpy as np
 
-from . import laboratory, library, programs
+from . import laboratory, library, output as output_files, programs
 from .drop import Drop, as_str, later_results
 from .errors import Error, InputError, NumericError, SoftfallWarning, find
 
@@ -197,13 +197,13 @@ class Case(MutableMapping[str, Any]):
         if on_step is not None and not callable(on_step):
             raise InputError(f"on_step: {on_step!r} is no function")
         top = Path(RUNS if output is None else output).absolute()
-        with _folder(top), tempfile.TemporaryDirectory(prefix=".softfall-", dir=top) as scratch:
-            model = Path(scratch) / "model.h5"
+        with _folder(top), output_files.scratch(top) as scratch:
+            model = scratch / "model.h5"
             share = [f"--share={top / 'shared'}"] if output is None else []
             programs.run("pre", [str(self.path), f"--output={model}", *share, *(f"--set={text}" for text in self._texts())],
                          threads=threads)
             folder = top if output is not None else top / f"{self._name()}-{_state(model)['model']}"
-            with _folder(folder), open(folder / "lock", "w", encoding="utf-8") as lock:
+            with _folder(folder), open(output_files.open_lock(folder / "lock")) as lock:
                 try:  # the child inherits the lock: nobody else takes the folder while it runs
                     fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 except BlockingIOError:
@@ -283,7 +283,7 @@ def _solve(model: Path, folder: Path, threads: int | None, on_step: Callable[[St
         raise InputError(f"{folder} holds a run of other values; force=True replaces it, another output keeps it")
     done = [state.get("status") in ("finished", "rebound") and state.get("revision") == revision for state in states]
     if all(done) and not force:
-        return Drop(files[0], folder / "out")
+        return Drop(files[0], folder / "out", own=True)
     for path in dict.fromkeys(models):
         shutil.move(path, folder / path.name)
     first = done.index(False) if not force else 0
@@ -308,4 +308,4 @@ def _solve(model: Path, folder: Path, threads: int | None, on_step: Callable[[St
     except NumericError as error:
         error.results = str(files[0]) if files[0].exists() else None
         raise
-    return Drop(files[0], folder / "out")
+    return Drop(files[0], folder / "out", own=True)

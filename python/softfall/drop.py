@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import math
 import os
-import tempfile
 from pathlib import Path
 from typing import Any, Iterator, Mapping, Sequence
 
 import h5py
 import numpy as np
 
-from . import laboratory, library, programs
+from . import laboratory, library, output as output_files, programs
 from .curves import STANDARD_GRAVITY, Column, column
 from .errors import Error, InputError, find, missing
 
@@ -165,11 +164,12 @@ class Frames(Sequence[Frame]):
 class Drop:
     """A drop in a results.h5. Its files are read when they are asked for; `softfall-post` computes the figures then."""
 
-    def __init__(self, results: str | os.PathLike[str], output: Path | None = None) -> None:
+    def __init__(self, results: str | os.PathLike[str], output: Path | None = None, own: bool = False) -> None:
         self.results = Path(results).absolute()
+        self._own = output if own else None  # a folder that has files of these results alone, also half of them after a kill
         self._home = output  # of softfall-post without options
         self._shown = output  # of its last call
-        self._scratch: tempfile.TemporaryDirectory[str] | None = None
+        self._scratch: output_files.Scratch | None = None
         self._summary: dict[str, Any] | None = None
         self._history: History | None = None
         self._file = self._identity()
@@ -214,14 +214,14 @@ class Drop:
         with self.open():
             pass
         if output is None and (options or not self._home):
-            self._scratch = self._scratch or tempfile.TemporaryDirectory(prefix="softfall-")
+            self._scratch = self._scratch or output_files.Scratch()
             output = Path(self._scratch.name) / ("with-options" if options else "out")
             if not options:
                 self._home = Path(output)
         place = Path(output or self._home or "").absolute()
         if options and place == self._home:
             raise InputError(f"{place} is for the figures without options: give another output")
-        chosen = {"force": self._kept(place) is not None, **options}
+        chosen = {"force": place == self._own or self._kept(place) is not None, **options}
         self._run_post(place, chosen)
         self._shown, self._summary = place, json.loads((place / "summary.json").read_text(encoding="utf-8"))
         return dict(self._summary or {})
@@ -237,20 +237,26 @@ class Drop:
         except InputError as error:
             if laboratory.advised(error) is None:
                 raise
-        with tempfile.TemporaryDirectory(prefix="softfall-") as scratch:
+        with output_files.scratch() as scratch:
             reading = laboratory.read(options["reference"], kind="acceleration", spell=lambda option, value: f'reference_{option}="{value}"', **given)
             names = [name.removesuffix(" (g)") for name in reading.frame.columns[1:]]
             chosen = {name: value for name, value in options.items() if name.removeprefix("reference_") not in given}
-            chosen["reference"] = reading.write(Path(scratch) / f"{Path(options['reference']).stem}.csv")
+            chosen["reference"] = reading.write(scratch / f"{Path(options['reference']).stem}.csv")
             run({**chosen, "reference_columns": ",".join(names)} if "columns" in given else chosen)
 
     def _kept(self, place: Path) -> dict[str, Any] | None:
         """Returns the summary.json in a folder if it is of these results, perhaps of an earlier run of them."""
         try:
             kept = json.loads((place / "summary.json").read_text(encoding="utf-8"))
-            return kept if Path(kept["results"]) == self.results else None
-        except (OSError, ValueError, KeyError, TypeError):
+            return kept if Path(kept["results"]) == self.results or self._is_run(kept) else None
+        except (OSError, ValueError, KeyError, TypeError, Error):
             return None
+
+    def _is_run(self, kept: Mapping[str, Any]) -> bool:
+        """True if a summary.json is of this very run, whose folder had another name then."""
+        with self.open() as file:
+            names = {"wall_s": "wall_time", "steps": "steps", "nodes": "nodes", "interactions": "interactions", "threads": "threads"}
+            return all(f"summary/{name}" in file and math.isclose(kept[key], file[f"summary/{name}"][()], rel_tol=1e-8) for key, name in names.items())
 
     def _serves(self, kept: dict[str, Any]) -> bool:
         """True if a summary.json in the home is that of softfall-post now, without options."""
@@ -291,7 +297,18 @@ class Drop:
         with self.open() as file:
             count = int(file["summary/drops"][()]) if "summary/drops" in file else 1
         later = [later_results(self.results, number) for number in range(2, count + 1)]
-        return [self, *(Drop(path, path.with_name(f"out-{number}")) for number, path in enumerate(later, 2) if path.exists())]
+        drops = [self, *(Drop(path, path.with_name(f"out-{number}"), own=self._own is not None) for number, path in enumerate(later, 2) if path.exists())]
+        for before, drop in zip(drops, drops[1:]):
+            if drop._pad("before") != before._pad("after"):
+                raise Error(f"{drop.results} did not begin with the pad as {before.results} left it: it is of another run, or one of the two was "
+                            "solved anew", 2)
+        return drops
+
+    def _pad(self, when: str) -> int | None:
+        """Returns the hash of the foam's history before or after this drop; None: results of an older version do not have it."""
+        with self.open() as file:
+            name = f"summary/pad_{when}"
+            return int(file[name][()]) if name in file else None
 
     @property
     def layers(self) -> list[dict[str, Any]]:

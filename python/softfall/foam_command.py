@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import io
 import os
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,8 @@ from . import library, programs
 from .cards import export, read_card, write_material
 from .cards.material import FORMATS
 from .command import Parser
-from .errors import Error, InputError, find
+from .errors import InputError, find
+from .output import check, write
 
 RATES = (0.01, 1.0, 10.0, 100.0)  # 1/s, of show and plot, unless the foam has no terms of the rate
 LEAST, POINTS = 0.2, 400  # strain up to which a foam is shown at least; points of a loading
@@ -102,7 +104,7 @@ def _plot(path: str, o: argparse.Namespace) -> str:
     most = min(0.95, max(LEAST, informed))
     if output.suffix.lower() not in (".png", ".svg", ".pdf"):
         raise InputError(f"--output={output}: the picture is a .png, .svg or .pdf file")
-    if output.exists() and not o.force:
+    if check(output, path).exists() and not o.force:
         raise InputError(f"{output} exists already: give --force to replace it")
     figure, axes = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
     for k, rate in enumerate(rates_of(data, o.rates)):
@@ -117,12 +119,10 @@ def _plot(path: str, o: argparse.Namespace) -> str:
     axes.set_ylim(0)
     axes.legend()
     axes.grid(alpha=0.3)
-    try:
-        figure.savefig(output, dpi=130)
-    except OSError as error:
-        raise Error(f"{output} cannot be written: {error.strerror}", 3) from None
-    finally:
-        pyplot.close(figure)
+    drawn = io.BytesIO()
+    figure.savefig(drawn, dpi=130, format=output.suffix.lower()[1:])
+    pyplot.close(figure)
+    write(output, drawn.getvalue(), path)
     return f"Written: {output}"
 
 
@@ -130,7 +130,7 @@ def _convert(path: str, o: argparse.Namespace) -> str:
     if not o.output:
         raise InputError("--output=OUT is needed: a folder for material.cfg and its curves, or a file NAME.cfg")
     foam = read_card(path, o.material, o.units, o.format)
-    files = write_material(foam, Path(o.output), f"{Path(path).name}: {foam.card} {foam.key}", o.force)
+    files = write_material(foam, Path(o.output), f"{Path(path).name}: {foam.card} {foam.key}", o.force, path)
     return "\n".join([f"{foam.place}: {foam.card} {foam.key}{f' ({foam.name})' if foam.name and foam.name != foam.key else ''} becomes a {foam.law}", *(f"  {note}" for note in foam.notes),
                       f"Written: {', '.join(map(str, files))}"])
 
@@ -138,13 +138,10 @@ def _convert(path: str, o: argparse.Namespace) -> str:
 def _export(path: str, o: argparse.Namespace) -> str:
     if not o.format or not o.units or not o.output:
         raise InputError("--format=dyna|abaqus|radioss, --units=NAME (such as mm-ms-kg-GPa) and --output=FILE are needed")
-    if os.path.exists(o.output) and not o.force:
+    if check(o.output, path).exists() and not o.force:
         raise InputError(f"{o.output} exists already: give --force to replace it")
     text, listed = export(material_file(path), o.format, o.units)
-    try:
-        Path(o.output).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Error(f"{o.output} cannot be written: {error.strerror}", 3) from None
+    write(o.output, text, path)
     return "\n".join([*(f"  {line}" for line in listed), f"Written: {o.output}"])
 
 

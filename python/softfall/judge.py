@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .curves import STANDARD_GRAVITY
-from .protocol import Protocol
+from .protocol import NEEDS, Protocol, kilograms
 from .protocol_drops import NO_LIMIT, Drop, Drops, Search, Spot, figures_of
 
 LEAST_DRAWS = 20  # for a 95 % interval
@@ -45,6 +45,8 @@ class Outcome:
     probability: tuple[float, float, float] | None = None
     meaning: str = "value"  # of the lines' values
     expected: bool = False  # the pad is expected to pass, and no measured drop has shown it
+    not_done: list[str] = field(default_factory=list)  # what confirmed clauses ask for beyond the drops: the result is partial
+    tested: float = math.nan  # m, greatest height tested that meets all limits at every place; 0: none does
 
 
 _PASSES = {False: "passed", True: "expected to pass"}
@@ -61,12 +63,54 @@ def judge(p: Protocol, drops: Drops, simulated: bool = False) -> Outcome:
         made.passed = None if made.passed else made.passed
     if made.passed and simulated:
         made.passed, made.expected, made.stated = None, True, f"{_PASSES[True]}, by simulation; measured drops have to show it"
+    made.not_done = _not_done(p, drops)
+    if made.not_done:
+        made.stated = f"partial: {made.stated}"
+        made.passed = None if made.passed else made.passed
+        made.notes += made.not_done
+    if simulated and math.isnan(made.low) and made.probability is None and all(math.isnan(line.low) for line in made.lines):
+        made.notes.append("there is no interval: the uncertainty of the foam is not included (--posterior=FOLDER, draws of the foam, includes it)")
+    elif not simulated and made.lines:
+        made.notes.append("there is no interval: the scatter from drop to drop and from sample to sample is not included")
     if drops.doubt:
         made.passed, made.value, made.low, made.high = None, math.nan, math.nan, math.nan
         made.stated = f"not decided, as {drops.doubt} (as they are listed: {made.stated})"
     if any(0 < len(drop.draws) < LEAST_DRAWS for drop in drops.drops):
         made.notes.append(f"figures have no 95 % intervals, which need {LEAST_DRAWS} draws of the foam and more")
     return made
+
+
+def _not_done(p: Protocol, drops: Drops) -> list[str]:
+    """Returns what the confirmed clauses of a protocol ask for that the drops do not have, a sentence each."""
+    places: dict[tuple[str, str], set[float]] = {}
+    spots: dict[Spot, set[int]] = {}
+    for drop in drops.all:
+        if drop.is_usable:
+            places.setdefault((drop.spot.condition, drop.spot.position), set()).add(drop.spot.height)
+            spots.setdefault(drop.spot, set()).add(drop.number)
+    there = {"positions": len({position for _, position in places}), "conditions": len({condition for condition, _ in places}),
+             "heights": min(map(len, places.values()), default=0), "drops": min(map(len, spots.values()), default=0),
+             "masses": len({spot.mass for spot in spots})}
+    return [f'"{clause.text}" ({clause.source}): {NEEDS[key]}: {there[key]} of {least}' for clause in p.clauses if clause.confirmed
+            for key, least in clause.needs.items() if there[key] < least]
+
+
+def _greatest(p: Protocol, drops: Drops) -> float:
+    """Returns the greatest height up to which all drops meet all limits, at the place where it is least; 0: the lowest does not."""
+    places: dict[tuple[str, str], dict[float, list[Drop]]] = {}
+    for drop in drops.all:
+        places.setdefault((drop.spot.condition, drop.spot.position), {}).setdefault(drop.spot.height, []).append(drop)
+    least = math.inf
+    for heights in places.values():
+        best = 0.0
+        for height in sorted(heights):
+            group = heights[height]
+            values = {figure: figures_of(group, figure.label, _counted(p, group)) for figure in p.figures if figure.limit is not None}
+            if not all(value < figure.limit for figure, value in values.items()):  # type: ignore[operator]
+                break
+            best = height
+        least = min(least, best)
+    return least if places else math.nan
 
 
 def _why(lines: list[Line]) -> str:
@@ -158,6 +202,7 @@ def _judge_height(p: Protocol, drops: Drops) -> Outcome:
     for (condition, position), heights in measured.items():
         bounds.append(_cross(p, f"{condition}, {position}", heights, made))
     low, high = (min((bound[k] for bound in bounds), default=math.nan) for k in (0, 1))
+    made.tested = _greatest(p, drops)
     if not bounds or any(math.isnan(value) for bound in bounds for value in bound):
         made.stated = "not determined: " + (made.notes[-1] if made.notes else _why(made.lines))
         return made
@@ -240,8 +285,8 @@ def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome
 
 def _judge_cushion(p: Protocol, drops: Drops) -> Outcome:
     made = Outcome("curve of the table")
-    for spot, group in sorted(_spots(drops).items(), key=lambda entry: float(entry[0].mass.split()[0])):
-        stress = float(spot.mass.split()[0]) * STANDARD_GRAVITY / p.area / 1e3
+    for spot, group in sorted(_spots(drops).items(), key=lambda entry: kilograms(entry[0].mass)):
+        stress = kilograms(spot.mass) * STANDARD_GRAVITY / p.area / 1e3
         for what, counted in (("first drop", (1,)), ("mean of the later ones", p.counted)):
             if not set(counted) <= {drop.number for drop in group}:
                 continue

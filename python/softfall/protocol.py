@@ -20,12 +20,16 @@ _UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048, "in": 0.0254}
 
 @dataclass(frozen=True)
 class Clause:
-    """What a standard says: `of` is the group of the protocol that rests on it."""
+    """What a standard says: `of` is the group of the protocol that rests on it; `needs`, what it asks for at least, by the words of NEEDS."""
 
     of: str
     text: str
     source: str
     confirmed: bool
+    needs: Mapping[str, int] = field(default_factory=dict)
+
+
+NEEDS = {"positions": "positions", "conditions": "conditions", "heights": "heights at each position", "drops": "drops on one spot", "masses": "masses"}
 
 
 @dataclass(frozen=True)
@@ -154,6 +158,28 @@ def length(text: Any, where: str) -> float:
     return value
 
 
+_MASSES = {"kg": 1.0, "g": 1e-3, "lb": 0.45359237}
+
+
+def kilograms(text: str, where: str = "mass") -> float:
+    """Returns a mass such as "1500 g" in kg; InputError names the place.
+
+    >>> kilograms("1500 g"), kilograms("2kg")
+    (1.5, 2.0)
+    """
+    number, unit = re.fullmatch(r"(.*?) *([a-z]+)", _quantity(text, tuple(_MASSES), where).strip()).groups()  # type: ignore[union-attr]
+    return float(number) * _MASSES[unit]
+
+
+def same(a: float, b: float) -> bool:
+    """Returns whether two numbers that may have been written in other units are one."""
+    return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12)
+
+
+def _differ(values: Sequence[float]) -> bool:
+    return not any(same(a, b) for k, a in enumerate(values) for b in values[:k])
+
+
 def strain_rate(text: Any, where: str) -> float:
     """Returns a strain rate such as "0.01 1/s" in 1/s; InputError names the place.
 
@@ -264,13 +290,18 @@ def _figure(path: Path, number: int, table: Any) -> Figure:
 
 
 def _clause(path: Path, number: int, table: Any) -> Clause:
-    group = _Group(f"{path}: clause {number}", table, "of, text, source and status")
+    group = _Group(f"{path}: clause {number}", table, "of, text, source, status and needs")
     of, text, source, status = (group.take(key, str) for key in ("of", "text", "source", "status"))
     if not source.strip():
         raise InputError(f"{group.where}: source is empty: say where the clause was read, or that it is from memory")
     if status not in ("confirmed", "unconfirmed"):
         raise InputError(f"{group.where}: status {status!r} is neither confirmed nor unconfirmed")
-    return Clause(of, text, source, status == "confirmed")
+    asked = _Group(f"{group.where}: needs", group.take("needs", dict, {}), f"{', '.join(list(NEEDS)[:-1])} and {list(NEEDS)[-1]}")
+    needs = {key: asked.take(key, int) for key in NEEDS if key in asked.left}
+    for key, least in needs.items():
+        if not 1 <= least <= 1000:
+            raise InputError(f"{asked.where}: {key} = {least} is not a number from 1 to 1000")
+    return Clause(of, text, source, status == "confirmed", needs)
 
 
 def _missile(path: Path, group: _Group) -> dict[str, Any]:
@@ -285,10 +316,9 @@ def _missile(path: Path, group: _Group) -> dict[str, Any]:
         keys["geometry.missile_file"] = str(file.resolve())
     for name, value in group.take("parameters", dict, {}).items():
         keys[f"geometry.missile_parameters.{name}"] = value
-    mass = group.take("mass", str, None)
-    if mass:
-        _quantity(mass, ("kg", "g", "lb"), f"{group.where}: mass")
-        keys["missile.mass"] = mass
+    weight = group.take("mass", str, None)
+    if weight:
+        keys["missile.mass"] = _quantity(weight, tuple(_MASSES), f"{group.where}: mass")
     keys.update(group.take("keys", dict, {}))
     if "missile.velocity" in keys:
         raise InputError(f"{group.where}: missile.velocity is that of the fall from the heights of the protocol")
@@ -347,7 +377,7 @@ def _drops(path: Path, group: _Group, kind: str) -> dict[str, Any]:
     area = group.take("area", str, None)
     return {"conditions": tuple(conditions), "positions": tuple(positions), "count": count, "counted": counted,
             "heights": tuple(length(text, f"{group.where}: heights") for text in group.take("heights", list, [])),
-            "masses": tuple(_quantity(text, ("kg", "g", "lb"), f"{group.where}: masses") for text in group.take("masses", list, [])),
+            "masses": tuple(_quantity(text, tuple(_MASSES), f"{group.where}: masses") for text in group.take("masses", list, [])),
             "interval": _quantity(group.take("interval", str, "1 s"), ("s", "min", "h"), f"{group.where}: interval") if "interval" in group.left else "",
             "area": _area(area, group.where) if area else 0.0}
 
@@ -356,7 +386,7 @@ def _quantity(text: Any, units: Sequence[str], where: str) -> str:
     """Returns a text such as "4.6 kg" if it is a number above 0 and one of the units."""
     found = re.fullmatch(r"\s*([\d.]+(?:e[+-]?\d+)?) *(\w+)\s*", text) if isinstance(text, str) else None
     try:
-        if found and found.group(2) in units and float(found.group(1)) > 0:
+        if found and found.group(2) in units and 0 < float(found.group(1)) < math.inf:
             return str(text)
     except ValueError:
         pass
@@ -366,11 +396,8 @@ def _quantity(text: Any, units: Sequence[str], where: str) -> str:
 def _area(text: str, where: str) -> float:
     """Returns an area such as "129 cm2" in m2."""
     unit = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
-    parts = text.split()
-    try:
-        return float(parts[0]) * unit[parts[1]]
-    except (ValueError, KeyError, IndexError):
-        raise InputError(f'{where}: area {text!r} is no area such as "400 cm2"') from None
+    number, name = re.fullmatch(r"\s*(\S+?) *([a-z]+2)\s*", _quantity(text, tuple(unit), f"{where}: area")).groups()  # type: ignore[union-attr]
+    return float(number) * unit[name]
 
 
 def _check(p: Protocol) -> None:
@@ -381,10 +408,16 @@ def _check(p: Protocol) -> None:
             raise InputError(f"{p.path}: drops: {'two ' + what + 's are named ' + repr(doubles.pop()) if doubles else 'no ' + what}")
     if p.kind != "critical height" and not p.heights:
         raise InputError(f"{p.path}: drops: heights is missing (only a critical height is searched for)")
-    if any(not 0 < h <= 30 for h in p.heights) or len(set(p.heights)) != len(p.heights):
+    if any(not 0 < h <= 30 for h in p.heights) or not _differ(p.heights):
         raise InputError(f"{p.path}: drops: heights must differ and be above 0 and at most 30 m")
     if (p.kind == "cushion curve") != (bool(p.masses) and p.area > 0):
         raise InputError(f"{p.path}: drops: masses and area belong to a cushion curve, and it needs both")
+    if not _differ([kilograms(text) for text in p.masses]):
+        raise InputError(f"{p.path}: drops: masses {', '.join(p.masses)} hold one mass twice")
+    for k, position in enumerate(p.positions):
+        for other in p.positions[:k]:
+            if position.at and other.at and all(abs(a - b) < 1e-6 for a, b in zip(position.at, other.at)):
+                raise InputError(f"{p.path}: drops: the positions {other.name} and {position.name} are one point: its drops would count twice")
     if not p.figures or (p.kind != "cushion curve" and all(figure.limit is None for figure in p.figures)):
         raise InputError(f"{p.path}: a figure with a limit is missing")
     if p.kind == "critical height" and any(f.label not in ("a_max_g", "hic") for f in p.figures if f.limit is not None):

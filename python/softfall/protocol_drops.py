@@ -16,10 +16,10 @@ import numpy as np
 
 from . import programs
 from .case import Case
-from .curves import hic
+from .curves import Hic, hic
 from .drop import Verdict, later_results, read_results
 from .errors import Error, InputError, NumericError, failure
-from .protocol import Condition, Figure, Position, Protocol, speed
+from .protocol import Condition, Figure, Position, Protocol, kilograms, speed
 from .study import Table, sweep
 
 
@@ -52,6 +52,7 @@ class Drop:
     draws: dict[str, dict[str, float]] = field(default_factory=dict)
     mesh_error: float = 0.0  # expected of a_max, simulated; the figures fall short by it
     reading: str = ""  # how a measured record was read
+    speed: float = math.nan  # m/s, as measured before the impact
 
     @property
     def is_usable(self) -> bool:
@@ -88,8 +89,8 @@ class Drops:
         return [*(drop for search in self.searches for drop in search.drops), *self.drops]
 
 
-def hic_from(time: Any, deceleration: Any, least: float) -> float:
-    """Returns HIC with windows of at least `least` seconds; NaN: the curve is shorter.
+def hic_from(time: Any, deceleration: Any, least: float) -> Hic:
+    """Returns HIC with windows of at least `least` seconds, and its window; NaN: the curve is shorter.
 
     It is the ordinary one where its window is long enough; else the best window has that length.
 
@@ -98,10 +99,10 @@ def hic_from(time: Any, deceleration: Any, least: float) -> float:
     """
     free = hic(time, deceleration)
     if not free > 0 or free.t2 - free.t1 >= least:
-        return float(free)
+        return free
     t, a = np.asarray(time, float), np.asarray(deceleration, float)
     if t[-1] - t[0] < least:
-        return math.nan
+        return _windowed(math.nan, math.nan, math.nan)
     integral = np.concatenate([[0], np.cumsum(0.5 * (a[1:] + a[:-1]) * np.diff(t))])
     begins = np.unique(np.concatenate([t[t <= t[-1] - least], t[t >= t[0] + least] - least, np.linspace(t[0], t[-1] - least, 20001)]))
 
@@ -111,7 +112,14 @@ def hic_from(time: Any, deceleration: Any, least: float) -> float:
         return integral[k] + (when - t[k]) * (a[k] + 0.5 * slope * (when - t[k]))
 
     mean = np.maximum(0, (at(begins + least) - at(begins)) / least)
-    return float((least * mean**2.5).max())
+    best = int(np.argmax(mean))
+    return _windowed(least * float(mean[best]) ** 2.5, float(begins[best]), float(begins[best]) + least)
+
+
+def _windowed(value: float, begin: float, end: float) -> Hic:
+    made = Hic(value)
+    made.t1, made.t2 = begin, end
+    return made
 
 
 def _mesh_error(verdict: Verdict) -> float:
@@ -126,7 +134,7 @@ def take_figures(figures: Iterable[Figure], known: Mapping[str, Any], curve: tup
     for figure in figures:
         if figure.least_window and figure.key == "hic" and curve is not None:
             value = hic_from(*curve, figure.least_window)
-            taken.update({} if math.isnan(value) else {figure.label: figure.of(value)})
+            taken.update({} if math.isnan(value) else {figure.label: figure.of(float(value))})
         elif figure.key in known:
             taken[figure.label] = figure.of(float(known[figure.key]))
     return taken
@@ -376,8 +384,7 @@ def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -
     for row in table.rows:
         cell = dict(zip(table.columns, row))
         height = min(p.heights, key=lambda h: abs(speed(h) - float(cell["speed (m/s)"])))
-        mass = min(p.masses, key=lambda m: abs(float(m.split()[0]) - float(cell["mass (kg)"])), default="") if p.masses else ""
-        spot = Spot(condition.name, position.name, height, mass)
+        spot = Spot(condition.name, position.name, height, min(p.masses, key=lambda text: abs(kilograms(text) - float(cell["mass (kg)"])), default=""))
         results = folder / "runs" / cell["folder"] / "results.h5" if cell["folder"] else None
         usable = cell["run_status"] == "done" and cell["grade"] != "do not use"
         drop = drops.setdefault(spot, Drop(spot, 1, str(results or ""), grade=cell["grade"] or "do not use", note=cell["message"]))

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
 from pathlib import Path
 from typing import Any, Iterable, Mapping
 
 import numpy as np
 
+from . import library
 from .curves import STANDARD_GRAVITY
 from .errors import Error, InputError, missing
-from .protocol import Protocol, length, speed
+from .protocol import Protocol, kilograms, length, same, speed
 from .protocol_drops import Drop, Drops, Spot, take_figures
 from .record import read_record
 
-NAMED = ("condition", "position", "height", "drop", "mass", "missile")
+NAMED = ("condition", "position", "height", "drop", "mass", "missile", "speed")
 OPTIONS = ("column", "columns", "heading", "units", "scale", "rate", "range", "sheet", "specimen", "impact", "invert", "zero")
-WITH_NUMBERS = ("height", "mass", "scale", "rate", "range", "impact")  # which may have a decimal comma
+WITH_NUMBERS = ("height", "speed", "mass", "scale", "rate", "range", "impact")  # which may have a decimal comma
 
 
 def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: bool = True) -> Drops:
@@ -34,9 +36,7 @@ def measure(p: Protocol, folder: Path, pattern: str | None = None, complete: boo
     for where, row in rows:
         _take(files, _file(folder / row["file"]), where, f"{where}: {row['file']} is the record")
     made = Drops([_measured(p, folder, where, row, complete) for where, row in rows])
-    for drop, (where, row) in zip(made.drops, rows):
-        if drop.curve is not None:
-            _take(files, np.asarray(drop.curve[1]).tobytes(), where, f"{where}: {row['file']} holds the samples of the record")
+    _refuse_copies(made.drops, rows)
     seen: dict[tuple[Spot, int], str] = {}
     for drop in made.drops:
         key = (drop.spot, drop.number)
@@ -58,6 +58,30 @@ def _file(path: Path) -> object:
         return state.st_dev, state.st_ino
     except OSError:
         return str(path)
+
+
+COPY = 1e-3  # of the peak, by which records of two drops differ at least; digits and units change copies by less
+
+
+def _refuse_copies(drops: list[Drop], rows: list[tuple[str, dict[str, str]]]) -> None:
+    """Refuses two records with the samples of one, also in other units, with fewer digits, shifted in time, or cut before or after the pulse."""
+    curves = [tuple(np.asarray(part, float) for part in drop.curve or ((), ())) for drop in drops]
+    for k, (time, value) in enumerate(curves):
+        for j in range(k):
+            if _is_copy(time, value, *curves[j]):
+                raise InputError(f"{rows[k][0]}: {rows[k][1]['file']} holds the samples of the record of {rows[j][0]} already: each drop has a record of its own")
+
+
+def _is_copy(t: Any, a: Any, s: Any, b: Any) -> bool:
+    """Returns whether two curves of one sampling rate are the same about their peaks, as far as both reach."""
+    if min(a.size, b.size) < 3 or not math.isclose(t[1] - t[0], s[1] - s[0], rel_tol=1e-3):
+        return False
+    p = int(np.argmax(a))
+    for q in int(np.argmax(b)) + np.array([0, -1, 1]):  # of a flat top, rounding chooses the highest sample
+        before, after = min(p, q), min(a.size - p, b.size - q)
+        if before >= 0 < after and np.max(np.abs(a[p - before:p + after] - b[q - before:q + after])) <= COPY * abs(a[p]):
+            return True
+    return False
 
 
 def _take(known: dict[object, str], key: object, where: str, said: str) -> None:
@@ -191,11 +215,13 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
             raise InputError(f"{where}: the protocol has no height of {height:g} m; there are {', '.join(f'{h:g} m' for h in p.heights)}")
         height = height_there
     mass = row.get("mass", "")
+    if p.masses:
+        mass = next((one for one in p.masses if mass and same(kilograms(mass, f"{where}: mass"), kilograms(one))), mass)
     if p.masses and mass not in p.masses or mass and not p.masses:
         raise InputError(f"{where}: " + (f"the protocol has no mass {mass!r}; there are {', '.join(p.masses)}" if p.masses else
                                          "the column mass belongs to a protocol with drops.masses, and this one has one missile"))
     number = row.get("drop") or "1"
-    if not number.isdigit() or not 1 <= int(number) <= p.count:
+    if not re.fullmatch("[0-9]{1,4}", number) or not 1 <= int(number) <= p.count:
         raise InputError(f"{where}: drop {number} is none of the {p.count} of the protocol")
     spot = Spot(name("condition", p.conditions), name("position", p.positions), height, mass, _missile(p, where, row.get("missile", ""), complete))
     path = folder / row["file"]
@@ -206,7 +232,8 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
                 raise InputError(f"{where}: {flag} is yes or no, not {options[flag]!r}")
             options[flag] = options[flag] == "yes"
     try:
-        record = read_record(path, filter=int(p.filter), speed=f"{speed(height):.9g} m/s", **options)
+        arrival = _speed(where, row, height)
+        record = read_record(path, filter=int(p.filter), speed=f"{arrival or speed(height):.9g} m/s", **options)
     except Error as error:
         raise InputError(f"{where}: {error}") from None
     curve = (record.time, record.deceleration)
@@ -217,8 +244,26 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
         raise InputError(f"{where}: the record is shorter than the least window of {absent.label} in {p.path}, {1e3 * absent.least_window:g} ms")
     if absent:
         raise InputError(f"{p.path} limits what a measured record does not have: {missing('figure', absent.key, record.figures).args[0]}")
-    drop.reading = f"{record.interpretation.rstrip('.')}; its velocity changes by {_change(drop) / speed(height):.2f} times that of the fall"
+    drop.speed = arrival or math.nan
+    drop.reading = f"{record.interpretation.rstrip('.')}; its velocity changes by {_change(drop) / (arrival or speed(height)):.2f} times that of the fall"
     return drop
+
+
+SLOWEST, FASTEST = 0.7, 1.05  # of the speed of a free fall from the height, that a rig reaches
+
+
+def _speed(where: str, row: Mapping[str, str], height: float) -> float:
+    """Returns the measured speed (m/s) of a row; 0: it has none."""
+    if not row.get("speed"):
+        return 0.0
+    try:
+        value, unit = library.quantity(row["speed"])
+    except Error as error:
+        raise InputError(f"{where}: speed: {error}") from None
+    if unit != "m s-1" or not SLOWEST * speed(height) <= value <= FASTEST * speed(height):
+        raise InputError(f"{where}: speed {row['speed']} is not one of a fall from {height:g} m, which is {speed(height):.3g} m/s without friction "
+                         f"({SLOWEST:g} to {FASTEST:g} times that)")
+    return value
 
 
 def _missile(p: Protocol, where: str, name: str, complete: bool) -> str:

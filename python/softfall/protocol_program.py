@@ -6,7 +6,6 @@ import argparse
 import base64
 import math
 import sys
-import tempfile
 import tomllib
 import warnings
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from . import output as output_files
 from .case import Case
 from .command import Parser
 from .curves import column
@@ -71,11 +71,11 @@ def compare(p: Protocol, measured: Drops, simulated: Drops) -> list[dict[str, An
 
 def _pair(p: Protocol, measured: Drop, simulated: Drop) -> dict[str, Any]:
     """Compares two drops by softfall-post, which aligns the contacts, and rates the curves over the measured pulse."""
-    with tempfile.TemporaryDirectory(prefix="softfall-") as scratch, warnings.catch_warnings():
+    with output_files.scratch() as scratch, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        curve = Path(scratch) / "measured.csv"
+        curve = scratch / "measured.csv"
         np.savetxt(curve, np.column_stack(measured.curve), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.12g")  # type: ignore[arg-type]
-        told = read_results(simulated.source).post(Path(scratch) / "out", reference=str(curve), reference_filter="none", filter=int(p.filter))
+        told = read_results(simulated.source).post(scratch / "out", reference=str(curve), reference_filter="none", filter=int(p.filter))
     said = told["reference"]
     (t, a), (s, b) = measured.curve, simulated.curve  # type: ignore[misc]
     begin, end = (edge - said["shift_ms"] / 1e3 for edge in (s[0], s[-1]))
@@ -87,6 +87,10 @@ def _pair(p: Protocol, measured: Drop, simulated: Drop) -> dict[str, Any]:
 
 def _probable(outcome: Outcome) -> str:
     return f" (probability of passing {outcome.probability[0]:.2f}, {outcome.probability[1]:.2f} to {outcome.probability[2]:.2f})" if outcome.probability else ""
+
+
+def _tested(outcome: Outcome) -> str:
+    return "" if math.isnan(outcome.tested) else f"; greatest height tested that meets all limits: {outcome.tested:g} m" if outcome.tested else "; no height tested meets all limits"
 
 
 def perform(o: argparse.Namespace) -> str:
@@ -134,7 +138,7 @@ def perform(o: argparse.Namespace) -> str:
         pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
     output.mkdir(parents=True, exist_ok=True)
     write(p, parts, outcomes, pairs, laboratory, photo, output, told, {**set_up, **({"measured records": str(o.measured)} if o.measured else {}), "command": " ".join(sys.argv[1:])})
-    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}{_probable(outcome)}" for what, outcome in outcomes.items()),
+    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}{_probable(outcome)}{_tested(outcome)}" for what, outcome in outcomes.items()),
             *(f"  note: {note}" for outcome in outcomes.values() for note in outcome.notes),
             f"  {len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed. {CAUTION}", f"Written: {output}/report.html, protocol.json, drops.csv"]
     return "\n".join(said)

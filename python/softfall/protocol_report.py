@@ -12,12 +12,13 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 from urllib.parse import quote
 
-from . import library
+from . import library, output as output_files
 from .advice import Advice
+from .curves import hic
 from .judge import Outcome
-from .protocol import CAUTION, Protocol, speed
+from .protocol import CAUTION, NEEDS, Figure, Protocol, speed
 from .protocol_advice import rows
-from .protocol_drops import Drops
+from .protocol_drops import Drop, Drops, Spot, figures_of, hic_from
 from .protocol_pictures import curve_picture, height_picture
 
 FIELDS = ("laboratory", "address", "sample", "order", "date", "conditioning", "operator", "remarks", "photo")
@@ -65,6 +66,8 @@ def _result(what: str, outcome: Outcome) -> str:
     if outcome.probability:
         share, low, high = outcome.probability
         more.append(f"probability of passing {share:.2f} (95 % interval of the draws {low:.2f} to {high:.2f})")
+    if not math.isnan(outcome.tested):
+        more.append(f"greatest height tested that meets all limits: {outcome.tested:g} m" if outcome.tested else "no height tested meets all limits")
     text = f"{what}: <b>{html.escape(outcome.stated)}</b>" + (f"; {html.escape('; '.join(more))}" if more else "")
     rows = [[line.of, line.figure, _number(line.value), f"{_number(line.low)} to {_number(line.high)}" if not math.isnan(line.low) else "–",
              "–" if line.limit is None else f"{line.limit:g}", {True: "yes", False: "NO", None: "–"}[line.passed], line.note]
@@ -87,17 +90,39 @@ def _set_up(p: Protocol, told: Mapping[str, str]) -> str:
 
 
 def _drop_table(p: Protocol, parts: Mapping[str, Drops], output: Path) -> str:
-    keys = [figure.label for figure in p.figures]
+    keys, of_hic = [figure.label for figure in p.figures], next((figure for figure in p.figures if figure.key in LONGEST), None)
     place = {(c.name, q.name): k for k, (c, q) in enumerate((c, q) for c in p.conditions for q in p.positions)}
-    rows = [[what, drop.spot.condition, drop.spot.position, drop.spot.missile, f"{drop.spot.height:g}", f"{speed(drop.spot.height):.3f}", drop.spot.mass,
-             str(drop.number), *(_number(drop.figures.get(key, math.nan)) for key in keys), drop.grade, drop.note.removeprefix(f"{drop.grade}: "), _links(drop.view, output)]
-            for what, drops in parts.items() for drop in sorted(drops.all, key=lambda drop: (place[drop.spot.condition, drop.spot.position], drop.spot.height))]
+    rows = []
+    for what, drops in parts.items():
+        groups: dict[Spot, list[Drop]] = {}
+        for drop in sorted(drops.all, key=lambda drop: (place[drop.spot.condition, drop.spot.position], drop.spot.height, drop.number)):
+            groups.setdefault(drop.spot, []).append(drop)
+        for spot, group in groups.items():
+            at = [what, spot.condition, spot.position, spot.missile, f"{spot.height:g}", f"{speed(spot.height):.3f}"]
+            counts = p.counted if len(group) == p.count else (group[0].number,)
+            rows += [[*at, _number(drop.speed), spot.mass, str(drop.number), "yes" if drop.number in counts else "no",
+                      *(_number(drop.figures.get(key, math.nan)) for key in keys), _window(drop, of_hic), drop.grade, drop.note.removeprefix(f"{drop.grade}: "),
+                      _links(drop.view, output)] for drop in group]
+            if len(group) > 1:
+                rows.append([*at, "", spot.mass, f"mean of {', '.join(map(str, counts))}", "", *(_number(figures_of(group, key, counts)) for key in keys), "", "", "", ""])
     found = [[search.condition, search.position, _links(search.view, output)] for drops in parts.values() for search in drops.searches
              if search.view]
     searches = "<h2>Drops at the critical height</h2>" + _table(["condition", "position", "look"], found) if found else ""
     if not rows:
         return searches
-    return searches + "<h2>Drops</h2>" + _table(["", "condition", "position", "missile", ">height (m)", ">speed (m/s)", "mass", ">drop", *(f">{key}" for key in keys), "grade", "note", "look"], rows)
+    return searches + "<h2>Drops</h2>" + _table(["", "condition", "position", "missile", ">height (m)", ">speed of the fall (m/s)", ">measured speed (m/s)", "mass", ">drop", "counts",
+                                                   *(f">{key}" for key in keys), ">window of HIC (ms)", "grade", "note", "look"], rows)
+
+
+LONGEST = {"hic": math.inf, "hic15": 0.015, "hic36": 0.036}  # s, of a window
+
+
+def _window(drop: Drop, figure: Figure | None) -> str:
+    """Returns the window of HIC of a drop, in ms of its curve; "" if the protocol has no HIC."""
+    if figure is None or drop.curve is None:
+        return ""
+    value = hic_from(*drop.curve, figure.least_window) if figure.least_window else hic(*drop.curve, LONGEST[figure.key])
+    return f"{1e3 * value.t1:.2f} to {1e3 * value.t2:.2f}" if value > 0 else ""
 
 
 def _readings(parts: Mapping[str, Drops]) -> str:
@@ -117,9 +142,10 @@ def _choices(advice: Advice | None) -> str:
 
 
 def _clauses(p: Protocol) -> str:
-    rows = [[clause.of, clause.text, clause.source, "confirmed" if clause.confirmed else "UNCONFIRMED"] for clause in p.clauses]
+    rows = [[clause.of, clause.text, clause.source, "confirmed" if clause.confirmed else "UNCONFIRMED",
+             ", ".join(f"{NEEDS[key]}: {least}" for key, least in clause.needs.items())] for clause in p.clauses]
     note = f"<p>{len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed: check them in the standard before use.</p>" if p.unconfirmed else ""
-    return "<h2>Clauses</h2>" + note + _table(["of", "clause", "source", "status"], rows)
+    return "<h2>Clauses</h2>" + note + _table(["of", "clause", "source", "status", "needs at least"], rows)
 
 
 def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcome], pairs: Sequence[Mapping[str, Any]],
@@ -136,16 +162,16 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
         "<h2>Notes, and what was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
         _choices(advice), _set_up(p, told or {}), _drop_table(p, parts, output), height_picture(p, parts), curve_picture(parts), compared, _readings(parts), _clauses(p),
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
-    _replace(output / "report.html", page)
-    _replace(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
+    output_files.write(output / "report.html", page)
+    output_files.write(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(["kind", "condition", "position", "missile", "height_m", "mass", "drop", *(figure.label for figure in p.figures), "grade", "note", "source"])
+    table.writerow(["kind", "condition", "position", "missile", "height_m", "speed_m_s", "mass", "drop", "counts", *(figure.label for figure in p.figures), "grade", "note", "source"])
     for what, drops in parts.items():
         for drop in drops.all:
-            table.writerow([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position, drop.spot.missile)), f"{drop.spot.height:g}", drop.spot.mass,
-                           drop.number, *(drop.figures.get(figure.label, "") for figure in p.figures), drop.grade, _cell(drop.note), _cell(drop.source)])
-    _replace(output / "drops.csv", text.getvalue())
+            table.writerow([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position, drop.spot.missile)), f"{drop.spot.height:g}", "" if math.isnan(drop.speed) else f"{drop.speed:g}", drop.spot.mass,
+                           drop.number, "yes" if drop.number in p.counted or drops.stands_in else "no", *(drop.figures.get(figure.label, "") for figure in p.figures), drop.grade, _cell(drop.note), _cell(drop.source)])
+    output_files.write(output / "drops.csv", text.getvalue())
 
 
 def _cell(text: str) -> str:
@@ -164,19 +190,13 @@ def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Out
         return [{key: _plain(value) for key, value in vars(line).items()} for line in outcome.lines]
 
     return {"caution": CAUTION, "protocol": p.name, "title": p.title, "standard": p.standard, "laboratory": dict(laboratory),
-            "results": {what: {"stated": o.stated, "passed": o.passed, "expected_to_pass": o.expected, "value_m": _plain(o.value), "low_m": _plain(o.low), "high_m": _plain(o.high),
+            "results": {what: {"stated": o.stated, "passed": o.passed, "expected_to_pass": o.expected, "partial": bool(o.not_done), "not_done": o.not_done, "greatest_height_tested_m": _plain(o.tested), "value_m": _plain(o.value), "low_m": _plain(o.low), "high_m": _plain(o.high),
                                "probability": o.probability, "lines": lines(o), "notes": o.notes} for what, o in outcomes.items()},
             "drops": [{"kind": what, "condition": d.spot.condition, "position": d.spot.position, "missile": d.spot.missile, "height_m": d.spot.height, "mass": d.spot.mass,
-                       "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "grade": d.grade, "note": d.note,
+                       "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "speed_m_s": _plain(d.speed), "grade": d.grade, "note": d.note,
                        "source": d.source, "reading": d.reading, "view": None if d.view is None else str(d.view)} for what, drops in parts.items() for d in drops.all],
             "comparison": [{key: _plain(value) for key, value in pair.items()} for pair in pairs],
             "advice": advice and {"probability": _plain(advice.probability), "height_m": [_plain(h) for h in advice.height], "loss": _plain(advice.loss),
                                   "bound": advice.bound, "stop": advice.stop, "decision": advice.decision, "expected_to_pass": advice.expected, "problem": advice.problem,
                                   "choices": [{key: _plain(value) for key, value in vars(choice).items()} for choice in advice.choices]},
             "unconfirmed": [{"of": c.of, "text": c.text, "source": c.source} for c in p.unconfirmed]}
-
-
-def _replace(path: Path, text: str) -> None:
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text(text, encoding="utf-8")
-    partial.replace(path)

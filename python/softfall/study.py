@@ -6,13 +6,12 @@ import csv
 import importlib.util
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any, Iterator, Mapping
 
 import numpy as np
 
-from . import laboratory, programs
+from . import laboratory, output as output_files, programs
 from .case import as_text
 from .errors import InputError, find
 
@@ -82,9 +81,9 @@ def _prepare(what: Any, output: str | os.PathLike[str] | None, ending: str) -> t
         raise InputError("a dict needs output, the folder for the results: its configuration becomes OUTPUT.cfg beside it")
     folder = Path(output)
     config, text = folder.with_name(folder.name + ".cfg"), _MARK + as_config(what) + "\n"
-    if config.exists() and not config.read_text(encoding="utf-8", errors="replace").startswith(_MARK):
+    if os.path.lexists(config) and (config.is_symlink() or not config.is_file() or not config.read_text(encoding="utf-8", errors="replace").startswith(_MARK)):
         raise InputError(f"{config} is not replaced: it was not written by this function; take another output")
-    config.write_text(text, encoding="utf-8")
+    output_files.write(config, text)
     return config, folder
 
 
@@ -141,7 +140,7 @@ def fit_compression(tests: str | os.PathLike[str] | Mapping[str, Any], output: s
     form than the program reads are read by `softfall read` first.
     """
     config, folder = _prepare(tests, output, "fit")
-    with tempfile.TemporaryDirectory(prefix="softfall-") as scratch:
+    with output_files.scratch() as scratch:
         while True:
             try:
                 programs.run("fit", ["compression", str(config), f"--output={folder}", *programs.options(options)])
@@ -153,5 +152,5 @@ def fit_compression(tests: str | os.PathLike[str] | Mapping[str, Any], output: s
                 text = config.read_text(encoding="utf-8")
                 if not advice.stands_in(text, config.parent):
                     raise
-                clean, config = advice.swap(text, config.parent), Path(scratch) / config.name
+                clean, config = advice.swap(text, config.parent), scratch / config.name
                 config.write_text(clean, encoding="utf-8")

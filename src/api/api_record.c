@@ -40,7 +40,6 @@ static sf_status take_number(const char *name, const char *value, double *out, s
 }
 
 static sf_status take_option(sf_reference_options *o, const char *name, const char *value, sf_error *err) {
-    double number = 0;
     if (strcmp(name, "column") == 0)
         o->column = value;
     else if (strcmp(name, "columns") == 0)
@@ -53,8 +52,8 @@ static sf_status take_option(sf_reference_options *o, const char *name, const ch
         o->cfc = 0;
     else if (strcmp(name, "filter") == 0)
         take_number(name, value, &o->cfc, err);
-    else if (strcmp(name, "impact") == 0 && take_number(name, value, &number, err) == SF_OK)
-        o->impact = (int)number;
+    else if (strcmp(name, "impact") == 0)
+        sf_reference_parse_impact(name, value, &o->impact, err);
     else if (strcmp(name, "invert") == 0)
         o->invert = true;
     else if (strcmp(name, "zero") == 0)

@@ -238,9 +238,11 @@ static void complete(const sf_case_reader *reader, sf_case *c) {
     sf_mat3_apply(turn, c->angular_velocity);
     sf_mat3_apply(turn, c->centre);
     sf_sym3_turn(turn, c->inertia);
-    c->pad.unit = c->missile.unit = c->length_unit;
+    c->pad.unit = c->length_unit;
+    c->missile.unit = c->missile.unit > 0 ? c->missile.unit : c->length_unit;
     for (int k = 0; k < c->support_count; k++) {
-        c->support[k].source.unit = c->length_unit;
+        sf_geo_source *source = &c->support[k].source;
+        source->unit = source->unit > 0 ? source->unit : c->length_unit;
         sf_unit3(c->support[k].normal);
     }
     if (c->motion_count > 0)

@@ -365,6 +365,10 @@ sf_status sf_case_check_given(const sf_case_reader *reader, sf_error *err) {
         return REFUSE_AT(
             "geometry.missile_parameters",
             "geometry.missile_parameters are given but no geometry.missile_file that they belong to");
+    if (!c->missile.path && sf_case_is_given(reader, "geometry", "missile_length_unit"))
+        return REFUSE_AT(
+            "geometry.missile_length_unit",
+            "geometry.missile_length_unit is given but no geometry.missile_file that it belongs to");
     if (check_membrane(reader, err) != SF_OK || check_base(reader, err) != SF_OK ||
         check_direction(reader, err) != SF_OK || check_freedom(reader, err) != SF_OK)
         return err->status;

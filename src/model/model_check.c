@@ -433,6 +433,13 @@ static uint64_t hash_of(const sf_model *model) {
     return hash;
 }
 
+void sf_model_foam_hash(const sf_model *model, char text[SF_MODEL_HASH_SIZE]) {
+    uint64_t hash = SF_HASH_START;
+    for (int64_t k = 0; k < model->material_count; k++)
+        hash = sf_material_hash(hash, &model->material[k]);
+    snprintf(text, SF_MODEL_HASH_SIZE, "%016llx", (unsigned long long)hash);
+}
+
 void sf_model_hash(const sf_model *model, char text[SF_MODEL_HASH_SIZE]) {
     snprintf(text, SF_MODEL_HASH_SIZE, "%016llx", (unsigned long long)hash_of(model));
 }

@@ -111,16 +111,84 @@ double sf_mesh_error_expect(const sf_model *m, const sf_contact_zone *zone) {
     return SF_MESH_ERROR_THICKNESS * thickness * thickness + SF_MESH_ERROR_WIDTH * width * width;
 }
 
-static const double THINNEST = 1e-6, THICKEST = 1e3; /* m, of sf_model_check */
-static const double AT_PLANE = 1e-3;                 /* of the missile's extent: on the plane */
+static const double AT_PLANE = 1e-3;  /* of the missile's extent: on the plane */
 static const double SYMMETRIC = 1e-2; /* of the missile's extent: as far on one side as on the other */
 
-static sf_status check_thickness(const sf_model *m, sf_error *err) {
-    if (m->thickness >= THINNEST && m->thickness <= THICKEST)
-        return SF_OK;
-    return SF_REFUSE(
-        err, "the pad is %g m thick, outside %g to %g m: is geometry.length_unit the geometry's unit?",
-        m->thickness, THINNEST, THICKEST);
+/* ---- sizes ---- */
+
+static const double THINNEST = 5e-4, THICKEST = 5; /* m, of a pad */
+static const double SMALLEST = 1e-3, LARGEST = 10; /* m, of a missile */
+static const double MOST_PADS = 25;                /* pads, side by side, that a missile is wide */
+static const double DENSEST = 23e3, LIGHTEST = 5;  /* kg m-3, of a metal and of a box around a missile */
+
+/* Fills the extents (m) of the whole body, of whose points the model may have one side of a symmetry plane.
+ */
+static void find_size(const sf_model *m, int64_t count, const double *position, double size[3]) {
+    double low[3], high[3], place;
+    sf_box3(count, position, low, high);
+    for (int c = 0; c < 3; c++) {
+        size[c] = high[c] - low[c];
+        if (c < 2 && (m->axisymmetric ? (place = 0, true) : sf_symmetry_plane(m, c, &place)))
+            size[c] = 2 * fmax(fabs(low[c] - place), fabs(high[c] - place));
+    }
+}
+
+/* The unit that the case gives to a geometry, and its key. */
+static void name_unit(const sf_case *c, bool of_missile, char text[64]) {
+    bool own = of_missile && c->missile.unit != c->length_unit;
+    snprintf(text, 64, "geometry.%s is %g m", own ? "missile_length_unit" : "length_unit",
+             own ? c->missile.unit : c->length_unit);
+}
+
+/* A geometry in another unit is a thousand times too large or too small. */
+static sf_status check_sizes(const sf_case *c, const sf_model *m, sf_error *err) {
+    char unit[64];
+    double pad[3], missile[3];
+    find_size(m, m->node_count, m->position, pad);
+    find_size(m, m->surface_node_count, m->surface_position, missile);
+    double narrow = fmin(missile[0], missile[1]), wide = fmax(fmax(missile[0], missile[1]), missile[2]);
+    name_unit(c, false, unit);
+    if (!(m->thickness >= THINNEST && m->thickness <= THICKEST))
+        return SF_REFUSE(err,
+                         "the pad is %g mm thick, outside %g to %g mm: %s; is that the unit of its geometry?",
+                         1e3 * m->thickness, 1e3 * THINNEST, 1e3 * THICKEST, unit);
+    name_unit(c, true, unit);
+    if (!(wide >= SMALLEST && wide <= LARGEST && narrow <= MOST_PADS * fmax(pad[0], pad[1])))
+        return SF_REFUSE(
+            err,
+            "the sizes cannot belong together: the missile is %.4g x %.4g x %.4g mm, the pad %.4g x "
+            "%.4g x %.4g mm; %s: if the missile was drawn in another unit than the pad, give "
+            "geometry.missile_length_unit",
+            1e3 * missile[0], 1e3 * missile[1], 1e3 * missile[2], 1e3 * pad[0], 1e3 * pad[1], 1e3 * pad[2],
+            unit);
+    return SF_OK;
+}
+
+/* Mass and size of a body that is meant as it is drawn. */
+static void tell_density(const sf_case *c, const sf_model *m, const sf_sink *sink) {
+    sf_solid solid;
+    double size[3];
+    char unit[64];
+    find_size(m, m->surface_node_count, m->surface_position, size);
+    double box = size[0] * size[1] * size[2];
+    bool closed = sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
+                                   m->surface_triangle, &solid, SF_IGNORED) == SF_OK;
+    double least = closed && !(sf_model_whole(m) > 1) ? solid.volume : box;
+    name_unit(c, true, unit);
+    if (sf_missile_is_driven(m) || !(box > 0))
+        return;
+    if (m->missile.mass > DENSEST * least)
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "missile.mass: %g kg in a body of %.4g cm3 is denser than any metal: %s; is that the unit of "
+            "its geometry?",
+            m->missile.mass, 1e6 * least, unit);
+    else if (m->missile.mass < LIGHTEST * box)
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "missile.mass: %g kg in a body of %.4g x %.4g x %.4g mm is lighter than any foam: %s; is that "
+            "the unit of its geometry?",
+            m->missile.mass, 1e3 * size[0], 1e3 * size[1], 1e3 * size[2], unit);
 }
 
 static sf_status check_mass(const sf_model *m, sf_error *err) {
@@ -338,10 +406,12 @@ static sf_status check_whole(const sf_model *m, const rims *r, int axis, sf_erro
     bool below = is_cut(m, r, axis, low[axis], extent);
     if (!below && !is_cut(m, r, axis, high[axis], extent))
         return SF_OK;
-    return SF_REFUSE(err,
-                     "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: "
-                     "half a missile over a whole pad",
-                     'x' + axis, 1e3 * round_off(below ? low[axis] : high[axis], extent));
+    return SF_REFUSE(
+        err,
+        "the missile is cut open in the plane %c = %g mm, where the pad has no symmetry plane: "
+        "half a missile over a whole pad; draw the whole missile, or, if the pad is cut there, too, "
+        "name the group of that side in pad.symmetry",
+        'x' + axis, 1e3 * round_off(below ? low[axis] : high[axis], extent));
 }
 
 /* ---- edges that point at the pad ---- */
@@ -394,7 +464,7 @@ static sf_status check_blades(const sf_model *m, const rims *r, sf_error *err) {
 }
 
 static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
-    const rims r = m->missile.shape == SF_SHAPE_SURFACE ? list_rims(m, err) : (rims){0, NULL};
+    const rims r = list_rims(m, err);
     for (int axis = 0; axis < 2 && err->status == SF_OK; axis++) {
         double place = 0;
         const char *name = find_plane(c, mesh, m, axis, &place);
@@ -403,10 +473,82 @@ static sf_status check_symmetry(const sf_case *c, const sf_mesh *mesh, const sf_
         else
             check_whole(m, &r, axis, err);
     }
-    if (err->status == SF_OK)
+    if (err->status == SF_OK && m->missile.shape == SF_SHAPE_SURFACE)
         check_blades(m, &r, err);
     free(r.list);
     return err->status;
+}
+
+/* ---- the pad's edge ---- */
+
+static const double ON_EDGE = 1e-3; /* of the thickness */
+static const double BESIDE =
+    0.5; /* of the zone's half width: so near to the edge a good part of it hangs over */
+
+/* A place on the pad's top, and the way from it to the edge of the convex outline of the contact nodes. */
+typedef struct margin {
+    double at[2], middle[2]; /* m, the impact point, and the middle of the top */
+    double reach;            /* m, to the nearest edge, below 0 outside */
+    int axis;                /* of the edge's normal: 0 x, 1 y, 2 neither */
+} margin;
+
+/* Symmetry planes are no edges. */
+static margin find_margin(const sf_model *m) {
+    enum { DIRECTIONS = 360 };
+    margin e = {.reach = INFINITY, .axis = 2};
+    bool plane[2];
+    double low[3], high[3], place;
+    sf_box3(0, NULL, low, high);
+    for (int64_t k = 0; k < m->contact_count; k++)
+        sf_box3_add(&m->position[3 * (int64_t)m->contact_node[k]], low, high);
+    for (int c = 0; c < 2; c++) {
+        plane[c] = sf_symmetry_plane(m, c, &place);
+        e.at[c] = m->missile.impact[c];
+        e.middle[c] = plane[c] ? place : 0.5 * (low[c] + high[c]);
+    }
+    for (int k = 0; k < DIRECTIONS; k++) {
+        double angle = 2 * M_PI * k / DIRECTIONS, n[2] = {cos(angle), sin(angle)}, most = -INFINITY;
+        for (int64_t i = 0; i < m->contact_count; i++) {
+            const double *x = &m->position[3 * (int64_t)m->contact_node[i]];
+            double way = 0;
+            for (int c = 0; c < 2; c++) /* the mirrored half reaches as far */
+                way += plane[c] ? fabs(n[c] * (x[c] - e.at[c])) : n[c] * (x[c] - e.at[c]);
+            most = fmax(most, way);
+        }
+        if (most < e.reach) {
+            e.reach = most;
+            e.axis = k % (DIRECTIONS / 4) ? 2 : k / (DIRECTIONS / 4) % 2;
+        }
+    }
+    return e;
+}
+
+/* Refuses a pad with a symmetry plane that also ends below the missile's middle: the group of that side is
+ * missing. A missile that falls on an edge has a position. */
+static sf_status check_cut(const sf_case *c, const sf_model *m, sf_error *err) {
+    const margin e = find_margin(m);
+    if (c->position_given || m->symmetry_factor == 1 || e.axis == 2 ||
+        fabs(e.reach) > ON_EDGE * m->thickness || sf_missile_is_driven(m))
+        return SF_OK;
+    return SF_REFUSE(
+        err,
+        "the pad is cut open in the plane %c = %.4g mm, below the middle of the missile, and no symmetry "
+        "group holds that side: name its physical surface in pad.symmetry, or, if the missile is to "
+        "fall on the edge, give missile.position = [\"%.6g mm\", \"%.6g mm\"]",
+        'x' + e.axis, 1e3 * e.at[e.axis], 1e3 * e.at[0], 1e3 * e.at[1]);
+}
+
+static void tell_edge(const sf_model *m, const sf_contact_zone *zone, const sf_sink *sink) {
+    if (m->axisymmetric || sf_missile_is_driven(m) || m->contact_count == 0)
+        return;
+    const margin e = find_margin(m);
+    if (e.reach < BESIDE * zone->half_width)
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "the missile falls on the edge of the pad: its impact point, (%.4g, %.4g) mm, lies %.3g mm %s the "
+            "outline of the top; missile.position = [\"%.4g mm\", \"%.4g mm\"] is the middle of the top",
+            1e3 * e.at[0], 1e3 * e.at[1], 1e3 * fabs(e.reach), e.reach < 0 ? "outside" : "inside",
+            1e3 * e.middle[0], 1e3 * e.middle[1]);
 }
 
 /* ---- symmetry groups that the case does not hold ---- */
@@ -424,21 +566,6 @@ static void tell_free_planes(const sf_case *c, const sf_mesh *mesh, const sf_sin
                          "pad.symmetry leaves out the group \"%s\" of the geometry: that "
                          "side is free, and the modelled part counts as the whole pad",
                          mesh->set[k].name);
-}
-
-/* ---- mass and size ---- */
-
-static const double DENSEST = 23e3; /* kg m-3, of a metal */
-
-static void tell_density(const sf_model *m, const sf_sink *sink) {
-    sf_solid solid;
-    if (sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
-                         m->surface_triangle, &solid, SF_IGNORED) == SF_OK &&
-        m->missile.mass > DENSEST * solid.volume)
-        sf_sink_tell(sink, SF_WARNING,
-                     "missile.mass: %g kg in a body of %.4g cm3 is denser than any metal: is "
-                     "geometry.length_unit the geometry's unit?",
-                     m->missile.mass, 1e6 * solid.volume);
 }
 
 /* ---- materials ---- */
@@ -473,9 +600,12 @@ static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_con
 }
 
 sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
-    SF_TRY(check_thickness(m, err));
+    SF_TRY(check_sizes(c, m, err));
     SF_TRY(check_outside(c, m, err));
-    return m->axisymmetric ? SF_OK : check_symmetry(c, mesh, m, err);
+    if (m->axisymmetric)
+        return SF_OK;
+    SF_TRY(check_symmetry(c, mesh, m, err));
+    return check_cut(c, m, err);
 }
 
 sf_status sf_drop_check_contact(const sf_case *c, const sf_model *m, const sf_contact_zone *zone,
@@ -489,7 +619,8 @@ void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, cons
                   const sf_sink *sink) {
     char reason[REASON_SIZE];
     tell_free_planes(c, mesh, sink);
-    tell_density(m, sink);
+    tell_density(c, m, sink);
+    tell_edge(m, zone, sink);
     tell_cautions(m, sink);
     if (!(m->expected_mesh_error >= sf_good_run_limits()->mesh))
         return;

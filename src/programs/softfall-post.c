@@ -70,12 +70,7 @@ static sf_status read_ms(const char *option, const char *text, void *time, sf_er
 }
 
 static sf_status read_impact(const char *option, const char *text, void *impact, sf_error *err) {
-    double value = 0;
-    if (!sf_decimal_is(text, &value) || value != floor(value) || value < 1 || value > SF_RECORD_IMPACTS)
-        return SF_REFUSE(err, "%s %s: expected the number of an impact, from 1 to %d", option, text,
-                         SF_RECORD_IMPACTS);
-    *(int *)impact = (int)value;
-    return SF_OK;
+    return sf_reference_parse_impact(option, text, impact, err);
 }
 
 static sf_status read_view(const char *option, const char *text, void *view, sf_error *err) {

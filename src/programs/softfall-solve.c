@@ -8,6 +8,7 @@
 
 #include "base/program.h"
 #include "build_info.h"
+#include "io/plain_file.h"
 #include "model/good_run.h"
 #include "model/model_check.h"
 #include "model/model_io.h"
@@ -149,6 +150,14 @@ static void print_ledger(const sf_model *m, const sf_state *s, const sf_run *run
 static sf_status check_names(const sf_output *output, sf_error *err) {
     SF_TRY(sf_replace_check(output->results, err));
     return sf_replace_check(output->checkpoint, err);
+}
+
+/* Enters the earlier run in the register of inputs, which no output replaces. */
+static sf_status register_earlier(const char *results, sf_error *err) {
+    SF_PRINTED(checkpoint, SF_PATH_SIZE, "%.4000s.restart", results);
+    if (sf_replace_exists(results))
+        SF_TRY(sf_plain_check(results, NULL, err));
+    return sf_replace_exists(checkpoint) ? sf_plain_check(checkpoint, NULL, err) : SF_OK;
 }
 
 /* A file of an earlier run is replaced only with --force. */
@@ -335,6 +344,8 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
                                 .model_hash = hash};
     snprintf(libraries, sizeof libraries, "HDF5 %s", sf_h5_version());
     SF_TRY(sf_output_name(&d.output, o->output, err));
+    if (o->earlier.results)
+        SF_TRY(register_earlier(o->earlier.results, err));
     if (o->restart ? sf_checkpoint_open(d.output.checkpoint, &d.from, err) : check_output(o, &d.output, err))
         return err->status;
     if (read_model(o, &d.from, &d.model, &d.model_file, hash, err) != SF_OK ||

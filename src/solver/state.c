@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/state.h"
 
+#include "base/hash.h"
 #include "base/mat3.h"
 #include "material/laws.h"
 #include "model/flight.h"
@@ -178,6 +179,12 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
     else if (start_driven(model, s, err) != SF_OK)
         sf_state_free(s);
     return err->status;
+}
+
+int64_t sf_state_pad(const sf_model *model, double time, const double *history) {
+    size_t bytes = (size_t)sf_state_rows(model, 'h') * SF_LANES * sizeof *history;
+    uint64_t hash = sf_hash_identity(sf_hash_identity(SF_HASH_START, &time, sizeof time), history, bytes);
+    return (int64_t)(hash >> 1); /* positive: HDF5 has it as a signed number */
 }
 
 static bool all_finite(const double *value, int64_t count) {

@@ -90,6 +90,7 @@ typedef struct sf_partial {
 #define SF_STATE_NUMBERS(X)                                                                                            \
     X(int64_t, drop, , "1", "number of the drop on this pad, from 1")                                                  \
     X(double, pause, , "s", "rest of the pad before it; 0: it is new")                                                 \
+    X(int64_t, pad_before, , "1", "sf_state_pad at the end of the drop before; 0: it is new")                          \
     X(double, deepest, , "m", "largest indentation so far, that of `set_peak`")                                        \
     X(int64_t, step, , "1", "number of the step")                                                                      \
     X(double, time, , "s", "now")                                                                                      \
@@ -234,6 +235,8 @@ const sf_state_array *sf_state_arrays(size_t *count);
 int64_t sf_state_rows(const sf_model *model, char rows);
 
 sf_status sf_state_create(const sf_model *model, sf_state *state, sf_error *err);
+/* Returns the hash of a time and of the foam's history at it, by which a drop knows the one before. */
+int64_t sf_state_pad(const sf_model *model, double time, const double *history);
 /* Can the state be shown: are displacements, velocities, forces and the squares of stresses finite? */
 bool sf_state_is_finite(const sf_model *model, const sf_state *state);
 void sf_state_free(sf_state *state);

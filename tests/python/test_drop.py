@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import pkgutil
+import shutil
 import typing
 
 import numpy as np
@@ -281,6 +282,11 @@ def test_a_series_has_all_its_drops(tmp_path):
     last.unlink()
     again = case.run(output=tmp_path / "run").series
     assert [drop.figures["a_max_g"] for drop in again] == a
+    case.update({"missile.velocity": "3 m/s", "series.drops": 2})
+    other = case.run(output=tmp_path / "other")
+    shutil.copy(drops[1].results, other.series[1].results)
+    with pytest.raises(softfall.Error, match="is of another run"):
+        other.series
 
 
 def test_a_listed_series_has_the_models_of_its_drops(tmp_path):

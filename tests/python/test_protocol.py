@@ -264,6 +264,67 @@ def test_one_record_is_no_two_drops(measured, tmp_path, spelling):
     assert result.returncode == 2 and "already: each drop has a record of its own" in result.stderr and result.stderr.count("\n") == 1, result.stderr
 
 
+@pytest.mark.parametrize("heading, change", [
+    ("time (ms),acceleration (m/s2)", lambda t, a: (t, 9.80665 * a)),
+    ("time (ms),acceleration (g)", lambda t, a: (t + 3, np.round(a, 2))),
+    ("time (s),acceleration (g)", lambda t, a: (t[:-20] / 1e3, a[:-20])),
+], ids=["unit", "shifted", "cut"])
+def test_a_copy_of_a_record_is_no_second_drop(measured, tmp_path, heading, change):
+    t, a = np.loadtxt(measured / "corner-0.9-1.csv", delimiter=",", skiprows=1, unpack=True)
+    np.savetxt(measured / "corner-0.9-2.csv", np.column_stack(change(t, a)), delimiter=",", header=heading, comments="", fmt="%.8g")
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 2 and "already: each drop has a record of its own" in result.stderr and result.stderr.count("\n") == 1, result.stderr
+
+
+@pytest.mark.parametrize("number", ["0", "-1", "1.5", "nan", "1e3", "\u00b2"])
+def test_an_impact_or_a_drop_has_a_number_from_1_on(measured, tmp_path, number):
+    with pytest.raises(softfall.InputError, match="impact"):
+        softfall.read_record(measured / "centre-0.9-1.csv", impact=number)
+    text = (measured / "list.csv").read_text()
+    (measured / "list.csv").write_text(re.sub("(centre-0.9-1.csv,.*),1", rf"\g<1>,{number}", text))
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 2 and "is none of the 3" in result.stderr and result.stderr.count("\n") == 1, result.stderr
+
+
+CUSHION = """title = "T"
+standard = "S"
+[missile]
+[drops]
+heights = ["0.5 m"]
+masses = [MASSES]
+area = "129 cm2"
+[[figure]]
+key = "a_max_g"
+[result]
+kind = "cushion curve"
+""" + "".join(f'[[clause]]\nof = "{of}"\ntext = "x"\nsource = "y"\nstatus = "confirmed"\n' for of in ("missile", "drops", "figure", "result"))
+
+
+def test_masses_in_several_units_are_all_dropped(case, tmp_path):
+    (tmp_path / "p.toml").write_text(CUSHION.replace("MASSES", '"1 kg", "1500 g", "2kg", "6 lb"'))
+    p = protocol.read(str(tmp_path / "p.toml"))
+    case["pad.mesh_error_limit"] = 1
+    made = protocol_drops.simulate(p, case, tmp_path / "drops")
+    assert sorted(drop.spot.mass for drop in made.drops) == sorted(p.masses)
+    lines = judge.judge(p, made, simulated=True).lines
+    assert [float(re.search(r"([\d.]+) kPa", line.of)[1]) for line in lines if "first" in line.of] == pytest.approx(
+        [m * 9.80665 / 0.0129 / 1e3 for m in (1, 1.5, 2, 6 * 0.45359237)], rel=5e-3)
+
+
+@pytest.mark.parametrize("masses", ['"1 kg", "1000 g"', '"1 kg", "1.0 kg"', '"1kg", "1 kg"', '"1 g", "1e-3 kg"'])
+def test_one_mass_in_two_units_is_no_two_missiles(tmp_path, masses):
+    (tmp_path / "p.toml").write_text(CUSHION.replace("MASSES", masses))
+    with pytest.raises(softfall.InputError, match="hold one mass twice"):
+        protocol.read(str(tmp_path / "p.toml"))
+
+
+def test_one_point_under_two_names_is_no_two_positions(measured):
+    text = MAT.read_text()
+    (measured / "mat.toml").write_text(re.sub(r"positions = \[.*?\n\]", 'positions = [{ name = "a", at = ["10 mm", "0 mm"] }, { name = "b", at = ["1 cm", "0 m"] }]', text, flags=re.S))
+    with pytest.raises(softfall.InputError, match="a and b are one point"):
+        protocol.read(str(measured / "mat.toml"))
+
+
 def test_a_limit_within_the_error_of_the_mesh_is_not_decided():
     p = protocol.read("en913")
     spot = Spot(p.conditions[0].name, p.positions[0].name, p.heights[0])

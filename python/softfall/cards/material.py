@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-import tempfile
 from pathlib import Path
 from types import ModuleType
 
-from .. import library
+from .. import library, output as output_files
 from ..errors import Error, InputError
 from . import abaqus, dyna, radioss, units
 from .foam import Curve, Foam, Term, choose, finish, read_lines, refuse
@@ -75,22 +74,28 @@ def _text(foam: Foam, stem: str, source: str) -> str:
     return "\n".join(map(_clean, "\n".join(lines).split("\n"))) + "\n"
 
 
-def write_material(foam: Foam, output: Path, source: str, force: bool = False) -> list[Path]:
-    """Writes OUT/material.cfg (or OUT itself if it ends with .cfg) and its curves, after softfall-pre's check of it; returns their paths."""
+def write_material(foam: Foam, output: Path, source: str, force: bool = False, deck: str = "") -> list[Path]:
+    """Writes OUT/material.cfg (or OUT itself if it ends with .cfg) and its curves, after softfall-pre's check of it; returns their paths.
+
+    The files of the deck are not replaced.
+    """
+    inputs = {place.rpartition(":")[0] or place for place in (foam.place, *(str(curve.place) for curve in foam.curves))} | {deck}
     folder, stem = (output.parent, output.stem) if output.suffix == ".cfg" else (output, "material")
     files = {f"{stem}{f'-{k}' if len(foam.curves) > 1 else ''}.csv": f"# {_clean(foam.name or foam.key)}\n# Engineering strain and nominal stress, positive in compression"
              f"{f', at {curve.rate:.6g} per second' if curve.rate else ''}.\nstrain,stress_kPa\n" + "".join(f"{a:.12g},{1e-3 * b:.12g}\n" for a, b in zip(curve.strain, curve.stress))
              for k, curve in enumerate(foam.curves, 1)}
+    for name in (f"{stem}.cfg", *files):
+        output_files.check(folder / name, *inputs)
     there = [name for name in (f"{stem}.cfg", *files) if (folder / name).exists()]
     if there and not force:
         raise InputError(f"{folder / there[0]} exists already: give --force to replace it, or another --output")
-    with tempfile.TemporaryDirectory(prefix="softfall-") as scratch:
+    with output_files.scratch() as scratch:
         for attempt in range(2):
             files[f"{stem}.cfg"] = _text(foam, stem, source)
             for name, text in files.items():
-                (Path(scratch) / name).write_text(text, encoding="utf-8")
+                (scratch / name).write_text(text, encoding="utf-8")
             try:
-                library.Material(str(Path(scratch) / f"{stem}.cfg"))
+                library.Material(str(scratch / f"{stem}.cfg"))
                 break
             except Error as error:
                 found = re.search(r"makes the law unstable in (.*?) from a strain of ([\d.e-]+) on", str(error))
@@ -102,7 +107,7 @@ def write_material(foam: Foam, output: Path, source: str, force: bool = False) -
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in files.items():
-            (folder / name).write_text(text, encoding="utf-8")
+            output_files.write(folder / name, text, *inputs)
     except OSError as error:
         raise Error(f"{folder} cannot be written to: {error.strerror}", 3) from None
     return [folder / name for name in files]

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..curves import STANDARD_GRAVITY
 from ..errors import InputError, missing
+from ..output import write
 from .cells import LOST, Array, Marks, is_clock
 from .files import Sheet, sheets
 from .headings import Column, Role, other_title
@@ -51,7 +52,7 @@ class Reading:
 
     def write(self, path: str | os.PathLike[str]) -> Path:
         """Writes the table as the CSV that the programs read."""
-        Path(path).write_text(self.text(), encoding="utf-8")
+        write(path, self.text(), self.path)
         return Path(path)
 
 

@@ -39,6 +39,15 @@ sf_status sf_reference_parse_range(const char *text, double *range, sf_error *er
                : SF_REFUSE(err, "\"%s\" is no range of a channel: write for example \"200 g\"", text);
 }
 
+sf_status sf_reference_parse_impact(const char *option, const char *text, int *impact, sf_error *err) {
+    double value = 0;
+    if (!sf_decimal_is(text, &value) || value != floor(value) || value < 1 || value > SF_RECORD_IMPACTS)
+        return SF_REFUSE(err, "%s %s: expected the number of an impact, from 1 to %d", option, text,
+                         SF_RECORD_IMPACTS);
+    *impact = (int)value;
+    return SF_OK;
+}
+
 /* ---- the file ---- */
 
 static sf_status check_point(const sf_table_point *p, sf_error *err) {

@@ -56,3 +56,5 @@ void sf_reference_free(sf_reference *reference);
 
 /* "200 g" (standard gravity), "2 km/s2" to g; SF_ERR_INPUT names the text. */
 sf_status sf_reference_parse_range(const char *text, double *range, sf_error *err);
+/* The number of an impact, from 1 on; SF_ERR_INPUT names the option and the text. */
+sf_status sf_reference_parse_impact(const char *option, const char *text, int *impact, sf_error *err);

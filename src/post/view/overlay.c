@@ -125,6 +125,7 @@ static sf_status name_drops(overlay *o, sf_error *err) {
 
 /* Each file must be the drop after the one before. */
 static sf_status read_drop(overlay_run *r, int64_t number, sf_error *err) {
+    int64_t before = 0, after = 0;
     if (number > 1 && read_run(r, err) != SF_OK)
         return err->status;
     SF_TRY(read_count(r->results.file, "/summary/drop", &r->drop, err));
@@ -133,6 +134,14 @@ static sf_status read_drop(overlay_run *r, int64_t number, sf_error *err) {
         return SF_REFUSE(err, "%s is drop %lld on its pad, not drop %lld of this series", r->path,
                          (long long)r->drop, (long long)number);
     sf_axis_find(&r->results, r->place);
+    if (number > 1 && read_count(r->results.file, "/summary/pad_before", &before, err) == SF_OK &&
+        read_count(r[-1].results.file, "/summary/pad_after", &after, err) == SF_OK && before != after)
+        return SF_REFUSE(
+            err,
+            "%s did not begin with the pad as %s left it: it is of another run, or one of the two "
+            "was solved anew",
+            r->path, r[-1].path);
+    SF_TRY(err->status);
     return number > 1 ? sf_h5_read_scalar(r->results.file, "/summary/pause", &r->pause, err) : SF_OK;
 }
 

@@ -2,6 +2,7 @@
 #include "solver/run/checkpoint.h"
 
 #include "io/h5_data.h"
+#include "model/model_check.h"
 #include "solver/contact/skin.h"
 #include "solver/field/domain_stress.h"
 #include "solver/set.h"
@@ -176,18 +177,36 @@ static sf_status check_array(const sf_h5 *file, const char *name, sf_h5_type typ
     return err->status;
 }
 
+/* The foam must be the same, too: its card, its curves and its temperature. */
+static sf_status check_foam(const sf_h5 *file, const sf_model *m, const char *path, sf_error *err) {
+    SF_OWNED char *foam = NULL;
+    char mine[SF_MODEL_HASH_SIZE];
+    sf_model_foam_hash(m, mine);
+    if (!sf_h5_exists(file, "/model/foam"))
+        return SF_REFUSE(err, "%s is of an older version, which does not say its foam: solve its model again",
+                         path);
+    if (sf_h5_read_text(file, "/model/foam", &foam, err) == SF_OK && strcmp(foam, mine) != 0)
+        SF_REFUSE(
+            err,
+            "the pad of %s has another foam: material, curves and pad.temperature of a later drop must be "
+            "those of the first",
+            path);
+    return err->status;
+}
+
 static sf_status check_pad(const sf_h5 *file, const sf_model *m, const char *path, sf_error *err) {
     int64_t vectors[2] = {m->node_count, 3}, numbers[2] = {m->node_count, 1};
     SF_TRY(check_array(file, "/model/position", SF_H5_F64, vectors, m->position, path, err));
     SF_TRY(check_array(file, "/model/volume", SF_H5_F64, numbers, m->volume, path, err));
     if (m->material_count > 1)
-        check_array(file, "/model/node_layer", SF_H5_U8, numbers, m->node_material, path, err);
-    return err->status;
+        SF_TRY(check_array(file, "/model/node_layer", SF_H5_U8, numbers, m->node_material, path, err));
+    return SF_OK;
 }
 
 static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const char *path, sf_state *s,
                               sf_error *err) {
     SF_OWNED int64_t *number = NULL;
+    SF_OWNED double *time = NULL;
     int64_t dims[2] = {sf_state_rows(m, 'h'), SF_LANES}, one = 1;
     void *history = NULL;
     sf_error inner = SF_ERROR_INIT;
@@ -198,9 +217,11 @@ static sf_status take_history(const sf_h5 *checkpoint, const sf_model *m, const 
                          path, inner.text);
     free(s->history);
     s->history = history;
-    if (sf_h5_read(checkpoint, "/state/drop", SF_H5_I64, 1, &one, (void **)&number, err) == SF_OK)
-        s->drop = *number + 1;
-    return err->status;
+    SF_TRY(sf_h5_read(checkpoint, "/state/drop", SF_H5_I64, 1, &one, (void **)&number, err));
+    SF_TRY(sf_h5_read(checkpoint, "/state/time", SF_H5_F64, 1, &one, (void **)&time, err));
+    s->drop = *number + 1;
+    s->pad_before = sf_state_pad(m, *time, s->history);
+    return SF_OK;
 }
 
 static sf_status open_earlier(const sf_earlier *e, sf_checkpoint *c, sf_error *err) {
@@ -241,7 +262,7 @@ sf_status sf_series_shape(const sf_earlier *e, const sf_checkpoint *from, sf_mod
     if (sf_h5_open(e->results, &results, err) == SF_OK &&
         sf_provenance_check(results, e->results, "softfall-results", err) == SF_OK &&
         check_ending(results, c.file, e->results, err) == SF_OK &&
-        check_pad(results, m, e->results, err) == SF_OK)
+        check_pad(results, m, e->results, err) == SF_OK && check_foam(results, m, e->results, err) == SF_OK)
         take_set(&c, e->pause, m, err);
     return err->status;
 }

@@ -4,6 +4,7 @@
 #include "io/h5_data.h"
 #include "io/plain_file.h"
 #include "model/flight.h"
+#include "model/model_check.h"
 #include "solver/run/frame.h"
 #include <errno.h>
 #include <sys/file.h>
@@ -76,7 +77,10 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/missile_direction", "1", "direction of motion"}, SF_H5_F64, 1, {3, 0}, sf_missile_direction(m)},
         /* clang-format on */
     };
+    char foam[SF_MODEL_HASH_SIZE];
     size_t count = sizeof item / sizeof item[0];
+    sf_model_foam_hash(m, foam);
+    SF_TRY(sf_h5_write_text(file, &(sf_h5_info){"/model/foam", "1", "hash of the materials"}, foam, err));
     for (size_t k = m->support_triangle_count > 0 ? 0 : 2; k < count; k++)
         SF_TRY(sf_h5_write(file, &item[k].info, item[k].type, item[k].rank, item[k].dims, item[k].data, err));
     return SF_OK;

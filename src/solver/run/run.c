@@ -297,6 +297,7 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
     const sf_model *m = d->m;
     const sf_state *s = d->s;
     const bool later = s->drop > 1;
+    const int64_t pad = sf_state_pad(m, s->time, s->history);
     double set[2];
     if (m->set)
         sf_set_measure(m, set);
@@ -316,6 +317,8 @@ static sf_status write_summary(const drop *d, const char *status, sf_h5 *file, s
         {true, {"/summary/power_iterations", "1", "spent on the time step"}, &s->power_iterations, SF_H5_I64},
         {m->series_count > 1, {"/summary/drops", "1", "drops of the series"}, &m->series_count, SF_H5_I64},
         {later, {"/summary/drop", "1", "number of the drop on this pad, from 1"}, &s->drop, SF_H5_I64},
+        {true, {"/summary/pad_after", "1", "hash of the foam's history at the end"}, &pad, SF_H5_I64},
+        {later, {"/summary/pad_before", "1", "the same of the drop before"}, &s->pad_before, SF_H5_I64},
         {later, {"/summary/pause", "s", "rest of the pad before it"}, &s->pause, SF_H5_F64},
         {later && m->set, {"/summary/set", "m", "permanent set of the pad before it: depth at the impact point"}, &set[0], SF_H5_F64},
         {later && m->set, {"/summary/set_largest", "m", "its largest depth"}, &set[1], SF_H5_F64},
