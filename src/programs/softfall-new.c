@@ -115,12 +115,15 @@ static sf_status make(const options *o, const char *path, const char *origin, sf
                                             .folder = o->folder,
                                             .origin = origin};
     SF_TRY(sf_case_folder_make(&request, &sink, err));
-    printf("%s holds the case of %s, with all that it needs. Next:\n\n"
+    char command[PATH_MAX];
+    bool whole = sf_process_find("softfall", command, sizeof command, SF_IGNORED) == SF_OK;
+    printf("%s holds the case of %s, with all that it needs. %s\n\n"
            "    cd %s\n"
            "    softfall-pre case.cfg -o model.h5\n"
            "    softfall-solve model.h5 -o results.h5\n"
            "    softfall-post results.h5 -o out\n",
-           o->folder, origin, o->folder);
+           o->folder, origin,
+           whole ? "Next: `softfall run` in it does\nall of this; step by step:" : "Next:", o->folder);
     return SF_OK;
 }
 

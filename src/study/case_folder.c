@@ -270,7 +270,8 @@ static sf_status write_readme(folder *f, sf_error *err) {
         "    softfall-pre case.cfg -o model.h5       # mesh the geometry, build and check the model\n"
         "    softfall-solve model.h5 -o results.h5   # the drop\n"
         "    softfall-post results.h5 -o out         # figures, out/report.html, files for ParaView\n\n"
-        "Edit case.cfg and run the three again, each with --force. softfall-pre --keys explains every key.\n",
+        "Edit case.cfg and run the three again, each with --force; `softfall run` of the Python package does all of this. "
+        "softfall-pre --keys explains every key.\n",
         out);
     fclose(out);
     SF_TRY(add_file(f, README_NAME, "", NULL, err));
