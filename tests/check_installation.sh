@@ -56,7 +56,7 @@ if [ -x "$prefix/bin/softfall" ]; then
         cd "$share/softfall/examples/eva50-v4.5"
         PATH=$prefix/bin:$PATH
         [ "$(complete softfall ru)" = run ] || fail "softfall ru is not completed"
-        [ "$(complete softfall run case.cfg thic)" = thickness= ] || fail "softfall run case.cfg thic: $(complete softfall run case.cfg thic)"
+        [ "$(complete softfall run case.cfg zone)" = zone_side= ] || fail "softfall run case.cfg zone: $(complete softfall run case.cfg zone)"
         [ "$(complete softfall protocol en117)" = en1177 ] || fail "softfall protocol en117: $(complete softfall protocol en117)"
     ) || exit 1
 fi

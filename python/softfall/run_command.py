@@ -38,7 +38,7 @@ def parser(prog: str) -> Parser:
                    "Runs a drop: mesh, solution, figures, report. Prints the verdict and where the\npage is. A drop that is there already is not computed again.",
                    "CASE is a case file, a folder with a case.cfg (default: that of the present one),\nor the name of an example. KEY may be short: thickness=60 finds "
                    "geometry.parameters.thickness.\nheight=\"1.3 m\" sets the speed of a free fall, or with rig=PAIRS.csv of that on a rig.\n\nExample:\n"
-                   "  softfall new pad && cd pad\n  softfall run case.cfg thickness=60 height=\"1.3 m\"\n\n"
+                   "  softfall run case.cfg thickness=60 height=\"1.3 m\"\n\n"
                    "Exit code: 0, also if limits are exceeded; 2 a wrong input, 3 a file, 4 the model,\n5 the solution failed, 130 interrupted; with --strict 8 and 9.")
     add = made.options.add_argument
     made.add_argument("arguments", metavar="CASE", nargs="*", help=argparse.SUPPRESS)

@@ -117,13 +117,16 @@ static sf_status make(const options *o, const char *path, const char *origin, sf
     SF_TRY(sf_case_folder_make(&request, &sink, err));
     char command[PATH_MAX];
     bool whole = sf_process_find("softfall", command, sizeof command, SF_IGNORED) == SF_OK;
-    printf("%s holds the case of %s, with all that it needs. %s\n\n"
-           "    cd %s\n"
+    printf("%s holds the case of %s, with all that it needs.", o->folder, origin);
+    if (whole)
+        printf("\nNext: softfall run %s, or step by step:\n\n", o->folder);
+    else
+        printf(" Next:\n\n");
+    printf("    cd %s\n"
            "    softfall-pre case.cfg -o model.h5\n"
            "    softfall-solve model.h5 -o results.h5\n"
            "    softfall-post results.h5 -o out\n",
-           o->folder, origin,
-           whole ? "Next: `softfall run` in it does\nall of this; step by step:" : "Next:", o->folder);
+           o->folder);
     return SF_OK;
 }
 
