@@ -50,6 +50,16 @@ done
 [ "$(complete softfall-solve --on-failure = r)" = remove ] || fail "softfall-solve --on-failure=r is not completed"
 [ "$(complete softfall-fit '')" = 'compression drop' ] || fail "the words of softfall-fit: $(complete softfall-fit '')"
 [ "$(complete softfall-fit drop --jo)" = --jobs= ] || fail "softfall-fit drop --jo is not completed"
+[ "$(PATH=$prefix/bin:$PATH complete softfall-new --from wal)" = wall ] || fail "the examples of softfall-new --from are not completed"
+if [ -x "$prefix/bin/softfall" ]; then
+    (
+        cd "$share/softfall/examples/eva50-v4.5"
+        PATH=$prefix/bin:$PATH
+        [ "$(complete softfall ru)" = run ] || fail "softfall ru is not completed"
+        [ "$(complete softfall run case.cfg zone)" = zone_side= ] || fail "softfall run case.cfg zone: $(complete softfall run case.cfg zone)"
+        [ "$(complete softfall protocol en117)" = en1177 ] || fail "softfall protocol en117: $(complete softfall protocol en117)"
+    ) || exit 1
+fi
 [ "$(cd "$share/softfall/examples/eva50-v4.5" && complete softfall-pre ca)" = case.cfg ] || fail "no files are offered"
 
 # The programs find softfall-mesh, the geometries and examples, and share/softfall, from a folder elsewhere.

@@ -38,7 +38,7 @@ static void command_lines_that_cannot_be_meant_are_refused(void **state) {
     } lines[] = {
         {"pre", "", "-o model.h5"},
         {"pre", "good.cfg", "-o model.h5"},
-        {"pre", "good.cfg good.cfg -o new.h5", "one too many"},
+        {"pre", "good.cfg good.cfg -o new.h5", "unexpected \"good.cfg\""},
         {"pre", "good.cfg -o new.h5 --speed 3", "unrecognized option"},
         {"pre", "good.cfg -o new.h5 --set velocity=3", "group.key=value"},
         {"pre", "good.cfg -o new.h5 --set missile.velocity", "group.key=value"},

@@ -23,6 +23,22 @@ values_of() {
     help_options "$program" "$@" | sed -nE 's/^(--[^=]*)=(.+)$/    \1) values="\2" ;;/p' | tr '|' ' '
 }
 
+# What the programs themselves know: examples, protocols, keys of a case.
+names_of() {
+    # shellcheck disable=SC2016 # the text is expanded in the completion
+    local self='"${COMP_WORDS[0]}"' list="2>/dev/null | cut -d' ' -f1"
+    # shellcheck disable=SC2016
+    case $name in
+    softfall-new) echo "    *' --from' | *' -f') values=\$($self --list $list) ;;" ;;
+    softfall-protocol) echo "    *) [[ \$now == -* || \$COMP_CWORD -ne 1 ]] || values=\$($self --list $list) ;;" ;;
+    softfall)
+        echo "    'new --from' | 'new -f') values=\$($self new --list $list) ;;"
+        echo "    'protocol protocol') values=\$($self protocol --list $list) ;;"
+        echo "    run\\ [!-]*) [[ \$COMP_CWORD -lt 3 || \${COMP_WORDS[COMP_CWORD]} == = || \${COMP_WORDS[COMP_CWORD - 1]} == = ]] || values=\$($self run --keys \"\${COMP_WORDS[2]}\" 2>/dev/null | sed 's/=.*/=/') ;;"
+        ;;
+    esac
+}
+
 cat <<TEXT
 # bash completion of $name, made from its --help
 $function() {
@@ -36,9 +52,13 @@ $(case_of '*')
     case \$option in
 $(values_of && for word in $words; do values_of "$word"; done)
     esac
+    case "\${COMP_WORDS[1]} \$option" in
+$(names_of)
+    esac
     COMPREPLY=()
     if [ -n "\$values" ]; then
         mapfile -t COMPREPLY < <(compgen -W "\$values" -- "\$now")
+        [[ \${COMPREPLY[*]} != *= ]] || compopt -o nospace
     elif [[ \$now == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "\$options" -- "\$now")
         [[ \${COMPREPLY[*]} != *= ]] || compopt -o nospace

@@ -30,5 +30,5 @@ page() {
 mkdir -p "$dir"
 page
 for word in $(help_words "$program"); do
-    page "$word"
+    [[ " $* " == *" $name-$word "* ]] || page "$word" # a word that is handed over to another program has that one's page
 done

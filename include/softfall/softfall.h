@@ -84,6 +84,14 @@ SOFTFALL_API void softfall_case_free(softfall_case *c);
 /* The values of the case: a line for each key with its name, value as --set takes it, value in SI units, and
  * "given" or "default", between blanks; owned by the case. */
 SOFTFALL_API const char *softfall_case_parameters(const softfall_case *c);
+/* Sets a hash of all that the case says: its values, the points of its curves and of its motion, its geometry
+ * files. The places of files do not count. What a geometry includes or merges is not part of it: ask
+ * softfall_case_has_geometry_of. */
+SOFTFALL_API softfall_status softfall_case_hash(const softfall_case *c, uint64_t *hash,
+                                                softfall_error *error);
+/* Returns 1 if every file that the geometries of the model behind `results` (a results.h5) read, included
+ * ones too, has its content still beside the geometries of this case; 0 if not, or if it cannot be told. */
+SOFTFALL_API int softfall_case_has_geometry_of(const softfall_case *c, const char *results);
 
 /* Meshes the geometry of the case and builds the model. A case can be built once; afterwards it can only be
  * freed. */

@@ -9,10 +9,16 @@
 The programs of softfall compute everything; this package starts them and reads their files. Units are those of the files: SI in
 `history` and `frames`, and what the key of a figure ends with ("a_max_g", "hic_t1_ms"). Figures indicate, they do not certify.
 """
+import importlib.util
+
+from .errors import Error, InputError, Interrupted, NumericError, SoftfallWarning, lacking
+
+if _missing := [name for name in ("numpy", "h5py", "pandas") if importlib.util.find_spec(name) is None]:
+    raise ModuleNotFoundError(lacking(_missing), name=_missing[0])
+
 from .case import Case, Step, example
 from .curves import cfc, hic
 from .drop import Drop, Verdict, read_results
-from .errors import Error, InputError, Interrupted, NumericError, SoftfallWarning
 from .function import Function, function
 from .library import version
 from .rating import Rating, rate

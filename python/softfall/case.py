@@ -21,8 +21,12 @@ from .drop import Drop, as_str, later_results
 from .errors import Error, InputError, NumericError, SoftfallWarning, find
 
 RUNS = "softfall-runs"  # the folder of runs without a name
+FAILED = "failed.txt"  # in the folder of a drop: the sentence with which its solution failed
+ENDED = ("finished", "rebound")  # states of a whole run
 _LINE = re.compile(r'(\S+)\s+("(?:[^"\\]|\\.)*"|\[[^]]*\]|\([^)]*\)|\{[^}]*\}|\S+)')
 _MEMBER = re.compile(r'([\w-]+) = ("(?:[^"\\]|\\.)*"|[^;]+);')
+_STEPS = re.compile(r"^typical run time .* for about (\d+) steps", re.MULTILINE)
+_FILE = re.compile(r"^\S*\b(file|missile_file|curves?|motion)\s")  # lines of the list of parameters whose values are paths
 _PROGRESS = re.compile(r"t\s+([\d.]+) / \S+ ms\s+step\s+(\d+)\s+dt\s+([\d.]+) us\s+(?:a|force)\s+(-?[\d.]+) (g|N)"
                        r"\s+indentation\s+(-?[\d.]+) mm\s+compression (-?[\d.]+)\s+energy ([-+][\d.]+) %")
 
@@ -37,6 +41,7 @@ class Step(NamedTuple):
     indentation: float  # m
     compression: float  # the largest, 1 - smallest stretch
     energy_error: float  # relative
+    steps: int = 0  # of the whole drop, as softfall-pre expects them (to a factor of 2); 0: it does not say
 
 
 def as_text(value: Any) -> str:
@@ -181,14 +186,14 @@ class Case(MutableMapping[str, Any]):
         return len(self._values)
 
     def run(self, threads: int | None = None, on_step: Callable[[Step], object] | None = None,
-            output: str | os.PathLike[str] | None = None, force: bool = False) -> Drop:
+            output: str | os.PathLike[str] | None = None, force: bool = False, runs: str | os.PathLike[str] = RUNS) -> Drop:
         """Simulates the drop and returns it.
 
         `threads`: of the solver, all processors by default; the results do not depend on it. `on_step`: called some times a second
         with a `Step`; what it raises ends the run. `output`: a folder for model.h5, results.h5 and `out/`, the files of
-        softfall-post; without one, a folder below softfall-runs/ that is named after the content of the model.
+        softfall-post; without one, a folder below `runs` that is named after the content of the inputs, wherever these are.
 
-        A drop that is there, of the same model by the same programs, is not computed again. After Ctrl-C, or an exception of
+        A drop that is there, of the same inputs by the same programs, is not computed again. After Ctrl-C, or an exception of
         `on_step`, the run ends with a checkpoint, and the same call resumes it. `force` computes it anew, and replaces results of
         another model in `output`. A failure of the solution is a NumericError.
         """
@@ -196,20 +201,47 @@ class Case(MutableMapping[str, Any]):
             raise InputError(f"threads: {threads!r} is not a number from 1 on")
         if on_step is not None and not callable(on_step):
             raise InputError(f"on_step: {on_step!r} is no function")
-        top = Path(RUNS if output is None else output).absolute()
+        top = Path(runs if output is None else output).absolute()
+        folder = self._folder_in(top) if output is None else top
+        if output is None and not force and (found := self.find(top)):
+            return found
         with _folder(top), output_files.scratch(top) as scratch:
             model = scratch / "model.h5"
             share = [f"--share={top / 'shared'}"] if output is None else []
-            programs.run("pre", [str(self.path), f"--output={model}", *share, *(f"--set={text}" for text in self._texts())],
-                         threads=threads)
-            folder = top if output is not None else top / f"{self._name()}-{_state(model)['model']}"
-            with _folder(folder), open(output_files.open_lock(folder / "lock")) as lock:
-                try:  # the child inherits the lock: nobody else takes the folder while it runs
-                    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:
-                    warnings.warn(f"another process runs the drop in {folder}: this one waits for it", SoftfallWarning, stacklevel=2)
-                    fcntl.flock(lock, fcntl.LOCK_EX)
-                return _solve(model, folder, threads, on_step, force, lock.fileno())
+            report = programs.run("pre", [str(self.path), f"--output={model}", *share, *(f"--set={text}" for text in self._texts())],
+                                  threads=threads)
+            steps = _STEPS.search(report)
+            with _folder(folder), locked(folder) as lock:  # the child inherits the lock: nobody else takes the folder while it runs
+                how = _How(threads, on_step, int(steps[1]) if steps else 0, force, output is None, lock)
+                try:
+                    return _solve(model, folder, how)
+                except NumericError as error:
+                    if output is None:
+                        output_files.write(folder / FAILED, str(error))
+                    raise
+
+    def _folder_in(self, runs: Path) -> Path:
+        """Returns the folder of this drop below `runs`, named after the content of the inputs but for what geometries include."""
+        said = [line for line in library.case_parameters(str(self.path), self._texts()).splitlines() if not _FILE.match(line)]
+        text = "\n".join([str(library.case_hash(str(self.path), self._texts())), *said])
+        key = hashlib.sha256(text.encode()).hexdigest()[:16]
+        return next(iter(sorted(runs.glob(f"*-{key}"))), runs / f"{self._name()}-{key}")
+
+    def find(self, runs: str | os.PathLike[str] = RUNS) -> Drop | None:
+        """Returns the drop if it is below `runs`, of these inputs by these programs, else None; raises the NumericError with which it ended."""
+        folder = self._folder_in(Path(runs).absolute())
+        first = folder / "results.h5"
+        state = _state(first)
+        if state.get("revision") != _revision() or not library.case_has_geometry_of(str(self.path), self._texts(), str(first)):
+            return None
+        if (folder / FAILED).exists() and state["status"] != "interrupted":
+            failed = NumericError((folder / FAILED).read_text(encoding="utf-8"), 5)
+            failed.results = str(first)
+            raise failed
+        with h5py.File(first, "r") as file:
+            drops = max(1, int(file["summary/drops"][()])) if "summary/drops" in file else 1
+        ended = [_state(later_results(first, number)).get("status") in ENDED for number in range(1, drops + 1)]
+        return Drop(first, folder / "out") if all(ended) else None
 
     def require_single(self, what: str) -> None:
         """Raises InputError if the case is a series of drops, of which `what` would have the first one alone."""
@@ -248,6 +280,33 @@ def _folder(path: Path) -> Iterator[None]:
             path.rmdir()
 
 
+@contextlib.contextmanager
+def locked(folder: Path) -> Iterator[int]:
+    """Takes the lock of the folder of a drop, after the process that holds it; gives its file descriptor."""
+    with open(output_files.open_lock(folder / "lock")) as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            warnings.warn(f"another process runs the drop in {folder}: this one waits for it", SoftfallWarning, stacklevel=4)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield lock.fileno()
+
+
+def _revision() -> str:
+    return library.version().split("(")[1].rstrip(")")
+
+
+class _How(NamedTuple):
+    """How a model is solved."""
+
+    threads: int | None
+    on_step: Callable[[Step], object] | None
+    steps: int  # expected
+    force: bool
+    keyed: bool  # the folder belongs to these inputs: what is there of others was made before a file of theirs changed
+    lock: int  # file descriptor
+
+
 def _state(path: Path) -> dict[str, str]:
     """Returns what tells a model, or the results of one, from others: `model`, also `revision` and `status`; {} without the file."""
     if not path.exists():
@@ -268,22 +327,24 @@ def _checkpoint(results: Path) -> Path:
     return results.with_name(results.name + ".restart")
 
 
-def _solve(model: Path, folder: Path, threads: int | None, on_step: Callable[[Step], object] | None, force: bool, lock: int) -> Drop:
+def _solve(model: Path, folder: Path, how: _How) -> Drop:
     """Moves the model, and those of later drops of a series, into the folder and solves it there, unless that is done; resumes a run
     of it, also within a series."""
     with h5py.File(model, "r") as file:
         drops = max(1, int(file["series/count"][()]))
     files = [later_results(folder / "results.h5", number) for number in range(1, drops + 1)]
     models = [own if (own := later_results(model, number)).exists() else model for number in range(1, drops + 1)]
-    ours, revision = [_state(path)["model"] for path in models], library.version().split("(")[1].rstrip(")")
+    ours, revision = [_state(path)["model"] for path in models], _revision()
     states, built = [_state(path) for path in files], _state(folder / "model.h5")
     strange = _checkpoint(files[0]).exists() and not built or any(state and state["model"] != own for state, own in
                                                                   zip((*states, built), (*ours, ours[0])))
+    force = how.force or (strange and how.keyed)
     if strange and not force:
         raise InputError(f"{folder} holds a run of other values; force=True replaces it, another output keeps it")
-    done = [state.get("status") in ("finished", "rebound") and state.get("revision") == revision for state in states]
+    done = [state.get("status") in ENDED and state.get("revision") == revision for state in states]
     if all(done) and not force:
         return Drop(files[0], folder / "out", own=True)
+    (folder / FAILED).unlink(missing_ok=True)
     for path in dict.fromkeys(models):
         shutil.move(path, folder / path.name)
     first = done.index(False) if not force else 0
@@ -297,14 +358,14 @@ def _solve(model: Path, folder: Path, threads: int | None, on_step: Callable[[St
 
     def tell(line: str) -> None:
         found = _PROGRESS.search(line)
-        if found and on_step:
+        if found and how.on_step:
             t, step, dt, load, _, depth, compression, energy = found.groups()
-            on_step(Step(float(t) / 1e3, int(step), float(dt) / 1e6, float(load), float(depth) / 1e3, float(compression),
-                         float(energy) / 100))
+            how.on_step(Step(float(t) / 1e3, int(step), float(dt) / 1e6, float(load), float(depth) / 1e3, float(compression),
+                             float(energy) / 100, how.steps))
 
     try:
-        programs.run("solve", [*where, *([f"--threads={threads}"] if threads else [])], terminal=on_step is not None, keep=[lock],
-                     on_line=tell)
+        programs.run("solve", [*where, *([f"--threads={how.threads}"] if how.threads else [])], terminal=how.on_step is not None,
+                     keep=[how.lock], on_line=tell)
     except NumericError as error:
         error.results = str(files[0]) if files[0].exists() else None
         raise

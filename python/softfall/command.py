@@ -13,14 +13,25 @@ import sys
 import warnings
 from typing import Any, Sequence
 
-from . import library
-from .errors import Error
+from . import library, programs
+from .errors import Error, lacking
 
 COMMANDS = {  # module within the package, and what the command does
     "foam": ("foam_command", "convert foam cards of other solvers and back, and show foams"),
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
     "read": ("read_program", "turn any laboratory's file into the CSV that the programs read, and say how it was read"),
+    "run": ("run_command", "run a drop: mesh, solution, figures and report, kept by content"),
     "serve": ("serve", "answer requests for drops over HTTP, by the protocol of UM-Bridge"),
+}
+PROGRAMS = {  # words that are handed over to the program softfall-WORD, and what it does
+    "batch": "run a group of a batch, as an engine (Snakemake, Slurm) starts it",
+    "cfh": "find the critical fall height: where a_max or HIC reach their limits",
+    "fit": "identify a foam from compression tests or from drops",
+    "new": "make a folder with a case that runs as it stands",
+    "post": "compute figures, curves and pages from results.h5",
+    "pre": "build the model of a drop from a case",
+    "solve": "simulate the drop of a model",
+    "sweep": "run many drops by a plan: effects, response surface, probabilities",
 }
 USAGE = 64  # exit code of a wrong command line, as of the C programs
 
@@ -59,9 +70,10 @@ class Parser(argparse.ArgumentParser):
 
 
 def _help() -> str:
-    lines = "\n".join(f"  {name:<12}{text}" for name, (_, text) in sorted(COMMANDS.items()))
+    words = {name: text for name, (_, text) in COMMANDS.items()} | PROGRAMS
+    lines = "\n".join(f"  {name:<10}{text}" for name, text in sorted(words.items()))
     return ("Usage: softfall WORD [OPTION...]\nPredicts what happens when a missile falls on a foam pad: one command for each task.\n\n"
-            f"{lines}\n\n  -?, --help               give this help list\n  -V, --version            print program version\n\n"
+            f"{lines}\n\nA first drop:\n  softfall new pad && cd pad && softfall run\n\n  -?, --help               give this help list\n  -V, --version            print program version\n\n"
             "`softfall WORD --help` lists the options of a task. Figures indicate, they do not\ncertify.\n")
 
 
@@ -74,8 +86,21 @@ def _failure(error: Exception) -> tuple[str, int]:
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror, 3
     if isinstance(error, ModuleNotFoundError) and not (error.name or "").startswith("softfall"):
-        return f"{sys.executable} has no module {error.name}; packages.txt names its package of Debian", 3
+        return lacking([str(error.name).partition(".")[0]]), 3
     raise error
+
+
+def _hand_over(program: str, arguments: Sequence[str]) -> int:
+    """Becomes a program, whose exit code is that of this process; returns only if it cannot be started."""
+    try:
+        path = str(programs.folder() / program)
+        os.execv(path, [path, *arguments])
+    except Error as error:
+        print(f"softfall: {error}", file=sys.stderr)
+        return error.code
+    except OSError as error:
+        print(f"softfall: {path} cannot be started: {error.strerror}", file=sys.stderr)
+        return 3
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -87,9 +112,12 @@ def main(arguments: Sequence[str]) -> int:
     if name in ("-V", "--version"):
         print(f"softfall {library.version()}")
         return 0
+    if name in PROGRAMS:
+        return _hand_over(f"softfall-{name}", arguments[1:])
     if name not in COMMANDS:
-        near = difflib.get_close_matches(name, COMMANDS, 1)
-        hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(sorted(COMMANDS))}"
+        words = sorted([*COMMANDS, *PROGRAMS])
+        near = difflib.get_close_matches(name.lower(), words, 1)
+        hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(words)}"
         print(f"softfall: unknown command '{name}'; {hint}" if name else _help(), file=sys.stderr)
         return USAGE
     prog = f"softfall {name}"

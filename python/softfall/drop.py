@@ -175,7 +175,17 @@ class Drop:
         self._file = self._identity()
 
     def __repr__(self) -> str:
-        return f"<softfall.Drop {self.results}>"
+        return f"<softfall.Drop {self} ({self.results})>"
+
+    def __str__(self) -> str:
+        """The verdict with a_max and HIC, or the sentence why there is none."""
+        try:
+            figures, verdict = self.figures, self.verdict
+        except Error as error:
+            return str(error)
+        if figures["prescribed_motion"]:
+            return f"{verdict}: peak stress {figures['peak_stress_kPa']:.4g} kPa"
+        return f"{verdict}: a_max {figures['a_max_g']:.4g} g, HIC {figures['hic']:.4g}"
 
     def _identity(self) -> tuple[int, int]:
         try:
@@ -349,8 +359,21 @@ class Drop:
         table = np.loadtxt(self.file("acceleration.csv"), delimiter=",", skiprows=1)
         return column(table[:, 0] / 1e3, "s", "time"), column(table[:, 1], "g", "filtered deceleration")
 
-    def plot(self, ax: Any = None) -> Any:
-        """Draws the deceleration over time with the window of HIC; of a prescribed motion stress over strain. Returns the axes."""
+    def plot(self, ax: Any = None, show: bool = False) -> Any:
+        """Draws the deceleration over time with the window of HIC; of a prescribed motion stress over strain. Returns the axes.
+
+        `show`: opens a window with it, and waits until it is closed; a notebook shows plots without it.
+        """
+        ax = self._draw(ax)
+        if show:
+            import matplotlib
+            import matplotlib.pyplot as plt
+            if matplotlib.get_backend().lower() == "agg":
+                raise Error('there is no display for a window: drop.plot().figure.savefig("drop.png") writes the plot to a file', 3)
+            plt.show()
+        return ax
+
+    def _draw(self, ax: Any) -> Any:
         figures = self.figures
         if ax is None:
             import matplotlib.pyplot as plt

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import sys
 from typing import Iterable, Mapping, TypeVar
 
 V = TypeVar("V")
@@ -35,6 +36,17 @@ class Interrupted(Error):
 
 class SoftfallWarning(UserWarning):
     """A warning of a program: legal, but probably not intended."""
+
+
+def lacking(modules: Iterable[str]) -> str:
+    """Returns the sentence about modules that this Python does not have.
+
+    >>> lacking(["h5py"]).partition(": ")[2]
+    'apt-get install python3-h5py, or take the Python that has it, usually /usr/bin/python3'
+    """
+    names = list(modules)
+    return (f"softfall needs {' and '.join(names)}, which {sys.executable} does not have: apt-get install {' '.join(f'python3-{name}' for name in names)}, "
+            f"or take the Python that has {'it' if len(names) == 1 else 'them'}, usually /usr/bin/python3")
 
 
 def failure(sentence: str, code: int) -> Error:

@@ -2,13 +2,14 @@
 """libsoftfall by ctypes, for what needs no file: checks of a case, HIC and filters (include/softfall/softfall.h)."""
 from __future__ import annotations
 
+import contextlib
 import ctypes as c
 import functools
 import locale
 import os
 import re
 import threading
-from typing import Any, NamedTuple, Sequence
+from typing import Any, Iterator, NamedTuple, Sequence
 
 import numpy as np
 
@@ -63,8 +64,9 @@ def _call(name: str, *arguments: Any) -> None:
         raise failure(error.text.decode(errors="replace"), error.status)
 
 
-def case_parameters(path: str, overrides: Sequence[str]) -> str:
-    """Reads and checks a case with its overrides as softfall-pre does, and returns the list of its values."""
+@contextlib.contextmanager
+def _case(path: str, overrides: Sequence[str]) -> Iterator[c.c_void_p]:
+    """Reads and checks a case with its overrides as softfall-pre does."""
     for text in (path, *overrides):
         if "\0" in text:
             raise failure(f"{text!r} has a zero byte", 2)
@@ -73,9 +75,29 @@ def case_parameters(path: str, overrides: Sequence[str]) -> str:
     with _one_at_a_time:
         _call("softfall_case_read", path.encode(), texts, c.c_int(len(overrides)), None, c.byref(case))
         try:
-            return _load().softfall_case_parameters(case).decode(errors="replace")
+            yield case
         finally:
             _load().softfall_case_free(case)
+
+
+def case_parameters(path: str, overrides: Sequence[str]) -> str:
+    """Returns the list of the values of a case."""
+    with _case(path, overrides) as case:
+        return str(_load().softfall_case_parameters(case).decode(errors="replace"))
+
+
+def case_hash(path: str, overrides: Sequence[str]) -> int:
+    """softfall_case_hash: equal for equal values, curves and geometry files, wherever these are."""
+    value = c.c_uint64()
+    with _case(path, overrides) as case:
+        _call("softfall_case_hash", case, c.byref(value))
+    return value.value
+
+
+def case_has_geometry_of(path: str, overrides: Sequence[str], results: str) -> bool:
+    """softfall_case_has_geometry_of: True if all that the geometries behind a results.h5 read is as it was."""
+    with _case(path, overrides) as case:
+        return bool(_load().softfall_case_has_geometry_of(case, os.fsencode(results)))
 
 
 def _array(values: Any) -> Any:

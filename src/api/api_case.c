@@ -1,8 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* libsoftfall-build: cases, and models made of them. */
 #include "api/api.h"
+#include "base/hash.h"
 #include "case/read.h"
+#include "io/h5_data.h"
+#include "io/plain_file.h"
 #include "pre/make.h"
+#include "pre/mesh/mesh_store.h"
+
+#include <limits.h>
 
 struct softfall_case {
     sf_case data;
@@ -42,6 +48,35 @@ void softfall_case_free(softfall_case *c) {
 
 const char *softfall_case_parameters(const softfall_case *c) {
     return c->data.parameters;
+}
+
+softfall_status softfall_case_hash(const softfall_case *c, uint64_t *hash, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    *hash = sf_case_hash(&c->data);
+    for (int k = 0; k < SF_GEOMETRIES && err.status == SF_OK; k++) {
+        const char *path = sf_case_geometry(&c->data, k)->path;
+        uint64_t content = 0;
+        if (path && sf_plain_hash_kept(path, &content, &err) == SF_OK)
+            *hash = sf_hash_bytes(*hash, &content, sizeof content);
+    }
+    return softfall_return(&err, error);
+}
+
+int softfall_case_has_geometry_of(const softfall_case *c, const char *results) {
+    char folder[SF_GEOMETRIES][PATH_MAX] = {{0}};
+    const char *folders[SF_GEOMETRIES];
+    SF_OWNED_BY(sf_h5_drop) sf_h5 *file = NULL;
+    SF_OWNED char *files = NULL;
+    for (int k = 0; k < SF_GEOMETRIES; k++) {
+        const char *path = sf_case_geometry(&c->data, k)->path;
+        int length = path ? (int)sf_path_folder_length(path) : 0;
+        if (path)
+            snprintf(folder[k], PATH_MAX, "%.*s", length ? length : 1, length ? path : ".");
+        folders[k] = folder[k];
+    }
+    return sf_h5_open(results, &file, SF_IGNORED) == SF_OK &&
+           sf_h5_read_text(file, "/provenance/model/geometry_files", &files, SF_IGNORED) == SF_OK &&
+           sf_geometry_files_are_same(folders, files);
 }
 
 /* The provenance in the model's file. */

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "case/case.h"
 
+#include "base/hash.h"
+#include "material/laws.h"
+
 void sf_case_free(sf_case *c) {
     for (int k = 0; k < SF_SUPPORTS; k++)
         free(c->support[k].source.path);
@@ -27,6 +30,17 @@ bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const ch
     return false;
 }
 
-size_t sf_case_motion_bytes(const sf_case *c) {
-    return (size_t)c->motion_count * sizeof *c->motion_time;
+const sf_geo_source *sf_case_geometry(const sf_case *c, int k) {
+    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support[k - 2].source;
+}
+
+uint64_t sf_case_hash(const sf_case *c) {
+    size_t motion = (size_t)c->motion_count * sizeof *c->motion_time;
+    uint64_t hash = sf_hash_bytes(SF_HASH_START, &c->values, sizeof c->values);
+    if (c->layer_count == 0)
+        hash = sf_material_hash(hash, &c->material);
+    for (int k = 0; k < c->layer_count; k++)
+        hash = sf_material_hash(hash, &c->layer[k]);
+    hash = sf_hash_bytes(hash, c->motion_time, motion);
+    return sf_hash_bytes(hash, c->motion_displacement, motion);
 }

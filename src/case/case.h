@@ -151,5 +151,9 @@ const sf_case_interface *sf_case_interface_find(const sf_case *c, int layer, int
 /* True if a list of groups has the name. */
 bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const char *name);
 
-/* Bytes of motion_time, and of motion_displacement; 0: the missile is free. */
-size_t sf_case_motion_bytes(const sf_case *c);
+/* Geometry k of SF_GEOMETRIES: the pad's, the missile's, each support's; without a path there is none. */
+const sf_geo_source *sf_case_geometry(const sf_case *c, int k);
+
+/* Returns a hash of the values of every key and of the points of curves and motion, without those of the
+ * geometry files. */
+uint64_t sf_case_hash(const sf_case *c);

@@ -481,8 +481,22 @@ char *sf_case_load_marked(const char *path, bool whole, sf_error *err) {
     return load(&(walk){.marked = true, .whole = whole, .of_case = true}, path, 0, NULL, err);
 }
 
-const char *sf_case_syntax_phrase(const char *text) {
-    if (text && strcmp(text, "mismatched element type in array") == 0)
+/* True if the line has a number that a unit follows without quotation marks, such as "velocity = 4.5 m/s". */
+static bool has_bare_unit(const char *text, int line) {
+    for (int k = 1; text && k < line; k++)
+        text = (text = strchr(text, '\n')) ? text + 1 : NULL;
+    size_t length = text ? strcspn(text, "\n#") : 0, equal = text ? strcspn(text, "=:\n#") : 0;
+    if (equal >= length)
+        return false;
+    const char *value = text + equal + 1, *rest = sf_decimal_read(value + strspn(value, " \t"), NULL);
+    rest = rest ? rest + strspn(rest, " \t") : "";
+    return rest < text + length && (isalpha((unsigned char)*rest) || *rest == '%');
+}
+
+const char *sf_case_syntax_phrase(const char *libconfig_text, const char *text, int line) {
+    if (libconfig_text && strcmp(libconfig_text, "mismatched element type in array") == 0)
         return "the numbers of an array must all have a decimal point, or none: [0.5, 0.0, -1.0]";
-    return text ? text : "syntax error";
+    if (has_bare_unit(text, line))
+        return "a value with a unit stands in quotation marks, such as \"4.5 m/s\"";
+    return libconfig_text ? libconfig_text : "syntax error";
 }

@@ -11,9 +11,9 @@
  */
 sf_status sf_case_scan_value(const char *name, const char *text, sf_error *err);
 
-/* Returns what libconfig says of a text, with a hint where its words leave the user alone: "mismatched
- * element type in array". */
-const char *sf_case_syntax_phrase(const char *libconfig_text);
+/* Returns what libconfig says of line `line` of a text, with a hint where its words leave the user alone: a
+ * value with a unit without quotation marks, "mismatched element type in array". */
+const char *sf_case_syntax_phrase(const char *libconfig_text, const char *text, int line);
 
 /* The text of a file in libconfig syntax with its includes put in place, and where each of its lines comes
  * from; looked over as above. libconfig's own @include takes no absolute paths beside relative ones,

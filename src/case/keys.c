@@ -332,49 +332,13 @@ void sf_case_list_names(const sf_key_list *keys_of, const char *group, char *out
     visit_names(keys_of, group, add_name, &list);
 }
 
-enum { NEAR_MAX = 40, NEAR_EDITS = 2 };
-
-/* Levenshtein distance, ignoring case: velocity and Velocity are one edit of zero apart. */
-static size_t edit_distance(const char *a, size_t na, const char *b, size_t nb) {
-    size_t row[NEAR_MAX + 1];
-    if (na > NEAR_MAX || nb > NEAR_MAX)
-        return NEAR_MAX;
-    for (size_t j = 0; j <= nb; j++)
-        row[j] = j;
-    for (size_t i = 1; i <= na; i++) {
-        size_t diagonal = row[0];
-        row[0] = i;
-        for (size_t j = 1; j <= nb; j++) {
-            size_t above = row[j];
-            size_t best = diagonal + (strncasecmp(a + i - 1, b + j - 1, 1) != 0);
-            best = above + 1 < best ? above + 1 : best;
-            best = row[j - 1] + 1 < best ? row[j - 1] + 1 : best;
-            diagonal = above;
-            row[j] = best;
-        }
-    }
-    return row[nb];
+static void offer_name(void *data, const char *name, size_t length) {
+    sf_near_offer(data, name, length);
 }
 
-typedef struct nearest {
-    const char *wanted;
-    const char *name;
-    size_t length, distance;
-} nearest;
-
-static void compare_name(void *data, const char *name, size_t length) {
-    nearest *best = data;
-    size_t distance = edit_distance(best->wanted, strlen(best->wanted), name, length);
-    if (distance < best->distance && distance < length)
-        *best = (nearest){best->wanted, name, length, distance};
-}
-
-const char *sf_case_near_name(const sf_key_list *list, const char *group, const char *name, char *out,
-                              size_t size) {
-    nearest best = {name, NULL, 0, NEAR_EDITS + 1};
-    visit_names(list, group, compare_name, &best);
-    if (!best.name)
-        return NULL;
-    snprintf(out, size, "%.*s", (int)best.length, best.name);
-    return out;
+const char *sf_case_near_hint(const sf_key_list *list, const char *group, const char *name,
+                              char out[SF_NEAR_HINT]) {
+    sf_near near = sf_near_begin(name);
+    visit_names(list, group, offer_name, &near);
+    return sf_near_hint(&near, out);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
+#include "base/near.h"
 #include "case/case.h"
 #include <libconfig.h>
 
@@ -89,6 +90,6 @@ const sf_key *sf_case_find_key(const sf_key_list *list, const char *group, const
 bool sf_case_is_group(const sf_key_list *list, const char *group);
 /* Writes "name, name, ..." of the keys and sub-groups of a group ("" = the groups). */
 void sf_case_list_names(const sf_key_list *list, const char *group, char *out, size_t size);
-/* The existing name nearest to `name` within two edits; NULL if none is near. */
-const char *sf_case_near_name(const sf_key_list *list, const char *group, const char *name, char *out,
-                              size_t size);
+/* Writes the hint about the existing name nearest to `name` (base/near.h); returns `out`. */
+const char *sf_case_near_hint(const sf_key_list *list, const char *group, const char *name,
+                              char out[SF_NEAR_HINT]);

@@ -33,12 +33,10 @@ static void add_unknown(unknown *u, const config_setting_t *item, const char *gr
 }
 
 static sf_status refuse_unknown(const sf_case_reader *reader, const unknown *u, sf_error *err) {
-    char names[400], near[64], meant[96] = "", more[480] = "";
+    char names[400], meant[SF_NEAR_HINT], more[480] = "";
     const char *name = config_setting_name(u->first);
     sf_case_list_names(&reader->keys, u->group, names, sizeof names);
-    const char *hint = sf_case_near_name(&reader->keys, u->group, name, near, sizeof near);
-    if (hint)
-        snprintf(meant, sizeof meant, " (did you mean \"%s\"?)", hint);
+    sf_case_near_hint(&reader->keys, u->group, name, meant);
     if (u->count > NAMED_UNKNOWN)
         snprintf(more, sizeof more, "; unknown too: %s and %d more", u->others, u->count - NAMED_UNKNOWN);
     else if (u->count > 1)
@@ -419,7 +417,9 @@ static sf_status parse_text(sf_case_reader *reader, int count, const char *const
     if (!config_read_string(config, reader->out->text)) {
         int line = 0;
         const char *path = sf_case_source_find(&reader->source, config_error_line(config), &line);
-        return SF_REFUSE(err, "%s:%d: %s", path, line, sf_case_syntax_phrase(config_error_text(config)));
+        return SF_REFUSE(
+            err, "%s:%d: %s", path, line,
+            sf_case_syntax_phrase(config_error_text(config), reader->out->text, config_error_line(config)));
     }
     bool parted = config_lookup(config, "materials") && !config_lookup(config, "material");
     for (int i = 0; i < count; i++)

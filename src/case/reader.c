@@ -182,7 +182,7 @@ static sf_status replace_group(config_t *config, const char *name, const char *p
             int line = 0;
             const char *file = sf_case_source_find(&lines, config_error_line(&scratch), &line);
             SF_REFUSE(err, "--set %s: %s:%d: %s", text, file, line,
-                      sf_case_syntax_phrase(config_error_text(&scratch)));
+                      sf_case_syntax_phrase(config_error_text(&scratch), whole, config_error_line(&scratch)));
         } else {
             if (parent)
                 config_setting_remove(parent, member);

@@ -354,7 +354,8 @@ static sf_status read_parameters(const slot *s) {
         else if (is_finite_number(own.setting))
             parameter->value = number_of(own.setting);
         else
-            return REFUSE(&own, "\"%s\" is not a finite plain number (in the geometry's own unit)", name);
+            return REFUSE(&own, "\"%s\" must be a finite number without a unit, in the unit of the geometry",
+                          name);
         if (fabs(parameter->value) > LARGEST_PARAMETER)
             return REFUSE(&own, "%s" SF_OUTSIDE("%g", "-%g", "%g"), name, parameter->value, LARGEST_PARAMETER,
                           LARGEST_PARAMETER);

@@ -42,7 +42,8 @@ int main(int argc, char **argv) {
         return 0;
     }
     if (argc > 1)
-        fprintf(stderr, "softfall-fit: \"%s\" is none of its words\n", word);
+        fprintf(stderr, "softfall-fit: unknown command '%s'%s\n", word,
+                strncmp(word, "compr", 5) == 0 ? "; did you mean 'compression'?" : "");
     print_usage(stderr);
     return 2;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-new DIR [--from EXAMPLE]: a case in a folder of its own. */
+#include "base/near.h"
 #include "base/program.h"
 #include "base/text.h"
 #include "io/plain_file.h"
@@ -67,14 +68,17 @@ static sf_status print_examples(const example_list *e, sf_error *err) {
 
 /* Finds the case of the example of this name. */
 static sf_status find_case(const example_list *e, const char *name, char path[PATH_MAX], sf_error *err) {
-    char names[700] = "";
+    char names[700] = "", meant[SF_NEAR_HINT];
+    sf_near near = sf_near_begin(name);
     for (int k = 0; k < e->count; k++) {
         write_path(e, k, path);
         if (strcmp(e->entry[k]->d_name, name) == 0)
             return SF_OK;
         sf_text_add(names, sizeof names, "%s%s", k ? ", " : "", e->entry[k]->d_name);
+        sf_near_offer(&near, e->entry[k]->d_name, strlen(e->entry[k]->d_name));
     }
-    return SF_REFUSE(err, "unknown example \"%.80s\"; the examples are %s", name, names);
+    return SF_REFUSE(err, "unknown example \"%.80s\"%s; the examples are %s", name,
+                     sf_near_hint(&near, meant), names);
 }
 
 /* ---- the program ---- */
@@ -111,12 +115,18 @@ static sf_status make(const options *o, const char *path, const char *origin, sf
                                             .folder = o->folder,
                                             .origin = origin};
     SF_TRY(sf_case_folder_make(&request, &sink, err));
-    printf("%s holds the case of %s, with all that it needs. Next:\n\n"
-           "    cd %s\n"
+    char command[PATH_MAX];
+    bool whole = sf_process_find("softfall", command, sizeof command, SF_IGNORED) == SF_OK;
+    printf("%s holds the case of %s, with all that it needs.", o->folder, origin);
+    if (whole)
+        printf("\nNext: softfall run %s, or step by step:\n\n", o->folder);
+    else
+        printf(" Next:\n\n");
+    printf("    cd %s\n"
            "    softfall-pre case.cfg -o model.h5\n"
            "    softfall-solve model.h5 -o results.h5\n"
            "    softfall-post results.h5 -o out\n",
-           o->folder, origin, o->folder);
+           o->folder);
     return SF_OK;
 }
 

@@ -172,14 +172,15 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
 int main(int argc, char **argv) {
     options o = {0};
     sf_error err = SF_ERROR_INIT;
-    const sf_command line = {.program = "softfall-pre",
-                             .operands = "CASE",
-                             .meaning = "Builds the model of a drop from a case file and its geometry.",
-                             .second = "one case at a time: \"%s\" is one too many",
-                             .operand = offsetof(options, case_path),
-                             .fault = find_fault,
-                             .is_usage = true,
-                             .list = {{list, &o}}};
+    const sf_command line = {
+        .program = "softfall-pre",
+        .operands = "CASE",
+        .meaning = "Builds the model of a drop from a case file and its geometry.",
+        .second = "unexpected \"%s\": one case at a time, and values with blanks in quotation marks",
+        .operand = offsetof(options, case_path),
+        .fault = find_fault,
+        .is_usage = true,
+        .list = {{list, &o}}};
     if (sf_program_begin(argv, &err) == SF_OK && sf_command_parse(&line, argc, argv, &err) == SF_OK && o.keys)
         sf_case_print_keys(stdout);
     else if (err.status == SF_OK && sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK) {

@@ -122,7 +122,7 @@ static sf_status list_reading(folder *f, sf_error *err) {
             if (!sf_grow(&f->read, (size_t)f->read_count, sizeof *f->read))
                 return SF_NO_MEMORY(err, "the files of a geometry");
             f->read[f->read_count++] =
-                (geometry_file){sf_path_whole(NULL, sf_campaign_geometry(&f->c, k)->path, err),
+                (geometry_file){sf_path_whole(NULL, sf_case_geometry(&f->c, k)->path, err),
                                 sf_path_whole(NULL, file->path, err), file->hash};
         }
     return err->status;
@@ -270,7 +270,8 @@ static sf_status write_readme(folder *f, sf_error *err) {
         "    softfall-pre case.cfg -o model.h5       # mesh the geometry, build and check the model\n"
         "    softfall-solve model.h5 -o results.h5   # the drop\n"
         "    softfall-post results.h5 -o out         # figures, out/report.html, files for ParaView\n\n"
-        "Edit case.cfg and run the three again, each with --force. softfall-pre --keys explains every key.\n",
+        "Edit case.cfg and run the three again, each with --force; `softfall run` of the Python package does all of this. "
+        "softfall-pre --keys explains every key.\n",
         out);
     fclose(out);
     SF_TRY(add_file(f, README_NAME, "", NULL, err));
@@ -295,8 +296,8 @@ static sf_status write_files(folder *f, sf_error *err) {
 static sf_status mesh_each(const sf_case *c, sf_meshed mesh[SF_GEOMETRIES], sf_error *err) {
     const sf_mesher_limits limits = {c->mesh_time_limit, NULL};
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
-        if (sf_campaign_geometry(c, k)->path)
-            sf_mesher_run(sf_campaign_geometry(c, k), &limits, &mesh[k], err);
+        if (sf_case_geometry(c, k)->path)
+            sf_mesher_run(sf_case_geometry(c, k), &limits, &mesh[k], err);
     return err->status;
 }
 
@@ -323,7 +324,7 @@ static sf_status check_meshes(const folder *f, const sf_case *c, sf_error *err) 
             (mesh[k].size != f->mesh[k].size ||
              (mesh[k].size > 0 && memcmp(mesh[k].stream, f->mesh[k].stream, mesh[k].size) != 0)))
             SF_REFUSE(err, "%s has no folder of its own: in another folder %s gives another mesh",
-                      f->request->case_path, sf_campaign_geometry(&f->c, k)->path);
+                      f->request->case_path, sf_case_geometry(&f->c, k)->path);
     for (int k = 0; k < SF_GEOMETRIES; k++)
         sf_meshed_free(&mesh[k]);
     return err->status;
@@ -338,7 +339,7 @@ static sf_status check(const folder *f, sf_error *err) {
         return SF_FAIL(err, inner.status,
                        "%s cannot be given a folder of its own: there it would be refused (%s)",
                        f->request->case_path, inner.text);
-    if (sf_campaign_case_hash(&c) != f->hash)
+    if (sf_case_hash(&c) != f->hash)
         SF_FAIL(err, SF_ERR_LIBRARY, "%s cannot be given a folder of its own: there it would be another case",
                 f->request->case_path);
     else
@@ -364,7 +365,7 @@ sf_status sf_case_folder_make(const sf_case_folder_request *q, const sf_sink *si
     folder f = {.request = q};
     if (sf_tree_begin(q->folder, &f.tree, err) == SF_OK &&
         sf_case_read(q->case_path, q->override_count, q->overrides, sink, &f.c, err) == SF_OK) {
-        f.hash = sf_campaign_case_hash(&f.c);
+        f.hash = sf_case_hash(&f.c);
         if (mesh_each(&f.c, f.mesh, err) == SF_OK && list_reading(&f, err) == SF_OK &&
             write_files(&f, err) == SF_OK && check(&f, err) == SF_OK)
             sf_tree_commit(&f.tree, err);

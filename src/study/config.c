@@ -31,7 +31,9 @@ sf_status sf_config_open(const char *path, sf_config *config, sf_error *err) {
     if (text && !config_read_string(&config->config, text)) {
         int line = 0;
         const char *file = sf_case_source_find(&config->source, config_error_line(&config->config), &line);
-        SF_REFUSE(err, "%s:%d: %s", file, line, sf_case_syntax_phrase(config_error_text(&config->config)));
+        SF_REFUSE(err, "%s:%d: %s", file, line,
+                  sf_case_syntax_phrase(config_error_text(&config->config), text,
+                                        config_error_line(&config->config)));
     }
     return err->status == SF_OK ? sf_units_open(&config->units, err) : err->status;
 }

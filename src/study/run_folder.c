@@ -146,17 +146,6 @@ static sf_status hash_programs(uint64_t *hash, sf_error *err) {
     return err->status;
 }
 
-uint64_t sf_campaign_case_hash(const sf_case *c) {
-    size_t motion = sf_case_motion_bytes(c);
-    uint64_t hash = sf_hash_bytes(SF_HASH_START, &c->values, sizeof c->values);
-    if (c->layer_count == 0)
-        hash = sf_material_hash(hash, &c->material);
-    for (int k = 0; k < c->layer_count; k++)
-        hash = sf_material_hash(hash, &c->layer[k]);
-    hash = sf_hash_bytes(hash, c->motion_time, motion);
-    return sf_hash_bytes(hash, c->motion_displacement, motion);
-}
-
 /* Later drops of a foam that remembers nothing are no property of it: a study would take them for one. */
 static sf_status check_memory(const sf_case *c, sf_error *err) {
     bool found = c->layer_count == 0 && sf_material_has_memory(&c->material);
@@ -170,15 +159,11 @@ static sf_status check_memory(const sf_case *c, sf_error *err) {
 
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
     SF_TRY(check_memory(c, err));
-    *hash = sf_campaign_case_hash(c);
+    *hash = sf_case_hash(c);
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
-        if (sf_campaign_geometry(c, k)->path)
-            hash_file(hash, sf_campaign_geometry(c, k)->path, err);
+        if (sf_case_geometry(c, k)->path)
+            hash_file(hash, sf_case_geometry(c, k)->path, err);
     return err->status == SF_OK ? hash_programs(hash, err) : err->status;
-}
-
-const sf_geo_source *sf_campaign_geometry(const sf_case *c, int k) {
-    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support[k - 2].source;
 }
 
 char *sf_campaign_geometry_list(const char *path, const char *text) {
@@ -240,7 +225,7 @@ sf_status sf_run_folder_name(const char *parent, const char *label, const char *
     at->drops = (int)c.drops;
     at->counted = c.counted;
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
-        name_folder(sf_campaign_geometry(&c, k)->path, at->geometry[k], err);
+        name_folder(sf_case_geometry(&c, k)->path, at->geometry[k], err);
     return err->status;
 }
 

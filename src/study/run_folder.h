@@ -39,12 +39,6 @@ sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
     "the same text in different folders: they may merge different files; make a difference in their text, "  \
     "a comment for example"
 
-/* The part of it that is of the case alone, without geometry files and programs. */
-uint64_t sf_campaign_case_hash(const sf_case *c);
-
-/* Geometry k of SF_GEOMETRIES: the pad's, the missile's, each support's; without a path there is none. */
-const sf_geo_source *sf_campaign_geometry(const sf_case *c, int k);
-
 /* Returns the list of the files that the geometries read, at `text` of the HDF5 file `path` (docs/formats.md,
  * geometry_files), from malloc; NULL if there is none. */
 char *sf_campaign_geometry_list(const char *path, const char *text);

@@ -89,7 +89,7 @@ def test_the_programs_are_found_or_missed_with_a_sentence(case, monkeypatch, tmp
 
 def test_a_run_is_refused_with_the_sentence_of_the_program(case, tmp_path):
     case["geometry.parameters.thicknes"] = 4
-    with pytest.raises(softfall.InputError, match='softfall-pre: .* has no parameter "thicknes"; its DefineConstant parameters are'):
+    with pytest.raises(softfall.InputError, match='softfall-pre: .* has no parameter "thicknes" .did you mean "thickness".*; its DefineConstant parameters are'):
         case.run(output=tmp_path / "out")
     assert not (tmp_path / "out").exists()
     for threads in (0, -1, 1.5, True, "2"):

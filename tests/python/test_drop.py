@@ -73,6 +73,13 @@ def test_plot_shows_the_curve_and_the_window(drop, tmp_path):
     ax.figure.savefig(tmp_path / "plot.png")
     assert (tmp_path / "plot.png").stat().st_size > 10_000
     assert drop.plot(ax) is ax
+    with pytest.raises(softfall.Error, match="there is no display"):
+        drop.plot(show=True)
+
+
+def test_a_drop_prints_its_verdict(drop):
+    assert str(drop) == f"{drop.verdict}: a_max {drop.figures['a_max_g']:.4g} g, HIC {drop.figures['hic']:.4g}"
+    assert repr(drop).startswith(f"<softfall.Drop {drop} (") and str(drop.results) in repr(drop)
 
 
 def test_report_and_files(drop):

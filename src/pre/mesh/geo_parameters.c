@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <math.h>
 
+#include "base/near.h"
 #include "base/text.h"
 #include "io/plain_file.h"
 #include "pre/mesh/mesher_protocol.h"
@@ -141,11 +142,15 @@ static sf_status refuse_missing(const sf_geo_source *source, const name_list *li
     for (int k = 0; k < source->parameter_count; k++) {
         if (has_name(list->count, list->at, source->parameter[k].name))
             continue;
-        char names[640] = "";
-        for (int i = 0; i < list->count; i++)
+        char names[640] = "", meant[SF_NEAR_HINT];
+        sf_near near = sf_near_begin(source->parameter[k].name);
+        for (int i = 0; i < list->count; i++) {
             sf_text_add(names, sizeof names, "%s%s", i ? ", " : "", list->at[i].name);
-        return SF_REFUSE(err, "%s has no parameter \"%s\"; its DefineConstant parameters are: %s",
-                         source->path, source->parameter[k].name, list->count ? names : "none");
+            sf_near_offer(&near, list->at[i].name, strlen(list->at[i].name));
+        }
+        return SF_REFUSE(err, "%s has no parameter \"%s\"%s; its DefineConstant parameters are: %s",
+                         source->path, source->parameter[k].name, sf_near_hint(&near, meant),
+                         list->count ? names : "none");
     }
     return SF_OK;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/mesh/gmsh_session.h"
 
+#include "base/near.h"
 #include "base/sets.h"
 #include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesher_protocol.h"
@@ -166,11 +167,16 @@ static sf_status check_groups(const sf_gmsh *session, int dimension, sf_error *e
 static sf_status find_group(const sf_gmsh *session, int dimension, const char *name,
                             const sf_geo_group **found, sf_error *err) {
     const sf_geo_data *data = &session->open.data;
-    char volumes[300], surfaces[400];
+    char volumes[300], surfaces[400], meant[SF_NEAR_HINT];
+    sf_near near = sf_near_begin(name);
     *found = NULL;
-    for (size_t g = 0; g < data->group_count; g++)
-        if (data->group[g].dimension == dimension && strcmp(data->group[g].name, name) == 0)
+    for (size_t g = 0; g < data->group_count; g++) {
+        if (data->group[g].dimension != dimension)
+            continue;
+        if (strcmp(data->group[g].name, name) == 0)
             *found = &data->group[g];
+        sf_near_offer(&near, data->group[g].name, strlen(data->group[g].name));
+    }
     if (*found)
         return SF_OK;
     group_names(data, 3, volumes, sizeof volumes);
@@ -179,8 +185,8 @@ static sf_status find_group(const sf_gmsh *session, int dimension, const char *n
     bool shape = false;
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++)
         shape = shape || sf_mesher_has_suffix(session->file, shapes[k]);
-    return SF_REFUSE(err, "%s has no %s group \"%s\"; its volume groups: %s; its surface groups: %s%s",
-                     session->file, kind_of(dimension), name, volumes, surfaces,
+    return SF_REFUSE(err, "%s has no %s group \"%s\"%s; its volume groups: %s; its surface groups: %s%s",
+                     session->file, kind_of(dimension), name, sf_near_hint(&near, meant), volumes, surfaces,
                      shape ? "; gmsh reads no groups from such a file: name them in a .geo that merges it"
                            : "");
 }

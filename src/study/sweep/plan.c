@@ -443,7 +443,7 @@ static sf_status check(const sf_plan *p, int64_t row, const sf_factor *f, uint64
     *own = 0;
     sf_sweep_read_case(p, row, &c, &inner);
     for (int k = 0; k < SF_GEOMETRIES && inner.status == SF_OK; k++)
-        sf_geo_parameters_check(sf_campaign_geometry(&c, k), NULL, false, &inner);
+        sf_geo_parameters_check(sf_case_geometry(&c, k), NULL, false, &inner);
     if (inner.status == SF_OK && c.drops > 1 && (sf_plan_is_adaptive(p) || p->refine))
         SF_REFUSE(&inner, "series.drops = %g: only first drops are %s out", c.drops,
                   p->refine ? "refined; leave `refine`" : "predicted; leave `accuracy`");

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/near.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+enum { NEAR_MAX = 40, NEAR_EDITS = 2 };
+
+/* Levenshtein distance, ignoring case: velocity and Velocity are one edit of zero apart. */
+static size_t edit_distance(const char *a, size_t na, const char *b, size_t nb) {
+    size_t row[NEAR_MAX + 1];
+    if (na > NEAR_MAX || nb > NEAR_MAX)
+        return NEAR_MAX;
+    for (size_t j = 0; j <= nb; j++)
+        row[j] = j;
+    for (size_t i = 1; i <= na; i++) {
+        size_t diagonal = row[0];
+        row[0] = i;
+        for (size_t j = 1; j <= nb; j++) {
+            size_t above = row[j];
+            size_t best = diagonal + (strncasecmp(a + i - 1, b + j - 1, 1) != 0);
+            best = above + 1 < best ? above + 1 : best;
+            best = row[j - 1] + 1 < best ? row[j - 1] + 1 : best;
+            diagonal = above;
+            row[j] = best;
+        }
+    }
+    return row[nb];
+}
+
+sf_near sf_near_begin(const char *wanted) {
+    return (sf_near){wanted, NULL, 0, NEAR_EDITS + 1};
+}
+
+void sf_near_offer(sf_near *near, const char *name, size_t length) {
+    size_t distance = edit_distance(near->wanted, strlen(near->wanted), name, length);
+    if (distance < near->distance && distance < length)
+        *near = (sf_near){near->wanted, name, length, distance};
+}
+
+const char *sf_near_hint(const sf_near *near, char out[SF_NEAR_HINT]) {
+    *out = '\0';
+    if (near->name)
+        snprintf(out, SF_NEAR_HINT, " (did you mean \"%.*s\"?)", (int)near->length, near->name);
+    return out;
+}
