@@ -8,8 +8,12 @@ from __future__ import annotations
 import argparse
 import difflib
 import importlib
+import io
 import os
+import re
+import signal
 import sys
+import threading
 import warnings
 from typing import Any, Sequence
 
@@ -78,7 +82,7 @@ def _help() -> str:
 
 
 def _failure(error: Exception) -> tuple[str, int]:
-    """Returns the sentence and the exit code of a failure that the user can mend; raises any other one again."""
+    """Returns the sentence and the exit code of a failure; SOFTFALL_TRACEBACK=1 shows where one came from that the user cannot mend."""
     if isinstance(error, Error):
         return str(error), error.code
     if isinstance(error, KeyError):
@@ -87,7 +91,43 @@ def _failure(error: Exception) -> tuple[str, int]:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror, 3
     if isinstance(error, ModuleNotFoundError) and not (error.name or "").startswith("softfall"):
         return lacking([str(error.name).partition(".")[0]]), 3
-    raise error
+    if os.environ.get("SOFTFALL_TRACEBACK") == "1":
+        raise error
+    if isinstance(error, MemoryError):
+        return f"out of memory{f': {error}' if str(error) else ''}", 6
+    if isinstance(error, RecursionError):
+        return "an input is nested too deep", 2
+    if isinstance(error, UnicodeError):
+        return f"a text cannot be read or written: {error}", 2
+    return f"{type(error).__name__}: {error}; this is a mistake of softfall: report it with the input and SOFTFALL_TRACEBACK=1", 70
+
+
+MOST_SENTENCE = 2000  # characters of a sentence: it may hold a value of the user
+
+
+def plain(text: str) -> str:
+    """Returns a text in which nothing is left that a terminal would obey.
+
+    >>> plain("a\\x1b[31m")
+    'a\\\\x1b[31m'
+    """
+    return re.sub(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]", lambda found: ascii(found[0])[1:-1], text)
+
+
+def say(text: str) -> None:
+    """Prints what a command has to say."""
+    print(plain(text))
+
+
+def _complain(prog: str, sentence: str) -> None:
+    """Prints a sentence to stderr, in one line."""
+    text = plain(sentence.replace("\n", " "))
+    print(f"{prog}: {text if len(text) <= MOST_SENTENCE else text[:MOST_SENTENCE] + ' ...'}", file=sys.stderr)
+
+
+def _terminate(*_: Any) -> None:
+    """Ends the command as Ctrl-C does: its programs end with a checkpoint, its temporary folders go."""
+    raise KeyboardInterrupt
 
 
 def _hand_over(program: str, arguments: Sequence[str]) -> int:
@@ -105,6 +145,11 @@ def _hand_over(program: str, arguments: Sequence[str]) -> int:
 
 def main(arguments: Sequence[str]) -> int:
     """Runs a command and returns the exit code. A failure is one sentence on stderr."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # names of files may be no text
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, _terminate)
     name = arguments[0] if arguments else ""
     if name in ("-?", "--help", "help"):
         print(_help(), end="")
@@ -118,13 +163,15 @@ def main(arguments: Sequence[str]) -> int:
         words = sorted([*COMMANDS, *PROGRAMS])
         near = difflib.get_close_matches(name.lower(), words, 1)
         hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(words)}"
-        print(f"softfall: unknown command '{name}'; {hint}" if name else _help(), file=sys.stderr)
+        print(plain(f"softfall: unknown command '{name}'; {hint}") if name else _help(), file=sys.stderr)
         return USAGE
     prog = f"softfall {name}"
-    warnings.showwarning = lambda message, *_, **__: print(f"{prog}: warning: {message}", file=sys.stderr)
+    warnings.showwarning = lambda message, *_, **__: _complain(prog, f"warning: {message}")
     try:
         module = importlib.import_module(f".{COMMANDS[name][0]}", __package__)
-        return int(module.run(module.parser(prog).parse_args(arguments[1:])))
+        code = int(module.run(module.parser(prog).parse_args(arguments[1:])))
+        sys.stdout.flush()
+        return code
     except KeyboardInterrupt:
         print(f"{prog}: interrupted; the same command resumes", file=sys.stderr)
         return 130
@@ -133,5 +180,9 @@ def main(arguments: Sequence[str]) -> int:
         return 0
     except Exception as error:
         sentence, code = _failure(error)
-        print(f"{prog}: {sentence}", file=sys.stderr)
+        _complain(prog, sentence)
+        try:
+            sys.stdout.flush()
+        except OSError:  # a full disk: nothing more is written at the end
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return code

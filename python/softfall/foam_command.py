@@ -6,6 +6,7 @@ import argparse
 import csv
 import io
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +15,9 @@ import numpy as np
 from . import library, programs
 from .cards import export, read_card, write_material
 from .cards.material import FORMATS
-from .command import Parser
+from .command import Parser, say
 from .errors import InputError, find
-from .output import check, write
+from .output import check, read, write
 
 RATES = (0.01, 1.0, 10.0, 100.0)  # 1/s, of show and plot, unless the foam has no terms of the rate
 LEAST, POINTS = 0.2, 400  # strain up to which a foam is shown at least; points of a loading
@@ -40,7 +41,7 @@ def material_file(text: str) -> str:
 
 
 def _head(path: str | Path) -> list[str]:
-    return [line[1:].strip() for line in Path(path).read_text(encoding="utf-8", errors="replace").splitlines() if line.startswith("#")]
+    return [line[1:].strip() for line in read(path).decode("utf-8", "replace").splitlines() if line.startswith("#")]
 
 
 def _list() -> str:
@@ -95,16 +96,23 @@ def _show(path: str, o: argparse.Namespace) -> str:
     return "\n".join([*said, "  returned" + "".join(f"{100 * part:9.3g}%" for part in returned)])
 
 
+def _inputs(path: str) -> list[Path]:
+    """Returns the material file and the files that it names."""
+    names = re.findall(r'"([^"\n]+)"', read(path).decode("utf-8", "replace"))
+    return [Path(path), *(Path(path).parent / name for name in names)]
+
+
 def _plot(path: str, o: argparse.Namespace) -> str:
     import matplotlib
     matplotlib.use("agg")
+    matplotlib.rcParams["text.parse_math"] = False  # a name with $ is no formula
     from matplotlib import pyplot
     data, output = library.Material(path), Path(o.output or f"{Path(path).stem}.png")
     informed, is_free = _informed(data), data.values["law"] == "hyperfoam"
     most = min(0.95, max(LEAST, informed))
     if output.suffix.lower() not in (".png", ".svg", ".pdf"):
         raise InputError(f"--output={output}: the picture is a .png, .svg or .pdf file")
-    if check(output, path).exists() and not o.force:
+    if check(output, *_inputs(path)).exists() and not o.force:
         raise InputError(f"{output} exists already: give --force to replace it")
     figure, axes = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
     for k, rate in enumerate(rates_of(data, o.rates)):
@@ -122,7 +130,7 @@ def _plot(path: str, o: argparse.Namespace) -> str:
     drawn = io.BytesIO()
     figure.savefig(drawn, dpi=130, format=output.suffix.lower()[1:])
     pyplot.close(figure)
-    write(output, drawn.getvalue(), path)
+    write(output, drawn.getvalue(), *_inputs(path))
     return f"Written: {output}"
 
 
@@ -138,10 +146,10 @@ def _convert(path: str, o: argparse.Namespace) -> str:
 def _export(path: str, o: argparse.Namespace) -> str:
     if not o.format or not o.units or not o.output:
         raise InputError("--format=dyna|abaqus|radioss, --units=NAME (such as mm-ms-kg-GPa) and --output=FILE are needed")
-    if check(o.output, path).exists() and not o.force:
+    if check(o.output, *_inputs(path)).exists() and not o.force:
         raise InputError(f"{o.output} exists already: give --force to replace it")
     text, listed = export(material_file(path), o.format, o.units)
-    write(o.output, text, path)
+    write(o.output, text, *_inputs(path))
     return "\n".join([*(f"  {line}" for line in listed), f"Written: {o.output}"])
 
 
@@ -173,5 +181,5 @@ def parser(prog: str) -> Parser:
 
 def run(o: argparse.Namespace) -> int:
     """Runs a word of the command and returns the exit code."""
-    print(perform(o))
+    say(perform(o))
     return 0

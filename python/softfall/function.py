@@ -33,8 +33,12 @@ class Function:
             raise InputError("a function needs one input and one output at least")
         self._known: dict[tuple[Any, ...], Drop | NumericError] = {}
 
-    def drop(self, x: Any, values: Mapping[str, Any] | None = None) -> Drop:
-        """Returns the drop at x, a number for each input; `values`: further values of the case."""
+    def is_known(self, x: Any, values: Mapping[str, Any] | None = None) -> bool:
+        """Returns whether the drop at x has been computed by this function."""
+        return tuple(sorted(self._at(x, values).overrides.items())) in self._known
+
+    def _at(self, x: Any, values: Mapping[str, Any] | None) -> Case:
+        """Returns the case at x."""
         point = np.atleast_1d(np.asarray(x, dtype=float))
         if point.shape != (len(self.inputs),):
             raise InputError(f"x has the shape {point.shape}; {len(self.inputs)} numbers are expected: "
@@ -45,6 +49,11 @@ class Function:
         case.update({**(values or {}), **{key: f"{number!r} {unit}" if unit else number
                                           for (key, unit), number in zip(self.inputs, point.tolist())}})
         case.require_single("a function")
+        return case
+
+    def drop(self, x: Any, values: Mapping[str, Any] | None = None) -> Drop:
+        """Returns the drop at x, a number for each input; `values`: further values of the case."""
+        case = self._at(x, values)
         name = tuple(sorted(case.overrides.items()))
         if name not in self._known:
             try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that are whole at any instant, as those of the C programs (src/io/replace.h): the only code of the package that makes files and temporary folders."""
+"""The files of the package, read and written as the C programs do (src/io/plain_file.h, replace.h): plain ones, whole at any instant."""
 from __future__ import annotations
 
 import contextlib
@@ -10,10 +10,44 @@ import secrets
 import shutil
 import stat
 import tempfile
+import tomllib
 from pathlib import Path
-from typing import Iterator
+from typing import Any, Iterator
 
 from .errors import Error, InputError
+
+
+MOST_TEXT = 1 << 28  # bytes of a text that somebody would write
+
+
+def read(path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:
+    """Returns the content of a plain file; InputError for a pipe, a device, a folder, and a file that is too large. It never waits."""
+    try:
+        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
+    except ValueError:
+        raise InputError(f"{os.fspath(path)!r} is no name of a file") from None
+    except OSError as error:
+        raise InputError(f"{os.fspath(path)} cannot be read: {error.strerror}") from None
+    with os.fdopen(handle, "rb", closefd=True) if stat.S_ISREG(os.fstat(handle).st_mode) else _refused(handle, path) as stream:
+        data = stream.read(most + 1)
+    if len(data) > most:
+        raise InputError(f"{os.fspath(path)} is larger than {most / 1e6:.3g} MB")
+    return data
+
+
+def _refused(handle: int, path: str | os.PathLike[str]) -> Any:
+    os.close(handle)
+    raise InputError(f"{os.fspath(path)} is not a plain file")
+
+
+def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Returns the content of a TOML file; InputError names the file and what is wrong in it."""
+    try:
+        return tomllib.loads(read(path).decode("utf-8-sig"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{os.fspath(path)}: {error}") from None
+    except (RecursionError, ValueError) as error:
+        raise InputError(f"{os.fspath(path)}: {'it is nested too deep' if isinstance(error, RecursionError) else error}") from None
 
 
 def check(path: str | os.PathLike[str], *inputs: str | os.PathLike[str]) -> Path:

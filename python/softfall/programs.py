@@ -2,6 +2,8 @@
 """The programs of softfall as children: where they are, how they are started, and what they say."""
 from __future__ import annotations
 
+import contextlib
+import math
 import os
 import pty
 import re
@@ -10,6 +12,7 @@ import signal
 import subprocess
 import tempfile
 import threading
+import time
 import warnings
 from pathlib import Path
 from typing import Callable, Iterator, Mapping, Sequence
@@ -20,6 +23,7 @@ _HERE = Path(__file__).resolve().parent
 _running: set[subprocess.Popen[bytes]] = set()
 _lock = threading.Lock()
 _ending = threading.Event()
+_limit = threading.local()  # `end`: of the time of this thread's programs, on the monotonic clock
 
 
 def folder() -> Path:
@@ -115,6 +119,7 @@ def run(name: str, arguments: Sequence[str], *, threads: int | None = None, term
             raise Error(f"{program} cannot be started: {error.strerror}", 3) from error
         finally:
             os.close(theirs)
+        watch = _Watch(child)
         try:
             with _lock:
                 _running.add(child)
@@ -130,12 +135,15 @@ def run(name: str, arguments: Sequence[str], *, threads: int | None = None, term
             _wait(child)
             raise
         finally:
+            watch.cancel()
             with _lock:
                 _running.discard(child)
             os.close(ours)
         errors.seek(0)
         sentence = _sentences(program, errors.read().decode(errors="replace"))
     code = child.returncode
+    if watch.over and code:
+        raise Error(f"{program} was ended, as the drop took longer than its time limit", 5)
     if code < 0:
         raise Error(f"{program} was ended by signal {-code} ({signal.Signals(-code).name})", 128 - code)
     if code in (130, 143):
@@ -143,6 +151,36 @@ def run(name: str, arguments: Sequence[str], *, threads: int | None = None, term
     if code:
         raise failure(f"{program}: {sentence or f'failed with exit code {code}'}", code)
     return "\n".join(printed)
+
+
+@contextlib.contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Ends the programs that this thread runs in the block after so many seconds: an Error."""
+    _limit.end = time.monotonic() + seconds
+    try:
+        yield
+    finally:
+        del _limit.end
+
+
+class _Watch:
+    """Ends a child when the time of its thread is over."""
+
+    def __init__(self, child: subprocess.Popen[bytes]) -> None:
+        self.over = False
+        left = getattr(_limit, "end", math.inf) - time.monotonic()
+        self._timer = threading.Timer(max(left, 0), self._end, (child,)) if left < math.inf else None
+        if self._timer:
+            self._timer.daemon = True
+            self._timer.start()
+
+    def _end(self, child: subprocess.Popen[bytes]) -> None:
+        self.over = True
+        _signal(child, signal.SIGINT)
+
+    def cancel(self) -> None:
+        if self._timer:
+            self._timer.cancel()
 
 
 def options(given: Mapping[str, object]) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Mapping, Sequence
@@ -12,6 +11,7 @@ from typing import Any, Mapping, Sequence
 from . import library, programs
 from .curves import STANDARD_GRAVITY
 from .errors import InputError
+from .output import read_toml
 
 KINDS = ("pass", "critical height", "cushion curve")
 CAUTION = "softfall indicates; it certifies nothing."
@@ -196,6 +196,9 @@ def strain_rate(text: Any, where: str) -> float:
     return value
 
 
+MOST = 1e15  # of a number in a protocol
+
+
 class _Group:
     """A table of the file; a key that is none of `known`, a text such as "a, b and c", is refused."""
 
@@ -219,8 +222,8 @@ class _Group:
             words = {str: "a text", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
             expected = "a number without a unit" if float in kinds else " or ".join(words[k] for k in kinds)
             raise InputError(f"{self.where}: {key} = {value!r} is not {expected}")
-        if isinstance(value, float) and not math.isfinite(value):
-            raise InputError(f"{self.where}: {key} = {value} is not a finite number")
+        if isinstance(value, (int, float)) and not abs(value) <= MOST:
+            raise InputError(f"{self.where}: {key} is not a finite number, or beyond {MOST:g}")
         return value
 
 
@@ -247,12 +250,7 @@ def find(name: str) -> Path:
 def read(name: str) -> Protocol:
     """Reads and checks a protocol. A mistake is an InputError that names file, group and key."""
     path = find(name)
-    try:
-        top = _Group(str(path), tomllib.loads(path.read_text(encoding="utf-8-sig")), "title, standard, missile, drops, figure, result, clause and advice")
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: {error}") from None
+    top = _Group(str(path), read_toml(path), "title, standard, missile, drops, figure, result, clause and advice")
     title, standard = top.take("title", str), top.take("standard", str)
     missile = _Group(f"{path}: missile", top.take("missile", dict), "geometry, parameters, mass, keys and filter")
     drops = _Group(f"{path}: drops", top.take("drops", dict), "conditions, positions, heights, masses, area, count, interval and counted")
@@ -277,8 +275,8 @@ def _figure(path: Path, number: int, table: Any) -> Figure:
     window = group.take("least_window_ms", (int, float), 0)
     limit = group.take("limit", (int, float), None)
     factor, offset = (float(group.take(key, (int, float), default)) for key, default in (("factor", 1), ("offset", 0)))
-    if factor <= 0:
-        raise InputError(f"{group.where}: factor {factor:g} is not above 0")
+    if factor < 1 / MOST:
+        raise InputError(f"{group.where}: factor {factor:g} is not above {1 / MOST:g}")
     if limit is not None and (limit - offset) / factor <= 0:
         raise InputError(f"{group.where}: limit {limit:g} is not above {offset:g}, which the figure has at a value of 0")
     key = group.take("key", str)
@@ -369,9 +367,11 @@ def _drops(path: Path, group: _Group, kind: str) -> dict[str, Any]:
             raise InputError(f'{one.where}: at = {at} is not x and y: ["100 mm", "0 mm"]')
         positions.append(Position(name, None if at is None else tuple(length(part, one.where) for part in at)))  # type: ignore[arg-type]
     count = group.take("count", int, 1)
+    if not 1 <= count <= 20:
+        raise InputError(f"{group.where}: count = {count} is not a number of drops from 1 to 20")
     counted = tuple(group.take("counted", list, list(range(1, count + 1))))
-    if not 1 <= count <= 20 or not counted or any(not isinstance(k, int) or not 1 <= k <= count for k in counted):
-        raise InputError(f"{group.where}: counted {list(counted)} are not drops of count = {count} (1 to 20)")
+    if not counted or any(not isinstance(k, int) or not 1 <= k <= count for k in counted):
+        raise InputError(f"{group.where}: counted {list(counted)} are not drops of count = {count}")
     if len(set(counted)) < len(counted):
         raise InputError(f"{group.where}: counted {list(counted)} has a drop twice")
     area = group.take("area", str, None)

@@ -13,6 +13,7 @@ import numpy as np
 from . import library
 from .curves import STANDARD_GRAVITY
 from .errors import Error, InputError, missing
+from .output import read
 from .protocol import Protocol, kilograms, length, same, speed
 from .protocol_drops import Drop, Drops, Spot, take_figures
 from .record import read_record
@@ -56,7 +57,7 @@ def _file(path: Path) -> object:
     try:
         state = path.stat()
         return state.st_dev, state.st_ino
-    except OSError:
+    except (OSError, ValueError):  # a zero byte
         return str(path)
 
 
@@ -140,7 +141,7 @@ def _mark_exchanged(counted: tuple[int, ...], made: Drops) -> None:
 
 
 def _text(path: Path) -> str:
-    data = path.read_bytes()
+    data = read(path)
     try:
         return data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
@@ -175,6 +176,8 @@ def _listed(folder: Path) -> list[tuple[str, dict[str, str]]]:
 
 def _heading(path: Path, names: list[str]) -> list[str]:
     known = ("file", *NAMED, *OPTIONS)
+    if len(names) > len(known):
+        raise InputError(f"{path}: the heading has {len(names)} columns; there are {', '.join(known)}")
     unknown = [name for name in names if name not in known]
     double = [name for name in names if names.count(name) > 1]
     if unknown or double or "file" not in names:
@@ -191,6 +194,9 @@ def _matched(folder: Path, pattern: str | None) -> list[tuple[str, dict[str, str
     if unknown or len(parts) < 3:
         raise InputError(f"pattern {pattern!r} " + (f"has {{{unknown[0]}}}, which is no name" if unknown else "names nothing") +
                          "; there are " + ", ".join(f"{{{name}}}" for name in NAMED))
+    double = next((name for name in parts[1::2] if parts[1::2].count(name) > 1), None)
+    if double:
+        raise InputError(f"pattern {pattern!r} has {{{double}}} twice")
     regex = re.compile("".join(re.escape(part) if k % 2 == 0 else f"(?P<{part}>.+?)" for k, part in enumerate(parts)) + r"\Z")
     found = [(str(path), {"file": path.name, **match.groupdict()}) for path in sorted(folder.iterdir()) if (match := regex.match(path.name))]
     if not found:

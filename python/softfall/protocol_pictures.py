@@ -20,6 +20,7 @@ def _plots(rows: int, columns: int, height: float, share: bool = False) -> Any:
     import matplotlib
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
+    matplotlib.rcParams["text.parse_math"] = False  # a name with $ is no formula
     return plt.subplots(rows, columns, figsize=(8, height), layout="constrained", squeeze=False, sharex=share, sharey=share)
 
 

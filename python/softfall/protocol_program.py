@@ -6,7 +6,6 @@ import argparse
 import base64
 import math
 import sys
-import tomllib
 import warnings
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ import numpy as np
 
 from . import output as output_files
 from .case import Case
-from .command import Parser
+from .command import Parser, say
 from .curves import column
 from .drop import read_results
 from .errors import Error, InputError
@@ -37,12 +36,7 @@ def read_laboratory(path: str | None) -> tuple[dict[str, str], str]:
     """Returns the fields of the text file of a laboratory, and its photo as HTML."""
     if path is None:
         return {}, ""
-    try:
-        fields = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: {error}") from None
+    fields = output_files.read_toml(path)
     for key, value in fields.items():
         if key not in FIELDS:
             raise InputError(f"{path}: there is no field {key!r}; there are {', '.join(FIELDS)}")
@@ -51,9 +45,12 @@ def read_laboratory(path: str | None) -> tuple[dict[str, str], str]:
     if "photo" not in fields:
         return fields, ""
     file = Path(path).parent / fields["photo"]
-    if file.suffix.lower() not in PICTURES or not file.is_file() or file.stat().st_size > MOST_PHOTO:
-        raise InputError(f"{path}: photo {file} is no {', '.join(PICTURES)} file of at most {MOST_PHOTO // 1_000_000} MB")
-    data = base64.b64encode(file.read_bytes()).decode()
+    if file.suffix.lower() not in PICTURES:
+        raise InputError(f"{path}: photo {file} is no {', '.join(PICTURES)} file")
+    try:
+        data = base64.b64encode(output_files.read(file, MOST_PHOTO)).decode()
+    except InputError as error:
+        raise InputError(f"{path}: photo {error}") from None
     return fields, f'<figure><img alt="sample" src="data:image/{PICTURES[file.suffix.lower()]};base64,{data}"></figure>'
 
 
@@ -177,5 +174,5 @@ def parser(prog: str) -> Parser:
 
 def run(o: argparse.Namespace) -> int:
     """Runs a protocol and returns the exit code."""
-    print(perform(o))
+    say(perform(o))
     return 0

@@ -7,7 +7,7 @@ import os
 import shlex
 from pathlib import Path
 
-from .command import Parser
+from .command import Parser, say
 from .errors import InputError
 from .laboratory import options
 from .laboratory.kinds import KINDS
@@ -68,5 +68,5 @@ def perform(o: argparse.Namespace) -> str:
 
 def run(o: argparse.Namespace) -> int:
     """Reads a file and returns the exit code."""
-    print(perform(o))
+    say(perform(o))
     return 0

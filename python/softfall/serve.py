@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import ipaddress
 import json
 import math
+import re
 import signal
+import socket
 import sys
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -19,6 +22,14 @@ from .function import Function
 
 MOST_BYTES = 1 << 20  # of a request
 PATIENCE = 60  # s for the bytes of a request
+MOST_CLIENTS, MOST_WAITING = 256, 64  # connections at a time; requests that wait for a place
+TIME_LIMIT = 3600.0  # s, of a drop
+SHOWN = 200  # characters of a value in a sentence
+
+
+def _shown(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= SHOWN else text[:SHOWN] + "..."
 
 
 class Refusal(Exception):
@@ -34,10 +45,40 @@ class Server(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, address: tuple[str, int], name: str, function: Function, options: Sequence[str], jobs: int = 1) -> None:
+    def __init__(self, address: tuple[str, int], name: str, function: Function, options: Sequence[str], jobs: int = 1,
+                 time_limit: float = TIME_LIMIT) -> None:
         super().__init__(address, Handler)
-        self.name, self.function, self.options = name, function, list(options)
-        self.places = threading.Semaphore(jobs)
+        self.name, self.function, self.options, self.time_limit = name, function, list(options), time_limit
+        self.places, self.waiting = threading.Semaphore(jobs), threading.Semaphore(MOST_WAITING + jobs)
+        self.clients = threading.Semaphore(MOST_CLIENTS)
+        self.hosts = {"localhost", address[0].lower(), socket.gethostname().lower(), socket.getfqdn().lower()}
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Serves a connection by a thread of its own; closes it at once where there are too many."""
+        if self.clients.acquire(blocking=False):
+            super().process_request(request, client_address)
+        else:
+            self.shutdown_request(request)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Runs in the thread."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self.clients.release()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Tells of a connection that failed, in one line."""
+        _log(f"{client_address[0]}: {type(sys.exc_info()[1]).__name__}: {sys.exc_info()[1]}")
+
+    def knows(self, host: str | None) -> bool:
+        """Returns whether a request names this server: a page of another name in a browser, which a name server leads here, does not."""
+        name = re.sub(r":\d*$", "", host or "").strip("[]").lower()
+        try:
+            ipaddress.ip_address(name)
+            return True
+        except ValueError:
+            return name in self.hosts
 
     def answer(self, path: str, request: dict[str, Any]) -> dict[str, Any]:
         """Returns the answer to a POST."""
@@ -45,35 +86,54 @@ class Server(ThreadingHTTPServer):
             known = path in ("/Gradient", "/ApplyJacobian", "/ApplyHessian")
             raise Refusal("UnsupportedFeature" if known else "InvalidInput", f"{path} is not served", 400 if known else 404)
         if request.get("name") != self.name:
-            raise Refusal("ModelNotFound", f'there is no model {json.dumps(request.get("name"))}; there is "{self.name}"')
+            raise Refusal("ModelNotFound", f'there is no model {_shown(request.get("name"))}; there is "{self.name}"')
         if path == "/ModelInfo":
             return {"support": {"Evaluate": True, "Gradient": False, "ApplyJacobian": False, "ApplyHessian": False}}
         values = request.get("config") or {}
         if not isinstance(values, dict) or set(values) - set(self.options):
-            raise Refusal("InvalidInput", f"config is {json.dumps(values)}; its keys may be: {', '.join(self.options) or 'none'}")
+            raise Refusal("InvalidInput", f"config is {_shown(values)}; its keys may be: {', '.join(self.options) or 'none'}")
         if path == "/InputSizes":
             return {"inputSizes": [len(self.function.inputs)]}
         if path == "/OutputSizes":
             return {"outputSizes": [len(self.function.outputs)]}
         return {"output": [self.evaluate(request.get("input"), values)]}
 
-    def evaluate(self, given: Any, values: dict[str, Any]) -> list[float]:
-        """Returns the outputs at a list of one list of numbers."""
+    def evaluate(self, given: Any, values: dict[str, Any]) -> list[float | None]:
+        """Returns the outputs at a list of one list of numbers; None, null of JSON, for NaN."""
         count = len(self.function.inputs)
         if not isinstance(given, list) or len(given) != 1 or not isinstance(given[0], list) or len(given[0]) != count:
             sizes = [len(part) if isinstance(part, list) else None for part in given] if isinstance(given, list) else given
-            raise Refusal("InvalidInput", f"input has the sizes {json.dumps(sizes)}, expected are [{count}]: "
+            raise Refusal("InvalidInput", f"input has the sizes {_shown(sizes)}, expected are [{count}]: "
                           f"{', '.join(key for key, _ in self.function.inputs)}")
         for number in given[0]:
-            if isinstance(number, bool) or not isinstance(number, (int, float)) or not math.isfinite(number):
-                raise Refusal("InvalidInput", f"input holds {json.dumps(number)}, which is no finite number")
+            if isinstance(number, bool) or not isinstance(number, (int, float)) or not abs(number) <= sys.float_info.max:
+                raise Refusal("InvalidInput", f"input holds {_shown(number)}, which is no finite number")
+        point = [float(number) for number in given[0]]
         try:
-            with self.places:
-                return [float(value) for value in self.function.evaluate(given[0], values)]
+            found = self._found(point, values)
+            return [value if math.isfinite(value) else None for value in map(float, found)]
         except (InputError, TypeError) as error:
             raise Refusal("InvalidInput", str(error)) from error
         except (Error, KeyError) as error:
             raise Refusal("InvalidOutput", str(error.args[0]), 500) from error
+
+
+    def _found(self, point: list[float], values: dict[str, Any]) -> list[float]:
+        """Returns the outputs at a point: at once of a drop that is known, else when there is a place for it."""
+        if self.function.is_known(point, values):
+            return self.function.evaluate(point, values)
+        if not self.waiting.acquire(blocking=False):
+            raise Refusal("InvalidOutput", f"{MOST_WAITING} requests wait for a drop already: ask again later, or start softfall serve with more --jobs", 503)
+        try:
+            with self.places, programs.time_limit(self.time_limit):
+                return self.function.evaluate(point, values)
+        finally:
+            self.waiting.release()
+
+
+def _log(text: str) -> None:
+    """Prints a line to stderr; what a terminal would obey is spelled out."""
+    sys.stderr.write("softfall serve: " + re.sub(r"[^ -~]", lambda found: ascii(found[0])[1:-1], text) + "\n")
 
 
 class Handler(BaseHTTPRequestHandler):
@@ -84,13 +144,29 @@ class Handler(BaseHTTPRequestHandler):
     timeout = PATIENCE
 
     def log_message(self, format: str, *args: Any) -> None:
-        sys.stderr.write(f"softfall serve: {self.log_date_time_string()} {format % args}\n")
+        _log(f"{self.log_date_time_string()} {format % args}")
 
     def version_string(self) -> str:
         return "softfall serve"
 
+    def handle_one_request(self) -> None:
+        """Serves a request, whose bytes arrive within PATIENCE."""
+        self.watch = threading.Timer(PATIENCE, self._give_up)
+        self.watch.daemon = True
+        self.watch.start()
+        try:
+            super().handle_one_request()
+        finally:
+            self.watch.cancel()
+
+    def _give_up(self) -> None:
+        try:
+            self.connection.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            pass
+
     def _send(self, answer: dict[str, Any], status: int = 200) -> None:
-        body = json.dumps(answer).encode()
+        body = json.dumps(answer, allow_nan=False).encode()
         try:
             self.send_response(status)
             self.send_header("Content-Type", "application/json")
@@ -109,19 +185,25 @@ class Handler(BaseHTTPRequestHandler):
     def _refuse(self, refusal: Refusal) -> None:
         self._send({"error": {"type": refusal.kind, "message": str(refusal)}}, refusal.status)
 
+    def _check_host(self) -> None:
+        if not self.server.knows(self.headers.get("Host")):
+            self.close_connection = True
+            raise Refusal("InvalidInput", f"the request is for the host {_shown(self.headers.get('Host'))}, which this server is not: name it by its address", 403)
+
     def _read(self) -> dict[str, Any]:
+        self._check_host()
         if self.headers.get("Origin"):
             self.close_connection = True
             raise Refusal("InvalidInput", "requests of web pages (with an Origin) are not served", 403)
-        try:
-            size = int(self.headers.get("Content-Length", ""))
-        except ValueError:
-            size = -1
+        length = self.headers.get("Content-Length", "")
+        size = int(length) if re.fullmatch("[0-9]{1,9}", length) else -1
         if not 0 <= size <= MOST_BYTES:
             self.close_connection = True
             raise Refusal("InvalidInput", f"a request needs a Content-Length from 0 to {MOST_BYTES} bytes", 413)
+        data = self.rfile.read(size)
+        self.watch.cancel()
         try:
-            request = json.loads(self.rfile.read(size))
+            request = json.loads(data)
         except (ValueError, RecursionError) as error:
             raise Refusal("InvalidInput", f"the request is no JSON: {error}") from error
         if not isinstance(request, dict):
@@ -129,16 +211,21 @@ class Handler(BaseHTTPRequestHandler):
         return request
 
     def do_GET(self) -> None:
-        if self.path == "/Info":
+        try:
+            self._check_host()
+            if self.path != "/Info":
+                raise Refusal("InvalidInput", f"{_shown(self.path)} is not served; GET /Info is", 404)
             self._send({"protocolVersion": 1.0, "models": [self.server.name]})
-        else:
-            self._refuse(Refusal("InvalidInput", f"{self.path} is not served; GET /Info is", 404))
+        except Refusal as refusal:
+            self._refuse(refusal)
 
     def do_POST(self) -> None:
         try:
             self._send(self.server.answer(self.path, self._read()))
         except Refusal as refusal:
             self._refuse(refusal)
+        except (ArithmeticError, LookupError, RecursionError, TypeError, UnicodeError, ValueError) as error:
+            self._refuse(Refusal("InvalidInput", f"the request cannot be answered: {type(error).__name__}: {_shown(str(error))}"))
 
 
 def make(o: argparse.Namespace) -> Server:
@@ -146,6 +233,10 @@ def make(o: argparse.Namespace) -> Server:
     for name, least, most in (("port", 0, 65535), ("jobs", 1, 64)):
         if not least <= getattr(o, name) <= most:
             raise InputError(f"--{name} {getattr(o, name)} is outside {least} to {most}")
+    if not o.host.strip():
+        raise InputError("--host is empty, which would be every address of this machine: give 127.0.0.1, another address, or 0.0.0.0 for all of them")
+    if not 0 < o.time_limit < math.inf:
+        raise InputError(f"--time-limit {o.time_limit:g} is not a number of seconds above 0")
     for text in o.set:
         if "=" not in text:
             raise InputError(f"--set {text}: KEY=VALUE is expected")
@@ -154,9 +245,9 @@ def make(o: argparse.Namespace) -> Server:
         if key not in function.case and not key.startswith("geometry."):
             raise InputError(f"--option {key}: there is no such key of the case")
     try:
-        return Server((o.host, o.port), o.name, function, o.option, o.jobs)
-    except OSError as error:
-        raise Error(f"cannot listen on {o.host}, port {o.port}: {error.strerror or error}", 3) from None
+        return Server((o.host, o.port), o.name, function, o.option, o.jobs, o.time_limit)
+    except (OSError, UnicodeError) as error:
+        raise Error(f"cannot listen on {o.host}, port {o.port}: {getattr(error, 'strerror', None) or error}", 3) from None
 
 
 def parser(prog: str) -> Parser:
@@ -180,6 +271,7 @@ def parser(prog: str) -> Parser:
     add("--port", metavar="N", type=int, default=4242, help="port (default 4242; 0: one that is free)")
     add("--set", metavar="KEY=VALUE", action="append", default=[], help="a value of the case, as of softfall-pre")
     add("--threads", metavar="N", type=int, help="threads of a drop (default: every processor)")
+    add("--time-limit", metavar="S", type=float, default=TIME_LIMIT, help="seconds that a drop may take (default 3600)")
     add("--unusable", metavar="raise|nan", choices=["raise", "nan"], default="raise",
         help="answer to a drop that is not to be used: an error (raise, default) or NaN")
     return made

@@ -8,12 +8,15 @@ import os
 import pathlib
 import pkgutil
 import shutil
+import subprocess
+import sys
 import typing
 
 import numpy as np
 import pytest
 
 import softfall
+from softfall import output
 from softfall import curves
 from conftest import program
 
@@ -269,6 +272,52 @@ def test_all_that_is_public_has_type_hints_and_a_docstring():
 def test_the_version_is_that_of_the_programs(place):
     assert program("solve", "--version", cwd=place).strip() == f"softfall-solve {softfall.version()}"
     assert json.loads((softfall.Case("pad/case.cfg").run().file("summary.json")).read_text())["program"].split()[-1] == softfall.version().split()[0]
+
+
+# ---- folders ----
+
+def test_a_folder_that_moves_keeps_its_drop(case, tmp_path):
+    first = case.run(output=tmp_path / "a")
+    hic = first.figures["hic"]
+    (tmp_path / "a").rename(tmp_path / "b")
+    when = (tmp_path / "b/out/summary.json").stat().st_mtime_ns, (tmp_path / "b/results.h5").stat().st_mtime_ns
+    assert case.run(output=tmp_path / "b").figures["hic"] == hic
+    assert when == ((tmp_path / "b/out/summary.json").stat().st_mtime_ns, (tmp_path / "b/results.h5").stat().st_mtime_ns)
+    (tmp_path / "b/out/summary.json").unlink()  # softfall-post was killed
+    assert case.run(output=tmp_path / "b").figures["hic"] == hic
+    with pytest.raises(softfall.InputError, match="already holds"):
+        softfall.read_results(case.run().results, output=tmp_path / "b/out").post(tmp_path / "b/out")
+
+
+def test_no_link_is_followed_and_no_pipe_waited_for(case, tmp_path):
+    victim = tmp_path / "victim"
+    victim.write_text("mine")
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run/lock").symlink_to(victim)
+    with pytest.raises(softfall.Error, match="lock"):
+        case.run(output=tmp_path / "run")
+    (tmp_path / "plan.cfg").symlink_to(victim)
+    with pytest.raises(softfall.InputError, match="is not replaced"):
+        softfall.sweep({"case": str(case.path)}, output=tmp_path / "plan")
+    os.mkfifo(tmp_path / "pipe.cfg")
+    with pytest.raises(softfall.InputError, match="is not replaced"):
+        softfall.sweep({"case": str(case.path)}, output=tmp_path / "pipe")
+    (tmp_path / "soft").symlink_to(victim)
+    output.write(tmp_path / "soft", "new")
+    assert victim.read_text() == "mine" and (tmp_path / "soft").read_text() == "new" and not (tmp_path / "soft").is_symlink()
+    with pytest.raises(softfall.InputError, match="would replace an input"):
+        output.write(tmp_path / "soft", "new", victim, tmp_path / "../" / tmp_path.name / "soft")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["pipe.cfg", "plan.cfg", "run", "soft", "victim"]
+
+
+def test_folders_of_killed_processes_go(tmp_path):
+    child = subprocess.run([sys.executable, "-c", "import os, sys; from softfall import output; from pathlib import Path; place = Path(sys.argv[1]); "
+                            "made = output.Scratch(place); (place / f'x.partial-{os.getpid()}-01234567').touch(); os.kill(os.getpid(), 9)", str(tmp_path)])
+    assert child.returncode == -9 and len(list(tmp_path.iterdir())) == 2
+    with output.scratch(tmp_path) as folder:
+        output.write(tmp_path / "x", "whole")
+        assert sorted(path.name for path in tmp_path.iterdir()) == [folder.name, "x"]
+    assert [path.name for path in tmp_path.iterdir()] == ["x"]
 
 
 # ---- series ----

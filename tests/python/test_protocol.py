@@ -325,6 +325,30 @@ def test_one_point_under_two_names_is_no_two_positions(measured):
         protocol.read(str(measured / "mat.toml"))
 
 
+def test_what_a_confirmed_clause_asks_for_beyond_the_drops_makes_the_result_partial(measured, tmp_path):
+    text = (measured / "list.csv").read_text().replace("file,position,height,drop", "file,position,height,drop,speed").splitlines()
+    (measured / "list.csv").write_text("\n".join([text[0], *(f"{line},{'4.10 m/s' if ',0.9 m,' in line else ''}" for line in text[1:])]) + "\n")
+    for least, stated in ((3, ""), (9, "partial: ")):
+        (measured / "mat.toml").write_text(MAT.read_text().replace('status = "confirmed"', f'status = "confirmed"\nneeds = {{ positions = {least}, drops = 3 }}', 1))
+        result = softfall_protocol(measured / "mat.toml", "--measured", measured, "-o", tmp_path / "out", "--force")
+        assert result.returncode == 0, result.stderr
+        told = json.loads((tmp_path / "out/protocol.json").read_text())
+        outcome = told["results"]["measured"]
+        assert outcome["partial"] == bool(stated) and outcome["stated"].startswith(stated) and outcome["greatest_height_tested_m"] == 0.6
+        assert outcome["value_m"] > 0.6 and any("positions: 3 of 9" in note for note in outcome["notes"]) == bool(stated)
+        assert any("there is no interval" in note for note in outcome["notes"])
+        page = (tmp_path / "out/report.html").read_text()
+        assert all(words in page for words in ("greatest height tested that meets all limits: 0.6 m", "mean of 2, 3", "window of HIC", "measured speed", ">4.1<", "counts"))
+
+
+@pytest.mark.parametrize("speed", ["3 kg", "1e400 m/s", "9 m/s", "1 m/s", "nan m/s", "4.1"])
+def test_a_speed_that_no_fall_has_is_refused(measured, tmp_path, speed):
+    text = (measured / "list.csv").read_text().replace("file,position,height,drop", "file,position,height,drop,speed").splitlines()
+    (measured / "list.csv").write_text("\n".join([text[0], *(f"{line},{speed}" for line in text[1:])]) + "\n")
+    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    assert result.returncode == 2 and "speed" in result.stderr and result.stderr.count("\n") == 1, result.stderr
+
+
 def test_a_limit_within_the_error_of_the_mesh_is_not_decided():
     p = protocol.read("en913")
     spot = Spot(p.conditions[0].name, p.positions[0].name, p.heights[0])
@@ -483,7 +507,7 @@ def test_a_bound_of_a_search_is_that_of_drops_that_can_be_used(verdict, deciding
     criteria = [{"criterion": "a_max", "limit_g": 200, "height_m": None, "state": "not reached"}, {"criterion": "HIC", "limit": 1000, "height_m": None, "state": "not reached"}]
     points = [{"height_m": h} for h in (0.4, 0.5, 1.2, 2.0)]
     search = protocol_drops.Search("as it is", "centre", pathlib.Path(), {"critical_fall_height": found, "criteria": criteria, "points": points})
-    assert judge.judge(p, Drops(searches=[search])).stated == said
+    assert judge.judge(p, Drops(searches=[search])).stated == f"partial: {said}"
 
 
 def test_a_least_window_that_matters_in_a_search_is_told():

@@ -101,13 +101,54 @@ def raw(service, text):
 
 
 def test_what_no_client_sends_is_refused(service):
-    assert " 413 " in raw(service, b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999\r\n\r\n")
-    assert " 413 " in raw(service, b"POST /Evaluate HTTP/1.1\r\nHost: x\r\n\r\n")
-    assert " 413 " in raw(service, b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n")
-    assert " 403 " in raw(service, b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nOrigin: http://page\r\nContent-Length: 2\r\n\r\n{}")
-    assert " 501 " in raw(service, b"PUT /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: 2\r\n\r\n{}")
+    assert " 413 " in raw(service, b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999\r\n\r\n")
+    assert " 413 " in raw(service, b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\n\r\n")
+    assert " 413 " in raw(service, b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Length: -1\r\n\r\n")
+    assert " 403 " in raw(service, b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nOrigin: http://page\r\nContent-Length: 2\r\n\r\n{}")
+    assert " 501 " in raw(service, b"PUT /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n\r\n{}")
     assert "Bad request syntax" in raw(service, b"nonsense\r\n\r\n")
     assert service.ask("/Info")[0] == 200
+
+
+def test_a_request_for_another_host_is_refused(service):
+    """A page in a browser reaches this machine by a name of its own."""
+    for host in (b"page.example", b"page.example:80", b"", b"127.0.0.1.page.example"):
+        assert " 403 " in raw(service, b"GET /Info HTTP/1.1\r\nHost: " + host + b"\r\n\r\n")
+    for host in (b"localhost:9", b"127.0.0.1", b"[::1]:80"):
+        assert " 200 " in raw(service, b"GET /Info HTTP/1.1\r\nHost: " + host + b"\r\n\r\n")
+
+
+def test_numbers_beyond_all_bounds_are_refused(service):
+    for number in ("1" + "0" * 400, "-1" + "0" * 400, "1e400", "1" * 5000):
+        status, answer = service.ask("/Evaluate", b'{"name": "drop", "input": [[' + number.encode() + b", 50]]}")
+        assert status == 400 and len(json.dumps(answer)) < 1000, answer
+    status, answer = service.ask("/Evaluate", b'{"name": "drop", "input": [[4.5, 50]], "config": {"missile.mass": ' + b"[" * 800 + b"]" * 800 + b"}}")
+    assert status == 400
+
+
+def test_the_log_has_no_orders_to_a_terminal(service):
+    raw(service, b"GET /\x1b[31m\x9b HTTP/1.1\r\nHost: localhost\r\n\r\n")
+    assert service.ask("/Info")[0] == 200
+    with open("serve.log", "rb") as log:
+        assert b"\x1b" not in log.read()
+
+
+def test_a_drop_that_is_known_waits_for_nobody(here, drop):
+    service = Service("--input=missile.velocity [m/s]", "--output=hic", "--unusable=nan", "--threads=1")
+    first = service.evaluate(4.5)
+    body = json.dumps({"name": "drop", "input": [[4.4321]]}).encode()
+    with socket.create_connection(service.url.split("//")[1].split(":")) as other:
+        other.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
+        assert service.evaluate(4.5) == first
+    assert service.evaluate(30) == (200, {"output": [[None]]})
+    service.end()
+
+
+@pytest.mark.parametrize("option, said", [("--host=", "--host is empty"), ("--time-limit=nan", "--time-limit"), ("--time-limit=0", "--time-limit")])
+def test_a_server_for_everybody_is_not_started_by_mistake(here, option, said):
+    made = subprocess.run([str(BIN / "softfall-serve"), "pad/case.cfg", "--port=0", "--input=missile.velocity [m/s]", "--output=hic", option],
+                          capture_output=True, text=True)
+    assert made.returncode == 2 and said in made.stderr and made.stderr.count("\n") == 1
 
 
 def test_two_clients_at_once_and_a_hundred_requests(service, drop):
@@ -130,7 +171,7 @@ def test_requests_on_one_connection(service):
 def test_a_client_that_goes_away_ends_nothing(service):
     body = json.dumps({"name": "drop", "input": [[3.9, 50]]}).encode()
     connection = socket.create_connection(service.url.split("//")[1].split(":"))
-    connection.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
+    connection.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: localhost\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
     connection.close()
     half = socket.create_connection(service.url.split("//")[1].split(":"))
     half.sendall(b"POST /Evaluate HTTP/1.1\r\nContent-Le")

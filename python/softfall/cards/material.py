@@ -119,7 +119,7 @@ def read_foam(path: str) -> Foam:
     """Returns the foam of a material file."""
     data = library.Material(path)
     values = {key: value for key, value in data.values.items() if isinstance(value, float)}
-    title = next((line[1:].replace('"', "").strip()[:100] for line in Path(path).read_text(encoding="utf-8", errors="replace").splitlines() if line.startswith("#")), "")
+    title = next((line[1:].replace('"', "").strip()[:100] for line in output_files.read(path).decode("utf-8", "replace").splitlines() if line.startswith("#")), "")
     foam = Foam(Path(path).stem, _clean(title) or Path(path).stem, str(data.values["law"]), path, values["density"], values)
     for rate, strain, stress in data.curves:
         foam.curves.append(Curve(list(map(float, strain)), list(map(float, stress)), rate or None, path))

@@ -6,17 +6,15 @@ import csv
 import functools
 import gzip
 import io
-import os
 import re
-import stat
 import unicodedata
 import zlib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..errors import Error, InputError
+from ..output import read
 from .cells import LOST
 
 MOST_BYTES = 1 << 30
@@ -66,11 +64,7 @@ def split(line: str, separator: str) -> list[str]:
 
 def _bytes(path: str) -> bytes:
     try:
-        if not stat.S_ISREG(os.stat(path).st_mode):
-            raise InputError(f"{path} is not a plain file")
-        if os.path.getsize(path) > MOST_BYTES:
-            raise InputError(f"{path} has more than {MOST_BYTES >> 30} GB, which no record or test of a laboratory has")
-        data = Path(path).read_bytes()
+        data = read(path, MOST_BYTES)
         if data[:2] == b"\x1f\x8b":
             with gzip.open(io.BytesIO(data)) as stream:
                 data = stream.read(MOST_BYTES)
@@ -114,9 +108,21 @@ def sheets(path: str, sheet: str | None = None) -> list[Sheet]:
     if data[:6] == b"MATLAB":
         return [_matlab(path, data)]
     lines = _whole(re.split("\r\n|\r|\n", unicodedata.normalize("NFC", _text(path, data))))
+    _check_width(path, lines)
     if lines[0].lower().startswith("test object number"):
         return [Sheet(path, _iso_mme(path, lines), "a channel in ISO-MME")]
     return [Sheet(path, lines)]
+
+
+MOST_COLUMNS = 5000
+
+
+def _check_width(path: str, lines: list[str]) -> None:
+    """Refuses a line of more columns than a file of a laboratory has."""
+    for k, line in enumerate(lines, 1):
+        most = max(line.count(mark) for mark in SEPARATORS[:3]) + 1 if len(line) > MOST_COLUMNS else 0
+        if most > MOST_COLUMNS:
+            raise InputError(f"{path}:{k}: the line has {most} columns; a file of a laboratory has {MOST_COLUMNS} at most")
 
 
 def _whole(lines: list[str]) -> list[str]:
