@@ -144,8 +144,8 @@ static void wrong_types_and_words_are_refused(void **state) {
                         NULL);
     case_assert_refused(GOOD, "geometry.length_unit=3", "expected a unit of length, for example", NULL);
     case_assert_refused(GOOD, "geometry.parameters=3", "expected a group such as", NULL);
-    case_assert_refused(GOOD, "geometry.parameters.side=40 mm", "\"side\" must be a finite number without a unit",
-                        NULL);
+    case_assert_refused(GOOD, "geometry.parameters.side=40 mm",
+                        "\"side\" must be a finite number without a unit", NULL);
     case_assert_refused(GOOD, "geometry.missile_parameters.diameter=3", "no geometry.missile_file", NULL);
 }
 
