@@ -7,5 +7,5 @@
  * on a pad SF_SECTION_DROP_THINNER thinner, side by side, and fills `out` (docs/theory.md, section 14).
  * Where the first two do not rebound it is all 0; a change is 0 where its drop does not. `kernel`: of both.
  */
-sf_status sf_section_drop_run(const sf_model *section, const sf_model *fine, const sf_kernel *kernel,
+sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
                               sf_section_drop *out, sf_error *err);

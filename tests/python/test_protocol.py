@@ -123,7 +123,7 @@ def test_every_protocol_reads_and_names_what_is_unconfirmed():
     ('[missile]', '[misile]', "there is no key 'misile'"),
     ('mass = "4.6 kg"', 'mass = "4.6"', "mass '4.6' is not a number above 0 with one of kg"),
     ('limit = 100.0', 'limit = -100.0', "limit -100 is not above 0"),
-    ('limit = 100.0', 'limit = nan', "limit = nan is not a finite number"),
+    ('limit = 100.0', 'limit = nan', "limit is not a finite number"),
     ('counted = [2, 3]', 'counted = [3, 3]', "has a drop twice"),
     ('count = 3', 'counts = 3', "there is no key 'counts'"),
     ('least_window_ms = 3', 'least_window_ms = -3', "a least window is above 0"),
