@@ -38,7 +38,7 @@ static int set_up(void **state) {
     program_succeed(
         p, "pre",
         "good.cfg -o half.h5 %s --set solver.end_time='0.5 ms' --set 'pad.symmetry=[\"symmetry_y\"]' "
-        "--set geometry.missile_parameters.quarter=0",
+        "--set geometry.missile_parameters.quarter=0 --set 'missile.position=[\"0 mm\", \"0 mm\"]'",
         program_coarse(20));
     simulate(p, "half");
     program_succeed(

@@ -42,8 +42,9 @@ def _refused(handle: int, path: str | os.PathLike[str]) -> Any:
 
 def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Returns the content of a TOML file; InputError names the file and what is wrong in it."""
+    data = read(path)
     try:
-        return tomllib.loads(read(path).decode("utf-8-sig"))
+        return tomllib.loads(data.decode("utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{os.fspath(path)}: {error}") from None
     except (RecursionError, ValueError) as error:

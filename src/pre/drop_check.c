@@ -118,7 +118,7 @@ static const double SYMMETRIC = 1e-2; /* of the missile's extent: as far on one 
 
 static const double THINNEST = 5e-4, THICKEST = 5; /* m, of a pad */
 static const double SMALLEST = 1e-3, LARGEST = 10; /* m, of a missile */
-static const double MOST_PADS = 25;                /* pads, side by side, that a missile is wide */
+static const double MOST_PADS = 25;                /* longest sides of the pad that a missile is wide */
 static const double DENSEST = 23e3, LIGHTEST = 5;  /* kg m-3, of a metal and of a box around a missile */
 
 /* Fills the extents (m) of the whole body, of whose points the model may have one side of a symmetry plane.
@@ -153,7 +153,7 @@ static sf_status check_sizes(const sf_case *c, const sf_model *m, sf_error *err)
                          "the pad is %g mm thick, outside %g to %g mm: %s; is that the unit of its geometry?",
                          1e3 * m->thickness, 1e3 * THINNEST, 1e3 * THICKEST, unit);
     name_unit(c, true, unit);
-    if (!(wide >= SMALLEST && wide <= LARGEST && narrow <= MOST_PADS * fmax(pad[0], pad[1])))
+    if (!(wide >= SMALLEST && wide <= LARGEST && narrow <= MOST_PADS * fmax(fmax(pad[0], pad[1]), pad[2])))
         return SF_REFUSE(
             err,
             "the sizes cannot belong together: the missile is %.4g x %.4g x %.4g mm, the pad %.4g x "

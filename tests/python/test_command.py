@@ -65,7 +65,8 @@ def test_a_python_without_a_module_is_told_its_package(tmp_path):
 
 @pytest.mark.parametrize("content, said", [
     (b"a = " + b"[" * 100000, "nested too deep"), (b"\0", "TOML|Illegal|Invalid|invalid"), (b"\xff", "utf-8"), (b"title = 3", "title = 3 is not a text"),
-    (b"title = 'a'\nstandard = 'b'\n[missile]\n[drops]\ncount = 1000000000\n[result]\nkind = 'pass'\n[[figure]]\nkey = 'hic'\n", "from 1 to 20"),
+    (b"title = 'a'\nstandard = 'b'\n[missile]\n[drops]\ncount = 1000000000\n[result]\nkind = 'pass'\n[[figure]]\nkey = 'hic'\n"
+     b"[[clause]]\nof = 'drops'\ntext = 'a'\nsource = 'b'\nstatus = 'unconfirmed'\n", "from 1 to 20"),
     (b"title = 'a'\nstandard = 'b'\n[missile]\n[drops]\n[result]\nkind = 'pass'\n[[figure]]\nkey = 'hic'\nlimit = 1" + b"0" * 400, "limit is not a finite"),
     (b"title = 'a'\n'\\u001b[31m' = 1", "no key"),
 ])

