@@ -184,7 +184,8 @@ static const sf_model_field fields[] = {
                  "1: their centroids are points of contact, too, unless they are halves"),
     LATER_SCALAR(axisymmetric, I64, "/model/axisymmetric", "1",
                  "1: a plane section, x the radius and y = 0; B is then (b_R, b_theta, b_Z)"),
-#define REFERENCE(member, units, text) LATER_SCALAR(section.member, F64, "/model/section/" #member, units, text),
+#define REFERENCE(member, units, text)                                                                       \
+    LATER_SCALAR(section.member, F64, "/model/section/" #member, units, text),
     SF_SECTION_DROP(REFERENCE)
 #undef REFERENCE
 };
