@@ -371,7 +371,7 @@ double fixture_pairs(const fixture *f, const double *stiffness, int64_t i, doubl
     sf_pair_sums sums;
     int64_t place = i % SF_GROUP;
     const sf_pair_field field = {f->state.d, f->state.f,           stiffness,
-                                 stiffness,  f->state.pair_offset, f->state.pair_offsets};
+                                 stiffness,  f->state.pair_offset, f->state.group_has_offsets};
     sf_stabilisation_group(&f->model, &f->operators.pairs, &field, i / SF_GROUP, &sums);
     for (int r = 0; r < 3; r++) {
         force[r] = sums.force[place][r];

@@ -185,9 +185,10 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
     elif told.decision and (partial or 1 not in p.counted):
         told = replace(told, decision=None, stop=False, expected=True)
     stated = _stated(question, told, lacking)
-    said = [measured.doubt] if told.problem and measured.doubt else doubts if not told.problem else []
-    if said:
-        stated += f"; but {' and '.join(said)}"
+    if doubts and not told.problem:
+        stated += f"; but {' and '.join(doubts)}"
+    elif measured.doubt:
+        stated += f"; and {measured.doubt}"
     if partial and told.expected:
         stated += "; a part of the protocol is not simulated"
     if 1 not in p.counted:

@@ -54,8 +54,8 @@ def perform(o: argparse.Namespace) -> str:
         joined = shlex.quote(",".join(reading.axes[:3]))
         said.append(f"it holds {len(reading.axes)} accelerations: softfall-post takes one with --reference-column={shlex.quote(reading.axes[0])}, "
                     f"or the resultant of axes with --reference-columns={joined}")
-    span = reading.frame.iloc[[0, -1]].to_numpy()
-    said.append(f"{len(reading.frame)} rows, " + "; ".join(f"{name} {first:.6g} to {last:.6g}" for name, first, last in zip(reading.frame.columns, *span)))
+    span = reading.frame.min().to_numpy(), reading.frame.max().to_numpy()
+    said.append(f"{len(reading.frame)} rows, " + "; ".join(f"{name} from {low:.6g} to {high:.6g}" for name, low, high in zip(reading.frame.columns, *span)))
     if o.output:
         path = Path(o.output)
         if path.exists() and (os.path.samefile(path, o.file) or not o.force):

@@ -29,7 +29,7 @@ static const sf_state_array arrays[] = {
     KEPT(tangent, 'n', 1),
     KEPT(pair_energy, 'n', 1),
     KEPT(pair_offset, 'p', 3),
-    KEPT(pair_offsets, 'g', 1),
+    KEPT_NUMBERS(group_has_offsets, 'g', 1),
     KEPT(pair_stiffness, 'n', 1),
     KEPT(pair_work, 'n', 1),
     KEPT(viscous_work, 'n', 1),

@@ -157,11 +157,11 @@ typedef struct sf_state {
 
     /* Stabilisation: half the energy of a node's pairs, the stiffness it was last used with, and the work of
      * the node's share to date; offsets of the pairs' arms. */
-    double *pair_energy;    /* [n] J */
-    double *pair_stiffness; /* [n] Pa */
-    double *pair_work;      /* [n] J */
-    double *pair_offset;    /* [pairs][3] m, of the inner pairs, then of the outer ones */
-    double *pair_offsets;   /* [groups] 0: the group's pairs have none */
+    double *pair_energy;        /* [n] J */
+    double *pair_stiffness;     /* [n] Pa */
+    double *pair_work;          /* [n] J */
+    double *pair_offset;        /* [pairs][3] m, of the inner pairs, then of the outer ones */
+    int32_t *group_has_offsets; /* [groups] 0: the pairs of the group have none */
 
     double *compressed; /* [n] -, largest compression to date; only a pad of layers has it */
 

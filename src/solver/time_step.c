@@ -98,7 +98,7 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
     int64_t own = sf_halo_first(group), end = sf_halo_end(m, group);
     int64_t inner = pairs->inner_ptr[group], outer = pairs->outer_ptr[group];
     double *out = w->out, flux[3 * SF_GROUP];
-    const double *offset = s->pair_offsets[group] != 0 ? s->pair_offset : NULL;
+    const double *offset = s->group_has_offsets[group] != 0 ? s->pair_offset : NULL;
     memset(&out[own], 0, (size_t)(end - own) * sizeof *out);
     for (int64_t i = own; i < end; i++) {
         const float *g = &w->gradient[3 * i];

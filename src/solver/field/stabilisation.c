@@ -162,7 +162,7 @@ static inline __attribute__((always_inline)) bool sum_group(const sf_model *m, c
 
 SF_KERNEL bool sf_stabilisation_group(const sf_model *m, const sf_pairs *pairs, const sf_pair_field *field,
                                       int64_t g, sf_pair_sums *sums) {
-    if (!field->has_offsets[g] && !sum_group(m, pairs, field, g, false, sums))
+    if (field->has_offsets[g] == 0 && !sum_group(m, pairs, field, g, false, sums))
         return false;
     sum_group(m, pairs, field, g, true, sums);
     return true;
@@ -189,12 +189,12 @@ static void take_sums(const sf_model *m, const sf_pair_sums *sums, int64_t g, sf
 }
 
 void sf_stabilisation(const sf_model *m, const sf_operators *op, sf_state *s) {
-    const sf_pair_field field = {s->d,           s->f,           s->stiffness, s->pair_stiffness,
-                                 s->pair_offset, s->pair_offsets};
+    const sf_pair_field field = {
+        s->d, s->f, s->stiffness, s->pair_stiffness, s->pair_offset, s->group_has_offsets};
 #pragma omp for schedule(static)
     for (int64_t g = 0; g < op->halo.group_count; g++) {
         sf_pair_sums sums;
-        s->pair_offsets[g] = sf_stabilisation_group(m, &op->pairs, &field, g, &sums);
+        s->group_has_offsets[g] = sf_stabilisation_group(m, &op->pairs, &field, g, &sums);
         take_sums(m, &sums, g, s);
     }
 #pragma omp for schedule(static)

@@ -22,7 +22,7 @@ typedef struct sf_pair_field {
     const double *d, *f;              /* [n][3] m; [n][9] */
     const double *stiffness, *before; /* [n] Pa, now and when the pairs were last evaluated */
     double *offset; /* [pairs][3] m, of the arms: of the inner pairs, then of the outer ones; updated */
-    const double *has_offsets; /* [groups] 0: all offsets of the group's pairs are 0 */
+    const int32_t *has_offsets; /* [groups] 0: all offsets of the group's pairs are 0 */
 } sf_pair_field;
 
 /* Forces, couples and energies of the pairs at the nodes of a group, by place in it. */

@@ -2,6 +2,7 @@
 #include "solver/run/checkpoint.h"
 
 #include "io/h5_data.h"
+#include "solver/contact/skin.h"
 #include "solver/field/domain_stress.h"
 #include "solver/set.h"
 #include <errno.h>
@@ -54,6 +55,12 @@ static sf_status check(const sf_model *m, const sf_state *s, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO,
                        "the checkpoint's state is not possible: step %lld, t = %g s, dt = %g s, node %lld",
                        (long long)s->step, s->time, s->dt, (long long)s->jacobian_node);
+    int64_t facets = m->skin_count + m->support_triangle_count;
+    for (int64_t p = 0; p < sf_state_rows(m, 's'); p++)
+        if (s->self_partner[p] >= facets || s->self_partner[p] < -1 - SF_SKIN_PLANES)
+            return SF_FAIL(err, SF_ERR_IO,
+                           "the checkpoint's state is not possible: point %lld touches facet %d of %lld",
+                           (long long)p, s->self_partner[p], (long long)facets);
     return SF_OK;
 }
 
@@ -124,9 +131,13 @@ void sf_checkpoint_close(sf_checkpoint *c) {
 
 sf_status sf_checkpoint_read(const sf_checkpoint *c, const sf_model *m, const sf_output *o, sf_state *s,
                              sf_recorder *r, sf_error *err) {
-    if (read_state(m, s, c->file, err) != SF_OK || sf_recorder_read(r, m, s, c->file, err) != SF_OK)
-        return err->status;
-    return sf_output_recover_peak(o, c->file, err);
+    sf_error inner = SF_ERROR_INIT;
+    if (read_state(m, s, c->file, &inner) == SF_OK && sf_recorder_read(r, m, s, c->file, &inner) == SF_OK)
+        return sf_output_recover_peak(o, c->file, err);
+    s->step = 0; /* nothing of it has run */
+    return SF_FAIL(err, inner.status,
+                   "%.800s; a checkpoint of another version cannot be resumed: start a new run with --force",
+                   inner.text);
 }
 
 /* ---- the pad of an earlier drop ---- */

@@ -51,8 +51,12 @@ static void take_stresses(const sf_model *m, const sf_operators *op, const sf_st
                           int64_t first, int64_t end, double *out) {
     sf_pair_sums pairs;
     double sigma[9], mises;
-    const sf_pair_field field = {s->d,           s->f,           s->pair_stiffness, s->pair_stiffness,
-                                 s->pair_offset, s->pair_offsets}; /* nothing changes */
+    const sf_pair_field field = {s->d,
+                                 s->f,
+                                 s->pair_stiffness,
+                                 s->pair_stiffness,
+                                 s->pair_offset,
+                                 s->group_has_offsets}; /* nothing changes */
     sf_stabilisation_group(m, &op->pairs, &field, first / SF_GROUP, &pairs);
     for (int64_t i = first; i < end; i++) {
         take_stress(m, s, &pairs, i, sigma, &mises);
