@@ -363,6 +363,16 @@ static void damaged_or_foreign_checkpoint_is_refused(void **state) {
     program_shell(p, "cp model.h5 part.h5.restart");
     assert_int_equal(sf_seal_add(program_path(p, "part.h5.restart"), &err), SF_OK);
     assert_refused(p, SF_ERR_IO, "is a softfall-model file, expected a softfall-checkpoint file", "");
+    program_write_file(program_path(p, "part.h5.restart"), good.data,
+                       good.size - 24); /* as of an older version */
+    hid_t file = H5Fopen(program_path(p, "part.h5.restart"), H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(H5Ldelete(file, "/state/kick", H5P_DEFAULT) >= 0);
+    H5Fclose(file);
+    assert_int_equal(sf_seal_add(program_path(p, "part.h5.restart"), &err), SF_OK);
+    program_result older = program_run(p, "solve", "--restart part.h5");
+    assert_true(older.code == SF_ERR_IO && !strstr(older.out, "ended:"));
+    assert_non_null(strstr(older.err, "cannot be resumed: start a new run with --force"));
+    program_shell(p, "rm -r part.h5.run");
     program_write_file(program_path(p, "part.h5.restart"), good.data, good.size);
 
     program_succeed(p, "pre", "'%s' -o other.h5 %s --set missile.mass='\"4.7 kg\"' --force",

@@ -44,8 +44,9 @@ quietly apt-get install -y --no-install-recommends "$package" "$python"
 dpkg-query -L softfall python3-softfall | sed '/^$/d' | sort -u >out/files
 said "installed: $(dpkg-query -W -f '${Version}, ${Installed-Size} kB' softfall), with $(installed_packages | comm -13 out/packages-before - | wc -l) packages"
 ! grep -vE '^/(\.|usr($|/))' out/files || fail "it has files outside /usr"
+# softfall-protocol is another name of "softfall protocol".
 for name in $(sed -n 's|^/usr/bin/||p' out/files); do
-    as_user "$name" --version | grep "^$name [0-9]" >/dev/null || fail "$name does not start"
+    as_user "$name" --version | grep "^${name/-/[ -]} [0-9]" >/dev/null || fail "$name does not start"
     as_user man -w "$name" >/dev/null || fail "$name has no manual page"
 done
 ldconfig -p | grep 'libsoftfall\.so' >/dev/null || fail "ld.so does not find libsoftfall"
