@@ -30,7 +30,7 @@ static void make_cloud(cloud *c, uint64_t *seed, double jitter, double scale, do
         c->support[i] = scale * point_random(seed, 1.9, 2.6);
         c->all[i] = i;
     }
-    c->mls = (sf_mls_cloud){c->position, c->support};
+    c->mls = (sf_mls_cloud){c->position, c->support, false};
 }
 
 static void random_point(uint64_t *seed, double scale, double shift, double x[3]) {
@@ -115,7 +115,7 @@ static void shape_functions_do_not_depend_on_units_or_place(void **state) {
     uint64_t seed = 43;
     make_cloud(&c, &seed, 0.3, 1, 0);
     moved = c;
-    moved.mls = (sf_mls_cloud){moved.position, moved.support};
+    moved.mls = (sf_mls_cloud){moved.position, moved.support, false};
     for (int k = 0; k < 3 * NODES; k++)
         moved.position[k] = 1e-3 * (c.position[k] + 2);
     for (int i = 0; i < NODES; i++)
@@ -174,7 +174,7 @@ static void make_disc(cloud *c, uint64_t *seed, int count, double off, const dou
         c->support[i] = 1.5;
         c->all[i] = i;
     }
-    c->mls = (sf_mls_cloud){c->position, c->support};
+    c->mls = (sf_mls_cloud){c->position, c->support, false};
 }
 
 /* In the rounded plane of a random direction the moment matrix can miss exact singularity by rounding: then
@@ -271,7 +271,7 @@ static void too_few_or_too_many_neighbours_are_refused(void **state) {
         support[i] = 2;
         everyone[i] = i;
     }
-    const sf_mls_cloud full = {crowd, support};
+    const sf_mls_cloud full = {crowd, support, false};
     assert_int_equal(sf_mls_evaluate(&full, x, SF_MLS_MAX_NODES, everyone, &point), 0);
     assert_int_equal(sf_mls_evaluate(&full, x, SF_MLS_MAX_NODES + 1, everyone, &point), -1);
     assert_true(isinf(point.condition));

@@ -69,6 +69,7 @@ typedef struct sf_case {
     uint64_t values;  /* hash of the values of all keys that can change a drop, but those that name files */
     sf_geo_source pad;
     sf_geo_source missile;
+    int axisymmetric;   /* 1: the model is a plane section (pre/mesh/section.h) */
     double length_unit; /* m per unit of the geometry */
     double up[3];       /* -, unit vector out of the pad's face, in the geometry; the model has it along z */
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */

@@ -20,6 +20,9 @@ static const sf_key keys[] = {
     /* geometry */
     {"geometry", "file", SF_KEY_PATH, NULL, AT(pad.path),
      "geometry of the pad: .geo, .msh with cells, or what gmsh can open and mesh; relative to the file that names it"},
+    {"geometry", "model", SF_KEY_CHOICE, "\"solid\"", AT(axisymmetric),
+     "\"axisymmetric\": the plane section of a pad that is a plate, hit straight by a body of revolution (docs/case.md); `file` draws that section, radius along x and height along y, or the quarter of the plate",
+     .words = "solid|axisymmetric"},
     {"geometry", "missile_file", SF_KEY_PATH, "", AT(missile.path),
      "geometry of the missile; absent: it is in `file`"},
     {"geometry", "length_unit", SF_KEY_UNIT, NULL, AT(length_unit),

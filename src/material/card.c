@@ -21,6 +21,31 @@ void sf_material_free(sf_material *material) {
     SF_CLEAR(material, material->card);
 }
 
+/* A copy of `count` doubles or integers, owned by the caller; NULL of NULL. */
+static void *copy_block(const void *from, int64_t count, size_t size, sf_error *err) {
+    void *block = from ? sf_alloc(err, count, size, "a curve") : NULL;
+    if (block)
+        memcpy(block, from, (size_t)count * size);
+    return block;
+}
+
+sf_status sf_material_copy(const sf_material *from, sf_material *out, sf_error *err) {
+    SF_TRY(sf_material_create(from->law, out, err));
+    memcpy(out->card, from->card, from->law->card_size);
+    memcpy(out->name, from->name, sizeof out->name);
+    sf_law_curves *c = sf_material_curves(out);
+    if (!c)
+        return SF_OK;
+    const sf_law_curves old = *c;
+    c->curve_rate = copy_block(old.curve_rate, old.curve_count, sizeof *c->curve_rate, err);
+    c->curve_ptr = copy_block(old.curve_ptr, old.curve_count + 1, sizeof *c->curve_ptr, err);
+    c->curve_strain = copy_block(old.curve_strain, old.curve_points, sizeof *c->curve_strain, err);
+    c->curve_stress = copy_block(old.curve_stress, old.curve_points, sizeof *c->curve_stress, err);
+    if (err->status != SF_OK)
+        sf_material_free(out);
+    return err->status;
+}
+
 sf_law_curves *sf_material_curves(const sf_material *material) {
     size_t offset = material->law->curves;
     return offset == SIZE_MAX ? NULL : (sf_law_curves *)((char *)material->card + offset);

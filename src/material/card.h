@@ -99,9 +99,9 @@ typedef struct sf_law {
     size_t card_size;
     const sf_parameter *parameter;
     int parameter_count;
-    size_t density; /* offset of the double: kg m-3, undeformed */
-    size_t length;  /* m, a fixed length of damping, 0: each node's spacing; SIZE_MAX: no such member */
-    size_t curves;  /* of sf_law_curves; SIZE_MAX: none */
+    size_t density;  /* offset of the double: kg m-3, undeformed */
+    size_t length;   /* m, a fixed length of damping, 0: each node's spacing; SIZE_MAX: no such member */
+    size_t curves;   /* of sf_law_curves; SIZE_MAX: none */
     size_t informed; /* -, largest compressive strain about which the data inform; of a value of 0 data_end */
     double (*rest_modulus)(const void *card); /* Pa: the least stiffness of the stabilisation */
     /* Rules beyond the bounds of each parameter; SF_ERR_MODEL. NULL: none. */
@@ -164,6 +164,8 @@ typedef struct sf_material {
 
 /* A card of zeros. */
 sf_status sf_material_create(const sf_law *law, sf_material *material, sf_error *err);
+/* A copy with a card and curves of its own. */
+sf_status sf_material_copy(const sf_material *from, sf_material *out, sf_error *err);
 /* Safe on a zeroed material; leaves one. */
 void sf_material_free(sf_material *material);
 

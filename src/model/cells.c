@@ -7,6 +7,20 @@
 
 /* clang-format off */
 static const sf_cell_shape shapes[] = {
+    [SF_CELL_TRIANGLE] = {
+        "triangle", 3, 3, 3, 0, 3,
+        {{0, 1}, {1, 2}, {2, 0}},
+        {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}},
+        {{0, 0}, {1, 1}, {2, 2}},
+        {{0}},
+        {{0, 1, 2, -1}, {1, 2, 0, -1}, {2, 0, 1, -1}}, {0, 2, 1}},
+    [SF_CELL_QUADRANGLE] = {
+        "quadrangle", 4, 4, 4, 0, 4,
+        {{0, 1}, {1, 2}, {2, 3}, {3, 0}},
+        {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}},
+        {{0, 0}, {1, 1}, {2, 2}, {3, 3}},
+        {{0}},
+        {{0, 1, 3, -1}, {1, 2, 0, -1}, {2, 3, 1, -1}, {3, 0, 2, -1}}, {0, 3, 2, 1}},
     [SF_CELL_TETRAHEDRON] = {
         "tetrahedron", 4, 6, 4, 1, 1,
         {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
@@ -40,7 +54,7 @@ static const sf_cell_shape shapes[] = {
 /* clang-format on */
 
 const sf_cell_shape *sf_cell_shape_of(int type) {
-    return type >= SF_CELL_TETRAHEDRON && type <= SF_CELL_HEXAHEDRON ? &shapes[type] : NULL;
+    return type >= SF_CELL_TRIANGLE && type <= SF_CELL_HEXAHEDRON ? &shapes[type] : NULL;
 }
 
 sf_cell_face *sf_cell_faces(const sf_cells *c, int64_t *place, int (*compare)(const void *, const void *),

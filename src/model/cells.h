@@ -11,19 +11,26 @@ typedef struct sf_cell_shape {
     const char *name;
     int vertices, edges, faces, tetrahedra, corners;
     int edge[12][2];
-    int face[6][4];        /* counter-clockwise seen from outside, -1 in the fourth place of a triangle */
+    int face[6][4];        /* counter-clockwise seen from outside, -1 in the fourth place of a triangle; of a
+                              plane cell its sides, counter-clockwise in (R, Z), -1 in the last two */
     int edge_face[12][2];  /* the face that runs along edge (a, b) from a to b, and the one from b to a */
     int tetrahedron[6][4]; /* they fill the cell */
-    int corner[8][4];
-    int mirror[8]; /* the order of the vertices of its mirror image */
+    int corner[8][4];      /* of a plane cell: corner, next one, the one before, -1 */
+    int mirror[8];         /* the order of the vertices of its mirror image */
 } sf_cell_shape;
 
 /* The shape of a cell type (SF_CELL_*); NULL for any other code. Static storage. */
 const sf_cell_shape *sf_cell_shape_of(int type);
 
-/* Vertices of a face: 3 or 4. */
+/* Vertices of a face: 3 or 4; 2 of a plane cell. */
 static inline int sf_cell_face_size(const sf_cell_shape *shape, int face) {
-    return shape->face[face][3] < 0 ? 3 : 4;
+    int triangle = shape->face[face][2] < 0 ? 2 : 3;
+    return shape->face[face][3] < 0 ? triangle : 4;
+}
+
+/* True of a cell of a plane section: in the half plane y = 0, x being the radius R and z the height Z. */
+static inline bool sf_cell_is_plane(const sf_cell_shape *shape) {
+    return shape->tetrahedra == 0;
 }
 
 /* A mesh, borrowed. */
@@ -37,7 +44,7 @@ typedef struct sf_cells {
 
 /* A face of a cell. */
 typedef struct sf_cell_face {
-    int32_t key[4]; /* its nodes, ascending; the first is -1 for a triangle */
+    int32_t key[4]; /* its nodes, ascending; the first is -1 for a triangle, the first two for a side */
     int32_t cell;
     int8_t local; /* its place among the faces of the cell */
 } sf_cell_face;

@@ -182,6 +182,8 @@ static const sf_model_field fields[] = {
     /* New fields stand at the end: their number is part of the hash of a model. */
     LATER_SCALAR(skin_centroids, I64, "/skin/centroids", "1",
                  "1: their centroids are points of contact, too, unless they are halves"),
+    LATER_SCALAR(axisymmetric, I64, "/model/axisymmetric", "1",
+                 "1: a plane section, x the radius and y = 0; B is then (b_R, b_theta, b_Z)"),
 };
 
 const sf_model_field *sf_model_fields(size_t *count) {
@@ -268,6 +270,32 @@ sf_status sf_model_take_materials(sf_model *model, sf_material *material, int co
     memcpy(model->material, material, (size_t)count * sizeof *material);
     memset(material, 0, (size_t)count * sizeof *material);
     return SF_OK;
+}
+
+static size_t item_bytes(const sf_model_field *field) {
+    static const size_t bytes[] = {[F64] = 8, [I32] = 4, [I64] = 8, [U8] = 1};
+    return (size_t)field->columns * bytes[field->type];
+}
+
+sf_status sf_model_copy(const sf_model *from, sf_model *out, sf_error *err) {
+    *out = *from;
+    out->material = sf_alloc(err, from->material_count, sizeof *out->material, "materials");
+    for (size_t k = 0; k < sizeof fields / sizeof fields[0]; k++) {
+        const sf_model_field *f = &fields[k];
+        if (f->rows_offset == SIZE_MAX)
+            continue;
+        void **array = (void **)((char *)out + f->offset);
+        const void *old = *array;
+        int64_t rows = *(const int64_t *)((const char *)from + f->rows_offset) + f->rows_extra;
+        *array = old ? sf_alloc(err, rows, item_bytes(f), "a model") : NULL;
+        if (*array)
+            memcpy(*array, old, (size_t)rows * item_bytes(f));
+    }
+    for (int64_t k = 0; err->status == SF_OK && k < from->material_count; k++)
+        sf_material_copy(&from->material[k], &out->material[k], err);
+    if (err->status != SF_OK)
+        sf_model_free(out);
+    return err->status;
 }
 
 void sf_model_free(sf_model *model) {

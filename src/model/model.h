@@ -19,7 +19,14 @@ enum {
 };
 
 /* Cell types: values are XDMF's topology codes, so that they can be written as they are. */
-enum { SF_CELL_TETRAHEDRON = 6, SF_CELL_PYRAMID = 7, SF_CELL_PRISM = 8, SF_CELL_HEXAHEDRON = 9 };
+enum {
+    SF_CELL_TRIANGLE = 4, /* of the plane section of an axisymmetric pad, as the next one */
+    SF_CELL_QUADRANGLE = 5,
+    SF_CELL_TETRAHEDRON = 6,
+    SF_CELL_PYRAMID = 7,
+    SF_CELL_PRISM = 8,
+    SF_CELL_HEXAHEDRON = 9
+};
 
 enum {
     SF_SHAPE_SPHERE = 0,
@@ -209,6 +216,9 @@ typedef struct sf_model {
     double *series_interval; /* [series_count] s, from the drop before to each; 0 of the first */
     int64_t *series_model;   /* [series_count] hash of a model of its own, 0: it is this one */
 
+    /* 1: the pad is the plane section of a body of revolution: nodes lie in y = 0, x is the radius; domains
+     * are rings, and domain_b is (b_R, b_theta, b_Z), F_theta theta = 1 + sum b_theta u_R; 0: it is solid. */
+    int64_t axisymmetric;
     int64_t symmetry_factor; /* 1, 2 or 4: how many times the modelled part makes the whole */
     double thickness; /* m, of the foam under the contact, along the missile's path, its vertical part */
     double air;       /* m, on the same way: gaps of a pad with a skin, which close first */
@@ -293,6 +303,9 @@ double sf_model_density(const sf_model *model);
 /* Moves `count` materials into the list. node_material is allocated and, if there is one material only, stays
  * zero; node_count is known. */
 sf_status sf_model_take_materials(sf_model *model, sf_material *material, int count, sf_error *err);
+
+/* A copy with arrays and materials of its own; of a model without a permanent set. */
+sf_status sf_model_copy(const sf_model *from, sf_model *out, sf_error *err);
 
 /* Releases every array and zeroes the model. Safe on a zeroed model. */
 void sf_model_free(sf_model *model);

@@ -162,6 +162,7 @@ static sf_status check_cards(const sf_model *m, sf_error *err) {
         {"number of supports", (double)m->support_count, m->support_triangle_count > 0, SF_SUPPORTS},
         {"missile's way to the support (m)", m->support_travel, 0, 1e6},
         {"anvil friction", m->anvil.friction, 0, 10},
+        {"axisymmetric model", (double)m->axisymmetric, 0, m->symmetry_factor == 1},
         {"symmetry factor", (double)m->symmetry_factor, 1, 4},
         {"pad thickness (m)", m->thickness, 1e-6, 1e3},
         {"air below the missile (m)", m->air, 0, 1e3},
@@ -234,7 +235,8 @@ static sf_status check_mesh(const sf_model *m, sf_error *err) {
                      false, err));
     for (int64_t c = 0; c < m->cell_count; c++) {
         const sf_cell_shape *shape = sf_cell_shape_of(m->cell_type[c]);
-        if (!shape || m->cell_ptr[c + 1] - m->cell_ptr[c] != shape->vertices)
+        if (!shape || sf_cell_is_plane(shape) != (m->axisymmetric != 0) ||
+            m->cell_ptr[c + 1] - m->cell_ptr[c] != shape->vertices)
             return SF_FAIL(err, SF_ERR_MODEL, "background cell %lld has type %d and %lld vertices",
                            (long long)c, m->cell_type[c], (long long)(m->cell_ptr[c + 1] - m->cell_ptr[c]));
     }
@@ -277,7 +279,20 @@ static sf_status check_loads(const sf_model *m, sf_error *err) {
     return SF_OK;
 }
 
+/* Nodes of a section lie in the half plane. */
+static sf_status check_section(const sf_model *m, sf_error *err) {
+    for (int64_t i = 0; m->axisymmetric && i < m->node_count; i++)
+        if (!(m->position[3 * i] >= 0 && m->position[3 * i + 1] == 0))
+            return SF_FAIL(
+                err, SF_ERR_MODEL,
+                "node %lld of the axisymmetric model lies at x = %g m, y = %g m: x must be 0 or more, "
+                "y 0",
+                (long long)i, m->position[3 * i], m->position[3 * i + 1]);
+    return SF_OK;
+}
+
 static sf_status check_nodes(const sf_model *m, sf_error *err) {
+    SF_TRY(check_section(m, err));
     for (int64_t i = 0; i < m->node_count; i++)
         if (!(m->volume[i] > 0 && m->mass[i] > 0 && m->spacing[i] > 0 && m->support[i] > 0))
             return SF_FAIL(err, SF_ERR_MODEL,

@@ -6,11 +6,13 @@
 #include "model/model_check.h"
 #include "model/motion.h"
 #include "model/stability.h"
+#include "pre/cloud/axis.h"
 #include "pre/cloud/cloud.h"
 #include "pre/cloud/connectivity.h"
 #include "pre/foam_path.h"
 #include "pre/free_faces.h"
 #include "pre/mesh/missile_shape.h"
+#include "pre/mesh/section.h"
 #include "pre/missile_body.h"
 #include "pre/support.h"
 
@@ -25,6 +27,7 @@ static void take_mesh(sf_mesh *mesh, sf_model *m, sf_build_report *report) {
     double low[3], high[3];
     sf_box3(mesh->node_count, mesh->position, low, high);
     m->thickness = high[2] - low[2];
+    m->axisymmetric = sf_mesh_is_section(mesh);
     m->node_count = mesh->node_count;
     m->cell_count = mesh->cell_count;
     m->cell_nnz = mesh->cell_ptr[mesh->cell_count];
@@ -119,18 +122,8 @@ static double volume_of(const sf_mesh *mesh) {
     return sum;
 }
 
-/* A layer of the pad, or all of it. */
-typedef struct layer {
-    const sf_mesh *mesh;
-    sf_dual *dual; /* its edges move to the model */
-    double volume; /* m3, of the mesh */
-    const sf_material *material;
-    int64_t first; /* number of its first node in the model */
-} layer;
-
-/* Spacing, supports, domains and masses of a layer. */
-static sf_status build_layer(const sf_case *c, const layer *l, sf_model *m, sf_build_report *report,
-                             sf_error *err) {
+sf_status sf_model_build_layer(const sf_case *c, const sf_model_layer *l, sf_model *m,
+                               sf_build_report *report, sf_error *err) {
     SF_OWNED_BY(sf_domains_free) sf_domains domains = {0};
     const sf_mesh *mesh = l->mesh;
     sf_dual *dual = l->dual;
@@ -140,7 +133,8 @@ static sf_status build_layer(const sf_case *c, const layer *l, sf_model *m, sf_b
     for (int64_t i = 0; i < n; i++)
         support[i] = c->support_ratio * spacing[i];
     if (sf_domain_store_build(c->store, mesh, dual, c->condition_limit, support, &domains, err) == SF_OK &&
-        sf_invariants_measure(mesh, dual, &domains, spacing, l->volume, &report->invariants, err) == SF_OK &&
+        sf_invariants_measure(mesh, dual, &domains, spacing, volume_of(mesh), &report->invariants, err) ==
+            SF_OK &&
         sf_invariants_check(&report->invariants, err) == SF_OK &&
         sf_cloud_masses(mesh, dual, &domains, sf_material_density(l->material), m->mass + first, err) ==
             SF_OK) {
@@ -174,8 +168,8 @@ static sf_status build_layers(const sf_case *c, const sf_mesh *mesh, const sf_la
         sf_dual dual = {0};
         if (sf_layers_part(mesh, layers, k, &part, err) == SF_OK &&
             sf_dual_build(&part, &dual, err) == SF_OK &&
-            build_layer(c, &(layer){&part, &dual, volume_of(&part), &c->layer[k], layers->first[k]}, m,
-                        report, err) == SF_OK)
+            sf_model_build_layer(c, &(sf_model_layer){&part, &dual, &c->layer[k], layers->first[k]}, m,
+                                 report, err) == SF_OK)
             memset(m->node_material + layers->first[k], k, (size_t)(layers->first[k + 1] - layers->first[k]));
         sf_dual_free(&dual);
         sf_mesh_free(&part);
@@ -222,8 +216,8 @@ static sf_status build_cloud(const sf_case *c, sf_mesh *mesh, sf_model *m, sf_la
         SF_TRY(report_gaps(mesh, &dual, layers, m, report, err));
         SF_TRY(sf_layers_split(mesh, &dual, layers, err));
     } else {
-        const layer whole = {mesh, &dual, report->mesh_volume, c->layer ? c->layer : &c->material, 0};
-        SF_TRY(build_layer(c, &whole, m, report, err));
+        const sf_model_layer whole = {mesh, &dual, c->layer ? c->layer : &c->material, 0};
+        SF_TRY(sf_model_build_layer(c, &whole, m, report, err));
         m->slit_fraction = (double)report->domains.hidden_count / (double)mesh->node_count;
     }
     take_mesh(mesh, m, report);
@@ -235,6 +229,10 @@ static sf_status mark_symmetry(const sf_case *c, const sf_mesh *mesh, sf_model *
                                sf_error *err) {
     m->symmetry_factor = 1;
     int seen = 0;
+    for (int64_t i = 0; m->axisymmetric && i < m->node_count; i++)
+        mask[i] = (uint8_t)(m->position[3 * i] > 0 ? 0 : SF_FIX_X); /* the axis */
+    if (m->axisymmetric)
+        return SF_OK;
     for (int g = 0; g < c->symmetry_count; g++) {
         if (!c->symmetry_given && !sf_mesh_find_set(mesh, c->symmetry_group[g]))
             continue;
@@ -387,6 +385,7 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     m->missile = c->missile_card;
     if (check_freedom(c, m, err) != SF_OK || sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
         sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
+        (m->axisymmetric && sf_section_take_missile(surface, err) != SF_OK) ||
         sf_impact_place(c, m, surface, &m->missile, err) != SF_OK ||
         sf_missile_take_body(c, surface, &m->missile, err) != SF_OK)
         return err->status;
@@ -424,6 +423,8 @@ static sf_status place(const sf_case *c, sf_build_report *report, sf_surface *su
     sf_base_place_anvil(c, &report->hold, m);
     SF_TRY(build_missile(c, surface, m, err));
     SF_TRY(sf_support_find_travel(m, err));
+    if (m->axisymmetric) /* a plate */
+        return SF_OK;
     return sf_foam_path_measure(m, &report->between, err);
 }
 
@@ -501,6 +502,10 @@ static sf_status check_first_step(const sf_model *m, double first, int64_t criti
 
 /* Faces of a slit that touch each other do not pass through each other. */
 static sf_status find_skin(const sf_case *c, sf_model *m, sf_build_report *report, sf_error *err) {
+    if (m->axisymmetric) { /* the faces of a plate meet no other ones */
+        report->unheld[0] = NAN;
+        return SF_OK;
+    }
     SF_TRY(sf_skin_find(c, m, report->unheld, err));
     if (m->skin_count > 0 && !m->skin_alone)
         m->slit_fraction = 0;
@@ -543,6 +548,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
     int64_t critical = 0;
     if (build_cloud(c, mesh, m, &layers, &contact_area, report, err) == SF_OK &&
         build_sets(c, mesh, &layers, contact_area, m, report, err) == SF_OK &&
+        (!m->axisymmetric || sf_axis_project(m, err) == SF_OK) &&
         sf_hold_find(m, &report->hold, err) == SF_OK && (sf_layers_loosen(c, m), true) &&
         sf_support_take(c, mesh, m, err) == SF_OK && place(c, report, surface, m, err) == SF_OK &&
         find_skin(c, m, report, err) == SF_OK && take_cards(c, m, err) == SF_OK) {
@@ -551,7 +557,8 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
             m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
         }
         if (sf_drop_check(c, mesh, m, err) == SF_OK && check_between(report, err) == SF_OK &&
-            (report->contact_held || sf_contact_add_free(&layers, m, &report->zone, err) == SF_OK) &&
+            (report->contact_held || m->axisymmetric ||
+             sf_contact_add_free(&layers, m, &report->zone, err) == SF_OK) &&
             sf_drop_check_contact(c, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
             measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {

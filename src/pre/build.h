@@ -26,6 +26,18 @@ typedef struct sf_build_report {
     sf_interfaces interfaces; /* of the layers, as the materials of the model */
 } sf_build_report;
 
+/* A layer of the pad, or all of it. */
+typedef struct sf_model_layer {
+    const sf_mesh *mesh;
+    sf_dual *dual; /* its edges move to the model */
+    const sf_material *material;
+    int64_t first; /* number of its first node in the model */
+} sf_model_layer;
+
+/* Spacing, supports, domains and masses of a layer. The case gives the kernel. */
+sf_status sf_model_build_layer(const sf_case *c, const sf_model_layer *layer, sf_model *model,
+                               sf_build_report *report, sf_error *err);
+
 /* Builds the model. The mesh is reordered and its cells move into the model; the case's curves, motion and
  * the surface's arrays move as well (the sources stay valid for their free functions). On failure `*model` is
  * empty. Warnings go to `sink`. */

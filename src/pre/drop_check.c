@@ -67,7 +67,9 @@ static void measure_at(const sf_model *m, double part, int fine, sf_contact_zone
     zone_sums sums = {0};
     for (int64_t k = 0; k < m->contact_count * fine * fine; k++) {
         int64_t node = k / (fine * fine), i = m->contact_node[node], at = k % (fine * fine);
-        double step = sqrt(m->contact_area[node]) / fine, x[3];
+        double width =
+            m->axisymmetric ? 0 : sqrt(m->contact_area[node]); /* of a ring the node stands for it */
+        double step = width / fine, x[3];
         memcpy(x, &m->position[3 * i], sizeof x);
         x[0] += step * ((double)(at / fine) - 0.5 * (fine - 1));
         x[1] += step * ((double)(at % fine) - 0.5 * (fine - 1));
@@ -77,6 +79,11 @@ static void measure_at(const sf_model *m, double part, int fine, sf_contact_zone
     *zone = (sf_contact_zone){.area = sf_model_whole(m) * sums.area};
     if (!(sums.area > 0))
         return;
+    if (m->axisymmetric) { /* a disc */
+        zone->half_width = sqrt(sums.area / M_PI);
+        zone->spacing = mean_spacing(m, (const double[2]){0}, zone->half_width);
+        return;
+    }
     find_radii(&sums, plane, centre, &zone->half_width, &wide);
     zone->spacing = mean_spacing(m, centre, wide);
 }
@@ -468,7 +475,7 @@ static sf_status check_spacing(const sf_case *c, const sf_model *m, const sf_con
 sf_status sf_drop_check(const sf_case *c, const sf_mesh *mesh, const sf_model *m, sf_error *err) {
     SF_TRY(check_thickness(m, err));
     SF_TRY(check_outside(c, m, err));
-    return check_symmetry(c, mesh, m, err);
+    return m->axisymmetric ? SF_OK : check_symmetry(c, mesh, m, err);
 }
 
 sf_status sf_drop_check_contact(const sf_case *c, const sf_model *m, const sf_contact_zone *zone,

@@ -274,9 +274,23 @@ static sf_status find_motions(holder *h, sf_hold *hold, sf_error *err) {
     return err->status;
 }
 
+/* A section moves rigidly along the axis alone. */
+static void find_section_hold(const sf_model *m, sf_hold *hold) {
+    for (int64_t k = 0; k < m->fixed_count; k++)
+        for (int c = 0; c < 3; c++)
+            hold->rows[c] += m->fixed_mask[k] >> c & 1;
+    hold->rows[2] += m->rest_count;
+    hold->lifts = hold->lifted_whole = hold->rows[2] == 0;
+    find_underside(m, hold);
+}
+
 sf_status sf_hold_find(const sf_model *m, sf_hold *hold, sf_error *err) {
     SF_OWNED_BY(free_bodies) body_list bodies = {0};
     *hold = (sf_hold){0};
+    if (m->axisymmetric) {
+        find_section_hold(m, hold);
+        return SF_OK;
+    }
     SF_TRY(find_bodies(m, &bodies, err));
     holder h = {.model = m, .bodies = &bodies};
     if (bodies.count > MOST_BODIES)

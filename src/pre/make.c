@@ -3,14 +3,27 @@
 
 #include "base/mat3.h"
 #include "pre/mesh/gmsh_session.h"
+#include "pre/mesh/section.h"
 #include "pre/support.h"
+
+/* The section of the pad of the open geometry. */
+static sf_status read_section(sf_gmsh *session, const sf_case *c, const sf_pad_volumes *volumes,
+                              sf_mesh *mesh, sf_error *err) {
+    const char *pad = c->pad_group;
+    const sf_pad_volumes one = {1, &pad, false, false, true};
+    SF_TRY(sf_section_check_case(c, err));
+    SF_TRY(sf_gmsh_read_layers(session, c->layer_count > 0 ? volumes : &one, c->length_unit, mesh, err));
+    return sf_section_take_pad(c, mesh, err);
+}
 
 /* The pad of the open geometry. */
 static sf_status read_pad(sf_gmsh *session, const sf_case *c, sf_mesh *mesh, sf_error *err) {
     const char *group[SF_CASE_MAX_LAYERS];
     for (int k = 0; k < c->layer_count; k++)
         group[k] = c->layer[k].name;
-    const sf_pad_volumes volumes = {c->layer_count, group, true, c->missile.path != NULL};
+    const sf_pad_volumes volumes = {c->layer_count, group, true, c->missile.path != NULL, c->axisymmetric};
+    if (c->axisymmetric)
+        return read_section(session, c, &volumes, mesh, err);
     return c->layer_count > 0 ? sf_gmsh_read_layers(session, &volumes, c->length_unit, mesh, err)
                               : sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err);
 }

@@ -32,7 +32,7 @@ bool sf_group_is_plane(const sf_model *m, const sf_node_set *set, int axis, doub
 int sf_group_plane_axis(const sf_model *m, const sf_node_set *set) {
     double place;
     int axis = 0;
-    while (axis < 3 && !sf_group_is_plane(m, set, axis, &place))
+    while (axis < 3 && ((m->axisymmetric && axis == 1) || !sf_group_is_plane(m, set, axis, &place)))
         axis++;
     return axis < 3 ? axis : -1;
 }
@@ -213,6 +213,7 @@ sf_status sf_base_rest(const sf_case *c, const sf_base_marks *marks, sf_model *m
         m->rest_count += marks->rest[i];
         planes |= marks->base[i] ? 0 : marks->mask[i] & (SF_FIX_X | SF_FIX_Y);
     }
+    planes |= m->axisymmetric ? SF_FIX_X | SF_FIX_Y : 0;
     if (m->rest_count == 0)
         return SF_OK;
     SF_TRY(SF_ALLOC_ALL(err, "resting nodes", SF_ROOM(m->rest_node, m->rest_count),

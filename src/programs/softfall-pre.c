@@ -13,7 +13,7 @@
 
 typedef struct options {
     const char *case_path, *output, *store;
-    bool force, keys;
+    bool force, keys, axisymmetric;
     sf_option_texts overrides;
 } options;
 
@@ -23,6 +23,10 @@ static const sf_option list[] = {
      "override a key of the case, e.g. missile.velocity=\"5.2 m/s\", or replace a group by a file, e.g. "
      "material=@other_foam.cfg",
      .member = offsetof(options, overrides), .read = sf_program_read_texts},
+    {"axisymmetric", 0, NULL,
+     "model the plane section of a plate that a body of revolution hits straight: --set "
+     "geometry.model=\"axisymmetric\"",
+     .member = offsetof(options, axisymmetric)},
     {"force", 'f', NULL, "replace an existing model file", .member = offsetof(options, force)},
     {"share", 0, "DIR",
      "take the mesh and the smoothing domains from this folder if an earlier drop of the same geometry and "
@@ -129,6 +133,8 @@ int main(int argc, char **argv) {
         sf_case_print_keys(stdout);
     else if (err.status == SF_OK && sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK) {
         SF_OWNED char *command = sf_command_line(argc, argv);
+        if (o.axisymmetric && o.overrides.count < (int)(sizeof o.overrides.text / sizeof(char *)))
+            o.overrides.text[o.overrides.count++] = "geometry.model=\"axisymmetric\"";
         build(&o, command ? command : "softfall-pre", 1, &err);
     }
     return sf_error_report(&err, "softfall-pre");

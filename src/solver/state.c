@@ -268,6 +268,14 @@ static void balance_in_space(const sf_model *m, sf_state *s, const sf_wrench *ou
     double linear_part[3], angular_part[3], force[3], moment[3];
     sf_missile_momenta(m, &s->missile, linear_part, angular_part);
     sf_missile_outside(m, &s->missile, force, moment);
+    if (m->axisymmetric) { /* rings balance along the axis; the rest is 0 by symmetry */
+        const double pad[3] = {0, 0, momentum[2]}, own[3] = {0, 0, linear_part[2]},
+                     of_missile[3] = {0, 0, force[2]}, held[3] = {0, 0, outside->force[2]};
+        l->impulse_linear[0] = l->impulse_linear[1] = l->angular_error = 0;
+        l->vector_error =
+            imbalance(l->impulse_linear, held, of_missile, dt_v, pad, own) / fabs(l->momentum_reference);
+        return;
+    }
     double scale = fabs(l->momentum_reference);
     l->vector_error =
         imbalance(l->impulse_linear, outside->force, force, dt_v, momentum, linear_part) / scale;

@@ -146,7 +146,8 @@ typedef struct sf_state {
 
     /* Smoothing domains. */
     double *f;       /* [n][9] F */
-    double *stress;  /* [n][9] J, V P plus the stabilisation's couple */
+    double *stress;  /* [n][9] J, V P plus the stabilisation's couple; of a section P_theta theta in the place
+                        of P_xy, to which B's second column belongs, and 0 in its own */
     double *history; /* [blocks][history_rows][SF_LANES] SI, history variables declared by the laws that the
                         cards need (material/laws.h) */
     int64_t history_rows;

@@ -54,9 +54,10 @@ static sf_status check_cells(const sf_results *r, sf_error *err) {
             (long long)r->cell_ptr[0], (long long)r->cell_ptr[r->cell_count], (long long)r->cell_nnz);
     for (int64_t c = 0; c < r->cell_count; c++) {
         const sf_cell_shape *shape = sf_cell_shape_of(r->cell_type[c]);
-        if (!shape)
-            return SF_FAIL(err, SF_ERR_IO, "/model/cell_type: cell %lld has type %d, known are 6, 7, 8 and 9",
-                           (long long)c, r->cell_type[c]);
+        if (!shape || sf_cell_is_plane(shape) != r->axisymmetric)
+            return SF_FAIL(err, SF_ERR_IO, "/model/cell_type: cell %lld has type %d, known are %s",
+                           (long long)c, r->cell_type[c],
+                           r->axisymmetric ? "4 and 5 of an axisymmetric model" : "6, 7, 8 and 9");
         if (r->cell_ptr[c + 1] - r->cell_ptr[c] != shape->vertices)
             return SF_FAIL(err, SF_ERR_IO,
                            "/model/cell_ptr: cell %lld of type %d has %lld vertices, expected %d",
@@ -93,6 +94,16 @@ static sf_status check_model(const sf_results *r, sf_error *err) {
                            r->volume[i]);
     if (r->symmetry_factor != 1 && r->symmetry_factor != 2 && r->symmetry_factor != 4)
         return SF_FAIL(err, SF_ERR_IO, "/model/symmetry_factor is %lld, it must be 1, 2 or 4",
+                       (long long)r->symmetry_factor);
+    for (int64_t i = 0; r->axisymmetric && i < r->node_count; i++)
+        if (!(r->position[3 * i] >= 0 && r->position[3 * i + 1] == 0))
+            return SF_FAIL(
+                err, SF_ERR_IO,
+                "/model/position: node %lld of an axisymmetric model is at x = %g, y = %g m: x must "
+                "be 0 or more, y 0",
+                (long long)i, r->position[3 * i], r->position[3 * i + 1]);
+    if (r->axisymmetric && r->symmetry_factor != 1)
+        return SF_FAIL(err, SF_ERR_IO, "/model/symmetry_factor of an axisymmetric model is %lld, not 1",
                        (long long)r->symmetry_factor);
     int planes = isfinite(r->symmetry_place[0]) + isfinite(r->symmetry_place[1]);
     if (r->symmetry_factor < 1 << planes)
@@ -309,6 +320,37 @@ static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_er
     return SF_OK;
 }
 
+/* The section becomes a quarter of its body of revolution. */
+static sf_status make_solid(sf_results *r, sf_error *err) {
+    sf_revolution *v = &r->revolution;
+    sf_cell_lists cells = {r->cell_count, r->cell_nnz, r->cell_type, r->cell_ptr, r->cell_node};
+    SF_TRY(sf_revolution_build(r->node_count, r->position, v, err));
+    SF_OWNED double *volume = sf_alloc(err, v->nodes, sizeof *volume, "volumes");
+    SF_OWNED uint8_t *layer = r->node_layer ? sf_alloc(err, v->nodes, 1, "layers") : NULL;
+    SF_TRY(err->status);
+    for (int64_t i = 0; i < v->nodes; i++) {
+        volume[i] = sf_revolution_share(v, i) * r->volume[v->node[i]];
+        if (layer)
+            layer[i] = r->node_layer[v->node[i]];
+    }
+    SF_FREE(r->volume, r->node_layer);
+    r->volume = volume;
+    r->node_layer = layer;
+    volume = NULL;
+    layer = NULL;
+    r->node_count = v->nodes;
+    r->symmetry_factor = 4;
+    r->symmetry_place[0] = r->symmetry_place[1] = 0;
+    SF_TRY(sf_revolution_field(v, 3, true, &r->position, err));
+    SF_TRY(sf_revolution_cells(v, &cells, err));
+    r->cell_count = cells.count;
+    r->cell_nnz = cells.entries;
+    r->cell_type = cells.type;
+    r->cell_ptr = cells.ptr;
+    r->cell_node = cells.node;
+    return SF_OK;
+}
+
 static sf_status read_model(sf_results *r, sf_error *err) {
     int64_t pointers = -1;
     r->node_count = r->cell_count = r->cell_nnz = r->surface_node_count = r->surface_triangle_count = -1;
@@ -357,7 +399,10 @@ static sf_status read_model(sf_results *r, sf_error *err) {
     SF_TRY(read_optional(r, "/model/symmetry_y", &r->symmetry_place[1], err));
     SF_TRY(read_sphere(r, err));
     SF_TRY(read_layers(r, err));
-    return check_model(r, err);
+    if (sf_h5_exists(r->file, "/model/axisymmetric"))
+        SF_TRY(read_flag(r, "/model/axisymmetric", &r->axisymmetric, err));
+    SF_TRY(check_model(r, err));
+    return r->axisymmetric ? make_solid(r, err) : SF_OK;
 }
 
 /* The solver's notes, a sentence per line; files of earlier versions have none. */
@@ -494,6 +539,7 @@ sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) 
 void sf_results_close(sf_results *results) {
     sf_h5_drop(&results->file);
     sf_history_free(&results->history);
+    sf_revolution_free(&results->revolution);
     sf_free_all(SF_LAYER_SUMS, results->layer_sum);
     SF_CLEAR(results, results->position, results->volume, results->cell_type, results->cell_ptr,
              results->cell_node, results->surface_position, results->surface_triangle,
@@ -518,9 +564,12 @@ sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, in
                            "meanwhile; read the results again",
                            head->group);
         }
-        int64_t rows = results->node_count;
+        int64_t rows = results->axisymmetric ? results->revolution.section_nodes : results->node_count;
+        bool vector = f == SF_FRAME_DISPLACEMENT || f == SF_FRAME_VELOCITY;
         if (read_array(results, path, SF_H5_F64, &rows, info->components, &frame->field[f], err) != SF_OK ||
-            check_finite(frame->field[f], rows * info->components, path, err) != SF_OK) {
+            check_finite(frame->field[f], rows * info->components, path, err) != SF_OK ||
+            (results->axisymmetric && sf_revolution_field(&results->revolution, info->components, vector,
+                                                          &frame->field[f], err) != SF_OK)) {
             sf_frame_free(frame);
             return err->status;
         }

@@ -10,6 +10,7 @@
 #include "base/mat3.h"
 #include "io/h5.h"
 #include "model/columns.h"
+#include "post/results/revolution.h"
 
 typedef struct sf_frame_head {
     char group[24];                 /* "/frames/000012" or "/peak" */
@@ -47,6 +48,9 @@ typedef struct sf_results {
     int64_t support_triangle_count;
     double *support_position;  /* [support_node_count][3] m, of the rigid supports */
     int32_t *support_triangle; /* [support_triangle_count][3] */
+    bool axisymmetric; /* the file holds a section; nodes and cells here are those of a quarter of its body of
+                          revolution */
+    sf_revolution revolution;
     int64_t symmetry_factor;
     double symmetry_place[2]; /* m, of the symmetry planes normal to x and y; NaN: none, or the file does not
                                  say */

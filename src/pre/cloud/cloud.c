@@ -93,6 +93,7 @@ static const double LEAST_MASS = 0.5;
  * lattice, those of its faces, edges and corners too. The angle is that of the domain's inner facets, each by
  * its middle. */
 static void whole_volumes(const sf_mesh *mesh, const sf_dual *dual, const double *volume, double *whole) {
+    const bool section = sf_mesh_is_section(mesh);
     for (int64_t e = 0; e < dual->edge_count; e++)
         for (int64_t u = dual->use_ptr[e]; u < dual->use_ptr[e + 1]; u++) {
             sf_facet_triangle facet[2];
@@ -100,8 +101,9 @@ static void whole_volumes(const sf_mesh *mesh, const sf_dual *dual, const double
             for (int k = 0; k < 4; k++) {
                 int64_t node = dual->edge[2 * e + k % 2];
                 const double *x = &mesh->position[3 * node], *c = facet[k / 2].centroid;
-                double arm[3] = {c[0] - x[0], c[1] - x[1], c[2] - x[2]}, length = sqrt(sf_dot3(arm, arm));
-                whole[node] += fabs(sf_dot3(arm, facet[k / 2].area)) / (length * length * length);
+                double arm[3] = {c[0] - x[0], c[1] - x[1], c[2] - x[2]}, length = sqrt(sf_dot3(arm, arm)),
+                       girth = section ? 2 * M_PI * c[0] : length; /* a plane angle in a section */
+                whole[node] += fabs(sf_dot3(arm, facet[k / 2].area)) / (length * length * girth);
             }
         }
     for (int64_t i = 0; i < mesh->node_count; i++)

@@ -196,7 +196,8 @@ static sf_status check_hinges(const sf_mesh *mesh, const sf_dual *dual, sf_error
 }
 
 sf_status sf_connectivity_check(const sf_mesh *mesh, const sf_dual *dual, bool separate, sf_error *err) {
-    if (check_overlap(mesh, dual, err) != SF_OK || (!separate && check_parts(mesh, dual, err) != SF_OK))
+    if ((!sf_mesh_is_section(mesh) && check_overlap(mesh, dual, err) != SF_OK) ||
+        (!separate && check_parts(mesh, dual, err) != SF_OK))
         return err->status;
     return check_hinges(mesh, dual, err);
 }

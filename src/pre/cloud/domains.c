@@ -13,9 +13,15 @@ static const double ENLARGEMENT = 1.15;
 typedef struct edge_integral {
     int count;
     int32_t *node; /* [count] ascending; one block with sum */
-    double *sum;   /* [count][3] m2, from the low node to the high node */
+    double *sum;   /* [count][columns] m2, from the low node to the high node; see COLUMNS */
     double flux;   /* m3, integral of X . N / 3 */
+    double
+        part[2]; /* m3, volume of the parts of the domains of the low and the high node; only in a section */
 } edge_integral;
+
+/* Columns of an edge's sums: phi N; of a section then phi integrated over the parts of the domains of the low
+ * and the high node in the edge's cells. */
+enum { COLUMNS = 3, SECTION_COLUMNS = 5 };
 
 typedef struct builder {
     const sf_mesh *mesh;
@@ -26,6 +32,8 @@ typedef struct builder {
     double *reach;      /* [nodes] m, the same from a node, of all its edges */
     sf_hidden *hidden;  /* [nodes] with the present supports */
     double condition_limit;
+    bool section;
+    int columns;
     edge_integral *edge; /* [edges] */
     uint8_t *poor;       /* [nodes] 1: support must grow */
     sf_domains *out;
@@ -33,7 +41,7 @@ typedef struct builder {
 
 typedef struct workspace {
     int32_t candidate[SF_MLS_MAX_NODES];
-    double sum[SF_MLS_MAX_NODES][3];
+    double sum[SF_MLS_MAX_NODES][SECTION_COLUMNS];
     uint8_t used[SF_MLS_MAX_NODES];
     sf_mls_point point;
     double condition, position[3]; /* the worst seen */
@@ -78,6 +86,12 @@ static void measure_reach(builder *b) {
             sf_dual_facet(b->mesh, &b->dual->use[u], t);
             for (int s = 0; s < 2; s++)
                 b->edge_reach[e] = fmax(b->edge_reach[e], sf_distance3(t[s].centroid, middle));
+            if (!b->section)
+                continue;
+            double place[2][3], weight[2];
+            sf_dual_fan(b->mesh, &b->dual->use[u], place, weight);
+            for (int end = 0; end < 2; end++)
+                b->edge_reach[e] = fmax(b->edge_reach[e], sf_distance3(place[end], middle));
         }
         b->edge_reach[e] *= 1 + 1e-12;
     }
@@ -100,24 +114,60 @@ static int64_t edge_candidates(const builder *b, workspace *w, int64_t e) {
     return count;
 }
 
-static void store_edge(workspace *w, int64_t count, edge_integral *edge) {
-    int used = 0;
+static void store_edge(workspace *w, int64_t count, int columns, edge_integral *edge) {
+    size_t used = 0, width = (size_t)columns * sizeof *edge->sum;
     for (int64_t k = 0; k < count; k++)
         used += w->used[k];
-    edge->count = used;
-    edge->sum = malloc((size_t)used * (3 * sizeof *edge->sum + sizeof *edge->node) + 1);
+    edge->count = (int)used;
+    edge->sum = malloc(used * (width + sizeof *edge->node) + 1);
     if (!edge->sum) {
         w->failed = true;
         return;
     }
-    edge->node = (int32_t *)(edge->sum + 3 * used);
+    edge->node = (int32_t *)(edge->sum + (size_t)columns * used);
     used = 0;
     for (int64_t k = 0; k < count; k++) {
         if (!w->used[k])
             continue;
         edge->node[used] = w->candidate[k];
-        memcpy(&edge->sum[3 * used++], w->sum[k], sizeof w->sum[k]);
+        memcpy(&edge->sum[(size_t)columns * used++], w->sum[k], width);
     }
+}
+
+/* Adds phi times `weight` at x to the `count` columns of the sums from `first` on; false: the approximation
+ * is not good enough there. */
+static bool add_place(const builder *b, workspace *w, const double x[3], int64_t candidates, int first,
+                      int count, const double *weight) {
+    if (!evaluate(b, w, x, candidates))
+        return false;
+    for (int p = 0, k = 0; p < w->point.count; p++) {
+        while (w->candidate[k] != w->point.node[p])
+            k++;
+        w->used[k] = 1;
+        for (int c = 0; c < count; c++)
+            w->sum[k][first + c] += w->point.value[p] * weight[c];
+    }
+    return true;
+}
+
+/* The facets of one use of an edge, and in a section the parts of its domains. */
+static bool add_use(const builder *b, workspace *w, int64_t e, int64_t u, int64_t count) {
+    sf_facet_triangle t[2];
+    bool good = true;
+    sf_dual_facet(b->mesh, &b->dual->use[u], t);
+    for (int s = 0; s < 2; s++) {
+        good = add_place(b, w, t[s].centroid, count, 0, COLUMNS, t[s].area) && good;
+        b->edge[e].flux += sf_dot3(t[s].centroid, t[s].area) / 3;
+    }
+    if (!b->section)
+        return good;
+    double place[2][3], weight[2];
+    sf_dual_fan(b->mesh, &b->dual->use[u], place, weight);
+    for (int end = 0; end < 2; end++) {
+        good = add_place(b, w, place[end], count, COLUMNS + end, 1, &weight[end]) && good;
+        b->edge[e].part[end] += weight[end] * place[end][0];
+    }
+    return good;
 }
 
 /* Integrates phi over all facets of an edge. Marks cells where the approximation is not good enough. */
@@ -129,29 +179,15 @@ static void integrate_edge(const builder *b, workspace *w, int64_t e) {
     memset(w->sum, 0, (size_t)count * sizeof w->sum[0]);
     memset(w->used, 0, (size_t)count);
     b->edge[e].flux = 0;
-    for (int64_t u = b->dual->use_ptr[e]; u < b->dual->use_ptr[e + 1]; u++) {
-        sf_facet_triangle t[2];
-        sf_dual_facet(b->mesh, &b->dual->use[u], t);
-        for (int s = 0; s < 2; s++) {
-            if (!evaluate(b, w, t[s].centroid, count)) {
-                mark_around(b, b->dual->edge[2 * e]);
-                mark_around(b, b->dual->edge[2 * e + 1]);
-                good = false;
-                continue;
-            }
-            for (int p = 0, k = 0; p < w->point.count; p++) {
-                while (w->candidate[k] != w->point.node[p])
-                    k++;
-                w->used[k] = 1;
-                for (int c = 0; c < 3; c++)
-                    w->sum[k][c] += w->point.value[p] * t[s].area[c];
-            }
-            for (int c = 0; c < 3; c++)
-                b->edge[e].flux += t[s].centroid[c] * t[s].area[c] / 3;
+    b->edge[e].part[0] = b->edge[e].part[1] = 0;
+    for (int64_t u = b->dual->use_ptr[e]; u < b->dual->use_ptr[e + 1]; u++)
+        if (!add_use(b, w, e, u, count)) {
+            mark_around(b, b->dual->edge[2 * e]);
+            mark_around(b, b->dual->edge[2 * e + 1]);
+            good = false;
         }
-    }
     if (good)
-        store_edge(w, count, &b->edge[e]);
+        store_edge(w, count, b->columns, &b->edge[e]);
 }
 
 /* phi at a node, left in w->point. */
@@ -359,16 +395,23 @@ static void domain_row(const builder *b, const int64_t *corner_ptr, const int64_
     row_add(row, (int32_t)i, (const double[3]){0, 0, 0});
     for (int64_t k = b->dual->edge_ptr[i]; k < b->dual->edge_ptr[i + 1]; k++) {
         const edge_integral *edge = &b->edge[b->dual->edge_id[k]];
-        double sign = b->dual->edge_node[k] > i ? 1 : -1;
-        *volume += sign * edge->flux;
-        for (int p = 0; p < edge->count; p++)
+        bool low = b->dual->edge_node[k] > i;
+        double sign = low ? 1 : -1;
+        *volume += b->section ? edge->part[!low] : sign * edge->flux;
+        for (int p = 0; p < edge->count; p++) {
+            const double *sum = &edge->sum[b->columns * p];
             row_add(row, edge->node[p],
-                    (const double[3]){sign * edge->sum[3 * p], sign * edge->sum[3 * p + 1],
-                                      sign * edge->sum[3 * p + 2]});
+                    (const double[3]){sign * sum[0], b->section ? sum[low ? 3 : 4] : sign * sum[1],
+                                      sign * sum[2]});
+        }
     }
+    double flux = 0;
     for (int64_t k = corner_ptr[i]; k < corner_ptr[i + 1]; k++)
-        boundary_corner(b->mesh, &b->dual->face[corner[k] / 4], (int)(corner[k] % 4), b->out, volume, row_add,
+        boundary_corner(b->mesh, &b->dual->face[corner[k] / 4], (int)(corner[k] % 4), b->out, &flux, row_add,
                         row);
+    *volume += b->section ? 0 : flux;
+    for (int64_t k = 0; b->section && k < row->count; k++)
+        row->sum[3 * k] -= row->sum[3 * k + 1];
 }
 
 /* Writes row i (sorted, divided by the volume) or, when `node` is NULL, only clears the slots. */
@@ -422,8 +465,10 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
     memset(out, 0, sizeof *out);
     builder b = {.mesh = mesh,
                  .dual = dual,
-                 .cloud = {mesh->position, support},
+                 .cloud = {mesh->position, support, sf_mesh_is_section(mesh)},
                  .condition_limit = condition_limit,
+                 .section = sf_mesh_is_section(mesh),
+                 .columns = sf_mesh_is_section(mesh) ? SECTION_COLUMNS : COLUMNS,
                  .out = out};
     b.edge = sf_alloc(err, dual->edge_count, sizeof *b.edge, "edge integrals");
     b.poor = sf_alloc(err, mesh->node_count, sizeof *b.poor, "node marks");
@@ -448,7 +493,7 @@ sf_status sf_domains_build(const sf_mesh *mesh, const sf_dual *dual, double cond
 sf_status sf_domains_find_gaps(const sf_mesh *mesh, const sf_dual *dual, const double *support,
                                sf_domains *out, sf_error *err) {
     memset(out, 0, sizeof *out);
-    builder b = {.mesh = mesh, .dual = dual, .out = out};
+    builder b = {.mesh = mesh, .dual = dual, .section = sf_mesh_is_section(mesh), .out = out};
     SF_ALLOC_ALL(err, "reaches", SF_ROOM(b.edge_reach, dual->edge_count), SF_ROOM(b.reach, mesh->node_count));
     if (err->status == SF_OK) {
         measure_reach(&b);
@@ -486,6 +531,7 @@ static const double INVARIANT_BOUND = 1e-10;
 /* Both completeness conditions of one domain, with coordinates taken from the node itself. */
 static void measure_domain(const sf_mesh *mesh, const sf_domains *d, int64_t i, double spacing,
                            sf_invariants *out) {
+    const bool section = sf_mesh_is_section(mesh);
     const double *x = &mesh->position[3 * i];
     double unity[3] = {0}, linear[3][3] = {{0}};
     for (int64_t k = d->ptr[i]; k < d->ptr[i + 1]; k++)
@@ -494,6 +540,10 @@ static void measure_domain(const sf_mesh *mesh, const sf_domains *d, int64_t i, 
             for (int r = 0; r < 3; r++)
                 linear[r][c] += (mesh->position[3 * (int64_t)d->node[k] + r] - x[r]) * d->b[3 * k + c];
         }
+    if (section) { /* the hoop row is no gradient: of a uniform stretch it gives 1 */
+        linear[1][1] = linear[0][1] + x[0] * unity[1];
+        unity[1] = linear[0][1] = linear[2][1] = 0;
+    }
     for (int c = 0; c < 3; c++) {
         out->unity = fmax(out->unity, fabs(unity[c]) * spacing);
         for (int r = 0; r < 3; r++)
@@ -518,6 +568,7 @@ static void measure_shape(const sf_mesh *mesh, const sf_domains *d, int64_t i, d
 sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const sf_domains *d,
                                 const double *spacing, double volume, sf_invariants *out, sf_error *err) {
     int64_t n = mesh->node_count;
+    const bool section = sf_mesh_is_section(mesh);
     SF_OWNED double *balance = sf_alloc(err, 3 * n, sizeof *balance, "invariants");
     double total = 0;
     SF_TRY(err->status);
@@ -528,7 +579,8 @@ sf_status sf_invariants_measure(const sf_mesh *mesh, const sf_dual *dual, const 
         total += d->volume[i];
         for (int64_t k = d->ptr[i]; k < d->ptr[i + 1]; k++)
             for (int c = 0; c < 3; c++)
-                balance[3 * (int64_t)d->node[k] + c] -= d->volume[i] * d->b[3 * k + c];
+                balance[3 * (int64_t)d->node[k] + (section && c == 1 ? 0 : c)] -=
+                    d->volume[i] * d->b[3 * k + c];
     }
     for (int64_t k = 0; k < 3 * n; k++)
         out->telescope = fmax(out->telescope, fabs(balance[k]) / (spacing[k / 3] * spacing[k / 3]));

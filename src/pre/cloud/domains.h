@@ -5,7 +5,11 @@
  * Internal facets carry the moving least squares phi at their triangles' centroids; each facet is evaluated
  * once and added with + and - to its two domains. On the boundary phi is interpolated between the face's
  * vertices, so that boundary tractions are exactly nodal forces of u_h: this makes the patch test with
- * constrained u_h exact (docs/adr/0002). */
+ * constrained u_h exact (docs/adr/0002).
+ *
+ * Of a section a domain is a ring: V = 2 pi sum R dA, b_theta = 2 pi sum phi dA / V by the same points, b_R =
+ * (sum phi 2 pi R N_R dl) / V - b_theta, b_Z = (sum phi 2 pi R N_Z dl) / V (theory, section "Axisymmetric
+ * drops"). b_R + b_theta telescopes. */
 #pragma once
 #include "pre/cloud/dual.h"
 
@@ -24,7 +28,7 @@ typedef struct sf_domains {
     double *volume;    /* [n] m3 */
     int64_t *ptr;      /* [n + 1] rows of B */
     int32_t *node;     /* [ptr[n]] ascending within a row */
-    double *b;         /* [ptr[n]][3] m-1 */
+    double *b;         /* [ptr[n]][3] m-1; of a section (b_R, b_theta, b_Z) */
     int64_t *phi_ptr;  /* [n + 1] rows of phi at the nodes */
     int32_t *phi_node; /* [phi_ptr[n]] ascending within a row */
     double *phi_value; /* [phi_ptr[n]] */

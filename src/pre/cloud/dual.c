@@ -60,6 +60,8 @@ static bool is_same_side(const sf_mesh *mesh, const sf_cell_face *a, const sf_ce
                   *w = &mesh->cell_node[mesh->cell_ptr[b->cell]];
     const int *p = first->face[a->local], *q = second->face[b->local];
     int size = sf_cell_face_size(first, a->local), k = 0;
+    if (size == 2)
+        return w[q[0]] == v[p[0]];
     while (k < size - 1 && w[q[k]] != v[p[0]])
         k++;
     return w[q[(k + 1) % size]] == v[p[1]];
@@ -164,26 +166,87 @@ static void mean_of(const sf_mesh *mesh, int count, const int32_t *cell_node, co
         out[c] /= count;
 }
 
+/* Gauss's points of the surface that the line from a to b makes about the axis; N to the right of the line.
+ */
+static void ring(const double a[3], const double b[3], sf_facet_triangle out[2]) {
+    static const double OFF = 0.28867513459481287; /* 1 / sqrt(12) */
+    for (int t = 0; t < 2; t++) {
+        double part = 0.5 + (t == 0 ? -OFF : OFF);
+        for (int k = 0; k < 3; k++)
+            out[t].centroid[k] = (1 - part) * a[k] + part * b[k];
+        double girth = M_PI * out[t].centroid[0];
+        out[t].area[0] = girth * (b[2] - a[2]);
+        out[t].area[1] = 0;
+        out[t].area[2] = -girth * (b[0] - a[0]);
+    }
+}
+
+void sf_dual_fan(const sf_mesh *mesh, const sf_edge_use *use, double place[2][3], double weight[2]) {
+    const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[use->cell]);
+    const int32_t *v = &mesh->cell_node[mesh->cell_ptr[use->cell]];
+    double middle[3], centre[3];
+    mean_of(mesh, 2, v, shape->edge[use->local], middle);
+    mean_of(mesh, shape->vertices, v, NULL, centre);
+    for (int end = 0; end < 2; end++) { /* of the cell's edge; counter-clockwise with the first end */
+        const double *x = &mesh->position[3 * (int64_t)v[shape->edge[use->local][end]]];
+        int side = end ^ use->reversed;
+        for (int k = 0; k < 3; k++)
+            place[side][k] = (x[k] + middle[k] + centre[k]) / 3;
+        double twice = (middle[0] - x[0]) * (centre[2] - x[2]) - (middle[2] - x[2]) * (centre[0] - x[0]);
+        weight[side] = (end == 0 ? M_PI : -M_PI) * twice;
+    }
+}
+
+static void turn_back(sf_facet_triangle out[2]) {
+    for (int t = 0; t < 2; t++)
+        for (int k = 0; k < 3; k++)
+            out[t].area[k] = -out[t].area[k];
+}
+
 void sf_dual_facet(const sf_mesh *mesh, const sf_edge_use *use, sf_facet_triangle out[2]) {
     const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[use->cell]);
     const int32_t *v = &mesh->cell_node[mesh->cell_ptr[use->cell]];
     int along = shape->edge_face[use->local][0], against = shape->edge_face[use->local][1];
     double middle[3], face_along[3], face_against[3], centre[3];
     mean_of(mesh, 2, v, shape->edge[use->local], middle);
-    mean_of(mesh, sf_cell_face_size(shape, along), v, shape->face[along], face_along);
-    mean_of(mesh, sf_cell_face_size(shape, against), v, shape->face[against], face_against);
     mean_of(mesh, shape->vertices, v, NULL, centre);
-    triangle(middle, face_against, centre, &out[0]);
-    triangle(middle, centre, face_along, &out[1]);
-    for (int t = 0; t < 2 && use->reversed; t++)
-        for (int k = 0; k < 3; k++)
-            out[t].area[k] = -out[t].area[k];
+    if (sf_cell_is_plane(shape)) {
+        ring(middle, centre, out);
+    } else {
+        mean_of(mesh, sf_cell_face_size(shape, along), v, shape->face[along], face_along);
+        mean_of(mesh, sf_cell_face_size(shape, against), v, shape->face[against], face_against);
+        triangle(middle, face_against, centre, &out[0]);
+        triangle(middle, centre, face_along, &out[1]);
+    }
+    if (use->reversed)
+        turn_back(out);
+}
+
+/* The half of a section's side at its vertex `corner`. */
+static void ring_boundary(const sf_mesh *mesh, const sf_boundary_face *face, int corner,
+                          sf_facet_triangle out[2], double weight[2][4]) {
+    const double *a = &mesh->position[3 * (int64_t)face->node[0]],
+                 *b = &mesh->position[3 * (int64_t)face->node[1]];
+    double middle[3];
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * (a[k] + b[k]);
+    ring(corner == 0 ? a : middle, corner == 0 ? middle : b, out);
+    double length = sf_distance3(a, b);
+    memset(weight, 0, 2 * sizeof *weight);
+    for (int t = 0; t < 2; t++) {
+        weight[t][1] = sf_distance3(out[t].centroid, a) / length;
+        weight[t][0] = 1 - weight[t][1];
+    }
 }
 
 void sf_dual_boundary(const sf_mesh *mesh, const sf_boundary_face *face, int corner, sf_facet_triangle out[2],
                       double weight[2][4]) {
     int size = face->size, next = (corner + 1) % size, previous = (corner + size - 1) % size;
     double centre[3], ends[2][3];
+    if (size == 2) {
+        ring_boundary(mesh, face, corner, out, weight);
+        return;
+    }
     const double *x = &mesh->position[3 * face->node[corner]];
     mean_of(mesh, size, face->node, NULL, centre);
     for (int k = 0; k < 3; k++) {
@@ -237,6 +300,13 @@ sf_status sf_surface_area(const sf_mesh *mesh, const sf_dual *dual, const sf_nod
 
 /* Outward area vector, m2. */
 static void face_area(const sf_mesh *mesh, const sf_boundary_face *face, double out[3]) {
+    if (face->size == 2) {
+        sf_facet_triangle point[2];
+        ring(&mesh->position[3 * (int64_t)face->node[0]], &mesh->position[3 * (int64_t)face->node[1]], point);
+        for (int c = 0; c < 3; c++)
+            out[c] = point[0].area[c] + point[1].area[c];
+        return;
+    }
     const double *p = &mesh->position[3 * face->node[0]], *q = &mesh->position[3 * face->node[1]],
                  *r = &mesh->position[3 * face->node[2]],
                  *s = face->size == 4 ? &mesh->position[3 * face->node[3]] : p;

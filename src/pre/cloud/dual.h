@@ -18,14 +18,14 @@ typedef struct sf_edge_use {
 typedef struct sf_boundary_face {
     int32_t cell;
     int8_t local;    /* face number in the cell's topology table */
-    int8_t size;     /* 3 or 4 */
-    int32_t node[4]; /* counter-clockwise seen from outside */
+    int8_t size;     /* 3 or 4; 2 in a section */
+    int32_t node[4]; /* counter-clockwise seen from outside; of a side counter-clockwise about its cell */
 } sf_boundary_face;
 
 /* A face that two cells share. */
 typedef struct sf_inner_face {
     int32_t cell[2];
-    int32_t node[4]; /* ascending; the first is -1 for a triangle */
+    int32_t node[4]; /* ascending; the first is -1 for a triangle, the first two for a side */
 } sf_inner_face;
 
 typedef struct sf_dual {
@@ -46,7 +46,8 @@ typedef struct sf_dual {
 sf_status sf_dual_build(const sf_mesh *mesh, sf_dual *dual, sf_error *err);
 void sf_dual_free(sf_dual *dual);
 
-/* A triangle of a facet: centroid (m) and area vector (m2). */
+/* A triangle of a facet: centroid (m) and area vector (m2). In a section a facet is a line, and stands for
+ * two of Gauss's points of the surface that it makes about the axis: place and 2 pi R N dl. */
 typedef struct sf_facet_triangle {
     double centroid[3];
     double area[3];
@@ -55,6 +56,10 @@ typedef struct sf_facet_triangle {
 /* The two triangles of the facet of one edge use; area vectors point from the edge's low node to its high
  * node. */
 void sf_dual_facet(const sf_mesh *mesh, const sf_edge_use *use, sf_facet_triangle out[2]);
+
+/* A section's points of integration over the domains of the edge's low and high node, between node, middle of
+ * the edge and centre of the cell: places (m) and 2 pi dA (m2). */
+void sf_dual_fan(const sf_mesh *mesh, const sf_edge_use *use, double place[2][3], double weight[2]);
 
 /* The two boundary triangles that belong to vertex `corner` of a boundary face (outward), and for each the
  * weights that express its centroid by the face's vertices. */

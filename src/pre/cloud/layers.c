@@ -93,8 +93,15 @@ static void list_interfaces(const sf_case *c, const pair_table *pairs, sf_interf
 /* The component along the normal of a face; 0 if it is not normal to an axis. */
 static uint8_t normal_component(const sf_mesh *mesh, const sf_inner_face *face) {
     const int32_t *node = &face->node[face->node[0] < 0];
-    double n[3];
-    sf_face_normal(mesh->position, node, n);
+    double n[3] = {0};
+    if (sf_mesh_is_section(mesh)) {
+        const double *a = &mesh->position[3 * (int64_t)face->node[2]],
+                     *b = &mesh->position[3 * (int64_t)face->node[3]];
+        n[0] = b[2] - a[2];
+        n[2] = a[0] - b[0];
+    } else {
+        sf_face_normal(mesh->position, node, n);
+    }
     double length = sqrt(sf_dot3(n, n));
     for (int k = 0; k < 3; k++)
         if (hypot(n[(k + 1) % 3], n[(k + 2) % 3]) <= ALONG_AXIS * length)
@@ -120,7 +127,7 @@ static sf_status tie_face(const sf_case *c, const sf_mesh *mesh, const sf_inner_
                          1e3 * x[2]);
     }
     pairs->faces[a][b] = ++pairs->faces[b][a];
-    for (int k = face->node[0] < 0; k < 4; k++)
+    for (int k = (face->node[0] < 0) + (face->node[1] < 0); k < 4; k++)
         l->tie[l->tie_count++] = (sf_layer_tie){sf_layers_copy(l, face->node[k], low),
                                                 sf_layers_copy(l, face->node[k], high), mask};
     return SF_OK;

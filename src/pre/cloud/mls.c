@@ -249,7 +249,7 @@ int sf_mls_evaluate(const sf_mls_cloud *cloud, const double x[3], int64_t count,
             basis[out->count][c + 1] = r[c];
         out->count++;
     }
-    if (out->count < 4)
+    if (out->count < (cloud->is_plane ? 3 : 4))
         return -1;
     for (int k = 0; k < out->count; k++) {
         for (int c = 1; c < 4; c++)
@@ -261,6 +261,8 @@ int sf_mls_evaluate(const sf_mls_cloud *cloud, const double x[3], int64_t count,
     for (int i = 0; i < 4; i++)
         for (int j = i + 1; j < 4; j++)
             moment[i][j] = moment[j][i];
+    if (cloud->is_plane) /* its row is zero but for this */
+        moment[2][2] = moment[0][0];
     if (invert4(moment, inverse) != 0)
         return -1;
     out->condition = norm1(moment) * norm1(inverse);

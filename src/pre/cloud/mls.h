@@ -12,6 +12,7 @@ enum { SF_MLS_MAX_NODES = 1024 };
 typedef struct sf_mls_cloud {
     const double *position; /* [n][3] m */
     const double *support;  /* [n] m, R */
+    bool is_plane;          /* all of them and the points of evaluation lie in y = 0: y is left out */
 } sf_mls_cloud;
 
 /* Shape functions at one point. */

@@ -96,7 +96,8 @@ sf_status sf_gmsh_load(sf_gmsh *session, const sf_geo_source *source, sf_error *
 }
 
 static const char *kind_of(int dimension) {
-    return dimension == 3 ? "volume" : "surface";
+    static const char *const kinds[] = {"curve", "surface", "volume"};
+    return kinds[dimension - 1];
 }
 
 /* "a", "b", number 3 without a name: the groups, or "none". */
@@ -186,8 +187,8 @@ static sf_status find_group(const sf_gmsh *session, int dimension, const char *n
 
 /* softfall's code and the vertex count of gmsh's linear element types; 0 for every other type. */
 static int cell_code(int gmsh_type, int *vertices) {
-    static const int codes[] = {
-        [4] = SF_CELL_TETRAHEDRON, SF_CELL_HEXAHEDRON, SF_CELL_PRISM, SF_CELL_PYRAMID};
+    static const int codes[] = {[2] = SF_CELL_TRIANGLE, SF_CELL_QUADRANGLE, SF_CELL_TETRAHEDRON,
+                                SF_CELL_HEXAHEDRON,     SF_CELL_PRISM,      SF_CELL_PYRAMID};
     int code = gmsh_type >= 0 && gmsh_type <= 7 ? codes[gmsh_type] : 0;
     *vertices = code ? sf_cell_shape_of(code)->vertices : 0;
     return code;
@@ -196,6 +197,7 @@ static int cell_code(int gmsh_type, int *vertices) {
 /* The destination of the elements of one entity. */
 typedef struct destination {
     sf_raw_mesh *raw;
+    int dimension; /* of cells */
     int chosen;    /* of cells: 1 + place of the group, or 0 */
     int32_t group; /* of faces */
 } destination;
@@ -203,9 +205,9 @@ typedef struct destination {
 static sf_status add_elements(const sf_gmsh *session, const destination *to, const sf_geo_block *block,
                               sf_error *err) {
     int vertices = 0, code = 0;
-    if (block->dimension == 3)
+    if (block->dimension == to->dimension)
         code = cell_code(block->type, &vertices);
-    else if (block->type == 2 || block->type == 3)
+    else if (block->type >= 1 && block->type <= 3)
         vertices = block->type + 1;
     if (vertices == 0)
         return SF_REFUSE(err,
@@ -216,7 +218,7 @@ static sf_status add_elements(const sf_gmsh *session, const destination *to, con
         return SF_REFUSE(err, "%s: %s %d has an element without all of its nodes", session->file,
                          kind_of(block->dimension), block->entity);
     for (size_t k = 0; k < block->length && err->status == SF_OK; k += (size_t)vertices) {
-        if (block->dimension == 3)
+        if (block->dimension == to->dimension)
             sf_raw_mesh_add_cell(to->raw, code, to->chosen, block->node + k, vertices, err);
         else
             sf_raw_mesh_add_face(to->raw, to->group, block->entity, block->node + k, vertices, err);
@@ -253,29 +255,32 @@ static int chosen_of(const sf_geo_group *const *chosen, int count, int32_t entit
 }
 
 /* All cells of all volumes; those of the `count` groups chosen are marked. */
-static sf_status read_cells(const sf_gmsh *session, const sf_geo_group *const *chosen, int count,
-                            sf_raw_mesh *raw, sf_error *err) {
+static sf_status read_cells(const sf_gmsh *session, int dimension, const sf_geo_group *const *chosen,
+                            int count, sf_raw_mesh *raw, sf_error *err) {
     const sf_geo_data *data = &session->open.data;
     for (size_t k = 0; k < data->block_count && err->status == SF_OK; k++) {
         const sf_geo_block *block = &data->block[k];
-        if (block->dimension != 3)
+        if (block->dimension != dimension)
             continue;
-        const destination to = {.raw = raw, .chosen = chosen_of(chosen, count, block->entity)};
+        const destination to = {
+            .raw = raw, .dimension = dimension, .chosen = chosen_of(chosen, count, block->entity)};
         add_elements(session, &to, block, err);
     }
     return err->status;
 }
 
-/* No volume of the group is without cells. */
+/* No volume, or surface of a section, of the group is without cells. */
 static sf_status check_cells(const sf_gmsh *session, const sf_geo_group *chosen, sf_error *err) {
     for (size_t i = 0; i < chosen->count; i++) {
-        size_t end, begin = sf_geo_data_blocks(&session->open.data, 3, chosen->entity[i], &end);
+        size_t end,
+            begin = sf_geo_data_blocks(&session->open.data, chosen->dimension, chosen->entity[i], &end);
         if (begin == end)
-            return SF_REFUSE(err, "%s: volume %d of the group \"%s\" holds no cells", session->file,
-                             chosen->entity[i], chosen->name);
+            return SF_REFUSE(err, "%s: %s %d of the group \"%s\" holds no cells", session->file,
+                             kind_of(chosen->dimension), chosen->entity[i], chosen->name);
     }
     if (chosen->count == 0)
-        return SF_REFUSE(err, "%s: the volume group \"%s\" is empty", session->file, chosen->name);
+        return SF_REFUSE(err, "%s: the %s group \"%s\" is empty", session->file, kind_of(chosen->dimension),
+                         chosen->name);
     return SF_OK;
 }
 
@@ -300,7 +305,7 @@ static const double *find_touch(const sf_raw_mesh *raw, const sf_tag_index *inde
     cell_code(block->type, &vertices);
     for (size_t k = 0; vertices > 0 && k + (size_t)vertices <= block->length; k += (size_t)vertices) {
         const double *at = NULL;
-        int shared = any ? 3 : 0;
+        int shared = any ? block->dimension : 0;
         for (int a = 0; a < vertices; a++) {
             size_t place = sf_raw_mesh_find(raw, index, block->node[k + (size_t)a]);
             if (place == SIZE_MAX || (!any && !mark[place]))
@@ -308,7 +313,7 @@ static const double *find_touch(const sf_raw_mesh *raw, const sf_tag_index *inde
             at = &raw->xyz[3 * place];
             shared++;
         }
-        if (shared >= 3 && at)
+        if (shared >= block->dimension && at)
             return at;
     }
     return NULL;
@@ -323,19 +328,21 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
     SF_OWNED uint8_t *mark = index ? mark_chosen(raw, index, err) : NULL;
     for (size_t k = 0; mark && k < data->block_count && err->status == SF_OK; k++) {
         const sf_geo_block *block = &data->block[k];
-        if (block->dimension != 3 || chosen_of(chosen, volumes->count, block->entity))
+        if (block->dimension != chosen[0]->dimension || chosen_of(chosen, volumes->count, block->entity))
             continue;
         const double *at = find_touch(raw, index, mark, block, volumes->alone);
         const char *name = "";
         for (size_t g = 0; g < data->group_count; g++)
-            if (data->group[g].dimension == 3 && sf_geo_group_has(&data->group[g], block->entity))
+            if (data->group[g].dimension == block->dimension &&
+                sf_geo_group_has(&data->group[g], block->entity))
                 name = data->group[g].name;
         if (at)
             SF_REFUSE(err,
-                      "%s: volume %d%s%s%s, at (%.4g, %.4g, %.4g) mm, has no material: the case has no group "
+                      "%s: %s %d%s%s%s, at (%.4g, %.4g, %.4g) mm, has no material: the case has no group "
                       "of this name in materials",
-                      session->file, block->entity, *name ? " of the group \"" : " (of no named group)", name,
-                      *name ? "\"" : "", 1e3 * unit * at[0], 1e3 * unit * at[1], 1e3 * unit * at[2]);
+                      session->file, kind_of(block->dimension), block->entity,
+                      *name ? " of the group \"" : " (of no named group)", name, *name ? "\"" : "",
+                      1e3 * unit * at[0], 1e3 * unit * at[1], 1e3 * unit * at[2]);
     }
     return err->status;
 }
@@ -349,24 +356,25 @@ static sf_status read_faces(const sf_gmsh *session, const sf_geo_group *g, sf_ra
     raw->group_count++;
     size_t before = raw->face_count;
     for (size_t i = 0; i < g->count && err->status == SF_OK; i++) {
-        size_t end, k = sf_geo_data_blocks(data, 2, g->entity[i], &end);
+        size_t end, k = sf_geo_data_blocks(data, g->dimension, g->entity[i], &end);
         for (; k < end && err->status == SF_OK; k++)
             add_elements(session, &to, &data->block[k], err);
     }
     if (err->status == SF_OK && raw->face_count == before)
-        SF_REFUSE(err, "%s: the surface group \"%s\" is empty: it holds no mesh faces", session->file,
-                  g->name);
+        SF_REFUSE(err, "%s: the %s group \"%s\" is empty: it holds no mesh faces", session->file,
+                  kind_of(g->dimension), g->name);
     return err->status;
 }
 
 /* The pad's volume groups, and their cells. */
-static sf_status read_volumes(const sf_gmsh *session, const sf_pad_volumes *volumes, double unit,
-                              const sf_geo_group **chosen, sf_raw_mesh *raw, sf_error *err) {
+static sf_status read_volumes(const sf_gmsh *session, const sf_pad_volumes *volumes, int dimension,
+                              double unit, const sf_geo_group **chosen, sf_raw_mesh *raw, sf_error *err) {
     int count = volumes->count;
     for (int k = 0; k < count; k++)
-        SF_TRY(find_group(session, 3, volumes->group[k], &chosen[k], err));
-    if (check_groups(session, 3, err) != SF_OK || check_groups(session, 2, err) != SF_OK ||
-        read_nodes(session, raw, err) != SF_OK || read_cells(session, chosen, count, raw, err) != SF_OK)
+        SF_TRY(find_group(session, dimension, volumes->group[k], &chosen[k], err));
+    if (check_groups(session, dimension, err) != SF_OK ||
+        check_groups(session, dimension - 1, err) != SF_OK || read_nodes(session, raw, err) != SF_OK ||
+        read_cells(session, dimension, chosen, count, raw, err) != SF_OK)
         return err->status;
     for (int k = 0; k < count; k++)
         SF_TRY(check_cells(session, chosen[k], err));
@@ -375,7 +383,15 @@ static sf_status read_volumes(const sf_gmsh *session, const sf_pad_volumes *volu
 
 sf_status sf_gmsh_read_mesh(sf_gmsh *session, const char *pad_group, double unit, sf_mesh *mesh,
                             sf_error *err) {
-    return sf_gmsh_read_layers(session, &(sf_pad_volumes){1, &pad_group, false, false}, unit, mesh, err);
+    return sf_gmsh_read_layers(session, &(sf_pad_volumes){1, &pad_group, false, false, false}, unit, mesh,
+                               err);
+}
+
+static bool has_volumes(const sf_geo_data *data) {
+    for (size_t g = 0; g < data->group_count; g++)
+        if (data->group[g].dimension == 3)
+            return true;
+    return false;
 }
 
 sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, double unit, sf_mesh *mesh,
@@ -384,10 +400,11 @@ sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, d
     SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
     memset(mesh, 0, sizeof *mesh);
     SF_OWNED const sf_geo_group **chosen = sf_alloc(err, volumes->count, sizeof *chosen, "the pad's volumes");
-    if (!chosen || read_volumes(session, volumes, unit, chosen, &raw, err) != SF_OK)
+    int dimension = volumes->section && !has_volumes(data) ? 2 : 3;
+    if (!chosen || read_volumes(session, volumes, dimension, unit, chosen, &raw, err) != SF_OK)
         return err->status;
     for (size_t g = 0; g < data->group_count; g++)
-        if (data->group[g].dimension == 2 && *data->group[g].name &&
+        if (data->group[g].dimension == dimension - 1 && *data->group[g].name &&
             read_faces(session, &data->group[g], &raw, err) != SF_OK)
             return err->status;
     return sf_mesh_assemble(&raw, volumes->count, unit, mesh, err);
@@ -399,7 +416,7 @@ static sf_status read_missile(const sf_gmsh *session, const char *surface_group,
     const sf_geo_group *found = NULL;
     if (find_group(session, 2, surface_group, &found, err) == SF_OK &&
         check_groups(session, 2, err) == SF_OK && read_nodes(session, raw, err) == SF_OK &&
-        read_cells(session, NULL, 0, raw, err) == SF_OK)
+        read_cells(session, 3, NULL, 0, raw, err) == SF_OK)
         read_faces(session, found, raw, err);
     return err->status;
 }

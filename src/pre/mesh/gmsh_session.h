@@ -39,6 +39,8 @@ typedef struct sf_pad_volumes {
     const char *const *group; /* [count] volume groups, one for each layer */
     bool layers;              /* no volume without one */
     bool alone;               /* the geometry holds nothing but the pad */
+    bool section;             /* where there are no volumes the groups are of surfaces, and those on its
+                                 boundary of curves */
 } sf_pad_volumes;
 
 /* The same of a pad of layers, with sf_mesh.cell_layer. Refuses a volume without a layer: one that shares

@@ -35,6 +35,10 @@ void sf_mesh_free(sf_mesh *mesh) {
              mesh->set);
 }
 
+bool sf_mesh_is_section(const sf_mesh *mesh) {
+    return mesh->cell_count > 0 && sf_cell_is_plane(sf_cell_shape_of(mesh->cell_type[0]));
+}
+
 void sf_surface_free(sf_surface *surface) {
     SF_CLEAR(surface, surface->position, surface->triangle, surface->solid, surface->hull_position,
              surface->hull_triangle);
@@ -64,10 +68,26 @@ static int local_vertices(const sf_mesh *mesh, int64_t cell, double x[MAX_VERTIC
     return count;
 }
 
+/* Twice the area of a triangle in the half plane with a corner at the origin, m2. */
+static double twice_area(const double a[3], const double b[3]) {
+    return a[0] * b[2] - a[2] * b[0];
+}
+
+/* Volume of the ring, by Pappus: triangles from the first vertex, each with the radius of its middle. */
+static double ring_volume(double radius, int vertices, double x[MAX_VERTICES][3]) {
+    double sum = 0;
+    for (int k = 1; k + 1 < vertices; k++)
+        sum += twice_area(x[k], x[k + 1]) * (radius + (x[k][0] + x[k + 1][0]) / 3);
+    return M_PI * sum;
+}
+
 double sf_mesh_cell_volume(const sf_mesh *mesh, int64_t cell) {
     double x[MAX_VERTICES][3];
     local_vertices(mesh, cell, x);
     const sf_cell_shape *shape = sf_cell_shape_of(mesh->cell_type[cell]);
+    if (sf_cell_is_plane(shape))
+        return ring_volume(mesh->position[3 * (int64_t)mesh->cell_node[mesh->cell_ptr[cell]]],
+                           shape->vertices, x);
     double six = 0.0;
     for (int f = 0; f < shape->faces; f++) {
         const int *v = shape->face[f];
@@ -93,10 +113,10 @@ static void corner_range(const sf_mesh *mesh, int64_t cell, double *low, double 
     *high = -INFINITY;
     for (int k = 0; k < shape->corners; k++) {
         const int *v = shape->corner[k];
-        double e[3][3];
-        for (int a = 0; a < 3; a++)
+        double e[3][3] = {{0}};
+        for (int a = 0; a < 3 && v[a + 1] >= 0; a++)
             sf_sub3(x[v[a + 1]], x[v[0]], e[a]);
-        double jacobian = sf_triple3(e[0], e[1], e[2]);
+        double jacobian = v[3] < 0 ? twice_area(e[0], e[1]) : sf_triple3(e[0], e[1], e[2]);
         *low = fmin(*low, jacobian);
         *high = fmax(*high, jacobian);
     }

@@ -48,6 +48,9 @@ typedef struct sf_mesh {
 
 void sf_mesh_free(sf_mesh *mesh);
 
+/* True of a mesh of plane cells, the section of an axisymmetric pad (pre/mesh/section.h). */
+bool sf_mesh_is_section(const sf_mesh *mesh);
+
 /* For qsort: faces by their ascending nodes (int32_t[4]); of sf_cell_face, by these and then their cells. */
 int sf_face_compare(const void *one, const void *other);
 int sf_cell_face_compare(const void *one, const void *other);
@@ -58,7 +61,8 @@ void sf_surface_free(sf_surface *surface);
 /* Finds a set by name; NULL if there is none. */
 const sf_node_set *sf_mesh_find_set(const sf_mesh *mesh, const char *name);
 
-/* Volume of a cell by the divergence theorem over its faces (quadrangles split at their centroid); m3. */
+/* Volume of a cell by the divergence theorem over its faces (quadrangles split at their centroid); m3. Of a
+ * plane cell that of the ring that it makes about the axis. */
 double sf_mesh_cell_volume(const sf_mesh *mesh, int64_t cell);
 
 /* Mirrors the vertex order of the cells whose corners are all left-handed (readers differ in their

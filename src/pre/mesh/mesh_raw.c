@@ -84,9 +84,11 @@ void sf_raw_cell_face(const sf_raw_mesh *raw, size_t cell, int face, size_t tag[
     gsl_sort_ulong(tag, 1, SF_RAW_FACE);
 }
 
-/* 3 or 4. */
+/* 3 or 4; 2 of a side. */
 static int face_size(const sf_raw_mesh *raw, size_t face) {
-    return raw->face_node[SF_RAW_FACE * face + 3] != 0 ? 4 : 3;
+    const size_t *node = &raw->face_node[SF_RAW_FACE * face];
+    int triangle = node[2] != 0 ? 3 : 2;
+    return node[3] != 0 ? 4 : triangle;
 }
 
 enum { UNUSED = -1, OTHER = -2 };

@@ -88,7 +88,7 @@ static sf_status read_groups(reader *r, const char *file, sf_geo_data *out, sf_e
     out->group = sf_alloc(err, count, sizeof *out->group, "physical groups");
     for (size_t g = 0; out->group && !r->bad && g < count && err->status == SF_OK; g++) {
         sf_geo_group *group = &out->group[out->group_count++];
-        group->dimension = take_int(r, 2, 3);
+        group->dimension = take_int(r, 1, 3);
         group->tag = take_int(r, INT32_MIN, INT32_MAX);
         take_text(r, group->name, sizeof group->name);
         size_t entities = take_count(r, 1);
@@ -110,7 +110,7 @@ static sf_status read_blocks(reader *r, sf_geo_data *out, sf_error *err) {
     out->block = sf_alloc(err, count, sizeof *out->block, "element blocks");
     for (size_t k = 0; out->block && !r->bad && k < count; k++) {
         sf_geo_block *block = &out->block[out->block_count++];
-        block->dimension = take_int(r, 2, 3);
+        block->dimension = take_int(r, 1, 3);
         block->entity = take_int(r, INT32_MIN, INT32_MAX);
         block->type = take_int(r, 0, INT32_MAX);
         take_text(r, block->type_name, sizeof block->type_name);

@@ -9,7 +9,7 @@ enum { SF_GEO_NAME_SIZE = 256, SF_GEO_MAX_GROUPS = 4096 };
 
 /* A physical group. */
 typedef struct sf_geo_group {
-    int32_t dimension, tag;      /* 2 or 3 */
+    int32_t dimension, tag;      /* 1, only in a geometry without cells, 2 or 3 */
     char name[SF_GEO_NAME_SIZE]; /* "" if it has none */
     size_t count;
     int32_t *entity; /* [count] ascending, owned */

@@ -57,8 +57,8 @@ typedef struct sf_mesher_answer {
  * - SF_MESH_STREAM_END
  *
  * A text is its length in bytes and the bytes, filled with zeros to whole words. The blocks ascend by
- * dimension and entity: they are the elements of all volumes and of the surfaces in named groups; an entity
- * without elements has no block. */
+ * dimension and entity: they are the elements of all volumes and of the surfaces in named groups, where there
+ * are no volumes of the curves in named groups, too; an entity without elements has no block. */
 #define SF_MESHER_VERSION UINT64_C(1)
 #define SF_MESH_STREAM_BEGIN UINT64_C(0x31306873656d6673)
 #define SF_MESH_STREAM_END UINT64_C(0x646e656873656d00)

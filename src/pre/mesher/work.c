@@ -290,9 +290,12 @@ static void list_entity(element_list *list, int dimension, int entity) {
     gmshFree(node_counts);
 }
 
-static void write_elements(const int *surface, size_t surfaces, const int *volume, size_t volumes) {
+static void write_elements(const entity_list *curves, const int *surface, size_t surfaces, const int *volume,
+                           size_t volumes) {
     for (int counting = 1; counting >= 0; counting--) {
         element_list list = {.counting = counting};
+        for (size_t i = 0; i < curves->count; i++)
+            list_entity(&list, 1, curves->entity[i]);
         for (size_t i = 0; i < surfaces; i++)
             list_entity(&list, 2, surface[i]);
         for (size_t i = 0; i < volumes; i++)
@@ -303,29 +306,32 @@ static void write_elements(const int *surface, size_t surfaces, const int *volum
 }
 
 static void write_mesh(void) {
-    int *pairs[2] = {NULL, NULL}, *volume = NULL, ierr = 0;
-    size_t length[2] = {0, 0}, volumes = 0;
-    entity_list surface = {NULL, 0};
+    int *pairs[3] = {NULL, NULL, NULL}, *volume = NULL, ierr = 0;
+    size_t length[3] = {0, 0, 0}, volumes = 0;
+    entity_list curve = {NULL, 0}, surface = {NULL, 0};
     write_head("");
     write_nodes();
-    gmshModelGetPhysicalGroups(&pairs[0], &length[0], 2, &ierr);
-    gmshModelGetPhysicalGroups(&pairs[1], &length[1], 3, &ierr);
-    stream_word(length[0] / 2 + length[1] / 2);
-    write_groups(2, pairs[0], length[0], &surface);
-    write_groups(3, pairs[1], length[1], NULL);
+    for (int k = has_elements(3) ? 1 : 0; k < 3; k++) /* curves bound a section, where there are no cells */
+        gmshModelGetPhysicalGroups(&pairs[k], &length[k], k + 1, &ierr);
+    stream_word((length[0] + length[1] + length[2]) / 2);
+    write_groups(1, pairs[0], length[0], &curve);
+    write_groups(2, pairs[1], length[1], &surface);
+    write_groups(3, pairs[2], length[2], NULL);
+    curve.count = sort_entities(curve.entity, curve.count);
     surface.count = sort_entities(surface.entity, surface.count);
     gmshModelGetEntities(&volume, &volumes, 3, &ierr);
     volumes /= 2;
     for (size_t i = 0; i < volumes; i++)
         volume[i] = volume[2 * i + 1];
     volumes = sort_entities(volume, volumes);
-    write_elements(surface.entity, surface.count, volume, volumes);
+    write_elements(&curve, surface.entity, surface.count, volume, volumes);
     stream_word(SF_MESH_STREAM_END);
     stream_flush();
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 3; k++)
         gmshFree(pairs[k]);
     gmshFree(volume);
     free(surface.entity);
+    free(curve.entity);
 }
 
 void sf_work_mesh(const char *path) {

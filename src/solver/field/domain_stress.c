@@ -51,6 +51,10 @@ static void load_batch(const sf_model *m, const sf_operators *op, const sf_state
         for (int r = 0; r < 3; r++)
             for (int c = 0; c < 3; c++)
                 b->f[3 * r + c][l] = (r == c) + g[c][r];
+        if (m->axisymmetric) { /* the second column of B is the hoop row of u_R */
+            b->f[4][l] = 1 + b->f[1][l];
+            b->f[1][l] = b->f[7][l] = 0;
+        }
         for (int k = 0; k < 9; k++)
             b->f_old[k][l] = old[k];
         b->length[l] = fixed > 0 ? fixed : m->spacing[first + l];
@@ -181,6 +185,10 @@ static void store_batch(const sf_model *m, const sf_operators *op, sf_state *s, 
         for (int k = 0; k < 9; k++) {
             s->f[9 * i + k] = b->f[k][l];
             s->stress[9 * i + k] = v * b->p[k][l];
+        }
+        if (m->axisymmetric) { /* the hoop stress acts through the second column of B on f_R */
+            s->stress[9 * i + 1] = s->stress[9 * i + 4];
+            s->stress[9 * i + 4] = 0;
         }
         for (int k = 0; k < 6 && b->directions; k++)
             s->directional[6 * i + k] = (float)b->directional[k][l];

@@ -10,12 +10,20 @@ typedef struct pair_node {
     double stiffness, before;
 } pair_node;
 
+/* True of a node on the axis of a section. Its domain's mean of F_RZ and F_ZR belongs to R = h / 3, but on
+ * the axis both are 0: the pairs leave them out. */
+static inline bool is_on_axis(const sf_model *m, int64_t i) {
+    return m->axisymmetric && m->position[3 * i] == 0;
+}
+
 static inline void load_node(const sf_model *m, const sf_pair_field *field, int64_t i, pair_node *node) {
     node->stiffness = field->stiffness[i];
     node->before = field->before[i];
     node->x = sf_vec_load(&sf_model_coefficients(m)[3 * i]);
     node->d = sf_vec_load(&field->d[3 * i]);
     sf_vec_columns(&field->f[9 * i], node->f);
+    if (is_on_axis(m, i))
+        node->f[0][2] = node->f[2][0] = 0;
 }
 
 /* Contributions of one pair to its nodes: force on a, the opposite on b; the same couple and energies on
@@ -155,6 +163,8 @@ static inline __attribute__((always_inline)) bool sum_group(const sf_model *m, c
         sums->force[p] = force;
         sums->before[p] = before;
         sums->after[p] = after;
+        if (is_on_axis(m, i))
+            couple[0][2] = couple[2][0] = 0;
         memcpy(sums->couple[p], couple, sizeof couple);
     }
     return rises;

@@ -17,6 +17,10 @@ static void take_stress(const sf_model *m, const sf_state *s, const sf_pair_sums
     double j = sf_triple3(f, f + 3, f + 6), square = 0, mean;
     for (int k = 0; k < 9; k++)
         p[k] = (s->stress[9 * i + k] - pairs->couple[i % SF_GROUP][k % 3][k / 3]) / m->volume[i];
+    if (m->axisymmetric) { /* as in sf_state.stress */
+        p[4] = p[1];
+        p[1] = 0;
+    }
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             sigma[3 * r + c] =

@@ -16,7 +16,7 @@
 /* Returns the place of the symmetry plane normal to an axis; NaN: there is none. */
 static double find_plane(const sf_model *m, int axis) {
     double place;
-    return sf_symmetry_plane(m, axis, &place) ? place : NAN;
+    return !m->axisymmetric && sf_symmetry_plane(m, axis, &place) ? place : NAN;
 }
 
 static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
@@ -47,6 +47,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/surface_position", "m", "missile surface at t = 0"}, SF_H5_F64, 2, {m->surface_node_count, 3}, m->surface_position},
         {{"/model/surface_triangle", "1", "missile surface triangles"}, SF_H5_I32, 2, {m->surface_triangle_count, 3}, m->surface_triangle},
         {{"/model/symmetry_factor", "1", "modelled parts that make the whole"}, SF_H5_I64, 0, {0}, &m->symmetry_factor},
+        {{"/model/axisymmetric", "1", "1: a plane section, x the radius, of a body of revolution about z; 0: solid"}, SF_H5_I64, 0, {0}, &m->axisymmetric},
         {{"/model/symmetry_x", "m", "where the symmetry plane normal to x lies; NaN: there is none"}, SF_H5_F64, 0, {0}, &plane[0]},
         {{"/model/symmetry_y", "m", "the same of that normal to y"}, SF_H5_F64, 0, {0}, &plane[1]},
         {{"/model/thickness", "m", "foam under the contact, along the missile's path, its vertical part"}, SF_H5_F64, 0, {0}, &m->thickness},
