@@ -21,7 +21,7 @@ softfall_shared(softfall_api softfall softfall
     SOURCES src/api/api_drop.c src/api/api_record.c
     PRIVATE softfall_solver softfall_post)
 softfall_shared(softfall_api_build softfall-build build
-    SOURCES src/api/api_case.c src/api/api_material.c
+    SOURCES src/api/api_case.c src/api/api_material.c src/api/api_variant.c
     PRIVATE softfall_pre
     PUBLIC softfall_api)
 

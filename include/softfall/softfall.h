@@ -114,6 +114,23 @@ SOFTFALL_API softfall_status softfall_compress(const softfall_material *material
                                                const double *time, const double *strain, int64_t count,
                                                double *stress, softfall_error *error);
 
+/* ---- Variants of a model (libsoftfall-build) ---- */
+
+/* A model of its own beside another one, with the same mesh; 0 or NULL: as it is there. */
+typedef struct softfall_variant {
+    double speed;     /* m/s, of the missile at first contact */
+    double mass;      /* kg, of the whole missile */
+    double thickness; /* m, of the pad, from 0.7 to 1.4 times that of the model; only of an axisymmetric one
+                         that softfall_model_build has made: its heights are scaled */
+    const softfall_material *material; /* of a pad of one material; borrowed for the call */
+} softfall_variant;
+
+/* Makes the variant without a process or a file: for many drops of one geometry. With another speed, mass and
+ * material its drops are those of a model built with these values; with another thickness, of a mesh with as
+ * many rows of cells. */
+SOFTFALL_API softfall_status softfall_model_vary(const softfall_model *model, const softfall_variant *variant,
+                                                 softfall_model **out, softfall_error *error);
+
 /* ---- Models ---- */
 
 typedef struct softfall_model_info {
@@ -223,6 +240,21 @@ SOFTFALL_API const softfall_quantity *softfall_figures_list(const softfall_figur
 /* Sets `value`, NaN if the run does not define the figure. SOFTFALL_INPUT: there is no such figure. */
 SOFTFALL_API softfall_status softfall_figure(const softfall_figures *figures, const char *key, double *value,
                                              softfall_error *error);
+
+/* Many drops side by side, each on one thread. */
+typedef struct softfall_batch {
+    int threads;            /* drops at a time, 0: the default of OpenMP; the figures do not depend on it */
+    double filter;          /* channel frequency class */
+    int keys;               /* number of figures */
+    const char *const *key; /* [keys] their names, as of softfall_figure */
+} softfall_batch;
+
+/* Runs a drop of each of the `count` models (which may be the same) to its end, and fills `values`
+ * [count][keys] and `errors` [count]; the values of a drop that failed are NaN. SOFTFALL_INPUT: the batch has
+ * no such figure or filter. */
+SOFTFALL_API softfall_status softfall_batch_run(const softfall_model *const *models, int64_t count,
+                                                const softfall_batch *batch, double *values,
+                                                softfall_error *errors, softfall_error *error);
 
 /* ---- Curves of your own ---- */
 

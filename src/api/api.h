@@ -4,6 +4,7 @@
 #include "softfall/softfall.h"
 
 #include "model/model.h"
+#include "pre/vary.h"
 
 _Static_assert((int)SOFTFALL_INPUT == SF_ERR_INPUT && (int)SOFTFALL_FILE == SF_ERR_IO &&
                    (int)SOFTFALL_MODEL == SF_ERR_MODEL && (int)SOFTFALL_NUMERIC == SF_ERR_NUMERIC &&
@@ -14,6 +15,7 @@ struct softfall_model {
     sf_model model;
     char *case_text, *parameters, *mesh_hash, *geometry_files; /* of the provenance; NULL: unknown; owned */
     char libraries[96];                                        /* that made it */
+    sf_kernel kernel;                                          /* zeros: read from a file */
 };
 
 /* The outcome for the user. */

@@ -70,6 +70,7 @@ softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink
         c->used_up = true;
         if (sf_model_make(&c->data, &m->model, &report, m->libraries, &inner, &err) == SF_OK)
             keep_texts(c, &report, m, &err);
+        m->kernel = (sf_kernel){c->data.support_ratio, c->data.condition_limit};
     }
     if (err.status == SF_OK)
         *out = m;

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* libsoftfall-build: foams of material files, and points of them under compression. */
-#include "api/api.h"
+#include "api/api_material.h"
 
 #include "case/read.h"
 #include "material/laws.h"
 #include <math.h>
-
-struct softfall_material {
-    sf_material data;
-    char *parameters; /* owned */
-};
 
 softfall_status softfall_material_read(const char *path, double temperature, softfall_material **out,
                                        softfall_error *error) {

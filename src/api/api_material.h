@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A foam behind its handle. */
+#pragma once
+#include "api/api.h"
+
+struct softfall_material {
+    sf_material data;
+    char *parameters; /* owned */
+};
