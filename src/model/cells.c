@@ -104,10 +104,26 @@ static int32_t node_of(const sf_cells *c, const sf_cell_face *face, int64_t v) {
     return corner < 0 ? -1 : c->node[c->ptr[face->cell] + corner];
 }
 
+/* The cells of a section are what shows of it. */
+static sf_status take_section(const sf_cells *c, sf_skin_faces *s, sf_error *err) {
+    s->face_count = c->cell_count;
+    s->face = sf_alloc(err, s->face_count, sizeof *s->face, "the pad's skin");
+    SF_TRY(err->status);
+    for (int64_t k = 0; k < 4 * s->face_count; k++) {
+        int64_t vertices = c->ptr[k / 4 + 1] - c->ptr[k / 4];
+        s->face[k / 4][k % 4] = k % 4 < vertices ? c->node[c->ptr[k / 4] + k % 4] : -1;
+    }
+    s->node =
+        sf_list_number(c->node_count, 4 * s->face_count, s->face[0], &s->node_count, "the pad's skin", err);
+    return err->status;
+}
+
 sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err) {
     int64_t count;
-    SF_OWNED sf_cell_face *list = sf_cell_faces(c, NULL, by_nodes, &count, err);
     *s = (sf_skin_faces){0};
+    if (c->cell_count > 0 && sf_cell_is_plane(&shapes[c->type[0]]))
+        return take_section(c, s, err);
+    SF_OWNED sf_cell_face *list = sf_cell_faces(c, NULL, by_nodes, &count, err);
     SF_TRY(err->status);
     s->face_count = keep_single(list, count);
     s->face = sf_alloc(err, s->face_count, sizeof *s->face, "the pad's skin");

@@ -55,7 +55,7 @@ sf_cell_face *sf_cell_faces(const sf_cells *cells, int64_t *place,
                             int (*compare)(const void *one, const void *other), int64_t *count,
                             sf_error *err);
 
-/* The faces that belong to one cell only and the nodes on them. */
+/* The faces that belong to one cell only and the nodes on them; of a section its cells. */
 typedef struct sf_skin_faces {
     int64_t face_count, node_count;
     int32_t (*face)[4]; /* [face_count] places in `node`, -1 in the fourth place of a triangle; owned */

@@ -383,9 +383,11 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
     double distance = 0, impact[3];
     sf_error miss = SF_ERROR_INIT;
     m->missile = c->missile_card;
-    if (check_freedom(c, m, err) != SF_OK || sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
+    bool profile = m->axisymmetric && surface->triangle_count == 0;
+    if (check_freedom(c, m, err) != SF_OK || (profile && sf_section_take_missile(surface, err) != SF_OK) ||
+        sf_surface_orient(surface, m->missile.direction, err) != SF_OK ||
         sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
-        (m->axisymmetric && sf_section_take_missile(surface, err) != SF_OK) ||
+        (m->axisymmetric && !profile && sf_section_take_missile(surface, err) != SF_OK) ||
         sf_impact_place(c, m, surface, &m->missile, err) != SF_OK ||
         sf_missile_take_body(c, surface, &m->missile, err) != SF_OK)
         return err->status;

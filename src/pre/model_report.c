@@ -62,6 +62,11 @@ static void add_size(sf_model_report *out, const sf_model *m) {
     double pad[3], missile[3];
     find_size(m->node_count, m->position, pad);
     find_size(m->surface_node_count, m->surface_position, missile);
+    if (m->axisymmetric) {
+        add(out, "size", "size", "pad of %.4g mm radius, %.4g mm thick; missile's surface %.4g x %.4g mm",
+            pad[0], pad[2], missile[0], missile[2]);
+        return;
+    }
     add(out, "size", "size as modelled", "pad %.4g x %.4g x %.4g mm, missile's surface %.4g x %.4g x %.4g mm",
         pad[0], pad[1], pad[2], missile[0], missile[1], missile[2]);
 }
@@ -203,13 +208,23 @@ static void add_cost(sf_model_report *out, const sf_model *m, const sf_build_rep
         sf_report_seconds(m, r), steps);
 }
 
-void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_report *out) {
-    out->count = 0;
+static void add_mesh(sf_model_report *out, const sf_model *m, const sf_build_report *r) {
+    if (m->axisymmetric) {
+        add(out, "nodes", "nodes", "%lld, in the section of an axisymmetric pad", (long long)m->node_count);
+        add(out, "cells", "cells", "%lld quadrangles, %lld triangles",
+            (long long)r->cells[SF_CELL_QUADRANGLE], (long long)r->cells[SF_CELL_TRIANGLE]);
+        return;
+    }
     add(out, "nodes", "nodes", "%lld, 1/%lld of the pad", (long long)m->node_count,
         (long long)m->symmetry_factor);
     add(out, "cells", "cells", "%lld hexahedra, %lld pyramids, %lld prisms, %lld tetrahedra",
         (long long)r->cells[SF_CELL_HEXAHEDRON], (long long)r->cells[SF_CELL_PYRAMID],
         (long long)r->cells[SF_CELL_PRISM], (long long)r->cells[SF_CELL_TETRAHEDRON]);
+}
+
+void sf_model_report_make(const sf_model *m, const sf_build_report *r, sf_model_report *out) {
+    out->count = 0;
+    add_mesh(out, m, r);
     if (r->orphan_count > 0)
         add(out, "left_out", "left out", "%lld nodes that no cell uses", (long long)r->orphan_count);
     add_size(out, m);

@@ -131,9 +131,9 @@
     X(NUMBER, missile_mass, "missile_mass_kg", 1, "of the whole missile") \
     X(FACT, density, "density_kg_m3", 1, "of the undeformed foam, the mean of layers") \
     X(FACT, informed_strain, "informed_strain", 1, "strain up to which the material's data inform its curve: `material.informed_strain`, or the end of the table; of layers the least") \
-    X(FACT_COUNT, symmetry_factor, "symmetry_factor", 1, "modelled parts that make the whole") \
-    X(FACT_COUNT, node_count, "nodes", 1, "of the modelled part, like the next two") \
-    X(FACT_COUNT, cell_count, "cells", 1, "of the background mesh") \
+    X(FACT_COUNT, modelled_parts, "symmetry_factor", 1, "modelled parts that make the whole") \
+    X(FACT_COUNT, modelled_nodes, "nodes", 1, "of the modelled part, like the next two") \
+    X(FACT_COUNT, modelled_cells, "cells", 1, "of the background mesh") \
     X(FACT_COUNT, interactions, "interactions", 1, "(domain, node) pairs") \
     X(FACT_COUNT, frame_count, "frames", 1, "frames in results.h5 that can be used") \
     X(COUNT, steps, "steps", 1, "time steps") \

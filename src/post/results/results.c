@@ -402,6 +402,9 @@ static sf_status read_model(sf_results *r, sf_error *err) {
     if (sf_h5_exists(r->file, "/model/axisymmetric"))
         SF_TRY(read_flag(r, "/model/axisymmetric", &r->axisymmetric, err));
     SF_TRY(check_model(r, err));
+    r->modelled_parts = r->symmetry_factor;
+    r->modelled_nodes = r->node_count;
+    r->modelled_cells = r->cell_count;
     return r->axisymmetric ? make_solid(r, err) : SF_OK;
 }
 

@@ -52,6 +52,7 @@ typedef struct sf_results {
                           revolution */
     sf_revolution revolution;
     int64_t symmetry_factor;
+    int64_t modelled_parts, modelled_nodes, modelled_cells; /* of the file: factor, nodes and cells */
     double symmetry_place[2]; /* m, of the symmetry planes normal to x and y; NaN: none, or the file does not
                                  say */
     double thickness;         /* m */

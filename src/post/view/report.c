@@ -424,9 +424,14 @@ static void put_mesh(const page *p, sf_html_table *table) {
         largest = fmax(largest, cbrt(r->volume[i]));
     }
     count_cells(r, cells, sizeof cells);
-    sf_html_fact(table, "nodes", "%lld, modelled: 1/%lld of the whole", (long long)r->node_count,
-                 (long long)r->symmetry_factor);
-    sf_html_fact(table, "cells", "%s", cells);
+    if (r->axisymmetric)
+        sf_html_fact(table, "nodes",
+                     "%lld, in the section of an axisymmetric model; shown is a quarter of its body",
+                     (long long)r->revolution.section_nodes);
+    else
+        sf_html_fact(table, "nodes", "%lld, modelled: 1/%lld of the whole", (long long)r->node_count,
+                     (long long)r->symmetry_factor);
+    sf_html_fact(table, r->axisymmetric ? "cells shown" : "cells", "%s", cells);
     sf_html_fact(table, "nodal spacing", "%.1f to %.1f mm (cube root of the volumes)", smallest * 1e3,
                  largest * 1e3);
     put_text_fact(p, table, "hash of the mesh", "/provenance/model/mesh_hash");

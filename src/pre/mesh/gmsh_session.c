@@ -429,6 +429,41 @@ sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, doub
     return sf_surface_assemble(&raw, unit, surface, err);
 }
 
+bool sf_gmsh_has_profile(const sf_gmsh *session, const char *curve_group) {
+    const sf_geo_data *data = &session->open.data;
+    for (size_t g = 0; g < data->group_count; g++)
+        if (data->group[g].dimension == 1 && strcmp(data->group[g].name, curve_group) == 0)
+            return true;
+    return false;
+}
+
+sf_status sf_gmsh_read_profile(sf_gmsh *session, const char *curve_group, double unit, sf_surface *profile,
+                               sf_error *err) {
+    SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};
+    const sf_geo_group *found = NULL;
+    memset(profile, 0, sizeof *profile);
+    if (find_group(session, 1, curve_group, &found, err) != SF_OK ||
+        read_nodes(session, &raw, err) != SF_OK || read_faces(session, found, &raw, err) != SF_OK)
+        return err->status;
+    SF_OWNED sf_tag_index *index = sf_raw_mesh_index(&raw, err);
+    profile->position = sf_alloc(err, 6 * raw.face_count, sizeof *profile->position, "a profile");
+    for (size_t k = 0; err->status == SF_OK && k < 2 * raw.face_count; k++) {
+        const double *x = sf_raw_mesh_place(&raw, index, raw.face_node[SF_RAW_FACE * (k / 2) + k % 2]);
+        double *out = &profile->position[3 * profile->node_count++];
+        if (!x || x[2] != 0)
+            SF_REFUSE(
+                err,
+                "%s: the curve group \"%s\" leaves the plane z = 0: a profile has the radius along x and "
+                "the height along y",
+                session->file, curve_group);
+        out[0] = x ? unit * x[0] : 0;
+        out[2] = x ? unit * x[1] : 0;
+    }
+    if (err->status != SF_OK)
+        sf_surface_free(profile);
+    return err->status;
+}
+
 sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                             sf_error *err) {
     SF_OWNED_BY(sf_raw_mesh_free) sf_raw_mesh raw = {0};

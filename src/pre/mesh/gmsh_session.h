@@ -52,6 +52,12 @@ sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, d
 sf_status sf_gmsh_read_surface(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                                sf_error *err);
 
+/* The profile of a missile of revolution, a curve group of a geometry without volumes, drawn in z = 0 with
+ * the radius along x and the height along y: points in the half plane y = 0, without triangles. */
+bool sf_gmsh_has_profile(const sf_gmsh *session, const char *curve_group);
+sf_status sf_gmsh_read_profile(sf_gmsh *session, const char *curve_group, double unit, sf_surface *profile,
+                               sf_error *err);
+
 /* Adds to the surface that was read last the hull of the cells behind it. */
 sf_status sf_gmsh_read_hull(sf_gmsh *session, const char *surface_group, double unit, sf_surface *surface,
                             sf_error *err);

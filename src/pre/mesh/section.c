@@ -349,7 +349,7 @@ static profile_point *find_profile(const sf_surface *s, int64_t *count, sf_error
     }
     if (!p)
         return NULL;
-    if (!(twist_of(s) <= TWIST)) {
+    if (s->triangle_count > 0 && !(twist_of(s) <= TWIST)) {
         SF_REFUSE(err, NOT_AXISYMMETRIC "the missile is no body of revolution about the axis x = y = 0");
         return NULL;
     }

@@ -16,8 +16,8 @@ sf_status sf_section_check_case(const sf_case *c, sf_error *err);
  * crosses the axis or does not reach it; it is no rectangle, or the pad no plate; there is no such plane. */
 sf_status sf_section_take_pad(const sf_case *c, sf_mesh *mesh, sf_error *err);
 
-/* Makes the missile's surface one of revolution by its profile: the nodes of the surface, whole or a part of
- * it, by radius and height. Its facets touch the profile in the half plane y = 0, where contact is sought.
- * SF_ERR_INPUT: it is no body of revolution about the axis, or its profile is not seen from one point of the
- * axis. */
+/* Makes the missile's surface one of revolution by its profile: its points where it has no triangles, or the
+ * nodes of the surface, whole or a part of it, by radius and height. Its facets touch the profile in the half
+ * plane y = 0, where contact is sought. SF_ERR_INPUT: it is no body of revolution about the axis, or its
+ * profile is not seen from one point of the axis. */
 sf_status sf_section_take_missile(sf_surface *surface, sf_error *err);

@@ -334,6 +334,15 @@ static void write_mesh(void) {
     free(curve.entity);
 }
 
+/* True if a curve is in a group: the profile of a body of revolution. */
+static bool has_profile(void) {
+    int *pairs = NULL, ierr = 0;
+    size_t length = 0;
+    gmshModelGetPhysicalGroups(&pairs, &length, 1, &ierr);
+    gmshFree(pairs);
+    return length > 0 && has_elements(1);
+}
+
 void sf_work_mesh(const char *path) {
     int ierr = 0;
     bool is_mesh = sf_mesher_has_suffix(path, ".msh");
@@ -343,7 +352,7 @@ void sf_work_mesh(const char *path) {
         if (!check(ierr, "meshing"))
             return;
     }
-    if (has_elements(3) || has_elements(2))
+    if (has_elements(3) || has_elements(2) || has_profile())
         write_mesh();
     else
         write_error(is_mesh ? "it holds no mesh" : "it holds no mesh: there is no volume or surface to mesh");

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Axisymmetric drops by the programs: against the quarter model, from a drawn section and profile, and what is refused."""
+import json
+import pathlib
+import subprocess
+
+import pytest
+
+from conftest import BIN
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+QUARTER = ROOT / "examples/eva50-v4.5/case.cfg"
+SECTION = ROOT / "examples/eva50-axisymmetric/case.cfg"
+COARSE = ["geometry.parameters.fine_spacing=10.0", "pad.mesh_error_limit=1", 'output.frame_interval="10 ms"']
+SPHERE = """Point(1) = {0, 0, 0}; Point(2) = {0, 80, 0}; Point(3) = {80, 80, 0};
+Circle(1) = {1, 2, 3};
+Transfinite Curve {1} = 200;
+Physical Curve("missile_surface") = {1};
+"""
+
+
+def call(name, *words):
+    return subprocess.run([str(BIN / name), *map(str, words)], capture_output=True, text=True, check=False)
+
+
+def pre(case, model, *sets, options=()):
+    return call("softfall-pre", case, "-o", model, "--force", *options, *[word for text in sets for word in ("--set", text)])
+
+
+def figures(folder: pathlib.Path, case, *sets, options=()):
+    for done in (pre(case, folder / "m.h5", *COARSE, *sets, options=options), call("softfall-solve", folder / "m.h5", "-o", folder / "r.h5", "--force"),
+                 call("softfall-post", folder / "r.h5", "-o", folder / "out", "--force")):
+        assert done.returncode == 0, done.stderr
+    return json.loads((folder / "out/summary.json").read_text())
+
+
+def test_section_and_quarter_are_the_same_drop(tmp_path):
+    quarter = figures(tmp_path, QUARTER)
+    section = figures(tmp_path, QUARTER, options=["--axisymmetric"])
+    drawn = figures(tmp_path, SECTION)
+    assert section["nodes"] < quarter["nodes"] / 8 and section["symmetry_factor"] == 1 and quarter["symmetry_factor"] == 4
+    for key, bound in (("a_max_g", 0.015), ("hic", 0.015), ("max_indentation_mm", 0.005), ("v_rebound_m_s", 0.005)):
+        assert section[key] == pytest.approx(quarter[key], rel=bound), key
+        assert drawn[key] == pytest.approx(section[key], rel=bound), key
+    assert abs(section["energy_error"]) < 1e-3
+
+
+def test_profile_is_the_body_that_it_draws(tmp_path):
+    (tmp_path / "profile.geo").write_text(SPHERE)
+    sphere = figures(tmp_path, SECTION)
+    profile = figures(tmp_path, SECTION, f'geometry.missile_file="{tmp_path}/profile.geo"', "geometry.missile_parameters={}")
+    for key in ("a_max_g", "hic", "max_indentation_mm"):
+        assert profile[key] == pytest.approx(sphere[key], rel=2e-3), key
+
+
+@pytest.mark.parametrize("text, why", [
+    ("missile.direction=[0.1, 0.0, -1.0]", "missile.direction is oblique"), ('missile.freedom="free"', 'missile.freedom is "free"'),
+    ('missile.position=["5 mm", "0 mm"]', "missile.position lies off the axis"), ("pad.separate=true", "pad.separate lets bodies lie loose"),
+    ('pad.self_contact="on"', 'pad.self_contact is "on"'), ("geometry.parameters.quarter=0", "--set geometry.parameters.quarter=1")])
+def test_drops_that_are_not_axisymmetric_say_why(tmp_path, text, why):
+    done = pre(QUARTER, tmp_path / "m.h5", text, options=["--axisymmetric"])
+    assert done.returncode != 0 and "the drop is not axisymmetric" in done.stderr and why in done.stderr
+
+
+@pytest.mark.parametrize("case, why", [("post", "the pad is no plate: it fills"), ("headform-oblique", "missile.direction is oblique")])
+def test_examples_that_are_no_plates_are_refused(tmp_path, case, why):
+    done = pre(ROOT / "examples" / case / "case.cfg", tmp_path / "m.h5", options=["--axisymmetric"])
+    assert done.returncode != 0 and why in done.stderr
+
+
+@pytest.mark.parametrize("first, why", [("Point(1) = {-10, 0, 0};", "the section crosses the axis: it reaches x = -10 mm"),
+                                        ("Point(1) = {5, 0, 0};", "the section does not reach the axis: it begins at x = 5 mm"),
+                                        ("Point(1) = {0, 0, 1};", "the section leaves its plane")])
+def test_sections_beside_the_half_plane_are_refused(tmp_path, first, why):
+    other = first.replace("Point(1)", "Point(4)").replace(", 0, ", ", 50, ")
+    (tmp_path / "pad.geo").write_text(first + "\nPoint(2) = {100, 0, 0};\nPoint(3) = {100, 50, 0};\n" + other + """
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Curve Loop(1) = {1:4}; Plane Surface(1) = {1};
+Mesh.MeshSizeMin = 10; Mesh.MeshSizeMax = 10;
+Physical Surface("pad") = {1}; Physical Curve("base") = {1}; Physical Curve("top") = {3};
+""")
+    done = pre(SECTION, tmp_path / "m.h5", f'geometry.file="{tmp_path}/pad.geo"', "geometry.parameters={}")
+    assert done.returncode != 0 and why in done.stderr
