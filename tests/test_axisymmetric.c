@@ -6,6 +6,7 @@
 #include "post_check.h"
 
 #include "model/stability.h"
+#include "post/results/revolution.h"
 #include "pre/mesh/section.h"
 #include "solver/step.h"
 
@@ -364,6 +365,42 @@ static void cylinder_under_pressure_converges_to_its_closed_form(void **state) {
         fail_msg("errors %.3g and %.3g, order %.2f", coarse, fine, order);
 }
 
+/* ---- the body of revolution ---- */
+
+static void cells_of_the_quarter_fill_its_sectors(void **state) {
+    sf_mesh mesh;
+    sf_revolution v;
+    sf_error err = SF_ERROR_INIT;
+    double sum = 0, shares = 0, angle = acos(-1) / 24, radius = 0.07, height = 0.06; /* 12 sectors */
+    int64_t types[10] = {0};
+    (void)state;
+    make_mesh(&JITTERED, &mesh);
+    assert_int_equal(sf_revolution_build(mesh.node_count, mesh.position, &v, &err), SF_OK);
+    sf_cell_lists cells = {mesh.cell_count, mesh.cell_ptr[mesh.cell_count], mesh.cell_type, mesh.cell_ptr,
+                           mesh.cell_node};
+    assert_int_equal(sf_revolution_cells(&v, &cells, &err), SF_OK);
+    assert_int_equal(sf_revolution_field(&v, 3, true, &mesh.position, &err), SF_OK);
+    mesh.node_count = v.nodes;
+    mesh.cell_count = cells.count;
+    mesh.cell_type = cells.type;
+    mesh.cell_ptr = cells.ptr;
+    mesh.cell_node = cells.node;
+    for (int64_t c = 0; c < mesh.cell_count; c++) {
+        double volume = sf_mesh_cell_volume(&mesh, c);
+        types[mesh.cell_type[c]]++;
+        assert_true(volume > 0);
+        sum += volume;
+    }
+    for (int64_t i = 0; i < v.nodes; i++)
+        shares += sf_revolution_share(&v, i);
+    assert_close(shares, (double)v.section_nodes / 4, 1e-12);
+    assert_relative(sum, 12 * 0.5 * radius * radius * sin(angle) * height, 1e-12);
+    assert_true(types[SF_CELL_TETRAHEDRON] > 0 && types[SF_CELL_PYRAMID] > 0 && types[SF_CELL_PRISM] > 0 &&
+                types[SF_CELL_HEXAHEDRON] > 0);
+    sf_revolution_free(&v);
+    sf_mesh_free(&mesh);
+}
+
 /* ---- what is refused ---- */
 
 static void refuse_pad(sf_mesh *mesh, const char *text) {
@@ -448,6 +485,7 @@ int main(void) {
         cmocka_unit_test(stabilisation_is_passive),
         cmocka_unit_test(step_is_below_that_of_the_highest_frequency),
         cmocka_unit_test(cylinder_under_pressure_converges_to_its_closed_form),
+        cmocka_unit_test(cells_of_the_quarter_fill_its_sectors),
         cmocka_unit_test(sections_that_are_no_plate_are_refused),
         cmocka_unit_test(missiles_beside_the_axis_are_refused),
         cmocka_unit_test(profile_is_exact_in_the_half_plane),

@@ -70,7 +70,7 @@ static void add_wedge(sf_cell_lists *r, const sf_revolution *p, const int32_t v[
     if (axis == 0) {
         add_cell(r, SF_CELL_PRISM, 6, (const int32_t[]){b[0], b[1], b[2], a[0], a[1], a[2]});
     } else if (axis == 1) { /* v[0] */
-        add_cell(r, SF_CELL_PYRAMID, 5, (const int32_t[]){a[1], b[1], b[2], a[2], a[0]});
+        add_cell(r, SF_CELL_PYRAMID, 5, (const int32_t[]){a[1], a[2], b[2], b[1], a[0]});
     } else if (a[1] == b[1]) { /* v[0] and v[1] */
         add_cell(r, SF_CELL_TETRAHEDRON, 4, (const int32_t[]){a[0], b[2], a[2], a[1]});
     } else { /* v[0] and v[2] */
