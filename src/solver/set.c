@@ -49,6 +49,10 @@ static double move_domain(const sf_model *m, int64_t i) {
     for (int64_t k = m->domain_ptr[i]; k < m->domain_ptr[i + 1]; k++)
         for (int e = 0; e < 9; e++)
             f[e / 3][e % 3] += m->set[3 * (int64_t)m->domain_node[k] + e / 3] * m->domain_b[3 * k + e % 3];
+    if (m->axisymmetric) { /* as in domain_stress.c: the hoop row is u_R's alone, and of a diagonal block */
+        f[1][1] = 1 + f[0][1];
+        f[0][1] = f[2][1] = 0;
+    }
     for (int r = 0; r < 3; r++)
         sf_cross3(f[(r + 1) % 3], f[(r + 2) % 3], cofactor[r]);
     double jacobian = sf_dot3(f[0], cofactor[0]);

@@ -53,6 +53,18 @@ def test_profile_is_the_body_that_it_draws(tmp_path):
         assert profile[key] == pytest.approx(sphere[key], rel=2e-3), key
 
 
+def test_later_drops_on_a_pad_with_set_are_those_of_the_quarter(tmp_path):
+    """A permanent set moves the reference: the hoop row, too."""
+    later = []
+    for options in ([], ["--axisymmetric"]):
+        figures(tmp_path, ROOT / "examples/series/case.cfg", "series.drops=2", "material.memory.set=0.05", options=options)
+        done = call("softfall-post", tmp_path / "r-2.h5", "-o", tmp_path / "second", "--force")
+        assert done.returncode == 0, done.stderr
+        later.append(json.loads((tmp_path / "second/summary.json").read_text()))
+    for key, bound in (("a_max_g", 0.02), ("hic", 0.02), ("set_mm", 0.02)):
+        assert later[1][key] == pytest.approx(later[0][key], rel=bound), key
+
+
 @pytest.mark.parametrize("text, why", [
     ("missile.direction=[0.1, 0.0, -1.0]", "missile.direction is oblique"), ('missile.freedom="free"', 'missile.freedom is "free"'),
     ('missile.position=["5 mm", "0 mm"]', "missile.position lies off the axis"), ("pad.separate=true", "pad.separate lets bodies lie loose"),
