@@ -157,7 +157,8 @@ static bool add_use(const builder *b, workspace *w, int64_t e, int64_t u, int64_
     sf_dual_facet(b->mesh, &b->dual->use[u], t);
     for (int s = 0; s < 2; s++) {
         good = add_place(b, w, t[s].centroid, count, 0, COLUMNS, t[s].area) && good;
-        b->edge[e].flux += sf_dot3(t[s].centroid, t[s].area) / 3;
+        for (int c = 0; c < 3; c++)
+            b->edge[e].flux += t[s].centroid[c] * t[s].area[c] / 3;
     }
     if (!b->section)
         return good;
@@ -405,11 +406,10 @@ static void domain_row(const builder *b, const int64_t *corner_ptr, const int64_
                                       sign * sum[2]});
         }
     }
-    double flux = 0;
+    double aside = 0, *flux = b->section ? &aside : volume;
     for (int64_t k = corner_ptr[i]; k < corner_ptr[i + 1]; k++)
-        boundary_corner(b->mesh, &b->dual->face[corner[k] / 4], (int)(corner[k] % 4), b->out, &flux, row_add,
+        boundary_corner(b->mesh, &b->dual->face[corner[k] / 4], (int)(corner[k] % 4), b->out, flux, row_add,
                         row);
-    *volume += b->section ? 0 : flux;
     for (int64_t k = 0; b->section && k < row->count; k++)
         row->sum[3 * k] -= row->sum[3 * k + 1];
 }
