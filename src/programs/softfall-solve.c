@@ -91,8 +91,12 @@ static void print_model(const sf_model *m, int threads) {
            (long long)m->domain_nnz, (long long)m->fixed_count);
     if (m->rest_count > 0)
         printf("%lld resting nodes, ", (long long)m->rest_count);
-    printf("%lld contact points, 1/%lld of the pad, %d threads\n", (long long)m->contact_count,
-           (long long)m->symmetry_factor, threads);
+    printf("%lld contact points, ", (long long)m->contact_count);
+    if (m->axisymmetric)
+        printf("the section of an axisymmetric pad, ");
+    else
+        printf("1/%lld of the pad, ", (long long)m->symmetry_factor);
+    printf("%d threads\n", threads);
 }
 
 /* The ending, the energies and the errors of a run on stdout; warnings on stderr. */
