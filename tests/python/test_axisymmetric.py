@@ -43,6 +43,9 @@ def test_section_and_quarter_are_the_same_drop(tmp_path):
         assert section[key] == pytest.approx(quarter[key], rel=bound), key
         assert drawn[key] == pytest.approx(section[key], rel=bound), key
     assert abs(section["energy_error"]) < 1e-3
+    rows = [line.split(",") for line in (tmp_path / "out/section.csv").read_text().splitlines() if line.startswith("section,")]
+    assert len(rows) == drawn["nodes"] == len({row[1] for row in rows})  # the section, whole, with the model's numbers
+    assert all(float(row[3]) == 0 for row in rows)
 
 
 def test_profile_is_the_body_that_it_draws(tmp_path):

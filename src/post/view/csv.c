@@ -184,13 +184,14 @@ static sf_status write_rows(sf_csv *csv, const sf_results *r, const sf_frame *fr
     sf_axis_find(r, axis);
     top = sf_section_stations(r, station);
     for (int64_t i = 0; i < r->node_count; i++) {
-        if (fabs(r->position[3 * i + 1] - axis[1]) < 0.499 * cbrt(r->volume[i]))
+        double off = fabs(r->position[3 * i + 1] - axis[1]);
+        if (r->axisymmetric ? off == 0 : off < 0.499 * cbrt(r->volume[i])) /* the section itself */
             nodes[count++] = (int32_t)i;
     }
     qsort_r(nodes, count, sizeof *nodes, by_depth, r->position);
     for (size_t i = 0; i < count; i++) {
         sf_section_point point = {.node = {nodes[i]}, .weight = {1}};
-        sf_csv_print(csv, "section,%d", nodes[i]);
+        sf_csv_print(csv, "section,%d", r->axisymmetric ? r->revolution.node[nodes[i]] : nodes[i]);
         put_point(csv, r, frame, top, &point);
     }
     for (int s = 0; s < SF_SECTION_STATIONS; s++) {
