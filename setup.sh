@@ -75,7 +75,7 @@ install_packages() {
 
 # build [CMAKE OPTION]...: the preset "default" in build/. Ninja reconfigures when a CMakeLists.txt changes. In a copied or
 # moved checkout build/ still names the sources of the old place, and would compile those. A build/ that was configured without
-# help2man makes no manual pages.
+# help2man makes no manual pages, and without the Python modules no completions of the Python programs.
 build() {
     local home
     home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' build/CMakeCache.txt 2>/dev/null) || true
@@ -83,7 +83,8 @@ build() {
         echo "build/ was configured for the sources in $home: it is configured afresh for those in $PWD."
         cmake --preset default --fresh
     elif [ ! -f build/build.ninja ] || [ CMakePresets.json -nt build/build.ninja ] ||
-        { command -v help2man >/dev/null && grep -q '^SOFTFALL_HELP2MAN:.*NOTFOUND' build/CMakeCache.txt; }; then
+        { command -v help2man >/dev/null && grep -q '^SOFTFALL_HELP2MAN:.*NOTFOUND' build/CMakeCache.txt; } ||
+        { grep -q '^SOFTFALL_PYTHON_HELP:INTERNAL=$' build/CMakeCache.txt && python3 -c 'import h5py, matplotlib, numpy, pandas' 2>/dev/null; }; then
         cmake --preset default
     fi
     cmake --build build --parallel "$(processors)" "$@"
