@@ -5,14 +5,17 @@
     tools/verification_page.py SECTION.md... >docs/verification.md
 
 A study writes each check as a row "quantity | measured | required | pass". Checks "case: quantity" that several cases
-share become one table of cases against quantities; up to six checks become a sentence. A table named in TURNED gets one
-row for all values of its column. Every figure and every bound stays."""
+share become one table of cases against quantities; up to six checks become a sentence. A long table named
+in KEPT leaves some of its rows, or all, to its section, with a link. Every bound stays."""
+import pathlib
 import re
 import sys
 
 HEAD = "| quantity | measured | required | |"
 SENTENCE = 6  # checks: a longer table stays one
-TURNED = {"cloud": 3, "body force": 5, "foam law": 4}  # first column: figures at the end of a row that stand beside those of its other values
+KEPT = {  # first column: the rows of which one of the first two cells matches; none if the checks below the table say it all
+    "mesh": None, "body force": None, "foam law": None, "cloud": None,
+    "depth": r"(10|20|30|38|40|42) mm", "case": r"5\.000|→ 0"}
 
 
 def checks(lines):
@@ -93,24 +96,19 @@ def write_checks(lines):
     return page
 
 
-def turn(head, lines):
-    """The table with the figures of all values of its first column side by side, or the table itself."""
-    titles, *rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in [head, *lines[1:]]]
-    figures = TURNED.get(titles[0])
-    if not figures:
+def keep(head, lines, path):
+    """The rows that KEPT leaves of a table of more than eight rows, or of five with more than ten columns, and where the others are."""
+    titles = [cell.strip() for cell in head.strip("|").split("|")]
+    rows = lines[1:]
+    if titles[0] not in KEPT or (len(rows) <= 8 and len(titles) <= 10):
         return [head, *lines]
-    groups = list(dict.fromkeys(row[0] for row in rows))
-    table = {}
-    for row in rows:
-        table.setdefault(tuple(row[1:-figures]), {})[row[0]] = row[-figures:]
-    title = titles[1:-figures]
-    for group in groups:
-        title += [f"{group}: {titles[-figures]}", *titles[1 - figures:]]
-    return [f"| {' | '.join(title)} |", "|---" * len(title) + "|"] + [
-        "| " + " | ".join([*key, *(cell for group in groups for cell in table[key].get(group, [""] * figures))]) + " |" for key in table]
+    pattern = KEPT[titles[0]]
+    kept = [row for row in rows if pattern and any(re.fullmatch(pattern, cell.strip()) for cell in row.strip("|").split("|")[:2])]
+    link = f"[images/verification/{path.name}](images/verification/{path.name})"
+    return [head, lines[0], *kept, "", f"All {len(rows)} rows: {link}."] if kept else [f"Table: {link}."]
 
 
-def shorten(text):
+def shorten(text, path):
     page, lines = [], text.split("\n")
     while lines:
         line = lines.pop(0)
@@ -120,12 +118,13 @@ def shorten(text):
         table = []
         while lines and lines[0].startswith("|"):
             table.append(lines.pop(0))
-        page += write_checks(table[1:]) if line == HEAD else turn(line, table)
+        page += write_checks(table[1:]) if line == HEAD else keep(line, table, path)
     return re.sub(r"\n{3,}", "\n\n", "\n".join(page)).strip() + "\n"
 
 
 def main():
-    print("\n".join(shorten(open(path, encoding="utf-8").read()) for path in sys.argv[1:]), end="")
+    paths = [pathlib.Path(name) for name in sys.argv[1:]]
+    print("\n".join(shorten(path.read_text(encoding="utf-8"), path) for path in paths), end="")
 
 
 if __name__ == "__main__":

@@ -82,13 +82,11 @@ static void study_law(sf_study *s, const sf_indentation *in) {
         bend = larger(bend, fabs(over_line(law, 1 + 0.01 * k)));
     sf_study_text(
         s,
-        "### The law\n\nBoth codes use T(λ) = Σ 2μ/α (λ^(α−1) − 1/λ), separable in the principal "
-        "stretches: CalculiX as `*HYPERFOAM` with ν = 0, softfall as a table of the compression "
-        "branch. Two terms, μ = %.1f and %.1f kPa, α = %g and %g, approximate the "
-        "EVA-like curve of verify/materials/eva_like.csv between "
-        "10 and 85 %% strain, but not its knee at lower strain. In tension softfall uses the "
-        "straight line E (λ − 1) with E = 2 Σ μ = %.1f kPa; the law differs from it by %+.1f %% at λ "
-        "= 1.5 and %+.1f %% at λ = 2.\n\n",
+        "### The law\n\nBoth codes use T(λ) = Σ 2μ/α (λ^(α−1) − 1/λ) in each principal stretch: CalculiX as "
+        "`*HYPERFOAM` with ν = 0, softfall as a table in compression. μ = %.1f and %.1f kPa, α = %g and %g "
+        "approximate verify/materials/eva_like.csv from 10 to 85 %% strain. In tension softfall has the straight "
+        "line E (λ − 1), E = 2 Σ μ = %.1f kPa; the law differs from it by %+.1f %% at λ = 1.5 and %+.1f %% at λ = "
+        "2.\n\n",
         1e-3 * law->mu[0], 1e-3 * law->mu[1], law->alpha[0], law->alpha[1], 1e-3 * sf_ogden_modulus(law),
         100 * over_line(law, 1.5), 100 * over_line(law, 2));
     if (err.status != SF_OK) {
@@ -132,10 +130,9 @@ static void study_element(sf_study *s, const sf_indentation *in) {
             sf_ccx_forces_free(&f);
         }
     }
-    sf_study_text(s,
-                  "### One element of CalculiX\n\nOne C3D8 element with prescribed displacements of "
-                  "all nodes, in 50 increments. The checks compare the force on each face with T(λ) of its "
-                  "direction (relative difference).\n\n");
+    sf_study_text(
+        s, "### One element of CalculiX\n\nOne C3D8 element with prescribed displacements, in 50 increments; "
+           "relative difference of the force on each face from T(λ) of its direction.\n\n");
     if (err.status != SF_OK) {
         sf_study_fail(s, &err);
         return;
@@ -194,8 +191,9 @@ static void extrapolate_pair(const pair *p, pair *limit) {
 }
 
 static void print_forces(sf_study *s, const pair *p, const pair *limit) {
-    sf_study_text(s, "The table gives the force in N (softfall / CalculiX) and the difference. h → 0: the "
-                     "fit F = F₀ + a h² over the three finest meshes.\n\n| depth");
+    sf_study_text(
+        s, "Force in N (softfall / CalculiX) and difference; h → 0 is the fit F = F₀ + a h² over the three "
+           "finest meshes.\n\n| depth");
     for (int m = 0; m < MESHES; m++)
         sf_study_text(s, " | %.3g mm | ", spacing(m));
     sf_study_text(s, " | h → 0 | |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
@@ -306,12 +304,12 @@ static sf_status study_pad(sf_study *s, const sf_indentation *in, pair p[MESHES]
     pair limit;
     extrapolate_pair(p, &limit);
     sf_study_text(
-        s, "### Indentation\n\nA rigid sphere of 160 mm diameter indents a quarter of a pad of 200 × 200 "
-           "× 50 mm, glued at its base, without friction. Both codes use the same lattice of hexahedra, "
-           "node for node, with spacings of 10, 7.14, 5 and 3.85 mm. CalculiX: C3D8, static, "
-           "face-to-face contact with a linear penalty of 100 N/mm³, triangles of 3 mm for the sphere. "
-           "softfall: the exact sphere, of 10⁵ kg, at 1 m/s (DAMP 0.05, no other viscosity); the force "
-           "is averaged over ±0.25 mm of depth.\n\n");
+        s,
+        "### Indentation\n\nA rigid sphere of 160 mm diameter indents a quarter of a pad of 200 × 200 × 50 mm, "
+        "glued at its base, without friction, on the same hexahedra in both codes. CalculiX: C3D8, static, "
+        "face-to-face contact with a linear penalty of 100 N/mm³, triangles of 3 mm for the sphere. softfall: the "
+        "exact sphere, of 10⁵ kg, at 1 m/s (DAMP 0.05, no other viscosity); the force is averaged over ±0.25 mm "
+        "of depth.\n\n");
     print_forces(s, p, &limit);
     check_forces(s, p, &limit);
     write_data(s, p, &limit);
@@ -370,13 +368,10 @@ static void print_stretches(sf_study *s, const sf_ogden *law, const sf_indentati
     }
     sf_study_text(
         s,
-        "\nAt 42 mm the difference is above 3 %% on every mesh, and the limits differ too. One reason is "
-        "known. Up to 38 mm the stretch stays below 1.3, where the two laws differ by less than 1 "
-        "%%. At greater depths the foam beside the sphere is stretched further; at the largest "
-        "stretch of the table CalculiX's law lies %.1f %% above softfall's line. According to the "
-        "effect of the stiffness in tension (above), this can cause about half of the difference of "
-        "the limits at 42 mm. The other half is not explained; a stiffer contact in CalculiX would "
-        "increase it.\n\n",
+        "\nAt 42 mm the difference is above 3 %% on every mesh. Beside the sphere the foam is stretched beyond 1.3, "
+        "where the two laws part; at the largest stretch of the table CalculiX's law lies %.1f %% above softfall's "
+        "line. That can cause about half of the difference of the limits at 42 mm; the other half is not "
+        "explained.\n\n",
         100 * over_line(law, largest));
 }
 

@@ -109,11 +109,10 @@ static void study_points(sf_study *s, const char *folder) {
     static const double nus[][SF_OGDEN_TERMS] = {{0, 0}, {0.1, 0.1}, {0.25, 0.25}, {0, 0.3}};
     sf_study_text(
         s,
-        "### Material points\n\nOne C3D8 element of CalculiX, `*HYPERFOAM` with two terms (μ = 11.2 and 90.6 "
-        "kPa, α = -2 and 3.25), follows a deformation in %d increments: compression to 85 %%, shear to 100 %%. "
-        "The checks take the largest difference of a component of P, over the largest component of its "
-        "state. Sides that are free move as softfall's law has them, and CalculiX's force on "
-        "them counts as a difference. CalculiX prints forces with 7 digits.\n\n",
+        "### Material points\n\nOne C3D8 element, `*HYPERFOAM` with two terms (μ = 11.2 and 90.6 kPa, α = -2 and "
+        "3.25), in %d increments: compression to 85 %%, shear to 100 %%. Largest difference of a component of P, "
+        "over the largest component of its state; CalculiX's force on free sides counts as a difference. CalculiX "
+        "prints 7 digits.\n\n",
         POINTS);
     for (size_t n = 0; n < sizeof nus / sizeof *nus; n++)
         for (int p = 0; p < PATHS; p++) {
@@ -174,22 +173,13 @@ static double largest_of_limits(const pair p[MESHES], int first) {
 static void describe(sf_study *s, const sf_indentation *in) {
     sf_study_text(
         s,
-        "### Indentation\n\nThe sphere and the quarter pad of the study above, with ν = %g in both "
-        "terms, on the same lattice of hexahedra in both codes. CalculiX has two contacts. *Node to "
-        "surface* keeps the nodes of the pad's top out of the sphere, as softfall does. *Face to "
-        "face*, that of the study above, keeps the faces between them out, too: a flat face of side "
-        "h touches a sphere of radius R with its middle, and its corners lie up to h² / 4R deeper: "
-        "0.08 mm at 5 mm, where the force grows by 9 to 75 %% per mm. It depends on its increments, "
-        "too: on 10 mm, increments of at most 0.5 mm instead of 2 mm lower its force by up to 0.75 "
-        "%%, that of node to surface change by 0.05 %%. So node to surface is the contact at matched "
-        "spacing, and the bound of 2 %% is for it. It was taken after face to face had shown 1.8 to "
-        "3.7 %% at 5 mm from 10 to 34 mm; that contact is in the table for one mesh. Node to surface "
-        "diverges at some depth: at 5 mm it reaches the 30 mm prescribed here (of 34 mm 31.3 mm), at "
-        "7.14 mm not (of 34 mm it reached 32 mm, and with a fifth of its stiffness all, where "
-        "softfall is 1.7 %% below it); so the depth is checked at 5 mm only, which it was not meant "
-        "to be. Four times the stiffness changes its force on 10 mm by 0.015 %% at most, to 20 mm. "
-        "(Stiffness, increments and deeper ends were tried by hand; no command of the repository "
-        "repeats them.)\n\n",
+        "### Indentation\n\nThe sphere and the quarter pad of the study above, with ν = %g in both terms. The bound "
+        "of 2 %% is for CalculiX's contact *node to surface*, which keeps the nodes of the pad's top out of the "
+        "sphere, as softfall does. *Face to face* keeps the faces between them out, too: their corners lie up to h² "
+        "/ 4R deeper (0.08 mm at 5 mm, where the force grows by 9 to 75 %% per mm), and it depends on its increments "
+        "(up to 0.75 %% on 10 mm). Node to surface diverges at some depth: at 5 mm it reaches the prescribed 30 mm, "
+        "at 7.14 mm it does not, so the depth is checked at 5 mm only. The bound and this choice were made after "
+        "face to face had shown 1.8 to 3.7 %% at 5 mm.\n\n",
         in->law.nu[0]);
 }
 

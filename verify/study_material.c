@@ -330,11 +330,10 @@ int main(int argc, char **argv) {
     sf_study_begin(&s, "material", "Material", argc, argv);
     sf_study_text(
         &s,
-        "A plate presses a jittered cube of %d × %d × %d cells on a smooth base at constant speed, with "
-        "the solver's own time steps. The curve is a formula, which the program receives as a table "
-        "up to 80 %%; rule H1 holds beyond. Each error is the largest of all steps. It is relative "
-        "to the stress (the sum of the magnitudes of its elastic and viscous parts), or to %g Pa "
-        "where the stress is smaller.\n\n",
+        "A plate presses a jittered cube of %d × %d × %d cells on a smooth base at constant speed, with the solver's "
+        "own time steps. The curve is a table up to 80 %%, then rule H1. Each error is the largest of all steps, "
+        "relative to the stress (the sum of the magnitudes of its elastic and viscous parts), or to %g Pa where that "
+        "is larger.\n\n",
         CELLS, CELLS, CELLS, FLOOR);
     FILE *data = sf_study_file(&s, "curves.txt");
     loading_and_unloading(&s, data);

@@ -339,14 +339,13 @@ static void one_state(sf_study *s, int cloud, int material, int deformation, ext
 static void all_states(sf_study *s) {
     extremes e = {.estimate_low = INFINITY, .bound_low = INFINITY, .growth = INFINITY};
     sf_study_text(
-        s, "The study assembles the tangent stiffness of all three components by central "
-           "differences of the solver's forces (including the stabilisation; each domain stays on its "
-           "branch, loading or unloading). A dense solver (GSL) computes its largest eigenvalue. With "
-           "viscosity the exact limit is the Δt at which 4M − 2ΔtC − Δt²K becomes singular. *Bound*: "
-           "the guaranteed bound (theory, eq. 31). *Estimate*: the solver's time step at `step_safety` "
-           "1.\n\n"
-           "| cloud | foam | state | exact limit, µs | bound / exact | estimate / exact "
-           "|\n|---|---|---|---|---|---|\n");
+        s,
+        "The exact limit comes from the assembled tangent stiffness (central differences of the solver's forces, "
+        "stabilisation included): its largest eigenvalue, or, with viscosity, the Δt at which 4M − 2ΔtC − Δt²K "
+        "becomes singular. It is taken for three foams in six states on three clouds. *Bound*: the guaranteed "
+        "bound (theory, eq. 31). *Estimate*: the solver's time step at `step_safety` 1.\n\n"
+        "| cloud | foam | state | exact limit, µs | bound / exact | estimate / exact |\n"
+        "|---|---|---|---|---|---|\n");
     for (int cloud = 0; cloud < CLOUDS; cloud++)
         for (int material = 0; material < MATERIALS; material++)
             for (int deformation = 0; deformation < DEFORMATIONS; deformation++)
