@@ -120,19 +120,6 @@ def compared():
     return table_of(["measured stress of loading", "over that of"] + ["at %g %% strain" % (100 * e) for e in strains], rows)
 
 
-def gas_of_leap():
-    """What the numbers of the forms come to where a test ends before densification."""
-    rows = []
-    for name in ("gas_solid, Phi free, p0 = 101 kPa, no B", "gas", "avalle"):
-        found, sentence = fit(FOAMS["LEAP, cycle 1"], *FORMS[name])
-        if not found:
-            sys.exit("foams_table: LEAP: %s" % sentence)
-        rows.append([name, percent(found["loading_rms"]),
-                     ", ".join("%s %.3g %s" % (p["name"], p["value"], p["unit"]) if p["unit"] else "%s %.3g" % (p["name"], p["value"])
-                               for p in found["parameters"])])
-    return table_of(["numbers of LEAP, cycle 1", "rms of loading (%)", "parameters found"], rows)
-
-
 def loading():
     refused, rows = [], []
     for name, (form, keys) in FORMS.items():
@@ -199,16 +186,15 @@ def predicted():
 def rates():
     rows, refused = [], []
     for foam, files in (("Zorbium, three rates", ZORBIUM), ("VN600, 0.001 and 10/s", VN600)):
-        for form in ("gas", "rusch", "avalle", "spline"):
-            for rate in ("none", "factor", "maxwell", "both") if form != "spline" else ("none", "factor"):
-                found, points = fit(files, form, 'rate_model = "%s";' % rate)
-                if not found:
-                    refused.append("%s, %s, %s: %s" % (foam, form, rate, points))
-                    continue
-                value = {p["name"]: p["value"] for p in found["parameters"]}
-                rows.append([foam, form, rate, "%d" % found["parameter_count"], percent(found["loading_rms"]),
-                             ", ".join(percent(t["loading_rms"]) for t in found["tests"]),
-                             "%.3g" % value["rate_factor"] if "rate_factor" in value else "-", fast_plateau(foam, points, value)])
+        for rate in ("none", "factor", "maxwell", "both"):
+            found, points = fit(files, "avalle", 'rate_model = "%s";' % rate)
+            if not found:
+                refused.append("%s, %s: %s" % (foam, rate, points))
+                continue
+            value = {p["name"]: p["value"] for p in found["parameters"]}
+            rows.append([foam, "avalle", rate, "%d" % found["parameter_count"], percent(found["loading_rms"]),
+                         ", ".join(percent(t["loading_rms"]) for t in found["tests"]),
+                         "%.3g" % value["rate_factor"] if "rate_factor" in value else "-", fast_plateau(foam, points, value)])
     head = ["rates", "form", "rate", "parameters", "rms of loading (%)", "of each rate", "rate_factor", "at 3000/s and a strain of 0.2 (kPa)"]
     return table_of(head, rows), refused
 
@@ -304,7 +290,7 @@ if sys.argv[2] == "--materials":
     sys.exit()
 first, refused = loading()
 last, refused_rates = rates()
-for table in (compared(), first, gas_of_leap(), loops(), free_curve(), predicted(), last):
+for table in (compared(), first, loops(), free_curve(), predicted(), last):
     print("\n".join(table) + "\n")
     if sys.argv[2] == "--docs":
         replace_table(DOCUMENT, table)
