@@ -10,6 +10,7 @@ import sys
 
 DOCS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../docs")
 COLUMNS = ["standard", "item", "value", "status", "source"]
+SHOWN = COLUMNS[:4]  # the page links the sources in the CSV file
 STATUS = {"C": "confirmed", "M": "**not confirmed**", "?": "**not found**"}
 BEGIN, END = "<!-- generated: standards -->\n", "<!-- end -->\n"
 
@@ -36,9 +37,9 @@ def make_table(rows):
     def cell(text):
         return "not found" if text == "?" else text.replace("|", "\\|")
 
-    lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
+    lines = ["| " + " | ".join(SHOWN) + " |", "|" + "---|" * len(SHOWN)]
     for row in rows:
-        cells = [STATUS[row[key]] if key == "status" else cell(row[key]) for key in COLUMNS]
+        cells = [STATUS[row[key]] if key == "status" else cell(row[key]) for key in SHOWN]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
