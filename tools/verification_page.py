@@ -5,17 +5,19 @@
     tools/verification_page.py SECTION.md... >docs/verification.md
 
 A study writes each check as a row "quantity | measured | required | pass". Checks "case: quantity" that several cases
-share become one table of cases against quantities; up to six checks become a sentence. A long table named
-in KEPT leaves some of its rows, or all, to its section, with a link. Every bound stays."""
+share become one table of cases against quantities; up to six checks become a sentence. A table named in KEPT
+leaves some of its rows, or all, to its section, with a link. Every bound stays."""
 import pathlib
 import re
 import sys
 
 HEAD = "| quantity | measured | required | |"
 SENTENCE = 6  # checks: a longer table stays one
-KEPT = {  # first column: the rows of which one of the first two cells matches; none if the checks below the table say it all
-    "mesh": None, "body force": None, "foam law": None, "cloud": None,
-    "depth": r"(10|20|30|38|40|42) mm", "case": r"5\.000|→ 0"}
+KEPT = {  # first column of a table: the rows of which one of the first two cells matches; None if the checks below it say enough
+    "mesh": None, "body force": None, "foam law": None, "cloud": None, "cells along L": None, "Δt / limit": None, "k h / π": None,
+    "spacing h, mm": None, "depth, mm": None, "friction coefficient": None, "mean strain": None, "Z₂/Z₁": None,
+    "depth": r"(10|20|30|38|40|42) mm", "case": r"5\.000|→ 0",
+    "change": r"stabilisation 0\.5|smooth .*|friction .*|DAMP 0|no (rate|hyst|grav).*|tension .*|(speed|mass) .*"}
 
 
 def checks(lines):
@@ -97,14 +99,15 @@ def write_checks(lines):
 
 
 def keep(head, lines, path):
-    """The rows that KEPT leaves of a table of more than eight rows, or of five with more than ten columns, and where the others are."""
-    titles = [cell.strip() for cell in head.strip("|").split("|")]
-    rows = lines[1:]
-    if titles[0] not in KEPT or (len(rows) <= 8 and len(titles) <= 10):
+    """The rows that KEPT leaves of a table, and where the others are."""
+    title = head.strip("|").split("|")[0].strip()
+    if title not in KEPT:
         return [head, *lines]
-    pattern = KEPT[titles[0]]
+    rows, pattern = lines[1:], KEPT[title]
     kept = [row for row in rows if pattern and any(re.fullmatch(pattern, cell.strip()) for cell in row.strip("|").split("|")[:2])]
-    link = f"[images/verification/{path.name}](images/verification/{path.name})"
+    link = f"[{path.name}](images/verification/{path.name})"
+    if len(kept) == len(rows):
+        return [head, *lines]
     return [head, lines[0], *kept, "", f"All {len(rows)} rows: {link}."] if kept else [f"Table: {link}."]
 
 
