@@ -122,12 +122,11 @@ static void hertz_study(sf_study *s) {
     static const double spacing[LEVELS] = {5, 2.5, 5.0 / 3, 1.25, 1};
     double error[LEVELS], ratio[LEVELS];
     sf_study_text(
-        s, "### Rigid sphere on a thick linear pad\n\nThe linear foam (stress = E × strain in "
-           "tension and in compression) is isotropic with ν = 0 at small strain. A sphere of radius 200 "
-           "mm indents a quarter of a block of 400 × 400 × 200 mm, bonded at its base, to a depth of "
-           "0.5 mm (contact radius a = 10 mm), and is held there until the pad is at rest. Reference: "
-           "Hertz with the finite-thickness series of Dimitriadis et al. 2002 (a correction of 4 %% at "
-           "that depth).\n\n");
+        s,
+        "### Rigid sphere on a thick linear pad\n\nA sphere of radius 200 mm indents a quarter of a block of 400 "
+        "× 400 × 200 mm of a linear foam (ν = 0), bonded at its base, by 0.5 mm (contact radius a = 10 mm), and "
+        "rests. Reference: Hertz with the finite-thickness series of Dimitriadis et al. 2002 (a correction of 4 "
+        "%% at that depth).\n\n");
     sf_study_text(s, "| spacing h, mm | a/h | force / closed form |\n|---|---|---|\n");
     for (int k = 0; k < LEVELS; k++) {
         fixture f;
@@ -287,11 +286,10 @@ static void plate_study(sf_study *s) {
     FILE *data = sf_study_file(s, "plate.txt");
     sf_study_text(
         s,
-        "### Plate on a column\n\nA plate as wide as the pad, of 460 kg/m², falls at 4.5 m/s on 50 mm of "
-        "foam with curve and hysteresis. The first foam has 0.35 kg/m³, so that its inertia is "
-        "negligible (mass of pad / plate %.1e; the first wave carries ρcv = %.1f kPa); the reference "
-        "is the ordinary differential equation. The second foam has 35 kg/m³ and the Maxwell branch; "
-        "the reference is a one-dimensional wave model of 200 elements.\n\n",
+        "### Plate on a column\n\nA plate as wide as the pad, of 460 kg/m², falls at 4.5 m/s on 50 mm of foam with "
+        "curve and hysteresis: one of 0.35 kg/m³, whose inertia is negligible (mass of pad / plate %.1e; the first "
+        "wave carries ρcv = %.1f kPa), against the ordinary differential equation; one of 35 kg/m³ with the Maxwell "
+        "branch against a one-dimensional wave model of 200 elements.\n\n",
         0.35 * 0.05 / 460, 1e-3 * column.speed * sqrt(0.35 * sf_formula_slope(0)));
     const fixture_block coarse = {.cells = {6, 6, 4}, .spacing = 0.0125};
     const fixture_block fine = {.cells = {6, 6, 20}, .spacing = 0.0125, .flatness = 0.2};
@@ -403,14 +401,14 @@ static sliding press_obliquely(double friction) {
 static void friction_study(sf_study *s) {
     static const double coefficients[] = {0.1, 0.3, 0.45, 0.6, 1};
     const double stuck = 0.5 * tan(TILT * PI / 180);
-    sf_study_text(s,
-                  "### Friction\n\nA plate moves at %g degrees into a wide block (110 × 110 × 15 mm) of the "
-                  "linear foam, to 0.3 %% strain. If the plate sticks, the ratio of tangential to normal "
-                  "force away from the block's edges is half the tangent of that angle (shear modulus E/2): "
-                  "%.2f. With smaller coefficients of friction it must slide.\n\n"
-                  "| friction coefficient | tangential / normal force | in the middle | points on the bound "
-                  "| slip in the middle, mm | friction work, J |\n|---|---|---|---|---|---|\n",
-                  TILT, stuck);
+    sf_study_text(
+        s,
+        "### Friction\n\nA plate moves at %g degrees into a wide block (110 × 110 × 15 mm) of the linear "
+        "foam, to 0.3 %% strain. If it sticks, tangential over normal force away from the edges is half "
+        "the tangent of that angle: %.2f.\n\n| friction coefficient | tangential / normal force | in the "
+        "middle | points on the bound | slip in the middle, mm | friction work, J "
+        "|\n|---|---|---|---|---|---|\n",
+        TILT, stuck);
     double beyond = -1, sliding_error = 0, centre_error = 0, slip = 0, least_work = INFINITY;
     for (size_t k = 0; k < sizeof coefficients / sizeof coefficients[0]; k++) {
         double mu = coefficients[k];
@@ -487,11 +485,11 @@ static void drop_study(sf_study *s) {
     static const double spacing[SIZES] = {20, 10, 20.0 / 3};
     double lost[SIZES], imbalance = 0;
     sf_study_text(
-        s, "### Base reaction and energy of the 50 mm drop at 4.5 m/s\n\nIn every step the "
-           "missile's force, the base's reaction and the rate of change of the pad's momentum must "
-           "balance. Contact loses energy by the inelastic impact of surface nodes.\n\n| spacing, mm | "
-           "largest missile force, N | largest base reaction, N | lost in contact / internal "
-           "energy |\n|---|---|---|---|\n");
+        s,
+        "### Base reaction and energy of the 50 mm drop at 4.5 m/s\n\nIn every step the missile's force, the "
+        "base's reaction and the rate of change of the pad's momentum balance; contact loses energy by the "
+        "inelastic impact of surface nodes.\n\n| spacing, mm | largest missile force, N | largest base reaction, "
+        "N | lost in contact / internal energy |\n|---|---|---|---|\n");
     for (int k = 0; k < SIZES; k++) {
         FILE *data = k == 1 ? sf_study_file(s, "drop.txt") : NULL;
         drop_record r = run_drop(spacing[k], data);

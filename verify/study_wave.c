@@ -110,10 +110,9 @@ static void vibration_in_h(sf_study *study) {
     FILE *file = sf_study_file(study, "vibration.dat");
     sf_study_text(
         study,
-        "### Free vibration: error against the spacing\n\nA column of 100 × 25 × 25 mm with one end held "
-        "vibrates in its lowest longitudinal mode for two periods, with a time step of L/(160 c) on "
-        "every mesh. Exact: ω = (π/2L) √(E/ρ) = "
-        "%.3f rad/s.\n\n| cells along L | h, mm | ω, rad/s | error |\n|---|---|---|---|\n",
+        "### Free vibration: error against the spacing\n\nLowest longitudinal mode of a column of 100 × 25 × 25 mm "
+        "with one end held, two periods, time step L/(160 c). Exact: ω = (π/2L) √(E/ρ) = %.3f rad/s.\n\n"
+        "| cells along L | h, mm | ω, rad/s | error |\n|---|---|---|---|\n",
         exact);
     for (int k = 0; k < LEVELS; k++) {
         int n = 8 << k;
@@ -139,10 +138,9 @@ static void vibration_in_dt(sf_study *study) {
     FILE *file = sf_study_file(study, "step.dat");
     sf_study_text(
         study,
-        "### Free vibration: error against the time step\n\nThe column of 8 cells with prescribed time "
-        "steps, compared with a step of 1/64 of the stability limit (%.3g µs). "
-        "Central differences raise the frequency by "
-        "(ω Δt)²/24.\n\n| Δt / limit | error | (ω Δt)²/24 |\n|---|---|---|\n",
+        "### Free vibration: error against the time step\n\nThe column of 8 cells against a step of 1/64 of the "
+        "stability limit (%.3g µs). Central differences raise the frequency by (ω Δt)²/24.\n\n| Δt / limit | error | "
+        "(ω Δt)²/24 |\n|---|---|---|\n",
         1e6 * limit);
     for (int k = 0; k < LEVELS; k++) {
         dt[k] = 0.9 * limit / (1 << k);
@@ -201,9 +199,9 @@ static void travelling_pulse(sf_study *study) {
     enum { LEVELS = 4 };
     double h[LEVELS], error[LEVELS];
     FILE *file = sf_study_file(study, "pulse.dat");
-    sf_study_text(study, "### Travelling pulse\n\nA cos⁴ pulse of total width L/2 travels 0.4 L through a "
-                         "column, with a time step of 0.5 h/c. The error is that of u_h in L2, relative.\n\n"
-                         "| cells along L | error |\n|---|---|\n");
+    sf_study_text(study,
+                  "### Travelling pulse\n\nA cos⁴ pulse of width L/2 travels 0.4 L through a column, time "
+                  "step 0.5 h/c; relative error of u_h in L2.\n\n| cells along L | error |\n|---|---|\n");
     for (int k = 0; k < LEVELS; k++) {
         int n = 20 << k;
         h[k] = LENGTH / n;
@@ -318,11 +316,10 @@ static void dispersion(sf_study *study) {
     start_lattice(0, &plain);
     sf_study_text(
         study,
-        "### Dispersion\n\nLongitudinal plane waves d = a cos(k·X) on the infinite lattice with lumped "
-        "mass. The program's own force on a node gives ω², with stabilisation 0.1 and without. For "
-        "comparison: trilinear hexahedra with lumped mass (fully integrated, ν = 0; ω h/c = 2 "
-        "sin(kh/2) along an axis). The table gives the ratio of the phase speed to the exact one, with k "
-        "along an axis and along the diagonal of space (k h / π in each direction).\n\n");
+        "### Dispersion\n\nRatio of the phase speed of longitudinal plane waves d = a cos(k·X) to the exact one on "
+        "the infinite lattice, from the program's own force on a node, with stabilisation 0.1 and without, along an "
+        "axis and the diagonal of space (k h / π in each direction); beside trilinear hexahedra with lumped mass (ω "
+        "h/c = 2 sin(kh/2) along an axis).\n\n");
     dispersion_table(study, &lattice, &plain);
     for (int axes = 1; axes <= 3; axes += 2) {
         double phase[2] = {PI / 8, PI / 16}, error[2];
