@@ -4,15 +4,14 @@
 
     tools/verification_page.py SECTION.md... >docs/verification.md
 
-A study writes each check as a row "quantity | measured | required | pass". Checks "case: quantity" that several cases
-share become one table of cases against quantities; up to six checks become a sentence. A table named in KEPT
-leaves some of its rows, or all, to its section, with a link. Every bound stays."""
+A study writes each check as a row "quantity | measured | required | pass". Checks "case: quantity" that several cases share
+become the range of each quantity, in a sentence or a list. A table named in KEPT leaves some of its rows, or all, to
+its section, with a link. Every bound stays."""
 import pathlib
 import re
 import sys
 
 HEAD = "| quantity | measured | required | |"
-SENTENCE = 6  # checks: a longer table stays one
 KEPT = {  # first column of a table: the rows of which one of the first two cells matches; None if the checks below it say enough
     "mesh": None, "body force": None, "foam law": None, "cloud": None, "cells along L": None, "Δt / limit": None, "k h / π": None,
     "spacing h, mm": None, "depth, mm": None, "friction coefficient": None, "mean strain": None, "Z₂/Z₁": None,
@@ -54,37 +53,33 @@ def take_matrices(rows):
     return groups, plain
 
 
+def write_list(what, items):
+    """A sentence, or a list of more than three items."""
+    if len(items) <= 3:
+        return [f"Required{what}: " + "; ".join(items) + ".", ""]
+    return [f"Required{what}:", "", *(f"- {item}" for item in items), ""]
+
+
 def write_matrix(names, cases):
+    """One table of two cases; of one, or of more with a bound for all, a sentence with the range of each quantity."""
     bound = {name: {cases[case][name][1] for case in cases} for name in names}
 
-    def head(name):
-        return f"{name} ({next(iter(bound[name]))})" if len(bound[name]) == 1 else name
+    def span(name):
+        values = sorted({cases[case][name][0] for case in cases}, key=float)
+        return f"{name}: **{' to '.join(dict.fromkeys((values[0], values[-1])))}** ({next(iter(bound[name]))})"
+
+    if len(cases) != 2 and all(len(required) == 1 for required in bound.values()):
+        listed = f" ({'; '.join(cases)})" if len(cases) <= 5 else ""
+        return write_list(f", {next(iter(cases))}" if len(cases) == 1 else f", range over {len(cases)} cases{listed}", list(map(span, names)))
 
     def cell(case, name):
         measured, required = cases[case][name]
         return measured if len(bound[name]) == 1 else f"{measured} ({required})"
 
-    if len(cases) == 1:
-        case = next(iter(cases))
-        required = next(iter(bound[names[0]]))
-        return [f"| {case} | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|",
-                f"| {required} | " + " | ".join(cases[case][name][0] for name in names) + " |", ""]
-    if len(cases) >= len(names):
-        lines = ["| | " + " | ".join(head(name) for name in names) + " |", "|---" * (len(names) + 1) + "|"]
-        lines += [f"| {case} | " + " | ".join(cell(case, name) for name in names) + " |" for case in cases]
-    else:
-        lines = ["| quantity | " + " | ".join(cases) + " | required |", "|---" * (len(cases) + 2) + "|"]
-        lines += [f"| {name} | " + " | ".join(cell(case, name) for case in cases) +
-                  f" | {next(iter(bound[name])) if len(bound[name]) == 1 else ''} |" for name in names]
+    lines = ["| quantity | " + " | ".join(cases) + " | required |", "|---" * (len(cases) + 2) + "|"]
+    lines += [f"| {name} | " + " | ".join(cell(case, name) for case in cases) +
+              f" | {next(iter(bound[name])) if len(bound[name]) == 1 else ''} |" for name in names]
     return lines + [""]
-
-
-def write_rows(rows):
-    if not rows:
-        return []
-    if len(rows) <= SENTENCE:
-        return ["Required: " + "; ".join(f"{name}: **{measured}** ({required})" for name, measured, required in rows) + ".", ""]
-    return ["| quantity | measured | required |", "|---|---|---|"] + [f"| {' | '.join(row)} |" for row in rows] + [""]
 
 
 def write_checks(lines):
@@ -92,7 +87,7 @@ def write_checks(lines):
     if rows is None:
         return [HEAD, "|---|---|---|---|", *lines, ""]
     groups, plain = take_matrices(rows)
-    page = write_rows(plain)
+    page = write_list("", [f"{name}: **{measured}** ({required})" for name, measured, required in plain]) if plain else []
     for names, cases in groups.items():
         page += write_matrix(names, cases)
     return page
