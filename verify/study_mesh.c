@@ -104,13 +104,13 @@ int main(int argc, char **argv) {
     sf_drop drop[CASES][SPACINGS];
     sf_study_begin(&study, "mesh", "Mesh study of the paper's drops", argc, argv);
     sf_study_text(
-        &study, "The models are quarter models with an outer spacing twice that of the core and the foam of "
-                "verify/materials/eva_like.cfg. The last row of each case gives the value extrapolated by a "
-                "+ c h^p over all five spacings. Its error bar is 1.25 times its distance from the 5 mm "
-                "value, or three times the scatter of the fit if that is larger.\n\n"
-                "| case | core spacing (mm) | nodes | steps | a_max (g) | HIC | window (ms) | largest "
-                "local strain | rebound "
-                "(m/s) | energy error | wall (s) |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+        &study,
+        "Quarter models with an outer spacing twice that of the core and the foam of "
+        "verify/materials/eva_like.cfg. The last row of each case is extrapolated by a + c h^p over all five "
+        "spacings; its error bar is 1.25 times its distance from the 5 mm value, or three times the scatter "
+        "of the fit if that is larger.\n\n| case | core spacing (mm) | nodes | steps | a_max (g) | HIC | "
+        "window (ms) | largest local strain | rebound (m/s) | energy error | wall (s) "
+        "|\n|---|---|---|---|---|---|---|---|---|---|---|\n");
     FILE *data = sf_study_file(&study, "data.txt");
     int done = 0;
     for (int c = 0; c < CASES; c++) {
