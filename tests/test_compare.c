@@ -63,7 +63,7 @@ static void identical_curves_fit_perfectly(void **state) {
     sf_fit fit;
     sf_series curve = half_sine(60, 0.01, 0.015);
     assert_int_equal(
-        sf_compare_fit(&curve, &curve, true, 0, 0, (sf_region){0.01, 0.025}, 0.25e-3, &fit, &err), SF_OK);
+        sf_compare_fit(&curve, &curve, &(sf_fit_of){{0.01, 0.025}, 0.25e-3, 0, true, 0}, &fit, &err), SF_OK);
     assert_int_equal(fit.count, 61);
     assert_close(fit.r2, 1, 1e-15);
     assert_close(fit.rmse_g, 0, 1e-15);
@@ -81,7 +81,7 @@ static void r2_and_rmse_of_a_scaled_half_sine(void **state) {
         sf_fit fit;
         double interval = k ? 0.5e-3 : 0.25e-3, n = k ? 30 : 60;
         assert_int_equal(
-            sf_compare_fit(&measured, &model, true, 0, 0, (sf_region){0.01, 0.025}, interval, &fit, &err),
+            sf_compare_fit(&measured, &model, &(sf_fit_of){{0.01, 0.025}, interval, 0, true, 0}, &fit, &err),
             SF_OK);
         double residual = (1 - scale) * (1 - scale) * peak * peak * n / 2;
         double sum = peak / tan(M_PI / (2 * n));
@@ -174,26 +174,28 @@ static void region_beyond_the_model_is_refused_or_counted(void **state) {
     sf_series measured = half_sine(60, 0.01, 0.015), model = half_sine(60, 0.01, 0.015);
     model.count = 351; /* stops at 17.5 ms, at the peak */
     assert_int_equal(
-        sf_compare_fit(&measured, &model, false, 0, 0, (sf_region){0.01, 0.025}, 0.25e-3, &fit, &err),
+        sf_compare_fit(&measured, &model, &(sf_fit_of){{0.01, 0.025}, 0.25e-3, 0, false, 0}, &fit, &err),
         SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "ends in contact at 17.5 ms"));
     err = (sf_error)SF_ERROR_INIT;
     assert_int_equal(
-        sf_compare_fit(&measured, &model, false, 0, 0, (sf_region){0.01, 0.0175}, 0.25e-3, &fit, &err),
+        sf_compare_fit(&measured, &model, &(sf_fit_of){{0.01, 0.0175}, 0.25e-3, 0, false, 0}, &fit, &err),
         SF_OK);
     assert_int_equal(fit.flight, 0);
     model.count = 501; /* stops with the pulse: free flight after it */
     assert_int_equal(
-        sf_compare_fit(&measured, &model, true, 0, 0, (sf_region){0.01, 0.035}, 0.25e-3, &fit, &err), SF_OK);
+        sf_compare_fit(&measured, &model, &(sf_fit_of){{0.01, 0.035}, 0.25e-3, 0, true, 0}, &fit, &err),
+        SF_OK);
     assert_close(fit.r2, 1, 1e-12);
     assert_int_equal(fit.flight, 40);
     /* of the kinematic acceleration -1 g: 40 of 101 samples are 1 g off */
     assert_int_equal(
-        sf_compare_fit(&measured, &model, true, -1, 0, (sf_region){0.01, 0.035}, 0.25e-3, &fit, &err), SF_OK);
+        sf_compare_fit(&measured, &model, &(sf_fit_of){{0.01, 0.035}, 0.25e-3, 0, true, -1}, &fit, &err),
+        SF_OK);
     assert_int_equal(fit.count, 101);
     assert_close(fit.rmse_g, sqrt(40 / 101.0), 1e-9);
     assert_int_equal(
-        sf_compare_fit(&measured, &model, true, 0, 0, (sf_region){0.026, 0.035}, 0.25e-3, &fit, &err),
+        sf_compare_fit(&measured, &model, &(sf_fit_of){{0.026, 0.035}, 0.25e-3, 0, true, 0}, &fit, &err),
         SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "lies outside the model's curve"));
     sf_series_free(&measured);
@@ -208,7 +210,7 @@ static void still_measurement_has_rmse_but_no_r2(void **state) {
     for (int64_t i = 0; i < model.count; i++)
         model.value[i] += 2;
     assert_int_equal(
-        sf_compare_fit(&measured, &model, true, 0, 0, (sf_region){0, 0.008}, 0.25e-3, &fit, &err), SF_OK);
+        sf_compare_fit(&measured, &model, &(sf_fit_of){{0, 0.008}, 0.25e-3, 0, true, 0}, &fit, &err), SF_OK);
     assert_true(isnan(fit.r2));
     assert_close(fit.rmse_g, 2, 1e-12);
     sf_series_free(&measured);
@@ -220,11 +222,13 @@ static void region_outside_the_measurement_is_refused(void **state) {
     sf_error err = SF_ERROR_INIT;
     sf_fit fit;
     sf_series curve = half_sine(60, 0.01, 0.015);
-    assert_int_equal(sf_compare_fit(&curve, &curve, true, 0, 0, (sf_region){0.05, 0.06}, 0.25e-3, &fit, &err),
-                     SF_ERR_INPUT);
+    assert_int_equal(
+        sf_compare_fit(&curve, &curve, &(sf_fit_of){{0.05, 0.06}, 0.25e-3, 0, true, 0}, &fit, &err),
+        SF_ERR_INPUT);
     err = (sf_error)SF_ERROR_INIT; /* nor is the part that was measured taken for the whole */
-    assert_int_equal(sf_compare_fit(&curve, &curve, true, 0, 0, (sf_region){0.03, 0.06}, 0.25e-3, &fit, &err),
-                     SF_ERR_INPUT);
+    assert_int_equal(
+        sf_compare_fit(&curve, &curve, &(sf_fit_of){{0.03, 0.06}, 0.25e-3, 0, true, 0}, &fit, &err),
+        SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "30 to 60 ms does not lie within the measured curve (0 to 40 ms)"));
     sf_series_free(&curve);
 }
@@ -236,8 +240,9 @@ static void samples_are_bounded_whatever_the_times(void **state) {
     sf_fit fit;
     sf_series measured = half_sine(60, 0.01, 0.015), model = half_sine(60, 0.01, 0.015);
     measured.time[measured.count - 1] = 2e9;
-    assert_int_equal(sf_compare_fit(&measured, &model, true, 0, 0, (sf_region){0, 1e9}, 0.25e-3, &fit, &err),
-                     SF_ERR_INPUT);
+    assert_int_equal(
+        sf_compare_fit(&measured, &model, &(sf_fit_of){{0, 1e9}, 0.25e-3, 0, true, 0}, &fit, &err),
+        SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "the region 0 to 1e+12 ms would be sampled 4e+12 times"));
     sf_series_free(&measured);
     sf_series_free(&model);

@@ -270,7 +270,8 @@ static void every_value_of_a_case_is_told_as_it_can_be_set(void **state) {
     sf_error err = SF_ERROR_INIT;
     (void)state;
     snprintf(path, sizeof path, "%s/examples/eva50-v4.5/case.cfg", getenv("SF_SOURCE_DIR"));
-    assert_int_equal(sf_case_read_values(path, 1, 1, overrides, NULL, &listener, &c, &err), SF_OK);
+    assert_int_equal(sf_case_read_values(&(sf_case_input){path, 1, 1, overrides}, NULL, &listener, &c, &err),
+                     SF_OK);
     sf_case_free(&c);
     assert_in_range(h.count, 30, 200);
     assert_string_equal(h.velocity, "4.5 m/s");

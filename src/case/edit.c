@@ -122,7 +122,7 @@ static char *text_of(const char *value, size_t length, bool *one) {
 }
 
 sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const sf_edit_settings *files,
-                             sf_edit_rename *rename, void *context, FILE *out, sf_error *err) {
+                             const sf_edit_rename *rename, FILE *out, sf_error *err) {
     for (int k = 0; k < files->count && err->status == SF_OK; k++) {
         const sf_edit_setting *s = &files->setting[k];
         bool one;
@@ -131,7 +131,7 @@ sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const s
         if (s->end > end)
             return SF_REFUSE(err, "%s begins in one file and ends in another", s->path);
         char *name = text_of(text + s->begin, s->end - s->begin, &one),
-             *renamed = name ? rename(context, s->path, name, err) : NULL;
+             *renamed = name ? rename->name(rename->context, s->path, name, err) : NULL;
         fprintf(out, "%.*s", (int)(s->begin - begin), text + begin);
         if (renamed)
             put_quoted(renamed, out);
@@ -169,7 +169,8 @@ static sf_status put_value(const char *path, const char *value, char *folder, FI
         put_quoted(value, written);
     fclose(written);
     if (sf_case_edit_find(line, true, &files, err) == SF_OK)
-        sf_case_edit_write(line, strlen(path) + 1, size, &files, name_whole, folder, out, err);
+        sf_case_edit_write(line, strlen(path) + 1, size, &files, &(sf_edit_rename){name_whole, folder}, out,
+                           err);
     free(files.setting);
     return err->status;
 }

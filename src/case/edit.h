@@ -25,9 +25,13 @@ typedef struct sf_edit_settings {
 /* Finds the settings, or those that name files. Release with free(settings->setting), also on failure. */
 sf_status sf_case_edit_find(const char *text, bool only_files, sf_edit_settings *settings, sf_error *err);
 
-/* The new name of the file that the setting `path` calls `name`; from malloc, NULL on failure. */
-typedef char *sf_edit_rename(void *context, const char *path, const char *name, sf_error *err);
+/* Gives files other names. */
+typedef struct sf_edit_rename {
+    /* The new name of the file that the setting `path` calls `name`; from malloc, NULL on failure. */
+    char *(*name)(void *context, const char *path, const char *name, sf_error *err);
+    void *context; /* borrowed */
+} sf_edit_rename;
 
 /* Writes text[begin, end) with new names of the files. SF_ERR_INPUT: one of the names does not end there. */
 sf_status sf_case_edit_write(const char *text, size_t begin, size_t end, const sf_edit_settings *files,
-                             sf_edit_rename *rename, void *context, FILE *out, sf_error *err);
+                             const sf_edit_rename *rename, FILE *out, sf_error *err);

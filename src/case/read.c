@@ -458,19 +458,18 @@ static void end_reading(sf_case_reader *reader) {
     sf_case_source_free(&reader->source);
 }
 
-sf_status sf_case_read_values(const char *path, int drop, int count, const char *const *overrides,
-                              const sf_sink *sink, const sf_case_listener *listener, sf_case *out,
-                              sf_error *err) {
+sf_status sf_case_read_values(const sf_case_input *input, const sf_sink *sink,
+                              const sf_case_listener *listener, sf_case *out, sf_error *err) {
     *out = (sf_case){.values = SF_HASH_START};
-    sf_case_reader reader = {.path = path,
+    sf_case_reader reader = {.path = input->path,
                              .out = out,
-                             .drop = drop,
+                             .drop = input->drop,
                              .sink = sink,
                              .material = &out->material,
                              .material_group = "material",
                              .listener = listener};
-    if (begin_reading(&reader, count, overrides, err) == SF_OK && read_keys(&reader, err) == SF_OK &&
-        sf_case_check_given(&reader, err) == SF_OK) {
+    if (begin_reading(&reader, input->count, input->overrides, err) == SF_OK &&
+        read_keys(&reader, err) == SF_OK && sf_case_check_given(&reader, err) == SF_OK) {
         complete(&reader, out);
         sf_case_check_complete(&reader, err);
     }
@@ -482,7 +481,7 @@ sf_status sf_case_read_values(const char *path, int drop, int count, const char 
 
 sf_status sf_case_read(const char *path, int count, const char *const *overrides, const sf_sink *sink,
                        sf_case *out, sf_error *err) {
-    return sf_case_read_values(path, 1, count, overrides, sink, NULL, out, err);
+    return sf_case_read_values(&(sf_case_input){path, 1, count, overrides}, sink, NULL, out, err);
 }
 
 /* The keys of a material file alone, into an empty case. */

@@ -46,9 +46,16 @@ typedef struct sf_case_listener {
     void *user; /* borrowed */
 } sf_case_listener;
 
-/* sf_case_read of a drop of the case's series, from 1, with what the list `series.drops` changes of the
- * missile in it; sf_case_read reads the first. Tells the listener (NULL: none) each value of the table that
- * it has read, in its order, also those before a failure. */
-sf_status sf_case_read_values(const char *path, int drop, int count, const char *const *overrides,
-                              const sf_sink *sink, const sf_case_listener *listener, sf_case *out,
-                              sf_error *err);
+/* The file of a case, and what is read of it. */
+typedef struct sf_case_input {
+    const char *path;
+    int drop;                     /* of the case's series, from 1 */
+    int count;                    /* of the overrides */
+    const char *const *overrides; /* [count] KEY=VALUE */
+} sf_case_input;
+
+/* sf_case_read of any drop, with what the list `series.drops` changes of the missile in it; sf_case_read
+ * reads the first. Tells the listener (NULL: none) each value of the table that it has read, in its order,
+ * also those before a failure. */
+sf_status sf_case_read_values(const sf_case_input *input, const sf_sink *sink,
+                              const sf_case_listener *listener, sf_case *out, sf_error *err);

@@ -157,7 +157,7 @@ sf_status sf_fields_read(const char *case_path, const sf_fields *before, sf_fiel
                          sf_error *err) {
     const sf_case_listener listener = {hear, fields};
     fields->count = 0;
-    SF_TRY(sf_case_read_values(case_path, 1, 0, NULL, NULL, &listener, out, err));
+    SF_TRY(sf_case_read_values(&(sf_case_input){.path = case_path, .drop = 1}, NULL, &listener, out, err));
     if (out->layer_count == 0)
         add_material(fields);
     keep_changes(before, fields);

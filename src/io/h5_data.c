@@ -162,17 +162,30 @@ static hid_t packed_storage(int rank, const int64_t *dims, size_t item_size) {
     return storage;
 }
 
-sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, bool single, int rank,
-                             const int64_t *dims, const void *data, sf_error *err) {
-    hid_t stored = single && type == SF_H5_F64 ? H5T_NATIVE_FLOAT : native_type(type), set = -1;
+/* `type`: as it is stored, and as the data are given. */
+static sf_status write_packed(sf_h5 *file, const sf_h5_info *info, const hid_t type[2], int rank,
+                              const int64_t *dims, const void *data, sf_error *err) {
+    hid_t set = -1;
     KEPT hid_t space = make_space(rank, dims);
-    KEPT hid_t storage = packed_storage(rank, dims, H5Tget_size(stored));
-    create_dataset(file, info, stored, space, storage, &set, err);
+    KEPT hid_t storage = packed_storage(rank, dims, H5Tget_size(type[0]));
+    create_dataset(file, info, type[0], space, storage, &set, err);
     bool written = set < 0 || H5Sget_simple_extent_npoints(space) == 0 ||
-                   H5Dwrite(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+                   H5Dwrite(set, type[1], H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
     if ((set >= 0 && H5Dclose(set) < 0) || !written)
         SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, file->path, info->path);
     return err->status;
+}
+
+sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank,
+                             const int64_t *dims, const void *data, sf_error *err) {
+    return write_packed(file, info, (const hid_t[2]){native_type(type), native_type(type)}, rank, dims, data,
+                        err);
+}
+
+sf_status sf_h5_write_singles(sf_h5 *file, const sf_h5_info *info, int rank, const int64_t *dims,
+                              const double *data, sf_error *err) {
+    return write_packed(file, info, (const hid_t[2]){H5T_NATIVE_FLOAT, native_type(SF_H5_F64)}, rank, dims,
+                        data, err);
 }
 
 sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, sf_error *err) {
@@ -227,52 +240,61 @@ static sf_status open_dataset(const sf_h5 *file, const char *path, hid_t *set, s
     return check_storage(file, path, *set, err);
 }
 
-/* Rank and extents of an open dataset against what the caller expects; fills dims and the number of items.
+/* A dataset that is read. */
+typedef struct open_set {
+    const sf_h5 *file;
+    const char *path;
+    hid_t id;
+} open_set;
+
+/* Rank and extents of a dataset against what the caller expects; fills dims and the number of items.
  * A header may claim any extent: the items must be stored, and within the size of the file. */
-static sf_status check_shape(const sf_h5 *file, const char *path, hid_t set, size_t item_size, int rank,
-                             int64_t *dims, unsigned long *count, sf_error *err) {
-    KEPT hid_t space = H5Dget_space(set);
+static sf_status check_shape(const open_set *set, size_t item_size, int rank, int64_t *dims,
+                             unsigned long *count, sf_error *err) {
+    const char *file = set->file->path, *path = set->path;
+    KEPT hid_t space = H5Dget_space(set->id);
     int found = H5Sget_simple_extent_ndims(space);
     H5S_class_t kind = H5Sget_simple_extent_type(space);
     hsize_t extent[SF_H5_MAX_RANK] = {0};
     if (found == rank)
         H5Sget_simple_extent_dims(space, extent, NULL);
     if (found != rank || kind == H5S_NULL)
-        return SF_FAIL(err, SF_ERR_IO, "%s: %s has rank %d, expected %d", file->path, path, found, rank);
+        return SF_FAIL(err, SF_ERR_IO, "%s: %s has rank %d, expected %d", file, path, found, rank);
     uint64_t bytes = item_size;
     bool overflow = false;
     *count = 1;
     for (int k = 0; k < rank; k++) {
         if (dims[k] >= 0 && (hsize_t)dims[k] != extent[k])
-            return SF_FAIL(err, SF_ERR_IO, "%s: %s has extent %llu in dimension %d, expected %lld",
-                           file->path, path, (unsigned long long)extent[k], k, (long long)dims[k]);
+            return SF_FAIL(err, SF_ERR_IO, "%s: %s has extent %llu in dimension %d, expected %lld", file,
+                           path, (unsigned long long)extent[k], k, (long long)dims[k]);
         overflow = overflow || extent[k] > INT64_MAX || __builtin_mul_overflow(bytes, extent[k], &bytes) ||
                    __builtin_mul_overflow(*count, (unsigned long)extent[k], count);
         dims[k] = (int64_t)extent[k];
     }
-    hsize_t stored = H5Dget_storage_size(set);
-    uint64_t size = sf_h5_file_bytes(set);
+    hsize_t stored = H5Dget_storage_size(set->id);
+    uint64_t size = sf_h5_file_bytes(set->id);
     if (overflow || (*count > 0 && (bytes > stored || bytes > size)))
         return SF_FAIL(err, SF_ERR_IO,
-                       "%s: %s claims %llu%s bytes, of which %llu are stored in a file of %llu", file->path,
-                       path, (unsigned long long)bytes, overflow ? " (and more)" : "",
-                       (unsigned long long)stored, (unsigned long long)size);
+                       "%s: %s claims %llu%s bytes, of which %llu are stored in a file of %llu", file, path,
+                       (unsigned long long)bytes, overflow ? " (and more)" : "", (unsigned long long)stored,
+                       (unsigned long long)size);
     return SF_OK;
 }
 
-static sf_status read_items(const sf_h5 *file, const char *path, hid_t set, sf_h5_type type, int rank,
-                            int64_t *dims, void **data, sf_error *err) {
+static sf_status read_items(const open_set *set, sf_h5_type type, int rank, int64_t *dims, void **data,
+                            sf_error *err) {
+    const char *file = set->file->path, *path = set->path;
     unsigned long count = 0;
-    KEPT hid_t stored = H5Dget_type(set);
+    KEPT hid_t stored = H5Dget_type(set->id);
     H5T_class_t expected = type == SF_H5_F64 ? H5T_FLOAT : H5T_INTEGER, found = H5Tget_class(stored);
     size_t size = H5Tget_size(stored);
     if (found != expected)
-        return SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file->path, path,
+        return SF_FAIL(err, SF_ERR_IO, "%s: %s does not hold %s numbers", file, path,
                        expected == H5T_FLOAT ? "floating-point" : "integer");
-    SF_TRY(check_shape(file, path, set, size, rank, dims, &count, err));
+    SF_TRY(check_shape(set, size, rank, dims, &count, err));
     *data = sf_alloc(err, count, sf_h5_size(type), path);
-    if (*data && count && H5Dread(set, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0)
-        SF_FAIL(err, SF_ERR_IO, "%s: %s cannot be read", file->path, path);
+    if (*data && count && H5Dread(set->id, native_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, *data) < 0)
+        SF_FAIL(err, SF_ERR_IO, "%s: %s cannot be read", file, path);
     *data = sf_keep(*data, err);
     return err->status;
 }
@@ -282,7 +304,7 @@ sf_status sf_h5_read(const sf_h5 *file, const char *path, sf_h5_type type, int r
     KEPT hid_t set = -1;
     *data = NULL;
     SF_TRY(open_dataset(file, path, &set, err));
-    return read_items(file, path, set, type, rank, dims, data, err);
+    return read_items(&(open_set){file, path, set}, type, rank, dims, data, err);
 }
 
 sf_status sf_h5_read_one(const sf_h5 *file, const char *path, sf_h5_type type, void *value, sf_error *err) {
@@ -362,9 +384,10 @@ sf_status sf_h5_get_attribute_i64(const sf_h5 *file, const char *object, const c
 }
 
 /* All rows of a dataset of `items` items to one of the same shape, some of them at a time. */
-static sf_status copy_rows(const sf_h5 *from, const char *path, hid_t set, hid_t type, int64_t items,
-                           sf_h5 *to, hid_t made, sf_error *err) {
-    KEPT hid_t space = H5Dget_space(set);
+static sf_status copy_rows(const open_set *from, const open_set *to, hid_t type, int64_t items,
+                           sf_error *err) {
+    const char *path = from->path;
+    KEPT hid_t space = H5Dget_space(from->id);
     hsize_t extent[H5S_MAX_RANK] = {1};
     H5Sget_simple_extent_dims(space, extent, NULL);
     int64_t rows = (int64_t)extent[0], row_size = items / rows * (int64_t)H5Tget_size(type);
@@ -373,10 +396,10 @@ static sf_status copy_rows(const sf_h5 *from, const char *path, hid_t set, hid_t
     SF_OWNED void *data = sf_alloc(err, piece, (unsigned long)row_size, path);
     for (int64_t first = 0; first < rows && err->status == SF_OK; first += piece) {
         int64_t count = piece < rows - first ? piece : rows - first;
-        if (!move_rows(set, type, first, count, data, NULL))
-            SF_FAIL(err, SF_ERR_IO, "%s: %s cannot be read", from->path, path);
-        else if (!move_rows(made, type, first, count, NULL, data))
-            SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, to->path, path);
+        if (!move_rows(from->id, type, first, count, data, NULL))
+            SF_FAIL(err, SF_ERR_IO, "%s: %s cannot be read", from->file->path, path);
+        else if (!move_rows(to->id, type, first, count, NULL, data))
+            SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, to->file->path, path);
     }
     return err->status;
 }
@@ -395,7 +418,7 @@ static sf_status copy_dataset(const sf_h5 *from, const char *path, hid_t set, sf
     sf_h5_info info = {path, units, description};
     if (err->status == SF_OK && create_dataset(to, &info, type, space, H5P_DEFAULT, &made, err) == SF_OK &&
         items > 0)
-        copy_rows(from, path, set, type, items, to, made, err);
+        copy_rows(&(open_set){from, path, set}, &(open_set){to, path, made}, type, items, err);
     if (made >= 0 && H5Dclose(made) < 0)
         SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, to->path, path);
     return err->status;

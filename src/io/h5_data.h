@@ -13,10 +13,12 @@ sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int 
 sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, sf_error *err);
 sf_status sf_h5_write_text(sf_h5 *file, const sf_h5_info *info, const char *text, sf_error *err);
 
-/* The same for other programs, compressed (shuffle and deflate): softfall does not read it. `single`: doubles
- * are stored as the nearest floats. */
-sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, bool single, int rank,
+/* The same for other programs, compressed (shuffle and deflate): softfall does not read it. */
+sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank,
                              const int64_t *dims, const void *data, sf_error *err);
+/* Doubles, stored as the nearest floats. */
+sf_status sf_h5_write_singles(sf_h5 *file, const sf_h5_info *info, int rank, const int64_t *dims,
+                              const double *data, sf_error *err);
 
 /* A dataset on its way into a file, rows (items of the first dimension) after rows. */
 typedef struct sf_h5_rows {

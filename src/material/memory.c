@@ -82,7 +82,8 @@ static inline void curved(const sf_unloading *o, const double energy[SF_LANES], 
         double base = unloaded ? top : w;
         double integral = power[l] <= 0.5 ? below : base * above;
         factor[l] = unloaded ? 1 - gap * bent[l] : 1;
-        softening[l] = (unloaded & (w > 0)) ? (rest > 0 ? lower : alpha < 1 ? bound : 0) : 0;
+        double steep = alpha < 1 ? bound : 0, tangent = rest > 0 ? lower : steep;
+        softening[l] = (unloaded & (w > 0)) ? tangent : 0;
         peak[l] = base;
         stored[l] = w - gap * integral;
         lost[l] = base * gap * whole;

@@ -11,9 +11,19 @@
 #include "model/flight.h"
 #include "model/motion.h"
 
-/* A CSR structure: monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
-static sf_status check_csr(const char *name, int64_t rows, int64_t nnz, const int64_t *ptr,
-                           const int32_t *index, int64_t limit, bool ascending, sf_error *err) {
+typedef struct csr {
+    const char *name;
+    int64_t rows, nnz;
+    const int64_t *ptr;   /* [rows + 1] */
+    const int32_t *index; /* [nnz] */
+} csr;
+
+/* Monotone pointers from 0 to nnz, indices in [0, limit), rows strictly ascending. */
+static sf_status check_csr(csr list, int64_t limit, bool ascending, sf_error *err) {
+    const char *name = list.name;
+    int64_t rows = list.rows, nnz = list.nnz;
+    const int64_t *ptr = list.ptr;
+    const int32_t *index = list.index;
     if (ptr[0] != 0 || ptr[rows] != nnz)
         return SF_FAIL(err, SF_ERR_MODEL, "%s: row starts run from %lld to %lld, not from 0 to %lld", name,
                        (long long)ptr[0], (long long)ptr[rows], (long long)nnz);
@@ -231,8 +241,8 @@ static sf_status check_pairs(const sf_model *m, sf_error *err) {
 }
 
 static sf_status check_mesh(const sf_model *m, sf_error *err) {
-    SF_TRY(check_csr("background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node, m->node_count,
-                     false, err));
+    SF_TRY(check_csr((csr){"background cells", m->cell_count, m->cell_nnz, m->cell_ptr, m->cell_node},
+                     m->node_count, false, err));
     for (int64_t c = 0; c < m->cell_count; c++) {
         const sf_cell_shape *shape = sf_cell_shape_of(m->cell_type[c]);
         if (!shape || sf_cell_is_plane(shape) != (m->axisymmetric != 0) ||
@@ -370,12 +380,12 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         return err->status;
     if (check_nodes(m, err) != SF_OK || check_frame_times(m, err) != SF_OK)
         return err->status;
-    if (check_csr("smoothing domains", m->node_count, m->domain_nnz, m->domain_ptr, m->domain_node,
+    if (check_csr((csr){"smoothing domains", m->node_count, m->domain_nnz, m->domain_ptr, m->domain_node},
                   m->node_count, true, err) != SF_OK ||
-        check_csr("shape functions", m->node_count, m->phi_nnz, m->phi_ptr, m->phi_node, m->node_count, true,
+        check_csr((csr){"shape functions", m->node_count, m->phi_nnz, m->phi_ptr, m->phi_node}, m->node_count,
+                  true, err) != SF_OK ||
+        check_csr((csr){"edges", m->node_count, m->edge_nnz, m->edge_ptr, m->edge_node}, m->node_count, true,
                   err) != SF_OK ||
-        check_csr("edges", m->node_count, m->edge_nnz, m->edge_ptr, m->edge_node, m->node_count, true, err) !=
-            SF_OK ||
         check_edges(m, err) != SF_OK ||
         check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
         check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK ||

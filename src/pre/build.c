@@ -75,17 +75,22 @@ static void append(void *array, int64_t used, void **more, int64_t count, size_t
     *more = NULL;
 }
 
-/* The lists of a layer of `n` nodes, the first of which is number `first`: rows behind those of the layers
- * before. */
-static void append_list(int64_t **ptr, int32_t **node, int64_t *nnz, int64_t **more_ptr, int32_t **more_node,
-                        int64_t first, int64_t n, sf_error *err) {
-    int64_t count = (*more_ptr)[n];
+/* Nodes of each row. */
+typedef struct list {
+    int64_t **ptr;
+    int32_t **node;
+} list;
+
+/* The lists `more` of a layer of `n` nodes, the first of which is number `first`: rows behind the `nnz`
+ * entries of the layers before. */
+static void append_list(list to, list more, int64_t *nnz, int64_t first, int64_t n, sf_error *err) {
+    int64_t count = (*more.ptr)[n];
     for (int64_t k = 0; k < count; k++)
-        (*more_node)[k] += (int32_t)first;
+        (*more.node)[k] += (int32_t)first;
     for (int64_t k = 0; k <= n; k++)
-        (*more_ptr)[k] += *nnz;
-    append(ptr, first, (void **)more_ptr, n + 1, sizeof **ptr, err);
-    append(node, *nnz, (void **)more_node, count, sizeof **node, err);
+        (*more.ptr)[k] += *nnz;
+    append(to.ptr, first, (void **)more.ptr, n + 1, sizeof **to.ptr, err);
+    append(to.node, *nnz, (void **)more.node, count, sizeof **to.node, err);
     *nnz += count;
 }
 
@@ -93,10 +98,13 @@ static void append_list(int64_t **ptr, int32_t **node, int64_t *nnz, int64_t **m
 static void take_domains(sf_domains *d, sf_dual *dual, int64_t first, int64_t n, sf_model *m, sf_error *err) {
     append(&m->volume, first, (void **)&d->volume, n, sizeof *m->volume, err);
     append(&m->domain_b, m->domain_nnz, (void **)&d->b, d->ptr[n], 3 * sizeof *m->domain_b, err);
-    append_list(&m->domain_ptr, &m->domain_node, &m->domain_nnz, &d->ptr, &d->node, first, n, err);
+    append_list((list){&m->domain_ptr, &m->domain_node}, (list){&d->ptr, &d->node}, &m->domain_nnz, first, n,
+                err);
     append(&m->phi_value, m->phi_nnz, (void **)&d->phi_value, d->phi_ptr[n], sizeof *m->phi_value, err);
-    append_list(&m->phi_ptr, &m->phi_node, &m->phi_nnz, &d->phi_ptr, &d->phi_node, first, n, err);
-    append_list(&m->edge_ptr, &m->edge_node, &m->edge_nnz, &dual->edge_ptr, &dual->edge_node, first, n, err);
+    append_list((list){&m->phi_ptr, &m->phi_node}, (list){&d->phi_ptr, &d->phi_node}, &m->phi_nnz, first, n,
+                err);
+    append_list((list){&m->edge_ptr, &m->edge_node}, (list){&dual->edge_ptr, &dual->edge_node}, &m->edge_nnz,
+                first, n, err);
 }
 
 /* A part of the surface that the missile may touch faces it; what looks away, as the far side of a tube,

@@ -58,7 +58,8 @@ static void tell(void *user, sf_severity severity, const char *sentence) {
 }
 
 static sf_status read_drop(const options *o, int drop, const sf_sink *sink, sf_case *c, sf_error *err) {
-    return sf_case_read_values(o->case_path, drop, o->overrides.count, o->overrides.text, sink, NULL, c, err);
+    const sf_case_input input = {o->case_path, drop, o->overrides.count, o->overrides.text};
+    return sf_case_read_values(&input, sink, NULL, c, err);
 }
 
 /* Checks the drops of a series that have models of their own, before the first model is made. */

@@ -281,18 +281,37 @@ static sf_status check_series(const options *o, const series *all, sf_error *err
     return SF_OK;
 }
 
+/* What the solution of a drop holds; released from the last to the first. */
+typedef struct solution {
+    sf_model model;
+    sf_operators operators;
+    sf_state state;
+    sf_output output;
+    sf_checkpoint from;
+    sf_h5 *model_file;
+    const sf_provenance *provenance; /* borrowed */
+} solution;
+
+static void free_solution(solution *d) {
+    sf_h5_drop(&d->model_file);
+    sf_checkpoint_close(&d->from);
+    sf_output_close(&d->output);
+    sf_state_free(&d->state);
+    sf_operators_free(&d->operators);
+    sf_model_free(&d->model);
+}
+
 /* Opens the output, writes the base of the results, so that the mesh is released and the model's file closed
  * before operators and state are built, and removes what killed runs left. */
-static sf_status start(const options *o, const sf_checkpoint *from, const sf_provenance *provenance,
-                       sf_output *output, sf_model *model, sf_h5 **model_file, sf_operators *operators,
-                       sf_state *state, sf_error *err) {
+static sf_status start(const options *o, solution *d, sf_error *err) {
+    sf_output *output = &d->output;
     if (sf_output_open(output, err) != SF_OK ||
-        sf_output_base(output, model, *model_file, provenance, err) != SF_OK ||
-        sf_h5_close(model_file, err) != SF_OK ||
-        (sf_model_drop_mesh(model), sf_series_shape(&o->earlier, from, model, err)) != SF_OK ||
-        sf_operators_take(model, operators, err) != SF_OK ||
+        sf_output_base(output, &d->model, d->model_file, d->provenance, err) != SF_OK ||
+        sf_h5_close(&d->model_file, err) != SF_OK ||
+        (sf_model_drop_mesh(&d->model), sf_series_shape(&o->earlier, &d->from, &d->model, err)) != SF_OK ||
+        sf_operators_take(&d->model, &d->operators, err) != SF_OK ||
         (malloc_trim(0), /* return the freed work memory of the build */
-         sf_series_begin(&o->earlier, model, operators, state, err)) != SF_OK ||
+         sf_series_begin(&o->earlier, &d->model, &d->operators, &d->state, err)) != SF_OK ||
         sf_output_start(output, o->restart != NULL, err) != SF_OK) {
         sf_output_abandon(output);
         return err->status;
@@ -307,12 +326,7 @@ static sf_status start(const options *o, const sf_checkpoint *from, const sf_pro
 /* Solves one drop, or resumes it; of the first, k = 1, `all` receives what the model says of a series. */
 static sf_status solve_drop(const options *o, int64_t k, series *all, const char *command,
                             const volatile sig_atomic_t *stop, sf_error *err) {
-    SF_OWNED_BY(sf_model_free) sf_model model = {0};
-    SF_OWNED_BY(sf_operators_free) sf_operators operators = {0};
-    SF_OWNED_BY(sf_state_free) sf_state state = {0};
-    SF_OWNED_BY(sf_output_close) sf_output output = {.lock = -1};
-    SF_OWNED_BY(sf_checkpoint_close) sf_checkpoint from = {0};
-    SF_OWNED_BY(sf_h5_drop) sf_h5 *model_file = NULL;
+    SF_OWNED_BY(free_solution) solution d = {.output.lock = -1};
     char libraries[64], hash[SF_MODEL_HASH_SIZE], path[PATH_MAX];
     sf_provenance provenance = {.program = "softfall-solve",
                                 .command_line = command,
@@ -320,25 +334,25 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
                                 .model_path = path,
                                 .model_hash = hash};
     snprintf(libraries, sizeof libraries, "HDF5 %s", sf_h5_version());
-    SF_TRY(sf_output_name(&output, o->output, err));
-    if (o->restart ? sf_checkpoint_open(output.checkpoint, &from, err) : check_output(o, &output, err))
+    SF_TRY(sf_output_name(&d.output, o->output, err));
+    if (o->restart ? sf_checkpoint_open(d.output.checkpoint, &d.from, err) : check_output(o, &d.output, err))
         return err->status;
-    if (read_model(o, &from, &model, &model_file, hash, err) != SF_OK ||
-        (!o->restart && check_names(&output, err) != SF_OK) || /* now that the input is known */
-        set_end_time(o, &from, &model, err) != SF_OK)
+    if (read_model(o, &d.from, &d.model, &d.model_file, hash, err) != SF_OK ||
+        (!o->restart && check_names(&d.output, err) != SF_OK) || /* now that the input is known */
+        set_end_time(o, &d.from, &d.model, err) != SF_OK)
         return err->status;
-    const char *named = o->model ? o->model : from.model_path;
+    const char *named = o->model ? o->model : d.from.model_path;
     if (!realpath(named, path))
         snprintf(path, sizeof path, "%s", named);
     if (k > 1)
         SF_TRY(check_own(all, k, hash, err));
     if (k == 1) {
-        take_series(&model, path, all);
+        take_series(&d.model, path, all);
         SF_TRY(check_series(o, all, err));
         if (o->restart && all->drops > 1 && has_begun(o->output, 2))
             return SF_OK;
     }
-    print_model(&model, o->threads);
+    print_model(&d.model, o->threads);
     const sf_sink sink = sf_program_sink("softfall-solve");
     sf_run run = {.stop = stop,
                   .log = stdout,
@@ -352,18 +366,19 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
                   .checkpoint_time = o->checkpoint_time,
                   .provenance = &provenance};
     if (o->restart)
-        compare_builds(&from, &run);
-    SF_TRY(start(o, &from, &provenance, &output, &model, &model_file, &operators, &state, err));
+        compare_builds(&d.from, &run);
+    d.provenance = &provenance;
+    SF_TRY(start(o, &d, err));
     for (int64_t later = 2; k == 1 && later <= all->drops && !o->restart; later++) {
         char checkpoint[SF_PATH_SIZE]; /* of an earlier series, which this one would seem to have reached */
         name_checkpoint(o->output, later, checkpoint);
         unlink(checkpoint);
     }
-    sf_run_drop(&model, &operators, &state, &run, &output, o->restart ? &from : NULL, err);
-    if (state.step > 0)
-        print_ledger(&model, &state, &run);
+    sf_run_drop(&d.model, &d.operators, &d.state, &run, &d.output, o->restart ? &d.from : NULL, err);
+    if (d.state.step > 0)
+        print_ledger(&d.model, &d.state, &run);
     if (err->status == SF_ERR_NUMERIC && (o->remove_failed || strcmp(run.ending, "anvil") != 0))
-        handle_failure(o, &output, &state, run.shown);
+        handle_failure(o, &d.output, &d.state, run.shown);
     return err->status;
 }
 

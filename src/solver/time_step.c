@@ -76,16 +76,23 @@ static SF_KERNEL void mode_gradients(const sf_model *m, const sf_halo *h, const 
         field_gradient(m, h, l, seen, &gradient[3 * l]);
 }
 
+typedef struct pair {
+    int64_t i, j;
+    double weight;
+    const double *offset; /* [3] m, of the arm; NULL: 0 */
+} pair;
+
 /* Contributions of one pair for a scalar field: force on i, the opposite on j; the same couple on both. */
-static inline double pull_pair(const sf_model *m, const sf_state *s, const float *gradient, int64_t i,
-                               int64_t j, double weight, const double *offset, double couple[3]) {
-    const double *at = sf_model_coefficients(m);
+static inline double pull_pair(const sf_model *m, const sf_state *s, const float *gradient, pair p,
+                               double couple[3]) {
+    const double *at = sf_model_coefficients(m), *offset = p.offset;
+    int64_t i = p.i, j = p.j;
     double half[3], explained = 0;
     for (int c = 0; c < 3; c++) {
         half[c] = 0.5 * (at[3 * j + c] - at[3 * i + c] + (offset ? offset[c] : 0));
         explained += (gradient[3 * i + c] + gradient[3 * j + c]) * half[c];
     }
-    double force = weight * (s->stiffness[i] + s->stiffness[j]) * (s->mode[j] - s->mode[i] - explained);
+    double force = p.weight * (s->stiffness[i] + s->stiffness[j]) * (s->mode[j] - s->mode[i] - explained);
     for (int c = 0; c < 3; c++)
         couple[c] = force * half[c];
     return force;
@@ -112,8 +119,8 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
         double force = out[i], *q = &flux[3 * (i - own)], sum[3] = {q[0], q[1], q[2]}, couple[3];
         for (; inner < pairs->inner_ptr[group] + pairs->inner_end[i]; inner++) {
             int64_t j = own + pairs->inner_place[inner];
-            double pull = pull_pair(m, s, w->gradient, i, j, pairs->inner_weight[inner],
-                                    offset ? &offset[3 * inner] : NULL, couple);
+            const pair p = {i, j, pairs->inner_weight[inner], offset ? &offset[3 * inner] : NULL};
+            double pull = pull_pair(m, s, w->gradient, p, couple);
             force -= pull;
             out[j] += pull;
             for (int c = 0; c < 3; c++) {
@@ -122,9 +129,9 @@ static SF_KERNEL void mode_fluxes(const sf_model *m, const sf_operators *op, con
             }
         }
         for (; outer < pairs->outer_ptr[group] + pairs->outer_end[i]; outer++) {
-            force -=
-                pull_pair(m, s, w->gradient, i, pairs->outer_node[outer], pairs->outer_weight[outer],
-                          offset ? &offset[3 * (pairs->inner_ptr[pairs->groups] + outer)] : NULL, couple);
+            const pair p = {i, pairs->outer_node[outer], pairs->outer_weight[outer],
+                            offset ? &offset[3 * (pairs->inner_ptr[pairs->groups] + outer)] : NULL};
+            force -= pull_pair(m, s, w->gradient, p, couple);
             for (int c = 0; c < 3; c++)
                 sum[c] -= couple[c];
         }

@@ -235,7 +235,7 @@ static void write_part(const part *p, const char *at, sf_error *err) {
     for (bool open = out; open && err->status == SF_OK;) {
         const char *mark = strpbrk(at, SF_CASE_MARKS), *end = mark ? mark - 1 : at + strlen(at);
         sf_case_edit_write(p->f->text, (size_t)(at - p->f->text), (size_t)(end - p->f->text), &p->f->named,
-                           place_file, (void *)p, out, err);
+                           &(sf_edit_rename){place_file, (void *)p}, out, err);
         open = mark && *mark == SF_CASE_BEGIN && err->status == SF_OK;
         at = open ? write_include(p, mark + 1, out, err) : end;
     }

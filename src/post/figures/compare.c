@@ -120,11 +120,13 @@ static double model_at(const sf_series *model, double time, double flight, int64
     return flight;
 }
 
-sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double flight,
-                         double shift, sf_region region, double interval, sf_fit *fit, sf_error *err) {
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, const sf_fit_of *of, sf_fit *fit,
+                         sf_error *err) {
+    sf_region region = of->region;
+    double interval = of->interval;
     *fit =
         (sf_fit){.region = region, .first = NAN, .last = NAN, .interval = interval, .r2 = NAN, .rmse_g = NAN};
-    SF_TRY(check_region(measured, model, left, shift, region, err));
+    SF_TRY(check_region(measured, model, of->left, of->shift, region, err));
     double sum = 0, squares = 0, residual = 0, origin = 0, slack = 1e-9;
     double intervals = floor((region.end - region.begin) / interval + slack);
     if (!(intervals < MOST_SAMPLES))
@@ -135,7 +137,7 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool
     for (int64_t k = 0; k < samples; k++) {
         double time = region.begin + (double)k * interval;
         double a = sf_series_at(measured, time);
-        double difference = a - model_at(model, time + shift, flight, &fit->flight);
+        double difference = a - model_at(model, time + of->shift, of->flight, &fit->flight);
         if (fit->count++ == 0) {
             fit->first = time;
             origin = a; /* keeps the sum of squares free of cancellation */
@@ -167,8 +169,8 @@ static sf_status fit_all(const sf_compare_options *options, const sf_series *mod
         sf_region region = k < 0 ? window : options->regions[k];
         for (int j = 0; j < 2; j++) {
             sf_fit *fit = &c->fits[c->fit_count++];
-            SF_TRY(sf_compare_fit(&c->measured.curve, model, options->left, options->flight, c->shift, region,
-                                  intervals[j], fit, err));
+            const sf_fit_of of = {region, intervals[j], c->shift, options->left, options->flight};
+            SF_TRY(sf_compare_fit(&c->measured.curve, model, &of, fit, err));
             fit->is_window = k < 0;
             snprintf(fit->span, sizeof fit->span, "%.3f to %.3f%s", region.begin * 1e3, region.end * 1e3,
                      k < 0 ? " window" : "");

@@ -67,11 +67,18 @@ sf_status sf_contact_instant(const sf_series *curve, const char *name, double ze
 /* The rows of an sf_fit; static storage. */
 sf_rows sf_fit_rows(void);
 
-/* One region at one sampling interval (s). `left`: the missile is off the pad at the model's end, and stays
- * in free flight; `flight` (g): the model there, and before its curve. SF_ERR_INPUT if the region is not
- * within the measured curve, or where the model has no value. */
-sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, bool left, double flight,
-                         double shift, sf_region region, double interval, sf_fit *fit, sf_error *err);
+/* How a region is compared. */
+typedef struct sf_fit_of {
+    sf_region region; /* s, of the measured time */
+    double interval;  /* s, of the samples */
+    double shift;     /* s, model time less measured time */
+    bool left;        /* the missile is off the pad at the model's end, and stays in free flight */
+    double flight;    /* g, the model there, and before its curve */
+} sf_fit_of;
+
+/* SF_ERR_INPUT if the region is not within the measured curve, or where the model has no value. */
+sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, const sf_fit_of *of, sf_fit *fit,
+                         sf_error *err);
 
 /* Reads the measured curve and compares `model` (s, g) with it. Release with sf_comparison_free. */
 sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *comparison,

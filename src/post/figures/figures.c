@@ -62,9 +62,15 @@ static sf_status filter(const sf_results *r, const sf_series *raw, double free_f
     return err->status;
 }
 
-/* Three channels, filtered one by one, and their resultant; `flight`: the channels' values in free flight. */
-static sf_status filter_resultant(const sf_results *r, const double *const channel[3], const double flight[3],
-                                  const double shift[3], double unit, const sf_figures *f, sf_series *out,
+/* The readings (value + shift) / unit of three axes. */
+typedef struct axes {
+    const double *value[3]; /* [rows] */
+    double flight[3];       /* values in free flight */
+    double shift[3], unit;
+} axes;
+
+/* The axes, filtered one by one, and their resultant. */
+static sf_status filter_resultant(const sf_results *r, const axes *a, const sf_figures *f, sf_series *out,
                                   sf_error *err) {
     const sf_history *h = &r->history;
     SF_OWNED_BY(sf_series_free) sf_series raw = {0};
@@ -73,8 +79,8 @@ static sf_status filter_resultant(const sf_results *r, const double *const chann
     for (int c = 0; c < 3 && err->status == SF_OK; c++) {
         sf_series one = {0};
         for (int64_t i = 0; i < h->rows; i++)
-            raw.value[i] = (channel[c][i] + shift[c]) / unit;
-        if (filter(r, &raw, (flight[c] + shift[c]) / unit, f, &one, err) != SF_OK)
+            raw.value[i] = (a->value[c][i] + a->shift[c]) / a->unit;
+        if (filter(r, &raw, (a->flight[c] + a->shift[c]) / a->unit, f, &one, err) != SF_OK)
             break;
         if (c == 0) {
             *out = one;
@@ -112,12 +118,12 @@ double sf_figures_reading(const sf_results *r, int64_t row) {
 
 static sf_status compute_resultant(const sf_results *r, sf_figures *f, sf_error *err) {
     const sf_history *h = &r->history;
-    const double *const channel[3] = {h->specific_force_x, h->specific_force_y, h->specific_force_z};
-    static const double none[3] = {0};
-    const double shift[3] = {shift_of(r, 0), shift_of(r, 1), shift_of(r, 2)};
-    f->free_flight = sqrt(sf_dot3(shift, shift)) / SF_STANDARD_GRAVITY;
+    const axes a = {.value = {h->specific_force_x, h->specific_force_y, h->specific_force_z},
+                    .shift = {shift_of(r, 0), shift_of(r, 1), shift_of(r, 2)},
+                    .unit = SF_STANDARD_GRAVITY};
+    f->free_flight = sqrt(sf_dot3(a.shift, a.shift)) / SF_STANDARD_GRAVITY;
     f->rate = sf_signal_rate(&f->raw);
-    return filter_resultant(r, channel, none, shift, SF_STANDARD_GRAVITY, f, &f->filtered, err);
+    return filter_resultant(r, &a, f, &f->filtered, err);
 }
 
 static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *err) {
@@ -136,10 +142,11 @@ static sf_status compute_curves(const sf_results *r, sf_figures *f, sf_error *er
 /* `known`: the first row is still that of free flight. */
 static sf_status find_peak(const sf_results *r, const double *const channel[3], bool known,
                            const sf_figures *f, double *peak, double *time, sf_error *err) {
-    static const double none[3] = {0};
-    const double first[3] = {channel[0][0], channel[1][0], channel[2][0]};
+    axes a = {.value = {channel[0], channel[1], channel[2]}, .unit = 1};
+    for (int c = 0; known && c < 3; c++)
+        a.flight[c] = channel[c][0];
     SF_OWNED_BY(sf_series_free) sf_series curve = {0};
-    SF_TRY(filter_resultant(r, channel, known ? first : none, none, 1, f, &curve, err));
+    SF_TRY(filter_resultant(r, &a, f, &curve, err));
     int64_t row = sf_series_peak(&curve);
     *peak = curve.value[row];
     *time = curve.time[row];

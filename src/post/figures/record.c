@@ -38,7 +38,7 @@ static sf_status record_open(const sf_series *raw, const sf_series *curve, recor
     *r = (record){.raw = raw, .curve = curve};
     SF_TRY(SF_ALLOC_ALL(err, "medians of the record", SF_ROOM(r->median, n), SF_ROOM(r->work, n)));
     for (int64_t i = 0; i < n; i++) {
-        int64_t half = i < 2 ? i : n - 1 - i < 2 ? n - 1 - i : 2;
+        int64_t nearer = i < n - 1 - i ? i : n - 1 - i, half = nearer < 2 ? nearer : 2;
         r->median[i] = median_of(&raw->value[i - half], 2 * half + 1, r->work);
         top = r->median[i] > r->median[top] ? i : top;
     }

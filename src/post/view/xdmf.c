@@ -90,15 +90,17 @@ static void round_array(double *value, int64_t count) {
 static sf_status put(const store *s, const sf_h5_info *info, int64_t rows, int columns, double *value,
                      sf_error *err) {
     const int64_t dims[2] = {rows, columns};
-    if (!s->full)
-        round_array(value, rows * columns);
-    return sf_h5_write_packed(s->file, info, SF_H5_F64, !s->full, columns > 1 ? 2 : 1, dims, value, err);
+    int rank = columns > 1 ? 2 : 1;
+    if (s->full)
+        return sf_h5_write_packed(s->file, info, SF_H5_F64, rank, dims, value, err);
+    round_array(value, rows * columns);
+    return sf_h5_write_singles(s->file, info, rank, dims, value, err);
 }
 
 /* Writes numbers without unit, `dims` of them: rows and columns. */
 static sf_status put_integers(const store *s, const sf_h5_info *info, sf_h5_type type, const int64_t dims[2],
                               const void *value, sf_error *err) {
-    return sf_h5_write_packed(s->file, info, type, false, dims[1] > 1 ? 2 : 1, dims, value, err);
+    return sf_h5_write_packed(s->file, info, type, dims[1] > 1 ? 2 : 1, dims, value, err);
 }
 
 /* XDMF mixed topology: for each cell its code, then its vertices. */

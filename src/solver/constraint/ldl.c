@@ -214,10 +214,12 @@ static void order_places(const builder *w, const tree *t, sf_ldl *f, int64_t *pl
     }
 }
 
-/* Appends those entries of column j of the factor l whose rows are from `first` on; rows from `shared` on are
- * those of a range that begins at row `own` of A. */
-static void append_entries(const cholmod_factor *l, int64_t j, int64_t first, int64_t shared, int64_t own,
-                           const int64_t *place, sf_ldl *f, int64_t *next) {
+/* Appends those entries of column j of the factor of component c whose rows are from `first` on; rows behind
+ * the shared ones are those of the component's range in A. */
+static void append_entries(const builder *w, int c, int64_t j, int64_t first, const int64_t *place, sf_ldl *f,
+                           int64_t *next) {
+    const cholmod_factor *l = w->l[c];
+    int64_t shared = w->a->part[0], own = w->a->part[c];
     const SuiteSparse_long *p = l->p, *i = l->i, *nz = l->nz;
     const double *x = l->x;
     for (int64_t k = p[j] + 1; k < p[j] + nz[j]; k++)
@@ -238,14 +240,15 @@ static void copy_columns(const builder *w, const int64_t *source, const int64_t 
     for (int64_t at = 0; at < f->rows; at++) {
         int64_t j = source[at], first = next;
         int range = j < shared ? 0 : range_of(a, j);
-        const cholmod_factor *l = w->l[range == 0 ? main_part : range - 1];
+        int component = range == 0 ? main_part : range - 1;
+        const cholmod_factor *l = w->l[component];
         int64_t local = range == 0 ? j : j - a->part[range - 1] + shared;
         f->column[at] = next;
         f->inverse[at] = 1 / ((const double *)l->x)[((const SuiteSparse_long *)l->p)[local]];
-        append_entries(l, local, 0, shared, a->part[range == 0 ? main_part : range - 1], place, f, &next);
+        append_entries(w, component, local, 0, place, f, &next);
         for (int c = main_part + 1; c < 3 && range == 0; c++)
             if (w->l[c])
-                append_entries(w->l[c], local, shared, shared, a->part[c], place, f, &next);
+                append_entries(w, c, local, shared, place, f, &next);
         f->trunk_from[at] = next;
         for (int64_t k = next - 1; k >= first && f->place[k] >= trunk; k--)
             f->trunk_from[at] = k;

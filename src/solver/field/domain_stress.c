@@ -76,31 +76,38 @@ static void take_lanes(const sf_material_law *law, const uint8_t *material, int 
     }
 }
 
-/* Updates the batch of a block with the laws of its nodes' materials, and their history at `from` into `to`
- * (NULL: not stored; may be `from`), after a rest of `pause` (s; 0: none). Nodes are ordered by material:
- * nearly every block has one. A block at a border is updated once for each of its materials. */
-static void update_laws(const sf_model *m, const sf_operators *op, double dt, int64_t block, int count,
-                        const double *from, double *to, double pause, sf_law_batch *b) {
+/* What happens to the history of a block: a step of dt, then a rest of `pause` (s; 0: none). */
+typedef struct law_step {
+    double dt, pause;
+    const double *from;
+    double *to; /* NULL: not stored; may be `from` */
+} law_step;
+
+/* Updates the batch of a block with the laws of its nodes' materials. Nodes are ordered by material: nearly
+ * every block has one. A block at a border is updated once for each of its materials. */
+static void update_laws(const sf_model *m, const sf_operators *op, const law_step *step, int64_t block,
+                        int count, sf_law_batch *b) {
+    double dt = step->dt, pause = step->pause;
     const uint8_t *material = &m->node_material[block * SF_LANES];
     int first = material[0], last = material[count - 1];
     if (first == last) {
         const sf_material_law *law = &op->law[first];
-        sf_material_load_history(law, from, b);
+        sf_material_load_history(law, step->from, b);
         law->law->update(law->numbers, dt, b);
         if (pause > 0)
             law->law->rest(law->numbers, pause, b->history);
-        if (to)
-            sf_material_store_history(law, b, to);
+        if (step->to)
+            sf_material_store_history(law, b, step->to);
         return;
     }
     const sf_law_batch start = *b;
     for (int k = first; k <= last; k++) {
         sf_law_batch part = start;
-        sf_material_load_history(&op->law[k], from, &part);
+        sf_material_load_history(&op->law[k], step->from, &part);
         op->law[k].law->update(op->law[k].numbers, dt, &part);
         if (pause > 0)
             op->law[k].law->rest(op->law[k].numbers, pause, part.history);
-        take_lanes(&op->law[k], material, count, k, &part, to, b);
+        take_lanes(&op->law[k], material, count, k, &part, step->to, b);
     }
 }
 
@@ -229,7 +236,7 @@ static SF_KERNEL void update_chunk(const sf_model *m, const sf_operators *op, sf
         batch.directions = sf_time_step_due(s);
         load_batch(m, op, s, d, block, count, &batch);
         double *history = &s->history[block * s->history_rows * SF_LANES];
-        update_laws(m, op, s->dt_old, block, count, history, history, 0, &batch);
+        update_laws(m, op, &(law_step){s->dt_old, 0, history, history}, block, count, &batch);
         for (int l = count; l < SF_LANES; l++) /* nor is it short */
             batch.jacobian[l] = batch.stretch[0][l] = batch.stretch[1][l] = batch.stretch[2][l] = INFINITY;
         store_batch(m, op, s, block, count, &batch, &sum);
@@ -250,8 +257,8 @@ void sf_domain_law(const sf_model *m, const sf_operators *op, const sf_state *s,
             b->f[k][l] = b->f_old[k][l] = i < m->node_count ? s->f[9 * i + k] : k % 4 == 0;
         b->length[l] = 1;
     }
-    update_laws(m, op, 0, block, left < SF_LANES ? (int)left : SF_LANES,
-                &s->history[block * s->history_rows * SF_LANES], NULL, 0, b);
+    update_laws(m, op, &(law_step){0, 0, &s->history[block * s->history_rows * SF_LANES], NULL}, block,
+                left < SF_LANES ? (int)left : SF_LANES, b);
 }
 
 void sf_domain_rest(const sf_model *m, const sf_operators *op, sf_state *s, double pause) {
@@ -268,8 +275,8 @@ void sf_domain_rest(const sf_model *m, const sf_operators *op, sf_state *s, doub
             b.length[l] = 1;
         }
         for (int k = 0; k < 2; k++) /* the rest, and what is lost after it */
-            update_laws(m, op, 0, block, left < SF_LANES ? (int)left : SF_LANES, history, history,
-                        k ? 0 : pause, &b);
+            update_laws(m, op, &(law_step){0, k ? 0 : pause, history, history}, block,
+                        left < SF_LANES ? (int)left : SF_LANES, &b);
         for (int l = 0; l < SF_LANES && l < left; l++) {
             s->ledger.before += m->volume[block * SF_LANES + l] * b.lost[l];
             if (m->material_count > 1)

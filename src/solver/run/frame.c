@@ -206,8 +206,8 @@ static sf_status write_head(const sf_model *m, const sf_state *s, const char *pa
 
 /* One field of all nodes, through a buffer for a slab. */
 static sf_status write_field(const sf_model *m, const sf_operators *op, const sf_state *s,
-                             sf_frame_field kind, const char *path, double *buffer, sf_h5 *file,
-                             sf_error *err) {
+                             sf_frame_field kind, const char *path, sf_h5 *file, sf_error *err) {
+    SF_OWNED double *buffer = sf_alloc(err, SLAB, 9 * sizeof *buffer, "fields of a frame");
     char name[128];
     const sf_frame_field_info *field = sf_frame_field_get(kind);
     const int64_t dims[2] = {m->node_count, field->components};
@@ -225,12 +225,11 @@ static sf_status write_field(const sf_model *m, const sf_operators *op, const sf
 
 sf_status sf_frame_write(const sf_model *m, const sf_operators *op, const sf_state *s, int64_t wanted,
                          const char *path, sf_h5 *file, sf_error *err) {
-    SF_OWNED double *buffer = sf_alloc(err, SLAB, 9 * sizeof *buffer, "fields of a frame");
-    if (buffer && write_head(m, s, path, file, err) == SF_OK)
+    if (write_head(m, s, path, file, err) == SF_OK)
         write_layers(m, op, s, path, file, err);
     for (int k = 0; k < SF_FRAME_FIELDS && err->status == SF_OK; k++)
         if ((wanted >> k & 1) && (k != SF_FRAME_SOFTENING || s->drop > 1))
-            write_field(m, op, s, (sf_frame_field)k, path, buffer, file, err);
+            write_field(m, op, s, (sf_frame_field)k, path, file, err);
     return err->status;
 }
 
