@@ -83,7 +83,7 @@ build() {
         cmake --preset default --fresh
     elif [ ! -f build/build.ninja ] || [ CMakePresets.json -nt build/build.ninja ] ||
         { command -v help2man >/dev/null && grep -q '^SOFTFALL_HELP2MAN:.*NOTFOUND' build/CMakeCache.txt; } ||
-        { grep -q '^SOFTFALL_PYTHON_HELP:INTERNAL=$' build/CMakeCache.txt && python3 -c 'import h5py, matplotlib, numpy, pandas' 2>/dev/null; }; then
+        grep -q '^SOFTFALL_PYTHON_HELP:INTERNAL=$' build/CMakeCache.txt; then
         cmake --preset default
     fi
     cmake --build build --parallel "$(processors)" "$@"

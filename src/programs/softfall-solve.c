@@ -290,7 +290,7 @@ static sf_status check_series(const options *o, const series *all, sf_error *err
     return SF_OK;
 }
 
-/* What the solution of a drop holds; released from the last to the first. */
+/* The parts of the solution of a drop, which are released from the last to the first. */
 typedef struct solution {
     sf_model model;
     sf_operators operators;

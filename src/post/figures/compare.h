@@ -67,7 +67,7 @@ sf_status sf_contact_instant(const sf_series *curve, const char *name, double ze
 /* The rows of an sf_fit; static storage. */
 sf_rows sf_fit_rows(void);
 
-/* How a region is compared. */
+/* A region, and the way in which the curves are compared there. */
 typedef struct sf_fit_of {
     sf_region region; /* s, of the measured time */
     double interval;  /* s, of the samples */

@@ -76,7 +76,7 @@ static void take_lanes(const sf_material_law *law, const uint8_t *material, int 
     }
 }
 
-/* What happens to the history of a block: a step of dt, then a rest of `pause` (s; 0: none). */
+/* A step of dt for the history of a block, then a rest of `pause` (s; 0: none). */
 typedef struct law_step {
     double dt, pause;
     const double *from;
