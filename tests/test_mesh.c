@@ -360,7 +360,7 @@ static void step_is_meshed_through_a_geo_that_names_groups(void **state) {
 static void wrong_names_are_refused_with_what_exists(void **state) {
     assert_mesh_refused(
         *state, source_of(fixture_source("geo/pad.geo"), "thicknes", 70.0, NULL), "pad",
-        "pad.geo has no parameter \"thicknes\"; its DefineConstant parameters are: side, thickness, "
+        "pad.geo has no parameter \"thicknes\" (did you mean \"thickness\"?); its DefineConstant parameters are: side, thickness, "
         "zone_side, fine_spacing, outer_spacing, quarter");
     sf_geo_source coarse =
         source_of(fixture_source("geo/pad.geo"), "fine_spacing", 20.0, "outer_spacing", 20.0, NULL);

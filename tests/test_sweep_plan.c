@@ -173,7 +173,7 @@ static void keys_and_units_that_a_case_does_not_take_are_refused(void **state) {
          "mean = \"1 kg\"; deviation = \"1 kg\"; } ); }",
          "missile.mass"},
         {"{ key = \"geometry.parameters.thicknes\"; values = [40.0, 50.0]; }",
-         "pad.geo has no parameter \"thicknes\"; its DefineConstant parameters are: "},
+         "pad.geo has no parameter \"thicknes\" (did you mean \"thickness\"?); its DefineConstant parameters are: "},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         sf_plan plan;

@@ -40,7 +40,8 @@ static void build_cloud(enum cloud cloud, int cells, fixture *f) {
     snprintf(outer, sizeof outer, "geometry.parameters.outer_spacing=%.6f", 1e3 * SIDE / cells);
     if (cloud == TETRAHEDRA) {
         fixture_case(&c, (const char *const[]){file, fine, outer, "geometry.parameters.side=100.0",
-                                               "geometry.parameters.zone_side=50.0", NULL});
+                                               "geometry.parameters.zone_side=50.0",
+                                               "geometry.missile_parameters.quarter=0", NULL});
         fixture_hold(&c, (const char *const[]){"base", "top", "sides", "symmetry_x", "symmetry_y", NULL});
         fixture_geometry(&c, &mesh, &surface);
     } else {

@@ -118,7 +118,7 @@ static const double SYMMETRIC = 1e-2; /* of the missile's extent: as far on one 
 
 static const double THINNEST = 5e-4, THICKEST = 5; /* m, of a pad */
 static const double SMALLEST = 1e-3, LARGEST = 10; /* m, of a missile */
-static const double MOST_PADS = 25;                /* longest sides of the pad that a missile is wide */
+static const double MOST_PADS = 100;               /* longest sides of the pad that a missile is wide */
 static const double DENSEST = 23e3, LIGHTEST = 5;  /* kg m-3, of a metal and of a box around a missile */
 
 /* Fills the extents (m) of the whole body, of whose points the model may have one side of a symmetry plane.
