@@ -38,7 +38,8 @@ static int set_up(void **state) {
     sf_mesh mesh;
     sf_surface surface;
     fixture_case(&c, (const char *const[]){"geometry.parameters.fine_spacing=10.0",
-                                           "geometry.parameters.outer_spacing=20.0", NULL});
+                                           "geometry.parameters.outer_spacing=20.0",
+                                           "geometry.missile_parameters.quarter=0", NULL});
     fixture_hold(&c, (const char *const[]){"base", "top", "sides", "symmetry_x", "symmetry_y", NULL});
     fixture_geometry(&c, &mesh, &surface);
     fixture_build(&c, &mesh, &surface, &f[PAD]);

@@ -236,6 +236,7 @@ static void measure_pad(sf_study *study, const char *name, const char *geometry,
                                      "geometry.parameters.zone_side=100.0",
                                      "geometry.parameters.fine_spacing=10.0",
                                      "geometry.parameters.outer_spacing=16.0",
+                                     "geometry.missile_parameters.quarter=0",
                                      NULL};
     sf_case c;
     sf_mesh mesh;

@@ -109,7 +109,7 @@ def run(number, seed, folder):
 
     def call(*words):
         return subprocess.run([str(BIN / words[0]), *words[1:]], cwd=place, capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    pre = call("softfall-pre", "case.cfg", "-o", "model.h5", "--force")
+    pre = call("softfall-pre", "case.cfg", "-o", "model.h5", "--force", "--estimate")
     solve = call("softfall-solve", "model.h5", "-o", "results.h5", "--force") if pre.returncode == 0 else pre
     post = call("softfall-post", "results.h5", "-o", "out", "--force") if pre.returncode == 0 else pre
     said = [line for line in solve.stderr.splitlines() if line.startswith("softfall-") and "warning" not in line]

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from . import library
+from .array import Array
 from .errors import InputError
 
 STANDARD_GRAVITY = 9.80665  # m/s2
 
 
-class Column(np.ndarray):
+class Column(np.ndarray[Any, Any]):
     """An array with `units` (UDUNITS spelling) and `description`. What is computed from it is a plain array.
 
     >>> a = column([1.0, 2.0, 3.0], "m s-2")
@@ -47,7 +48,7 @@ class Hic(float):
     t2: float
 
 
-def _curve(time: Any, values: Any) -> tuple[np.ndarray, np.ndarray]:
+def _curve(time: Any, values: Any) -> tuple[Array, Array]:
     """Returns both as arrays of double; InputError unless they are a curve over seconds."""
     try:
         t, a = (np.ascontiguousarray(np.asarray(part, dtype=float)) for part in (time, values))

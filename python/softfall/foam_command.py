@@ -8,7 +8,7 @@ import io
 import os
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, Callable
 
 import numpy as np
 
@@ -159,7 +159,9 @@ def perform(o: argparse.Namespace) -> str:
         return _list()
     if not o.file:
         raise InputError(f"{o.word} needs {'a deck' if o.word == 'convert' else 'a material file'}, or the name of a foam: softfall foam list")
-    return {"convert": _convert, "export": _export, "show": lambda path, o: _show(material_file(path), o), "plot": lambda path, o: _plot(material_file(path), o)}[o.word](o.file, o)
+    words: dict[str, Callable[[str, argparse.Namespace], str]] = {
+        "convert": _convert, "export": _export, "show": lambda path, o: _show(material_file(path), o), "plot": lambda path, o: _plot(material_file(path), o)}
+    return words[o.word](o.file, o)
 
 
 def parser(prog: str) -> Parser:

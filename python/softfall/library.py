@@ -14,6 +14,7 @@ from typing import Any, Iterator, NamedTuple, Sequence
 import numpy as np
 
 from . import programs
+from .array import Array
 from .errors import Error, failure
 
 _PARAMETER = re.compile(r'material\.(\S+)\s+("(?:[^"\\]|\\.)*"|\(.*\)|\S+)\s+(.*?)\s+(given|default)$')
@@ -137,7 +138,7 @@ class Material:
                 self.values[name] = float(number[0]) if number and name not in ("law", "curve", "curves") else text.strip('"')
             if origin == "given":
                 self.given.add(name)
-        self.curves: list[tuple[float, np.ndarray, np.ndarray]] = []  # rate in 1/s (0: there is one curve), strain, stress in Pa
+        self.curves: list[tuple[float, Array, Array]] = []  # rate in 1/s (0: there is one curve), strain, stress in Pa
         rate, strain, stress = c.c_double(), c.POINTER(c.c_double)(), c.POINTER(c.c_double)()
         while count := _load().softfall_material_curve(self._handle, c.c_int(len(self.curves)), c.byref(rate), c.byref(strain), c.byref(stress)):
             self.curves.append((rate.value, np.array(strain[:count]), np.array(stress[:count])))
@@ -146,9 +147,9 @@ class Material:
         if hasattr(self, "_free"):
             self._free(self._handle)
 
-    def compress(self, time: Any, strain: Any, free_sides: bool = False) -> np.ndarray:
+    def compress(self, time: Any, strain: Any, free_sides: bool = False) -> Array:
         """softfall_compress: nominal stress in Pa; arrays of double of one length."""
-        stress = np.empty_like(strain)
+        stress: Array = np.empty_like(strain)
         _call("softfall_compress", self._handle, c.c_int(free_sides), _array(time), _array(strain), c.c_int64(strain.size), _array(stress))
         return stress
 
@@ -176,8 +177,8 @@ def refine(fine: float, coarse: float, ratio: float, cells: float) -> tuple[floa
 class RecordParts(NamedTuple):
     """What the library says of a measured record."""
 
-    time: np.ndarray  # s
-    deceleration: np.ndarray  # g
+    time: Array  # s
+    deceleration: Array  # g
     grade: int
     verdict: str
     interpretation: str

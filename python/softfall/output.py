@@ -12,7 +12,7 @@ import stat
 import tempfile
 import tomllib
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any, Iterator, NoReturn
 
 from .errors import Error, InputError
 
@@ -35,7 +35,7 @@ def read(path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:
     return data
 
 
-def _refused(handle: int, path: str | os.PathLike[str]) -> Any:
+def _refused(handle: int, path: str | os.PathLike[str]) -> NoReturn:
     os.close(handle)
     raise InputError(f"{os.fspath(path)} is not a plain file")
 

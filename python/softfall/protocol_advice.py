@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Iterator, Mapping
+from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from . import advice
+from . import advice, library
+from .array import Array
 from .case import Case
 from .errors import InputError, NumericError
-from .foam_draws import compression_stresses
 from .judge import Line, Outcome
 from .protocol import Condition, Figure, Missile, Position, Protocol
 from .protocol_drops import Drop, Drops, Search, Spot, case_at, figures_of, folder_name, search, search_notes
@@ -124,7 +125,7 @@ def _search_other(p: Protocol, case: Case, condition: Condition, position: Posit
     if len(usable) < 2:
         return None
     reached = first.summary["critical_fall_height"]["verdict"] == "found"
-    highest = max(usable, key=lambda point: point["height_m"])
+    highest = max(usable, key=lambda point: float(point["height_m"]))
     limits = None if reached else (BELOW * highest["a_max_g"], BELOW * highest["hic"])
     return search(p, case, condition, position, folder, posterior, {**options, "check_drops": CHECKS}, limits, shown=False)
 
@@ -147,6 +148,14 @@ def _other_place(p: Protocol, pad: Case, condition: Condition, position: Positio
             return place
     notes.append(f"drops at {name} are not weighed: too few draws were simulated with success")
     return None
+
+
+def compression_stresses(folder: Path, rate: float, strains: Sequence[float]) -> Array:
+    """Returns the stress (Pa) [draws][strains] of the foam of each draw-NNN.cfg, pressed from rest at a rate (1/s) with its sides held."""
+    ramp = np.unique([*np.linspace(0, max(strains), 201), *strains])
+    at = np.searchsorted(ramp, strains)
+    paths = sorted(folder.glob("draw-*.cfg"), key=lambda path: int(re.sub(r"\D", "", path.stem) or 0))
+    return np.array([library.Material(str(path)).compress(ramp / rate, ramp)[at] for path in paths])
 
 
 def _tests(p: Protocol, posterior: Path, notes: list[str]) -> list[advice.Test]:

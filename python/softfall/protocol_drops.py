@@ -15,6 +15,7 @@ from typing import Any, Iterable, Mapping
 import numpy as np
 
 from . import programs
+from .array import Array
 from .case import Case
 from .curves import Hic, hic
 from .drop import Verdict, later_results, read_results
@@ -106,10 +107,11 @@ def hic_from(time: Any, deceleration: Any, least: float) -> Hic:
     integral = np.concatenate([[0], np.cumsum(0.5 * (a[1:] + a[:-1]) * np.diff(t))])
     begins = np.unique(np.concatenate([t[t <= t[-1] - least], t[t >= t[0] + least] - least, np.linspace(t[0], t[-1] - least, 20001)]))
 
-    def at(when: np.ndarray) -> np.ndarray:
+    def at(when: Array) -> Array:
         k = np.clip(np.searchsorted(t, when, "right") - 1, 0, t.size - 2)
         slope = (a[k + 1] - a[k]) / (t[k + 1] - t[k])
-        return integral[k] + (when - t[k]) * (a[k] + 0.5 * slope * (when - t[k]))
+        value: Array = integral[k] + (when - t[k]) * (a[k] + 0.5 * slope * (when - t[k]))
+        return value
 
     mean = np.maximum(0, (at(begins + least) - at(begins)) / least)
     best = int(np.argmax(mean))

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .array import Array
 from .errors import InputError
 
 RATE = 1e4  # Hz, of both curves
@@ -35,13 +36,13 @@ class Rating(NamedTuple):
         return next(word for bound, word in ((0.94, "excellent"), (0.8, "good"), (0.58, "fair"), (-1, "poor")) if self.overall > bound)
 
 
-def _corridor(reference: np.ndarray, curve: np.ndarray) -> float:
+def _corridor(reference: Array, curve: Array) -> float:
     peak = np.abs(reference).max()
     score = (OUTER * peak - np.abs(curve - reference)) / ((OUTER - INNER) * peak)
     return float(np.mean(np.clip(score, 0, 1) ** EXPONENT))
 
 
-def _shift(reference: np.ndarray, curve: np.ndarray) -> int:
+def _shift(reference: Array, curve: Array) -> int:
     """Returns the samples by which the curve is later (negative: earlier) where the two correlate best; of equals the least."""
     count = reference.size
     most, best = int(MOST_SHIFT * count), (-np.inf, 0)
@@ -55,13 +56,13 @@ def _shift(reference: np.ndarray, curve: np.ndarray) -> int:
     return best[1]
 
 
-def _overlap(reference: np.ndarray, curve: np.ndarray, shift: int) -> tuple[np.ndarray, np.ndarray]:
+def _overlap(reference: Array, curve: Array, shift: int) -> tuple[Array, Array]:
     if shift >= 0:
         return reference[: reference.size - shift], curve[shift:]
     return reference[-shift:], curve[: curve.size + shift]
 
 
-def _warp(reference: np.ndarray, curve: np.ndarray) -> float:
+def _warp(reference: Array, curve: Array) -> float:
     """Returns the sum of the magnitudes of the differences, over that of the reference, along the cheapest path of dynamic time warping
     (squared differences as cost, steps right, up and diagonal)."""
     count, window = reference.size, max(1, int(np.ceil(WINDOW * reference.size)))
@@ -74,11 +75,11 @@ def _warp(reference: np.ndarray, curve: np.ndarray) -> float:
     while i > 0 and j > 0:
         difference += abs(curve[i - 1] - reference[j - 1])
         size += abs(reference[j - 1])
-        i, j = min(((i - 1, j - 1), (i - 1, j), (i, j - 1)), key=lambda at: cost[at])
+        i, j = min(((i - 1, j - 1), (i - 1, j), (i, j - 1)), key=lambda at: float(cost[at]))
     return difference / size
 
 
-def _slopes(values: np.ndarray) -> np.ndarray:
+def _slopes(values: Array) -> Array:
     """Returns the derivative per sample, smoothed by means of nine points, of fewer at the ends."""
     slope = np.gradient(values)
     half = SMOOTHED // 2

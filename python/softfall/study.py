@@ -12,6 +12,7 @@ from typing import Any, Iterator, Mapping
 import numpy as np
 
 from . import laboratory, output as output_files, programs
+from .array import Array
 from .case import as_text
 from .errors import InputError, find
 
@@ -29,7 +30,7 @@ class Table:
             self.columns, *self.rows = list(csv.reader(stream))
         self._data = {name: _typed([row[k] for row in self.rows]) for k, name in enumerate(self.columns)}
 
-    def __getitem__(self, key: str) -> np.ndarray:
+    def __getitem__(self, key: str) -> Array:
         return find(self._data, "column", key)
 
     def __iter__(self) -> Iterator[str]:
@@ -39,7 +40,7 @@ class Table:
         return len(self.rows)
 
 
-def _typed(fields: list[str]) -> np.ndarray:
+def _typed(fields: list[str]) -> Array:
     try:
         return np.array([float(field) if field else np.nan for field in fields])
     except ValueError:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import softfall
-from softfall import advice, foam_draws, protocol
+from softfall import advice, protocol, protocol_advice
 from test_protocol import MAT, softfall_protocol
 
 SOURCE = pathlib.Path(os.environ["SF_SOURCE_DIR"])
@@ -189,41 +189,26 @@ def test_a_compression_test_of_what_the_drop_does_not_depend_on_tells_nothing():
 
 # ---- the stress of a draw in a compression test ----
 
-def write_draw(folder, text, rows="0,0\n0.3,50\n0.5,100\n0.9,400\n"):
+def write_draw(folder, text, rows="0,0\n0.02,20\n0.3,50\n0.5,100\n0.9,400\n"):
     (folder / "draw-001.csv").write_text("# made up\nstrain,stress_kPa\n" + rows)
-    (folder / "fast.csv").write_text("strain,stress_kPa\n0,0\n0.3,80\n0.5,90\n0.9,900\n")
-    (folder / "draw-001.cfg").write_text(text)
+    (folder / "fast.csv").write_text("strain,stress_kPa\n0,0\n0.02,30\n0.3,80\n0.5,90\n0.9,900\n")
+    (folder / "draw-001.cfg").write_text('density = "100 kg/m3";\nE = "2 MPa";\nHU = 0.5;\nSHAPE = 1.0;\n' + text)
 
 
-def test_the_stress_of_a_draw_has_the_laws_of_its_rate(tmp_path):
+def test_the_stress_of_a_draw_is_that_of_its_law(tmp_path):
+    """The rate of (O4) and (22) is a filtered one, which lags behind that of the test by far less than a part in a thousand of the ramp."""
     write_draw(tmp_path, 'curve = "draw-001.csv";\nrate_factor = 0.3;\nrate_reference = "60 1/min";\n')
     for rate, factor in ((0.01, 1.0), (1.0, 1.0), (100.0, 1.6)):
-        assert foam_draws.compression_stresses(tmp_path, rate, (0.3, 0.5))[0] == pytest.approx([50e3 * factor, 100e3 * factor])
+        assert protocol_advice.compression_stresses(tmp_path, rate, (0.3, 0.5))[0] == pytest.approx([50e3 * factor, 100e3 * factor], rel=2e-3)
     write_draw(tmp_path, 'curves = ( { rate = "0.1 1/s"; file = "draw-001.csv"; }, { rate = "10 1/s"; file = "fast.csv"; } );\n')
     for rate, expected in ((0.01, [50, 100]), (1.0, [65, 100]), (1e3, [80, 100])):  # a faster curve is at least as high
-        assert foam_draws.compression_stresses(tmp_path, rate, (0.3, 0.5))[0] == pytest.approx([1e3 * e for e in expected])
+        assert protocol_advice.compression_stresses(tmp_path, rate, (0.3, 0.5))[0] == pytest.approx([1e3 * e for e in expected], rel=2e-2)
 
 
-@pytest.mark.parametrize("rate", [1.0, 5e3])
-def test_the_maxwell_branch_at_a_rate_is_that_of_its_differential_equation(rate):
-    strain, modulus, decay, viscosity, n = 0.6, 2e5, 5e3, 3.0, 40000
-    dt, s = strain / rate / n, 0.0
-    for k in range(n):  # of S' + decay S = modulus rate (1 - rate t), by the trapezoidal rule
-        force = modulus * rate * (1 - rate * (k + 0.5) * dt)
-        s = (s * (1 - decay * dt / 2) + force * dt) / (1 + decay * dt / 2)
-    expected = (1 - strain) * (s + viscosity * rate * (1 - strain))
-    assert foam_draws.viscous_stress(np.array([strain]), rate, modulus, decay, viscosity)[0] == pytest.approx(expected, rel=1e-5)
-
-
-@pytest.mark.parametrize("text, rows, said", [
-    ('curve = "draw-001.csv";', "0,0\n0.2,50\n", "ends before a strain of 0.7"),
-    ('curves = ( { temperature = "5 degC"; file = "draw-001.csv"; } );', "0,0\n0.3,50\n0.9,90\n", "neither a curve nor curves at rates"),
-    ('curve = "draw-001.csv";\nED = "3 bar";', "0,0\n0.3,50\n0.9,90\n", "none of the units Pa, kPa, MPa"),
-])
-def test_a_draw_without_a_known_stress_is_told(tmp_path, text, rows, said):
-    write_draw(tmp_path, text + "\n", rows)
-    with pytest.raises(softfall.InputError, match=said):
-        foam_draws.compression_stresses(tmp_path, 1.0, (0.3, 0.7))
+def test_a_draw_that_is_no_foam_is_told(tmp_path):
+    write_draw(tmp_path, 'curve = "draw-001.csv";\nED = "3 kg";\n')
+    with pytest.raises(softfall.InputError, match="ED.*kg"):
+        protocol_advice.compression_stresses(tmp_path, 1.0, (0.3, 0.7))
 
 
 def test_measuring_stops_and_decides():

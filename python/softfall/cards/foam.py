@@ -203,7 +203,7 @@ def _order(curve: Curve, told: Callable[[str], None]) -> None:
     if curve.strain and max(curve.strain) > 2:
         raise refuse(curve.place, f"the curve reaches a strain of {max(curve.strain):g}: is it in percent? Scale its abscissa by 0.01")
     points: list[tuple[float, float]] = []
-    highest = list(itertools.accumulate(curve.strain, max))
+    highest: list[float] = list(itertools.accumulate(curve.strain, lambda a, b: max(a, b)))
     back = [(a, b) for a, b, before in zip(curve.strain[1:], curve.stress[1:], highest) if a <= before]
     crushed = [(a, b) for a, b in zip(curve.strain, curve.stress) if a >= 1]
     for a, b in zip(curve.strain, curve.stress):
@@ -224,7 +224,7 @@ def _order(curve: Curve, told: Callable[[str], None]) -> None:
     if points and points[-1][1] < points[top][1]:
         told(f"its stress falls from {1e-3 * points[top][1]:g} kPa at a strain of {points[top][0]:g} to its end: it is cut there")
         points = points[:top + 1]
-    level = list(itertools.accumulate((b for _, b in points), max))
+    level: list[float] = list(itertools.accumulate((b for _, b in points), lambda a, b: max(a, b)))
     worst = max(range(len(points)), key=lambda k: level[k] - points[k][1], default=0)
     fall = level[worst] - points[worst][1] if points else 0.0
     if len(points) < 2 or level[-1] <= 0:

@@ -166,7 +166,7 @@ def _cell(value: Any) -> str:
 
 
 def _spreadsheet(path: str, data: bytes, wanted: str | None) -> list[Sheet]:
-    import pandas  # type: ignore[import]
+    import pandas
     try:
         read = pandas.read_excel(io.BytesIO(data), sheet_name=None, header=None, dtype=object, engine="openpyxl")
     except ImportError:

@@ -210,7 +210,7 @@ class _Reader:
 
     def read(self) -> Reading:
         """Returns the table that was read."""
-        import pandas  # type: ignore[import]
+        import pandas
         if not self.cells:
             raise InputError(f"{self.path}: no row of numbers stands below the heading")
         data: dict[str, Array] = {}
