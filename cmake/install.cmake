@@ -44,7 +44,7 @@ endif()
 # Manual pages and bash completions, made from the programs' --help. Those of Python go with the Python package; the pages of the words of softfall
 # are also those of the programs of their names, such as softfall-protocol. A build for the C programs alone has no modules to run them with.
 find_program(SOFTFALL_HELP2MAN help2man)
-execute_process(COMMAND python3 -c "import h5py, matplotlib, numpy, pandas" RESULT_VARIABLE modules_missing OUTPUT_QUIET ERROR_QUIET)
+execute_process(COMMAND /usr/bin/python3 -c "import h5py, matplotlib, numpy, pandas" RESULT_VARIABLE modules_missing OUTPUT_QUIET ERROR_QUIET)
 set(SOFTFALL_PYTHON_HELP ${SOFTFALL_PYTHON_PROGRAMS} CACHE INTERNAL "Python programs that --help runs here")
 if(modules_missing)
     set(SOFTFALL_PYTHON_HELP "" CACHE INTERNAL "")
