@@ -21,11 +21,13 @@ from .drop import Drop, as_str, later_results
 from .errors import Error, InputError, NumericError, SoftfallWarning, find
 
 RUNS = "softfall-runs"  # the folder of runs without a name
+WARNINGS = "warnings.txt"  # what softfall-pre warned of, told again when the drop is found
 FAILED = "failed.txt"  # in the folder of a drop: the sentence with which its solution failed
 ENDED = ("finished", "rebound")  # states of a whole run
 _LINE = re.compile(r'(\S+)\s+("(?:[^"\\]|\\.)*"|\[[^]]*\]|\([^)]*\)|\{[^}]*\}|\S+)')
 _MEMBER = re.compile(r'([\w-]+) = ("(?:[^"\\]|\\.)*"|[^;]+);')
 _STEPS = re.compile(r"^typical run time .* for about (\d+) steps", re.MULTILINE)
+_MOTION = re.compile(r'\bmotion\s*=\s*\\?"([^"\\]+)')  # of a later drop of a series
 _FILE = re.compile(r"^\S*\b(file|missile_file|curves?|motion)\s")  # lines of the list of parameters whose values are paths
 _PROGRESS = re.compile(r"t\s+([\d.]+) / \S+ ms\s+step\s+(\d+)\s+dt\s+([\d.]+) us\s+(?:a|force)\s+(-?[\d.]+) (g|N)"
                        r"\s+indentation\s+(-?[\d.]+) mm\s+compression (-?[\d.]+)\s+energy ([-+][\d.]+) %")
@@ -208,10 +210,17 @@ class Case(MutableMapping[str, Any]):
         with _folder(top), output_files.scratch(top) as scratch:
             model = scratch / "model.h5"
             share = [f"--share={top / 'shared'}"] if output is None else []
+            heard: list[str] = []
             report = programs.run("pre", [str(self.path), f"--output={model}", *share, *(f"--set={text}" for text in self._texts())],
-                                  threads=threads)
+                                  threads=threads, heard=heard)
             steps = _STEPS.search(report)
+            if output is None and self._folder_in(top) != folder:
+                raise InputError(f"{self.path}: an input changed while the model was built; run it again")
             with _folder(folder), locked(folder) as lock:  # the child inherits the lock: nobody else takes the folder while it runs
+                if output is None and not force and (found := self.find(top)):
+                    return found  # of another process, for which this one waited
+                if output is None and heard:
+                    output_files.write(folder / WARNINGS, "".join(f"{sentence}\n" for sentence in heard))
                 how = _How(threads, on_step, int(steps[1]) if steps else 0, force, output is None, lock)
                 try:
                     return _solve(model, folder, how)
@@ -224,6 +233,9 @@ class Case(MutableMapping[str, Any]):
         """Returns the folder of this drop below `runs`, named after the content of the inputs but for what geometries include."""
         said = [line for line in library.case_parameters(str(self.path), self._texts()).splitlines() if not _FILE.match(line)]
         text = "\n".join([str(library.case_hash(str(self.path), self._texts())), *said])
+        for name in _MOTION.findall(text):  # of later drops of a series; the hash holds that of the first
+            with contextlib.suppress(InputError):  # softfall-pre has a sentence for what cannot be read
+                text += hashlib.sha256(output_files.read(self.path.parent / name)).hexdigest()
         key = hashlib.sha256(text.encode()).hexdigest()[:16]
         return next(iter(sorted(runs.glob(f"*-{key}"))), runs / f"{self._name()}-{key}")
 
@@ -232,7 +244,7 @@ class Case(MutableMapping[str, Any]):
         folder = self._folder_in(Path(runs).absolute())
         first = folder / "results.h5"
         state = _state(first)
-        if state.get("revision") != _revision() or not library.case_has_geometry_of(str(self.path), self._texts(), str(first)):
+        if state.get("revision") != _revision() or not _is_after_programs(first) or not library.case_has_geometry_of(str(self.path), self._texts(), str(first)):
             return None
         if (folder / FAILED).exists() and state["status"] != "interrupted":
             failed = NumericError((folder / FAILED).read_text(encoding="utf-8"), 5)
@@ -240,8 +252,10 @@ class Case(MutableMapping[str, Any]):
             raise failed
         with h5py.File(first, "r") as file:
             drops = max(1, int(file["summary/drops"][()])) if "summary/drops" in file else 1
+        for sentence in (folder / WARNINGS).read_text(encoding="utf-8").splitlines() if (folder / WARNINGS).exists() else ():
+            warnings.warn(sentence, SoftfallWarning, stacklevel=3)
         ended = [_state(later_results(first, number)).get("status") in ENDED for number in range(1, drops + 1)]
-        return Drop(first, folder / "out") if all(ended) else None
+        return Drop(first, folder / "out", own=True) if all(ended) else None
 
     def require_single(self, what: str) -> None:
         """Raises InputError if the case is a series of drops, of which `what` would have the first one alone."""
@@ -290,6 +304,14 @@ def locked(folder: Path) -> Iterator[int]:
             warnings.warn(f"another process runs the drop in {folder}: this one waits for it", SoftfallWarning, stacklevel=4)
             fcntl.flock(lock, fcntl.LOCK_EX)
         yield lock.fileno()
+
+
+def _is_after_programs(results: Path) -> bool:
+    """False if programs without a revision of their own, of a changed tree or of none, may have been built after a run."""
+    if _revision() != "unknown" and not _revision().endswith("-dirty"):
+        return True
+    built = [path.stat().st_mtime_ns for path in programs.folder().glob("softfall-*") if path.is_file()]
+    return results.stat().st_mtime_ns > max(built, default=0)
 
 
 def _revision() -> str:

@@ -273,7 +273,8 @@ class Drop:
         bounds = {limit["key"]: limit["bound"] for limit in kept["verdict"]["limits"]}
         usual = kept["cfc"] == 1000 and "reference" not in kept and "," not in kept["acceleration"] and set(bounds.values()) <= {200, 1000}
         newer = (self._home or Path()).joinpath("summary.json").stat().st_mtime_ns > self.results.stat().st_mtime_ns
-        return usual and newer and kept["program"].split()[-1] == library.version().split()[0]
+        whole = all((self._home or Path()).joinpath(name).exists() for name in ("report.html", "acceleration.csv"))
+        return usual and whole and newer and kept["program"].split()[-1] == library.version().split()[0]
 
     @property
     def summary(self) -> dict[str, Any]:

@@ -146,9 +146,10 @@ def _convert(path: str, o: argparse.Namespace) -> str:
 def _export(path: str, o: argparse.Namespace) -> str:
     if not o.format or not o.units or not o.output:
         raise InputError("--format=dyna|abaqus|radioss, --units=NAME (such as mm-ms-kg-GPa) and --output=FILE are needed")
+    path = material_file(path)
     if check(o.output, *_inputs(path)).exists() and not o.force:
         raise InputError(f"{o.output} exists already: give --force to replace it")
-    text, listed = export(material_file(path), o.format, o.units)
+    text, listed = export(path, o.format, o.units)
     write(o.output, text, *_inputs(path))
     return "\n".join([*(f"  {line}" for line in listed), f"Written: {o.output}"])
 

@@ -73,7 +73,7 @@ def judge(p: Protocol, drops: Drops, simulated: bool = False) -> Outcome:
     elif not simulated and made.lines:
         made.notes.append("there is no interval: the scatter from drop to drop and from sample to sample is not included")
     if drops.doubt:
-        made.passed, made.value, made.low, made.high = None, math.nan, math.nan, math.nan
+        made.passed, made.value, made.low, made.high, made.tested = None, math.nan, math.nan, math.nan, math.nan
         made.stated = f"not decided, as {drops.doubt} (as they are listed: {made.stated})"
     if any(0 < len(drop.draws) < LEAST_DRAWS for drop in drops.drops):
         made.notes.append(f"figures have no 95 % intervals, which need {LEAST_DRAWS} draws of the foam and more")
@@ -105,7 +105,7 @@ def _greatest(p: Protocol, drops: Drops) -> float:
         best = 0.0
         for height in sorted(heights):
             group = heights[height]
-            values = {figure: figures_of(group, figure.label, _counted(p, group)) for figure in p.figures if figure.limit is not None}
+            values = {figure: figures_of(group, figure.label, counted_of(p, group)) for figure in p.figures if figure.limit is not None}
             if not all(value < figure.limit for figure, value in values.items()):  # type: ignore[operator]
                 break
             best = height
@@ -120,16 +120,17 @@ def _why(lines: list[Line]) -> str:
     return f"{line.of}: {line.note or f'there is no {line.figure}'}"
 
 
-def _spots(drops: Drops) -> dict[Spot, list[Drop]]:
+def spots_of(drops: Drops) -> dict[Spot, list[Drop]]:
+    """Returns the drops of each spot."""
     spots: dict[Spot, list[Drop]] = {}
     for drop in drops.drops:
         spots.setdefault(drop.spot, []).append(drop)
     return spots
 
 
-def _counted(p: Protocol, drops: list[Drop]) -> tuple[int, ...]:
-    """Returns the drops that count: of a simulated spot its only drop."""
-    return p.counted if len(drops) == p.count else (drops[0].number,)
+def counted_of(p: Protocol, drops: list[Drop]) -> tuple[int, ...]:
+    """Returns the numbers of the drops of a spot that count: of one without all drops, such as a simulated one, the first that there is."""
+    return p.counted if len(drops) == p.count else (min(drop.number for drop in drops),)
 
 
 def _unusable(drops: list[Drop], counted: tuple[int, ...]) -> str:
@@ -138,8 +139,8 @@ def _unusable(drops: list[Drop], counted: tuple[int, ...]) -> str:
 
 def _judge_pass(p: Protocol, drops: Drops) -> Outcome:
     made = Outcome("")
-    for spot, group in _spots(drops).items():
-        counted = _counted(p, group)
+    for spot, group in spots_of(drops).items():
+        counted = counted_of(p, group)
         for figure in p.figures:
             value = figures_of(group, figure.label, counted)
             passed = None if figure.limit is None or math.isnan(value) else value < figure.limit
@@ -197,7 +198,7 @@ def _judge_height(p: Protocol, drops: Drops) -> Outcome:
     for search in drops.searches:
         bounds.append(_take_search(p, search, made))
     measured: dict[tuple[str, str], dict[float, list[Drop]]] = {}
-    for spot, group in _spots(drops).items():
+    for spot, group in spots_of(drops).items():
         measured.setdefault((spot.condition, spot.position), {})[spot.height] = group
     for (condition, position), heights in measured.items():
         bounds.append(_cross(p, f"{condition}, {position}", heights, made))
@@ -261,12 +262,12 @@ def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome
     for figure in p.figures:
         if figure.limit is None:
             continue
-        values = [figures_of(heights[h], figure.label, _counted(p, heights[h])) for h in order]
+        values = [figures_of(heights[h], figure.label, counted_of(p, heights[h])) for h in order]
         first = next((h for h, value in zip(order, values) if value >= figure.limit), math.inf)  # what is above it does not matter
         bad = next((h for h, value in zip(order, values) if math.isnan(value) and h < first), None)
         if bad is not None:
             made.lines.append(Line(of, figure.label, math.nan, figure.limit, None,
-                                   note=f"{bad:g} m: {_unusable(heights[bad], _counted(p, heights[bad])) or f'there is no {figure.label}'}"))
+                                   note=f"{bad:g} m: {_unusable(heights[bad], counted_of(p, heights[bad])) or f'there is no {figure.label}'}"))
             return math.nan, math.nan
         k = next((k for k, value in enumerate(values) if value >= figure.limit), None)
         if k is None:
@@ -285,7 +286,7 @@ def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome
 
 def _judge_cushion(p: Protocol, drops: Drops) -> Outcome:
     made = Outcome("curve of the table")
-    for spot, group in sorted(_spots(drops).items(), key=lambda entry: kilograms(entry[0].mass)):
+    for spot, group in sorted(spots_of(drops).items(), key=lambda entry: kilograms(entry[0].mass)):
         stress = kilograms(spot.mass) * STANDARD_GRAVITY / p.area / 1e3
         for what, counted in (("first drop", (1,)), ("mean of the later ones", p.counted)):
             if not set(counted) <= {drop.number for drop in group}:

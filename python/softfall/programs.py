@@ -87,23 +87,24 @@ def _wait(child: subprocess.Popen[bytes]) -> None:
         raise
 
 
-def _sentences(program: str, errors: str) -> str:
-    """Passes a program's warnings on, and returns the sentence of its failure."""
+def _sentences(program: str, errors: str, heard: list[str]) -> str:
+    """Passes a program's warnings on, also to a list, and returns the sentence of its failure."""
     said = [re.sub(rf"^(\S*/)?{program}: ", "", line).strip() for line in errors.splitlines() if line.strip()]
     other = []
     for sentence in said:
         if sentence.startswith("warning: "):
-            warnings.warn(f"{program}: {sentence[9:]}", SoftfallWarning, stacklevel=4)
+            heard.append(f"{program}: {sentence[9:]}")
+            warnings.warn(heard[-1], SoftfallWarning, stacklevel=4)
         elif not sentence.startswith(("note: ", "Try `")):
             other.append(sentence)
     return " ".join(other)
 
 
 def run(name: str, arguments: Sequence[str], *, threads: int | None = None, terminal: bool = False, keep: Sequence[int] = (),
-        on_line: Callable[[str], object] | None = None) -> str:
+        on_line: Callable[[str], object] | None = None, heard: list[str] | None = None) -> str:
     """Runs softfall-`name` and returns what it printed; a failure is an exception with the program's sentence.
 
-    `terminal`: the program tells its progress as to a terminal; `keep`: file descriptors that it inherits. An exception here,
+    `terminal`: the program tells its progress as to a terminal; `keep`: file descriptors that it inherits; `heard` takes its warnings. An exception here,
     such as that of Ctrl-C or of `on_line`, ends the program cleanly before it goes on to the caller.
     """
     program = f"softfall-{name}"
@@ -140,7 +141,7 @@ def run(name: str, arguments: Sequence[str], *, threads: int | None = None, term
                 _running.discard(child)
             os.close(ours)
         errors.seek(0)
-        sentence = _sentences(program, errors.read().decode(errors="replace"))
+        sentence = _sentences(program, errors.read().decode(errors="replace"), [] if heard is None else heard)
     code = child.returncode
     if watch.over and code:
         raise Error(f"{program} was ended, as the drop took longer than its time limit", 5)

@@ -80,7 +80,7 @@ def _is_copy(t: Any, a: Any, s: Any, b: Any) -> bool:
     p = int(np.argmax(a))
     for q in int(np.argmax(b)) + np.array([0, -1, 1]):  # of a flat top, rounding chooses the highest sample
         before, after = min(p, q), min(a.size - p, b.size - q)
-        if before >= 0 < after and np.max(np.abs(a[p - before:p + after] - b[q - before:q + after])) <= COPY * abs(a[p]):
+        if 2 * (before + after) >= min(a.size, b.size) and np.max(np.abs(a[p - before:p + after] - b[q - before:q + after])) <= COPY * abs(a[p]):
             return True
     return False
 
@@ -237,8 +237,8 @@ def _measured(p: Protocol, folder: Path, where: str, row: Mapping[str, str], com
             if options[flag] not in ("yes", "no"):
                 raise InputError(f"{where}: {flag} is yes or no, not {options[flag]!r}")
             options[flag] = options[flag] == "yes"
+    arrival = _speed(where, row, height)
     try:
-        arrival = _speed(where, row, height)
         record = read_record(path, filter=int(p.filter), speed=f"{arrival or speed(height):.9g} m/s", **options)
     except Error as error:
         raise InputError(f"{where}: {error}") from None

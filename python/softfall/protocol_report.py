@@ -15,7 +15,7 @@ from urllib.parse import quote
 from . import library, output as output_files
 from .advice import Advice
 from .curves import hic
-from .judge import Outcome
+from .judge import Outcome, counted_of, spots_of
 from .protocol import CAUTION, NEEDS, Figure, Protocol, speed
 from .protocol_advice import rows
 from .protocol_drops import Drop, Drops, Spot, figures_of, hic_from
@@ -99,7 +99,7 @@ def _drop_table(p: Protocol, parts: Mapping[str, Drops], output: Path) -> str:
             groups.setdefault(drop.spot, []).append(drop)
         for spot, group in groups.items():
             at = [what, spot.condition, spot.position, spot.missile, f"{spot.height:g}", f"{speed(spot.height):.3f}"]
-            counts = p.counted if len(group) == p.count else (group[0].number,)
+            counts = counted_of(p, group)
             rows += [[*at, _number(drop.speed), spot.mass, str(drop.number), "yes" if drop.number in counts else "no",
                       *(_number(drop.figures.get(key, math.nan)) for key in keys), _window(drop, of_hic), drop.grade, drop.note.removeprefix(f"{drop.grade}: "),
                       _links(drop.view, output)] for drop in group]
@@ -168,9 +168,10 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["kind", "condition", "position", "missile", "height_m", "speed_m_s", "mass", "drop", "counts", *(figure.label for figure in p.figures), "grade", "note", "source"])
     for what, drops in parts.items():
+        counts = {spot: counted_of(p, group) for spot, group in spots_of(drops).items()}
         for drop in drops.all:
             table.writerow([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position, drop.spot.missile)), f"{drop.spot.height:g}", "" if math.isnan(drop.speed) else f"{drop.speed:g}", drop.spot.mass,
-                           drop.number, "yes" if drop.number in p.counted or drops.stands_in else "no", *(drop.figures.get(figure.label, "") for figure in p.figures), drop.grade, _cell(drop.note), _cell(drop.source)])
+                           drop.number, "yes" if drop.number in counts.get(drop.spot, p.counted) else "no", *(drop.figures.get(figure.label, "") for figure in p.figures), drop.grade, _cell(drop.note), _cell(drop.source)])
     output_files.write(output / "drops.csv", text.getvalue())
 
 

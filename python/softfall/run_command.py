@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import math
+import contextlib
 import os
 import re
 import signal
@@ -16,7 +16,7 @@ from . import library
 from .case import RUNS, Case, example, locked
 from .command import Parser
 from .drop import Drop
-from .errors import InputError, NumericError
+from .errors import Error, InputError, NumericError
 from .progress import Bar, DropProgress
 from .run_keys import listed, resolve, split
 
@@ -116,8 +116,9 @@ def simulate(case: Case, o: argparse.Namespace, bar: Bar) -> Drop:
     except NumericError as error:
         if error.results:
             bar.clear()
-            _finish(failed := Drop(error.results, Path(error.results).with_name("out")), progress, Path(o.output), bar)
-            print("\n".join(summarise(failed)))
+            with contextlib.suppress(Error):  # of too few rows nothing is made; the failure is what counts
+                _finish(failed := Drop(error.results, Path(error.results).with_name("out"), own=True), progress, Path(o.output), bar)
+                print("\n".join(summarise(failed)))
         raise
     _finish(drop, progress, Path(o.output), bar)
     return drop

@@ -90,9 +90,15 @@ def listed(case: Case) -> list[str]:
     return [*sorted(lines), "height=  (sets missile.velocity, such as height=\"1.3 m\")"]
 
 
-def as_number(case: Case, key: str, text: str) -> str:
-    """Returns the value of a geometry's parameter as the plain number that the case takes: a length is converted to its unit."""
-    unit = str(case["geometry.length_unit"])
+_UNITS = {"geometry.missile_parameters": ("geometry.missile_length_unit", "geometry.length_unit"),
+          "support.parameters": ("support.length_unit", "geometry.length_unit"), "geometry.parameters": ("geometry.length_unit",)}
+
+
+def as_number(case: Case, key: str, text: str, given: Mapping[str, str]) -> str:
+    """Returns the value of a geometry's parameter as the plain number that the case takes: a length is converted to the unit of its file,
+    which `given`, the other values of the command line by their keys, may set."""
+    units = _UNITS[key.rpartition(".")[0]]
+    unit = next(str(value) for name in units for value in (given.get(name), case.get(name)) if value is not None).strip('"')
     try:
         float(text)
         return text
@@ -147,11 +153,11 @@ def resolve(case: Case, given: Mapping[str, str]) -> tuple[dict[str, str], list[
     """Returns the values of a command line as a case takes them, and a sentence for each that was understood in another way."""
     values: dict[str, str] = {}
     said = []
-    for name, text in given.items():
-        if name in FALL:
-            continue
-        key = find_key(case, name)
-        value = as_number(case, key, text) if key.rpartition(".")[0] in dict(_PARAMETERS).values() else text
+    keys = {name: find_key(case, name) for name in given if name not in FALL}
+    whole = {key: given[name] for name, key in keys.items()}
+    for name, key in keys.items():
+        text = given[name]
+        value = as_number(case, key, text, whole) if key.rpartition(".")[0] in dict(_PARAMETERS).values() else text
         if key in values:
             raise InputError(f"{key} is given twice: {values[key]} and {value}")
         values[key] = value

@@ -7,7 +7,7 @@
 
 enum { NEAR_MAX = 40, NEAR_EDITS = 2 };
 
-/* Levenshtein distance, ignoring case: velocity and Velocity are one edit of zero apart. */
+/* Levenshtein distance; capitals are as small letters. */
 static size_t edit_distance(const char *a, size_t na, const char *b, size_t nb) {
     size_t row[NEAR_MAX + 1];
     if (na > NEAR_MAX || nb > NEAR_MAX)

@@ -157,10 +157,11 @@ static sf_status check_sizes(const sf_case *c, const sf_model *m, sf_error *err)
         return SF_REFUSE(
             err,
             "the sizes cannot belong together: the missile is %.4g x %.4g x %.4g mm, the pad %.4g x "
-            "%.4g x %.4g mm; %s: if the missile was drawn in another unit than the pad, give "
-            "geometry.missile_length_unit",
+            "%.4g x %.4g mm; %s: if the missile was drawn in another unit than the pad, %s",
             1e3 * missile[0], 1e3 * missile[1], 1e3 * missile[2], 1e3 * pad[0], 1e3 * pad[1], 1e3 * pad[2],
-            unit);
+            unit,
+            c->missile.path ? "give geometry.missile_length_unit"
+                            : "give it a file of its own and geometry.missile_length_unit");
     return SF_OK;
 }
 
@@ -175,8 +176,8 @@ static void tell_density(const sf_case *c, const sf_model *m, const sf_sink *sin
                                    m->surface_triangle, &solid, SF_IGNORED) == SF_OK;
     double least = closed && !(sf_model_whole(m) > 1) ? solid.volume : box;
     name_unit(c, true, unit);
-    if (sf_missile_is_driven(m) || !(box > 0))
-        return;
+    if (sf_missile_is_driven(m) || !(box > 0) || !(closed || sf_model_whole(m) > 1))
+        return; /* of a face alone nothing is known */
     if (m->missile.mass > DENSEST * least)
         sf_sink_tell(
             sink, SF_WARNING,
@@ -538,11 +539,21 @@ static sf_status check_cut(const sf_case *c, const sf_model *m, sf_error *err) {
         'x' + e.axis, 1e3 * e.at[e.axis], 1e3 * e.at[0], 1e3 * e.at[1]);
 }
 
+/* A plate that covers the whole top may lie anywhere. */
+static bool covers_top(const sf_model *m, const sf_contact_zone *zone) {
+    double farthest = 0;
+    for (int64_t k = 0; k < m->contact_count; k++) {
+        const double *x = &m->position[3 * (int64_t)m->contact_node[k]];
+        farthest = fmax(farthest, hypot(x[0] - m->missile.impact[0], x[1] - m->missile.impact[1]));
+    }
+    return zone->half_width >= farthest;
+}
+
 static void tell_edge(const sf_model *m, const sf_contact_zone *zone, const sf_sink *sink) {
     if (m->axisymmetric || sf_missile_is_driven(m) || m->contact_count == 0)
         return;
     const margin e = find_margin(m);
-    if (e.reach < BESIDE * zone->half_width)
+    if (e.reach < BESIDE * zone->half_width && !covers_top(m, zone))
         sf_sink_tell(
             sink, SF_WARNING,
             "the missile falls on the edge of the pad: its impact point, (%.4g, %.4g) mm, lies %.3g mm %s the "

@@ -357,8 +357,6 @@ static sf_status solve_drop(const options *o, int64_t k, series *all, const char
         snprintf(path, sizeof path, "%s", named);
     if (k > 1)
         SF_TRY(check_own(all, k, hash, err));
-    if (k > 1) /* it is of a drop on a new pad */
-        d.model.section = (sf_section_drop){0};
     if (k == 1) {
         take_series(&d.model, path, all);
         SF_TRY(check_series(o, all, err));

@@ -66,6 +66,20 @@ def test_a_repeat_computes_nothing_and_a_changed_value_runs_again(pad):
     assert page(run("case.cfg", cwd=pad)) != page(first)
 
 
+def test_a_drop_that_is_found_warns_again_and_gets_lost_pages_back(pad):
+    def told():
+        done = subprocess.run(command("run", "fine_spacing=25", "outer_spacing=25", "-q"), cwd=pad, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done
+    first = told()
+    assert "the nodal spacing under the missile is 25 mm" in first.stderr
+    out = (pad / page(first.stdout)).parent
+    for lost in ("report.html", "summary.json"):  # the latter as after a kill between files
+        (out / lost).unlink()
+        again = told()
+        assert (again.stdout, again.stderr) == (first.stdout, first.stderr) and (out / lost).exists()
+
+
 def test_a_drop_is_found_by_its_content_wherever_the_case_stands(pad, tmp_path):
     first = run("case.cfg", cwd=pad)
     other = tmp_path / "another place"
@@ -207,6 +221,14 @@ def test_lengths_heights_and_short_keys(case, tmp_path):
     (tmp_path / "rig.csv").write_text("height (m),speed (m/s)\n1,4\n2,5.6568542\n")
     assert run_keys.fall_speed("0.5 m", str(tmp_path / "rig.csv"))[0] == pytest.approx(8 ** 0.5, rel=1e-6)
     case.update({**values})
+
+
+def test_a_length_has_the_unit_of_its_own_geometry(case):
+    lengths = {"diameter": "16 cm", "thickness": "6 cm"}
+    for given, expected in (({}, ("160", "60")), ({"missile_length_unit": "cm"}, ("16", "60")), ({"geometry.length_unit": "m"}, ("0.16", "0.06")),
+                            ({"length_unit": "m", "missile_length_unit": "cm"}, ("16", "0.06"))):
+        values, _ = run_keys.resolve(case, {**lengths, **given})
+        assert (values["geometry.missile_parameters.diameter"], values["geometry.parameters.thickness"]) == expected, given
 
 
 def test_a_parameter_that_only_the_geometry_names_is_found(pad):

@@ -245,10 +245,16 @@ static sf_status read_optional(const sf_results *r, const char *path, double *va
     return err->status;
 }
 
+/* It is of a new pad: a later drop has none. */
 static sf_status read_section(sf_results *r, sf_error *err) {
+    int64_t drop = 1;
+    if (sf_h5_exists(r->file, "/summary/drop"))
+        SF_TRY(sf_h5_read_one(r->file, "/summary/drop", SF_H5_I64, &drop, err));
 #define READ(member, ...) SF_TRY(read_optional(r, "/model/section/" #member, &r->section.member, err));
     SF_SECTION_DROP(READ)
 #undef READ
+    if (drop > 1)
+        r->section.a_max_g = NAN;
     return SF_OK;
 }
 

@@ -202,6 +202,7 @@ static void put_pad(const page *p) {
                  r->layer_count > 0 ? ", mean of the layers" : "");
     SF_ORIGIN_PUT(&table, p->parameters, {"geometry.file", "shape"},
                   {"geometry.parameters", "its parameters"}, {"geometry.length_unit", "their unit"},
+                  {"geometry.missile_length_unit", "unit of the missile's geometry"},
                   {"pad.fixed", "surfaces of the base"}, {"pad.sliding", "sliding surfaces"},
                   {"pad.base", "base"});
     if (r->history.anvil_nodes[0] > 0) {

@@ -61,7 +61,7 @@ static void split_cell(halving *h, int64_t c, sf_mesh *to) {
     const int32_t *v = &m->cell_node[m->cell_ptr[c]];
     int vertices = (int)(m->cell_ptr[c + 1] - m->cell_ptr[c]);
     uint8_t layer = m->cell_layer ? m->cell_layer[c] : 0;
-    int32_t middle[4], centre = (int32_t)(m->node_count + h->sides + h->centres);
+    int32_t middle[4] = {0}, centre = (int32_t)(m->node_count + h->sides + h->centres);
     for (int k = 0; k < vertices; k++)
         middle[k] = middle_of(h, v[k], v[(k + 1) % vertices]);
     for (int k = 0; k < vertices; k++) {
