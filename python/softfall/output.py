@@ -56,14 +56,14 @@ def check(path: str | os.PathLike[str], *inputs: str | os.PathLike[str]) -> Path
     place = Path(path)
     if "\0" in os.fspath(place) or not place.name:
         raise InputError(f"{os.fspath(path)!r} is no name of a file")
-    with contextlib.suppress(OSError, ValueError):
+    with contextlib.suppress(OSError):
         mode = place.stat().st_mode
         if not stat.S_ISREG(mode):
             kind = "a folder" if stat.S_ISDIR(mode) else "no plain file (a pipe, a socket or a device)"
             raise InputError(f"the output {place} cannot be written: it is {kind}")
         for source in inputs:
-            with contextlib.suppress(OSError, ValueError):  # ValueError: a zero byte in a name
-                if os.path.samefile(place, source):
+            with contextlib.suppress(OSError):
+                if "\0" not in os.fspath(source) and os.path.samefile(place, source):
                     raise InputError(f"the output {place} would replace an input, {source}: give another name")
     if place.is_symlink() and not place.exists():
         raise InputError(f"the output {place} cannot be written: it is a link to nothing")

@@ -191,7 +191,7 @@ def test_a_compression_test_of_what_the_drop_does_not_depend_on_tells_nothing():
 
 def write_draw(folder, text, rows="0,0\n0.02,20\n0.3,50\n0.5,100\n0.9,400\n"):
     (folder / "draw-001.csv").write_text("# made up\nstrain,stress_kPa\n" + rows)
-    (folder / "fast.csv").write_text("strain,stress_kPa\n0,0\n0.02,30\n0.3,80\n0.5,90\n0.9,900\n")
+    (folder / "fast.csv").write_text("strain,stress_kPa\n0,0\n0.02,30\n0.3,80\n0.5,160\n0.9,900\n")
     (folder / "draw-001.cfg").write_text('density = "100 kg/m3";\nE = "2 MPa";\nHU = 0.5;\nSHAPE = 1.0;\n' + text)
 
 
@@ -201,7 +201,7 @@ def test_the_stress_of_a_draw_is_that_of_its_law(tmp_path):
     for rate, factor in ((0.01, 1.0), (1.0, 1.0), (100.0, 1.6)):
         assert protocol_advice.compression_stresses(tmp_path, rate, (0.3, 0.5))[0] == pytest.approx([50e3 * factor, 100e3 * factor], rel=2e-3)
     write_draw(tmp_path, 'curves = ( { rate = "0.1 1/s"; file = "draw-001.csv"; }, { rate = "10 1/s"; file = "fast.csv"; } );\n')
-    for rate, expected in ((0.01, [50, 100]), (1.0, [65, 100]), (1e3, [80, 100])):  # a faster curve is at least as high
+    for rate, expected in ((0.01, [50, 100]), (1.0, [65, 130]), (1e3, [80, 160])):
         assert protocol_advice.compression_stresses(tmp_path, rate, (0.3, 0.5))[0] == pytest.approx([1e3 * e for e in expected], rel=2e-2)
 
 
