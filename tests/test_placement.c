@@ -259,6 +259,60 @@ static void impact_point_is_reported(void **state) {
     program_assert_page(p, "hit/report.html", "x = -30 mm, y = 20 mm");
 }
 
+/* Writes two surfaces of boxes, each 60 mm wide and centred at x = 0 and x = `apart`, the second one of the
+ * given width; mm. Both face outwards. */
+static void write_boxes(const program_place *p, const char *name, double width, double apart) {
+    static const int face[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    char text[8192];
+    int used = snprintf(text, sizeof text, "solid boxes\n");
+    for (int k = 0; k < 24; k++) {
+        double side = k < 12 ? 60 : width, place[3] = {k < 12 ? 0 : apart, 0, 100};
+        used += snprintf(text + used, sizeof text - (size_t)used, "facet normal 0 0 0\nouter loop\n");
+        for (int v = 0; v < 3; v++) {
+            double x[3];
+            for (int c = 0; c < 3; c++)
+                x[c] = place[c] + ((face[k % 12][v] >> c & 1) - 0.5) * side;
+            used += snprintf(text + used, sizeof text - (size_t)used, "vertex %.3f %.3f %.3f\n", x[0], x[1],
+                             x[2]);
+        }
+        used += snprintf(text + used, sizeof text - (size_t)used, "endloop\nendfacet\n");
+    }
+    snprintf(text + used, sizeof text - (size_t)used, "endsolid boxes\n");
+    program_write_text(p, name, text);
+}
+
+/* Through gmsh, as CAD writes a hollow body: the volumes of both surfaces were added. */
+static void facets_within_facets_are_a_cavity(void **state) {
+    const program_place *p = *state;
+    static const struct {
+        double width, apart;
+        const char *freedom, *said;
+    } rows[] = {
+        /* moments of 4.6 kg (60^5 - 40^5) / (60^3 - 40^3) / 6 mm2 */
+        {40, 0, "free", "152 cm3, centroid (0, 0, "},
+        {40, 0, "free", "principal moments 34.056, 34.056, 34.056 kg cm2"},
+        {40, 0, "guided", "152 cm3, centroid (0, 0, "},
+        {60, 80, "free", "432 cm3, centroid (40, 0, "},
+        {60, 30, "free", "two of its closed parts overlap at "},
+        {60, 0, "free", "leave"},
+        {60, 30, "guided", "volume and inertia are unknown: two of its closed parts overlap"},
+    };
+    program_write_text(p, "boxes.geo",
+                       "Merge \"boxes.stl\";\ns() = Surface{:};\n"
+                       "Physical Surface(\"missile_surface\") = s();\n");
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+        write_boxes(p, "boxes.stl", rows[k].width, rows[k].apart);
+        program_result r = program_run(
+            p, "pre",
+            "'%s' -o boxes.h5 --force %s --set geometry.missile_file=$PWD/boxes.geo --set "
+            "geometry.missile_parameters='{}' --set geometry.parameters.quarter=0 --set missile.freedom=%s",
+            fixture_source(EXAMPLE), program_coarse(20), rows[k].freedom);
+        if (!strstr(r.out, rows[k].said) && !strstr(r.err, rows[k].said))
+            fail_msg("%zu: \"%s\" is missing in: %s%s", k, rows[k].said, r.out, r.err);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exchanged_groups_are_refused),
@@ -270,6 +324,7 @@ int main(void) {
         cmocka_unit_test(one_sided_surface_is_refused),
         cmocka_unit_test(sheet_drawn_either_way_is_one_model),
         cmocka_unit_test(impact_point_is_reported),
+        cmocka_unit_test(facets_within_facets_are_a_cavity),
     };
     return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

@@ -387,7 +387,8 @@ static double way_to_start(const sf_model *m, const sf_surface *surface, double 
 }
 
 /* Places the missile `gap` away from there and moves its surface into the model. */
-static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *m, sf_error *err) {
+static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_body *body, sf_model *m,
+                               sf_error *err) {
     double distance = 0, impact[3];
     sf_error miss = SF_ERROR_INIT;
     m->missile = c->missile_card;
@@ -397,7 +398,7 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
         sf_missile_set_shape(surface, c->shape_rule, &m->missile, err) != SF_OK ||
         (m->axisymmetric && !profile && sf_section_take_missile(surface, err) != SF_OK) ||
         sf_impact_place(c, m, surface, &m->missile, err) != SF_OK ||
-        sf_missile_take_body(c, surface, &m->missile, err) != SF_OK)
+        sf_missile_take_body(c, surface, m, body, err) != SF_OK)
         return err->status;
     if (sf_missile_distance(surface, &m->missile, m->position, m->contact_count, m->contact_node, &distance,
                             &miss) != SF_OK)
@@ -407,6 +408,7 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
         surface->position[k] += travel * m->missile.direction[k % 3];
     for (int k = 0; k < 3; k++) {
         m->missile.sphere_centre[k] += travel * m->missile.direction[k];
+        body->solid.centroid[k] += travel * m->missile.direction[k];
         if (sf_missile_turns(m))
             m->missile.centre[k] += travel * m->missile.direction[k];
     }
@@ -431,7 +433,7 @@ static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_model *
 static sf_status place(const sf_case *c, sf_build_report *report, sf_surface *surface, sf_model *m,
                        sf_error *err) {
     sf_base_place_anvil(c, &report->hold, m);
-    SF_TRY(build_missile(c, surface, m, err));
+    SF_TRY(build_missile(c, surface, &report->body, m, err));
     SF_TRY(sf_support_find_travel(m, err));
     if (m->axisymmetric) /* a plate */
         return SF_OK;
@@ -572,7 +574,7 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
             sf_drop_check_contact(c, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
             measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {
-            sf_drop_warn(c, mesh, m, &report->zone, sink);
+            sf_drop_warn(c, mesh, m, &report->zone, report->body.solid.volume, sink);
             sf_hold_warn(&report->hold, m, sink);
             tell_contact(c, m, report, sink);
             sf_support_warn(m, sink, err);

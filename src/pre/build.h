@@ -4,6 +4,7 @@
 #include "pre/cloud/layers.h"
 #include "pre/drop_check.h"
 #include "pre/hold.h"
+#include "pre/missile_body.h"
 
 /* Builds the model from a case, a mesh and a missile surface: cloud, supports, smoothing domains, masses,
  * constraints, contact points, missile. */
@@ -21,6 +22,7 @@ typedef struct sf_build_report {
     bool contact_held;         /* every contact point is held along z: nothing to drop on */
     sf_hold hold;
     sf_contact_zone zone;
+    sf_body body;     /* of the missile */
     sf_error between; /* a part of the missile passes between the contact nodes */
     sf_invariants invariants;
     sf_interfaces interfaces; /* of the layers, as the materials of the model */

@@ -166,15 +166,13 @@ static sf_status check_sizes(const sf_case *c, const sf_model *m, sf_error *err)
 }
 
 /* Mass and size of a body that is meant as it is drawn. */
-static void tell_density(const sf_case *c, const sf_model *m, const sf_sink *sink) {
-    sf_solid solid;
+/* `volume`: m3, of the missile's solid; 0: none is known. */
+static void tell_density(const sf_case *c, const sf_model *m, double volume, const sf_sink *sink) {
     double size[3];
     char unit[64];
     find_size(m, m->surface_node_count, m->surface_position, size);
     double box = size[0] * size[1] * size[2];
-    bool closed = sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
-                                   m->surface_triangle, &solid, SF_IGNORED) == SF_OK;
-    double least = closed && !(sf_model_whole(m) > 1) ? solid.volume : box;
+    double least = volume > 0 && !(sf_model_whole(m) > 1) ? volume : box;
     name_unit(c, true, unit);
     if (sf_missile_is_driven(m) || !(box > 0) || !(closed || sf_model_whole(m) > 1))
         return; /* of a face alone nothing is known */
@@ -627,10 +625,10 @@ sf_status sf_drop_check_contact(const sf_case *c, const sf_model *m, const sf_co
 }
 
 void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
-                  const sf_sink *sink) {
+                  double volume, const sf_sink *sink) {
     char reason[REASON_SIZE];
     tell_free_planes(c, mesh, sink);
-    tell_density(c, m, sink);
+    tell_density(c, m, volume, sink);
     tell_edge(m, zone, sink);
     tell_cautions(m, sink);
     if (!(m->expected_mesh_error >= sf_good_run_limits()->mesh))

@@ -76,11 +76,11 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
     if (session && sf_gmsh_load(session, &c->pad, err) == SF_OK && read_pad(session, c, mesh, err) == SF_OK &&
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK)) {
         bool profile = c->axisymmetric && sf_gmsh_has_profile(session, c->surface_group);
-        (profile ? sf_gmsh_read_profile : sf_gmsh_read_surface)(session, c->surface_group, c->missile.unit,
-                                                                surface, err);
+        if ((profile ? sf_gmsh_read_profile : sf_gmsh_read_surface)(session, c->surface_group,
+                                                                    c->missile.unit, surface, err) == SF_OK &&
+            !c->axisymmetric)
+            sf_gmsh_read_hull(session, c->surface_group, c->missile.unit, surface, err);
     }
-    if (err->status == SF_OK && c->freedom == SF_MISSILE_FREE)
-        sf_gmsh_read_hull(session, c->surface_group, c->missile.unit, surface, err);
     if (err->status == SF_OK && read_supports(session, c, mesh, support, err) == SF_OK)
         turn_up(c->up, mesh, surface);
     sf_release(&c->geometry_files);

@@ -2,6 +2,7 @@
 #include "pre/missile_body.h"
 
 #include "base/sets.h"
+#include "pre/mesh/closed_parts.h"
 #include "pre/mesh/missile_shape.h"
 #include <gsl/gsl_sort.h>
 
@@ -12,13 +13,15 @@ static const int ROW[6] = {0, 1, 2, 0, 1, 0}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
 
 static sf_status refuse_edge(const sf_half_edge *s, int64_t count, const double *position, sf_error *err) {
     const double *a = &position[3 * (int64_t)s->low], *b = &position[3 * (int64_t)s->high];
-    static const char *const meeting[] = {"it ends", "one triangle faces outwards and the next inwards",
-                                          "more than two triangles meet"};
+    static const char *const meeting[][2] = {
+        {"it ends", "close its surface, or mesh its volume"},
+        {"one triangle faces outwards and the next inwards", "mesh its volume"},
+        {"more than two triangles meet", "leave out what is there twice, and walls within the surface"}};
+    const char *const *m = meeting[(count < 3 ? count : 3) - 1];
     return SF_FAIL(err, SF_ERR_MODEL,
                    "the surface bounds no solid: %s at the edge from (%.6g, %.6g, %.6g) to (%.6g, %.6g, "
-                   "%.6g) mm",
-                   meeting[(count < 3 ? count : 3) - 1], 1e3 * a[0], 1e3 * a[1], 1e3 * a[2], 1e3 * b[0],
-                   1e3 * b[1], 1e3 * b[2]);
+                   "%.6g) mm: %s",
+                   m[0], 1e3 * a[0], 1e3 * a[1], 1e3 * a[2], 1e3 * b[0], 1e3 * b[1], 1e3 * b[2], m[1]);
 }
 
 static sf_status check_nodes(int64_t node_count, int64_t triangle_count, const int32_t *triangle,
@@ -31,16 +34,40 @@ static sf_status check_nodes(int64_t node_count, int64_t triangle_count, const i
     return SF_OK;
 }
 
-static sf_status check_closed(int64_t node_count, const double *position, int64_t triangle_count,
-                              const int32_t *triangle, sf_error *err) {
-    SF_TRY(check_nodes(node_count, triangle_count, triangle, err));
-    SF_OWNED sf_half_edge *edge = sf_half_edges(triangle_count, triangle, err);
-    for (int64_t k = 0, end; edge && k < 3 * triangle_count && err->status == SF_OK; k = end) {
-        end = sf_half_edges_end(edge, k, 3 * triangle_count);
+/* Sets `part` [triangle_count] to the lowest triangle of each triangle's part. */
+static sf_status check_closed(const sf_closed_parts *s, int64_t *part, sf_error *err) {
+    int64_t count = 3 * s->triangle_count;
+    SF_TRY(check_nodes(s->node_count, s->triangle_count, s->triangle, err));
+    SF_OWNED sf_half_edge *edge = sf_half_edges(s->triangle_count, s->triangle, err);
+    for (int64_t k = 0, end; edge && k < count && err->status == SF_OK; k = end) {
+        end = sf_half_edges_end(edge, k, count);
         if (end != k + 2 || edge[k].rises == edge[k + 1].rises)
-            refuse_edge(&edge[k], end - k, position, err);
+            refuse_edge(&edge[k], end - k, s->position, err);
+        else
+            sf_sets_join(part, edge[k].slot / 3, edge[k + 1].slot / 3);
     }
+    for (int64_t t = 0; t < s->triangle_count; t++)
+        part[t] = sf_sets_find(part, t);
     return err->status;
+}
+
+/* Each of several parts must face outwards, or, as the surface of a cavity, inwards. */
+static sf_status check_parts(const sf_closed_parts *s, const double *volume, sf_error *err) {
+    sf_error overlap = SF_ERROR_INIT;
+    SF_OWN(int32_t, depth, s->triangle_count, "parts of a surface", err);
+    SF_TRY(sf_closed_parts_nest(s, depth, &overlap, err));
+    if (overlap.status != SF_OK)
+        return SF_REFUSE(err, "%s", overlap.text);
+    for (int64_t t = 0; t < s->triangle_count; t++) {
+        const double *x = &s->position[3 * (int64_t)s->triangle[3 * t]];
+        if (s->part[t] == t && !(volume[t] * (depth[t] % 2 ? -1 : 1) > 0))
+            return SF_REFUSE(err, "the closed part at (%.4g, %.4g, %.4g) mm %s", 1e3 * x[0], 1e3 * x[1],
+                             1e3 * x[2],
+                             depth[t] % 2 ? "fills what another one fills: cut it out of that (in gmsh "
+                                            "BooleanFragments or BooleanDifference)"
+                                          : "is flat or turned inwards: turn it over");
+    }
+    return SF_OK;
 }
 
 /* The middle of the box: the sums are taken about it, so that a place far from the origin costs no digits. */
@@ -83,14 +110,23 @@ sf_status sf_solid_measure(int64_t node_count, const double *position, int64_t t
     if (triangle_count < 4)
         return SF_FAIL(err, SF_ERR_MODEL, "the surface bounds no solid: it has %lld triangles",
                        (long long)triangle_count);
-    SF_TRY(check_closed(node_count, position, triangle_count, triangle, err));
+    SF_OWNED int64_t *part = sf_sets_alone(triangle_count, "parts of a surface", err);
+    SF_OWN(double, part_volume, triangle_count, "parts of a surface", err);
+    const sf_closed_parts parts = {node_count, position, triangle_count, triangle, part};
+    SF_TRY(check_closed(&parts, part, err));
     find_middle(node_count, position, middle);
     for (int64_t t = 0; t < triangle_count; t++) {
-        double x[3][3];
+        double x[3][3], before = volume;
         for (int v = 0; v < 3; v++)
             sf_sub3(&position[3 * (int64_t)triangle[3 * t + v]], middle, x[v]);
         add_tetrahedron(x, &volume, first, second);
+        part_volume[part[t]] += volume - before;
     }
+    bool single = true;
+    for (int64_t t = 0; t < triangle_count; t++)
+        single = single && part[t] == 0;
+    if (!single)
+        SF_TRY(check_parts(&parts, part_volume, err));
     if (!(volume > 0) || !isfinite(volume))
         return SF_FAIL(err, SF_ERR_MODEL,
                        "the surface bounds no solid: its volume is %g m3, so it is flat or turned inwards",
@@ -176,20 +212,22 @@ static void round_off(const sf_surface *s, const sf_missile_card *card, sf_solid
     solid_of(&sum, card->sphere_centre, solid);
 }
 
-/* The solid, where the surface is now; `reason`: why there is none. */
-static bool find_solid(const sf_surface *s, const sf_missile_card *card, sf_solid *solid, sf_error *reason) {
-    sf_status status =
-        s->hull_triangle_count > 0
-            ? sf_solid_measure(s->hull_node_count, s->hull_position, s->hull_triangle_count, s->hull_triangle,
-                               solid, reason)
-            : sf_solid_measure(s->node_count, s->position, s->triangle_count, s->triangle, solid, reason);
-    if (status != SF_OK)
-        return false;
-    for (int c = 0; c < 3 && s->hull_triangle_count > 0; c++)
-        solid->centroid[c] += s->position[c] - s->origin[c];
-    if (card->shape == SF_SHAPE_SPHERE)
-        round_off(s, card, solid);
-    return true;
+/* Finds the body where the surface is now. The cells of a half or a quarter are not the missile. */
+static void find_body(const sf_surface *s, const sf_model *m, sf_body *body) {
+    bool cells = s->hull_triangle_count > 0 && m->symmetry_factor == 1;
+    *body = (sf_body){.none = SF_ERROR_INIT};
+    if (cells)
+        sf_solid_measure(s->hull_node_count, s->hull_position, s->hull_triangle_count, s->hull_triangle,
+                         &body->solid, &body->none);
+    else
+        sf_solid_measure(s->node_count, s->position, s->triangle_count, s->triangle, &body->solid,
+                         &body->none);
+    if (body->none.status != SF_OK)
+        return;
+    for (int c = 0; c < 3 && cells; c++)
+        body->solid.centroid[c] += s->position[c] - s->origin[c];
+    if (m->missile.shape == SF_SHAPE_SPHERE)
+        round_off(s, &m->missile, &body->solid);
 }
 
 static sf_status check_inertia(const double inertia[6], sf_error *err) {
@@ -202,24 +240,25 @@ static sf_status check_inertia(const double inertia[6], sf_error *err) {
                      p[0], p[1], p[2]);
 }
 
-sf_status sf_missile_take_body(const sf_case *c, const sf_surface *s, sf_missile_card *card, sf_error *err) {
-    sf_error reason = SF_ERROR_INIT;
-    sf_solid solid = {0};
+sf_status sf_missile_take_body(const sf_case *c, const sf_surface *s, sf_model *m, sf_body *body,
+                               sf_error *err) {
+    sf_missile_card *card = &m->missile;
+    const sf_solid *solid = &body->solid;
     bool given = c->inertia_count > 0, placed = c->centre_count > 0;
+    find_body(s, m, body);
     card->freedom = c->freedom;
     if (card->freedom == SF_MISSILE_GUIDED)
         return SF_OK;
-    if (!(given && placed) && !find_solid(s, card, &solid, &reason))
+    if (!(given && placed) && body->none.status != SF_OK)
         return SF_REFUSE(err,
-                         "missile.freedom: the missile's %s is not given, and its geometry is no solid that "
-                         "tells it (%.300s): close its surface, mesh its volume, or give missile.inertia and "
-                         "missile.centre",
-                         given ? "centre" : "inertia", reason.text);
+                         "missile.freedom: the missile's %s is not given, and its geometry does not tell it: "
+                         "%.400s; or give missile.inertia and missile.centre",
+                         given ? "centre" : "inertia", body->none.text);
     memcpy(card->angular_velocity, c->angular_velocity, sizeof card->angular_velocity);
     for (int k = 0; k < 3; k++)
-        card->centre[k] = placed ? c->centre[k] + s->position[k] - s->origin[k] : solid.centroid[k];
+        card->centre[k] = placed ? c->centre[k] + s->position[k] - s->origin[k] : solid->centroid[k];
     for (int k = 0; k < 6; k++)
-        card->inertia[k] = given ? c->inertia[k] : card->mass * solid.inertia[k] / solid.volume;
+        card->inertia[k] = given ? c->inertia[k] : card->mass * solid->inertia[k] / solid->volume;
     return check_inertia(card->inertia, err);
 }
 

@@ -33,16 +33,23 @@ typedef struct sf_solid {
 } sf_solid;
 
 /* Exact for the polyhedron that the triangles bound. `position` [node_count][3] m, `triangle`
- * [triangle_count][3] turned outwards. SF_ERR_MODEL unless each edge belongs to exactly two triangles that
- * run through it in opposite directions (open, branching or wrongly turned surfaces; nodes that coincide are
- * not joined), and the volume is positive. The surface may have several parts and hollows; it is not checked
- * for intersections. */
+ * [triangle_count][3] turned out of the material, into cavities. SF_ERR_MODEL unless each edge belongs to
+ * exactly two triangles that run through it in opposite directions (open, branching or wrongly turned
+ * surfaces; nodes that coincide are not joined), and the volume is positive. SF_ERR_INPUT: closed parts
+ * overlap, or one within another is not turned into a cavity. */
 sf_status sf_solid_measure(int64_t node_count, const double *position, int64_t triangle_count,
                            const int32_t *triangle, sf_solid *solid, sf_error *err);
 
-/* Sets the card's freedom, centre, inertia and angular velocity by the case; what it does not give comes from
- * the solid: the missile's cells, or its closed surface, with uniform density; where its surface is a sphere,
- * with what lies between the triangles and the sphere. The card has mass and shape; the surface is not placed
- * yet, the centre lies by it. SF_ERR_INPUT: there is no solid, or no body can have this inertia. */
-sf_status sf_missile_take_body(const sf_case *c, const sf_surface *surface, sf_missile_card *card,
+/* The missile's solid: its cells (of a whole model), or the inside of its closed surface; where the surface
+ * is a sphere, with what lies between the triangles and the sphere. */
+typedef struct sf_body {
+    sf_solid solid;
+    sf_error none; /* why there is none; SF_ERR_INPUT: its parts overlap */
+} sf_body;
+
+/* Finds the body, and sets freedom, centre, inertia and angular velocity of the model's missile by the case;
+ * what the case does not give comes from the body, with uniform density. The missile has mass and shape; the
+ * surface is not placed yet, the centre lies by it. SF_ERR_INPUT: a free missile has no body, or none can
+ * have this inertia. */
+sf_status sf_missile_take_body(const sf_case *c, const sf_surface *surface, sf_model *model, sf_body *body,
                                sf_error *err);

@@ -109,25 +109,33 @@ static double volume_of(const sf_model *m, const sf_build_report *r, int64_t k) 
     return volume;
 }
 
-/* Prints the mass properties of a missile that is drawn whole and closed. */
-static void add_body(sf_model_report *out, const sf_model *m) {
-    sf_solid solid;
-    double lowest[3];
-    const sf_surface missile = sf_surface_of_missile(m);
-    if (sf_solid_measure(m->surface_node_count, m->surface_position, m->surface_triangle_count,
-                         m->surface_triangle, &solid, SF_IGNORED) != SF_OK)
-        return;
-    sf_impact_lowest(&missile, &m->missile, lowest);
-    add(out, "missile_body", "missile body", "%.4g cm3, its centroid %.4g mm above its lowest point",
-        1e6 * solid.volume, 1e3 * (solid.centroid[2] - lowest[2]));
-    if (m->missile.mass > 0)
-        sf_text_add(last(out), SF_MODEL_REPORT_VALUE, "; if uniform %.4g kg/m3",
-                    m->missile.mass / solid.volume);
-}
-
 /* In mm; what is rounding of coordinates is 0. */
 static double millimetres(double length) {
     return fabs(length) < 1e-9 ? 0 : 1e3 * length;
+}
+
+/* Prints the mass properties of a missile that is drawn whole and closed. */
+static void add_body(sf_model_report *out, const sf_model *m, const sf_body *body) {
+    const sf_solid *solid = &body->solid;
+    double lowest[3], inertia[6], p[3];
+    const sf_surface missile = sf_surface_of_missile(m);
+    if (body->none.status == SF_ERR_INPUT)
+        add(out, "missile_body", "missile body", "volume and inertia are unknown: %.160s", body->none.text);
+    if (body->none.status != SF_OK)
+        return;
+    sf_impact_lowest(&missile, &m->missile, lowest);
+    add(out, "missile_body", "missile body",
+        "%.4g cm3, centroid (%.5g, %.5g, %.5g) mm, %.4g mm above its lowest point", 1e6 * solid->volume,
+        millimetres(solid->centroid[0]), millimetres(solid->centroid[1]), millimetres(solid->centroid[2]),
+        1e3 * (solid->centroid[2] - lowest[2]));
+    double density = m->missile.mass / solid->volume;
+    for (int k = 0; k < 6; k++)
+        inertia[k] = density * solid->inertia[k];
+    sf_missile_inertia_is_possible(inertia, p);
+    if (density > 0)
+        sf_text_add(last(out), SF_MODEL_REPORT_VALUE,
+                    "; if uniform %.4g kg/m3, principal moments %.5g, %.5g, %.5g kg cm2", density, 1e4 * p[0],
+                    1e4 * p[1], 1e4 * p[2]);
 }
 
 /* A line for each interface of the layers. */
@@ -169,7 +177,7 @@ static void add_masses(sf_model_report *out, const sf_model *m, const sf_build_r
     else
         add(out, "missile_contact", "missile contact", "%lld triangles",
             (long long)m->surface_triangle_count);
-    add_body(out, m);
+    add_body(out, m, &r->body);
     add(out, "impact_point", "impact point", "(%.4g, %.4g) mm: there the missile's lowest point arrives",
         millimetres(m->missile.impact[0]), millimetres(m->missile.impact[1]));
 }

@@ -8,6 +8,7 @@
 
 #include "base/mat3.h"
 #include "base/sets.h"
+#include "pre/mesh/closed_parts.h"
 
 static const double EDGE_ON = 1e-3; /* share of the area: below it a surface faces neither way */
 
@@ -18,6 +19,8 @@ typedef struct orienter {
     uint8_t *part;    /* [triangles] 1: reached */
     uint8_t *flip;    /* [triangles] against the part's first triangle */
     int64_t *member;  /* [triangles] of the part */
+    int64_t *closed;  /* [triangles] lowest triangle of its closed part; -1: of an open one */
+    int64_t closed_count;
 } orienter;
 
 static sf_status find_neighbours(orienter *o, sf_error *err) {
@@ -75,10 +78,16 @@ static sf_status walk(orienter *o, int64_t seed, int64_t *count, sf_error *err) 
     return SF_OK;
 }
 
+static bool is_closed(const orienter *o, int64_t count) {
+    for (int64_t k = 0; k < 3 * count; k++)
+        if (o->beyond[3 * o->member[k / 3] + k % 3] < 0)
+            return false;
+    return true;
+}
+
 /* True if the part, with the flips of the walk, must be turned over. */
-static bool is_inverted(const orienter *o, int64_t count, const double direction[3]) {
+static bool is_inverted(const orienter *o, int64_t count, bool closed, const double direction[3]) {
     double area = 0, facing = 0, given = 0, volume = 0;
-    bool closed = true;
     for (int64_t k = 0; k < count; k++) {
         int64_t t = o->member[k];
         double a[3], sign = o->flip[t] ? -1 : 1;
@@ -88,27 +97,45 @@ static bool is_inverted(const orienter *o, int64_t count, const double direction
         given += sign * size;
         facing += sign * sf_dot3(a, direction);
         volume += sign * sf_dot3(a, vertex(o->surface, t, 0));
-        for (int e = 0; e < 3; e++)
-            closed = closed && o->beyond[3 * t + e] >= 0;
     }
     if (closed)
         return volume < 0;
     return fabs(facing) > EDGE_ON * area ? facing < 0 : given < 0;
 }
 
-static void turn_part(const orienter *o, int64_t count, const double direction[3], sf_surface *surface) {
-    for (int64_t k = 0; surface->solid && k < count; k++)
-        if (surface->solid[o->member[k]])
-            return;
-    bool inverted = is_inverted(o, count, direction);
+static void turn_over(sf_surface *surface, int64_t t) {
+    int32_t *node = &surface->triangle[3 * t], swap = node[1];
+    node[1] = node[2];
+    node[2] = swap;
+}
+
+/* The first member is the lowest triangle of the part. */
+static void turn_part(orienter *o, int64_t count, const double direction[3], sf_surface *surface) {
+    bool closed = is_closed(o, count), backed = false;
     for (int64_t k = 0; k < count; k++) {
-        int32_t *node = &surface->triangle[3 * o->member[k]];
-        if (o->flip[o->member[k]] == inverted)
-            continue;
-        int32_t swap = node[1];
-        node[1] = node[2];
-        node[2] = swap;
+        o->closed[o->member[k]] = closed ? o->member[0] : -1;
+        backed = backed || (surface->solid && surface->solid[o->member[k]]);
     }
+    o->closed_count += closed;
+    bool inverted = !backed && is_inverted(o, count, closed, direction);
+    for (int64_t k = 0; k < count && !backed; k++)
+        if (o->flip[o->member[k]] != inverted)
+            turn_over(surface, o->member[k]);
+}
+
+/* Turns the surfaces of cavities inwards. Parts that overlap stay turned outwards: contact never reaches what
+ * is inside. */
+static sf_status turn_cavities(const orienter *o, sf_surface *s, sf_error *err) {
+    const sf_closed_parts all = {s->node_count, s->position, s->triangle_count, s->triangle, o->closed};
+    SF_OWNED int32_t *depth = NULL;
+    if (o->closed_count < 2)
+        return SF_OK;
+    depth = sf_alloc(err, s->triangle_count, sizeof *depth, "closed parts of a surface");
+    if (depth && sf_closed_parts_nest(&all, depth, SF_IGNORED, err) == SF_OK)
+        for (int64_t t = 0; t < s->triangle_count; t++)
+            if (o->closed[t] >= 0 && depth[o->closed[t]] % 2 == 1 && !(s->solid && s->solid[t]))
+                turn_over(s, t);
+    return err->status;
 }
 
 static sf_status check_facing(const sf_surface *s, const double direction[3], sf_error *err) {
@@ -134,12 +161,16 @@ sf_status sf_surface_turn(sf_surface *surface, const double direction[3], sf_err
                   .twisted = sf_alloc(err, 3 * n, 1, "missile edges"),
                   .part = sf_alloc(err, n, 1, "missile triangles"),
                   .flip = sf_alloc(err, n, 1, "missile triangles"),
-                  .member = sf_alloc(err, n, sizeof *o.member, "missile triangles")};
-    if (err->status == SF_OK && find_neighbours(&o, err) == SF_OK)
+                  .member = sf_alloc(err, n, sizeof *o.member, "missile triangles"),
+                  .closed = sf_alloc(err, n, sizeof *o.closed, "missile triangles")};
+    if (err->status == SF_OK && find_neighbours(&o, err) == SF_OK) {
         for (int64_t t = 0, count; t < surface->triangle_count && err->status == SF_OK; t++)
             if (!o.part[t] && walk(&o, t, &count, err) == SF_OK)
                 turn_part(&o, count, direction, surface);
-    SF_FREE(o.beyond, o.twisted, o.part, o.flip, o.member);
+        if (err->status == SF_OK)
+            turn_cavities(&o, surface, err);
+    }
+    SF_FREE(o.beyond, o.twisted, o.part, o.flip, o.member, o.closed);
     return err->status;
 }
 

@@ -9,9 +9,10 @@
  * faces to one behind it. Without cells there is none. */
 sf_status sf_hull_assemble(const sf_raw_mesh *raw, double unit, sf_surface *surface, sf_error *err);
 
-/* Parts (triangles joined by edges) without cells behind them are turned as one: a closed part outwards, an
- * open one so that its area faces along `direction`, as the missile's motion. Parts with cells behind them
- * stay as they are. SF_ERR_INPUT: a part is one-sided (a Moebius strip). */
+/* Parts (triangles joined by edges) without cells behind them are turned as one: a closed part outwards, or,
+ * within an odd number of other closed ones, into the cavity that it bounds; an open one so that its area
+ * faces along `direction`, as the missile's motion. Parts with cells behind them stay as they are.
+ * SF_ERR_INPUT: a part is one-sided (a Moebius strip). */
 sf_status sf_surface_turn(sf_surface *surface, const double direction[3], sf_error *err);
 /* The same, and refuses a surface that nowhere faces along `direction`. */
 sf_status sf_surface_orient(sf_surface *surface, const double direction[3], sf_error *err);
