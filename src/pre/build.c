@@ -387,7 +387,7 @@ static double way_to_start(const sf_model *m, const sf_surface *surface, double 
 }
 
 /* Places the missile `gap` away from there and moves its surface into the model. */
-static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_body *body, sf_model *m,
+static sf_status build_missile(const sf_case *c, sf_surface *surface, sf_missile_body *body, sf_model *m,
                                sf_error *err) {
     double distance = 0, impact[3];
     sf_error miss = SF_ERROR_INIT;

@@ -22,8 +22,8 @@ typedef struct sf_build_report {
     bool contact_held;         /* every contact point is held along z: nothing to drop on */
     sf_hold hold;
     sf_contact_zone zone;
-    sf_body body;     /* of the missile */
-    sf_error between; /* a part of the missile passes between the contact nodes */
+    sf_missile_body body; /* of the missile */
+    sf_error between;     /* a part of the missile passes between the contact nodes */
     sf_invariants invariants;
     sf_interfaces interfaces; /* of the layers, as the materials of the model */
 } sf_build_report;

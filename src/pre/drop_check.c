@@ -165,8 +165,8 @@ static sf_status check_sizes(const sf_case *c, const sf_model *m, sf_error *err)
     return SF_OK;
 }
 
-/* Mass and size of a body that is meant as it is drawn. */
-/* `volume`: m3, of the missile's solid; 0: none is known. */
+/* Mass and size of a body that is meant as it is drawn. `volume`: m3, of the missile's solid; 0: none is
+ * known. */
 static void tell_density(const sf_case *c, const sf_model *m, double volume, const sf_sink *sink) {
     double size[3];
     char unit[64];
@@ -174,7 +174,7 @@ static void tell_density(const sf_case *c, const sf_model *m, double volume, con
     double box = size[0] * size[1] * size[2];
     double least = volume > 0 && !(sf_model_whole(m) > 1) ? volume : box;
     name_unit(c, true, unit);
-    if (sf_missile_is_driven(m) || !(box > 0) || !(closed || sf_model_whole(m) > 1))
+    if (sf_missile_is_driven(m) || !(box > 0) || !(volume > 0 || sf_model_whole(m) > 1))
         return; /* of a face alone nothing is known */
     if (m->missile.mass > DENSEST * least)
         sf_sink_tell(

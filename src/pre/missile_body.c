@@ -213,9 +213,9 @@ static void round_off(const sf_surface *s, const sf_missile_card *card, sf_solid
 }
 
 /* Finds the body where the surface is now. The cells of a half or a quarter are not the missile. */
-static void find_body(const sf_surface *s, const sf_model *m, sf_body *body) {
+static void find_body(const sf_surface *s, const sf_model *m, sf_missile_body *body) {
     bool cells = s->hull_triangle_count > 0 && m->symmetry_factor == 1;
-    *body = (sf_body){.none = SF_ERROR_INIT};
+    *body = (sf_missile_body){.none = SF_ERROR_INIT};
     if (cells)
         sf_solid_measure(s->hull_node_count, s->hull_position, s->hull_triangle_count, s->hull_triangle,
                          &body->solid, &body->none);
@@ -240,7 +240,7 @@ static sf_status check_inertia(const double inertia[6], sf_error *err) {
                      p[0], p[1], p[2]);
 }
 
-sf_status sf_missile_take_body(const sf_case *c, const sf_surface *s, sf_model *m, sf_body *body,
+sf_status sf_missile_take_body(const sf_case *c, const sf_surface *s, sf_model *m, sf_missile_body *body,
                                sf_error *err) {
     sf_missile_card *card = &m->missile;
     const sf_solid *solid = &body->solid;

@@ -42,14 +42,14 @@ sf_status sf_solid_measure(int64_t node_count, const double *position, int64_t t
 
 /* The missile's solid: its cells (of a whole model), or the inside of its closed surface; where the surface
  * is a sphere, with what lies between the triangles and the sphere. */
-typedef struct sf_body {
+typedef struct sf_missile_body {
     sf_solid solid;
     sf_error none; /* why there is none; SF_ERR_INPUT: its parts overlap */
-} sf_body;
+} sf_missile_body;
 
 /* Finds the body, and sets freedom, centre, inertia and angular velocity of the model's missile by the case;
  * what the case does not give comes from the body, with uniform density. The missile has mass and shape; the
  * surface is not placed yet, the centre lies by it. SF_ERR_INPUT: a free missile has no body, or none can
  * have this inertia. */
-sf_status sf_missile_take_body(const sf_case *c, const sf_surface *surface, sf_model *model, sf_body *body,
-                               sf_error *err);
+sf_status sf_missile_take_body(const sf_case *c, const sf_surface *surface, sf_model *model,
+                               sf_missile_body *body, sf_error *err);

@@ -115,7 +115,7 @@ static double millimetres(double length) {
 }
 
 /* Prints the mass properties of a missile that is drawn whole and closed. */
-static void add_body(sf_model_report *out, const sf_model *m, const sf_body *body) {
+static void add_body(sf_model_report *out, const sf_model *m, const sf_missile_body *body) {
     const sf_solid *solid = &body->solid;
     double lowest[3], inertia[6], p[3];
     const sf_surface missile = sf_surface_of_missile(m);
