@@ -41,7 +41,7 @@ int program_group_folder(void **state) {
     return 0;
 }
 
-int program_group_example(void **state) {
+int program_group_case(void **state) {
     const program_place *place = program_group_set_up(state);
     program_result made =
         program_shell(place, "R=\"$SF_SOURCE_DIR\" && cp -r \"$R/geo\" \"$R/examples/materials\" . && "
@@ -49,6 +49,12 @@ int program_group_example(void **state) {
                              "\"$R/examples/eva50-v4.5/case.cfg\" > good.cfg");
     if (made.code != 0)
         fail_msg("the example cannot be copied: %s", made.err);
+    return 0;
+}
+
+int program_group_example(void **state) {
+    program_group_case(state);
+    const program_place *place = *state;
     program_succeed(place, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
     program_succeed(place, "solve", "model.h5 -o results.h5 --threads 1");
     program_succeed(place, "post", "results.h5 -o out");
@@ -100,11 +106,13 @@ program_result program_shell(const program_place *place, const char *format, ...
     return run_command(place, command);
 }
 
-static void program_command(char command[COMMAND_SIZE], const char *name, const char *format, va_list args) {
+/* `before`: words of the shell before the program. */
+static void program_command(char command[COMMAND_SIZE], const char *before, const char *name,
+                            const char *format, va_list args) {
     const char *programs = getenv("SF_BIN_DIR");
     if (!programs)
         fail_msg("SF_BIN_DIR is not set: it names the folder of the programs");
-    size_t used = (size_t)snprintf(command, COMMAND_SIZE, "'%s/softfall-%s' ", programs, name);
+    size_t used = (size_t)snprintf(command, COMMAND_SIZE, "%s'%s'/softfall-%s ", before, programs, name);
     if (used < COMMAND_SIZE)
         vsnprintf(command + used, COMMAND_SIZE - used, format, args);
 }
@@ -113,21 +121,34 @@ program_result program_run(const program_place *place, const char *name, const c
     char command[COMMAND_SIZE];
     va_list args;
     va_start(args, format);
-    program_command(command, name, format, args);
+    program_command(command, "", name, format, args);
     va_end(args);
     return run_command(place, command);
+}
+
+static program_result succeed(const program_place *place, const char *command) {
+    program_result result = run_command(place, command);
+    if (result.code != 0)
+        fail_msg("exit code %d from %s: %s", result.code, command, result.err);
+    return result;
 }
 
 program_result program_succeed(const program_place *place, const char *name, const char *format, ...) {
     char command[COMMAND_SIZE];
     va_list args;
     va_start(args, format);
-    program_command(command, name, format, args);
+    program_command(command, "", name, format, args);
     va_end(args);
-    program_result result = run_command(place, command);
-    if (result.code != 0)
-        fail_msg("exit code %d from %s: %s", result.code, command, result.err);
-    return result;
+    return succeed(place, command);
+}
+
+program_result program_figures(const program_place *place, const char *format, ...) {
+    char command[COMMAND_SIZE];
+    va_list args;
+    va_start(args, format);
+    program_command(command, "PATH=/nowhere ", "post --view 0", format, args);
+    va_end(args);
+    return succeed(place, command);
 }
 
 const char *program_coarse(double spacing) {

@@ -36,7 +36,8 @@ void program_tear_down(const program_place *place);
 /* A place of a whole group of tests, in *state; each ends with program_group_tear_down. */
 program_place *program_group_set_up(void **state);
 int program_group_folder(void **state); /* empty */
-/* With good.cfg (the example, geo and materials beside it), model.h5, results.h5 of 1 ms and out/. */
+int program_group_case(void **state);   /* with good.cfg: the example, geo and materials beside it */
+/* With these, model.h5, results.h5 of 1 ms and out/. */
 int program_group_example(void **state);
 int program_group_tear_down(void **state);
 
@@ -52,6 +53,10 @@ program_result program_run(const program_place *place, const char *name, const c
 /* The same, and fails the test with the program's words unless it exits with 0. */
 program_result program_succeed(const program_place *place, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* Succeeds with softfall-post as it runs where there is no gnuplot, and without view.html: pictures take most
+ * of its time. */
+program_result program_figures(const program_place *place, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 /* --set options that make the example case coarse, and allow it: `spacing` mm in the zone, 20 mm outside;
  * valid until the next call. */

@@ -475,9 +475,10 @@ static double hertz_ratio(const program_place *p, bool two, double fine) {
 }
 
 static void a_dome_on_a_slab_and_two_domes_obey_hertz(void **state) {
+    /* Two domes have the larger contact, and cost most: they are as accurate at the wider spacing. */
     for (int two = 0; two < 2; two++) {
-        double coarse = fabs(hertz_ratio(*state, two, 1.7) - 1),
-               fine = fabs(hertz_ratio(*state, two, 0.85) - 1);
+        double spacing = two ? 1.2 : 0.85, coarse = fabs(hertz_ratio(*state, two, 2 * spacing) - 1),
+               fine = fabs(hertz_ratio(*state, two, spacing) - 1);
         assert_true(fine < 0.5 * coarse && fine < 0.02);
     }
 }
@@ -495,5 +496,5 @@ int main(void) {
         cmocka_unit_test(each_interface_has_its_own_friction),
         cmocka_unit_test(a_dome_on_a_slab_and_two_domes_obey_hertz),
     };
-    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A coarse case in a folder of its own, and its drop."""
+import contextlib
+import io
 import os
 import pathlib
+import signal
 import subprocess
+import sys
 import warnings
 
 import pytest
@@ -10,6 +14,7 @@ import pytest
 import matplotlib
 matplotlib.use("agg")
 import softfall  # noqa: E402
+from softfall import command  # noqa: E402
 
 BIN = pathlib.Path(os.environ["SF_BIN_DIR"])
 
@@ -17,6 +22,25 @@ BIN = pathlib.Path(os.environ["SF_BIN_DIR"])
 def program(name, *arguments, cwd):
     """Runs a program as a user does, and returns what it prints."""
     return subprocess.run([str(BIN / f"softfall-{name}"), *map(str, arguments)], cwd=cwd, check=True, capture_output=True, text=True).stdout
+
+
+def command_here(*words):
+    """Runs `softfall WORD...` within this process, whose Python has its modules already, and returns what a process of its own would."""
+    words = [str(word) for word in words]
+    out, err, handler, argv = io.StringIO(), io.StringIO(), signal.getsignal(signal.SIGTERM), sys.argv
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings():
+        warnings.resetwarnings()
+        for kind in (DeprecationWarning, PendingDeprecationWarning, ImportWarning, ResourceWarning):  # as Python begins
+            warnings.simplefilter("ignore", kind)
+        try:
+            sys.argv = ["softfall", *words]
+            code = command.main(words)
+        except SystemExit as end:
+            code = end.code
+        finally:
+            sys.argv = argv
+            signal.signal(signal.SIGTERM, handler)
+    return subprocess.CompletedProcess(words, code, out.getvalue(), err.getvalue())
 
 
 @pytest.fixture(scope="session")

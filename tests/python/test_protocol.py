@@ -14,7 +14,7 @@ import pytest
 import softfall
 from softfall import judge, protocol, protocol_advice, protocol_drops, refinement
 from softfall.protocol_drops import Drop, Drops, Spot
-from conftest import BIN
+from conftest import BIN, command_here
 
 SOURCE = pathlib.Path(os.environ["SF_SOURCE_DIR"])
 MAT = SOURCE / "examples/protocol/measured/mat.toml"
@@ -22,6 +22,11 @@ MAT = SOURCE / "examples/protocol/measured/mat.toml"
 
 def softfall_protocol(*arguments):
     return subprocess.run([str(BIN / "softfall-protocol"), *map(str, arguments)], capture_output=True, text=True)
+
+
+def protocol_here(*arguments):
+    """The same within this process: a Python of its own costs a second for its modules."""
+    return command_here("protocol", *arguments)
 
 
 @pytest.fixture
@@ -134,7 +139,7 @@ def test_a_wrong_protocol_is_refused_in_one_sentence(tmp_path, old, new, said):
     text = MAT.read_text()
     assert old in text
     (tmp_path / "mine.toml").write_text(text.replace(old, new, 1))
-    result = softfall_protocol(tmp_path / "mine.toml", "--measured", MAT.parent, "-o", tmp_path / "out")
+    result = protocol_here(tmp_path / "mine.toml", "--measured", MAT.parent, "-o", tmp_path / "out")
     assert result.returncode == 2 and result.stderr.count("\n") == 1 and "mine.toml" in result.stderr
     assert re.search(said, result.stderr), result.stderr
     assert not (tmp_path / "out").exists()
@@ -152,7 +157,7 @@ def test_measured_drops_are_judged_by_straight_lines_between_the_heights(measure
     assert found["value_m"] == pytest.approx(0.6 * (0.9 / 0.6) ** share, rel=1e-12) and found["stated"] == "0.75 m"
     page = (tmp_path / "out/report.html").read_text()
     assert "UNCONFIRMED" in page and "made-up laboratory" in page and "<svg" in page and "certifies nothing" in page
-    again = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    again = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert again.returncode == 2 and "--force" in again.stderr
     assert len((tmp_path / "out/drops.csv").read_text().splitlines()) == 28
 
@@ -164,7 +169,7 @@ def test_a_list_is_read_as_spreadsheets_write_it(measured, tmp_path):
     rows[1] = rows[1].replace("file", "File")
     assert "0,9 m" in rows[5] and "File;" in rows[1]
     (measured / "list.csv").write_text("\r\n".join(rows), encoding="utf-16")
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 0 and "measured   0.75 m" in result.stdout, result.stderr
 
 
@@ -175,14 +180,14 @@ def test_heights_that_look_exchanged_are_marked(measured, tmp_path):
         assert f"\n{name}," in text
     text = text.replace("edge-0.9-2.csv", "?").replace("edge-1.2-2.csv", "edge-0.9-2.csv").replace("?", "edge-1.2-2.csv")
     (measured / "list.csv").write_text(text)
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 0 and "drops 2 at as it is, edge, 0.9 m and at as it is, edge, 1.2 m look exchanged" in result.stdout, result.stdout
     told = json.loads((tmp_path / "out/protocol.json").read_text())
     found = told["results"]["measured"]
     assert found["passed"] is None and found["value_m"] is None and found["stated"].startswith("not decided, as drops look exchanged (as they are listed: ")
     marked = {(d["position"], d["height_m"], d["drop"]) for d in told["drops"] if "looks exchanged" in d["note"]}
     assert marked == {("edge", 0.9, 2), ("edge", 1.2, 2)}
-    plain = softfall_protocol(MAT, "--measured", MAT.parent, "-o", tmp_path / "plain")
+    plain = protocol_here(MAT, "--measured", MAT.parent, "-o", tmp_path / "plain")
     assert "exchanged" not in plain.stdout
 
 
@@ -191,7 +196,7 @@ def test_a_record_of_another_scale_is_found_by_the_others_from_its_height(measur
     path = measured / "edge-0.9-2.csv"
     record = softfall.read_record(path)
     np.savetxt(path, np.column_stack([record.time, 0.7 * record.deceleration]), delimiter=",", header="time (s),acceleration (g)", comments="")
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     told = json.loads((tmp_path / "out/protocol.json").read_text())
     bad = [drop for drop in told["drops"] if drop["grade"] == "do not use"]
     assert [(drop["position"], drop["height_m"], drop["drop"]) for drop in bad] == [("edge", 0.9, 2)] and "another scale" in bad[0]["note"]
@@ -204,7 +209,7 @@ def test_files_may_be_found_by_a_pattern(measured, tmp_path):
     for path in list(measured.glob("*-*-*.csv")):
         position, height, drop = path.stem.split("-")
         path.rename(measured / f"{position}_{height} m_{drop}.csv")
-    result = softfall_protocol(MAT, "--measured", measured, "--pattern", "{position}_{height}_{drop}.csv", "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "--pattern", "{position}_{height}_{drop}.csv", "-o", tmp_path / "out")
     assert result.returncode == 0 and "0.75 m" in result.stdout, result.stderr
 
 
@@ -225,7 +230,7 @@ def test_files_may_be_found_by_a_pattern(measured, tmp_path):
 def test_a_wrong_list_is_refused_and_nothing_is_written(measured, tmp_path, old, new, said):
     text = (measured / "list.csv").read_text()
     (measured / "list.csv").write_text(text.replace(old, new, 1))
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 2 and result.stderr.count("\n") == 1 and re.search(said, result.stderr), result.stderr
     assert not (tmp_path / "out").exists()
 
@@ -233,7 +238,7 @@ def test_a_wrong_list_is_refused_and_nothing_is_written(measured, tmp_path, old,
 def test_a_record_that_is_not_to_be_used_decides_nothing(measured, tmp_path):
     lines = (measured / "corner-0.9-3.csv").read_text().splitlines()
     (measured / "corner-0.9-3.csv").write_text("\n".join(lines[:90]) + "\n")  # it ends in the pulse
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 0 and "not determined" in result.stdout
     assert "cut in the pulse" in (tmp_path / "out/report.html").read_text()
 
@@ -242,7 +247,7 @@ def test_a_record_of_another_unit_or_height_decides_nothing(measured, tmp_path):
     """Its area is the change of the velocity, which a fall from its height bounds on both sides."""
     text = (measured / "corner-0.9-3.csv").read_text().splitlines()
     (measured / "corner-0.9-3.csv").write_text("\n".join([text[0], *(",".join([row.split(",")[0], f"{float(row.split(',')[1]) / 9.80665:.6g}"]) for row in text[1:])]))
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 0 and "not determined" in result.stdout, result.stdout + result.stderr
     assert "too small by 9.8, as those in g under a heading of m/s2" in (tmp_path / "out/report.html").read_text()
 
@@ -260,7 +265,7 @@ def test_one_record_is_no_two_drops(measured, tmp_path, spelling):
     text = (measured / "list.csv").read_text()
     assert f"\n{second}," in text
     (measured / "list.csv").write_text(text.replace(f"\n{second},", f"\n{spelling.format(first)},"))
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 2 and "already: each drop has a record of its own" in result.stderr and result.stderr.count("\n") == 1, result.stderr
 
 
@@ -272,7 +277,7 @@ def test_one_record_is_no_two_drops(measured, tmp_path, spelling):
 def test_a_copy_of_a_record_is_no_second_drop(measured, tmp_path, heading, change):
     t, a = np.loadtxt(measured / "corner-0.9-1.csv", delimiter=",", skiprows=1, unpack=True)
     np.savetxt(measured / "corner-0.9-2.csv", np.column_stack(change(t, a)), delimiter=",", header=heading, comments="", fmt="%.8g")
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 2 and "already: each drop has a record of its own" in result.stderr and result.stderr.count("\n") == 1, result.stderr
 
 
@@ -282,7 +287,7 @@ def test_an_impact_or_a_drop_has_a_number_from_1_on(measured, tmp_path, number):
         softfall.read_record(measured / "centre-0.9-1.csv", impact=number)
     text = (measured / "list.csv").read_text()
     (measured / "list.csv").write_text(re.sub("(centre-0.9-1.csv,.*),1", rf"\g<1>,{number}", text))
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 2 and "is none of the 3" in result.stderr and result.stderr.count("\n") == 1, result.stderr
 
 
@@ -330,7 +335,7 @@ def test_what_a_confirmed_clause_asks_for_beyond_the_drops_makes_the_result_part
     (measured / "list.csv").write_text("\n".join([text[0], *(f"{line},{'4.10 m/s' if ',0.9 m,' in line else ''}" for line in text[1:])]) + "\n")
     for least, stated in ((3, ""), (9, "partial: ")):
         (measured / "mat.toml").write_text(MAT.read_text().replace('status = "confirmed"', f'status = "confirmed"\nneeds = {{ positions = {least}, drops = 3 }}', 1))
-        result = softfall_protocol(measured / "mat.toml", "--measured", measured, "-o", tmp_path / "out", "--force")
+        result = protocol_here(measured / "mat.toml", "--measured", measured, "-o", tmp_path / "out", "--force")
         assert result.returncode == 0, result.stderr
         told = json.loads((tmp_path / "out/protocol.json").read_text())
         outcome = told["results"]["measured"]
@@ -345,7 +350,7 @@ def test_what_a_confirmed_clause_asks_for_beyond_the_drops_makes_the_result_part
 def test_a_speed_that_no_fall_has_is_refused(measured, tmp_path, speed):
     text = (measured / "list.csv").read_text().replace("file,position,height,drop", "file,position,height,drop,speed").splitlines()
     (measured / "list.csv").write_text("\n".join([text[0], *(f"{line},{speed}" for line in text[1:])]) + "\n")
-    result = softfall_protocol(MAT, "--measured", measured, "-o", tmp_path / "out")
+    result = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert result.returncode == 2 and "speed" in result.stderr and result.stderr.count("\n") == 1, result.stderr
 
 
