@@ -15,6 +15,7 @@ from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from .array import Array
 from .errors import InputError
 
 CRITERIA = ("a_max_g", "hic")
@@ -53,7 +54,7 @@ class Test:
     """A compression test that could be next: the stress that each draw has in it, the standard deviation of its ln, and its cost."""
 
     name: str
-    stress: np.ndarray  # [draws][strains]
+    stress: Array  # [draws][strains]
     error: float
     cost: float
 
@@ -84,14 +85,14 @@ class Place:
     """What softfall-cfh knows of a condition, a position and a missile: for each draw ln(figure) over ln(height), the errors of the model, the scatter."""
 
     name: str
-    log_height: np.ndarray  # [grid]
-    value: np.ndarray  # [2][draws][grid] ln; inf: the columns collapse
-    shared: np.ndarray  # [2][draws]
-    own_sd: np.ndarray  # [2][draws]
-    scatter: np.ndarray  # [2][grid], standard deviation of ln(figure) from drop to drop
-    mesh: np.ndarray  # [2]
-    fit: np.ndarray  # [2]
-    columns_sd: np.ndarray  # [2][draws] standard deviation of the corrected columns, but for Student's t
+    log_height: Array  # [grid]
+    value: Array  # [2][draws][grid] ln; inf: the columns collapse
+    shared: Array  # [2][draws]
+    own_sd: Array  # [2][draws]
+    scatter: Array  # [2][grid], standard deviation of ln(figure) from drop to drop
+    mesh: Array  # [2]
+    fit: Array  # [2]
+    columns_sd: Array  # [2][draws] standard deviation of the corrected columns, but for Student's t
     freedom: int  # degrees of freedom of that; 0: it is not known
     notes: tuple[str, ...] = ()  # what is not known of it
     missile: str = ""  # another one than that of the protocol: nothing is judged by its drops
@@ -104,7 +105,7 @@ class Place:
         return math.exp(self.log_height[0]), math.exp(self.log_height[-1])
 
 
-def _columns(path: Path) -> dict[str, np.ndarray]:
+def _columns(path: Path) -> dict[str, Array]:
     """Returns the columns of a CSV file of softfall-cfh; empty cells are NaN."""
     with open(path, newline="", encoding="utf-8") as stream:
         rows = list(csv.reader(stream))
@@ -135,7 +136,7 @@ def read_place(name: str, folder: Path, missile: str = "", cost: float = 1.0) ->
                  tuple(_doubts(name, posterior, freedom, band)), missile, cost, summary["critical_fall_height"]["highest_simulated_m"] or math.inf)
 
 
-def _doubts(name: str, posterior: Mapping[str, Any], freedom: int, band: Mapping[str, np.ndarray]) -> Iterator[str]:
+def _doubts(name: str, posterior: Mapping[str, Any], freedom: int, band: Mapping[str, Array]) -> Iterator[str]:
     """Yields what softfall-cfh does not know of a place, in sentences."""
     failed = sum(check["failed"] for check in posterior["checks"])
     if freedom == 0:
@@ -152,7 +153,7 @@ def _doubts(name: str, posterior: Mapping[str, Any], freedom: int, band: Mapping
         yield f"{name}: the scatter from drop to drop is not known; {100 * SAME:g} % is taken"
 
 
-def _bell(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def _bell(a: Array, b: Array) -> Array:
     return np.asarray(np.exp(-0.5 * ((a[:, None] - b) / LENGTH) ** 2))
 
 
@@ -164,11 +165,11 @@ class _Smooth:
         self.knots = np.arange(min(ends), max(ends) + LENGTH / 3, LENGTH / 3)
         self.root = np.linalg.inv(np.linalg.cholesky(_bell(self.knots, self.knots) + 1e-9 * np.eye(self.knots.size)))
 
-    def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
+    def draw(self, count: int, random: np.random.Generator) -> Array:
         """Returns the coefficients of functions, two for each of `count` pads."""
         return random.standard_normal((2, count, self.knots.size))
 
-    def at(self, log_height: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    def at(self, log_height: Array, coefficients: Array) -> Array:
         """Returns values [2][count][heights]."""
         return np.asarray(coefficients @ (_bell(log_height, self.knots) @ self.root.T).T)
 
@@ -191,7 +192,7 @@ class Pads:
         self.misfit = 0.0  # ln of the likelihood of the worst drop at the pad that fits it best
         self.offset, self.value = {}, {}  # ln [2][pads], and [2][pads][grid] without it
         n, mesh = self.draw.size, random.standard_normal(self.draw.size)  # all places are of one pad, and of one way to compute it
-        smooth, forms = _Smooth(places), dict[str, np.ndarray]()
+        smooth, forms = _Smooth(places), dict[str, Array]()
         student = {"": random.standard_t(max(1, min(place.freedom for place in self.judged)), n)}
         for place in sorted(places, key=lambda place: place.missile != ""):
             forms.setdefault(place.missile, smooth.draw(n, random))
@@ -210,7 +211,7 @@ class Pads:
         """The places with the missile of the protocol."""
         return [place for place in self.places.values() if not place.missile]
 
-    def predict(self, place: str, height: float) -> np.ndarray:
+    def predict(self, place: str, height: float) -> Array:
         """Returns ln(figure) [2][pads] at a height (m); inf: the foam collapses."""
         p = self.places[place]
         made = np.empty((2, self.draw.size))
@@ -223,12 +224,12 @@ class Pads:
                 made[c] = np.where(np.isinf(high) & (part > 0), np.inf, low + np.where(part > 0, part * (high - low), 0)) + self.offset[place][c]
         return made
 
-    def scatter(self, place: str, height: float) -> np.ndarray:
+    def scatter(self, place: str, height: float) -> Array:
         """Returns the standard deviations of ln(figure) from drop to drop at a height."""
         p = self.places[place]
         return np.array([np.interp(math.log(height), p.log_height, p.scatter[c]) for c in range(2)])
 
-    def crossing(self, place: str, limits: Sequence[float | None]) -> np.ndarray:
+    def crossing(self, place: str, limits: Sequence[float | None]) -> Array:
         """Returns the height (m) [pads] where the first limit is reached; inf: at none of the heights looked at; 0: at all of them."""
         p, lowest = self.places[place], np.full(self.draw.size, np.inf)
         grid = np.exp(np.linspace(p.log_height[0], p.log_height[-1], 4 * p.log_height.size))
@@ -247,10 +248,11 @@ class Pads:
         return lowest
 
     @property
-    def weight(self) -> np.ndarray:
+    def weight(self) -> Array:
         """The probabilities of the pads."""
         w = np.exp(self.log_weight - self.log_weight.max())
-        return w / w.sum()
+        share: Array = w / w.sum()
+        return share
 
     @property
     def effective_draws(self) -> float:
@@ -265,7 +267,7 @@ class Pads:
         self.log_weight = self.log_weight + likelihood
 
 
-def _log_likelihood(measured: np.ndarray, predicted: np.ndarray, sd: np.ndarray) -> np.ndarray:
+def _log_likelihood(measured: Array, predicted: Array, sd: Array) -> Array:
     """Returns ln of the likelihood [pads] of the logarithms of two figures; a NaN is no figure.
 
     What scatters from drop to drop, speed and thickness, moves all figures of a drop together: two tell no more than one, so their mean counts.
@@ -274,7 +276,8 @@ def _log_likelihood(measured: np.ndarray, predicted: np.ndarray, sd: np.ndarray)
     if not there.any():
         return np.where(np.isinf(predicted).any(axis=0), 0.0, -1e4)  # a drop without figures is one in which the foam collapses
     each = np.where(np.isinf(predicted), -1e4, -0.5 * ((measured[:, None] - np.where(np.isinf(predicted), 0, predicted)) / sd[:, None]) ** 2)
-    return each[there].mean(axis=0)
+    mean: Array = each[there].mean(axis=0)
+    return mean
 
 
 @dataclass(frozen=True)
@@ -295,15 +298,17 @@ class Question:
         return bool(self.heights) or not math.isnan(self.required)
 
 
-def _heights_of(pads: Pads, q: Question) -> np.ndarray:
-    return np.min([pads.crossing(place.name, q.limits) for place in pads.judged], axis=0)
+def _heights_of(pads: Pads, q: Question) -> Array:
+    lowest: Array = np.min([pads.crossing(place.name, q.limits) for place in pads.judged], axis=0)
+    return lowest
 
 
-def quantiles(order: np.ndarray, value: np.ndarray, weight: np.ndarray) -> np.ndarray:
+def quantiles(order: Array, value: Array, weight: Array) -> Array:
     """Returns 2.5, 50 and 97.5 % of `value`, whose order is given, for weights [...][pads]."""
     total = np.cumsum(weight[..., order], axis=-1)
     places = np.stack([(total < part * total[..., -1:]).sum(axis=-1) for part in (0.025, 0.5, 0.975)], axis=-1)
-    return value[order][np.minimum(places, value.size - 1)]
+    quantiles: Array = value[order][np.minimum(places, value.size - 1)]
+    return quantiles
 
 
 class _Loss:
@@ -322,11 +327,12 @@ class _Loss:
         else:
             self.passes = self.height >= q.required
 
-    def probability(self, weight: np.ndarray) -> np.ndarray:
+    def probability(self, weight: Array) -> Array:
         """Returns the probability of passing."""
-        return weight @ self.passes / weight.sum(axis=-1)
+        share: Array = weight @ self.passes / weight.sum(axis=-1)
+        return share
 
-    def __call__(self, weight: np.ndarray) -> np.ndarray:
+    def __call__(self, weight: Array) -> Array:
         if self.q.decides:
             share = self.probability(weight)
             return np.minimum(share, 1 - share)
@@ -335,19 +341,19 @@ class _Loss:
             return np.where(np.isfinite(high) & (low > 0), (high - low) / median, 1.0)
 
 
-def _expected(loss: _Loss, weight: np.ndarray, log_likelihood: np.ndarray) -> float:
+def _expected(loss: _Loss, weight: Array, log_likelihood: Array) -> float:
     """Returns the mean loss after measurements whose ln of the likelihood is [truths][pads]."""
     with np.errstate(under="ignore"):
         after = weight * np.exp(log_likelihood - log_likelihood.max(axis=1, keepdims=True))
     return float(np.mean(loss(after / after.sum(axis=1, keepdims=True))))
 
 
-def _truths(weight: np.ndarray) -> np.ndarray:
+def _truths(weight: Array) -> Array:
     """Returns TRUTHS pads, as probable as their weights, evenly drawn."""
     return np.minimum(np.searchsorted(np.cumsum(weight), (np.arange(TRUTHS) + 0.5) / TRUTHS), weight.size - 1)
 
 
-def _drop_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, place: str, height: float) -> Choice:
+def _drop_choice(pads: Pads, loss: _Loss, weight: Array, now: float, place: str, height: float) -> Choice:
     truths, sd, predicted = _truths(weight), pads.scatter(place, height), pads.predict(place, height)
     measured = predicted[:, truths] + sd[:, None] * np.random.default_rng(2).standard_normal(TRUTHS)
     measured = np.where(np.isinf(measured), np.nan, measured)
@@ -356,7 +362,7 @@ def _drop_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, place:
     return Choice(f"a drop from {height:.4g} m, {place}", pads.places[place].missile or "drop", cost, after, (now - after) / cost, place, height)
 
 
-def _test_choice(pads: Pads, loss: _Loss, weight: np.ndarray, now: float, test: Test) -> Choice:
+def _test_choice(pads: Pads, loss: _Loss, weight: Array, now: float, test: Test) -> Choice:
     """What scatters from specimen to specimen moves the stress at all strains together: three tell no more than one, so their mean counts."""
     truths, of = _truths(weight), np.log(test.stress[pads.draw])
     measured = of[truths] + test.error * np.random.default_rng(3).standard_normal((TRUTHS, 1))
@@ -374,7 +380,7 @@ def candidate_heights(place: Place, q: Question, median: float) -> list[float]:
     return sorted(h for h in about | asked if low <= h <= high)
 
 
-def _median_height(pads: Pads, q: Question, place: Place, weight: np.ndarray, judged: float) -> float:
+def _median_height(pads: Pads, q: Question, place: Place, weight: Array, judged: float) -> float:
     """Returns the height about which drops at a place are tried: `judged`, the critical one, or that of another missile."""
     if not place.missile:
         return judged
@@ -410,4 +416,4 @@ def advise(pads: Pads, q: Question, tests: Sequence[Test] = (), unshown: Sequenc
     choices = [_drop_choice(pads, loss, weight, now, name, h) for name, place in pads.places.items()
                for h in candidate_heights(place, q, _median_height(pads, q, place, weight, height[1]))]
     choices += [_test_choice(pads, loss, weight, now, test) for test in tests]
-    return replace(known, choices=sorted(choices, key=lambda c: -c.gain))
+    return replace(known, choices=sorted(choices, key=lambda c: -float(c.gain)))
