@@ -23,7 +23,7 @@ typedef struct figures {
 static figures run(const program_place *p, const char *overrides) {
     program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 %s", overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
-    program_succeed(p, "post", "r.h5 -o out --force");
+    program_figures(p, "r.h5 -o out --force");
     figures f = {.a_max = program_file_number(p, "out/summary.json", "a_max_g"),
                  .force = program_history_largest(p, "contact_force_N"),
                  .base = program_file_number(p, "out/summary.json", "base_force_N"),
@@ -48,7 +48,11 @@ static void use_example(const program_place *p, const char *name) {
 }
 
 #define SUPPORT(file) "--set pad.fixed=[] --set support.file='\"geo/" file ".geo\"' "
-#define COARSE_PAD "--set geometry.parameters.fine_spacing=10.0 --set geometry.parameters.outer_spacing=20.0 "
+#define COARSE_PAD                                                                                           \
+    "--set geometry.parameters.fine_spacing=12.5 --set geometry.parameters.outer_spacing=25.0 "              \
+    "--set solver.end_time='\"20 ms\"' " /* the peak is at 12 ms */
+
+#define FINER_PAD "--set geometry.parameters.fine_spacing=10.0 --set geometry.parameters.outer_spacing=20.0 "
 
 static void a_flat_slab_acts_as_the_anvil(void **state) {
     const program_place *p = *state;
@@ -84,13 +88,14 @@ static void several_supports_share_the_load(void **state) {
             plane = run(p, COARSE_PAD "--set pad.fixed=[] --set support.plane='[0.0, 0.0, 2.0]' --set "
                                       "support.friction=0.0");
     assert_relative(plane.a_max, slab.a_max, 1e-4);
-    assert_relative(program_history_largest(p, "support_force_1_N"), plane.base, 1e-5);
+    assert_relative(program_history_largest(p, "support_force_1_N"), plane.base, 1e-4);
     program_write_text(
         p, "strips.cfg",
         "@include \"case.cfg\"\nsupports = ( { file = \"geo/strip.geo\"; parameters = { from = -45; to = 45; }; "
         "friction = 0.0; }, { file = \"geo/strip.geo\"; parameters = { from = 45; }; friction = 0.0; } );\n");
     program_shell(p, "mv case.cfg one.cfg && sed 's#case.cfg#one.cfg#' strips.cfg > case.cfg");
     figures both = run(p, COARSE_PAD "--set pad.fixed=[]");
+    program_succeed(p, "post", "r.h5 -o out --force"); /* with its pages */
     static const char *const shown[] = {"out/report.html",     "#7a5c3a",          "out/view.html",
                                         "\"support\":",        "out/pad.xdmf",     ":/support/position",
                                         "out/pad_paraview.py", "\"support\": True"};
@@ -119,7 +124,7 @@ static void the_bits_are_the_same(void **state) {
     program_succeed(p, "solve", "m.h5 --restart three.h5 -t 1 --end-time '9 ms'");
     for (int k = 0; k < 3; k++) {
         static const char *const name[] = {"one", "two", "three"};
-        program_succeed(p, "post", "%s.h5 -o %s --force", name[k], name[k]);
+        program_figures(p, "%s.h5 -o %s --force", name[k], name[k]);
     }
     assert_int_equal(program_shell(p, "cmp one/history.csv two/history.csv").code, 0);
     assert_int_equal(program_shell(p, "cmp one/history.csv three/history.csv").code, 0);
@@ -227,13 +232,14 @@ static void edges_of_a_support_that_cut_into_the_foam_are_told(void **state) {
         program_result r = program_run(
             p, "pre",
             "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 --set missile.velocity='\"3 m/s\"' "
-            "--set geometry.parameters.side=200.0 --set geometry.parameters.zone_side=140.0 " COARSE_PAD
-                SUPPORT("kerb") "--set support.parameters='{ size = %d; }'",
+            "--set geometry.parameters.side=200.0 --set geometry.parameters.zone_side=140.0 "
+            "--set solver.end_time='\"24 ms\"' " FINER_PAD SUPPORT(
+                "kerb") "--set support.parameters='{ size = %d; }'",
             fine ? 5 : 30);
         assert_int_equal(r.code, 0);
         assert_int_equal(strstr(r.err, "an edge of a support has nodes 30 mm apart") != NULL, !fine);
         program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
-        program_succeed(p, "post", "r.h5 -o out --force");
+        program_figures(p, "r.h5 -o out --force");
         a_max[fine] = program_file_number(p, "out/summary.json", "a_max_g");
         depth[fine] = program_file_number(p, "out/summary.json", "rim_depth_mm");
         r = program_shell(p,
@@ -248,7 +254,7 @@ static void edges_of_a_support_that_cut_into_the_foam_are_told(void **state) {
 
 static void refuse(const program_place *p, const char *words, const char *sentence) {
     program_result r = program_run(p, "pre", "case.cfg -o bad.h5 --force --set pad.mesh_error_limit=10 %s%s",
-                                   COARSE_PAD, words);
+                                   FINER_PAD, words);
     if (r.code != 2 || !strstr(r.err, sentence))
         fail_msg("%s: exit code %d, %s", words, r.code, r.err);
 }
@@ -333,5 +339,5 @@ int main(void) {
         cmocka_unit_test(wrong_supports_are_refused),
         cmocka_unit_test(the_missile_stops_at_a_support),
     };
-    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }
