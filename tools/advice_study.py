@@ -6,7 +6,8 @@
 
 A foam is a draw of examples/materials/eva35_posterior whose loading curve is bent by a smooth random factor of 6 % (standard deviation), which no
 form of the fit has. Its drops follow its columns, corrected as softfall-cfh corrects them, with random errors of the model and, from drop to drop, the
-scatter of speed and thickness. The question is whether the pad passes from a height, drawn between the 5 and 95 % quantiles of the critical height
+scatter of speed and thickness. A quarter of the foams locks up earlier than any draw, between 60 and 100 % of the height asked for: above it the figures
+rise with the third to twelfth power of the height more. The question is whether the pad passes from a height, drawn between the 5 and 95 % quantiles of the critical height
 that the posterior expects. Fixed plan: three drops from that height, decided by the mean of the second and the third. The last plan is decided by the
 larger probability after three drops, where the bound is not met.
 """
@@ -25,7 +26,8 @@ from softfall import advice  # noqa: E402
 
 POSTERIOR = ROOT / "examples/materials/eva35_posterior"
 LIMITS = (200.0, 1000.0)
-BEND = 0.06
+PRIOR = LIMITS  # None: the advice knows no foam that locks up earlier than its draws
+BEND, LOCKED = 0.06, 0.25
 # bound of a wrong decision (None: fixed), the most drops, and whether the larger probability decides after them
 PLANS = ((None, 3, True), (0.05, 12, False), (0.1, 12, False), (0.2, 12, False), (0.1, 3, True))
 COARSE = ["--set", "geometry.parameters.fine_spacing=10", "--set", "geometry.parameters.outer_spacing=20", "--set", "pad.mesh_error_limit=1"]
@@ -71,7 +73,7 @@ def passes(figures):
 
 def decide(place, question, most, forced, foam, pad, random):
     """Measures as advised until a decision; returns it (None: none), the number of drops and the last advice."""
-    pads = advice.Pads([place])
+    pads = advice.Pads([place], limits=PRIOR)
     for count in range(most + 1):
         told = advice.advise(pads, question)
         if told.stop or told.problem:
@@ -84,7 +86,7 @@ def decide(place, question, most, forced, foam, pad, random):
 
 def try_plan(place, foam, pads, required, bound, most, forced, seed):
     """Returns the counts of a plan of PLANS over the pads."""
-    random, count = np.random.default_rng(seed), {"drops": 0, "wrong": 0, "open": 0, "no foam": 0, "held": 0}
+    random, count = np.random.default_rng(seed), dict.fromkeys(("drops", "wrong", "open", "no foam", "held", "passed", "passed wrongly", "stated"), 0)
     truth = foam.crossing("centre", LIMITS)
     for pad, height in zip(pads, required):
         right = bool(truth[pad] > height)
@@ -98,6 +100,10 @@ def try_plan(place, foam, pads, required, bound, most, forced, seed):
         count["no foam"] += bool(last.problem)
         count["open"] += decision is None and not last.problem
         count["wrong"] += decision is not None and decision != right
+        if decision:
+            count["passed"] += 1
+            count["passed wrongly"] += not right
+            count["stated"] += 1 - last.probability
         count["held"] += not last.problem and last.height[0] <= truth[pad] <= last.height[2]
     return count
 
@@ -124,17 +130,20 @@ def main():
     low, high = np.quantile(advice.Pads([place]).crossing("centre", LIMITS), [0.05, 0.95])
     pads = np.arange(n) * advice.REPEATS + random.integers(advice.REPEATS, size=n)
     required = random.uniform(low, high, n)
+    locked = random.permutation(n)[:round(LOCKED * n)]
+    foam.lock["centre"][pads[locked]] = required[locked] * random.uniform(0.6, 1, locked.size)
     print(f"{n} foams; limits {LIMITS[0]:g} g and HIC {LIMITS[1]:g}; heights required {low:.2f} to {high:.2f} m")
     print("from the nearest draw: {:.1%} of a_max, {:.1%} of HIC".format(*distances(place, synthetic, low, high)))
-    print("| plan | drops for each pad | with three more where nothing is decided | wrong decisions (%) | open after 12 drops (%) | foam is none of the draws (%) | interval holds the height (%) |\n"
-          "|---|---:|---:|---:|---:|---:|---:|")
+    print("| plan | drops for each pad | with three more where nothing is decided | wrong decisions (%) | open after 12 drops (%) | foam is none of the draws (%) | interval holds the height (%) | expected to pass | of these wrong, stated |\n"
+          "|---|---:|---:|---:|---:|---:|---:|---:|---:|")
     for bound, most, forced in PLANS:
         count = try_plan(place, foam, pads, required, bound, most, forced, 5)
         held = "–" if bound is None else f"{100 * count['held'] / max(n - count['no foam'], 1):.1f}"
         name = "three drops from the height" if bound is None else f"as advised, to {100 * bound:g} % of a wrong decision"
         name += f", at most {most} drops" if bound and forced else ""
         charged = count["drops"] + 3 * (count["open"] + count["no foam"])
-        print(f"| {name} | {count['drops'] / n:.2f} | {charged / n:.2f} | " + " | ".join(f"{100 * count[key] / n:.1f}" for key in ("wrong", "open", "no foam")) + f" | {held} |",
+        print(f"| {name} | {count['drops'] / n:.2f} | {charged / n:.2f} | " + " | ".join(f"{100 * count[key] / n:.1f}" for key in ("wrong", "open", "no foam")) + f" | {held} |"
+              + (" – | – |" if bound is None else f" {count['passed']} | {count['passed wrongly']}, {count['stated']:.1f} |"),
               flush=True)
 
 

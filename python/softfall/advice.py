@@ -25,6 +25,7 @@ SAME = 0.01  # of a logarithm: drops of one pad are never told apart by less
 TEST_STRAINS = (0.3, 0.5, 0.7)  # at which a compression test tells the stress
 FORM = (0.04, 0.08)  # standard deviations of ln(figure) of a foam about the draw that is nearest to it (docs/protocols.md)
 LENGTH = 0.3  # of ln(height), over which errors that change with the height do so
+LOCKS, EARLIEST, RISE = 0.25, 0.5, (3.0, 12.0)  # share of the pads that lock up before the draws, from which part of the critical height on, and with which power of the height more
 
 
 @dataclass(frozen=True)
@@ -179,9 +180,11 @@ class Pads:
 
     A pad keeps its errors in all drops of a place. Two of them change with the height: the own errors of the responses, which a fit has for each of its
     drops, and those of a foam that has another form than the draws, of standard deviations `form`, the same at all places of a missile.
+    With `limits` a share LOCKS of the pads locks up earlier than their draw: from a part of the height where that reaches a limit, the same part
+    at all places, the figures rise with a further power of the height.
     """
 
-    def __init__(self, places: Sequence[Place], seed: int = 1, form: Sequence[float] = FORM) -> None:
+    def __init__(self, places: Sequence[Place], seed: int = 1, form: Sequence[float] = FORM, limits: Sequence[float | None] | None = None) -> None:
         self.places = {place.name: place for place in places}
         self.draws = places[0].shared.shape[1]
         if any(place.shared.shape[1] != self.draws for place in places):
@@ -205,6 +208,11 @@ class Pads:
                 if place.missile not in student:
                     student[place.missile] = random.standard_t(max(1, place.freedom), n)
             self.offset[place.name] += place.columns_sd[:, self.draw] * student[place.missile]
+        part = np.where(random.random(n) < (0 if limits is None else LOCKS), random.uniform(EARLIEST, 1, n), np.inf)
+        self.rise, self.lock = random.uniform(*RISE, n), {place.name: np.full(n, np.inf) for place in places}  # m, where a pad locks up
+        if limits is not None:
+            for place in places:
+                self.lock[place.name] = part * np.clip(self.crossing(place.name, limits), *place.ends)
 
     @property
     def judged(self) -> list[Place]:
@@ -222,7 +230,13 @@ class Pads:
             low, high = self.value[place][c][:, k], self.value[place][c][:, k + 1]
             with np.errstate(invalid="ignore"):
                 made[c] = np.where(np.isinf(high) & (part > 0), np.inf, low + np.where(part > 0, part * (high - low), 0)) + self.offset[place][c]
-        return made
+        locked: Array = made + self.rise * np.maximum(0, math.log(height) - np.log(self.lock[place]))
+        return locked
+
+    def locking(self, low: float, high: float) -> float:
+        """Returns the probability that the pad locks up between two heights (m), at any place of the protocol's missile."""
+        locks = [(self.lock[place.name] >= low) & (self.lock[place.name] < high) for place in self.judged]
+        return float(self.weight @ np.any(locks, axis=0))
 
     def scatter(self, place: str, height: float) -> Array:
         """Returns the standard deviations of ln(figure) from drop to drop at a height."""
