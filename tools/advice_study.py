@@ -29,7 +29,7 @@ LIMITS = (200.0, 1000.0)
 PRIOR = LIMITS  # None: the advice knows no foam that locks up earlier than its draws
 BEND, LOCKED = 0.06, 0.25
 # bound of a wrong decision (None: fixed), the most drops, and whether the larger probability decides after them
-PLANS = ((None, 3, True), (0.05, 12, False), (0.1, 12, False), (0.2, 12, False), (0.1, 3, True))
+PLANS = ((None, 3, True), (0.05, 12, False), (0.1, 3, True))
 COARSE = ["--set", "geometry.parameters.fine_spacing=10", "--set", "geometry.parameters.outer_spacing=20", "--set", "pad.mesh_error_limit=1"]
 
 
