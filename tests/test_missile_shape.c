@@ -127,6 +127,32 @@ static void spheres_that_do_not_lead_are_triangles(void **state) {
     }
 }
 
+/* The corners of a box, of a cube too, lie on a sphere. */
+static void boxes_are_no_spheres(void **state) {
+    (void)state;
+    static const double half[3][3] = {{0.05, 0.03, 0.01}, {0.02, 0.02, 0.02}, {0.01, 0.02, 0.05}};
+    static const int32_t side[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                        {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    for (int k = 0; k < 3; k++) {
+        double corner[8][3];
+        for (int i = 0; i < 24; i++)
+            corner[i / 3][i % 3] = (i / 3 >> i % 3 & 1 ? 1 : -1) * half[k][i % 3];
+        const sf_surface box = {.node_count = 8,
+                                .position = &corner[0][0],
+                                .triangle_count = 12,
+                                .triangle = (int32_t *)(uintptr_t)side};
+        sf_missile_card card = {.direction = {0, 0, -1}};
+        sf_error err = SF_ERROR_INIT;
+        double centre[3], radius, deviation;
+        assert_int_equal(sf_missile_fit_sphere(&box, centre, &radius, &deviation, &err), SF_OK);
+        assert_true(deviation < 1e-9); /* by its nodes alone it would be one */
+        assert_int_equal(sf_missile_set_shape(&box, 0, &card, &err), SF_OK);
+        assert_int_equal(card.shape, SF_SHAPE_SURFACE);
+        assert_int_equal(sf_missile_set_shape(&box, 1, &card, &err), SF_ERR_MODEL);
+        assert_non_null(strstr(err.text, "of its radius within the best sphere"));
+    }
+}
+
 static void cap_cosine_is_that_of_the_outermost_node(void **state) {
     (void)state;
     const double centre[3] = {0, 0, 0};
@@ -134,14 +160,25 @@ static void cap_cosine_is_that_of_the_outermost_node(void **state) {
     sf_error err = SF_ERROR_INIT;
     sf_missile_card card = {.direction = {0, 0, -1}};
     body_ball(&b, 8, 2, centre);
-    int64_t cap = 0;
+    int64_t cap = 0, kept = 0;
     double rim = -2;
-    for (int64_t i = 0; i < b.surface.node_count; i++)
+    int32_t to[4096];
+    assert_true(b.surface.node_count <= 4096);
+    for (int64_t i = 0; i < b.surface.node_count; i++) {
+        to[i] = -1;
         if (body_node(&b, i)[2] < -0.9) {
             rim = larger(rim, body_node(&b, i)[2]);
+            to[i] = (int32_t)cap;
             memmove(body_node(&b, cap++), body_node(&b, i), 3 * sizeof(double));
         }
+    }
+    for (int64_t t = 0; t < b.surface.triangle_count; t++) {
+        const int32_t *node = &b.surface.triangle[3 * t], there[3] = {to[node[0]], to[node[1]], to[node[2]]};
+        if (there[0] >= 0 && there[1] >= 0 && there[2] >= 0)
+            memcpy(&b.surface.triangle[3 * kept++], there, sizeof there);
+    }
     b.surface.node_count = cap;
+    b.surface.triangle_count = kept;
     assert_int_equal(sf_missile_set_shape(&b.surface, 0, &card, &err), SF_OK);
     assert_int_equal(card.shape, SF_SHAPE_SPHERE);
     assert_close(card.sphere_cap_cosine, -rim / 2, 1e-9);
@@ -263,6 +300,7 @@ int main(void) {
         cmocka_unit_test(flat_or_tiny_surfaces_have_no_sphere),
         cmocka_unit_test(shape_rule_decides_between_sphere_and_triangles),
         cmocka_unit_test(spheres_that_do_not_lead_are_triangles),
+        cmocka_unit_test(boxes_are_no_spheres),
         cmocka_unit_test(cap_cosine_is_that_of_the_outermost_node),
         cmocka_unit_test(sphere_touches_after_the_distance_along_an_oblique_path),
         cmocka_unit_test(triangles_touch_where_their_gap_vanishes),

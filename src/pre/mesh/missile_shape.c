@@ -316,6 +316,7 @@ sf_status sf_hull_assemble(const sf_raw_mesh *raw, double unit, sf_surface *s, s
 }
 
 static const double SPHERE_TOLERANCE = 1e-6;
+static const double DEEPEST = 0.25; /* of the radius; facets of an icosahedron lie 0.2 deep, of a cube 0.36 */
 
 /* |x|^2 = 2 c.x + (R^2 - |c|^2) is linear in c and the constant; solved about the nodes' mean, scaled. */
 sf_status sf_missile_fit_sphere(const sf_surface *surface, double centre[3], double *radius,
@@ -393,6 +394,19 @@ static bool covers_pole(const sf_surface *surface, const double centre[3], doubl
     return false;
 }
 
+/* The largest depth of a facet's centroid within the sphere, over the radius. The corners of a box or a
+ * cylinder lie on a sphere, too. */
+static double deepest_facet(const sf_surface *surface, const double centre[3], double radius) {
+    double deepest = 0;
+    for (int64_t t = 0; t < surface->triangle_count; t++) {
+        double middle[3];
+        for (int c = 0; c < 3; c++)
+            middle[c] = (vertex(surface, t, 0)[c] + vertex(surface, t, 1)[c] + vertex(surface, t, 2)[c]) / 3;
+        deepest = fmax(deepest, 1 - sf_distance3(middle, centre) / radius);
+    }
+    return deepest;
+}
+
 sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_card *card, sf_error *err) {
     double centre[3], radius = 0, deviation = INFINITY;
     card->shape = SF_SHAPE_SURFACE;
@@ -405,6 +419,15 @@ sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_c
                            "missile.shape is \"sphere\", but the surface deviates from the best sphere by "
                            "%.3g of its radius (bound %.0e)",
                            deviation, SPHERE_TOLERANCE);
+        return SF_OK;
+    }
+    double depth = deepest_facet(surface, centre, radius);
+    if (depth > DEEPEST) {
+        if (rule == 1)
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "missile.shape is \"sphere\", but a facet of the surface lies %.2g of its radius "
+                           "within the best sphere (bound %g): mesh the sphere more finely",
+                           depth, DEEPEST);
         return SF_OK;
     }
     if (!covers_pole(surface, centre, radius, card->direction)) {
