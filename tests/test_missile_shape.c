@@ -149,7 +149,7 @@ static void boxes_are_no_spheres(void **state) {
         assert_int_equal(sf_missile_set_shape(&box, 0, &card, &err), SF_OK);
         assert_int_equal(card.shape, SF_SHAPE_SURFACE);
         assert_int_equal(sf_missile_set_shape(&box, 1, &card, &err), SF_ERR_MODEL);
-        assert_non_null(strstr(err.text, "of its radius within the best sphere"));
+        assert_non_null(strstr(err.text, "of the radius within its sphere"));
     }
 }
 

@@ -236,12 +236,18 @@ static void geometries(void **state) {
 
 /* A place at the edge may be meant; it is told, with the key that moves it. */
 static void impacts_on_an_edge_are_told(void **state) {
+    char plate[1200];
+    snprintf(plate, sizeof plate,
+             "--set geometry.missile_file='\"%s/geo/platen.geo\"' --set "
+             "geometry.missile_parameters='{side=600.0; thickness=20.0;}'",
+             getenv("SF_SOURCE_DIR"));
     const struct {
         const char *words, *said;
     } rows[] = {
         {"", "(0, 0) mm, lies 0 mm inside"},
         {"--set missile.position='[\"100 mm\", \"10 mm\"]'", "(100, 10) mm, lies 10 mm inside"},
         {"--set missile.position='[\"100 mm\", \"100 mm\"]'", NULL},
+        {plate, NULL}, /* it covers the whole top */
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         program_result r = program_run(

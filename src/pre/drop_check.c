@@ -537,14 +537,13 @@ static sf_status check_cut(const sf_case *c, const sf_model *m, sf_error *err) {
         'x' + e.axis, 1e3 * e.at[e.axis], 1e3 * e.at[0], 1e3 * e.at[1]);
 }
 
-/* A plate that covers the whole top may lie anywhere. */
+/* A plate that covers the whole top, a rectangle, may lie anywhere. */
 static bool covers_top(const sf_model *m, const sf_contact_zone *zone) {
-    double farthest = 0;
-    for (int64_t k = 0; k < m->contact_count; k++) {
-        const double *x = &m->position[3 * (int64_t)m->contact_node[k]];
-        farthest = fmax(farthest, hypot(x[0] - m->missile.impact[0], x[1] - m->missile.impact[1]));
-    }
-    return zone->half_width >= farthest;
+    double low[3], high[3];
+    sf_box3(0, NULL, low, high);
+    for (int64_t k = 0; k < m->contact_count; k++)
+        sf_box3_add(&m->position[3 * (int64_t)m->contact_node[k]], low, high);
+    return zone->area >= 0.99 * (double)m->symmetry_factor * (high[0] - low[0]) * (high[1] - low[1]);
 }
 
 static void tell_edge(const sf_model *m, const sf_contact_zone *zone, const sf_sink *sink) {

@@ -407,36 +407,37 @@ static double deepest_facet(const sf_surface *surface, const double centre[3], d
     return deepest;
 }
 
+/* Finds the sphere that a surface is to within its facets; a failure says why it is none. */
+static sf_status find_sphere(const sf_surface *surface, const double direction[3], double centre[3],
+                             double *radius, sf_error *err) {
+    double deviation;
+    SF_TRY(sf_missile_fit_sphere(surface, centre, radius, &deviation, err));
+    if (deviation > SPHERE_TOLERANCE)
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the surface deviates from the best sphere by %.3g of its radius (bound %.0e)",
+                       deviation, SPHERE_TOLERANCE);
+    double depth = deepest_facet(surface, centre, *radius);
+    if (depth > DEEPEST)
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "a facet of the surface lies %.2g of the radius within its sphere (bound %g): mesh it "
+                       "more finely",
+                       depth, DEEPEST);
+    if (!covers_pole(surface, centre, *radius, direction))
+        return SF_FAIL(err, SF_ERR_MODEL,
+                       "the surface does not cover the point of its sphere that leads along "
+                       "missile.direction, or is hollow there");
+    return SF_OK;
+}
+
 sf_status sf_missile_set_shape(const sf_surface *surface, int rule, sf_missile_card *card, sf_error *err) {
-    double centre[3], radius = 0, deviation = INFINITY;
+    double centre[3], radius;
+    sf_error reason = SF_ERROR_INIT;
     card->shape = SF_SHAPE_SURFACE;
     if (rule == 2)
         return SF_OK;
-    sf_status status = sf_missile_fit_sphere(surface, centre, &radius, &deviation, SF_IGNORED);
-    if (status != SF_OK || deviation > SPHERE_TOLERANCE) {
-        if (rule == 1)
-            return SF_FAIL(err, SF_ERR_MODEL,
-                           "missile.shape is \"sphere\", but the surface deviates from the best sphere by "
-                           "%.3g of its radius (bound %.0e)",
-                           deviation, SPHERE_TOLERANCE);
-        return SF_OK;
-    }
-    double depth = deepest_facet(surface, centre, radius);
-    if (depth > DEEPEST) {
-        if (rule == 1)
-            return SF_FAIL(err, SF_ERR_MODEL,
-                           "missile.shape is \"sphere\", but a facet of the surface lies %.2g of its radius "
-                           "within the best sphere (bound %g): mesh the sphere more finely",
-                           depth, DEEPEST);
-        return SF_OK;
-    }
-    if (!covers_pole(surface, centre, radius, card->direction)) {
-        if (rule == 1)
-            return SF_FAIL(err, SF_ERR_MODEL,
-                           "missile.shape is \"sphere\", but the surface does not cover the point of its "
-                           "sphere that leads along missile.direction, or is hollow there");
-        return SF_OK;
-    }
+    if (find_sphere(surface, card->direction, centre, &radius, &reason) != SF_OK)
+        return rule == 1 ? SF_FAIL(err, SF_ERR_MODEL, "missile.shape is \"sphere\", but %s", reason.text)
+                         : SF_OK;
     card->shape = SF_SHAPE_SPHERE;
     card->sphere_radius = radius;
     card->sphere_cap_cosine = 1;
