@@ -7,7 +7,7 @@
 A foam is a draw of examples/materials/eva35_posterior whose loading curve is bent by a smooth random factor of 6 % (standard deviation), which no
 form of the fit has. Its drops follow its columns, corrected as softfall-cfh corrects them, with random errors of the model and, from drop to drop, the
 scatter of speed and thickness. A quarter of the foams locks up earlier than any draw, between 60 and 100 % of the height asked for: above it the figures
-rise with the third to twelfth power of the height more. The question is whether the pad passes from a height, drawn between the 5 and 95 % quantiles of the critical height
+are higher by the third to twelfth power of the ratio of heights. The question is whether the pad passes from a height, drawn between the 5 and 95 % quantiles of the critical height
 that the posterior expects. Fixed plan: three drops from that height, decided by the mean of the second and the third. The last plan is decided by the
 larger probability after three drops, where the bound is not met.
 """
@@ -26,7 +26,6 @@ from softfall import advice  # noqa: E402
 
 POSTERIOR = ROOT / "examples/materials/eva35_posterior"
 LIMITS = (200.0, 1000.0)
-PRIOR = LIMITS  # None: the advice knows no foam that locks up earlier than its draws
 BEND, LOCKED = 0.06, 0.25
 # bound of a wrong decision (None: fixed), the most drops, and whether the larger probability decides after them
 PLANS = ((None, 3, True), (0.05, 12, False), (0.1, 3, True))
@@ -73,7 +72,7 @@ def passes(figures):
 
 def decide(place, question, most, forced, foam, pad, random):
     """Measures as advised until a decision; returns it (None: none), the number of drops and the last advice."""
-    pads = advice.Pads([place], limits=PRIOR)
+    pads = advice.Pads([place], limits=LIMITS)
     for count in range(most + 1):
         told = advice.advise(pads, question)
         if told.stop or told.problem:

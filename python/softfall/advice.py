@@ -233,9 +233,9 @@ class Pads:
         locked: Array = made + self.rise * np.maximum(0, math.log(height) - np.log(self.lock[place]))
         return locked
 
-    def locking(self, low: float, high: float) -> float:
-        """Returns the probability that the pad locks up between two heights (m), at any place of the protocol's missile."""
-        locks = [(self.lock[place.name] >= low) & (self.lock[place.name] < high) for place in self.judged]
+    def locking(self, low: Mapping[str, float], high: float) -> float:
+        """Returns the probability that the pad locks up below a height (m) at any place of the protocol's missile, from its own `low` on."""
+        locks = [(self.lock[place.name] >= low[place.name]) & (self.lock[place.name] < high) for place in self.judged]
         return float(self.weight @ np.any(locks, axis=0))
 
     def scatter(self, place: str, height: float) -> Array:

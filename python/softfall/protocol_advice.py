@@ -175,16 +175,17 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
     places, searches = _places(p, pad, output, posterior, options, notes)
     if not places:
         raise InputError(f"nothing of the protocol can be simulated: {'; '.join(notes)}")
-    pads, lines, highest = advice.Pads(places, limits=question.limits), list[Line](), 0.0
+    pads, lines = advice.Pads(places, limits=question.limits), list[Line]()
+    highest = {place.name: 0.0 for place in places}  # m, measured
     notes += [note for place in places for note in place.notes]
     for drop in _measured(p, measured, pads, notes):
         lines += _expected(pads, question, drop)
         pads.learn(drop)
-        highest = max(highest, 0.0 if pads.places[drop.place].missile else drop.height)
-    asked = max(question.heights, default=question.required)
-    if asked > highest:  # False of NaN
-        notes.append(f"{asked:g} m {f'lies above the highest measured drop, {highest:g} m' if highest else 'was not measured'}: this is extrapolation; "
-                     f"that the foam locks up before it, earlier than any draw, has a probability of {pads.locking(highest, asked):.2g}, which is part of the result")
+        highest[drop.place] = max(highest[drop.place], drop.height)
+    asked, least = max(question.heights, default=question.required), min(highest[place.name] for place in pads.judged)
+    if asked > least:  # False of NaN
+        notes.append(f"{asked:g} m lies above {f'what was measured, {least:g} m' if least else 'every measured drop'}: the foam may lock up in between, "
+                     f"earlier than any draw; the result counts with a probability of {pads.locking(highest, asked):.2g} of that")
     lacking, exceeded = _shown(p, measured, required) if question.decides else ([], [])
     told = advice.advise(pads, question, _tests(p, Path(posterior), notes), lacking)
     notes += measured.missing

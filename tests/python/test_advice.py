@@ -196,12 +196,12 @@ def test_what_lies_above_the_highest_drop_may_lock_up():
         pads = advice.Pads([place(200)], form=(0, 0), limits=QUESTION.limits)
         for h in () if height is None else (0.5 * height, height):
             pads.learn(advice.Drop("centre", h, (math.nan, 1000 * math.exp(-SPREAD) * h**SLOPE)))  # of a soft foam
-        before.append((advice.advise(pads, dataclasses.replace(QUESTION, required=1.0)).probability, pads.locking(height or 0, 1.0)))
+        before.append((advice.advise(pads, dataclasses.replace(QUESTION, required=1.0)).probability, pads.locking({"centre": height or 0}, 1.0)))
     assert before[0][1] > 0.1 and before[1][1] > before[2][1] > 0 and before[1][0] < before[2][0] < 1
     alone = pads_of([place(200)])
     for h in (0.275, 0.55):
         alone.learn(advice.Drop("centre", h, (math.nan, 1000 * math.exp(-SPREAD) * h**SLOPE)))
-    assert alone.locking(0, 5) == 0 and advice.advise(alone, dataclasses.replace(QUESTION, required=1.0)).probability > before[1][0]
+    assert alone.locking({"centre": 0}, 5) == 0 and advice.advise(alone, dataclasses.replace(QUESTION, required=1.0)).probability > before[1][0]
 
 
 def test_to_be_expected_to_pass_is_wrong_no_more_often_than_stated():

@@ -144,6 +144,16 @@ def test_other_values_get_another_folder(case):
     assert len(places) == 3
 
 
+def test_the_motion_of_a_later_drop_counts(case):
+    """The text of the list is the same, the points of its file are not."""
+    motion, places = case.path.parent / "later.csv", set()
+    case.update({"series.drops": '({ }, { interval = "90 s"; motion = "later.csv"; })'})
+    for depth in (10, 12, 10):
+        motion.write_text(f"time (ms),displacement (mm)\n0,0\n5,{depth}\n")
+        places.add(case._folder_in(case.path.parent))
+    assert len(places) == 2
+
+
 def same(one, other):
     return [name for name in one.history if not np.array_equal(one.history[name], other.history[name], equal_nan=True)] == []
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import softfall
-from softfall import judge, protocol, protocol_advice, protocol_drops, refinement
+from softfall import judge, protocol, protocol_advice, protocol_drops, protocol_measured, refinement
 from softfall.protocol_drops import Drop, Drops, Spot
 from conftest import BIN, command_here
 
@@ -33,6 +33,15 @@ def protocol_here(*arguments):
 def measured(tmp_path):
     """A copy of the measured example."""
     return pathlib.Path(shutil.copytree(MAT.parent, tmp_path / "measured"))
+
+
+def test_records_cut_near_their_peak_are_no_copies_of_each_other():
+    """A few samples about a peak are those of any drop; at least half of the shorter record must be the same."""
+    t = np.arange(0, 0.02, 1e-4)
+    one, other = (100 * np.sin(np.pi * np.clip(t / length, 0, 1)) for length in (0.008, 0.0085))
+    early, late = int(np.argmax(one)) + 2, int(np.argmax(other)) - 2
+    assert not protocol_measured._is_copy(t[:early], one[:early], t[late:], other[late:])
+    assert protocol_measured._is_copy(t[30:], one[30:], t, one) and not protocol_measured._is_copy(t, one, t, other)
 
 
 # ---- ratings ----

@@ -7,11 +7,10 @@ import re
 from typing import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from ..array import Array
 from ..errors import InputError
 
-Array = npt.NDArray[np.float64]
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?")
 _GROUPS = re.compile(r"([+-]?[1-9]\d{0,2})((?:([.,])\d{3})(?:\3\d{3})*)(?:([.,])(\d*))?")
 _CLOCK = re.compile(r"(?:.*[ T])?(\d{1,2}):(\d{2}):(\d{2})(?:[.,:](\d+))?(?: *([AaPp])\.?[Mm]\.?)?(?:Z|[+-]\d\d:?\d\d)?")

@@ -12,10 +12,11 @@ from typing import Any, Sequence
 
 import numpy as np
 
+from ..array import Array
 from ..curves import STANDARD_GRAVITY
 from ..errors import InputError, missing
 from ..output import write
-from .cells import LOST, Array, Marks, is_clock
+from .cells import LOST, Marks, is_clock
 from .files import Sheet, sheets
 from .headings import Column, Role, other_title
 from .kinds import KINDS, PHRASES, ROLES, USUAL, Options, problem_of, two

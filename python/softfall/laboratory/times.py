@@ -7,8 +7,9 @@ from typing import Sequence
 
 import numpy as np
 
+from ..array import Array
 from ..errors import InputError
-from .cells import Array, clock, is_clock
+from .cells import clock, is_clock
 
 AGREE = 0.02  # relative difference between a rate and the times
 SHORT = 0.005  # share of the span that rounded times may be wrong by
