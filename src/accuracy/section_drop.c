@@ -13,6 +13,7 @@ static const double STEP_LIMIT =
 enum { MOST_STEPS = 50000 };           /* a drop that has not ended then counts as one without rebound */
 static const double ORDER_2 = 1.0 / 3; /* of the step to half the spacing: what is left with order 2 */
 static const double DOUBT = 0.75;      /* of that step: orders from 0.95 on are covered */
+static const double UNLIKE = 1.5;      /* on the error of a drop that is only like the one that is meant */
 static const double LEAST[FIGURES] = {1.5e-3, 2e-4, 2e-4}; /* -: figures scatter as the mesh moves */
 
 /* One drop on one thread; its figures are NaN if it fails or does not rebound. */
@@ -69,6 +70,21 @@ static void make_thinner(const sf_kernel *kernel, sf_model *m) {
         sf_model_free(m);
 }
 
+/* Side by side, each on one thread. */
+static void run_all(sf_model *const model[DROPS], double figure[DROPS][FIGURES]) {
+    for (int k = 0; k < DROPS; k++)
+        if (model[k])
+            model[k]->run.step_limit = fmax(model[k]->run.step_limit, STEP_LIMIT);
+#pragma omp parallel for schedule(dynamic, 1) default(none) shared(model, figure)
+    for (int k = 0; k < DROPS; k++) {
+        omp_set_num_threads(1);
+        if (model[k] && model[k]->node_count > 0)
+            run(model[k], figure[k]);
+        else
+            figure[k][A_MAX] = figure[k][HIC] = NAN;
+    }
+}
+
 sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
                               sf_section_drop *out, sf_error *err) {
     SF_OWNED_BY(sf_model_free) sf_model equal = {0};
@@ -81,16 +97,16 @@ sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_
     make_thinner(kernel, &thinner);
     sf_model *const model[DROPS] = {fine, &equal, &faster, &thinner};
     double figure[DROPS][FIGURES];
-    for (int k = 0; k < DROPS; k++)
-        model[k]->run.step_limit = fmax(model[k]->run.step_limit, STEP_LIMIT);
-#pragma omp parallel for schedule(dynamic, 1) default(none) shared(model, figure)
-    for (int k = 0; k < DROPS; k++) {
-        omp_set_num_threads(1);
-        if (model[k]->node_count > 0)
-            run(model[k], figure[k]);
-        else
-            figure[k][A_MAX] = figure[k][HIC] = NAN;
-    }
+    run_all(model, figure);
     take(figure, out);
     return SF_OK;
+}
+
+double sf_section_drop_error_alike(sf_model *section, sf_model *fine) {
+    sf_model *const model[DROPS] = {[FINE] = fine, [EQUAL] = section};
+    double figure[DROPS][FIGURES];
+    sf_section_drop drop;
+    run_all(model, figure);
+    take(figure, &drop);
+    return drop.a_max_g > 0 ? UNLIKE * (fabs(drop.a_max_g / figure[EQUAL][A_MAX] - 1) + drop.a_max_error) : 0;
 }

@@ -9,3 +9,7 @@
  */
 sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
                               sf_section_drop *out, sf_error *err);
+
+/* The relative error of a_max to expect by the mesh in a drop that those of `section` and `fine` are like
+ * (pre/alike.h); 0 where one of them fails or does not rebound. */
+double sf_section_drop_error_alike(sf_model *section, sf_model *fine);

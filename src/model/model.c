@@ -107,7 +107,7 @@ static const sf_model_field fields[] = {
            "foam under the contact, along the missile's path, its vertical part"),
     LATER_SCALAR(air, F64, "/model/air", "m", "gaps on the same way, which close first"),
     SCALAR(expected_mesh_error, F64, "/model/expected_mesh_error", "1",
-           "expected relative error of a_max from the spacing, 0: not estimated"),
+           "expected relative error of a_max by the mesh, 0: not estimated"),
     SCALAR(slit_fraction, F64, "/model/slit_fraction", "1",
            "part of the nodes that lie at a slit, hole or gap narrower than their supports"),
     SCALAR(material_count, I64, "/material/count", "1", "number of materials"),

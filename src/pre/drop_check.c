@@ -9,7 +9,7 @@
 #include "pre/missile_body.h"
 #include "pre/support.h"
 
-static const double DEPTH = 0.5; /* of the thickness: where the zone is measured */
+static const double DEPTH = SF_CONTACT_ZONE_DEPTH;
 static const double EARLY = 0.1; /* steps of depth before that */
 static const double LEADS =
     0.7; /* of its width: narrower than that is a part of its own, not a coarse mesh */

@@ -11,6 +11,8 @@
 #define SF_MESH_ERROR_THICKNESS 0.5
 #define SF_MESH_ERROR_WIDTH 0.35
 
+#define SF_CONTACT_ZONE_DEPTH 0.5 /* of the thickness: how deep the missile stands there */
+
 /* The part of the pad that the missile touches when it stands half a thickness deep in it. */
 typedef struct sf_contact_zone {
     double area;       /* m2, of the whole pad's surface */

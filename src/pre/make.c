@@ -2,6 +2,7 @@
 #include "pre/make.h"
 
 #include "base/mat3.h"
+#include "pre/alike.h"
 #include "pre/mesh/gmsh_session.h"
 #include "pre/mesh/refine.h"
 #include "pre/mesh/section.h"
@@ -98,6 +99,7 @@ void sf_sections_free(sf_sections *s) {
         sf_mesh_free(&s->mesh[k]);
         sf_surface_free(&s->missile[k]);
     }
+    s->alike = false;
 }
 
 static sf_status copy_sections(const sf_mesh *mesh, const sf_surface *missile, sf_sections *s,
@@ -109,11 +111,17 @@ static sf_status copy_sections(const sf_mesh *mesh, const sf_surface *missile, s
                : SF_OK;
 }
 
-/* This tells nothing of a drop that has none. */
-static void take_sections(const sf_case *c, const sf_mesh *mesh, const sf_surface *missile, sf_sections *s) {
+/* A square pad is as good as a round one where its sides are that far from the contact. */
+static bool is_wide(const sf_mesh *section, const sf_model *m, const sf_contact_zone *zone) {
+    double low[3], high[3];
+    sf_box3(section->node_count, section->position, low, high);
+    return high[0] >= zone->half_width + m->thickness;
+}
+
+/* The section of the drop itself; none where there is no such. */
+static void cut_section(const sf_case *c, const sf_mesh *mesh, const sf_surface *missile, sf_sections *s) {
     sf_mesh *equal = &s->mesh[SF_SECTION_EQUAL];
     sf_error none = SF_ERROR_INIT;
-    *s = (sf_sections){0};
     if (c->motion_count > 0 || sf_section_check_case(c, &none) != SF_OK ||
         (!c->axisymmetric && sf_section_cut(c, mesh, equal, &none) != SF_OK))
         return;
@@ -122,8 +130,26 @@ static void take_sections(const sf_case *c, const sf_mesh *mesh, const sf_surfac
         sf_sections_free(s);
 }
 
+/* Fills the sections by a drop that is like the model's, if it has none of its own. */
+static void make_alike(const sf_case *c, const sf_model *m, const sf_contact_zone *zone, sf_sections *s) {
+    sf_mesh *equal = &s->mesh[SF_SECTION_EQUAL];
+    SF_OWNED_BY(sf_surface_free) sf_surface missile = {0};
+    sf_error none = SF_ERROR_INIT;
+    if (s->mesh[SF_SECTION_FINE].node_count > 0) {
+        if (m->axisymmetric || is_wide(equal, m, zone))
+            return;
+        sf_sections_free(s);
+    }
+    s->alike = true;
+    if (sf_alike_make(c, m, zone, equal, &missile, &none) == SF_OK &&
+        (equal->node_count > SF_SECTIONS_MOST || copy_sections(equal, &missile, s, &none) != SF_OK))
+        sf_sections_free(s);
+}
+
 sf_status sf_sections_build(sf_sections *s, int which, sf_case *c, sf_model *model, sf_error *err) {
     sf_build_report report;
+    if (s->alike)
+        sf_alike_case(c);
     c->axisymmetric = 1;
     c->mesh_error_limit = INFINITY;
     c->drops = 1;
@@ -137,7 +163,7 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
     sf_mesh mesh = {0};
     memset(model, 0, sizeof *model);
     if (read_geometry(c, &mesh, &surface, support, libraries, sink, err) == SF_OK && sections)
-        take_sections(c, &mesh, &surface, sections);
+        cut_section(c, &mesh, &surface, sections);
     if (err->status == SF_OK && sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {
         if (sf_hold_check(&report->hold, c->separate, model, err) == SF_OK && report->contact_held)
             SF_REFUSE(err,
@@ -146,6 +172,8 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
                       c->contact_group);
         if (err->status != SF_OK)
             sf_model_free(model);
+        else if (sections)
+            make_alike(c, model, &report->zone, sections);
     }
     sf_surface_free(&surface);
     for (int k = 0; k < SF_SUPPORTS; k++)

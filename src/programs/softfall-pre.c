@@ -94,15 +94,19 @@ static sf_status build_sections(const options *o, const sf_model *model, sf_sect
     return SF_OK;
 }
 
-/* A square pad is as good as a round one where its sides are that far from the contact. */
-static bool is_wide(const sf_model *section, const sf_contact_zone *zone) {
-    double low[3], high[3];
-    sf_box3(section->node_count, section->position, low, high);
-    return high[0] >= zone->half_width + section->thickness;
+/* In place of the estimate, the error by a drop that is like this one. */
+static void compare(sf_model *section, sf_model *fine, sf_model *model) {
+    double error = sf_section_drop_error_alike(section, fine);
+    if (!(error > 0))
+        return;
+    printf("%-26sabout %.2g %% of a_max, by an axisymmetric drop on as thick a plate of this foam\n",
+           "expected mesh error", 100 * error);
+    model->expected_mesh_error = error;
 }
 
-/* Simulates the drop of the section, if there is one. That it does not work is no failure of the drop. */
-static void refer(const options *o, sf_sections *sections, const sf_build_report *report, sf_model *model) {
+/* Simulates the drop of the section, or one that is like the model's. That it does not work is no failure of
+ * the model. */
+static void refer(const options *o, sf_sections *sections, sf_model *model) {
     SF_OWNED_BY(sf_model_free) sf_model equal = {0};
     SF_OWNED_BY(sf_model_free) sf_model fine = {0};
     sf_model built[SF_SECTIONS] = {{0}};
@@ -113,9 +117,13 @@ static void refer(const options *o, sf_sections *sections, const sf_build_report
     build_sections(o, model, sections, built, &kernel, &none);
     equal = built[SF_SECTION_EQUAL];
     fine = built[SF_SECTION_FINE];
-    const sf_model *section = model->axisymmetric ? model : &equal;
-    if (none.status == SF_OK && (model->axisymmetric || is_wide(section, &report->zone)))
-        sf_section_drop_run(section, &fine, &kernel, &model->section, &none);
+    if (none.status != SF_OK)
+        return;
+    if (sections->alike) {
+        compare(&equal, &fine, model);
+        return;
+    }
+    sf_section_drop_run(model->axisymmetric ? model : &equal, &fine, &kernel, &model->section, &none);
     if (model->section.a_max_g > 0)
         printf("%-26s%.2f g, HIC %.1f, %.2f mm for ever finer meshes of the section\n", "axisymmetric",
                model->section.a_max_g, model->section.hic, 1e3 * model->section.indentation);
@@ -152,7 +160,7 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
     sf_replace_clean(output);
     sf_model_report_make(&model, &report, &table);
     sf_model_report_print(stdout, &table);
-    refer(o, &sections, &report, &model);
+    refer(o, &sections, &model);
     SF_OWNED char *text = sf_model_report_text(&table, err);
     sf_provenance provenance = {.program = "softfall-pre",
                                 .command_line = command,

@@ -4,6 +4,7 @@ import json
 import pathlib
 import subprocess
 
+import h5py
 import pytest
 
 from conftest import BIN
@@ -108,6 +109,21 @@ def test_the_section_is_of_a_new_pad_and_a_wide_one(tmp_path):
     assert first["hic_mesh_error"] is not None and second["hic_mesh_error"] is None and second["a_max_mesh_error"] > 0
     narrow = ["geometry.parameters.side=160.0", "geometry.parameters.zone_side=120.0", "geometry.parameters.outer_spacing=10.0"]
     assert figures(tmp_path, QUARTER, *narrow)["hic_mesh_error"] is None
+
+
+def test_other_drops_have_the_error_of_one_that_is_like_them(tmp_path):
+    """A whole pad has no section, and the drop that is like it is its own: both know the error by halving the spacing (theory.md, 84)."""
+    error = {}
+    for quarter in (1, 0):
+        done = pre(QUARTER, tmp_path / "m.h5", *COARSE, f"geometry.parameters.quarter={quarter}", f"geometry.missile_parameters.quarter={quarter}")
+        assert done.returncode == 0 and ("by an axisymmetric drop" in done.stdout) == (quarter == 0), done.stderr
+        with h5py.File(tmp_path / "m.h5") as model:
+            error[quarter], own = model["model/expected_mesh_error"][()], model["model/section/a_max_error"][()]
+            assert (model["model/section/a_max_g"][()] > 0) == (quarter == 1)
+        if quarter:
+            like = 1.5 * ((own - 1.5e-3) * (0.75 + 4 / 3) / 0.75 + 1.5e-3)
+    assert error[0] == pytest.approx(like, rel=0.4)  # its pad is narrower, and a_max scatters as the mesh moves
+    assert error[0] < 0.8 * error[1]  # the formula's
 
 
 @pytest.mark.parametrize("text, why", [

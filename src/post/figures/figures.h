@@ -54,7 +54,7 @@
       .name = "a_max, scatter of drops", .shown = 100, .unit = "%", .format = "%.2f") \
     X(NUMBER, hic_scatter, "hic_scatter", 1, "the same of HIC", \
       .name = "HIC, scatter of drops", .shown = 100, .unit = "%", .format = "%.2f") \
-    X(NUMBER, a_max_mesh_error, "a_max_mesh_error", 1, "expected error of a_max by the mesh, over it: from drops of the section on finer meshes where the drop is axisymmetric (theory.md, section 14), else from the spacing and the size of the contact; undefined where softfall-pre estimates none", \
+    X(NUMBER, a_max_mesh_error, "a_max_mesh_error", 1, "expected error of a_max by the mesh, over it: from drops of the section on finer meshes where the drop is axisymmetric, or of a drop that is like it (theory.md, section 14), else from the spacing and the size of the contact; undefined where softfall-pre estimates none", \
       .name = "a_max, by the mesh", .shown = 100, .unit = "%", .format = "%.2g") \
     X(NUMBER, hic_mesh_error, "hic_mesh_error", 1, "the same of HIC; only where the drop is axisymmetric", \
       .name = "HIC, by the mesh", .shown = 100, .unit = "%", .format = "%.2g") \

@@ -52,7 +52,7 @@ static sf_status write_arrays(const sf_model *m, sf_h5 *file, sf_error *err) {
         {{"/model/symmetry_x", "m", "where the symmetry plane normal to x lies; NaN: there is none"}, SF_H5_F64, 0, {0}, &plane[0]},
         {{"/model/symmetry_y", "m", "the same of that normal to y"}, SF_H5_F64, 0, {0}, &plane[1]},
         {{"/model/thickness", "m", "foam under the contact, along the missile's path, its vertical part"}, SF_H5_F64, 0, {0}, &m->thickness},
-        {{"/model/expected_mesh_error", "1", "expected relative error of a_max from the spacing, 0: not estimated"}, SF_H5_F64, 0, {0}, &m->expected_mesh_error},
+        {{"/model/expected_mesh_error", "1", "expected relative error of a_max by the mesh, 0: not estimated"}, SF_H5_F64, 0, {0}, &m->expected_mesh_error},
         {{"/model/slit_fraction", "1", "part of the nodes that lie at a slit, hole or gap narrower than their supports"}, SF_H5_F64, 0, {0}, &m->slit_fraction},
         {{"/model/anvil_depth", "m", "of the anvil below the undeformed pad's top, 0: there is none"}, SF_H5_F64, 0, {0}, &m->anvil.depth},
         {{"/model/density", "kg m-3", "mean density of the undeformed pad"}, SF_H5_F64, 0, {0}, &density},
