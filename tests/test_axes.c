@@ -27,7 +27,7 @@ static const char TURN[] = "Rotate {{0, 1, 0}, {0, 0, 0}, -Pi/2} { Volume{:}; }\
     " --set geometry.parameters.zone_side=160.0 --set geometry.parameters.side=240.0 --set missile.freedom=free"
 
 static int set_up(void **state) {
-    program_group_example(state);
+    program_group_case(state);
     char text[256];
     const program_place *p = *state;
     snprintf(text, sizeof text, "Include \"geo/pad.geo\";\n%s", TURN);

@@ -24,7 +24,7 @@ static void drop_on(const program_place *p, int spacing, double speed, double th
                     "geometry.parameters.thickness=%.6f%s",
                     program_coarse(spacing), speed, thickness, lock);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
-    program_succeed(p, "post", "r.h5 -o out --force --view 0");
+    program_figures(p, "r.h5 -o out --force");
 }
 
 static void drop(const program_place *p, double speed, double thickness, double limit) {
@@ -65,7 +65,7 @@ static void changes_by_stress(const program_place *p, double change[2]) {
             "material.E='\"%.9g MPa\"' --set material.ED='\"%.9g MPa\"'",
             program_coarse(20), by * 0.4136, by * 1.52312043584);
         program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
-        program_succeed(p, "post", "r.h5 -o out --force --view 0");
+        program_figures(p, "r.h5 -o out --force");
         value[side][0] = figure(p, "a_max_g");
         value[side][1] = figure(p, "hic");
     }
@@ -92,7 +92,7 @@ static void estimates_agree_with_simulations(void **state) {
     const program_place *p = *state;
     static const struct {
         double speed, thickness;
-    } cases[] = {{4.5, 50}, {5.2, 50}, {5.2, 60}, {4.5, 70}, {5.2, 70}, {6.2, 70}};
+    } cases[] = {{4.5, 50}, {5.2, 50}, {4.5, 70}, {6.2, 70}}; /* the corners of what pads are used for */
     static const char *const estimates[4] = {"a_max_change_by_speed", "hic_change_by_speed",
                                              "a_max_change_by_thickness", "hic_change_by_thickness"};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
@@ -157,5 +157,5 @@ int main(void) {
         cmocka_unit_test(an_edge_is_not_overlooked),
         cmocka_unit_test(a_later_lock_up_is_estimated),
     };
-    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }

@@ -133,7 +133,7 @@ static drop_figures simulate_hidden(const program_place *p, const char *speed) {
     program_succeed(p, "pre",
                     "case.cfg --set material=@hidden.cfg --set missile.velocity='%s' -o m.h5 --force", speed);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force");
-    program_succeed(p, "post", "r.h5 -o post --force");
+    program_figures(p, "r.h5 -o post --force");
     program_bytes json = program_read_file(program_path(p, "post/summary.json"));
     assert_int_equal(sscanf(strstr(json.data, "\"a_max_g\":"), "\"a_max_g\": %lf", &f.a_max), 1);
     assert_int_equal(sscanf(strstr(json.data, "\"hic\":"), "\"hic\": %lf", &f.hic), 1);
@@ -350,7 +350,7 @@ static void the_mount_of_the_accelerometer_is_found(void **state) {
     fit_fixture_put_case(&place);
     program_succeed(&place, "pre", "case.cfg -o m.h5");
     program_succeed(&place, "solve", "m.h5 -o r.h5");
-    program_succeed(&place, "post", "r.h5 -o post --mount 'f = 100 Hz, damping = 0.4'");
+    program_figures(&place, "r.h5 -o post --mount 'f = 100 Hz, damping = 0.4'");
     for (int k = 0; k < 2; k++) {
         char text[1024];
         snprintf(text, sizeof text,
@@ -385,7 +385,7 @@ static void a_mount_that_rings_is_found_from_afar(void **state) {
     fit_fixture_put_case(&place);
     program_succeed(&place, "pre", "case.cfg -o m.h5");
     program_succeed(&place, "solve", "m.h5 -o r.h5");
-    program_succeed(&place, "post", "r.h5 -o post --mount 'f = 240 Hz, damping = 0.05'");
+    program_figures(&place, "r.h5 -o post --mount 'f = 240 Hz, damping = 0.05'");
     snprintf(text, sizeof text,
              "material = \"start.cfg\"; curve_form = \"table\"; posterior = false;\n"
              "unknown = ( { name = \"stress_scale\"; } );\n"
@@ -425,7 +425,7 @@ static void damping_and_coupling_of_the_accelerometer_are_found(void **state) {
     fit_fixture_put_case(&place);
     program_succeed(&place, "pre", "case.cfg -o m.h5");
     program_succeed(&place, "solve", "m.h5 -o r.h5");
-    program_succeed(&place, "post", "r.h5 -o post --mount 'f = 100 Hz, damping = 0.4' --coupling '0.2 s'");
+    program_figures(&place, "r.h5 -o post --mount 'f = 100 Hz, damping = 0.4' --coupling '0.2 s'");
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         char text[1024];
         snprintf(text, sizeof text,

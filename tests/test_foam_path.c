@@ -54,7 +54,7 @@ static const struct {
 };
 
 static int set_up(void **state) {
-    return program_group_example(state);
+    return program_group_case(state);
 }
 
 static void thickness_is_the_foam_on_the_missiles_path(void **state) {

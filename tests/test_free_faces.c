@@ -76,7 +76,7 @@ static double deepest_inside(const program_place *p) {
 static double drop(const program_place *p, const char *overrides) {
     program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
-    program_succeed(p, "post", "r.h5 -o out --force");
+    program_figures(p, "r.h5 -o out --force");
     double a_max = program_file_number(p, "out/summary.json", "a_max_g"), inside = deepest_inside(p);
     print_message("a_max %.3f g, foam %.2g mm inside the missile: %s\n", a_max, 1e3 * inside, overrides);
     assert_true(inside < 0.01 * 12e-3);
@@ -152,7 +152,7 @@ static void a_rim_of_the_missile_cuts_the_faces_between_nodes(void **state) {
     double deep = deepest_corner(p);
     print_message("the disc lies %.1f mm in the faces between nodes of 12 mm\n", 1e3 * deep);
     assert_true(deep > 12e-3 && deep < 36e-3); /* the faces are stretched to 30 mm */
-    program_succeed(p, "post", "r.h5 -o out --force");
+    program_figures(p, "r.h5 -o out --force");
     double cut = program_file_number(p, "out/summary.json", "rim_depth_mm");
     print_message("at the peak it is %.2f mm from the nearest face\n", cut);
     assert_true(cut > 0.2 * 50 && cut < 15); /* of a diagonal of 17 mm, to whose ends it may be 8.5 mm */
@@ -209,7 +209,7 @@ static const char ROOFS_CASE[] =
 static void figures_of_roofs(const program_place *p, const char *words) {
     program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", words);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
-    program_succeed(p, "post", "r.h5 -o out --force");
+    program_figures(p, "r.h5 -o out --force");
 }
 
 static void edges_that_cross_carry_each_other(void **state) {
@@ -221,8 +221,8 @@ static void edges_that_cross_carry_each_other(void **state) {
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
     program_succeed(p, "solve", "m.h5 -o two.h5 --force -t 2 --end-time '5 ms'");
     program_succeed(p, "solve", "m.h5 --restart two.h5 -t 2 --end-time '8 ms'");
-    program_succeed(p, "post", "two.h5 -o two --force");
-    program_succeed(p, "post", "r.h5 -o out --force");
+    program_figures(p, "two.h5 -o two --force");
+    program_figures(p, "r.h5 -o out --force");
     double half = largest(p, "base_reaction_N", 0.5), all = largest(p, "base_reaction_N", 1.5),
            deep = largest(p, "penetration_mm", 1.5);
     print_message("force %.3f N at 0.5 mm, %.3f N at 1.5 mm; penetration %.2g mm; energy error %.1e\n", half,
@@ -279,5 +279,5 @@ int main(void) {
         cmocka_unit_test(edges_that_cross_carry_each_other),
         cmocka_unit_test(ridges_in_symmetry_planes_carry),
     };
-    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }

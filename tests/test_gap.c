@@ -26,7 +26,7 @@ static const char *const WAYS[] = {"", WHOLE OBLIQUE, WHOLE " --set missile.free
 enum { WAY_COUNT = sizeof WAYS / sizeof WAYS[0] };
 
 static int set_up(void **state) {
-    return program_group_example(state);
+    return program_group_case(state);
 }
 
 static sf_figures drop(const program_place *p, const char *way, const char *gap) {

@@ -94,7 +94,7 @@ static void summary_tells_strain_and_energy_by_layer(void **state) {
 }
 
 static void assert_same_figures(const program_place *p, const char *run) {
-    program_succeed(p, "post", "%s.h5 -o %s --force", run, run);
+    program_figures(p, "%s.h5 -o %s --force", run, run);
     for (int k = 0; k < 2; k++) {
         program_result same = program_shell(
             p,
@@ -121,7 +121,7 @@ static void large_slips_are_noted(void **state) {
         p, "pre", "examples/layers/case.cfg -o slip.m.h5 %s --set pad.sliding_interfaces='[\"cover/upper\"]'",
         COARSE);
     program_succeed(p, "solve", "slip.m.h5 -o slip.h5 --threads 1 --no-checkpoint");
-    program_succeed(p, "post", "slip.h5 -o slip");
+    program_figures(p, "slip.h5 -o slip");
     assert_int_equal(program_shell(p, "grep -q 'layers slide on each other by up to' slip/summary.json").code,
                      0);
     assert_int_equal(program_shell(p, "grep -q 'layers slide' out/summary.json").code, 1);
@@ -157,7 +157,7 @@ static void layers_read_like_the_one_material(void **state) {
         program_succeed(p, "pre", "examples/layers/%s.cfg -o %s.m.h5 %s", name, name, program_coarse(20));
         program_succeed(p, "solve", "%s.m.h5 -o %s.h5 --threads 1 --end-time '2 ms' --no-checkpoint", name,
                         name);
-        program_succeed(p, "post", "%s.h5 -o %s", name, name);
+        program_figures(p, "%s.h5 -o %s", name, name);
     }
     assert_int_equal(program_shell(p, "cmp one/history.csv named/history.csv").code, 0);
     program_succeed(
@@ -348,7 +348,7 @@ static void contact_on_seams_gives_no_energy(void **state) {
     for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
         program_succeed(p, "pre", "examples/layers/seams.cfg -o seams.m.h5 --force %s", words[k]);
         program_succeed(p, "solve", "seams.m.h5 -o seams.h5 --threads 1 --no-checkpoint --force");
-        program_succeed(p, "post", "seams.h5 -o seams --force");
+        program_figures(p, "seams.h5 -o seams --force");
         program_bytes summary = program_read_file(program_path(p, "seams/summary.json"));
         assert_true(figure_of(summary.data, "contact_energy_fraction", 0) > -1e-4);
         assert_close(figure_of(summary.data, "energy_error", 0), 0, 1e-4);

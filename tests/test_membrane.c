@@ -212,7 +212,7 @@ static void write_mat(const program_place *p, double cover) {
 static double drop(const program_place *p, const char *overrides, double *hic) {
     program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
-    program_succeed(p, "post", "r.h5 -o out --force");
+    program_figures(p, "r.h5 -o out --force");
     assert_true(program_history_largest(p, "energy_error_1") < 1e-3);
     assert_true(program_history_largest(p, "momentum_error_space_1") < 1e-12);
     assert_true(program_history_largest(p, "angular_momentum_error_1") < 1e-12);
@@ -245,7 +245,7 @@ static void the_bits_are_the_same(void **state) {
     program_succeed(p, "solve", "m.h5 --restart three.h5 -t 1 --end-time '9 ms'");
     for (int k = 0; k < 3; k++) {
         static const char *const name[] = {"one", "two", "three"};
-        program_succeed(p, "post", "%s.h5 -o %s --force", name[k], name[k]);
+        program_figures(p, "%s.h5 -o %s --force", name[k], name[k]);
     }
     assert_int_equal(program_shell(p, "cmp one/history.csv two/history.csv").code, 0);
     assert_int_equal(program_shell(p, "cmp one/history.csv three/history.csv").code, 0);
@@ -281,5 +281,5 @@ int main(void) {
         cmocka_unit_test(the_bits_are_the_same),
         cmocka_unit_test(wrong_membranes_are_refused),
     };
-    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }

@@ -37,7 +37,7 @@ static program_result make(const program_place *p, const char *curves, const cha
 
 /* The cold curve is 4 times the warm one, and longer, with other strains. */
 static int set_up(void **state) {
-    program_group_example(state);
+    program_group_case(state);
     const program_place *p = *state;
     program_write_text(p, "cold.csv", "strain,stress_kPa\n0,0\n0.1,80\n0.5,160\n0.7,400\n0.8,800\n");
     program_write_text(p, "quick.csv", "strain,stress_kPa\n0,0\n0.05,20\n0.1,45\n0.5,70\n0.7,210\n");
