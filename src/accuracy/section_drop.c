@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "accuracy/section_drop.h"
 
+#include "base/mat3.h"
 #include "drop/drop.h"
 #include <omp.h>
 
@@ -18,7 +19,7 @@ static const double LEAST[FIGURES] = {1.5e-3, 2e-4, 2e-4}; /* -: figures scatter
 /* One drop on one thread; its figures are NaN if it fails or does not rebound. */
 static void run(const sf_model *model, double figure[FIGURES]) {
     sf_drop drop;
-    sf_results results;
+    SF_OWNED_BY(sf_drop_results_free) sf_results results = {0};
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     sf_error err = SF_ERROR_INIT;
     figure[A_MAX] = figure[HIC] = figure[INDENTATION] = NAN;
@@ -93,4 +94,40 @@ sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_
     }
     take(figure, out);
     return SF_OK;
+}
+
+/* The models of the section with the spacing of `model` and with half of it. */
+static sf_status build_sections(const sf_case_input *input, const sf_model *model, sf_sections *sections,
+                                sf_model built[SF_SECTIONS], sf_kernel *kernel, sf_error *err) {
+    for (int k = model->axisymmetric ? SF_SECTION_FINE : 0; k < SF_SECTIONS; k++) {
+        SF_OWNED_BY(sf_case_free) sf_case c = {0};
+        SF_TRY(sf_case_read_values(input, NULL, NULL, &c, err));
+        *kernel = (sf_kernel){c.support_ratio, c.condition_limit};
+        SF_TRY(sf_sections_build(sections, k, &c, &built[k], err));
+    }
+    return SF_OK;
+}
+
+/* A square pad is as good as a round one where its sides are that far from the contact. */
+static bool is_wide(const sf_model *section, const sf_contact_zone *zone) {
+    double low[3], high[3];
+    sf_box3(section->node_count, section->position, low, high);
+    return high[0] >= zone->half_width + section->thickness;
+}
+
+void sf_section_drop_refer(const sf_case_input *input, const sf_build_report *report, sf_sections *sections,
+                           sf_model *model) {
+    SF_OWNED_BY(sf_model_free) sf_model equal = {0};
+    SF_OWNED_BY(sf_model_free) sf_model fine = {0};
+    sf_model built[SF_SECTIONS] = {{0}};
+    sf_kernel kernel;
+    sf_error none = SF_ERROR_INIT;
+    if (sections->mesh[SF_SECTION_FINE].node_count == 0)
+        return;
+    build_sections(input, model, sections, built, &kernel, &none);
+    equal = built[SF_SECTION_EQUAL];
+    fine = built[SF_SECTION_FINE];
+    const sf_model *section = model->axisymmetric ? model : &equal;
+    if (none.status == SF_OK && (model->axisymmetric || is_wide(section, &report->zone)))
+        sf_section_drop_run(section, &fine, &kernel, &model->section, &none);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-pre: CASE -> model.h5. */
 #include "accuracy/section_drop.h"
-#include "base/mat3.h"
 #include "base/program.h"
 #include "case/read.h"
 #include "case/values.h"
@@ -80,42 +79,7 @@ static sf_status check_drops(const options *o, const sf_case *first, sf_error *e
     return err->status;
 }
 
-/* ---- the drop of the section ---- */
-
-/* The models of the section with the spacing of `model` and with half of it. */
-static sf_status build_sections(const options *o, const sf_model *model, sf_sections *sections,
-                                sf_model built[SF_SECTIONS], sf_kernel *kernel, sf_error *err) {
-    for (int k = model->axisymmetric ? SF_SECTION_FINE : 0; k < SF_SECTIONS; k++) {
-        SF_OWNED_BY(sf_case_free) sf_case c = {0};
-        SF_TRY(read_drop(o, 1, NULL, &c, err));
-        *kernel = (sf_kernel){c.support_ratio, c.condition_limit};
-        SF_TRY(sf_sections_build(sections, k, &c, &built[k], err));
-    }
-    return SF_OK;
-}
-
-/* A square pad is as good as a round one where its sides are that far from the contact. */
-static bool is_wide(const sf_model *section, const sf_contact_zone *zone) {
-    double low[3], high[3];
-    sf_box3(section->node_count, section->position, low, high);
-    return high[0] >= zone->half_width + section->thickness;
-}
-
-/* Simulates the drop of the section, if there is one. That it does not work is no failure of the drop. */
-static void refer(const options *o, sf_sections *sections, const sf_build_report *report, sf_model *model) {
-    SF_OWNED_BY(sf_model_free) sf_model equal = {0};
-    SF_OWNED_BY(sf_model_free) sf_model fine = {0};
-    sf_model built[SF_SECTIONS] = {{0}};
-    sf_kernel kernel;
-    sf_error none = SF_ERROR_INIT;
-    if (sections->mesh[SF_SECTION_FINE].node_count == 0)
-        return;
-    build_sections(o, model, sections, built, &kernel, &none);
-    equal = built[SF_SECTION_EQUAL];
-    fine = built[SF_SECTION_FINE];
-    const sf_model *section = model->axisymmetric ? model : &equal;
-    if (none.status == SF_OK && (model->axisymmetric || is_wide(section, &report->zone)))
-        sf_section_drop_run(section, &fine, &kernel, &model->section, &none);
+static void print_section(const sf_model *model) {
     if (model->section.a_max_g > 0)
         printf("%-26s%.2f g, HIC %.1f, %.2f mm for ever finer meshes of the section\n", "axisymmetric",
                model->section.a_max_g, model->section.hic, 1e3 * model->section.indentation);
@@ -152,7 +116,9 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
     sf_replace_clean(output);
     sf_model_report_make(&model, &report, &table);
     sf_model_report_print(stdout, &table);
-    refer(o, &sections, &report, &model);
+    sf_section_drop_refer(&(sf_case_input){o->case_path, 1, o->overrides.count, o->overrides.text}, &report,
+                          &sections, &model);
+    print_section(&model);
     SF_OWNED char *text = sf_model_report_text(&table, err);
     sf_provenance provenance = {.program = "softfall-pre",
                                 .command_line = command,
