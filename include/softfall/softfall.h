@@ -288,7 +288,8 @@ SOFTFALL_API softfall_status softfall_results_figures(const char *path, double f
                                                       softfall_error *error);
 SOFTFALL_API void softfall_figures_free(softfall_figures *figures);
 
-/* The list of figures [count]: name (the key) and description; the unit stands in the key. */
+/* The list of figures [count]: name (the key) and description; the unit stands in the key. It is the same of
+ * all figures, and of NULL. */
 SOFTFALL_API const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count);
 /* Sets `value`, NaN if the run does not define the figure. SOFTFALL_INPUT: there is no such figure. */
 SOFTFALL_API softfall_status softfall_figure(const softfall_figures *figures, const char *key, double *value,

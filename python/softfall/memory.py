@@ -19,6 +19,14 @@ CHANGED = "an input has changed while the drop was simulated"
 _SUMS = ("steps", "wall_s")  # figures of a series that are sums over its drops
 
 
+@functools.lru_cache(maxsize=None)
+def figure_keys() -> tuple[str, ...]:
+    """Returns the keys of the figures that are numbers, in the order of runs.csv."""
+    count = c.c_int()
+    listed = _load().softfall_figures_list(None, c.byref(count))
+    return tuple(listed[k].name.decode() for k in range(count.value))
+
+
 class DropFigures(NamedTuple):
     """The figures of one drop, NaN where the run does not define one, and its verdict."""
 

@@ -313,6 +313,15 @@ static sf_status check_filter(double filter, sf_error *err) {
     return SF_REFUSE(err, "filter: %g; the channel frequency classes are 60, 180, 600 and 1000", filter);
 }
 
+/* Fills the list of the figures that are numbers. */
+static void list_figures(softfall_quantity *list, int *count) {
+    *count = 0;
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        if (sf_figure_at[k].row.type != SF_ROW_TEXT)
+            list[(*count)++] =
+                (softfall_quantity){sf_figure_at[k].row.key, "", sf_figure_at[k].row.meaning, 1};
+}
+
 /* Takes the numbers of the list of figures, and the verdict. */
 static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
@@ -322,12 +331,10 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
     SF_TRY(sf_figures_compute(results, filter, &f, err));
     softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
     SF_TRY(err->status);
-    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
-        if (sf_figure_at[k].row.type != SF_ROW_TEXT) {
-            made->figure[made->count] =
-                (softfall_quantity){sf_figure_at[k].row.key, "", sf_figure_at[k].row.meaning, 1};
-            made->value[made->count++] = sf_figure_number(&sf_figure_at[k], results, &f);
-        }
+    list_figures(made->figure, &made->count);
+    for (size_t k = 0, n = 0; k < SF_FIGURE_TOTAL; k++)
+        if (sf_figure_at[k].row.type != SF_ROW_TEXT)
+            made->value[n++] = sf_figure_number(&sf_figure_at[k], results, &f);
     sf_verdict_compute(results, &f, &limits, &verdict);
     made->grade = (int)verdict.grade;
     sf_verdict_line(&verdict, made->verdict, sizeof made->verdict);
@@ -374,6 +381,12 @@ void softfall_figures_free(softfall_figures *figures) {
 }
 
 const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count) {
+    static softfall_quantity list[SF_FIGURES(ONE)];
+    if (!figures) {
+#pragma omp critical(softfall_figures_list)
+        list_figures(list, count);
+        return list;
+    }
     *count = figures->count;
     return figures->figure;
 }
