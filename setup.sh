@@ -11,6 +11,7 @@ usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
   test     build, then run the tests (all but the slow ones)
   slow     build, then run the slow tests
   build    build only: the programs are in build/bin
+  core     the same without Python, gnuplot and the window's gmsh: what a mesh, a drop, its figures and its files need
   package  build, then make the Debian packages build/softfall_VERSION-REVISION_ARCHITECTURE.deb and
            build/python3-softfall_VERSION-REVISION_all.deb and check them with lintian
 
@@ -170,6 +171,10 @@ slow)
     ;;
 build)
     install_packages build run
+    build_programs
+    ;;
+core)
+    install_packages build
     build_programs
     ;;
 package)

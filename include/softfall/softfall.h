@@ -6,8 +6,8 @@
  * A case (case.cfg, docs/case.md) and its geometry give a model, which never changes after that. A drop is
  * the solution of a model as it advances in time. The figures are those of softfall-post, digit for digit.
  *
- * Two libraries: libsoftfall has all functions but those under "Building a model" and "Foams", which are in
- * libsoftfall-build, the only one that needs gmsh.
+ * Two libraries: libsoftfall has all functions but those under "Building a model", "Foams" and "Input files
+ * of your own", which are in libsoftfall-build, the only one that needs gmsh.
  *
  * Units are SI (m, kg, s, N, J, Pa), accelerations in figures are in g = 9.80665 m/s2. The frame is that of
  * the geometry, with the pad's top towards +z. Forces and energies are those of the whole pad and the whole
@@ -93,6 +93,37 @@ SOFTFALL_API softfall_status softfall_case_hash(const softfall_case *c, uint64_t
  * ones too, has its content still beside the geometries of this case; 0 if not, or if it cannot be told. */
 SOFTFALL_API int softfall_case_has_geometry_of(const softfall_case *c, const char *results);
 
+/* The same of drop number `drop`, from 1, of the case's series alone, with what the series changes of the
+ * missile in it. */
+SOFTFALL_API softfall_status softfall_case_read_drop(const char *path, int drop, const char *const *overrides,
+                                                     int count, const softfall_sink *sink,
+                                                     softfall_case **out, softfall_error *error);
+/* A drop of the case's series. */
+typedef struct softfall_case_drop {
+    int drops;       /* of the series, 1: a single drop */
+    int counted;     /* 1: the series is judged by this drop */
+    int own;         /* 1: its missile is not that of the first drop: softfall_case_read_drop has it */
+    double interval; /* s, from the drop before */
+} softfall_case_drop;
+/* Drop number `drop`, from 1 to `drops`. */
+SOFTFALL_API softfall_case_drop softfall_case_drop_get(const softfall_case *c, int drop);
+/* SOFTFALL_INPUT: the case has no place in a study, for a parameter that a geometry does not have, or a
+ * series of drops on a foam without memory. It runs no gmsh. */
+SOFTFALL_API softfall_status softfall_case_check(const softfall_case *c, softfall_error *error);
+/* Returns 1 if every file of the list softfall_model_geometry_files, of a model of this case, is as it was.
+ */
+SOFTFALL_API int softfall_case_has_files(const softfall_case *c, const char *files);
+/* Keeps the database of units loaded, which every reading of a case loads anew otherwise (5 ms): for a
+ * process that reads very many. To be called once, while no other thread reads anything. */
+SOFTFALL_API softfall_status softfall_units_hold(softfall_error *error);
+
+/* Sets how softfall_model_build builds: `share`, a folder, or NULL: takes meshes and smoothing domains from
+ * there where a case of the same geometry has left them, and leaves them there, also for other processes.
+ * `section` 1: runs the drops of its section that tell the errors of an axisymmetric drop by its mesh, as
+ * softfall-pre does.
+ */
+SOFTFALL_API softfall_status softfall_case_set_build(softfall_case *c, const char *share, int section,
+                                                     softfall_error *error);
 /* Meshes the geometry of the case and builds the model. A case can be built once; afterwards it can only be
  * freed. */
 SOFTFALL_API softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink,
@@ -121,6 +152,14 @@ SOFTFALL_API int64_t softfall_material_curve(const softfall_material *material, 
 SOFTFALL_API softfall_status softfall_compress(const softfall_material *material, int free_sides,
                                                const double *time, const double *strain, int64_t count,
                                                double *stress, softfall_error *error);
+
+/* ---- Input files of your own (libsoftfall-build) ---- */
+
+/* Reads a file in the syntax of a case (libconfig, with @include) and gives its settings as JSON: of each
+ * "name", "place" ("file:line"), "kind" (group, list, array, int, float, bool or text) and "value", for a
+ * group, list or array its settings. `json` is the caller's (softfall_text_free). */
+SOFTFALL_API softfall_status softfall_settings_read(const char *path, char **json, softfall_error *error);
+SOFTFALL_API void softfall_text_free(char *text);
 
 /* ---- Variants of a model (libsoftfall-build) ---- */
 
@@ -158,6 +197,9 @@ SOFTFALL_API softfall_status softfall_model_write(const softfall_model *model, c
                                                   softfall_error *error);
 SOFTFALL_API void softfall_model_free(softfall_model *model);
 
+/* Returns what its geometries have read, with hashes: a list for softfall_case_has_files; owned by the model.
+ */
+SOFTFALL_API const char *softfall_model_geometry_files(const softfall_model *model);
 SOFTFALL_API softfall_model_info softfall_model_describe(const softfall_model *model);
 /* [node_count][3] m, reference positions of the nodes; owned by the model. */
 SOFTFALL_API const double *softfall_model_positions(const softfall_model *model);
@@ -194,6 +236,9 @@ SOFTFALL_API softfall_status softfall_drop_create(const softfall_model *model,
  * of `before`. Later drops of a foam without memory are too soft. */
 SOFTFALL_API softfall_status softfall_drop_next(const softfall_drop *before, double pause,
                                                 softfall_drop **out, softfall_error *error);
+/* The same with another missile, that of `model`, on the same pad; `model` NULL: that of `before`. */
+SOFTFALL_API softfall_status softfall_drop_next_of(const softfall_drop *before, const softfall_model *model,
+                                                   double pause, softfall_drop **out, softfall_error *error);
 SOFTFALL_API void softfall_drop_free(softfall_drop *drop);
 
 /* Advances the drop by one step; the first computes the state at t = 0. `ending` (may be NULL) tells whether
@@ -228,8 +273,8 @@ SOFTFALL_API softfall_status softfall_drop_field(const softfall_drop *drop, cons
 
 /* ---- Figures ---- */
 
-/* The numbers of summary.json that are computed from the history (docs/formats.md), by their keys there and
- * in the units that the keys name: "a_max_g", "hic", "hic_t1_ms", "max_indentation_mm", "rebounded" (0 or 1).
+/* The numbers of summary.json (docs/formats.md), by their keys there and in the units that the keys name:
+ * "a_max_g", "hic", "hic_t1_ms", "max_indentation_mm", "rebounded" (0 or 1), and the verdict with them.
  * A figure that the run does not define (the missile never touched, contact had not ended, its motion was
  * prescribed) is NaN. Indicative, not a certification. */
 typedef struct softfall_figures softfall_figures;
@@ -243,11 +288,20 @@ SOFTFALL_API softfall_status softfall_results_figures(const char *path, double f
                                                       softfall_error *error);
 SOFTFALL_API void softfall_figures_free(softfall_figures *figures);
 
-/* The list of figures [count]: name (the key) and description; the unit stands in the key. */
+/* The list of figures [count]: name (the key) and description; the unit stands in the key. It is the same of
+ * all figures, and of NULL. */
 SOFTFALL_API const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count);
 /* Sets `value`, NaN if the run does not define the figure. SOFTFALL_INPUT: there is no such figure. */
 SOFTFALL_API softfall_status softfall_figure(const softfall_figures *figures, const char *key, double *value,
                                              softfall_error *error);
+
+/* The verdict of softfall-post: 0: valid, 1: valid with remarks, 2: do not use; and that with the findings,
+ * in words, the worst first; owned by the figures. */
+SOFTFALL_API int softfall_figures_grade(const softfall_figures *figures);
+SOFTFALL_API const char *softfall_figures_verdict(const softfall_figures *figures);
+/* Returns how the run ended: "rebound", "finished", a sentence, or "" if it has not ended; owned by the
+ * figures. */
+SOFTFALL_API const char *softfall_figures_status(const softfall_figures *figures);
 
 /* Many drops side by side, each on one thread. */
 typedef struct softfall_batch {

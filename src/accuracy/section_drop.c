@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "accuracy/section_drop.h"
 
+#include "base/mat3.h"
 #include "drop/drop.h"
 #include <omp.h>
 
@@ -19,7 +20,7 @@ static const double LEAST[FIGURES] = {1.5e-3, 2e-4, 2e-4}; /* -: figures scatter
 /* One drop on one thread; its figures are NaN if it fails or does not rebound. */
 static void run(const sf_model *model, double figure[FIGURES]) {
     sf_drop drop;
-    sf_results results;
+    SF_OWNED_BY(sf_drop_results_free) sf_results results = {0};
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
     sf_error err = SF_ERROR_INIT;
     figure[A_MAX] = figure[HIC] = figure[INDENTATION] = NAN;
@@ -102,11 +103,46 @@ sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_
     return SF_OK;
 }
 
-double sf_section_drop_error_alike(sf_model *section, sf_model *fine) {
+/* The error of a_max to expect in a drop that these are like; 0 where one of them fails or does not rebound.
+ */
+static double error_alike(sf_model *section, sf_model *fine) {
     sf_model *const model[DROPS] = {[FINE] = fine, [EQUAL] = section};
     double figure[DROPS][FIGURES];
     sf_section_drop drop;
     run_all(model, figure);
     take(figure, &drop);
     return drop.a_max_g > 0 ? UNLIKE * (fabs(drop.a_max_g / figure[EQUAL][A_MAX] - 1) + drop.a_max_error) : 0;
+}
+
+/* The models of the section with the spacing of `model` and with half of it. */
+static sf_status build_sections(const sf_case_input *input, const sf_model *model, sf_sections *sections,
+                                sf_model built[SF_SECTIONS], sf_kernel *kernel, sf_error *err) {
+    for (int k = model->axisymmetric ? SF_SECTION_FINE : 0; k < SF_SECTIONS; k++) {
+        SF_OWNED_BY(sf_case_free) sf_case c = {0};
+        SF_TRY(sf_case_read_values(input, NULL, NULL, &c, err));
+        *kernel = (sf_kernel){c.support_ratio, c.condition_limit};
+        SF_TRY(sf_sections_build(sections, k, &c, &built[k], err));
+    }
+    return SF_OK;
+}
+
+void sf_section_drop_refer(const sf_case_input *input, sf_sections *sections, sf_model *model) {
+    SF_OWNED_BY(sf_model_free) sf_model equal = {0};
+    SF_OWNED_BY(sf_model_free) sf_model fine = {0};
+    sf_model built[SF_SECTIONS] = {{0}};
+    sf_kernel kernel;
+    sf_error none = SF_ERROR_INIT;
+    if (sections->mesh[SF_SECTION_FINE].node_count == 0)
+        return;
+    build_sections(input, model, sections, built, &kernel, &none);
+    equal = built[SF_SECTION_EQUAL];
+    fine = built[SF_SECTION_FINE];
+    if (none.status != SF_OK)
+        return;
+    if (sections->alike) {
+        double error = error_alike(&equal, &fine);
+        model->expected_mesh_error = error > 0 ? error : model->expected_mesh_error;
+        return;
+    }
+    sf_section_drop_run(model->axisymmetric ? model : &equal, &fine, &kernel, &model->section, &none);
 }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The errors of a drop's figures by further drops, of its section. */
 #pragma once
+#include "case/read.h"
+#include "pre/make.h"
 #include "pre/vary.h"
 
 /* Runs the drop of `section`, that of `fine`, the same with half the spacing, one that is 1 % faster and one
@@ -10,6 +12,8 @@
 sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
                               sf_section_drop *out, sf_error *err);
 
-/* The relative error of a_max to expect by the mesh in a drop that those of `section` and `fine` are like
- * (pre/alike.h); 0 where one of them fails or does not rebound. */
-double sf_section_drop_error_alike(sf_model *section, sf_model *fine);
+/* Runs the drops of the sections that sf_model_make has left. Of the model's own drop they fill
+ * model->section; of one that is like it they give model->expected_mesh_error, in place of the formula's.
+ * Neither changes where there are none, or they do not work, which is no failure of the model. `input`: the
+ * case, to be read once more. */
+void sf_section_drop_refer(const sf_case_input *input, sf_sections *sections, sf_model *model);

@@ -6,6 +6,8 @@
 #include "io/h5_data.h"
 #include "model/model_check.h"
 #include "model/model_io.h"
+#include "post/figures/verdict.h"
+#include "solver/set.h"
 #include "solver/run/frame.h"
 
 #include <omp.h>
@@ -72,6 +74,8 @@ static sf_status create(const sf_model *model, int threads, const softfall_drop 
                   (long long)model->series_count);
     if (err->status == SF_OK && sf_model_check(model, err) == SF_OK)
         sf_drop_begin(model, before ? &before->drop : NULL, pause, &d->drop, err);
+    if (err->status == SF_OK)
+        sf_drop_keep(&d->drop, err);
     omp_set_num_threads(usual);
     if (err->status == SF_OK)
         *out = d;
@@ -93,17 +97,39 @@ softfall_status softfall_drop_create(const softfall_model *model, const softfall
     return softfall_return(&err, error);
 }
 
+/* The pad of a later drop must be that which the drop before has left. */
+static sf_status check_pad(const softfall_drop *before, const sf_model *m, sf_error *err) {
+    const sf_model *b = &before->drop.undeformed;
+    const size_t n = (size_t)b->node_count;
+    bool same = b->node_count == m->node_count && b->material_count == m->material_count &&
+                memcmp(b->position, m->position, 3 * n * sizeof *b->position) == 0 &&
+                memcmp(b->volume, m->volume, n * sizeof *b->volume) == 0 &&
+                memcmp(b->node_material, m->node_material, n) == 0 &&
+                sf_state_rows(b, 'h') == sf_state_rows(m, 'h') &&
+                (sf_model_set(b) > 0) == (sf_model_set(m) > 0);
+    return same
+               ? SF_OK
+               : SF_REFUSE(err, "the pad of the model is not that of the drop before: geometry, mesh, layers "
+                                "and what the foam remembers must be the same");
+}
+
 softfall_status softfall_drop_next(const softfall_drop *before, double pause, softfall_drop **out,
                                    softfall_error *error) {
+    return softfall_drop_next_of(before, NULL, pause, out, error);
+}
+
+softfall_status softfall_drop_next_of(const softfall_drop *before, const softfall_model *model, double pause,
+                                      softfall_drop **out, softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
+    const sf_model *own = model ? &model->model : &before->drop.undeformed;
     *out = NULL;
     if (!(pause > 0) || !isfinite(pause))
         SF_REFUSE(&err, "pause: %g s" SF_NOT_ABOVE_0, pause);
     else if (before->drop.ending == SF_DROP_RUNS || before->drop.failure.status != SF_OK ||
              before->drop.state.contact_count > 0)
         SF_REFUSE(&err, "the drop before has not ended, or its missile still touches the pad");
-    else
-        create(&before->drop.undeformed, before->threads, before, pause, out, &err);
+    else if (!model || check_pad(before, own, &err) == SF_OK)
+        create(own, before->threads, before, pause, out, &err);
     return softfall_return(&err, error);
 }
 
@@ -262,6 +288,10 @@ softfall_model_info softfall_model_describe(const softfall_model *model) {
                                  .has_prescribed_motion = sf_missile_is_driven(m)};
 }
 
+const char *softfall_model_geometry_files(const softfall_model *model) {
+    return model->geometry_files ? model->geometry_files : "";
+}
+
 const double *softfall_model_positions(const softfall_model *m) {
     return m->model.position;
 }
@@ -273,6 +303,8 @@ struct softfall_figures {
     int count;
     softfall_quantity figure[SF_FIGURES(ONE)];
     double value[SF_FIGURES(ONE)];
+    int grade;
+    char status[512], verdict[SF_VERDICT_LINE_SIZE];
 };
 
 static sf_status check_filter(double filter, sf_error *err) {
@@ -281,28 +313,44 @@ static sf_status check_filter(double filter, sf_error *err) {
     return SF_REFUSE(err, "filter: %g; the channel frequency classes are 60, 180, 600 and 1000", filter);
 }
 
-/* The library offers the figures that are numbers of sf_figures. */
+/* Fills the list of the figures that are numbers. */
+static void list_figures(softfall_quantity *list, int *count) {
+    *count = 0;
+    for (size_t k = 0; k < SF_FIGURE_TOTAL; k++)
+        if (sf_figure_at[k].row.type != SF_ROW_TEXT)
+            list[(*count)++] =
+                (softfall_quantity){sf_figure_at[k].row.key, "", sf_figure_at[k].row.meaning, 1};
+}
+
+/* Takes the numbers of the list of figures, and the verdict. */
 static sf_status compute(const sf_results *results, double filter, softfall_figures **out, sf_error *err) {
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
+    const sf_limits limits = SF_DEFAULT_LIMITS; /* no part of the grade */
+    sf_verdict verdict;
     SF_TRY(check_filter(filter, err));
     SF_TRY(sf_figures_compute(results, filter, &f, err));
     softfall_figures *made = *out = sf_alloc(err, 1, sizeof *made, "figures");
-    for (size_t k = 0; made && k < SF_FIGURE_TOTAL; k++)
-        if (!sf_figure_at[k].fact && sf_figure_at[k].row.type != SF_ROW_TEXT) {
-            made->figure[made->count] =
-                (softfall_quantity){sf_figure_at[k].row.key, "", sf_figure_at[k].row.meaning, 1};
-            made->value[made->count++] = sf_row_number(&sf_figure_at[k].row, &f);
-        }
-    return err->status;
+    SF_TRY(err->status);
+    list_figures(made->figure, &made->count);
+    for (size_t k = 0, n = 0; k < SF_FIGURE_TOTAL; k++)
+        if (sf_figure_at[k].row.type != SF_ROW_TEXT)
+            made->value[n++] = sf_figure_number(&sf_figure_at[k], results, &f);
+    sf_verdict_compute(results, &f, &limits, &verdict);
+    made->grade = (int)verdict.grade;
+    sf_verdict_line(&verdict, made->verdict, sizeof made->verdict);
+    snprintf(made->status, sizeof made->status, "%s", results->status);
+    return SF_OK;
 }
 
 softfall_status softfall_drop_figures(const softfall_drop *drop, double filter, softfall_figures **out,
                                       softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
-    sf_results r;
+    SF_OWNED_BY(sf_drop_results_free) sf_results r = {0};
+    const int before = enter(drop);
     *out = NULL;
     if (sf_drop_results(&drop->drop, &r, &err) == SF_OK)
         compute(&r, filter, out, &err);
+    omp_set_num_threads(before);
     return softfall_return(&err, error);
 }
 
@@ -316,11 +364,29 @@ softfall_status softfall_results_figures(const char *path, double filter, softfa
     return softfall_return(&err, error);
 }
 
+int softfall_figures_grade(const softfall_figures *figures) {
+    return figures->grade;
+}
+
+const char *softfall_figures_verdict(const softfall_figures *figures) {
+    return figures->verdict;
+}
+
+const char *softfall_figures_status(const softfall_figures *figures) {
+    return figures->status;
+}
+
 void softfall_figures_free(softfall_figures *figures) {
     free(figures);
 }
 
 const softfall_quantity *softfall_figures_list(const softfall_figures *figures, int *count) {
+    static softfall_quantity list[SF_FIGURES(ONE)];
+    if (!figures) {
+#pragma omp critical(softfall_figures_list)
+        list_figures(list, count);
+        return list;
+    }
     *count = figures->count;
     return figures->figure;
 }
@@ -364,7 +430,7 @@ static sf_status check_batch(const softfall_batch *batch, sf_error *err) {
     for (int k = 0; k < batch->keys; k++) {
         bool known = false;
         for (size_t f = 0; f < SF_FIGURE_TOTAL; f++)
-            known = known || (!sf_figure_at[f].fact && sf_figure_at[f].row.type != SF_ROW_TEXT &&
+            known = known || (sf_figure_at[f].row.type != SF_ROW_TEXT &&
                               strcmp(sf_figure_at[f].row.key, batch->key[k]) == 0);
         if (!known)
             return SF_REFUSE(err, "unknown figure \"%.80s\"; softfall_figures_list has their keys",

@@ -44,3 +44,13 @@ uint64_t sf_case_hash(const sf_case *c) {
     hash = sf_hash_bytes(hash, c->motion_time, motion);
     return sf_hash_bytes(hash, c->motion_displacement, motion);
 }
+
+sf_status sf_case_check_memory(const sf_case *c, sf_error *err) {
+    bool found = c->layer_count == 0 && sf_material_has_memory(&c->material);
+    for (int k = 0; k < c->layer_count; k++)
+        found |= sf_material_has_memory(&c->layer[k]);
+    if (c->drops == 1 || found)
+        return SF_OK;
+    return SF_REFUSE(err, "series.drops = %g: the foam has no material.memory: later drops would be too soft",
+                     c->drops);
+}

@@ -157,3 +157,7 @@ const sf_geo_source *sf_case_geometry(const sf_case *c, int k);
 /* Returns a hash of the values of every key and of the points of curves and motion, without those of the
  * geometry files. */
 uint64_t sf_case_hash(const sf_case *c);
+
+/* SF_ERR_INPUT: a series of drops on a foam that remembers nothing, whose later drops are no property of it:
+ * a study would take them for one. */
+sf_status sf_case_check_memory(const sf_case *c, sf_error *err);

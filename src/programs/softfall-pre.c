@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-pre: CASE -> model.h5. */
 #include "accuracy/section_drop.h"
-#include "base/mat3.h"
 #include "base/program.h"
 #include "case/read.h"
 #include "case/values.h"
@@ -80,50 +79,11 @@ static sf_status check_drops(const options *o, const sf_case *first, sf_error *e
     return err->status;
 }
 
-/* ---- the drop of the section ---- */
-
-/* The models of the section with the spacing of `model` and with half of it. */
-static sf_status build_sections(const options *o, const sf_model *model, sf_sections *sections,
-                                sf_model built[SF_SECTIONS], sf_kernel *kernel, sf_error *err) {
-    for (int k = model->axisymmetric ? SF_SECTION_FINE : 0; k < SF_SECTIONS; k++) {
-        SF_OWNED_BY(sf_case_free) sf_case c = {0};
-        SF_TRY(read_drop(o, 1, NULL, &c, err));
-        *kernel = (sf_kernel){c.support_ratio, c.condition_limit};
-        SF_TRY(sf_sections_build(sections, k, &c, &built[k], err));
-    }
-    return SF_OK;
-}
-
-/* In place of the estimate, the error by a drop that is like this one. */
-static void compare(sf_model *section, sf_model *fine, sf_model *model) {
-    double error = sf_section_drop_error_alike(section, fine);
-    if (!(error > 0))
-        return;
-    printf("%-26sabout %.2g %% of a_max, by an axisymmetric drop on as thick a plate of this foam\n",
-           "expected mesh error", 100 * error);
-    model->expected_mesh_error = error;
-}
-
-/* Simulates the drop of the section, or one that is like the model's. That it does not work is no failure of
- * the model. */
-static void refer(const options *o, sf_sections *sections, sf_model *model) {
-    SF_OWNED_BY(sf_model_free) sf_model equal = {0};
-    SF_OWNED_BY(sf_model_free) sf_model fine = {0};
-    sf_model built[SF_SECTIONS] = {{0}};
-    sf_kernel kernel;
-    sf_error none = SF_ERROR_INIT;
-    if (sections->mesh[SF_SECTION_FINE].node_count == 0)
-        return;
-    build_sections(o, model, sections, built, &kernel, &none);
-    equal = built[SF_SECTION_EQUAL];
-    fine = built[SF_SECTION_FINE];
-    if (none.status != SF_OK)
-        return;
-    if (sections->alike) {
-        compare(&equal, &fine, model);
-        return;
-    }
-    sf_section_drop_run(model->axisymmetric ? model : &equal, &fine, &kernel, &model->section, &none);
+/* What the drops of the sections showed; `formula`: the error that was expected before. */
+static void print_section(const sf_model *model, double formula) {
+    if (model->expected_mesh_error != formula)
+        printf("%-26sabout %.2g %% of a_max, by an axisymmetric drop on as thick a plate of this foam\n",
+               "expected mesh error", 100 * model->expected_mesh_error);
     if (model->section.a_max_g > 0)
         printf("%-26s%.2f g, HIC %.1f, %.2f mm for ever finer meshes of the section\n", "axisymmetric",
                model->section.a_max_g, model->section.hic, 1e3 * model->section.indentation);
@@ -160,7 +120,10 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
     sf_replace_clean(output);
     sf_model_report_make(&model, &report, &table);
     sf_model_report_print(stdout, &table);
-    refer(o, &sections, &model);
+    double formula = model.expected_mesh_error;
+    sf_section_drop_refer(&(sf_case_input){o->case_path, 1, o->overrides.count, o->overrides.text}, &sections,
+                          &model);
+    print_section(&model, formula);
     SF_OWNED char *text = sf_model_report_text(&table, err);
     sf_provenance provenance = {.program = "softfall-pre",
                                 .command_line = command,

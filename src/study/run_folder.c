@@ -146,19 +146,8 @@ static sf_status hash_programs(uint64_t *hash, sf_error *err) {
     return err->status;
 }
 
-/* Later drops of a foam that remembers nothing are no property of it: a study would take them for one. */
-static sf_status check_memory(const sf_case *c, sf_error *err) {
-    bool found = c->layer_count == 0 && sf_material_has_memory(&c->material);
-    for (int k = 0; k < c->layer_count; k++)
-        found |= sf_material_has_memory(&c->layer[k]);
-    if (c->drops == 1 || found)
-        return SF_OK;
-    return SF_REFUSE(err, "series.drops = %g: the foam has no material.memory: later drops would be too soft",
-                     c->drops);
-}
-
 sf_status sf_campaign_key(const sf_case *c, uint64_t *hash, sf_error *err) {
-    SF_TRY(check_memory(c, err));
+    SF_TRY(sf_case_check_memory(c, err));
     *hash = sf_case_hash(c);
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         if (sf_case_geometry(c, k)->path)

@@ -30,6 +30,13 @@ static void note_ending(sf_results *r, const char *sentence) {
         r->note_of_ending[k] = true;
 }
 
+void sf_results_note_run(sf_results *r, const char *sentence) {
+    if (strcmp(sentence, "the missile never touched the pad") == 0) /* solver/run/run.c */
+        note_ending(r, sentence);
+    else
+        sf_results_note(r, "%s", sentence);
+}
+
 /* Refuses with SF_ERR_IO and a sentence naming the dataset, the value and the bound. */
 static sf_status check_finite(const double *values, int64_t count, const char *path, sf_error *err) {
     for (int64_t i = 0; i < count; i++)
@@ -333,8 +340,7 @@ static sf_status read_layer_sums(sf_results *r, const sf_frame_head *head, sf_er
     return SF_OK;
 }
 
-/* The section becomes a quarter of its body of revolution. */
-static sf_status make_solid(sf_results *r, sf_error *err) {
+sf_status sf_results_revolve(sf_results *r, sf_error *err) {
     sf_revolution *v = &r->revolution;
     sf_cell_lists cells = {r->cell_count, r->cell_nnz, r->cell_type, r->cell_ptr, r->cell_node};
     SF_TRY(sf_revolution_build(r->node_count, r->position, v, err));
@@ -419,7 +425,7 @@ static sf_status read_model(sf_results *r, sf_error *err) {
     r->modelled_parts = r->symmetry_factor;
     r->modelled_nodes = r->node_count;
     r->modelled_cells = r->cell_count;
-    return r->axisymmetric ? make_solid(r, err) : SF_OK;
+    return r->axisymmetric ? sf_results_revolve(r, err) : SF_OK;
 }
 
 /* The solver's notes, a sentence per line; files of earlier versions have none. */
@@ -431,10 +437,7 @@ static sf_status read_notes(sf_results *r, sf_error *err) {
     SF_TRY(sf_h5_read_text(r->file, "/summary/notes", &notes, err));
     for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
         sf_error_clean(line);
-        if (strcmp(line, "the missile never touched the pad") == 0) /* solver/run/run.c */
-            note_ending(r, line);
-        else
-            sf_results_note(r, "%s", line);
+        sf_results_note_run(r, line);
     }
     return SF_OK;
 }
@@ -564,9 +567,31 @@ void sf_results_close(sf_results *results) {
              results->layer_names, results->layer_density, results->layer_informed, results->frames);
 }
 
+/* Copies the fields of a frame in memory. */
+static sf_status copy_frame(const sf_results *r, const sf_frame_head *head, int fields, sf_frame *frame,
+                            sf_error *err) {
+    const int64_t rows = r->axisymmetric ? r->revolution.section_nodes : r->node_count;
+    for (int f = 0; f < SF_FRAME_FIELDS && err->status == SF_OK; f++) {
+        const int components = sf_frame_field_get((sf_frame_field)f)->components;
+        const bool vector = f == SF_FRAME_DISPLACEMENT || f == SF_FRAME_VELOCITY;
+        if (!(fields >> f & 1) || !head->field[f])
+            continue;
+        frame->field[f] = sf_alloc(err, rows * components, sizeof(double), "a field of a frame");
+        if (frame->field[f])
+            memcpy(frame->field[f], head->field[f], (size_t)(rows * components) * sizeof(double));
+        if (frame->field[f] && r->axisymmetric)
+            sf_revolution_field(&r->revolution, components, vector, &frame->field[f], err);
+    }
+    if (err->status != SF_OK)
+        sf_frame_free(frame);
+    return err->status;
+}
+
 sf_status sf_frame_read(const sf_results *results, const sf_frame_head *head, int fields, sf_frame *frame,
                         sf_error *err) {
     *frame = (sf_frame){0};
+    if (head->field)
+        return copy_frame(results, head, fields, frame, err);
     for (int f = 0; f < SF_FRAME_FIELDS; f++) {
         const sf_frame_field_info *info = sf_frame_field_get((sf_frame_field)f);
         SF_PRINTED(path, 80, "%s/%s", head->group, info->name);

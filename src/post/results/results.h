@@ -19,6 +19,8 @@ typedef struct sf_frame_head {
     double missile_displacement[3]; /* m, translation of its centre since t = 0 */
     double missile_quaternion[4];   /* its orientation, base/mat3.h */
     double acceleration;            /* m s-2 */
+    double *const *
+        field; /* [SF_FRAME_FIELDS] of a frame in memory, NULL: not kept; borrowed. NULL: it is in the file */
 } sf_frame_head;
 
 typedef struct sf_frame {
@@ -143,5 +145,10 @@ double sf_results_cross_section(const sf_results *results);
 /* True for the statuses finished, rebound and interrupted. */
 bool sf_results_ended_well(const sf_results *results);
 
+/* The section of an axisymmetric drop becomes a quarter of its body of revolution; its arrays are owned. */
+sf_status sf_results_revolve(sf_results *results, sf_error *err);
+
+/* Adds a sentence of the solver to the notes, as if the file held it. */
+void sf_results_note_run(sf_results *results, const char *sentence);
 /* Adds a sentence to the notes; further ones are dropped when they are full. */
 void sf_results_note(sf_results *results, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -146,11 +146,11 @@ static sf_status write_item(sf_h5 *file, const char *group, const sf_h5_info *it
     return sf_h5_write(file, &info, SF_H5_F64, count > 0, &count, data, err);
 }
 
-/* Sums by layer, of the whole pad: a row of each. */
-static void sum_layers(const sf_model *m, const sf_operators *op, const sf_state *s, double *sums) {
+void sf_frame_layers(const sf_model *m, const sf_operators *op, const sf_state *s, double *sums) {
     int64_t count = m->material_count;
     double whole = sf_model_whole(m);
     sf_law_batch b;
+    memset(sums, 0, 4 * (size_t)count * sizeof *sums);
     for (int64_t i = 0; i < m->node_count; i++) {
         int lane = (int)(i % SF_LANES);
         double *own = &sums[m->node_material[i]];
@@ -176,7 +176,7 @@ static sf_status write_layers(const sf_model *m, const sf_operators *op, const s
         return SF_OK;
     SF_OWNED double *sums = sf_alloc(err, 4 * count, sizeof *sums, "sums of the layers");
     if (sums)
-        sum_layers(m, op, s, sums);
+        sf_frame_layers(m, op, s, sums);
     for (int k = 0; k < 4 && err->status == SF_OK; k++)
         write_item(file, path, &rows[k], count, &sums[k * count], err);
     return err->status;

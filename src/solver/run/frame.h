@@ -12,3 +12,8 @@ sf_status sf_frame_write(const sf_model *model, const sf_operators *operators, c
 /* One field of all nodes into values [node_count][components]. */
 void sf_frame_take(const sf_model *model, const sf_operators *operators, const sf_state *state,
                    sf_frame_field field, double *values);
+
+/* Sums by layer of a pad of several materials, of the whole pad: sums [4][material_count], the stored, lost
+ * and viscous energy (J) and the largest compression to date. */
+void sf_frame_layers(const sf_model *model, const sf_operators *operators, const sf_state *state,
+                     double *sums);

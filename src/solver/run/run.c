@@ -52,7 +52,9 @@ static double straight_strain(const sf_model *m) {
     for (int64_t k = 0; k < m->material_count; k++) {
         sf_curve curve;
         sf_error ignored = SF_ERROR_INIT;
-        if (m->material[k].law != &sf_low_density_foam)
+        const char *law =
+            m->material[k].law->name; /* not its address: another library may have built the model */
+        if (strcmp(law, sf_low_density_foam.name) != 0)
             continue;
         const sf_foam_card *card = sf_foam_card_of(&m->material[k]);
         for (int64_t c = 0; c < card->curve_count && sf_curve_build(card, c, &curve, &ignored) == SF_OK;
@@ -111,6 +113,26 @@ void sf_run_tell(const sf_model *m, const sf_state *s, const sf_extremes *x, con
                      1e3 * s->missile.rim_time);
     if (isnan(s->missile.contact_time))
         sf_sink_tell(sink, SF_WARNING, "the missile never touched the pad");
+}
+
+/* True if every material has a reloading path of its own. */
+static bool has_memory(const sf_model *m) {
+    bool all = true;
+    for (int64_t k = 0; k < m->material_count; k++)
+        all &= sf_material_has_memory(&m->material[k]);
+    return all;
+}
+
+void sf_run_tell_all(const sf_model *m, const sf_state *s, const sf_extremes *x, const sf_sink *sink) {
+    if (s->drop > 1)
+        sf_sink_tell(
+            sink, SF_WARNING, "drop %lld on this pad, %g s after the one before: the foam is not new%s",
+            (long long)s->drop, s->pause,
+            has_memory(m)
+                ? ""
+                : ", and a material without `reload` in its `memory` loads along its unloading path up to "
+                  "the largest energy so far: too soft");
+    sf_run_tell(m, s, x, sink);
 }
 
 /* Sentences of a run, each ended by '\n'; cut. */
@@ -264,32 +286,16 @@ static sf_status run_steps(drop *d, bool taken, sf_error *err) {
     }
 }
 
-/* True if every material has a reloading path of its own. */
-static bool has_memory(const sf_model *m) {
-    bool all = true;
-    for (int64_t k = 0; k < m->material_count; k++)
-        all &= sf_material_has_memory(&m->material[k]);
-    return all;
-}
-
 /* The notes on the run, beginning with that of the program. */
 static sf_status write_notes(const drop *d, sf_h5 *file, sf_error *err) {
     sf_h5_info info = {"/summary/notes", "1", "what the solver noted of the run, a sentence per line"};
     notes list = {""};
     const sf_sink sink = {add_line, &list};
     const sf_extremes extremes = sf_recorder_extremes(&d->r);
-    /* The sentences come in this order: the program's, that of a later drop, those of the run. */
+    /* The program's sentence comes first, then those of the run. */
     if (d->note[0])
         sf_sink_tell(&sink, SF_WARNING, "%s", d->note);
-    if (d->s->drop > 1)
-        sf_sink_tell(
-            &sink, SF_WARNING, "drop %lld on this pad, %g s after the one before: the foam is not new%s",
-            (long long)d->s->drop, d->s->pause,
-            has_memory(d->m)
-                ? ""
-                : ", and a material without `reload` in its `memory` loads along its unloading path up to "
-                  "the largest energy so far: too soft");
-    sf_run_tell(d->m, d->s, &extremes, &sink);
+    sf_run_tell_all(d->m, d->s, &extremes, &sink);
     return sf_h5_write_text(file, &info, list.text, err);
 }
 

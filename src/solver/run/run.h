@@ -23,6 +23,11 @@ bool sf_ending_finished(const sf_model *model, const sf_state *state);
 void sf_run_tell(const sf_model *model, const sf_state *state, const sf_extremes *extremes,
                  const sf_sink *sink);
 
+/* The same with the sentence about a later drop on a pad before them: all that /summary/notes has of a run.
+ */
+void sf_run_tell_all(const sf_model *model, const sf_state *state, const sf_extremes *extremes,
+                     const sf_sink *sink);
+
 /* A whole run: steps until the end, with history, frames, the peak and the summary in results.h5, and
  * checkpoints from which it can be resumed. */
 

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drops in memory: keys by content, figures as of the programs, and what a study refuses."""
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+import softfall
+from softfall import memory, programs
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+COARSE = ["geometry.parameters.fine_spacing=20.0", "geometry.parameters.outer_spacing=40.0", "pad.mesh_error_limit=9.0"]
+
+
+def test_a_drop_in_memory_has_the_figures_of_the_programs(tmp_path: Path) -> None:
+    path = str(EXAMPLES / "eva50-v4.5/case.cfg")
+    with memory.Inputs(path, COARSE) as inputs:
+        run = inputs.run(str(tmp_path / "shared"), section=True)
+        assert inputs.has_files(run.files) and not inputs.has_files(run.files.replace("pad.geo", "gone.geo"))
+    drop = softfall.Case(path, dict(text.split("=") for text in [*COARSE, "output.frame_interval=1000 s"])).run(output=tmp_path / "run", threads=1)
+    own = run.drops[0]
+    assert memory.GRADES[own.grade] == drop.verdict and own.verdict.startswith(drop.verdict)
+    assert {"hic", "local_collapse", "cells", "a_max_mesh_error"} <= own.figures.keys()
+    for key, value in own.figures.items():
+        if key not in ("wall_s", "threads"):
+            assert value == pytest.approx(float(drop.figures[key]), rel=1e-8, nan_ok=True), key
+
+
+def test_the_key_is_of_the_content(tmp_path: Path) -> None:
+    shutil.copytree(EXAMPLES.parent / "geo", tmp_path / "geo")
+    shutil.copytree(EXAMPLES / "eva50-v4.5", tmp_path / "examples/eva50-v4.5")
+    shutil.copytree(EXAMPLES / "materials", tmp_path / "examples/materials", ignore=shutil.ignore_patterns("*posterior*"))
+
+    def key(folder: Path, *overrides: str) -> str:
+        with memory.Inputs(str(folder / "eva50-v4.5/case.cfg"), overrides) as inputs:
+            inputs.check()
+            return inputs.key()
+
+    here = key(EXAMPLES)
+    assert here == key(tmp_path / "examples") != key(EXAMPLES, "missile.velocity=4.6 m/s")
+    (tmp_path / "geo/pad.geo").write_text((tmp_path / "geo/pad.geo").read_text() + "// another\n")
+    assert key(tmp_path / "examples") != here
+    with memory.Inputs(str(EXAMPLES / "eva50-v4.5/case.cfg"), ["geometry.parameters.thicknes=40"]) as inputs:
+        with pytest.raises(softfall.InputError, match="thicknes"):
+            inputs.check()
+
+
+def test_a_series_is_judged_by_the_drops_that_count(tmp_path: Path) -> None:
+    with memory.Inputs(str(EXAMPLES / "series/case.cfg"), [*COARSE, "series.drops=2", "series.counted=[2]"]) as inputs:
+        counted, run = inputs.counted(), inputs.run(str(tmp_path / "shared"))
+    assert counted == [False, True]
+    judged = memory.judge(run.drops, counted)
+    assert judged.figures["hic"] == run.drops[1].figures["hic"] > run.drops[0].figures["hic"]
+    assert judged.figures["steps"] == sum(drop.figures["steps"] for drop in run.drops)
+
+
+def test_the_programs_are_part_of_the_key() -> None:
+    assert len(memory.programs_hash()) == 16 and (programs.folder() / "softfall-mesh").exists()
