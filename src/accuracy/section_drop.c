@@ -3,6 +3,7 @@
 
 #include "base/mat3.h"
 #include "drop/drop.h"
+#include "pre/vary.h"
 #include <omp.h>
 
 enum { FINE, EQUAL, FASTER, THINNER, DROPS };
@@ -86,8 +87,11 @@ static void run_all(sf_model *const model[DROPS], double figure[DROPS][FIGURES])
     }
 }
 
-sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
-                              sf_section_drop *out, sf_error *err) {
+/* Runs the drop of `section`, that of `fine`, the same with half the spacing, one that is 1 % faster and one
+ * on a pad SF_SECTION_DROP_THINNER thinner, and fills `out` (docs/theory.md, section 14). Where the first two
+ * do not rebound it is all 0; a change is 0 where its drop does not. `kernel`: of both. */
+static sf_status run_section(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
+                             sf_section_drop *out, sf_error *err) {
     SF_OWNED_BY(sf_model_free) sf_model equal = {0};
     SF_OWNED_BY(sf_model_free) sf_model faster = {0};
     SF_OWNED_BY(sf_model_free) sf_model thinner = {0};
@@ -144,5 +148,5 @@ void sf_section_drop_refer(const sf_case_input *input, sf_sections *sections, sf
         model->expected_mesh_error = error > 0 ? error : model->expected_mesh_error;
         return;
     }
-    sf_section_drop_run(model->axisymmetric ? model : &equal, &fine, &kernel, &model->section, &none);
+    run_section(model->axisymmetric ? model : &equal, &fine, &kernel, &model->section, &none);
 }

@@ -79,7 +79,7 @@ static sf_status check_drops(const options *o, const sf_case *first, sf_error *e
     return err->status;
 }
 
-/* What the drops of the sections showed; `formula`: the error that was expected before. */
+/* Prints what the drops of the sections showed; `formula`: the error that was expected before. */
 static void print_section(const sf_model *model, double formula) {
     if (model->expected_mesh_error != formula)
         printf("%-26sabout %.2g %% of a_max, by an axisymmetric drop on as thick a plate of this foam\n",
