@@ -16,8 +16,8 @@ _ROW = re.compile(r"\| `([\w-]+)` \| (.*?) \| (.*?) \| (.*) \|")
 _FIRST = re.compile(r"^--set (?:(\S+?)=.*?: (?=\1))?", re.DOTALL)
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _QUANTITY = re.compile(r"\s*([-+]?[.\d]+(?:[eE][-+]?\d+)?)\s*(|[^\s\d.].*?)\s*")
-SLIDERS = (("thickness", "Thickness", 0.7, 1.4), ("missile.velocity", "Speed", 0.5, 1.5), ("missile.mass", "Mass", 0.5, 2.0),
-           ("pad.stress_factor", "Foam stress", 0.5, 2.0))  # key or its end, name, bounds over the value of the case
+SLIDERS = (("geometry.parameters.thickness", "Thickness", 0.7, 1.4), ("missile.velocity", "Speed", 0.5, 1.5), ("missile.mass", "Mass", 0.5, 2.0),
+           ("pad.stress_factor", "Foam stress", 0.5, 2.0))  # key, name, bounds over the value of the case
 
 
 @functools.lru_cache(maxsize=None)
@@ -65,15 +65,19 @@ def fields(case: Case) -> list[dict[str, Any]]:
     return made
 
 
+def has_layers(case: Case) -> bool:
+    """Returns whether the pad has several materials."""
+    return any(key.startswith("materials.") for key in case)
+
+
 def sliders(case: Case) -> list[dict[str, Any]]:
     """Returns the values that may be moved live: key, name, unit, value and bounds in that unit."""
     made = []
-    for ending, name, low, high in SLIDERS:
-        try:
-            key = run_keys.find_key(case, ending)
-        except InputError:
-            continue
-        text = _text(case.get(key)) or (run_keys.constants(case)[key].default if key in run_keys.constants(case) else "")
+    constants = run_keys.constants(case)
+    for key, name, low, high in SLIDERS:
+        if has_layers(case) and key == "pad.stress_factor":
+            continue  # each stress would need a model of its own
+        text = _text(case.get(key)) or (constants[key].default if key in constants else "")
         found = _QUANTITY.fullmatch(text)
         if not found:
             continue

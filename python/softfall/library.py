@@ -208,14 +208,15 @@ class Model:
         if hasattr(self, "_free"):
             self._free(self.handle)
 
-    def drop(self, path: str, overrides: Sequence[str], thickness: float, figures: Sequence[str]) -> tuple[dict[str, float], Array, Array]:
+    def drop(self, path: str, overrides: Sequence[str], thickness: float, figures: Sequence[str], own_foam: bool = True) -> tuple[dict[str, float], Array, Array]:
         """Simulates the drop of a variant: speed, mass and foam are those of a case with its overrides, the thickness (m) is scaled from that of the
-        model. Returns figures by their keys, and the history of the acceleration: time in s, acceleration in m/s2."""
+        model; without `own_foam`, of a pad of layers, the foams are those of the model. Returns figures by their keys, and the history of the acceleration: time in s, acceleration in m/s2."""
         library, variant, foam = _load(), c.c_void_p(), c.c_void_p()
         drop, made, number, values = c.c_void_p(), c.c_void_p(), c.c_double(), c.POINTER(c.c_double)()
         try:
             with _case(path, overrides) as case:
-                _call("softfall_case_material", case, c.byref(foam))
+                if own_foam:
+                    _call("softfall_case_material", case, c.byref(foam))
                 listing = library.softfall_case_parameters(case).decode(errors="replace")
             speed, mass = (float(found[1]) if (found := re.search(rf'^missile\.{key} +"[^"]*" +(\S+)', listing, re.MULTILINE)) else 0.0
                            for key in ("velocity", "mass"))

@@ -10,6 +10,7 @@ import json
 import math
 import os
 import queue
+import re
 import signal
 import subprocess
 import sys
@@ -61,11 +62,12 @@ class Live:
         overrides = {**case.overrides, "geometry.spacing_factor": f"{min(10.0, max(0.1, factor)):.9g}"}
         texts = [f"{key}={text}" for key, text in overrides.items()]
         thickness = self._value(case, "thickness") * unit
+        before = len(self._models)
         model = self._model(case, overrides, thickness)
-        figures, seconds, acceleration = model.drop(path, texts, thickness, LIVE_FIGURES)
+        figures, seconds, acceleration = model.drop(path, texts, thickness, LIVE_FIGURES, own_foam=not form.has_layers(case))
         filtered = curves.cfc(seconds, acceleration / curves.STANDARD_GRAVITY)
         return {"figures": {key: value if math.isfinite(value) else None for key, value in figures.items()}, "curve": thin(seconds, filtered),
-                "mesh": mesh, "spacing_mm": 1e3 * SPACING[mesh] if spacing else None, "nodes": model.nodes, "seconds": round(time.monotonic() - began, 3)}
+                "mesh": mesh, "spacing_mm": 1e3 * SPACING[mesh] if spacing else None, "nodes": model.nodes, "built": len(self._models) != before, "seconds": round(time.monotonic() - began, 3)}
 
     @staticmethod
     def _value(case: Case, name: str) -> float:
@@ -81,7 +83,8 @@ class Live:
     def _model(self, case: Case, overrides: dict[str, str], thickness: float) -> library.Model:
         """Returns a model of the mesh of a case whose thickness can be scaled to `thickness`; 0: it is that of the case."""
         varied = ("missile.velocity", "missile.mass", "geometry.parameters.thickness")
-        rest = tuple(sorted((key, text) for key, text in overrides.items() if key not in varied and not key.startswith(("material.", "pad.stress"))))
+        foam = () if form.has_layers(case) else ("material.", "pad.stress_factor")  # varied, too
+        rest = tuple(sorted((key, text) for key, text in overrides.items() if key not in varied and not key.startswith(foam)))
         files = tuple((case.path.parent / str(case.get(key) or "")).stat().st_mtime_ns for key in ("geometry.file", "geometry.missile_file"))
         name = (case.path, case.path.stat().st_mtime_ns, files, rest)
         for known, model in self._models.items():
@@ -107,6 +110,11 @@ class _Progress(Bar):
         self._tell({"what": what, "share": round(self._share, 4), "left": left})
 
 
+def _plain(sentence: str) -> str:
+    """Returns a sentence without the program that said it."""
+    return re.sub(r"^softfall-\w+: ", "", sentence)
+
+
 def _run(request: dict[str, Any], tell: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
     """Runs a drop to its pages, and returns the name of its folder."""
     def watch(step: Step) -> None:
@@ -117,7 +125,7 @@ def _run(request: dict[str, Any], tell: Callable[[dict[str, Any]], None]) -> dic
         drop = run_command.simulate(case, request["runs"], request["threads"], _Progress(tell), watch)
         return {"id": drop.results.parent.name}
     except NumericError as error:
-        return {"error": str(error), "id": Path(error.results).parent.name if error.results else None}
+        return {"error": _plain(str(error)), "id": Path(error.results).parent.name if error.results else None}
 
 
 def _measured(request: dict[str, Any]) -> dict[str, Any]:
@@ -142,11 +150,11 @@ def _answer(work: Callable[[], dict[str, Any]]) -> dict[str, Any]:
                 made = work()
             finally:
                 signal.pthread_sigmask(signal.SIG_BLOCK, _INTERRUPT)
-        return {"answer": {**made, "warnings": list(dict.fromkeys(heard))}}
+        return {"answer": {**made, "warnings": [_plain(sentence) for sentence in dict.fromkeys(heard)]}}
     except KeyboardInterrupt:
         return {"answer": {"stopped": True}}
     except (Error, KeyError) as error:
-        return {"error": str(error.args[0])}
+        return {"error": _plain(str(error.args[0]))}
     except OSError as error:
         return {"error": f"{error.filename}: {error.strerror}"}
     except Exception as error:  # the page tells of a mistake as of any failure
@@ -182,7 +190,7 @@ def main() -> None:
             request = json.loads(line)
             tell({"began": True})
             tell(_answer(lambda: work(request)))
-    except BrokenPipeError:  # the server has gone
+    except (BrokenPipeError, KeyboardInterrupt):  # the server has gone; a thread of the library may hear SIGINT at any time
         os.dup2(os.open(os.devnull, os.O_WRONLY), out.fileno())
 
 

@@ -97,6 +97,7 @@ async function check() {
   const isRight = Object.keys(told.wrong).length === 0;
   if (isRight) sliders.put(told.sliders);
   tellRun();
+  tellAnswer();
   if (isRight && told.found && !["running", "stopping"].includes(state.job?.state)) await choose(told.found, {...form.edits});
   return isRight;
 }
@@ -122,7 +123,7 @@ async function moved(rests) {
     let live = null, note = "";
     try {
       live = {...await ask("live", {values, mesh}), values};
-      note = `Answered in ${((performance.now() - began) / 1000).toFixed(2)} s by the axisymmetric section${live.spacing_mm ? ` with nodes ${live.spacing_mm} mm apart` : ""}; Run computes the case itself.`;
+      note = `Answered in ${((performance.now() - began) / 1000).toFixed(2)} s${live.built ? ", its mesh included," : ""} by the axisymmetric section${live.spacing_mm ? ` with nodes ${live.spacing_mm} mm apart` : ""}; Run computes the case itself.`;
     } catch (error) {
       if (!(error instanceof Refused)) break;
       note = `No live answers: ${error.message}`;
@@ -221,8 +222,11 @@ function tellAnswer() {
     $(id).parentElement.title = limit ? `${limit.passed ? "below" : "above"} the limit of ${limit.bound}` : "";
   }
   const stress = drop?.figures.peak_stress_kPa;
-  const other = !live && drop && !isKnown(form.edits) ? ", a drop of other values than those below" : "";
-  $("origin").textContent = live ? `${live.spacing_mm ? `${live.spacing_mm} mm section` : "section"}, not judged` : drop ? `${drop.id}${stress ? `, peak stress ${shown(stress)} kPa` : ""}${other}` : "";
+  const other = !live && drop && !isKnown(form.edits) ? "; the form has other values" : "";
+  const wrong = Object.keys(form.wrong).length;
+  $("origin").textContent = wrong ? `${wrong} value${wrong > 1 ? "s are" : " is"} wrong: see the red field${wrong > 1 ? "s" : ""}` : live ? `${live.spacing_mm ? `${live.spacing_mm} mm section` : "section"}, not judged` : drop ? `${drop.id}${stress ? `, peak stress ${shown(stress)} kPa` : ""}${other}` : "";
+  $("remarks").hidden = !!live || !drop?.remarks.length;
+  $("remarks").textContent = $("remarks").hidden ? "" : drop.remarks.slice(0, 3).join("; ") + (drop.remarks.length > 3 ? `; and ${drop.remarks.length - 3} more in the report` : "");
   $("report").hidden = !drop || !!live;
   if (drop) $("report").href = `runs/${drop.id}/report.html`;
 }
@@ -242,7 +246,7 @@ function tellRun() {
 }
 
 const windowOf = figures => [figures.hic_t1_ms, figures.hic_t2_ms];
-const describe = run => `${shown(run.v0_m_s, 3)} m/s, ${shown(run.missile_mass_kg, 3)} kg, ${shown(run.thickness_mm, 4)} mm`;
+const describe = run => run.prescribed_motion ? `prescribed motion, ${shown(run.thickness_mm, 4)} mm, peak stress ${shown(run.peak_stress_kPa)} kPa` : `${shown(run.v0_m_s, 3)} m/s, ${shown(run.missile_mass_kg, 3)} kg, ${shown(run.thickness_mm, 4)} mm`;
 
 function curvesShown() {
   const out = [], {live, job, current, drops} = state;
@@ -253,14 +257,14 @@ function curvesShown() {
     const drop = drops.get(id), run = state.runs.find(r => r.id === id);
     out.push({id, label: run ? describe(run) : id, colour: COLOURS[k % COLOURS.length], ...drop.curve, thin: k > 0 || !!live, window: k === 0 ? windowOf(drop.figures) : undefined});
   });
-  state.measured.forEach((m, k) => out.push({label: `measured: ${m.name}`, colour: MEASURED[k % 2], dashed: true, ...m.shifted}));
+  state.measured.forEach((m, k) => alignMeasured(m) ?? out.push({label: `measured: ${m.name}`, colour: MEASURED[k % 2], dashed: true, ...m.shifted}));
   return out;
 }
 
 function tellCurves() {
   const curves = curvesShown(), drop = state.drops.get(state.current), figures = state.live?.figures ?? drop?.figures;
   chart.show(curves);
-  $("chart-title").textContent = figures?.a_max_g ? `Deceleration over time: a_max ${shown(figures.a_max_g)} g, HIC ${shown(figures.hic)}; ${curves.length} curve${curves.length > 1 ? "s" : ""}` : "Deceleration over time";
+  $("chart-title").textContent = figures?.a_max_g ? `Deceleration over time: a_max ${shown(figures.a_max_g)} g, HIC ${shown(figures.hic)}; ${curves.length} curve${curves.length > 1 ? "s" : ""}` : drop?.figures.prescribed_motion ? "A prescribed motion has no deceleration: its curve of stress over strain stands in the report" : "Deceleration over time";
 }
 
 function tellTable() {
@@ -290,8 +294,8 @@ function tellTable() {
 
 /* Puts the peak of a measured curve at the time of the peak that is shown: the clock of a file begins anywhere. */
 function alignMeasured(m) {
-  const figures = state.live?.figures && state.live.curve ? state.live.curve : state.drops.get(state.current)?.curve;
-  const peak = c => c.t[c.g.indexOf(Math.max(...c.g))], shift = figures?.t.length ? peak(figures) - peak(m.curve) : -m.curve.t[0];
+  const shownCurve = state.live?.curve ?? state.drops.get(state.current)?.curve;
+  const peak = c => c.t[c.g.indexOf(Math.max(...c.g))], shift = shownCurve?.t.length ? peak(shownCurve) - peak(m.curve) : -m.curve.t[0];
   m.shifted = {t: m.curve.t.map(t => t + shift), g: m.curve.g};
 }
 
@@ -300,7 +304,6 @@ async function measure(files) {
     $("measured-note").textContent = `reading ${file.name} …`;
     try {
       const told = await ask(`measured?name=${encodeURIComponent(file.name)}`, {}, file);
-      alignMeasured(told);
       state.measured.unshift(told);
       $("measured-note").textContent = `${file.name}: ${told.verdict}${told.remarks.length ? ` (${told.remarks.join("; ")})` : ""}. ${told.interpretation}. The peaks are put at one time.`;
     } catch (error) {

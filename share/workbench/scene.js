@@ -132,7 +132,9 @@ export class Viewer {
       this.box.expandByPoint(new THREE.Vector3(...XYZ.map(e => e === d ? 2 * drop.planes[d] - this.box.max.getComponent(e) : this.box.min.getComponent(e))));
     }
     this.group.add(...parts);
-    const outline = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(...this.box.getSize(new THREE.Vector3()).toArray())), new THREE.LineDashedMaterial({color: 0x5a6675, dashSize: 0.006, gapSize: 0.004}));
+    const extent = this.box.getSize(new THREE.Vector3()), dash = 0.012 * extent.length();
+    const outline = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(...extent.toArray())),
+      new THREE.LineDashedMaterial({color: 0x5a6675, dashSize: dash, gapSize: 0.7 * dash, clippingPlanes: clip}));
     outline.position.copy(this.box.getCenter(new THREE.Vector3()));
     outline.computeLineDistances();
     this.group.add(outline);

@@ -147,8 +147,10 @@ def test_a_live_answer_is_that_of_the_section(case):
     built = softfall.Case(case.path, {**values, "geometry.model": "axisymmetric", "geometry.parameters.fine_spacing": "10", "geometry.parameters.outer_spacing": "10"}).run().figures
     assert told["figures"]["a_max_g"] == pytest.approx(built["a_max_g"], rel=1e-6) and told["figures"]["hic"] == pytest.approx(built["hic"], rel=1e-6)
     assert max(told["curve"]["g"]) == pytest.approx(told["figures"]["a_max_g"], rel=1e-3)
+    layered = live.answer(str(BIN.parent / "share/softfall/examples/layers/case.cfg"), {"missile.velocity": "4 m/s"}, "coarse")
+    assert layered["figures"]["a_max_g"] > 0 and [s["key"] for s in form.sliders(softfall.example("layers"))] == ["missile.velocity", "missile.mass"]
     thicker = live.answer(str(case.path), {**values, "geometry.parameters.thickness": "58"}, "coarse")  # by the same model
-    assert thicker["figures"]["a_max_g"] < told["figures"]["a_max_g"] and len(live._models) == 1
+    assert thicker["figures"]["a_max_g"] < told["figures"]["a_max_g"] and len(live._models) == 2
     with pytest.raises(softfall.InputError, match="missile"):
         live.answer(str(case.path), {"missile.direction": "[0.0, 0.5, -0.8]"}, "coarse")
 
