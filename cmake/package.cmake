@@ -94,8 +94,9 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY \"drop tests of rigid missiles on foam pad
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
     \"This package runs the programs of softfall from Python: cases, drops with
 figures, histories, frames and plots, sweeps, fits, HIC and CFC filters. It has
-a drop as a function for optimisers, and softfall-serve, which serves drops
-over HTTP by the protocol of UM-Bridge.\")
+a drop as a function for optimisers, the command softfall with its workbench in
+the browser, and softfall-serve, which serves drops over HTTP by the protocol
+of UM-Bridge.\")
 set(CPACK_DEBIAN_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS \"softfall (= ${PROJECT_VERSION}-${debian_revision}), ${python_needs}\")

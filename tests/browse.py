@@ -30,6 +30,13 @@ class Page:
         os.close(commands[0])
         os.close(answers[1])
         self.commands, self.answers = commands[1], answers[0]
+        self.tab(width, height, phone)
+        self.began = time.monotonic()
+        self.open(path)
+        self.loaded = time.monotonic() - self.began
+
+    def tab(self, width=1440, height=900, phone=False):
+        """Makes a new tab the one that is used; returns its session, by which it is used again."""
         self.session = None
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
@@ -37,11 +44,14 @@ class Page:
             self.call(domain + ".enable")
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if phone else 1,
                   mobile=phone)
-        self.began = time.monotonic()
-        self.call("Page.navigate", url="file://" + os.path.abspath(path))
-        self.wait_for("document.readyState === 'complete' && location.protocol === 'file:'")
+        return self.session
+
+    def open(self, path):
+        """Shows a file, or the page of an address."""
+        address = path if path.startswith("http") else "file://" + os.path.abspath(path)
+        self.call("Page.navigate", url=address)
+        self.wait_for("document.readyState === 'complete' && location.protocol === '%s'" % address.partition("/")[0])
         self.settle()
-        self.loaded = time.monotonic() - self.began
 
     def message(self):
         while b"\0" not in self.rest:
@@ -111,9 +121,18 @@ class Page:
         self.settle()
 
     def key(self, key):
-        code = {"ArrowRight": 39, "ArrowLeft": 37, "Home": 36, "End": 35}[key]
+        code = {"ArrowRight": 39, "ArrowLeft": 37, "Home": 36, "End": 35, "Tab": 9, "Enter": 13, " ": 32}[key]
+        text = {"text": {"Enter": "\r", " ": " "}[key]} if key in ("Enter", " ") else {}
         for kind in ("keyDown", "keyUp"):
-            self.call("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=code)
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, code="Space" if key == " " else key, windowsVirtualKeyCode=code,
+                      **(text if kind == "keyDown" else {}))
+        self.settle()
+
+    def write(self, identifier, text):
+        """Types a text into a field in place of what is there."""
+        self.value("(() => { const e = document.getElementById('%s'); for (let d = e; d; d = d.parentElement) if (d.tagName === 'DETAILS') d.open = true; "
+                   "e.focus(); e.select(); })()" % identifier)
+        self.call("Input.insertText", text=text)
         self.settle()
 
     def choose(self, identifier, value):

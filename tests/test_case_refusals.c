@@ -371,6 +371,8 @@ static void hyperfoam_terms_are_checked(void **state) {
         {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; rate_factor = 0.3;",
          "material.rate_reference is missing"},
         {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; E = \"1 MPa\";", "unknown key \"E\" in group material"},
+        {"term_1 = { mu = \"60 kPa\"; alpha = 8.0; }; };\npad: { stress_factor = 1.2;",
+         "case.cfg:4: pad.stress_factor = 1.2, but the pad's material has no compression curve"},
     };
     char text[1200];
     SF_OWNED_BY(sf_case_free) sf_case c = {0};

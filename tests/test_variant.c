@@ -73,6 +73,46 @@ static void variant_is_the_model_of_a_case_with_its_values(void **state) {
     softfall_model_free(varied);
 }
 
+static softfall_status foam_of(const char *example, const char *override, softfall_material **foam,
+                               softfall_error *error) {
+    softfall_case *c = NULL;
+    if (softfall_case_read(fixture_source(example), &override, 1, NULL, &c, error) == SOFTFALL_OK)
+        softfall_case_material(c, foam, error);
+    softfall_case_free(c);
+    return error->status;
+}
+
+static void foam_of_a_case_has_its_factor_on_the_stresses(void **state) {
+    (void)state;
+    double values[2 * FIGURES], rate;
+    const double *strain, *stress, *strain_twice, *stress_twice;
+    softfall_material *once = NULL, *twice = NULL, *none = NULL;
+    softfall_error error;
+    const char *example = "examples/eva50-v4.5/case.cfg";
+    assert_int_equal(foam_of(example, "pad.stress_factor=1", &once, &error), SOFTFALL_OK);
+    assert_int_equal(foam_of(example, "pad.stress_factor=2", &twice, &error), SOFTFALL_OK);
+    int64_t points = softfall_material_curve(once, 0, &rate, &strain, &stress);
+    assert_true(points > 0 &&
+                points == softfall_material_curve(twice, 0, &rate, &strain_twice, &stress_twice));
+    for (int64_t i = 0; i < points; i++)
+        assert_true(strain[i] == strain_twice[i] && 2 * stress[i] == stress_twice[i]);
+    softfall_model *base = build(NULL);
+    softfall_model *built = build((const char *const[]){"pad.stress_factor=2", NULL});
+    softfall_model *varied = vary(base, &(softfall_variant){.material = twice});
+    run((const softfall_model *const[]){built, varied}, 2, 1, values);
+    for (int k = 0; k < FIGURES; k++)
+        assert_true(values[k] == values[FIGURES + k]);
+    assert_int_equal(foam_of("examples/layers/case.cfg", "pad.stress_factor=2", &none, &error),
+                     SOFTFALL_INPUT);
+    assert_null(none);
+    assert_non_null(strstr(error.text, "has a pad of layers"));
+    softfall_material_free(once);
+    softfall_material_free(twice);
+    softfall_model_free(base);
+    softfall_model_free(built);
+    softfall_model_free(varied);
+}
+
 static void thickness_is_that_of_a_mesh_with_as_many_rows(void **state) {
     (void)state;
     double values[3 * FIGURES];
@@ -133,6 +173,7 @@ static void what_cannot_be_varied_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(variant_is_the_model_of_a_case_with_its_values),
+        cmocka_unit_test(foam_of_a_case_has_its_factor_on_the_stresses),
         cmocka_unit_test(thickness_is_that_of_a_mesh_with_as_many_rows),
         cmocka_unit_test(figures_do_not_depend_on_the_threads),
         cmocka_unit_test(what_cannot_be_varied_is_refused),

@@ -137,6 +137,10 @@ typedef struct softfall_material softfall_material;
  * the pad, K; 0: none is given. */
 SOFTFALL_API softfall_status softfall_material_read(const char *path, double temperature,
                                                     softfall_material **out, softfall_error *error);
+/* The foam of a case that has not been built, with the values that its overrides set: for
+ * softfall_model_vary. SOFTFALL_INPUT: the pad has layers. Its list of values is that of the whole case. */
+SOFTFALL_API softfall_status softfall_case_material(const softfall_case *c, softfall_material **out,
+                                                    softfall_error *error);
 SOFTFALL_API void softfall_material_free(softfall_material *material);
 /* Its values, as softfall_case_parameters has them; owned by the material. */
 SOFTFALL_API const char *softfall_material_parameters(const softfall_material *material);

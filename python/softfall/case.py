@@ -104,8 +104,7 @@ class Case(MutableMapping[str, Any]):
     def __init__(self, path: str | os.PathLike[str], values: Mapping[str, Any] | None = None) -> None:
         self.path = Path(path).absolute()
         self._overrides: dict[str, str] = {}
-        self._take({})
-        self.update(values or {})
+        self._take(dict(values or {}))
 
     def __repr__(self) -> str:
         return f"softfall.Case({str(self.path)!r}, {self._overrides!r})"
@@ -237,7 +236,7 @@ class Case(MutableMapping[str, Any]):
             with contextlib.suppress(InputError):  # softfall-pre has a sentence for what cannot be read
                 text += hashlib.sha256(output_files.read(self.path.parent / name)).hexdigest()
         key = hashlib.sha256(text.encode()).hexdigest()[:16]
-        return next(iter(sorted(runs.glob(f"*-{key}"))), runs / f"{self._name()}-{key}")
+        return next(iter(sorted(runs.glob(f"*-{key}"))), runs / f"{self.name()}-{key}")
 
     def find(self, runs: str | os.PathLike[str] = RUNS) -> Drop | None:
         """Returns the drop if it is below `runs`, of these inputs by these programs, else None; raises the NumericError with which it ended."""
@@ -263,7 +262,8 @@ class Case(MutableMapping[str, Any]):
             raise InputError(f"{self.path}: series.drops = {self['series.drops']}: {what} has the figures of a single drop; leave the group series "
                              "out, or take softfall.sweep, which judges a series by the drops that count")
 
-    def _name(self) -> str:
+    def name(self) -> str:
+        """Returns the name of the case: that of its file, or of its folder."""
         generic = self.path.stem == "case"
         return re.sub(r"[^\w.-]", "_", self.path.parent.name if generic else self.path.stem) or "case"
 

@@ -22,6 +22,7 @@ from .errors import Error, lacking
 
 COMMANDS = {  # module within the package, and what the command does
     "foam": ("foam_command", "convert foam cards of other solvers and back, and show foams"),
+    "open": ("open_command", "open the workbench in the browser: form, live sliders, curves, the drop in 3-D"),
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
     "read": ("read_program", "turn any laboratory's file into the CSV that the programs read, and say how it was read"),
     "run": ("run_command", "run a drop: mesh, solution, figures and report, kept by content"),

@@ -10,10 +10,10 @@ import signal
 import sys
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, Callable
 
 from . import library
-from .case import RUNS, Case, example, locked
+from .case import RUNS, Case, Step, example, locked
 from .command import Parser
 from .drop import Drop
 from .errors import Error, InputError, NumericError
@@ -101,27 +101,30 @@ def _link(drop: Drop, runs: Path) -> None:
         new.replace(link)
 
 
-def simulate(case: Case, o: argparse.Namespace, bar: Bar) -> Drop:
-    """Runs the drop and makes its figures and pages; of one that failed, too, before the NumericError goes on."""
+def simulate(case: Case, output: str, threads: int | None, bar: Bar, watch: Callable[[Step], object] | None = None) -> Drop:
+    """Runs the drop and makes its figures and pages; of one that failed, too, before the NumericError goes on. `watch` is called with its steps."""
     free = case["missile.motion"] is None
     drops = case["series.drops"] if isinstance(case["series.drops"], int) else 1
     progress = None
     made = DropProgress(bar, library.quantity(str(case["solver.end_time"]))[0], drops, free)
     try:
-        drop = case.find(o.output)
+        drop = case.find(output)
         if drop is None:
             progress = made
             progress.begin()
-            drop = case.run(o.threads, progress, runs=o.output)
+            drop = case.run(threads, lambda step: (made(step), watch and watch(step)), runs=output)
     except NumericError as error:
         if error.results:
-            bar.clear()
             with contextlib.suppress(Error):  # of too few rows nothing is made; the failure is what counts
-                _finish(failed := Drop(error.results, Path(error.results).with_name("out"), own=True), progress, Path(o.output), bar)
-                print("\n".join(summarise(failed)))
+                _finish(failed_drop(error.results), progress, Path(output), bar)
         raise
-    _finish(drop, progress, Path(o.output), bar)
+    _finish(drop, progress, Path(output), bar)
     return drop
+
+
+def failed_drop(results: str) -> Drop:
+    """Returns the drop of the results so far of a solution that failed."""
+    return Drop(results, Path(results).with_name("out"), own=True)
 
 
 def _finish(drop: Drop, progress: DropProgress | None, runs: Path, bar: Bar) -> None:
@@ -160,7 +163,13 @@ def perform(o: argparse.Namespace) -> tuple[str, int]:
 
     warnings.showwarning = tell
     try:
-        drop = simulate(case, o, bar)
+        drop = simulate(case, o.output, o.threads, bar)
+    except NumericError as error:
+        if error.results:
+            bar.clear()
+            with contextlib.suppress(Error):
+                print("\n".join(summarise(failed_drop(error.results))))
+        raise
     finally:
         bar.clear()
     series = drop.series

@@ -6,7 +6,7 @@ import difflib
 import math
 import re
 from pathlib import Path
-from typing import Iterable, Mapping
+from typing import Iterable, Mapping, NamedTuple
 
 from . import laboratory, library
 from .case import Case
@@ -16,7 +16,19 @@ from .errors import Error, InputError, failure
 FALL = ("height", "rig")  # words that set missile.velocity
 SPEED = "missile.velocity"
 _PARAMETERS = (("geometry.file", "geometry.parameters"), ("geometry.missile_file", "geometry.missile_parameters"), ("support.file", "support.parameters"))
-_DEFINED = re.compile(r"DefineConstant\s*\[(.*?)\]\s*;", re.DOTALL)
+_DEFINED = re.compile(r'DefineConstant\s*\[((?:[^]"]|"[^"]*")*)\]\s*;')
+_COMMENT = re.compile(r'("[^"\n]*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
+_CONSTANT = re.compile(r'(\w+)\s*=\s*\{((?:[^{}"]|"[^"]*"|\{[^{}]*\})*)\}|(\w+)\s*(?:=\s*([^,{]+))?')
+
+
+class Constant(NamedTuple):
+    """A parameter that a geometry defines: its default and what its DefineConstant says of it, as texts ("" if nothing)."""
+
+    default: str
+    label: str
+    low: str
+    high: str
+    choices: tuple[str, ...]
 
 
 def split(texts: Iterable[str]) -> dict[str, str]:
@@ -41,17 +53,31 @@ def split(texts: Iterable[str]) -> dict[str, str]:
     return values
 
 
-def defined(case: Case) -> set[str]:
-    """Returns the keys of the parameters that the geometries of a case define, as far as their files can be read."""
-    found: set[str] = set()
+def _constant(attributes: str) -> Constant:
+    """Returns what stands between the braces of a constant, or its plain value."""
+    bare = re.sub(r'"[^"]*"', "", attributes)
+    name = re.search(r'Name\s*"([^"]*)"', attributes)
+    low, high = (found[1] if (found := re.search(rf"\b{word}\s+([-+.\deE]+)", bare)) else "" for word in ("Min", "Max"))
+    choices = re.search(r"\bChoices\s*\{([^}]*)\}", bare)
+    return Constant(bare.partition(",")[0].strip(), re.sub(r"^.*/\s*\d*\s*", "", name[1]) if name else "", low, high,
+                    tuple(value.partition("=")[0].strip() for value in choices[1].split(",")) if choices else ())
+
+
+def constants(case: Case) -> dict[str, Constant]:
+    """Returns the parameters that the geometries of a case define, by their keys, as far as their files can be read."""
+    found: dict[str, Constant] = {}
     for file, group in _PARAMETERS:
         path = case.path.parent / str(case.get(file) or "")
         if path.is_file() and path.suffix == ".geo":
-            text = re.sub(r"//[^\n]*|/\*.*?\*/|\"[^\"]*\"", "", path.read_text(encoding="utf-8", errors="replace"), flags=re.DOTALL)
-            text = re.sub(r"\{[^{}]*\}", "", re.sub(r"\{[^{}]*\}", "", text))
-            for block in _DEFINED.findall(text):
-                found.update(f"{group}.{name}" for name in re.findall(r"(?:^|,)\s*(\w+)\s*(?==|,|$)", block))
+            for block in _DEFINED.findall(_COMMENT.sub(r"\1", path.read_text(encoding="utf-8", errors="replace"))):
+                for braced, inside, plain, value in _CONSTANT.findall(block):
+                    found[f"{group}.{braced or plain}"] = _constant(inside or value)
     return found
+
+
+def defined(case: Case) -> set[str]:
+    """Returns the keys of those parameters."""
+    return set(constants(case))
 
 
 def find_key(case: Case, name: str) -> str:
@@ -94,11 +120,20 @@ _UNITS = {"geometry.missile_parameters": ("geometry.missile_length_unit", "geome
           "support.parameters": ("support.length_unit", "geometry.length_unit"), "geometry.parameters": ("geometry.length_unit",)}
 
 
+def is_parameter(key: str) -> bool:
+    """Returns whether a key is that of a parameter of a geometry."""
+    return key.rpartition(".")[0] in _UNITS
+
+
+def units_of(key: str) -> tuple[str, ...]:
+    """Returns the keys of the units of a geometry's parameter: the first that is given holds."""
+    return _UNITS[key.rpartition(".")[0]]
+
+
 def as_number(case: Case, key: str, text: str, given: Mapping[str, str]) -> str:
     """Returns the value of a geometry's parameter as the plain number that the case takes: a length is converted to the unit of its file,
     which `given`, the other values of the command line by their keys, may set."""
-    units = _UNITS[key.rpartition(".")[0]]
-    unit = next(str(value) for name in units for value in (given.get(name), case.get(name)) if value is not None).strip('"')
+    unit = next(str(value) for name in units_of(key) for value in (given.get(name), case.get(name)) if value is not None).strip('"')
     try:
         float(text)
         return text
@@ -157,7 +192,7 @@ def resolve(case: Case, given: Mapping[str, str]) -> tuple[dict[str, str], list[
     whole = {key: given[name] for name, key in keys.items()}
     for name, key in keys.items():
         text = given[name]
-        value = as_number(case, key, text, whole) if key.rpartition(".")[0] in dict(_PARAMETERS).values() else text
+        value = as_number(case, key, text, whole) if is_parameter(key) else text
         if key in values:
             raise InputError(f"{key} is given twice: {values[key]} and {value}")
         values[key] = value

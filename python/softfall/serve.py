@@ -11,18 +11,17 @@ import signal
 import socket
 import sys
 import threading
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any, Sequence
 
-from . import programs
+from . import programs, web
 from .case import Case
 from .command import Parser
 from .errors import Error, InputError
 from .function import Function
+from .web import Refusal
 
 MOST_BYTES = 1 << 20  # of a request
-PATIENCE = 60  # s for the bytes of a request
-MOST_CLIENTS, MOST_WAITING = 256, 64  # connections at a time; requests that wait for a place
+MOST_WAITING = 64  # requests that wait for a place
 TIME_LIMIT = 3600.0  # s, of a drop
 SHOWN = 200  # characters of a value in a sentence
 
@@ -32,44 +31,17 @@ def _shown(value: Any) -> str:
     return text if len(text) <= SHOWN else text[:SHOWN] + "..."
 
 
-class Refusal(Exception):
-    """A request that is answered with an error object: its type and sentence."""
-
-    def __init__(self, kind: str, sentence: str, status: int = 400) -> None:
-        super().__init__(sentence)
-        self.kind, self.status = kind, status
-
-
-class Server(ThreadingHTTPServer):
+class Server(web.Server):
     """Serves one function; `places` drops are computed at a time."""
 
-    daemon_threads = True
+    program = "softfall serve"
 
     def __init__(self, address: tuple[str, int], name: str, function: Function, options: Sequence[str], jobs: int = 1,
                  time_limit: float = TIME_LIMIT) -> None:
         super().__init__(address, Handler)
         self.name, self.function, self.options, self.time_limit = name, function, list(options), time_limit
         self.places, self.waiting = threading.Semaphore(jobs), threading.Semaphore(MOST_WAITING + jobs)
-        self.clients = threading.Semaphore(MOST_CLIENTS)
         self.hosts = {"localhost", address[0].lower(), socket.gethostname().lower(), socket.getfqdn().lower()}
-
-    def process_request(self, request: Any, client_address: Any) -> None:
-        """Serves a connection by a thread of its own; closes it at once where there are too many."""
-        if self.clients.acquire(blocking=False):
-            super().process_request(request, client_address)
-        else:
-            self.shutdown_request(request)
-
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Runs in the thread."""
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self.clients.release()
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """Tells of a connection that failed, in one line."""
-        _log(f"{client_address[0]}: {type(sys.exc_info()[1]).__name__}: {sys.exc_info()[1]}")
 
     def knows(self, host: str | None) -> bool:
         """Returns whether a request names this server: a page of another name in a browser, which a name server leads here, does not."""
@@ -131,79 +103,28 @@ class Server(ThreadingHTTPServer):
             self.waiting.release()
 
 
-def _log(text: str) -> None:
-    """Prints a line to stderr; what a terminal would obey is spelled out."""
-    sys.stderr.write("softfall serve: " + re.sub(r"[^ -~]", lambda found: ascii(found[0])[1:-1], text) + "\n")
-
-
-class Handler(BaseHTTPRequestHandler):
+class Handler(web.Handler):
     """One connection of a client."""
 
     server: Server
-    protocol_version = "HTTP/1.1"
-    timeout = PATIENCE
-
-    def log_message(self, format: str, *args: Any) -> None:
-        _log(f"{self.log_date_time_string()} {format % args}")
-
-    def version_string(self) -> str:
-        return "softfall serve"
-
-    def handle_one_request(self) -> None:
-        """Serves a request, whose bytes arrive within PATIENCE."""
-        self.watch = threading.Timer(PATIENCE, self._give_up)
-        self.watch.daemon = True
-        self.watch.start()
-        try:
-            super().handle_one_request()
-        finally:
-            self.watch.cancel()
-
-    def _give_up(self) -> None:
-        try:
-            self.connection.shutdown(socket.SHUT_RDWR)
-        except OSError:
-            pass
 
     def _send(self, answer: dict[str, Any], status: int = 200) -> None:
-        body = json.dumps(answer, allow_nan=False).encode()
-        try:
-            self.send_response(status)
-            self.send_header("Content-Type", "application/json")
-            self.send_header("Content-Length", str(len(body)))
-            if self.close_connection:
-                self.send_header("Connection", "close")
-            self.end_headers()
-            self.wfile.write(body)
-        except (BrokenPipeError, ConnectionResetError):  # the client has gone; the drop stays in softfall-runs/
-            self.close_connection = True
+        self.send(json.dumps(answer, allow_nan=False).encode(), "application/json", status)
 
-    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        self.close_connection = True
-        self._refuse(Refusal("InvalidInput", message or f"status {code}", code))
-
-    def _refuse(self, refusal: Refusal) -> None:
+    def refuse(self, refusal: Refusal) -> None:
+        """Answers with an error object of UM-Bridge."""
         self._send({"error": {"type": refusal.kind, "message": str(refusal)}}, refusal.status)
 
     def _check_host(self) -> None:
         if not self.server.knows(self.headers.get("Host")):
-            self.close_connection = True
-            raise Refusal("InvalidInput", f"the request is for the host {_shown(self.headers.get('Host'))}, which this server is not: name it by its address", 403)
+            raise self.forbid(f"the request is for the host {_shown(self.headers.get('Host'))}, which this server is not: name it by its address")
 
     def _read(self) -> dict[str, Any]:
         self._check_host()
         if self.headers.get("Origin"):
-            self.close_connection = True
-            raise Refusal("InvalidInput", "requests of web pages (with an Origin) are not served", 403)
-        length = self.headers.get("Content-Length", "")
-        size = int(length) if re.fullmatch("[0-9]{1,9}", length) else -1
-        if not 0 <= size <= MOST_BYTES:
-            self.close_connection = True
-            raise Refusal("InvalidInput", f"a request needs a Content-Length from 0 to {MOST_BYTES} bytes", 413)
-        data = self.rfile.read(size)
-        self.watch.cancel()
+            raise self.forbid("requests of web pages (with an Origin) are not served")
         try:
-            request = json.loads(data)
+            request = json.loads(self.body(MOST_BYTES))
         except (ValueError, RecursionError) as error:
             raise Refusal("InvalidInput", f"the request is no JSON: {error}") from error
         if not isinstance(request, dict):
@@ -217,15 +138,15 @@ class Handler(BaseHTTPRequestHandler):
                 raise Refusal("InvalidInput", f"{_shown(self.path)} is not served; GET /Info is", 404)
             self._send({"protocolVersion": 1.0, "models": [self.server.name]})
         except Refusal as refusal:
-            self._refuse(refusal)
+            self.refuse(refusal)
 
     def do_POST(self) -> None:
         try:
             self._send(self.server.answer(self.path, self._read()))
         except Refusal as refusal:
-            self._refuse(refusal)
+            self.refuse(refusal)
         except (ArithmeticError, LookupError, RecursionError, TypeError, UnicodeError, ValueError) as error:
-            self._refuse(Refusal("InvalidInput", f"the request cannot be answered: {type(error).__name__}: {_shown(str(error))}"))
+            self.refuse(Refusal("InvalidInput", f"the request cannot be answered: {type(error).__name__}: {_shown(str(error))}"))
 
 
 def make(o: argparse.Namespace) -> Server:

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* libsoftfall-build: cases, and models made of them. */
 #include "accuracy/section_drop.h"
-#include "api/api.h"
+#include "api/api_material.h"
 #include "base/hash.h"
 #include "base/units.h"
 #include "case/read.h"
@@ -132,6 +132,26 @@ softfall_status softfall_case_hash(const softfall_case *c, uint64_t *hash, softf
         if (path && sf_plain_hash_kept(path, &content, &err) == SF_OK)
             *hash = sf_hash_bytes(*hash, &content, sizeof content);
     }
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_case_material(const softfall_case *c, softfall_material **out,
+                                       softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    softfall_material *m = NULL;
+    *out = NULL;
+    if (c->used_up)
+        SF_REFUSE(&err, "the case %s has been built already: read it again", c->data.path);
+    else if (c->data.layer_count > 0)
+        SF_REFUSE(&err, "the case %s has a pad of layers: it is not of one material", c->data.path);
+    else if ((m = sf_alloc(&err, 1, sizeof *m, "a material")) &&
+             sf_material_copy(&c->data.material, &m->data, &err) == SF_OK &&
+             !(m->parameters = strdup(c->data.parameters)))
+        SF_NO_MEMORY(&err, "the values of a case");
+    if (err.status == SF_OK)
+        *out = m;
+    else
+        softfall_material_free(m);
     return softfall_return(&err, error);
 }
 

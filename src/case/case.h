@@ -91,6 +91,8 @@ typedef struct sf_case {
     char symmetry_group[SF_CASE_MAX_GROUPS][SF_CASE_NAME_SIZE];
     char surface_group[SF_CASE_NAME_SIZE]; /* physical surface group of the missile that touches */
     bool temperature_acts;                 /* a material depends on the pad's temperature */
+    double stress_factor;                  /* -, on the stresses of the curves; 0: of a material alone, 1 */
+    bool has_curves;                       /* a material has compression curves */
     int self_contact;                      /* SF_SELF_CONTACT_* */
     int64_t separate;                      /* 1: the pad may be of several bodies */
     int64_t triangle_centroids;            /* 1: points of contact at them, too (solver/contact/skin.h) */

@@ -243,6 +243,15 @@ static sf_status take_temperature(sf_case_reader *reader, const config_setting_t
     return err->status;
 }
 
+/* Multiplies the stresses by pad.stress_factor. */
+static void scale_stresses(sf_case_reader *reader) {
+    sf_law_curves *card = sf_material_curves(reader->material);
+    double factor = reader->out->stress_factor;
+    reader->out->has_curves = true;
+    for (int64_t i = 0; factor > 0 && i < card->curve_points; i++)
+        card->curve_stress[i] *= factor;
+}
+
 sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *setting, char *detail,
                               size_t size, sf_error *err) {
     if (sf_material_curves(reader->material)->curve_count > 0)
@@ -269,6 +278,7 @@ sf_status sf_case_read_curves(sf_case_reader *reader, const config_setting_t *se
         if (thermal)
             SF_TRY(take_temperature(reader, setting, err));
     }
+    scale_stresses(reader);
     const sf_law_curves *card = sf_material_curves(reader->material);
     snprintf(detail, size, "%lld point%s, strain to %g", (long long)card->curve_points,
              card->curve_points == 1 ? "" : "s", card->curve_strain[card->curve_points - 1]);

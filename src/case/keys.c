@@ -81,6 +81,9 @@ static const sf_key keys[] = {
     {"pad", "temperature", SF_KEY_QUANTITY, "", AT(run.temperature),
      "of the pad, at which the law takes its curves among those of several temperatures (`material.curves`), or its rates (`material.shift`)",
      .quantity = SF_TEMPERATURE, .low = 100.0, .high = 600.0},
+    {"pad", "stress_factor", SF_KEY_NUMBER, "1.0", AT(stress_factor),
+     "multiplies the stresses of the compression curves of the pad's materials: the same foam, stiffer or softer; moduli and viscosities stay",
+     .low = 0.1, .high = 10.0},
     /* material: the law; its parameters follow (solver/material) */
     {"material", "law", SF_KEY_LAW, "", AT(material.law), "material law; its parameters follow"},
     /* missile */

@@ -436,13 +436,23 @@ static sf_status check_temperature(const sf_case_reader *reader, sf_error *err) 
         "material.shift: material.curves = ( { temperature = \"5 degC\"; file = \"cold.csv\"; }, ... )");
 }
 
+/* A factor on curves that are not there would look as if it acted. */
+static sf_status check_stress_factor(const sf_case_reader *reader, sf_error *err) {
+    if (reader->out->stress_factor == 1 || reader->out->has_curves)
+        return SF_OK;
+    return REFUSE_AT("pad.stress_factor",
+                     "pad.stress_factor = %g, but the pad's material has no compression curve that it could "
+                     "multiply: leave it out, and change the moduli of the material",
+                     reader->out->stress_factor);
+}
+
 /* Rules on the complete case. */
 sf_status sf_case_check_complete(const sf_case_reader *reader, sf_error *err) {
     char where[SF_CASE_WHERE_SIZE];
     const sf_case *c = reader->out;
     if (check_times(reader, err) != SF_OK || check_reach(reader, err) != SF_OK ||
         check_speed(reader, err) != SF_OK || check_series(reader, err) != SF_OK ||
-        check_temperature(reader, err) != SF_OK)
+        check_temperature(reader, err) != SF_OK || check_stress_factor(reader, err) != SF_OK)
         return err->status;
     if (c->support_ratio >= 2.0)
         sf_sink_tell(reader->sink, SF_WARNING,
