@@ -26,6 +26,7 @@ COMMANDS = {  # module within the package, and what the command does
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
     "read": ("read_program", "turn any laboratory's file into the CSV that the programs read, and say how it was read"),
     "run": ("run_command", "run a drop: mesh, solution, figures and report, kept by content"),
+    "sweep": ("sweep_command", "run many drops by a plan: effects, response surface, probabilities"),
     "serve": ("serve", "answer requests for drops over HTTP, by the protocol of UM-Bridge"),
 }
 PROGRAMS = {  # words that are handed over to the program softfall-WORD, and what it does
@@ -36,7 +37,6 @@ PROGRAMS = {  # words that are handed over to the program softfall-WORD, and wha
     "post": "compute figures, curves and pages from results.h5",
     "pre": "build the model of a drop from a case",
     "solve": "simulate the drop of a model",
-    "sweep": "run many drops by a plan: effects, response surface, probabilities",
 }
 USAGE = 64  # exit code of a wrong command line, as of the C programs
 

@@ -58,3 +58,13 @@ def test_a_series_is_judged_by_the_drops_that_count(tmp_path: Path) -> None:
 
 def test_the_programs_are_part_of_the_key() -> None:
     assert len(memory.programs_hash()) == 16 and (programs.folder() / "softfall-mesh").exists()
+
+
+def test_what_the_solver_notes_of_a_foam_is_part_of_the_verdict(tmp_path: Path) -> None:
+    """The library that solves is another one than that which has read the foam."""
+    values = ["geometry.parameters.thickness=40", f"material=@{EXAMPLES}/materials/leap.cfg", *COARSE]
+    with memory.Inputs(str(EXAMPLES / "eva50-v4.5/case.cfg"), values) as inputs:
+        own = inputs.run(str(tmp_path / "shared"), section=True).drops[0]
+    case = softfall.Case(EXAMPLES / "eva50-v4.5/case.cfg", dict(text.split("=") for text in values))
+    remarks = case.run(output=tmp_path / "run", threads=1).verdict.remarks
+    assert any("near the pole" in remark for remark in remarks) and own.verdict.endswith(f"; and {len(remarks) - 3} more")

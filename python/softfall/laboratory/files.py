@@ -181,7 +181,7 @@ def _spreadsheet(path: str, data: bytes, wanted: str | None) -> list[Sheet]:
 
 def _matlab(path: str, data: bytes) -> Sheet:
     """Returns the vectors of one length of a MATLAB file as columns with the names of the variables, a matrix as columns without names."""
-    import scipy.io  # type: ignore[import]
+    import scipy.io
     try:
         read = scipy.io.loadmat(io.BytesIO(data))
     except Exception as error:  # a damaged file fails in many ways

@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""softfall sweep: rows as of the C program, kills, two processes, moved folders, full disks, changed inputs; what the report states."""
+from __future__ import annotations
+
+import contextlib
+import csv
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import sqlite3
+import subprocess
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import softfall
+from softfall import campaign, effects, memory, plan as plans, samples, sweep_page
+from softfall.store import Store
+
+BIN, EXAMPLES = Path(os.environ["SF_BIN_DIR"]), Path(__file__).resolve().parents[2] / "examples"
+SET = '"geometry.parameters.fine_spacing=25.0", "geometry.parameters.outer_spacing=40.0", "pad.mesh_error_limit=9.0"'
+SPEEDS = '{ key = "missile.velocity"; name = "speed"; from = "3 m/s"; to = "4 m/s"; count = %d; }'
+
+
+def write_plan(folder: Path, factors: str, more: str = "", case: str = "eva50-axisymmetric") -> Path:
+    path = folder / "plan.cfg"
+    path.write_text(f'case = "{EXAMPLES}/{case}/case.cfg"; title = "A <plan>";\nset = [{SET}];\nfactors = (\n{factors} );\n{more}\n')
+    return path
+
+
+def start(*words: object, **options: Any) -> subprocess.Popen[str]:
+    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+    return subprocess.Popen([str(BIN / "softfall"), "sweep", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, **options)
+
+
+def sweep(*words: object, code: int = 0, **options: Any) -> str:
+    process = start(*words, **options)
+    out, err = process.communicate()
+    assert process.returncode == code, out + err
+    return out if code == 0 else err
+
+
+def table(folder: Path, *left_out: str) -> list[dict[str, str]]:
+    """Returns runs.csv without what is of the machine."""
+    with open(folder / "runs.csv", encoding="utf-8", newline="") as file:
+        return [{key: text for key, text in row.items() if key not in ("wall_s", "threads", "folder", *left_out)} for row in csv.DictReader(file)]
+
+
+def done(folder: Path) -> dict[str, float]:
+    """Returns the finished drops of a store with their times."""
+    if not (folder / "drops.sqlite").exists():
+        return {}
+    with contextlib.closing(sqlite3.connect(folder / "drops.sqlite", timeout=60)) as data:
+        if not data.execute("SELECT name FROM sqlite_master WHERE name = 'drops'").fetchone():
+            return {}  # it was begun just now
+        return dict(data.execute("SELECT key, seconds FROM drops WHERE state = 'done'").fetchall())
+
+
+def test_rows_are_those_of_the_programs_and_are_found_again(tmp_path: Path) -> None:
+    foams = f'{{ key = "material"; name = "foam"; uncertain = true; files = ["{EXAMPLES}/materials/eva35.cfg", "{EXAMPLES}/materials/leap.cfg"]; }}'
+    path = write_plan(tmp_path, f'{{ key = "missile.velocity"; name = "speed"; values = ["3 m/s", "30 m/s"]; }}, {foams}')
+    said = sweep(path, "-o", tmp_path / "out", "--jobs", "2", "--views", "worst")
+    assert "4 drops simulated, 0 were there" in said and "4 runs: " in said
+    subprocess.run([str(BIN / "softfall-sweep"), str(path), "-o", str(tmp_path / "c"), "--jobs", "2"], check=True, capture_output=True)
+    ours, theirs = table(tmp_path / "out"), table(tmp_path / "c")
+    for mine, other in zip(ours, theirs, strict=True):
+        if mine["run_status"] == "failed":
+            assert mine.pop("message") in other.pop("message")
+        assert mine == other
+    page, summary = (tmp_path / "out/report.html").read_text(), json.loads((tmp_path / "out/sweep.json").read_text())
+    assert "A &lt;plan&gt;" in page and "Probability of staying below the limits" in page and summary["runs"] == 4
+    was = json.loads((tmp_path / "c/sweep.json").read_text())
+    for mine, other in zip(summary["figures"], was["figures"], strict=True):
+        for one, two in zip(mine["probability_below_limit"], other["probability_below_limit"], strict=True):
+            assert one == {key: pytest.approx(value, rel=1e-6) if isinstance(value, float) else value for key, value in two.items()}
+        assert mine["main_effects"] == [{key: pytest.approx(value, rel=1e-6) if isinstance(value, float) else value for key, value in e.items()} for e in other["main_effects"]]
+    view = summary["views"][0]
+    assert (tmp_path / "out/views" / view["folder"] / "report.html").exists() and f"views/{view['folder']}/report.html" in page
+    assert "0 drops simulated, " in sweep(path, "-o", tmp_path / "out")
+    shutil.copytree(EXAMPLES / "materials", tmp_path / "materials")
+    path.write_text(path.read_text().replace(f"{EXAMPLES}/materials", "materials"))
+    os.rename(tmp_path / "out", tmp_path / "moved")
+    assert "0 drops simulated, " in sweep(path, "-o", tmp_path / "moved", "--force")  # other paths, the same content
+    assert table(tmp_path / "moved", "foam", "message") == [{key: text for key, text in row.items() if key not in ("foam", "message")} for row in ours]
+
+
+def _kill(path: Path, out: Path, times: int, seed: int) -> int:
+    """Kills the command at random instants; returns how often it was killed before it had ended."""
+    chance, killed, kept = random.Random(seed), 0, {}
+    for _ in range(times):
+        process = start(path, "-o", out, "--jobs", "2", start_new_session=True)
+        while not (out / "drops.sqlite").exists():
+            time.sleep(0.01)
+        time.sleep(chance.uniform(0, 3))
+        killed += process.poll() is None
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+        now = done(out)
+        assert kept.items() <= now.items()  # nothing that was finished is lost, or done again
+        kept = now
+    return killed
+
+
+@pytest.mark.parametrize("times", [4, pytest.param(50, marks=pytest.mark.skipif(os.environ.get("SF_SLOW") != "1", reason="fifty kills take minutes: SF_SLOW=1"))])
+def test_nothing_is_lost_or_done_twice_by_kills(tmp_path: Path, times: int) -> None:
+    path = write_plan(tmp_path, SPEEDS % (10 * times))
+    assert _kill(path, tmp_path / "out", times, times) > times // 2
+    kept = done(tmp_path / "out")
+    said = sweep(path, "-o", tmp_path / "out", "--jobs", "2")
+    assert f"{10 * times - len(kept)} drops simulated, {len(kept)} were there" in said
+    assert kept.items() <= done(tmp_path / "out").items() and len(done(tmp_path / "out")) == 10 * times
+    assert not (tmp_path / "out/at-work").exists()
+
+
+def test_two_processes_share_the_work_of_a_study(tmp_path: Path) -> None:
+    path = write_plan(tmp_path, SPEEDS % 24)
+    both = [start(path, "-o", tmp_path / "out", "--jobs", "1") for _ in range(2)]
+    said = [process.communicate() for process in both]
+    assert [process.returncode for process in both] == [0, 0], said
+    simulated = [int(line.split()[0]) for out, _ in said for line in out.splitlines() if "drops simulated" in line]
+    assert sum(simulated) == 24 and len(done(tmp_path / "out")) == 24
+    assert all(row["run_status"] == "done" for row in table(tmp_path / "out"))
+
+
+def test_a_full_disk_ends_the_campaign_and_loses_nothing(tmp_path: Path) -> None:
+    path = write_plan(tmp_path, SPEEDS % 12)
+
+    def limit() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, resource.RLIM_INFINITY))
+
+    sweep(path, "-o", tmp_path / "first", "--jobs", "1")  # meshes are larger than the limit
+    (tmp_path / "out").mkdir()
+    shutil.copytree(tmp_path / "first/shared", tmp_path / "out/shared")
+    said = sweep(path, "-o", tmp_path / "out", "--jobs", "1", code=3, preexec_fn=limit)
+    assert "cannot be" in said and "Traceback" not in said
+    kept = done(tmp_path / "out")
+    assert f"{12 - len(kept)} drops simulated, {len(kept)} were there" in sweep(path, "-o", tmp_path / "out", "--jobs", "1")
+    assert table(tmp_path / "out") == table(tmp_path / "first")
+
+
+def test_inputs_that_change_meanwhile_end_the_campaign(tmp_path: Path) -> None:
+    shutil.copy(EXAMPLES / "materials/eva35.csv", tmp_path)
+    foam = (EXAMPLES / "materials/eva35.cfg").read_text()
+    (tmp_path / "foam.cfg").write_text(foam)
+    path = write_plan(tmp_path, SPEEDS % 40 + ', { key = "material"; files = ["foam.cfg"]; }')
+    process = start(path, "-o", tmp_path / "out", "--jobs", "1")
+    while not done(tmp_path / "out"):
+        assert process.poll() is None
+        time.sleep(0.02)
+    (tmp_path / "foam.cfg").write_text(foam + "HU = 0.3;\n" if "HU" not in foam else "".join("HU = 0.3;\n" if line.startswith("HU") else line for line in foam.splitlines(True)))
+    _, err = process.communicate()
+    assert process.returncode == 3 and "changed" in err and "repeat the command" in err
+    assert not (tmp_path / "out/report.html").exists()
+    kept = len(done(tmp_path / "out"))
+    (tmp_path / "foam.cfg").write_text(foam)
+    assert f"{40 - kept} drops simulated, {kept} were there" in sweep(path, "-o", tmp_path / "out")
+
+
+def test_series_and_two_meshes(tmp_path: Path) -> None:
+    path = write_plan(tmp_path, SPEEDS % 2, 'refine = "richardson";')
+    path.write_text(path.read_text().replace(SET, '"geometry.parameters.fine_spacing=8.0", "geometry.parameters.outer_spacing=16.0"'))
+    sweep(path, "-o", tmp_path / "two", "--jobs", "2")
+    rows, coarse = table(tmp_path / "two"), json.loads((tmp_path / "two/sweep.json").read_text())
+    assert coarse["coarse_drops"] == 2 and all(float(row["hic_refined_error"]) > 0 or row["refined_note"] for row in rows)
+    path = write_plan(tmp_path, '{ key = "missile.velocity"; values = ["3 m/s"]; }', case="series")
+    path.write_text(path.read_text().replace('"pad.mesh_error_limit=9.0"', '"pad.mesh_error_limit=9.0", "series.drops=2", "series.counted=[2]"'))
+    sweep(path, "-o", tmp_path / "series", "--jobs", "2")
+    with open(tmp_path / "series/drops.csv", encoding="utf-8", newline="") as file:
+        drops = list(csv.DictReader(file))
+    assert [drop["counted"] for drop in drops] == ["no", "yes"] and drops[1]["hic"] == table(tmp_path / "series")[0]["hic"]
+    assert json.loads((tmp_path / "series/sweep.json").read_text())["judged_by"] == "drop 2 of 2"
+
+
+WRONG = [
+    ('{ key = "missile.velocity"; values = ["3 kg"]; }', "", "plan.cfg:4: "), ('{ key = "missile.velocity"; values = []; }', "", "is empty"),
+    ('{ key = "missile.velocity"; values = ("3 m/s", 4.0); }', "", "has no unit"), ('{ key = "missile.speed"; values = ["3 m/s"]; }', "", "plan.cfg:4: "),
+    ('{ key = "material"; files = ["gone.cfg"]; }', "", "plan.cfg:4: material: "), ('{ key = "missile.velocity"; value = 3; }', "", 'unknown key "value"'),
+    ('{ key = "missile.velocity"; values = ["3 m/s"]; low = 1.0; }', "", 'unknown key "low"'), ('{ key = "output.fields"; values = ["a"]; }', "", "has no effect in a campaign"),
+    (SPEEDS % 2, 'coarse = ["geometry.parameters.fine_spacing=30.0"];', "predicted no more"), (SPEEDS % 2, 'figures = ( { key = "hic"; accuracy = 0.1; } );', "predicted no more"),
+    (SPEEDS % 2, 'figures = ( { key = "hicc"; } );', 'unknown figure "hicc"'), (SPEEDS % 2 + ", " + SPEEDS % 3, "", "is a factor already, at"),
+    ('{ zip = ( { key = "missile.velocity"; values = ["3 m/s"]; }, { key = "missile.mass"; values = ["3 kg", "4 kg"]; } ); }', "", "must have one length"),
+    ('{ sample = "saltelli"; count = 4; of = ( { key = "missile.velocity"; low = "3 m/s"; high = "4 m/s"; } ); }', "", "need 8 samples"),
+    ('{ sample = "sobol"; count = 4; of = ( { key = "missile.velocity"; low = "4 m/s"; high = "3 m/s"; } ); }', "", "low must be below high"),
+    ('{ key = "geometry.parameters.thicknes"; values = [40.0]; }', "", "thicknes"), ('{ key = "missile.velocity"; values = ["3 m/s" ', "", "plan.cfg:")]
+
+
+@pytest.mark.parametrize(("factors", "more", "part"), WRONG)
+def test_wrong_plans_are_refused_with_their_line(tmp_path: Path, factors: str, more: str, part: str) -> None:
+    with pytest.raises(softfall.InputError, match=r"(?s).*") as caught:
+        plans.Plan(write_plan(tmp_path, factors, more)).check()
+    assert part in str(caught.value)
+
+
+def test_very_many_rows_are_refused_with_their_time(tmp_path: Path) -> None:
+    path = write_plan(tmp_path, '{ sample = "sobol"; count = 100000; of = ( { key = "missile.velocity"; low = "3 m/s"; high = "4 m/s"; } ); }')
+    said = sweep(path, "-o", tmp_path / "out", code=2)
+    assert "100000 runs take about " in said and "--yes" in said and not (tmp_path / "out").exists()
+
+
+def test_folders_of_something_else_are_refused(tmp_path: Path) -> None:
+    path = write_plan(tmp_path, '{ key = "missile.velocity"; values = ["3 m/s"]; }')
+    sweep(path, "-o", tmp_path / "out")
+    path.write_text(path.read_text().replace('"3 m/s"', '"3.1 m/s"'))
+    assert "holds the runs of another plan" in sweep(path, "-o", tmp_path / "out", code=2)
+    assert "1 drops simulated" in sweep(path, "-o", tmp_path / "out", "--force")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/runs.csv").write_text("mine\n")
+    assert "already holds runs.csv" in sweep(path, "-o", tmp_path / "mine", code=2)
+    (tmp_path / "broken").mkdir()
+    (tmp_path / "broken/drops.sqlite").write_text("no database, but a text of some length" * 100)
+    assert "cannot be used" in sweep(path, "-o", tmp_path / "broken", code=3)
+    assert "neither worst, limit, all nor" in sweep(path, "-o", tmp_path / "new", "--views", "2x", code=2)
+    assert "0 to" not in sweep(path, "-o", tmp_path / "new", "--dry-run") and not (tmp_path / "new").exists()
+
+
+def test_a_store_gives_a_drop_to_one_process(tmp_path: Path) -> None:
+    one, two = Store(tmp_path), Store(tmp_path)
+    assert one.take(["a", "b", "c"], 2) == ["a", "b"] and two.take(["a", "b", "c"], 3) == ["c"]
+    assert two.others() and two.entries(["a"])["a"].state == "running"
+    one.finish("a", [], "files", 1.0)
+    os.close(one._lock)  # as if its process had died
+    one._lock = -1
+    assert not two.others() and two.entries(["a", "b"])["b"].state == "open" and two.entries(["a"])["a"].state == "done"
+    two.close()
+    one.close()
+
+
+def test_samples_are_the_same_on_every_machine() -> None:
+    assert samples.points("latin_hypercube", 3, 16, 2)[:2, 2] == pytest.approx([(0.314357059755 - 0.3) / 0.2, (0.483759404294 - 0.3) / 0.2], abs=1e-10)
+    points = samples.points("sobol", 3, 64, 3)
+    assert all(len(np.unique((points[:, k] * 8).astype(int))) == 8 for k in range(3)) and (points > 0).all() and (points < 1).all()
+    block = samples.points("saltelli", 2, 8, 1).reshape(4, 8, 2)
+    assert (block[2][:, 0] == block[1][:, 0]).all() and (block[2][:, 1] == block[0][:, 1]).all()
+
+
+def _sampled(tmp_path: Path, method: str, count: int) -> plans.Plan:
+    of = ", ".join(f'{{ key = "{key}"; name = "{name}"; low = "1 {unit}"; high = "3 {unit}"; }}' for key, name, unit in
+                   (("missile.velocity", "speed", "m/s"), ("missile.mass", "mass", "kg"), ("solver.end_time", "end", "s")))
+    return plans.Plan(write_plan(tmp_path, f'{{ sample = "{method}"; count = {count}; of = ( {of} ); }}'))
+
+
+def test_effects_and_surface_of_a_known_function(tmp_path: Path) -> None:
+    plan = _sampled(tmp_path, "sobol", 256)
+    a, b = plan.column(0), plan.column(1)
+    y = 3 + 2 * a + a * b - 0.5 * b ** 2
+    fit, x = effects.surface(plan, y)
+    assert fit.q2 == pytest.approx(1) and fit.left_out_rms < 1e-10 and dict(zip(fit.names, fit.coefficients))["speed × mass"] == pytest.approx(fit.half[0] * fit.half[1])
+    found = effects.effect(plan, 0, y, fit, x)
+    assert found.last - found.first == pytest.approx(2 * fit.half[0] * (2 + b.mean())) and effects.effect(plan, 2, y, fit, x).high - effects.effect(plan, 2, y, fit, x).low < 1e-9
+
+
+def test_sobol_indices_of_a_known_function(tmp_path: Path) -> None:
+    plan = _sampled(tmp_path, "saltelli", 4096)
+    a, b = plan.column(0) - 2, plan.column(1) - 2
+    found, used = effects.indices(plan.saltelli, a + a * b)  # variances 1/3 and 1/9
+    assert used == 4096 and found[0].first == pytest.approx(0.75, abs=0.03) and found[0].total == pytest.approx(1, abs=0.03)
+    assert found[1].first == pytest.approx(0, abs=0.03) and found[1].total == pytest.approx(0.25, abs=0.03) and found[2].total == pytest.approx(0, abs=1e-9)
+    assert found[0].first_low < 0.75 < found[0].first_high
+    y = a + a * b
+    y[:1000] = np.nan
+    assert np.isnan(effects.indices(plan.saltelli, y)[0][0].first)
+
+
+def test_unknown_runs_are_not_taken_as_below(tmp_path: Path) -> None:
+    plan = _sampled(tmp_path, "random", 20)
+    y = np.full(20, 100.0)
+    y[:3] = np.nan
+    anvil = np.arange(20) == 0
+    chance, = effects.chances(plan, 200.0, y, anvil=anvil, is_open=np.zeros(20, bool), scatter=np.zeros(20))
+    assert (chance.below, chance.above, chance.unknown) == (17, 1, 2) and chance.share == 17 / 20 and chance.low < 0.85 < chance.high < 1
+
+
+def test_the_answer_names_the_thinnest_pad(tmp_path: Path) -> None:
+    path = write_plan(tmp_path, '{ key = "geometry.parameters.thickness"; values = [40.0, 50.0, 60.0]; }, { key = "missile.velocity"; values = ["4 m/s", "5 m/s", "6 m/s"]; }')
+    plan = plans.Plan(path)
+    keys = memory.figure_keys()
+
+    def row(hic: float) -> campaign.Row:
+        figures = {key: {"hic": hic, "a_max_g": 100.0}.get(key, 0.0) for key in keys}
+        return campaign.Row("k", state="done", judged=campaign.DropFigures(figures, 0, "valid", "rebound"))
+
+    rows = [row(hic) for hic in (900, 1100, 1500, 500, 900, 1200, 300, 900, 950)]
+    assert sweep_page.answer(campaign.Table(plan, rows)) == "thinnest pad below a_max < 200 g and HIC < 1000 up to 6 m/s: 60 mm"
+    rows[8] = campaign.Row("k", state="failed", message="the energy balance is off")
+    assert sweep_page.answer(campaign.Table(plan, rows)).endswith("up to 5 m/s: 50 mm")
+    rows[7] = rows[4] = row(float("nan"))
+    assert sweep_page.answer(campaign.Table(plan, rows)).endswith("up to 4 m/s: 40 mm")
