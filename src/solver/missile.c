@@ -244,17 +244,6 @@ void sf_missile_load(sf_missile_response *response, const double x[3], const dou
         load_turning(response, x, force);
 }
 
-void sf_missile_reload(sf_missile_response *response, const double x[3], const double old[3],
-                       const double force[3]) {
-    double more[3];
-    for (int r = 0; r < 3; r++) {
-        more[r] = force[r] - old[r];
-        response->load += more[r] * response->direction[r];
-    }
-    if (response->turns)
-        load_turning(response, x, more);
-}
-
 void sf_missile_recoil(const sf_missile_response *response, const double x[3], double out[3]) {
     double arm[3], angular[3];
     if (!response->turns) {

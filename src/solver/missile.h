@@ -105,10 +105,8 @@ void sf_missile_free_motion(const sf_missile_response *response, const double x[
 bool sf_missile_gap_ahead(const sf_model *model, const sf_missile *missile,
                           const sf_missile_response *response, const sf_missile_surface *surface,
                           const double x[3], const double step[3], double *gap, double normal[3]);
-/* Adds a force (N) of the missile on the pad at x to the response; replaces `old` there by `force`. */
+/* Adds a force (N) of the missile on the pad at x to the response. */
 void sf_missile_load(sf_missile_response *response, const double x[3], const double force[3]);
-void sf_missile_reload(sf_missile_response *response, const double x[3], const double old[3],
-                       const double force[3]);
 /* Acceleration (m s-2) that the forces taken so far give the missile's material point at x, against which
  * they act: positive along a force on the pad. */
 void sf_missile_recoil(const sf_missile_response *response, const double x[3], double out[3]);

@@ -28,7 +28,6 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
     }
     if (sf_constraint_build(m, &op->constraint, err) != SF_OK ||
         sf_contact_rows_build(m, &op->rows, err) != SF_OK ||
-        sf_contact_gram_build(m, &op->rows, &op->gram, err) != SF_OK ||
         sf_anvil_build(m, &op->rows, &op->anvil, err) != SF_OK || sf_skin_build(m, &op->skin, err) != SF_OK ||
         sf_membrane_build(m, &op->membrane, err) != SF_OK)
         return err->status;
@@ -54,7 +53,6 @@ void sf_operators_free(sf_operators *op) {
     sf_halo_free(&op->halo);
     sf_constraint_free(&op->constraint);
     sf_contact_rows_free(&op->rows);
-    sf_contact_gram_free(&op->gram);
     sf_anvil_free(&op->anvil);
     sf_skin_free(&op->skin);
     sf_membrane_free(&op->membrane);

@@ -19,7 +19,6 @@ typedef struct sf_operators {
 
     sf_constraint constraint;
     sf_contact_rows rows;
-    sf_contact_gram gram;
     sf_anvil anvil;
     sf_skin skin;
     sf_membrane membrane;

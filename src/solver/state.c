@@ -54,7 +54,6 @@ static const sf_state_array arrays[] = {
     KEPT(self_force, 's', 3),
     KEPT_NUMBERS(self_partner, 's', 1),
     KEPT(self_weight, 's', 4),
-    SCRATCH(self_push, 's', 3 * sizeof(double)),
     SCRATCH(self_candidate, 's', SF_SELF_CANDIDATES * sizeof(int32_t)),
     SCRATCH(self_normal, 'f', 3 * sizeof(double)),
     SCRATCH(self_close, 's', sizeof(int32_t)),
@@ -62,8 +61,8 @@ static const sf_state_array arrays[] = {
     SCRATCH(membrane.position, 'm', 3 * sizeof(double)),
     SCRATCH(membrane.force, 'm', 3 * sizeof(double)),
     SCRATCH(membrane.row, 't', SF_MEMBRANE_ROW * sizeof(double)),
-    SCRATCH(contact_active, 'c', sizeof(int32_t)),
     SCRATCH(contact_near, 'c', sizeof(int32_t)),
+    SCRATCH(contact_push, 'n', 3 * sizeof(double)),
     SCRATCH(partial, 'k', sizeof(sf_partial)),
 #undef KEPT
 #undef KEPT_NUMBERS
@@ -204,8 +203,8 @@ bool sf_state_is_finite(const sf_model *m, const sf_state *s) {
 void sf_state_free(sf_state *s) {
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
         free(*(void **)((char *)s + arrays[k].offset));
-    sf_workspace *work = (sf_workspace *)&s->self_work;
-    for (size_t k = 0; k < sizeof s->self_work / sizeof *work; k++)
+    sf_workspace *work = (sf_workspace *)&s->contact_work;
+    for (size_t k = 0; k < sizeof s->contact_work / sizeof *work; k++)
         sf_workspace_free(&work[k]);
     memset(s, 0, sizeof *s);
 }

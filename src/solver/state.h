@@ -126,12 +126,12 @@ typedef struct sf_ledger {
 
 enum { SF_SELF_CANDIDATES = 48 };
 
-/* Memory of the contact of the skin with itself, taken in the first step and used again in each. */
-typedef struct sf_self_work {
-    sf_workspace pair, mobility, step, edge_force;                /* self_contact.c */
+/* Memory of contact, taken in the first step and used again in each. */
+typedef struct sf_contact_work {
+    sf_workspace point, pair, edge_force;                         /* pairs of contact.c and self_contact.c */
     sf_workspace centre, radius, found, used, is_near, near_list; /* candidates.c */
     sf_workspace grid_start[2], grid_node[2];                     /* of pad and supports */
-} sf_self_work;
+} sf_contact_work;
 
 typedef struct sf_state {
     SF_STATE_NUMBERS(SF_DECLARE)
@@ -185,10 +185,11 @@ typedef struct sf_state {
     double *contact_gap;      /* [contacts] m, predicted */
     double *contact_normal;   /* [contacts][3] outward from the missile or the anvil */
     double *contact_rubbed;   /* [contacts] J, work of friction to date */
-    int32_t *contact_active;  /* [contacts] list */
     int32_t *contact_near;    /* [contacts] Verlet list: the points that can touch before contact_room is used
                                  up; arrays of other points are not up to date */
     int64_t contact_near_count;
+    double *contact_push; /* [n][3] m s-2, acceleration by the forces of a solve; zero between them */
+    sf_contact_work contact_work;
 
     /* Contact of the skin with itself (contact/self_contact.h); by point of the skin, only a pad with one has
      * these. */
@@ -198,7 +199,6 @@ typedef struct sf_state {
     double *self_force;      /* [skin][3] N, on the node, of the last step */
     int32_t *self_partner;   /* [skin] facet that it touches; -1: none, -2 - k: plane k (contact/skin.h) */
     double *self_weight;     /* [skin][4] of the facet's nodes, and of the fourth of its quadrangle */
-    double *self_push;       /* [n][3] m s-2, acceleration by these forces; zero between steps */
     int32_t *self_candidate; /* [skin][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
     double *self_normal;     /* [sides][3] outward now, unit; of the points in self_close */
     int32_t *self_close;     /* [skin] list of the nodes that may touch soon, and of their facets' nodes */
@@ -206,7 +206,6 @@ typedef struct sf_state {
     int64_t self_close_count, self_near_count;
     double self_room;        /* m, until the lists are made anew */
     double self_penetration; /* m, deepest now */
-    sf_self_work self_work;
 
     sf_membrane_state membrane;
 

@@ -5,8 +5,6 @@
 #include "solver/contact/skin.h"
 #include "solver/state.h"
 
-enum { SF_NO_CANDIDATE = -1 };
-
 /* Sets the lists of candidates, of the nodes that have some or can reach a plane, and of those whose
  * positions these need. Needs self_position of all nodes. */
 sf_status sf_candidates_find(const sf_skin *skin, sf_state *state, sf_error *err);
