@@ -10,7 +10,8 @@
  * is, if a ray from a face outwards meets another face of it, its mirror image, or the anvil, within the
  * pad's thickness, or layers are loose. With a rigid support it is there in any case, `skin_alone` if it
  * touches that only. `unheld` (m): the middle of such a face of a pad without skin; NaN: there is none. Needs
- * cells, constraints, ties, thickness and the anvil's depth. */
+ * cells, constraints, ties, thickness and the anvil's depth. SF_ERR_INPUT: hexahedra that do not match slide
+ * on each other without friction. */
 sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_error *err);
 
 /* Adds the nodes of the other free faces that are neither held altogether nor part of the base to the contact
