@@ -264,8 +264,25 @@ sf_status sf_skin_find(const sf_case *c, sf_model *m, double unheld[3], sf_error
     return err->status;
 }
 
+enum { FREE, ADDED, LEFT_OUT, NAMED };
+
+/* Sets the faces between contact points: those that the missile's edges may press. */
+static sf_status take_faces(const sf_layers *layers, const faces *f, const uint8_t *mark, sf_model *m,
+                            sf_error *err) {
+    m->contact_face = sf_alloc(err, 3 * (unsigned long)f->count, sizeof *m->contact_face, "faces in contact");
+    for (int64_t k = 0; m->contact_face && k < f->count; k++) {
+        int32_t *node = &m->contact_face[3 * m->contact_face_count];
+        int held = 0;
+        for (int c = 0; c < 3; c++) {
+            node[c] = sf_layers_heaviest(layers, m, f->node[3 * k + c]);
+            held += mark[node[c]] == LEFT_OUT;
+        }
+        m->contact_face_count += held == 0;
+    }
+    return err->status;
+}
+
 sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_contact_zone *zone, sf_error *err) {
-    enum { FREE, ADDED, LEFT_OUT, NAMED };
     static const double FACING = -0.64; /* largest cosine of a face that goes on from the named ones */
     SF_OWNED_BY(faces_free) faces f = {0};
     SF_OWNED uint8_t *mark = sf_alloc(err, m->node_count, 1, "contact points");
@@ -315,7 +332,8 @@ sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_contact_z
     }
     m->contact_area = area;
     area = NULL;
-    return SF_OK;
+    return m->missile.shape == SF_SHAPE_SURFACE && !m->axisymmetric ? take_faces(layers, &f, mark, m, err)
+                                                                    : SF_OK;
 }
 
 /* ---- covers without cells ---- */

@@ -16,7 +16,8 @@ sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_e
 
 /* Adds the nodes of the other free faces that are neither held altogether nor part of the base to the contact
  * points, with their areas, and to those of pad.contact the area of such faces that look at the missile;
- * where there are some, the zone and the expected mesh error count them. What places the missile and measures
+ * where there are some, the zone and the expected mesh error count them. Sets the faces that a missile of
+ * triangles may press between the nodes. What places the missile and measures
  * the pad goes by the points of pad.contact and comes before. Needs cells, constraints, ties and masses. */
 sf_status sf_contact_add_free(const sf_layers *layers, sf_model *model, sf_contact_zone *zone, sf_error *err);
 

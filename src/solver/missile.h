@@ -69,6 +69,10 @@ typedef struct sf_missile_view {
 sf_missile_view sf_missile_read(const sf_model *model, const sf_missile *missile);
 /* Displacement (m), in the last step, of the missile's material point at x. */
 void sf_missile_motion_at(const sf_model *model, const sf_missile *missile, const double x[3], double out[3]);
+/* Place now (m) of its material point that was at `rest` at t = 0, and the present direction of a vector that
+ * turns with it. */
+void sf_missile_place(const sf_model *model, const sf_missile *missile, const double rest[3], double out[3]);
+void sf_missile_orient(const sf_model *model, const sf_missile *missile, const double rest[3], double out[3]);
 /* Bound (m s-1) on the speed of all its points at the half step. */
 double sf_missile_fastest(const sf_model *model, const sf_missile *missile);
 /* sf_missile_surface_near and sf_missile_surface_gap at the present pose; x and normal in the geometry's

@@ -195,7 +195,8 @@ static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
             s->self_near[s->self_near_count++] = (int32_t)p;
 }
 
-sf_status sf_candidates_find(const sf_skin *skin, sf_state *s, sf_error *err) {
+sf_status sf_candidates_find(const sf_skin *skin, const sf_sharp *sharp, const sf_sharp_place *at,
+                             sf_state *s, sf_error *err) {
     static const char purpose[] = "candidates of contact";
     facets f = {0};
     sf_contact_work *work = &s->contact_work;
@@ -208,6 +209,9 @@ sf_status sf_candidates_find(const sf_skin *skin, sf_state *s, sf_error *err) {
     memset(n.is_near, 0, (size_t)skin->count);
     for (int64_t p = 0; p < skin->count; p++)
         choose_candidates(skin, s, p, reach, &f, &n, used);
+    if (sharp->face_count > 0)
+        SF_TRY(sf_sharp_list(sharp, at, &reach, used, &s->self_sharp, err));
+    s->self_room = fmin(s->self_room, reach);
     list_nodes(skin, s, used);
     return SF_OK;
 }

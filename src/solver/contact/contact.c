@@ -9,6 +9,9 @@ enum { MAX_SWEEPS = 500 };
 static const double ENTRY_DEPTH =
     0.1; /* of the spacing: no free point gets deeper in one step through the surface */
 static const double SWEEP_TOLERANCE = 1e-10; /* largest change of a force, relative to the largest force */
+/* The same where sharp edges press, as their rows depend on those of the nodes, and the change beyond which
+ * it is told that the sweeps did not settle. */
+static const double SHARP_TOLERANCE = 1e-5, SHARP_UNSETTLED = 1e-3;
 
 /* Verlet list with skin: the near points are those within NEAR spacings of the missile. The list is made anew
  * when half of that distance is used up, or when the rest is not more than twice the travel of one step. */
@@ -27,17 +30,27 @@ static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
     return true;
 }
 
-/* Makes the list of near points from the points listed now. Those on the anvil always are. */
-static void list_near(const sf_model *m, const sf_operators *op, sf_state *s) {
-    int64_t count = 0;
+/* Makes the list of near points from the points listed now. Those on the anvil always are, and those of faces
+ * that sharp edges may press. */
+static sf_status list_near(const sf_model *m, const sf_operators *op, const sf_sharp_place *at, sf_state *s,
+                           sf_error *err) {
+    int64_t count = 0, points = sf_model_points(m);
+    uint8_t *used = NULL;
     s->contact_room = NEAR * op->surface.spacing;
+    if (op->sharp.face_count > 0) {
+        used = sf_workspace_take(&s->sharp.used, points, 1, "points in contact", err);
+        SF_TRY(err->status);
+        memset(used, 0, (size_t)points);
+        SF_TRY(sf_sharp_list(&op->sharp, at, &s->contact_room, used, &s->sharp, err));
+    }
     for (int64_t k = 0; k < s->contact_near_count; k++) {
         int64_t c = s->contact_near[k];
-        if (sf_model_point_rests(m, c) ||
+        if (sf_model_point_rests(m, c) || (used && used[c]) ||
             sf_missile_near(m, &s->missile, &op->surface, &s->contact_position[3 * c], s->contact_room))
             s->contact_near[count++] = (int32_t)c;
     }
     s->contact_near_count = count;
+    return SF_OK;
 }
 
 /* Positions now and predicted without contact forces, by u_h. */
@@ -165,7 +178,7 @@ static void add_pair(const sf_model *m, sf_state *s, sf_missile_response *respon
                            .friction = friction_at(m, c),
                            .force = &s->contact_force[3 * c],
                            .missile = rests ? NULL : response,
-                           .place = x};
+                           .place = {x[0], x[1], x[2]}};
     if (!rests)
         sf_missile_free_motion(response, x, away);
     for (int r = 0; r < 3; r++) {
@@ -202,6 +215,50 @@ static void find_pairs(const sf_model *m, const sf_operators *op, sf_state *s, s
     }
 }
 
+/* Books the work of the forces of sharp edges over the last step as that of the points: half of it with the
+ * forces before and half with these. No later step knows the pairs, so that the first half is found ahead,
+ * with the motion that the solve predicts. What book_drive says of a driven missile holds here, too. */
+static void book_sharp(const sf_model *m, sf_state *s, const sf_contact_system *w, int64_t points) {
+    double *ahead = s->sharp.ahead, motion[3], away[3];
+    s->ledger.contact += ahead[0];
+    s->ledger.friction += ahead[1];
+    s->ledger.external += ahead[2];
+    memset(ahead, 0, 3 * sizeof *ahead);
+    for (int64_t a = points; a < w->count; a++) {
+        const sf_contact_pair *pair = &w->pair[a];
+        const double *q = pair->force, *n = pair->friction > 0 ? pair->normal : NULL;
+        const double half[3] = {0.5 * q[0], 0.5 * q[1], 0.5 * q[2]};
+        sf_missile_motion_at(m, &s->missile, pair->place, away);
+        sf_pair_relative(pair, s->contact_motion, motion);
+        sf_sub3(motion, away, motion);
+        sf_ledger_book(s, false, half, motion, n);
+        sf_contact_motion(w, pair, motion);
+        double lost = -sf_dot3(half, motion), normal = n ? -sf_dot3(half, n) * sf_dot3(motion, n) : lost;
+        ahead[0] += normal;
+        ahead[1] += lost - normal;
+        if (!sf_missile_is_driven(m))
+            continue;
+        sf_missile_free_motion(pair->missile, pair->place, away);
+        s->ledger.external += sf_missile_work(m, &s->missile, pair->place, half);
+        ahead[2] += sf_dot3(half, away);
+        ahead[0] += s->step == 0 ? 0.5 * sf_dot3(half, away) : 0;
+    }
+}
+
+/* Sets the loads of all points, with the normal of an edge where a point has no force of its own. */
+static void take_loads(const sf_model *m, sf_state *s, const sf_contact_system *w, int64_t points) {
+    memcpy(s->contact_load, s->contact_force, 3 * (size_t)sf_model_points(m) * sizeof *s->contact_load);
+    for (int64_t k = points; k < w->count; k++)
+        for (int a = 0; a < w->pair[k].parts; a++) {
+            const sf_contact_pair *pair = &w->pair[k];
+            int64_t c = pair->part[a];
+            for (int r = 0; r < 3; r++)
+                s->contact_load[3 * c + r] += pair->share[a] * pair->force[r];
+            if (sf_dot3(&s->contact_force[3 * c], &s->contact_force[3 * c]) == 0)
+                memcpy(&s->contact_normal[3 * c], pair->normal, sizeof pair->normal);
+        }
+}
+
 /* Forces of the pairs on coefficients, missile and anvil. */
 static void store(const sf_model *m, sf_state *s, const sf_contact_system *w) {
     sf_missile_clear(&s->missile);
@@ -230,20 +287,33 @@ sf_status sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *
     sf_contact_system w = {.rows = &op->rows,
                            .push = s->contact_push,
                            .shift = s->dt * dt_v,
-                           .pair = sf_workspace_take(&s->contact_work.point, sf_model_points(m),
+                           .pair = sf_workspace_take(&s->contact_work.point,
+                                                     sf_model_points(m) + sf_sharp_room(&op->sharp),
                                                      sizeof *w.pair, "pairs in contact", err),
                            .sweeps = MAX_SWEEPS,
                            .over = 1,
                            .tolerance = SWEEP_TOLERANCE,
                            .unsettled = SWEEP_TOLERANCE};
+    const sf_sharp_place at = {m, &s->missile, &response, s->contact_position, s->contact_step};
     SF_TRY(err->status);
     sf_anvil_pull(&op->anvil, s->force);
     bool all = use_room(m, op, s);
     predict_points(m, &op->rows, s, dt_v);
     if (all)
-        list_near(m, op, s);
+        SF_TRY(list_near(m, op, &at, s, err));
     find_pairs(m, op, s, &response, &w);
+    int64_t points = w.count;
+    if (op->sharp.face_count > 0)
+        SF_TRY(sf_sharp_add(&op->sharp, &at, s->dt, &s->sharp, &w, &s->penetration, err));
+    if (w.count > points) {
+        w.tolerance = SHARP_TOLERANCE;
+        w.unsettled = SHARP_UNSETTLED;
+    }
     s->contact_unsettled += !sf_contact_relax(&w);
+    if (m->contact_face_count > 0) {
+        book_sharp(m, s, &w, points);
+        take_loads(m, s, &w, points);
+    }
     sf_contact_clear(&w);
     book_work(m, s);
     store(m, s, &w);

@@ -30,6 +30,11 @@ void sf_ledger_outside(const sf_model *m, const sf_operators *op, const sf_state
     const sf_skin *skin = &op->skin;
     if (all)
         add_anvil(m, &op->anvil, s, outside);
+    for (int r = 0; r < 3; r++) {
+        for (int k = 0; k < m->support_count; k++)
+            outside->force[r] += s->self_sharp_force[k][r];
+        outside->moment[r] += s->self_sharp_moment[r];
+    }
     for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
         int64_t p = s->self_close[k], facet = s->self_partner[p];
         const double *q = &s->self_force[3 * p];
@@ -47,7 +52,8 @@ void sf_ledger_outside(const sf_model *m, const sf_operators *op, const sf_state
 }
 
 void sf_ledger_supports(const sf_model *m, const sf_skin *skin, sf_state *s) {
-    double force[SF_SUPPORTS][3] = {{0}}, place;
+    double force[SF_SUPPORTS][3], place;
+    memcpy(force, s->self_sharp_force, sizeof force);
     for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
         int64_t p = s->self_close[k], facet = s->self_partner[p];
         int support = facet != SF_SKIN_NOTHING ? sf_skin_support(m, skin, p, facet) : -1;

@@ -21,7 +21,7 @@ typedef struct sf_contact_pair {
     double looseness;  /* m N-1, likewise a bound across the normal */
     double *force;     /* [3] N, on the point; borrowed */
     sf_missile_response *missile; /* what is touched if it is the missile, NULL otherwise; borrowed */
-    const double *place;          /* [3] m, of the point on it; borrowed */
+    double place[3];              /* m, of the point on it */
 } sf_contact_pair;
 
 /* Displacement of the point relative to its partner, of a field over the points. */

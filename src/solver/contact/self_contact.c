@@ -107,18 +107,9 @@ static bool normal_against(const sf_skin *skin, const sf_state *s, int64_t p, co
 /* The weights of a triangle's nodes `n` at a point of its plane, with its own `normal` of twice its area. */
 static void weigh_point(const sf_state *s, const int32_t n[3], const double point[3], const double normal[3],
                         double weight[3]) {
-    double square = sf_dot3(normal, normal);
-    for (int k = 0; k < 3; k++) {
-        double from[3], along[3], moment[3];
-        const double *b = &s->self_position[3 * (int64_t)n[(k + 1) % 3]],
-                     *c = &s->self_position[3 * (int64_t)n[(k + 2) % 3]];
-        for (int r = 0; r < 3; r++) {
-            from[r] = point[r] - b[r];
-            along[r] = c[r] - b[r];
-        }
-        sf_cross3(along, from, moment);
-        weight[k] = sf_dot3(moment, normal) / square;
-    }
+    const double *x[3];
+    sf_corners(s->self_position, n, x);
+    sf_triangle_weights(x, point, normal, weight);
 }
 
 /* Takes the mean of both ways to cut a quadrangle into halves, of gap and weights. One way alone passes no
@@ -399,8 +390,9 @@ static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, doub
  * would else meet the foam without the missile's load. All points are read, as the list of near points is
  * empty after a restart. */
 static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf_state *s) {
+    const double *load = sf_state_load(m, s);
     for (int64_t c = 0; c < sf_model_points(m); c++) {
-        const double *q = &s->contact_force[3 * c];
+        const double *q = &load[3 * c];
         for (int64_t e = rows->ptr[c]; e < rows->ptr[c + 1] && sf_dot3(q, q) > 0; e++) {
             int64_t i = rows->node[e];
             for (int r = 0; r < 3; r++)
@@ -426,24 +418,35 @@ static sf_status fail_passed(const sf_model *m, const sf_skin *skin, const sf_st
                                      : "take a finer mesh there, or a smaller solver.step_safety");
 }
 
+/* Adds the force of a support's edge to what is outside of the pad. */
+static void add_sharp_force(const sf_model *m, sf_state *s, const sf_contact_pair *pair) {
+    double moment[3];
+    sf_cross3(pair->place, pair->force, moment);
+    for (int r = 0; r < 3; r++) {
+        s->self_sharp_force[m->support_part[pair->facet - m->skin_count]][r] += pair->force[r];
+        s->self_sharp_moment[r] += moment[r];
+    }
+}
+
 sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
     const sf_skin *skin = &op->skin;
     if (skin->count == 0)
         return SF_OK;
     double dt_v = 0.5 * (s->dt_old + s->dt);
     size_t bytes = 3 * (size_t)m->node_count * sizeof *s->contact_push;
+    const sf_sharp_place at = {.model = m, .position = s->self_position, .step = s->self_step};
     push_from_outside(m, &op->rows, s);
     if (!sf_candidates_last(skin, s)) {
         for (int64_t p = 0; p < skin->count; p++)
             s->self_near[p] = (int32_t)p;
         move_nodes(m, skin, s, dt_v, skin->count, s->self_near);
-        SF_TRY(sf_candidates_find(skin, s, err));
+        SF_TRY(sf_candidates_find(skin, &op->self_sharp, &at, s, err));
     } else {
         move_nodes(m, skin, s, dt_v, s->self_near_count, s->self_near);
     }
     memset(s->contact_push, 0, bytes);
     find_normals(skin, s);
-    int64_t most = skin->count + skin->edge_count; /* pairs: nothing grows after the first step */
+    int64_t most = skin->count + skin->edge_count + sf_sharp_room(&op->self_sharp); /* pairs */
     double(*edge_force)[3] = sf_workspace_take(&s->contact_work.edge_force, skin->edge_count,
                                                sizeof *edge_force, "pairs in contact", err);
     sf_contact_pair passed = {.node = -1};
@@ -463,9 +466,20 @@ sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_st
     int64_t nodes = w.count;
     if (err->status == SF_OK)
         find_edges(m, skin, s, edge_force, &w);
+    int64_t edges = w.count;
+    if (err->status == SF_OK && op->self_sharp.face_count > 0)
+        sf_sharp_add(&op->self_sharp, &at, s->dt, &s->self_sharp, &w, &s->self_penetration, err);
+    if (w.count > edges) {
+        w.over = OVER;
+        w.sweeps = CENTROID_SWEEPS;
+    }
     s->contact_unsettled += !sf_contact_relax(&w);
+    memset(s->self_sharp_force, 0, sizeof s->self_sharp_force);
+    memset(s->self_sharp_moment, 0, sizeof s->self_sharp_moment);
     for (int64_t a = 0; a < w.count; a++) {
         double motion[3];
+        if (a >= edges)
+            add_sharp_force(m, s, &w.pair[a]);
         sf_contact_apply(&w, &w.pair[a], s->force);
         sf_pair_relative(&w.pair[a], s->self_motion, motion);
         book(s, &w.pair[a], motion);
