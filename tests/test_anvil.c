@@ -265,7 +265,7 @@ static void the_reach_is_that_of_the_top(void **state) {
     for (int64_t k = 0; k < f.model.rest_count; k++)
         f.model.spacing[f.model.rest_node[k]] = 0.5 * finest;
     fixture_start(&f);
-    assert_true(f.operators.gram.spacing == finest);
+    assert_true(f.operators.surface.spacing == finest);
     fixture_free(&f);
 }
 

@@ -109,12 +109,14 @@ static void the_response_foretells_the_step(void **state) {
     const double first[3] = {3, 1, -400}, wrong[3] = {0, 0, -9}, second[3] = {-20, 5, -150};
     const sf_model m = free_missile(0.6);
     sf_missile missile;
-    double away[3], recoil[3], force[3], moved[3];
+    double away[3], recoil[3], force[3], moved[3], change[3];
     sf_missile_begin(&m, &missile);
     sf_missile_response response = sf_missile_predict(&m, &missile, 0, DT, 0);
     sf_missile_load(&response, SOMEWHERE, first);
     sf_missile_load(&response, UP, wrong);
-    sf_missile_reload(&response, UP, wrong, second);
+    for (int r = 0; r < 3; r++)
+        change[r] = second[r] - wrong[r];
+    sf_missile_load(&response, UP, change);
     sf_missile_free_motion(&response, SOMEWHERE, away);
     sf_missile_recoil(&response, SOMEWHERE, recoil);
     for (int r = 0; r < 3; r++)

@@ -174,11 +174,12 @@ static void write_stack(const program_place *p) {
 /* A patch test across faces that do not match: the stress is uniform in both bodies, to these parts of it. */
 static void assert_uniform(const program_place *p, int kind, const char *more, double at_node, double at_ends,
                            double in_mean) {
-    char words[192];
+    char words[256];
     snprintf(
         words, sizeof words,
-        "--set pad.separate=true --set pad.triangle_centroids=%s --set geometry.parameters='{ kind = %d; %s }'",
-        kind == HEXAHEDRA ? "false" : "true", kind, more);
+        "--set pad.separate=true --set pad.triangle_centroids=%s --set geometry.parameters='{ kind = %d; %s }' %s",
+        kind == HEXAHEDRA ? "false" : "true", kind, more,
+        kind == HEXAHEDRA ? "--set pad.self_friction=0.3" : "");
     figures f = run(p, words);
     assert_true(f.momentum < 1e-12 && f.angular < 1e-12 && f.energy_error < 1e-3);
     sf_results results;
@@ -217,6 +218,12 @@ static void bodies_with_other_meshes_pass_on_the_stress(void **state) {
     r = program_run(p, "pre",
                     "case.cfg -o m.h5 --force --set pad.separate=true --set pad.self_contact='\"off\"'");
     assert_true(r.code == 2 && strstr(r.err, "pad.separate: bodies touch each other by pad.self_contact"));
+    r = program_run(p, "pre", "case.cfg -o m.h5 --force --set pad.separate=true");
+    assert_true(r.code == 2 && strstr(r.err, "hexahedra of two parts touch") &&
+                strstr(r.err, "pad.self_friction = 0.3"));
+    program_succeed(p, "pre",
+                    "case.cfg -o m.h5 --force --set pad.separate=true --set geometry.parameters.fewer=0");
+    program_shell(p, "sed -i 's#pad: {#pad: { self_friction = 0.3;#' case.cfg");
     r = program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.separate=true");
     assert_null(strstr(r.err, "out of reach"));
     r = program_succeed(p, "pre",

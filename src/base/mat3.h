@@ -173,6 +173,18 @@ static inline void sf_triangle_normal(const double *a, const double *b, const do
     sf_sub3(c, a, v);
     sf_cross3(u, v, out);
 }
+/* The weights of a triangle's corners at a point of its plane, with its `normal` of twice its area. */
+static inline void sf_triangle_weights(const double *const x[3], const double point[3],
+                                       const double normal[3], double weight[3]) {
+    double square = sf_dot3(normal, normal);
+    for (int k = 0; k < 3; k++) {
+        double from[3], along[3], moment[3];
+        sf_sub3(point, x[(k + 1) % 3], from);
+        sf_sub3(x[(k + 2) % 3], x[(k + 1) % 3], along);
+        sf_cross3(along, from, moment);
+        weight[k] = sf_dot3(moment, normal) / square;
+    }
+}
 static inline void sf_face_normal(const double *position, const int32_t node[3], double out[3]) {
     const double *x[3];
     sf_corners(position, node, x);

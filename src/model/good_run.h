@@ -76,10 +76,10 @@
       "`max_mean_strain`", \
       "the missile reaches the anvil; its stiffness is not in the model", \
       .refuse = 0.95, .sure = 1) \
-    X(rim, 0.05, "depth of missile or support in faces, between nodes", \
-      "`rim_depth_mm` / `thickness_mm`", \
-      "contact acts at the nodes: the foam beside a rim of missile or support that the mesh does not resolve is not pressed", \
-      .refuse = 0.2, .percent = true) \
+    X(rim, 0.01, "depth of missile or support in faces, over the spacing", \
+      "the larger of `rim_depth_mm` / the edge of the face and `max_penetration_mm` / the pad's shortest edge", \
+      "a part of missile or support is in the foam between the nodes: the foam beside it is pressed too little", \
+      .refuse = 0.5, .percent = true) \
     X(below_anvil, 0.01, "foam below the anvil", \
       "`below_anvil_mm` / `thickness_mm`", \
       "the anvil acts on the surfaces of `pad.fixed` only: other foam passes through it and is too soft", \

@@ -278,6 +278,18 @@ static sf_status check_triangles(const char *name, const sf_model *m, int64_t co
     return SF_OK;
 }
 
+/* Every node of a contact face is a contact point. */
+static sf_status check_faces(const sf_model *m, sf_error *err) {
+    SF_TRY(check_triangles("contact's face", m, m->contact_face_count, m->contact_face, err));
+    for (int64_t k = 0; k < 3 * m->contact_face_count; k++) {
+        int64_t at = sf_list_find(m->contact_node, 0, m->contact_count, m->contact_face[k]);
+        if (at == m->contact_count || m->contact_node[at] != m->contact_face[k])
+            return SF_FAIL(err, SF_ERR_MODEL, "contact face %lld has node %d, which is no contact point",
+                           (long long)k / 3, m->contact_face[k]);
+    }
+    return SF_OK;
+}
+
 static sf_status check_areas(const sf_model *m, sf_error *err) {
     for (int64_t k = 0; k < m->contact_count; k++)
         if (!(m->contact_area[k] >= 0))
@@ -399,6 +411,7 @@ sf_status sf_model_check(const sf_model *m, sf_error *err) {
         check_edges(m, err) != SF_OK ||
         check_set("constrained nodes", m->fixed_count, m->fixed_node, m->node_count, err) != SF_OK ||
         check_set("contact nodes", m->contact_count, m->contact_node, m->node_count, err) != SF_OK ||
+        check_faces(m, err) != SF_OK ||
         check_set("resting nodes", m->rest_count, m->rest_node, m->node_count, err) != SF_OK ||
         check_loads(m, err) != SF_OK || check_areas(m, err) != SF_OK || check_constraints(m, err) != SF_OK ||
         check_ties(m, err) != SF_OK)

@@ -577,7 +577,6 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
             sf_drop_warn(c, mesh, m, &report->zone, report->body.solid.volume, sink);
             sf_hold_warn(&report->hold, m, sink);
             tell_contact(c, m, report, sink);
-            sf_support_warn(m, sink, err);
             if (c->separate)
                 sf_hold_warn_apart(m, sink, err);
         }

@@ -10,12 +10,14 @@
  * is, if a ray from a face outwards meets another face of it, its mirror image, or the anvil, within the
  * pad's thickness, or layers are loose. With a rigid support it is there in any case, `skin_alone` if it
  * touches that only. `unheld` (m): the middle of such a face of a pad without skin; NaN: there is none. Needs
- * cells, constraints, ties, thickness and the anvil's depth. */
+ * cells, constraints, ties, thickness and the anvil's depth. SF_ERR_INPUT: hexahedra that do not match slide
+ * on each other without friction. */
 sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_error *err);
 
 /* Adds the nodes of the other free faces that are neither held altogether nor part of the base to the contact
  * points, with their areas, and to those of pad.contact the area of such faces that look at the missile;
- * where there are some, the zone and the expected mesh error count them. What places the missile and measures
+ * where there are some, the zone and the expected mesh error count them. Sets the faces that a missile of
+ * triangles may press between the nodes. What places the missile and measures
  * the pad goes by the points of pad.contact and comes before. Needs cells, constraints, ties and masses. */
 sf_status sf_contact_add_free(const sf_layers *layers, sf_model *model, sf_contact_zone *zone, sf_error *err);
 

@@ -523,33 +523,3 @@ sf_status sf_support_find_travel(sf_model *m, sf_error *err) {
     m->support_travel = isfinite(travel) ? travel : 0;
     return SF_OK;
 }
-
-void sf_support_warn(const sf_model *m, const sf_sink *sink, sf_error *err) {
-    static const double LONG = 1.5, NEAR = 2; /* spacings of a node of the pad */
-    const triangles s = supports_of(m);
-    SF_OWNED sf_half_edge *edge = s.count > 0 ? sf_half_edges(s.count, s.node, err) : NULL;
-    double most = LONG, point[3];
-    int64_t at = -1;
-    int feature;
-    for (int64_t k = 0, end; edge && k < 3 * s.count; k = end) {
-        const double *a = &s.position[3 * (int64_t)edge[k].low], *b = &s.position[3 * (int64_t)edge[k].high];
-        double length = sf_distance3(a, b);
-        end = sf_half_edges_end(edge, k, 3 * s.count); /* a sharp edge has nodes of its own on each side */
-        for (int64_t i = 0; end - k == 1 && i < m->node_count; i++) {
-            if (!(length > most * m->spacing[i]))
-                continue;
-            sf_triangle_nearest(a, b, b, &m->position[3 * i], point, &feature);
-            if (sf_distance3(point, &m->position[3 * i]) < NEAR * m->spacing[i]) {
-                most = length / m->spacing[i];
-                at = i;
-            }
-        }
-    }
-    if (at >= 0)
-        sf_sink_tell(
-            sink, SF_WARNING,
-            "an edge of a support has nodes %.3g mm apart near (%.4g, %.4g, %.4g) mm, the pad %.3g mm: the "
-            "foam sinks onto it in between; mesh the edges of the support as fine as the pad",
-            1e3 * most * m->spacing[at], 1e3 * m->position[3 * at], 1e3 * m->position[3 * at + 1],
-            1e3 * m->position[3 * at + 2], 1e3 * m->spacing[at]);
-}

@@ -38,9 +38,6 @@ sf_status sf_support_plane(const sf_case_support *plane, const sf_mesh *mesh, sf
  * lies inside the pad at the start, or no face of it has a support before it within the pad's thickness. */
 sf_status sf_support_take(const sf_case *c, const sf_mesh *mesh, sf_model *model, sf_error *err);
 
-/* Warns of sharp edges of supports with fewer nodes than the pad beside them: between them is no contact. */
-void sf_support_warn(const sf_model *model, const sf_sink *sink, sf_error *err);
-
 /* Sets the missile's way to the supports; the missile is in its place. SF_ERR_INPUT: it meets one
  * before the pad. */
 sf_status sf_support_find_travel(sf_model *model, sf_error *err);

@@ -107,6 +107,22 @@ void sf_missile_translation(const sf_model *m, const sf_missile *missile, double
         scale(missile->displacement, m->missile.direction, out);
 }
 
+void sf_missile_orient(const sf_model *m, const sf_missile *missile, const double rest[3], double out[3]) {
+    if (sf_missile_turns(m))
+        sf_rotate(missile->quaternion, rest, out);
+    else
+        memcpy(out, rest, 3 * sizeof *out);
+}
+
+void sf_missile_place(const sf_model *m, const sf_missile *missile, const double rest[3], double out[3]) {
+    double arm[3], centre[3];
+    sf_sub3(rest, m->missile.centre, arm);
+    sf_missile_orient(m, missile, arm, out);
+    find_centre(m, missile, centre);
+    for (int r = 0; r < 3; r++)
+        out[r] += centre[r];
+}
+
 /* x from the centre. */
 static void find_arm(const sf_model *m, const sf_missile *missile, const double x[3], double arm[3]) {
     find_centre(m, missile, arm);
@@ -242,17 +258,6 @@ void sf_missile_load(sf_missile_response *response, const double x[3], const dou
     response->load += sf_dot3(force, response->direction);
     if (response->turns)
         load_turning(response, x, force);
-}
-
-void sf_missile_reload(sf_missile_response *response, const double x[3], const double old[3],
-                       const double force[3]) {
-    double more[3];
-    for (int r = 0; r < 3; r++) {
-        more[r] = force[r] - old[r];
-        response->load += more[r] * response->direction[r];
-    }
-    if (response->turns)
-        load_turning(response, x, more);
 }
 
 void sf_missile_recoil(const sf_missile_response *response, const double x[3], double out[3]) {

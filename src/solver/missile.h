@@ -69,6 +69,10 @@ typedef struct sf_missile_view {
 sf_missile_view sf_missile_read(const sf_model *model, const sf_missile *missile);
 /* Displacement (m), in the last step, of the missile's material point at x. */
 void sf_missile_motion_at(const sf_model *model, const sf_missile *missile, const double x[3], double out[3]);
+/* Place now (m) of its material point that was at `rest` at t = 0, and the present direction of a vector that
+ * turns with it. */
+void sf_missile_place(const sf_model *model, const sf_missile *missile, const double rest[3], double out[3]);
+void sf_missile_orient(const sf_model *model, const sf_missile *missile, const double rest[3], double out[3]);
 /* Bound (m s-1) on the speed of all its points at the half step. */
 double sf_missile_fastest(const sf_model *model, const sf_missile *missile);
 /* sf_missile_surface_near and sf_missile_surface_gap at the present pose; x and normal in the geometry's
@@ -105,10 +109,8 @@ void sf_missile_free_motion(const sf_missile_response *response, const double x[
 bool sf_missile_gap_ahead(const sf_model *model, const sf_missile *missile,
                           const sf_missile_response *response, const sf_missile_surface *surface,
                           const double x[3], const double step[3], double *gap, double normal[3]);
-/* Adds a force (N) of the missile on the pad at x to the response; replaces `old` there by `force`. */
+/* Adds a force (N) of the missile on the pad at x to the response. */
 void sf_missile_load(sf_missile_response *response, const double x[3], const double force[3]);
-void sf_missile_reload(sf_missile_response *response, const double x[3], const double old[3],
-                       const double force[3]);
 /* Acceleration (m s-2) that the forces taken so far give the missile's material point at x, against which
  * they act: positive along a force on the pad. */
 void sf_missile_recoil(const sf_missile_response *response, const double x[3], double out[3]);

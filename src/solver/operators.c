@@ -28,11 +28,12 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
     }
     if (sf_constraint_build(m, &op->constraint, err) != SF_OK ||
         sf_contact_rows_build(m, &op->rows, err) != SF_OK ||
-        sf_contact_gram_build(m, &op->rows, &op->gram, err) != SF_OK ||
         sf_anvil_build(m, &op->rows, &op->anvil, err) != SF_OK || sf_skin_build(m, &op->skin, err) != SF_OK ||
         sf_membrane_build(m, &op->membrane, err) != SF_OK)
         return err->status;
     SF_TRY(sf_missile_surface_build(m, sf_missile_direction(m), &op->surface, err));
+    SF_TRY(sf_sharp_build_missile(m, op->surface.spacing, &op->sharp, err));
+    SF_TRY(sf_sharp_build_supports(m, &op->skin, &op->self_sharp, err));
     return m->set ? sf_set_check_missile(m, &op->surface, err) : SF_OK;
 }
 
@@ -54,11 +55,12 @@ void sf_operators_free(sf_operators *op) {
     sf_halo_free(&op->halo);
     sf_constraint_free(&op->constraint);
     sf_contact_rows_free(&op->rows);
-    sf_contact_gram_free(&op->gram);
     sf_anvil_free(&op->anvil);
     sf_skin_free(&op->skin);
     sf_membrane_free(&op->membrane);
     sf_missile_surface_free(&op->surface);
+    sf_sharp_free(&op->sharp);
+    sf_sharp_free(&op->self_sharp);
     sf_pairs_free(&op->pairs);
     SF_CLEAR(op, op->law, op->stability);
 }

@@ -4,6 +4,7 @@
 #include "material/laws.h"
 #include "solver/constraint/constraint.h"
 #include "solver/contact/rigid_surface.h"
+#include "solver/contact/sharp.h"
 #include "solver/contact/skin.h"
 #include "solver/field/pairs.h"
 #include "solver/field/membrane.h"
@@ -19,11 +20,11 @@ typedef struct sf_operators {
 
     sf_constraint constraint;
     sf_contact_rows rows;
-    sf_contact_gram gram;
     sf_anvil anvil;
     sf_skin skin;
     sf_membrane membrane;
     sf_missile_surface surface;
+    sf_sharp sharp, self_sharp; /* of missile and supports */
 } sf_operators;
 
 sf_status sf_operators_build(const sf_model *model, sf_operators *operators, sf_error *err);

@@ -48,13 +48,18 @@ static const sf_state_array arrays[] = {
     KEPT(contact_gap, 'c', 1),
     KEPT(contact_normal, 'c', 3),
     KEPT(contact_rubbed, 'c', 1),
+    KEPT(contact_load, 'w', 3),
+    KEPT_NUMBERS(sharp.key, 'q', 2),
+    KEPT(sharp.force, 'q', 3),
+    KEPT(sharp.ahead, 'a', 3),
+    KEPT_NUMBERS(self_sharp.key, 'r', 2),
+    KEPT(self_sharp.force, 'r', 3),
     SCRATCH(self_position, 's', 3 * sizeof(double)),
     SCRATCH(self_motion, 's', 3 * sizeof(double)),
     SCRATCH(self_step, 's', 3 * sizeof(double)),
     KEPT(self_force, 's', 3),
     KEPT_NUMBERS(self_partner, 's', 1),
     KEPT(self_weight, 's', 4),
-    SCRATCH(self_push, 's', 3 * sizeof(double)),
     SCRATCH(self_candidate, 's', SF_SELF_CANDIDATES * sizeof(int32_t)),
     SCRATCH(self_normal, 'f', 3 * sizeof(double)),
     SCRATCH(self_close, 's', sizeof(int32_t)),
@@ -62,8 +67,8 @@ static const sf_state_array arrays[] = {
     SCRATCH(membrane.position, 'm', 3 * sizeof(double)),
     SCRATCH(membrane.force, 'm', 3 * sizeof(double)),
     SCRATCH(membrane.row, 't', SF_MEMBRANE_ROW * sizeof(double)),
-    SCRATCH(contact_active, 'c', sizeof(int32_t)),
     SCRATCH(contact_near, 'c', sizeof(int32_t)),
+    SCRATCH(contact_push, 'n', 3 * sizeof(double)),
     SCRATCH(partial, 'k', sizeof(sf_partial)),
 #undef KEPT
 #undef KEPT_NUMBERS
@@ -112,6 +117,16 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
         return blocks * history_rows(model);
     case 'c':
         return sf_model_points(model);
+    case 'w':
+        return model->contact_face_count > 0 ? sf_model_points(model) : 0;
+    case 'a':
+        return model->contact_face_count > 0;
+    case 'q': /* at most, if all corners are sharp */
+        return model->contact_face_count > 0
+                   ? model->surface_node_count + 3 * model->contact_face_count / 2 + SF_SHARP_MORE
+                   : 0;
+    case 'r':
+        return model->support_triangle_count > 0 ? 3 * model->skin_count / 2 + SF_SHARP_MORE : 0;
     default:
         return (model->node_count + SF_CHUNK - 1) / SF_CHUNK;
     }
@@ -169,6 +184,8 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
                3 * sizeof(double));
     for (int64_t k = 0; k < model->rest_count; k++) /* settled */
         s->contact_force[3 * (model->contact_count + k) + 2] = model->rest_load[k];
+    for (int64_t k = 0; k < 3 * sf_state_rows(model, 'w'); k++)
+        s->contact_load[k] = s->contact_force[k];
     if (model->set)
         memcpy(s->set, model->set, 4 * (size_t)model->node_count * sizeof *s->set);
     s->tightness = 1;
@@ -201,12 +218,21 @@ bool sf_state_is_finite(const sf_model *m, const sf_state *s) {
            all_finite(s->missile.spin, 3) && all_finite(s->missile.quaternion, 4);
 }
 
+static void release_sharp(sf_sharp_state *s) {
+    sf_workspace *work[] = {&s->list, &s->centre, &s->radius,  &s->found,    &s->start,
+                            &s->node, &s->used,   &s->old_key, &s->old_force};
+    for (size_t k = 0; k < sizeof work / sizeof work[0]; k++)
+        sf_workspace_free(work[k]);
+}
+
 void sf_state_free(sf_state *s) {
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
         free(*(void **)((char *)s + arrays[k].offset));
-    sf_workspace *work = (sf_workspace *)&s->self_work;
-    for (size_t k = 0; k < sizeof s->self_work / sizeof *work; k++)
+    sf_workspace *work = (sf_workspace *)&s->contact_work;
+    for (size_t k = 0; k < sizeof s->contact_work / sizeof *work; k++)
         sf_workspace_free(&work[k]);
+    release_sharp(&s->sharp);
+    release_sharp(&s->self_sharp);
     memset(s, 0, sizeof *s);
 }
 

@@ -126,12 +126,28 @@ typedef struct sf_ledger {
 
 enum { SF_SELF_CANDIDATES = 48 };
 
-/* Memory of the contact of the skin with itself, taken in the first step and used again in each. */
-typedef struct sf_self_work {
-    sf_workspace pair, mobility, step, edge_force;                /* self_contact.c */
+/* Sharp edges of missile or supports on the faces of the pad (contact/sharp.h). */
+typedef struct sf_sharp_candidate {
+    int32_t part; /* corner of the body, or corners + edge */
+    int32_t slot; /* 3 x face + place of the point that the pad's line runs from; of a corner 3 x face */
+} sf_sharp_candidate;
+
+enum { SF_SHARP_MORE = 64 }; /* pairs of a step beyond one for each corner of the body and line of the pad */
+typedef struct sf_sharp_state {
+    int32_t *key;  /* [pairs][2] part and 1 + slot of the last step's pairs, as listed; 0 behind the last */
+    double *force; /* [pairs][3] N, on the pad */
+    double
+        *ahead; /* [3] J, work over the next step: lost in contact, in friction, done by a driven missile */
+    int64_t count; /* of candidates */
+    sf_workspace list, centre, radius, found, start, node, used, old_key, old_force;
+} sf_sharp_state;
+
+/* Memory of contact, taken in the first step and used again in each. */
+typedef struct sf_contact_work {
+    sf_workspace point, pair, edge_force;                         /* pairs of contact.c and self_contact.c */
     sf_workspace centre, radius, found, used, is_near, near_list; /* candidates.c */
     sf_workspace grid_start[2], grid_node[2];                     /* of pad and supports */
-} sf_self_work;
+} sf_contact_work;
 
 typedef struct sf_state {
     SF_STATE_NUMBERS(SF_DECLARE)
@@ -185,10 +201,14 @@ typedef struct sf_state {
     double *contact_gap;      /* [contacts] m, predicted */
     double *contact_normal;   /* [contacts][3] outward from the missile or the anvil */
     double *contact_rubbed;   /* [contacts] J, work of friction to date */
-    int32_t *contact_active;  /* [contacts] list */
     int32_t *contact_near;    /* [contacts] Verlet list: the points that can touch before contact_room is used
                                  up; arrays of other points are not up to date */
     int64_t contact_near_count;
+    sf_sharp_state sharp; /* of the missile */
+    double *
+        contact_load; /* [contacts][3] N, by the point itself and by sharp edges; only if there may be some */
+    double *contact_push; /* [n][3] m s-2, acceleration by the forces of a solve; zero between them */
+    sf_contact_work contact_work;
 
     /* Contact of the skin with itself (contact/self_contact.h); by point of the skin, only a pad with one has
      * these. */
@@ -198,15 +218,15 @@ typedef struct sf_state {
     double *self_force;      /* [skin][3] N, on the node, of the last step */
     int32_t *self_partner;   /* [skin] facet that it touches; -1: none, -2 - k: plane k (contact/skin.h) */
     double *self_weight;     /* [skin][4] of the facet's nodes, and of the fourth of its quadrangle */
-    double *self_push;       /* [n][3] m s-2, acceleration by these forces; zero between steps */
     int32_t *self_candidate; /* [skin][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
     double *self_normal;     /* [sides][3] outward now, unit; of the points in self_close */
     int32_t *self_close;     /* [skin] list of the nodes that may touch soon, and of their facets' nodes */
     int32_t *self_near;      /* [skin] list of these, and of the nodes of all facets at them */
     int64_t self_close_count, self_near_count;
-    double self_room;        /* m, until the lists are made anew */
-    double self_penetration; /* m, deepest now */
-    sf_self_work self_work;
+    sf_sharp_state self_sharp;                                     /* of the supports */
+    double self_sharp_force[SF_SUPPORTS][3], self_sharp_moment[3]; /* N, N m about the origin, in this step */
+    double self_room;                                              /* m, until the lists are made anew */
+    double self_penetration;                                       /* m, deepest now */
 
     sf_membrane_state membrane;
 
@@ -224,8 +244,9 @@ typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
     char rows; /* n nodes, l nodes of a pad of layers, u nodes of foam with a set, h rows of history of all
-                  blocks of lanes, c contact points, s points and f sides of the skin, m and t nodes and
-                  triangles of the membrane, k chunks */
+                  blocks of lanes, c contact points, w those of a pad with contact faces, a one row of such a
+                  pad, q and r pairs of sharp edges of missile and supports, s points and f sides of the skin,
+                  m and t nodes and triangles of the membrane, k chunks */
     int bytes; /* of a row */
     sf_h5_type type; /* of an item that has a name: SF_H5_F64 or SF_H5_I32 */
 } sf_state_array;
@@ -240,6 +261,11 @@ int64_t sf_state_pad(const sf_model *model, double time, const double *history);
 /* Can the state be shown: are displacements, velocities, forces and the squares of stresses finite? */
 bool sf_state_is_finite(const sf_model *model, const sf_state *state);
 void sf_state_free(sf_state *state);
+
+/* Forces (N) of missile and anvil on the contact points [contacts][3]. */
+static inline const double *sf_state_load(const sf_model *model, const sf_state *state) {
+    return model->contact_face_count > 0 ? state->contact_load : state->contact_force;
+}
 
 /* The energy ledger and the momentum balance. Stored and hysteretic energy are state functions of W and its
  * maximum, not integrals of the forces: their agreement with the kinetic energy is a check, not an identity.

@@ -3,6 +3,7 @@
 
 #include "base/mat3.h"
 #include "solver/contact/contact.h"
+#include "solver/contact/ledger.h"
 #include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
 #include "solver/field/stabilisation.h"
@@ -237,19 +238,6 @@ static sf_wrench wrench_of_constraints(const sf_state *s, const sf_constraint_st
     return w;
 }
 
-/* The anvil's forces on a resting pad, and its weight. */
-static void add_anvil(const sf_model *m, const sf_operators *op, const sf_state *s, sf_wrench *outside) {
-    const sf_anvil *a = &op->anvil;
-    for (int64_t c = m->contact_count; c < sf_model_points(m); c++)
-        sf_wrench_add(outside, &s->contact_position[3 * c], &s->contact_force[3 * c]);
-    for (int64_t k = 0; k < a->count; k++) {
-        double x[3];
-        for (int r = 0; r < 3; r++)
-            x[r] = m->position[3 * (int64_t)a->node[k] + r] + s->d[3 * (int64_t)a->node[k] + r];
-        sf_wrench_add(outside, x, a->pull[k]);
-    }
-}
-
 sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
 #pragma omp parallel default(none) shared(m, op, s)
     {
@@ -270,13 +258,13 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     double dt_v = 0.5 * (s->dt_old + s->dt);
 
     SF_TRY(sf_self_contact_solve(m, op, s, err)); /* f += phi^T q */
-    sf_contact_solve(m, op, s);                   /* f += phi^T q; missile's acceleration */
+    SF_TRY(sf_contact_solve(m, op, s, err));      /* f += phi^T q; missile's acceleration */
     sf_lap(s->watch, SF_PHASE_CONTACT);
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
     sf_constraint_project(&op->constraint, &held);
     sf_wrench below = {{0}, {0}};
-    sf_self_contact_outside(&op->skin, s, false, &below);
-    sf_self_contact_supports(m, &op->skin, s);
+    sf_ledger_outside(m, op, s, false, &below);
+    sf_ledger_supports(m, &op->skin, s);
     s->penetration = fmax(s->penetration, s->self_penetration);
     for (int r = 0; r < 3; r++)
         s->base_reaction[r] = held.base[r] + s->anvil_force[r] + below.force[r];
@@ -288,8 +276,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_missile_kick(m, &s->missile, s->time, s->dt, s->dt_old);
     s->ledger.weight = sf_anvil_work(&op->anvil, s->d);
     sf_wrench outside = wrench_of_constraints(s, &held);
-    add_anvil(m, op, s, &outside);
-    sf_self_contact_outside(&op->skin, s, true, &outside);
+    sf_ledger_outside(m, op, s, true, &outside);
     sf_ledger_close(m, s, &outside, dt_v);
     sf_set_watch(m, s);
     sf_lap(s->watch, SF_PHASE_MOTION);

@@ -93,7 +93,7 @@
     X(NUMBER, energy_beyond_data, "energy_beyond_data", 1, "share of the foam's energy, at /peak, in nodes compressed beyond `informed_strain`, each by that of its layer") \
     X(NUMBER, smallest_jacobian, "smallest_jacobian", 1, "smallest det F") \
     X(NUMBER, max_penetration, "max_penetration_mm", 1e3, "deepest penetration of a contact point") \
-    X(INNER, cut.depth, "rim_depth_mm", 1e3, "largest depth of the surface of missile or supports in the foam between the pad's nodes, at which the contact acts, at /peak") \
+    X(INNER, cut.depth, "rim_depth_mm", 1e3, "largest depth of missile or supports in the foam between the pad's nodes at /peak; of smooth surfaces the part beyond 1/16 of the spacing") \
     X(NUMBER, below_anvil, "below_anvil_mm", 1e3, "largest depth of a node below the anvil's plane, in the frames and at /peak; undefined without an anvil") \
     X(NUMBER, energy_error, "energy_error", 1, "largest magnitude over the run, like the next four", \
       .name = "energy error", .unit = "%", .format = "%.4f", .shown = 100) \

@@ -3,6 +3,7 @@
 
 #include "base/grid.h"
 #include "model/cells.h"
+#include "model/ridges.h"
 #include <gsl/gsl_sort.h>
 #include <string.h>
 
@@ -381,12 +382,11 @@ static sf_status faces_find(const sf_results *r, const double *u, faces *f, sf_e
     return f->count > 0 ? sf_grid_build(&f->grid, f->count, f->centre, f->radius, err) : SF_OK;
 }
 
-/* Depth (m) of the point x of a triangle of missile or support, of the normal n, behind the nearest face that
- * looks against it; 0: it is not in the foam. It is inside if the nearest face of any direction says so: of
- * those equally near the one that looks most straight at it. */
-static double depth_at(const faces *f, const double x[3], const double n[3], double most, int64_t *face) {
+/* Depth (m) of the point x in the foam: its distance from the nearest face, of those equally near the one
+ * that looks most straight at it; 0: it is outside. */
+static double depth_at(const faces *f, const double x[3], double most, int64_t *face) {
     for (double reach = f->least; reach < most; reach *= 2) {
-        double nearest = INFINITY, straight = 0, depth = INFINITY;
+        double nearest = INFINITY, straight = 0;
         int64_t count = sf_grid_gather(&f->grid, x, reach, f->count, f->found);
         for (int64_t k = 0; k < count; k++) {
             const double *c[3];
@@ -398,48 +398,76 @@ static double depth_at(const faces *f, const double x[3], const double n[3], dou
             sf_unit3(normal);
             double distance = sf_distance3(x, point), along = sf_dot3(x, normal) - sf_dot3(point, normal);
             if (distance < nearest * (1 - 1e-9) ||
-                (distance < nearest * (1 + 1e-9) && fabs(along) > fabs(straight)))
+                (distance < nearest * (1 + 1e-9) && fabs(along) > fabs(straight))) {
                 straight = along;
-            nearest = fmin(nearest, distance);
-            if (along < 0 && sf_dot3(normal, n) < 0 && distance < depth) {
-                depth = distance;
                 *face = f->found[k];
             }
+            nearest = fmin(nearest, distance);
         }
-        if (nearest <= reach && (straight >= 0 || depth <= reach))
-            return straight < 0 ? depth : 0;
+        if (nearest <= reach)
+            return straight < 0 ? nearest : 0;
     }
     return 0;
 }
 
-/* Measures the vertices and edges of a body's triangles; head: the missile moves with it, NULL: at rest. */
-static void measure_body(const sf_results *r, const faces *f, const sf_frame_head *head, int64_t triangles,
-                         const int32_t *triangle, const double *position, sf_rim_cut *cut) {
+/* Shortest edge (m) of a face at rest. */
+static double spacing_at(const sf_results *r, const faces *f, int64_t face) {
+    const double *x[3];
+    sf_corners(r->position, &f->node[3 * face], x);
+    return fmin(sf_distance3(x[0], x[1]), fmin(sf_distance3(x[1], x[2]), sf_distance3(x[2], x[0])));
+}
+
+/* Measures points along an edge of a body from a to b, less the depth that is allowed, as a part of the
+ * spacing; head: the missile moves with it, NULL: at rest. */
+static void measure_edge(const sf_results *r, const faces *f, const sf_frame_head *head, const double *a,
+                         const double *b, double allowed, sf_rim_cut *cut) {
     enum { MOST = 200 }; /* points along an edge */
-    for (int64_t k = 0; f->count > 0 && k < 3 * triangles; k++) {
-        double x[3][3], normal[3];
-        for (int c = 0; c < 3; c++) { /* the edge from x[0] to x[1] */
-            const double *rest = &position[3 * (int64_t)triangle[k - k % 3 + (k + c) % 3]];
-            memcpy(x[c], rest, sizeof x[c]);
-            if (head)
-                sf_results_place(r, head, rest, x[c]);
-        }
-        sf_triangle_normal(x[0], x[1], x[2], normal);
-        double parts = fmin(MOST, ceil(sf_distance3(x[0], x[1]) / f->least));
-        for (double part = 0; part < parts; part++) {
-            double at[3];
-            bool near = true;
-            int64_t face = 0;
-            for (int c = 0; c < 3; c++) {
-                at[c] = x[0][c] + part / parts * (x[1][c] - x[0][c]);
-                near = near && at[c] > f->low[c] && at[c] < f->high[c];
-            }
-            double depth = near ? depth_at(f, at, normal, r->thickness, &face) : 0;
-            if (depth > cut->depth)
-                memcpy(cut->place, &r->position[3 * (int64_t)f->node[3 * face]], sizeof cut->place);
-            cut->depth = fmax(cut->depth, depth);
-        }
+    double x[2][3];
+    memcpy(x[0], a, sizeof x[0]);
+    memcpy(x[1], b, sizeof x[1]);
+    if (head) {
+        sf_results_place(r, head, a, x[0]);
+        sf_results_place(r, head, b, x[1]);
     }
+    double parts = fmin(MOST, ceil(4 * sf_distance3(x[0], x[1]) / f->least));
+    for (double part = 0; part <= parts; part++) {
+        double at[3];
+        bool near = true;
+        int64_t face = 0;
+        for (int c = 0; c < 3; c++) {
+            at[c] = x[0][c] + (parts > 0 ? part / parts : 0) * (x[1][c] - x[0][c]);
+            near = near && at[c] > f->low[c] && at[c] < f->high[c];
+        }
+        double depth = near ? depth_at(f, at, r->thickness, &face) : 0, spacing = spacing_at(r, f, face);
+        depth -= allowed * spacing;
+        cut->share = fmax(cut->share, depth / spacing);
+        if (depth > cut->depth)
+            memcpy(cut->place, &r->position[3 * (int64_t)f->node[3 * face]], sizeof cut->place);
+        cut->depth = fmax(cut->depth, depth);
+    }
+}
+
+/* Measures a body: its sharp edges and vertices as they are, and all edges of its triangles beyond the depth
+ * that a smooth surface has in chords of the pad (model/ridges.h). */
+static sf_status measure_body(const sf_results *r, const faces *f, const sf_frame_head *head, int64_t nodes,
+                              int64_t triangles, const int32_t *triangle, const double *position,
+                              sf_rim_cut *cut, sf_error *err) {
+    SF_OWNED_BY(sf_ridges_free) sf_ridges sharp = {0};
+    if (f->count == 0 || triangles == 0)
+        return SF_OK;
+    SF_TRY(
+        sf_ridges_find(nodes, position, triangles, triangle, r->symmetry_place, cut->spacing, &sharp, err));
+    for (int64_t k = 0; k < sharp.count; k++)
+        measure_edge(r, f, head, &position[3 * (int64_t)sharp.ridge[k].node[0]],
+                     &position[3 * (int64_t)sharp.ridge[k].node[1]], 0, cut);
+    for (int64_t k = 0; k < sharp.corner_count; k++) {
+        const double *x = &position[3 * (int64_t)sharp.corner[k]];
+        measure_edge(r, f, head, x, x, 0, cut);
+    }
+    for (int64_t k = 0; k < 3 * triangles; k++)
+        measure_edge(r, f, head, &position[3 * (int64_t)triangle[k]],
+                     &position[3 * (int64_t)triangle[k - k % 3 + (k + 1) % 3]], SF_SMOOTH_DEPTH, cut);
+    return SF_OK;
 }
 
 sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, const double *displacement,
@@ -447,7 +475,11 @@ sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, con
     SF_OWNED_BY(faces_free) faces f = {0};
     *cut = (sf_rim_cut){0};
     SF_TRY(faces_find(r, displacement, &f, err));
-    measure_body(r, &f, head, r->surface_triangle_count, r->surface_triangle, r->surface_position, cut);
-    measure_body(r, &f, NULL, r->support_triangle_count, r->support_triangle, r->support_position, cut);
-    return SF_OK;
+    cut->spacing = INFINITY;
+    for (int64_t k = 0; k < f.count; k++)
+        cut->spacing = fmin(cut->spacing, spacing_at(r, &f, k));
+    SF_TRY(measure_body(r, &f, head, r->surface_node_count, r->surface_triangle_count, r->surface_triangle,
+                        r->surface_position, cut, err));
+    return measure_body(r, &f, NULL, r->support_node_count, r->support_triangle_count, r->support_triangle,
+                        r->support_position, cut, err);
 }

@@ -33,9 +33,11 @@ sf_status sf_strain_field_collapse(const sf_results *results, const sf_peak_fiel
 double sf_strain_field_energy_beyond(const sf_results *results, const double *compression,
                                      const double *energy_density, double strain);
 
-/* The depth of the surface of missile or supports in the foam between the nodes, where contact acts. */
+/* The depth of missile or supports in the foam between its nodes. */
 typedef struct sf_rim_cut {
-    double depth;    /* m, behind the nearest free face that looks against it */
+    double depth;    /* m, from the nearest free face; of smooth surfaces the part beyond SF_SMOOTH_DEPTH */
+    double share;    /* -, largest of it over the shortest edge of its face */
+    double spacing;  /* m, shortest edge of all faces; INFINITY: there are none */
     double place[3]; /* m, of a node of that face at rest */
 } sf_rim_cut;
 

@@ -67,7 +67,7 @@ SHORT_VALUE(slit, r->slit_fraction)
 SHORT_VALUE(informed, f->energy_beyond_data)
 SHORT_VALUE(edge, fmax(fabs(f->a_max_by_speed), fabs(f->a_max_by_thickness)))
 SHORT_VALUE(anvil, f->max_mean_strain)
-SHORT_VALUE(rim, f->cut.depth / r->thickness)
+SHORT_VALUE(rim, fmax(f->cut.share, f->cut.spacing > 0 ? f->max_penetration / f->cut.spacing : 0))
 SHORT_VALUE(below_anvil, f->below_anvil / r->thickness)
 #undef SHORT_VALUE
 

@@ -81,7 +81,7 @@ static void surround(const sf_skin *skin, const sf_state *s, int64_t f, double c
 static sf_status facets_find(const sf_skin *skin, sf_state *s, facets *f, sf_error *err) {
     static const char purpose[] = "candidates of contact";
     int64_t count = skin->facet_count, starts = SF_GRID_STARTS(count);
-    sf_self_work *work = &s->self_work;
+    sf_contact_work *work = &s->contact_work;
     f->centre = sf_workspace_take(&work->centre, 3 * count, sizeof *f->centre, purpose, err);
     f->radius = sf_workspace_take(&work->radius, count, sizeof *f->radius, purpose, err);
     f->found = sf_workspace_take(&work->found, count, sizeof *f->found, purpose, err);
@@ -177,7 +177,7 @@ static void choose_candidates(const sf_skin *skin, sf_state *s, int64_t p, doubl
     for (int k = 0; k < sf_skin_members(skin, p) && count > 0; k++)
         used[sf_skin_member(skin, p, k)] = 1;
     for (int k = count; k < CANDIDATES; k++)
-        own[k] = SF_NO_CANDIDATE;
+        own[k] = SF_SKIN_NOTHING;
 }
 
 /* The lists of nodes whose positions and normals a step needs, from those that are used. */
@@ -195,10 +195,11 @@ static void list_nodes(const sf_skin *skin, sf_state *s, uint8_t *used) {
             s->self_near[s->self_near_count++] = (int32_t)p;
 }
 
-sf_status sf_candidates_find(const sf_skin *skin, sf_state *s, sf_error *err) {
+sf_status sf_candidates_find(const sf_skin *skin, const sf_sharp *sharp, const sf_sharp_place *at,
+                             sf_state *s, sf_error *err) {
     static const char purpose[] = "candidates of contact";
     facets f = {0};
-    sf_self_work *work = &s->self_work;
+    sf_contact_work *work = &s->contact_work;
     uint8_t *used = sf_workspace_take(&work->used, skin->count, 1, purpose, err);
     neighbourhood n = {sf_workspace_take(&work->is_near, skin->count, 1, purpose, err),
                        sf_workspace_take(&work->near_list, skin->count, sizeof *n.list, purpose, err), 0};
@@ -208,13 +209,16 @@ sf_status sf_candidates_find(const sf_skin *skin, sf_state *s, sf_error *err) {
     memset(n.is_near, 0, (size_t)skin->count);
     for (int64_t p = 0; p < skin->count; p++)
         choose_candidates(skin, s, p, reach, &f, &n, used);
+    if (sharp->face_count > 0)
+        SF_TRY(sf_sharp_list(sharp, at, &reach, used, &s->self_sharp, err));
+    s->self_room = fmin(s->self_room, reach);
     list_nodes(skin, s, used);
     return SF_OK;
 }
 
 /* Subtracts what node and facet travel towards each other in a step. */
 bool sf_candidates_last(const sf_skin *skin, sf_state *s) {
-    double travel = 2 * skin->spread * s->fastest;
+    double travel = 2 * skin->rows.spread * s->fastest;
     s->self_room -= s->dt_old * travel;
     return s->step > 0 && s->self_room > fmax(0.3 * NEAR * skin->spacing, 2 * s->dt * travel);
 }

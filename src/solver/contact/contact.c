@@ -2,26 +2,16 @@
 #include "solver/contact/contact.h"
 
 #include "base/mat3.h"
+#include "solver/contact/ledger.h"
+#include "solver/contact/solve.h"
 
 enum { MAX_SWEEPS = 500 };
 static const double ENTRY_DEPTH =
     0.1; /* of the spacing: no free point gets deeper in one step through the surface */
 static const double SWEEP_TOLERANCE = 1e-10; /* largest change of a force, relative to the largest force */
-
-/* The partners of the pad in contact. */
-enum { MISSILE, ANVIL, PARTNERS };
-
-/* Constants of one solve, and the responses of missile and anvil. That of the anvil is a missile's of
- * infinite mass at rest: zero. */
-typedef struct contact_solve {
-    double shift; /* s2, dt times the distance of the half steps */
-    double friction[PARTNERS];
-    sf_missile_response response[PARTNERS];
-} contact_solve;
-
-static int partner(const sf_model *m, int64_t c) {
-    return sf_model_point_rests(m, c) ? ANVIL : MISSILE;
-}
+/* The same where sharp edges press, as their rows depend on those of the nodes, and the change beyond which
+ * it is told that the sweeps did not settle. */
+static const double SHARP_TOLERANCE = 1e-5, SHARP_UNSETTLED = 1e-3;
 
 /* Verlet list with skin: the near points are those within NEAR spacings of the missile. The list is made anew
  * when half of that distance is used up, or when the rest is not more than twice the travel of one step. */
@@ -30,9 +20,9 @@ static const double NEAR = 2;
 /* Subtracts the last step's travel from the skin of the Verlet list. When the rest is too small, lists all
  * points and returns true. */
 static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
-    double speed = op->gram.spread * s->fastest + sf_missile_fastest(m, &s->missile);
+    double speed = op->rows.spread * s->fastest + sf_missile_fastest(m, &s->missile);
     s->contact_room -= s->dt_old * speed;
-    if (s->step > 0 && s->contact_room > fmax(0.5 * NEAR * op->gram.spacing, 2 * s->dt * speed))
+    if (s->step > 0 && s->contact_room > fmax(0.5 * NEAR * op->surface.spacing, 2 * s->dt * speed))
         return false;
     for (int64_t c = 0; c < sf_model_points(m); c++)
         s->contact_near[c] = (int32_t)c;
@@ -40,17 +30,27 @@ static bool use_room(const sf_model *m, const sf_operators *op, sf_state *s) {
     return true;
 }
 
-/* Makes the list of near points from the points listed now. Those on the anvil always are. */
-static void list_near(const sf_model *m, const sf_operators *op, sf_state *s) {
-    int64_t count = 0;
-    s->contact_room = NEAR * op->gram.spacing;
+/* Makes the list of near points from the points listed now. Those on the anvil always are, and those of faces
+ * that sharp edges may press. */
+static sf_status list_near(const sf_model *m, const sf_operators *op, const sf_sharp_place *at, sf_state *s,
+                           sf_error *err) {
+    int64_t count = 0, points = sf_model_points(m);
+    uint8_t *used = NULL;
+    s->contact_room = NEAR * op->surface.spacing;
+    if (op->sharp.face_count > 0) {
+        used = sf_workspace_take(&s->sharp.used, points, 1, "points in contact", err);
+        SF_TRY(err->status);
+        memset(used, 0, (size_t)points);
+        SF_TRY(sf_sharp_list(&op->sharp, at, &s->contact_room, used, &s->sharp, err));
+    }
     for (int64_t k = 0; k < s->contact_near_count; k++) {
         int64_t c = s->contact_near[k];
-        if (sf_model_point_rests(m, c) ||
+        if (sf_model_point_rests(m, c) || (used && used[c]) ||
             sf_missile_near(m, &s->missile, &op->surface, &s->contact_position[3 * c], s->contact_room))
             s->contact_near[count++] = (int32_t)c;
     }
     s->contact_near_count = count;
+    return SF_OK;
 }
 
 /* Positions now and predicted without contact forces, by u_h. */
@@ -87,6 +87,10 @@ static void book_drive(const sf_model *m, sf_state *s, const double x[3], const 
         s->ledger.contact += 0.25 * sf_missile_work(m, &s->missile, x, old);
 }
 
+static double friction_at(const sf_model *m, int64_t c) {
+    return sf_model_point_rests(m, c) ? m->anvil.friction : m->missile.friction;
+}
+
 /* Displacement (m), in the last step, of what touches at point c. */
 static void partner_motion(const sf_model *m, const sf_state *s, int64_t c, double out[3]) {
     if (sf_model_point_rests(m, c))
@@ -96,31 +100,27 @@ static void partner_motion(const sf_model *m, const sf_state *s, int64_t c, doub
 }
 
 /* Work lost since the last step: the forces' mean times the relative motion, split at the normal. */
-static void book_work(const sf_model *m, sf_state *s, const contact_solve *w) {
+static void book_work(const sf_model *m, sf_state *s) {
     bool driven = sf_missile_is_driven(m);
     for (int64_t k = 0; k < s->contact_near_count; k++) {
         int64_t c = s->contact_near[k];
-        const double *q = &s->contact_force[3 * c], *old = &s->contact_old[3 * c],
-                     *n = &s->contact_normal[3 * c], *x = &s->contact_position[3 * c];
+        bool rests = sf_model_point_rests(m, c);
+        const double *q = &s->contact_force[3 * c], *old = &s->contact_old[3 * c];
         if (sf_dot3(q, q) == 0 && sf_dot3(old, old) == 0)
             continue;
         double mean[3], slip[3];
         partner_motion(m, s, c, slip);
         for (int r = 0; r < 3; r++) {
             mean[r] = 0.5 * (q[r] + old[r]);
-            slip[r] -= s->contact_motion[3 * c + r];
+            slip[r] = s->contact_motion[3 * c + r] - slip[r];
         }
-        double lost = sf_dot3(mean, slip);
-        double normal = w->friction[partner(m, c)] > 0 ? sf_dot3(mean, n) * sf_dot3(slip, n) : lost;
-        s->ledger.contact += normal;
-        s->ledger.friction += lost - normal;
+        const double *n = friction_at(m, c) > 0 ? &s->contact_normal[3 * c] : NULL;
+        double rubbed = sf_ledger_book(s, rests, mean, slip, n);
         s->rubbed_back -= fmax(0, -s->contact_rubbed[c]);
-        s->contact_rubbed[c] += lost - normal;
+        s->contact_rubbed[c] += rubbed;
         s->rubbed_back += fmax(0, -s->contact_rubbed[c]);
-        if (sf_model_point_rests(m, c))
-            s->ledger.anvil += lost;
-        else if (driven)
-            book_drive(m, s, x, mean, old);
+        if (!rests && driven)
+            book_drive(m, s, &s->contact_position[3 * c], mean, old);
     }
 }
 
@@ -145,11 +145,10 @@ static bool find_gap(const sf_model *m, const sf_operators *op, const sf_state *
 
 /* Gap and normal at the end of the next step without contact forces. False: the point does not touch. */
 static bool find_gap_ahead(const sf_model *m, const sf_operators *op, const sf_state *s,
-                           const contact_solve *w, int64_t c, double *gap, double normal[3]) {
+                           const sf_missile_response *response, int64_t c, double *gap, double normal[3]) {
     const double *x = &s->contact_position[3 * c], *step = &s->contact_step[3 * c];
     if (!sf_model_point_rests(m, c))
-        return sf_missile_gap_ahead(m, &s->missile, &w->response[MISSILE], &op->surface, x, step, gap,
-                                    normal) &&
+        return sf_missile_gap_ahead(m, &s->missile, response, &op->surface, x, step, gap, normal) &&
                !(*gap < 0 && entered_from_behind(m, op, s, c));
     *gap = sf_anvil_gap(m, sf_model_point_node(m, c), x) + step[2];
     normal[0] = normal[1] = 0;
@@ -157,9 +156,46 @@ static bool find_gap_ahead(const sf_model *m, const sf_operators *op, const sf_s
     return true;
 }
 
-/* Gaps at the predicted positions; the list of points that would be inside. Deepest present penetration. */
-static int64_t find_active(const sf_model *m, const sf_operators *op, sf_state *s, const contact_solve *w) {
-    int64_t active = 0;
+/* The force that a point begins with: the last step's magnitude, turned to the new normal. */
+static void start_force(const sf_state *s, double friction, int64_t c) {
+    const double *n = &s->contact_normal[3 * c], *old = &s->contact_old[3 * c];
+    double p = fmax(0, sf_dot3(old, n));
+    for (int r = 0; r < 3; r++)
+        s->contact_force[3 * c + r] = friction > 0 && p > 0 ? old[r] : p * n[r];
+}
+
+/* Adds the pair of point c, whose gap ahead is that of the curved surface. */
+static void add_pair(const sf_model *m, sf_state *s, sf_missile_response *response, int64_t c,
+                     sf_contact_system *w) {
+    const double *x = &s->contact_position[3 * c], *n = &s->contact_normal[3 * c];
+    bool rests = sf_model_point_rests(m, c);
+    double away[3] = {0};
+    sf_contact_pair *q = &w->pair[w->count];
+    *q = (sf_contact_pair){.node = c,
+                           .parts = 1,
+                           .part = {(int32_t)c},
+                           .share = {1},
+                           .friction = friction_at(m, c),
+                           .force = &s->contact_force[3 * c],
+                           .missile = rests ? NULL : response,
+                           .place = {x[0], x[1], x[2]}};
+    if (!rests)
+        sf_missile_free_motion(response, x, away);
+    for (int r = 0; r < 3; r++) {
+        q->normal[r] = n[r];
+        q->step[r] = s->contact_step[3 * c + r] - away[r];
+    }
+    q->gap = s->contact_gap[c] - sf_dot3(q->step, n);
+    start_force(s, q->friction, c);
+    sf_contact_add(w);
+}
+
+/* Gaps at the predicted positions; the pairs of the points that would be inside, with forces carried over.
+ * Deepest present penetration. */
+static void find_pairs(const sf_model *m, const sf_operators *op, sf_state *s, sf_missile_response *response,
+                       sf_contact_system *w) {
+    size_t bytes = 3 * (size_t)sf_model_points(m) * sizeof *s->contact_force;
+    memcpy(s->contact_old, s->contact_force, bytes);
     s->penetration = 0;
     for (int64_t k = 0; k < s->contact_near_count; k++) {
         int64_t c = s->contact_near[k];
@@ -167,134 +203,120 @@ static int64_t find_active(const sf_model *m, const sf_operators *op, sf_state *
         if (s->contact_gap[c] < 0 && find_gap(m, op, s, c, &gap))
             s->penetration = fmax(s->penetration, -gap);
         s->contact_gap[c] = INFINITY;
-        if (!find_gap_ahead(m, op, s, w, c, &gap, normal))
+        bool touches = find_gap_ahead(m, op, s, response, c, &gap, normal);
+        for (int r = 0; r < 3; r++)
+            s->contact_force[3 * c + r] = 0;
+        if (!touches)
             continue;
         s->contact_gap[c] = gap;
         memcpy(&s->contact_normal[3 * c], normal, sizeof normal);
         if (gap < 0)
-            s->contact_active[active++] = (int32_t)c;
-    }
-    return active;
-}
-
-/* Forces carried over: last step's magnitude for active points, turned to the new normal; zero for the
- * others. */
-static void start_forces(const sf_model *m, sf_state *s, int64_t active, contact_solve *w) {
-    size_t bytes = 3 * (size_t)sf_model_points(m) * sizeof *s->contact_force;
-    memcpy(s->contact_old, s->contact_force, bytes);
-    memset(s->contact_force, 0, bytes);
-    for (int64_t a = 0; a < active; a++) {
-        int64_t c = s->contact_active[a];
-        const double *n = &s->contact_normal[3 * c], *old = &s->contact_old[3 * c];
-        double p = fmax(0, sf_dot3(old, n));
-        for (int r = 0; r < 3; r++)
-            s->contact_force[3 * c + r] = w->friction[partner(m, c)] > 0 && p > 0 ? old[r] : p * n[r];
-        sf_missile_load(&w->response[partner(m, c)], &s->contact_position[3 * c], &s->contact_force[3 * c]);
+            add_pair(m, s, response, c, w);
     }
 }
 
-/* One Gauss-Seidel update of the force of point c; returns the size of its change. */
-static double relax_point(const sf_model *m, const sf_contact_gram *gram, sf_state *s, contact_solve *w,
-                          int64_t c) {
-    const double *n = &s->contact_normal[3 * c], *x = &s->contact_position[3 * c];
-    double *q = &s->contact_force[3 * c], moved[3] = {0}, recoil[3], old[3], tangential[3];
-    double friction = w->friction[partner(m, c)];
-    sf_missile_response *response = &w->response[partner(m, c)];
-    for (int64_t k = gram->ptr[c]; k < gram->ptr[c + 1]; k++)
-        for (int r = 0; r < 3; r++)
-            moved[r] += gram->value[k] * s->contact_force[3 * (int64_t)gram->index[k] + r];
-    sf_missile_recoil(response, x, recoil);
-    for (int r = 0; r < 3; r++) /* relative displacement that the forces cause */
-        moved[r] = w->shift * (moved[r] + recoil[r]);
-    memcpy(old, q, sizeof old);
-    double mobility = w->shift * (gram->diagonal[c] + sf_missile_mobility(response, x, n));
-    double p_old = sf_dot3(old, n), p = fmax(0, p_old - (s->contact_gap[c] + sf_dot3(moved, n)) / mobility);
-    for (int r = 0; r < 3; r++)
-        tangential[r] = 0;
-    if (friction > 0 && p > 0) {
-        double slip[3], away[3], size = 0;
-        sf_missile_free_motion(response, x, away);
-        for (int r = 0; r < 3; r++)
-            slip[r] = s->contact_step[3 * c + r] - away[r] + moved[r];
-        double across = sf_dot3(slip, n),
-               stuck = w->shift * (gram->diagonal[c] + sf_missile_looseness(response, x));
-        for (int r = 0; r < 3; r++) {
-            tangential[r] = old[r] - p_old * n[r] - (slip[r] - across * n[r]) / stuck;
-            size += tangential[r] * tangential[r];
+/* Books the work of the forces of sharp edges over the last step as that of the points: half of it with the
+ * forces before and half with these. No later step knows the pairs, so that the first half is found ahead,
+ * with the motion that the solve predicts. What book_drive says of a driven missile holds here, too. */
+static void book_sharp(const sf_model *m, sf_state *s, const sf_contact_system *w, int64_t points) {
+    double *ahead = s->sharp.ahead, motion[3], away[3];
+    s->ledger.contact += ahead[0];
+    s->ledger.friction += ahead[1];
+    s->ledger.external += ahead[2];
+    memset(ahead, 0, 3 * sizeof *ahead);
+    for (int64_t a = points; a < w->count; a++) {
+        const sf_contact_pair *pair = &w->pair[a];
+        const double *q = pair->force, *n = pair->friction > 0 ? pair->normal : NULL;
+        const double half[3] = {0.5 * q[0], 0.5 * q[1], 0.5 * q[2]};
+        sf_missile_motion_at(m, &s->missile, pair->place, away);
+        sf_pair_relative(pair, s->contact_motion, motion);
+        sf_sub3(motion, away, motion);
+        sf_ledger_book(s, false, half, motion, n);
+        sf_contact_motion(w, pair, motion);
+        double lost = -sf_dot3(half, motion), normal = n ? -sf_dot3(half, n) * sf_dot3(motion, n) : lost;
+        ahead[0] += normal;
+        ahead[1] += lost - normal;
+        if (!sf_missile_is_driven(m))
+            continue;
+        sf_missile_free_motion(pair->missile, pair->place, away);
+        s->ledger.external += sf_missile_work(m, &s->missile, pair->place, half);
+        ahead[2] += sf_dot3(half, away);
+        ahead[0] += s->step == 0 ? 0.5 * sf_dot3(half, away) : 0;
+    }
+}
+
+/* Sets the loads of all points, with the normal of an edge where a point has no force of its own. */
+static void take_loads(const sf_model *m, sf_state *s, const sf_contact_system *w, int64_t points) {
+    memcpy(s->contact_load, s->contact_force, 3 * (size_t)sf_model_points(m) * sizeof *s->contact_load);
+    for (int64_t k = points; k < w->count; k++)
+        for (int a = 0; a < w->pair[k].parts; a++) {
+            const sf_contact_pair *pair = &w->pair[k];
+            int64_t c = pair->part[a];
+            for (int r = 0; r < 3; r++)
+                s->contact_load[3 * c + r] += pair->share[a] * pair->force[r];
+            if (sf_dot3(&s->contact_force[3 * c], &s->contact_force[3 * c]) == 0)
+                memcpy(&s->contact_normal[3 * c], pair->normal, sizeof pair->normal);
         }
-        double bound = friction * p / sqrt(size);
-        for (int r = 0; r < 3 && bound < 1; r++)
-            tangential[r] *= bound;
-    }
-    double change = 0;
-    for (int r = 0; r < 3; r++) {
-        q[r] = p * n[r] + tangential[r];
-        change = fmax(change, fabs(q[r] - old[r]));
-    }
-    sf_missile_reload(response, x, old, q);
-    return change;
 }
 
-static void relax(const sf_model *m, const sf_operators *op, sf_state *s, int64_t active, contact_solve *w) {
-    for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
-        double change = 0, largest = 0;
-        for (int64_t a = 0; a < active; a++) {
-            int64_t c = sweep % 2 ? s->contact_active[active - 1 - a] : s->contact_active[a];
-            change = fmax(change, relax_point(m, &op->gram, s, w, c));
-            largest = fmax(largest, sf_dot3(&s->contact_force[3 * c], &s->contact_normal[3 * c]));
-        }
-        if (change <= SWEEP_TOLERANCE * largest)
-            return;
-    }
-    s->contact_unsettled++;
-}
-
-/* The force of point c on missile or anvil. */
-static void apply_to_partner(const sf_model *m, sf_state *s, int64_t c) {
-    const double *q = &s->contact_force[3 * c], back[3] = {-q[0], -q[1], -q[2]};
-    if (!sf_model_point_rests(m, c)) {
-        s->contact_count++;
-        sf_missile_apply(m, &s->missile, &s->contact_position[3 * c], &s->contact_normal[3 * c], back);
-        return;
-    }
-    s->anvil_count++;
-    for (int r = 0; r < 3; r++)
-        s->anvil_force[r] += q[r];
-}
-
-/* Phi^T q to the coefficients' forces; resultants to missile and anvil. */
-static void apply_forces(const sf_model *m, const sf_contact_rows *rows, sf_state *s, int64_t active) {
+/* Forces of the pairs on coefficients, missile and anvil. */
+static void store(const sf_model *m, sf_state *s, const sf_contact_system *w) {
     sf_missile_clear(&s->missile);
     s->contact_count = s->anvil_count = 0;
     memset(s->anvil_force, 0, sizeof s->anvil_force);
-    for (int64_t a = 0; a < active; a++) {
-        int64_t c = s->contact_active[a];
-        const double *q = &s->contact_force[3 * c], *n = &s->contact_normal[3 * c];
-        if (!(sf_dot3(q, n) > 0))
+    for (int64_t a = 0; a < w->count; a++) {
+        const sf_contact_pair *pair = &w->pair[a];
+        const double *q = pair->force, back[3] = {-q[0], -q[1], -q[2]};
+        if (!(sf_dot3(q, pair->normal) > 0))
             continue;
-        apply_to_partner(m, s, c);
-        for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++)
-            for (int r = 0; r < 3; r++)
-                s->force[3 * (int64_t)rows->node[k] + r] += rows->value[k] * q[r];
+        sf_contact_apply(w, pair, s->force);
+        s->contact_count += pair->missile != NULL;
+        s->anvil_count += pair->missile == NULL;
+        if (pair->missile)
+            sf_missile_apply(m, &s->missile, pair->place, pair->normal, back);
+        for (int r = 0; r < 3 && !pair->missile; r++)
+            s->anvil_force[r] += q[r];
     }
     if (s->contact_count > 0)
         sf_missile_touch(m, &s->missile, s->time);
 }
 
-void sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s) {
+sf_status sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
     double dt_v = 0.5 * (s->dt_old + s->dt);
-    contact_solve w = {.shift = s->dt * dt_v, .friction = {m->missile.friction, m->anvil.friction}};
-    w.response[MISSILE] = sf_missile_predict(m, &s->missile, s->time, s->dt, s->dt_old);
-    w.response[ANVIL].direction = m->missile.direction;
+    sf_missile_response response = sf_missile_predict(m, &s->missile, s->time, s->dt, s->dt_old);
+    sf_contact_system w = {.rows = &op->rows,
+                           .push = s->contact_push,
+                           .shift = s->dt * dt_v,
+                           .pair = sf_workspace_take(&s->contact_work.point,
+                                                     sf_model_points(m) + sf_sharp_room(&op->sharp),
+                                                     sizeof *w.pair, "pairs in contact", err),
+                           .sweeps = MAX_SWEEPS,
+                           .over = 1,
+                           .tolerance = SWEEP_TOLERANCE,
+                           .unsettled = SWEEP_TOLERANCE};
+    const sf_sharp_place at = {m, &s->missile, &response, s->contact_position, s->contact_step};
+    SF_TRY(err->status);
     sf_anvil_pull(&op->anvil, s->force);
     bool all = use_room(m, op, s);
     predict_points(m, &op->rows, s, dt_v);
     if (all)
-        list_near(m, op, s);
-    int64_t active = find_active(m, op, s, &w);
-    start_forces(m, s, active, &w);
-    relax(m, op, s, active, &w);
-    book_work(m, s, &w);
-    apply_forces(m, &op->rows, s, active);
+        SF_TRY(list_near(m, op, &at, s, err));
+    find_pairs(m, op, s, &response, &w);
+    int64_t points = w.count;
+    if (op->sharp.face_count > 0)
+        SF_TRY(sf_sharp_add(&op->sharp, &at, s->dt, &s->sharp, &w, &s->penetration, err));
+    if (w.count > points) {
+        w.tolerance = SHARP_TOLERANCE;
+        w.unsettled = SHARP_UNSETTLED;
+    }
+    s->contact_unsettled += !sf_contact_relax(&w);
+    if (m->contact_face_count > 0) {
+        book_sharp(m, s, &w, points);
+        take_loads(m, s, &w, points);
+    }
+    sf_contact_clear(&w);
+    book_work(m, s);
+    store(m, s, &w);
     sf_missile_accelerate(m, &s->missile);
+    return SF_OK;
 }

@@ -105,6 +105,17 @@ sf_status sf_contact_rows_build(const sf_model *m, sf_contact_rows *rows, sf_err
     return err->status;
 }
 
+static void measure_rows(const sf_model *m, int64_t points, sf_contact_rows *rows) {
+    for (int64_t c = 0; c < points; c++) {
+        double sum = 0;
+        for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++) {
+            rows->by_mass[k] = rows->value[k] / m->mass[rows->node[k]];
+            sum += fabs(rows->value[k]);
+        }
+        rows->spread = fmax(rows->spread, sum);
+    }
+}
+
 sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int32_t *point,
                                    sf_contact_rows *rows, sf_error *err) {
     joined j = {0};
@@ -115,10 +126,11 @@ sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int3
     for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
         for (int64_t c = 0; c < points; c++)
             rows->ptr[c + 1] = put_row(m, &j, point[c], rows, rows->ptr[c]);
-        if (pass == 1)
-            break;
-        SF_ALLOC_ALL(err, "contact rows", SF_ROOM(rows->node, rows->ptr[points]),
-                     SF_ROOM(rows->value, rows->ptr[points]));
+        if (pass == 0)
+            SF_ALLOC_ALL(err, "contact rows", SF_ROOM(rows->node, rows->ptr[points]),
+                         SF_ROOM(rows->value, rows->ptr[points]), SF_ROOM(rows->by_mass, rows->ptr[points]));
+        else
+            measure_rows(m, points, rows);
     }
     SF_FREE(j.parent[0], j.parent[1], j.parent[2], j.held, j.next);
     if (err->status != SF_OK)
@@ -127,107 +139,5 @@ sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int3
 }
 
 void sf_contact_rows_free(sf_contact_rows *rows) {
-    SF_CLEAR(rows, rows->ptr, rows->node, rows->value);
-}
-
-/* The contact points that each node supports: rows by node, entries in ascending contact point. */
-typedef struct transposed {
-    int64_t *ptr;   /* [n + 2] */
-    int32_t *point; /* [..] */
-    double *phi;    /* [..] */
-} transposed;
-
-static sf_status transpose(const sf_model *m, const sf_contact_rows *rows, transposed *t, sf_error *err) {
-    int64_t count = rows->ptr[sf_model_points(m)];
-    SF_TRY(SF_ALLOC_ALL(err, "contact lists", SF_ROOM(t->ptr, m->node_count + 2), SF_ROOM(t->point, count),
-                        SF_ROOM(t->phi, count)));
-    for (int pass = 0; pass < 2; pass++) {
-        for (int64_t c = 0; c < sf_model_points(m); c++)
-            for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++) {
-                if (pass == 0) {
-                    t->ptr[rows->node[k] + 2]++;
-                    continue;
-                }
-                int64_t slot = t->ptr[rows->node[k] + 1]++;
-                t->point[slot] = (int32_t)c;
-                t->phi[slot] = rows->value[k];
-            }
-        for (int64_t i = 0; pass == 0 && i < m->node_count; i++)
-            t->ptr[i + 2] += t->ptr[i + 1];
-    }
-    return SF_OK;
-}
-
-/* Row c: sums into `dense` (zero on entry and exit) and lists the points touched. */
-static int64_t gram_row(const sf_model *m, const sf_contact_rows *rows, const transposed *t, int64_t c,
-                        double *dense, int32_t *list, uint8_t *seen) {
-    int64_t used = 0;
-    for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++) {
-        int32_t node = rows->node[k];
-        for (int64_t q = t->ptr[node]; q < t->ptr[node + 1]; q++) {
-            if (!seen[t->point[q]]) {
-                seen[t->point[q]] = 1;
-                list[used++] = t->point[q];
-            }
-            dense[t->point[q]] += rows->value[k] * t->phi[q] / m->mass[node];
-        }
-    }
-    qsort(list, (size_t)used, sizeof *list, sf_by_number);
-    return used;
-}
-
-static void measure_points(const sf_model *m, const sf_contact_rows *rows, sf_contact_gram *gram) {
-    gram->spacing = INFINITY;
-    for (int64_t c = 0; c < sf_model_points(m); c++) {
-        double sum = 0;
-        for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++)
-            sum += fabs(rows->value[k]);
-        gram->spread = fmax(gram->spread, sum);
-        if (!sf_model_point_rests(m, c))
-            gram->spacing = fmin(gram->spacing, m->spacing[sf_model_point_node(m, c)]);
-    }
-}
-
-sf_status sf_contact_gram_build(const sf_model *m, const sf_contact_rows *rows, sf_contact_gram *gram,
-                                sf_error *err) {
-    unsigned long count = (unsigned long)sf_model_points(m);
-    transposed t = {0};
-    memset(gram, 0, sizeof *gram);
-    measure_points(m, rows, gram);
-    SF_OWNED double *dense = sf_alloc(err, count, sizeof *dense, "contact matrix");
-    SF_OWNED int32_t *list = sf_alloc(err, count, sizeof *list, "contact matrix");
-    SF_OWNED uint8_t *seen = sf_alloc(err, count, 1, "contact matrix");
-    SF_ALLOC_ALL(err, "contact matrix", SF_ROOM(gram->ptr, count + 1), SF_ROOM(gram->diagonal, count));
-    if (err->status != SF_OK || transpose(m, rows, &t, err) != SF_OK)
-        goto done;
-    for (int pass = 0; pass < 2 && err->status == SF_OK; pass++) {
-        for (int64_t c = 0; c < sf_model_points(m); c++) {
-            int64_t used = gram_row(m, rows, &t, c, dense, list, seen);
-            gram->ptr[c + 1] = gram->ptr[c] + used;
-            for (int64_t k = 0; k < used; k++) {
-                if (pass == 1) {
-                    gram->index[gram->ptr[c] + k] = list[k];
-                    gram->value[gram->ptr[c] + k] = dense[list[k]];
-                }
-                seen[list[k]] = 0;
-                if (list[k] == c)
-                    gram->diagonal[c] = dense[c];
-            }
-            for (int64_t k = 0; k < used; k++)
-                dense[list[k]] = 0;
-        }
-        if (pass == 0) {
-            SF_ALLOC_ALL(err, "contact matrix", SF_ROOM(gram->index, gram->ptr[count]),
-                         SF_ROOM(gram->value, gram->ptr[count]));
-        }
-    }
-done:
-    SF_FREE(t.ptr, t.point, t.phi);
-    if (err->status != SF_OK)
-        sf_contact_gram_free(gram);
-    return err->status;
-}
-
-void sf_contact_gram_free(sf_contact_gram *gram) {
-    SF_CLEAR(gram, gram->ptr, gram->index, gram->value, gram->diagonal);
+    SF_CLEAR(rows, rows->ptr, rows->node, rows->value, rows->by_mass);
 }

@@ -9,9 +9,12 @@
  * alike, and leaves nothing to the tie at this point; the mobility is 1 / sum m. */
 
 typedef struct sf_contact_rows {
-    int64_t *ptr;  /* [points + 1] */
-    int32_t *node; /* [..] coefficient, ascending within the part of each layer */
-    double *value; /* [..] - */
+    int64_t *ptr;    /* [points + 1] */
+    int32_t *node;   /* [..] coefficient, ascending within the part of each layer */
+    double *value;   /* [..] - */
+    double *by_mass; /* [..] kg-1, value over the mass of the coefficient */
+    double
+        spread; /* -, largest sum |Phi| of a point: none is faster than this times the fastest coefficient */
 } sf_contact_rows;
 
 sf_status sf_contact_rows_build(const sf_model *model, sf_contact_rows *rows, sf_error *err);
@@ -19,21 +22,3 @@ sf_status sf_contact_rows_build(const sf_model *model, sf_contact_rows *rows, sf
 sf_status sf_contact_rows_of_nodes(const sf_model *model, int64_t count, const int32_t *node,
                                    sf_contact_rows *rows, sf_error *err);
 void sf_contact_rows_free(sf_contact_rows *rows);
-
-/* The accelerations of surface points by a contact force at another: A = Phi M^-1 Phi^T over the contact
- * points, those of the missile and those of the anvil (sf_model_points), a sparse symmetric matrix; the
- * same for the three components because the mass is lumped. */
-
-typedef struct sf_contact_gram {
-    int64_t *ptr;     /* [contacts + 1] */
-    int32_t *index;   /* [..] contact point, ascending within a row */
-    double *value;    /* [..] kg-1 */
-    double *diagonal; /* [contacts] kg-1 */
-    double spread;    /* -, largest sum |Phi| of a contact point: no point is faster than this times the
-                         fastest coefficient */
-    double spacing;   /* m, smallest of the missile's contact points */
-} sf_contact_gram;
-
-sf_status sf_contact_gram_build(const sf_model *model, const sf_contact_rows *rows, sf_contact_gram *gram,
-                                sf_error *err);
-void sf_contact_gram_free(sf_contact_gram *gram);

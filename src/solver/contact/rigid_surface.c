@@ -95,13 +95,16 @@ sf_status sf_missile_surface_build(const sf_model *m, const double axis[3], sf_m
     s->cap_cosine = m->missile.sphere_cap_cosine;
     memcpy(s->centre, m->missile.sphere_centre, sizeof s->centre);
     memcpy(s->axis, axis, sizeof s->axis);
+    s->spacing = INFINITY;
+    for (int64_t c = 0; c < m->contact_count; c++) {
+        s->spacing = fmin(s->spacing, m->spacing[m->contact_node[c]]);
+        s->reach = fmax(s->reach, m->spacing[m->contact_node[c]]);
+    }
     if (s->shape == SF_SHAPE_SPHERE)
         return SF_OK;
     int64_t triangles = m->surface_triangle_count;
     s->position = m->surface_position;
     s->triangle = m->surface_triangle;
-    for (int64_t c = 0; c < m->contact_count; c++)
-        s->reach = fmax(s->reach, m->spacing[m->contact_node[c]]);
     SF_ALLOC_ALL(err, "missile normals", SF_ROOM(s->normal, 3 * triangles),
                  SF_ROOM(s->edge_normal, 9 * triangles),
                  SF_ROOM(s->vertex_normal, 3 * m->surface_node_count));

@@ -10,6 +10,7 @@ typedef struct sf_missile_surface {
     int64_t shape; /* SF_SHAPE_* */
     double centre[3], radius, cap_cosine;
     double axis[3]; /* unit vector from the centre to the middle of the cap */
+    double spacing; /* m, smallest of the points that it can touch */
 
     /* Triangles binned on a grid over (x, y); SF_SHAPE_SURFACE only. */
     const double *position;  /* borrowed from the model */

@@ -3,10 +3,10 @@
 
 #include "base/mat3.h"
 #include "solver/contact/candidates.h"
-#include "solver/contact/touch.h"
+#include "solver/contact/ledger.h"
+#include "solver/contact/solve.h"
 
-/* Partners of a node: a facet, or one of these. */
-enum { NOTHING = SF_NO_CANDIDATE, FIRST_PLANE = -2 }; /* plane k: FIRST_PLANE - k */
+enum { NOTHING = SF_SKIN_NOTHING, FIRST_PLANE = SF_SKIN_FIRST_PLANE };
 /* The sweeps of a step at most, and those where centroids take part: rows that depend on those of nodes. */
 enum { CANDIDATES = SF_SELF_CANDIDATES, MAX_SWEEPS = 1000, CENTROID_SWEEPS = 240 };
 static const double OVER = 1.6;     /* over-relaxation of the latter */
@@ -38,7 +38,7 @@ static void move_nodes(const sf_model *m, const sf_skin *skin, sf_state *s, doub
                     now[r] += phi * s->d[3 * i + r];
                     last[r] += phi * s->v[3 * i + r];
                     change[r] += inverse * (s->force[3 * i + r] - s->reaction[3 * i + r]) +
-                                 phi * dt_v * s->self_push[3 * i + r];
+                                 phi * dt_v * s->contact_push[3 * i + r];
                 }
             }
         }
@@ -107,23 +107,14 @@ static bool normal_against(const sf_skin *skin, const sf_state *s, int64_t p, co
 /* The weights of a triangle's nodes `n` at a point of its plane, with its own `normal` of twice its area. */
 static void weigh_point(const sf_state *s, const int32_t n[3], const double point[3], const double normal[3],
                         double weight[3]) {
-    double square = sf_dot3(normal, normal);
-    for (int k = 0; k < 3; k++) {
-        double from[3], along[3], moment[3];
-        const double *b = &s->self_position[3 * (int64_t)n[(k + 1) % 3]],
-                     *c = &s->self_position[3 * (int64_t)n[(k + 2) % 3]];
-        for (int r = 0; r < 3; r++) {
-            from[r] = point[r] - b[r];
-            along[r] = c[r] - b[r];
-        }
-        sf_cross3(along, from, moment);
-        weight[k] = sf_dot3(moment, normal) / square;
-    }
+    const double *x[3];
+    sf_corners(s->self_position, n, x);
+    sf_triangle_weights(x, point, normal, weight);
 }
 
 /* Takes the mean of both ways to cut a quadrangle into halves, of gap and weights. One way alone passes no
  * uniform pressure on between faces that do not match: no forces that press are in equilibrium with it. */
-static void take_both_diagonals(const sf_skin *skin, const sf_state *s, sf_touch *q) {
+static void take_both_diagonals(const sf_skin *skin, const sf_state *s, sf_contact_pair *q) {
     int tip = skin->half[q->facet], next = (tip + 1) % 3, last = (tip + 2) % 3;
     const int32_t *n = &skin->facet[3 * q->facet];
     const double *x = &s->self_position[3 * q->node], *a = &s->self_position[3 * (int64_t)n[tip]];
@@ -154,7 +145,7 @@ static void take_both_diagonals(const sf_skin *skin, const sf_state *s, sf_touch
 }
 
 /* Lists the nodes of a pair and their shares. */
-static void list_parts(const sf_skin *skin, sf_touch *q) {
+static void list_parts(const sf_skin *skin, sf_contact_pair *q) {
     int members = sf_skin_members(skin, q->node), corners = sf_skin_corners(skin, q->facet);
     q->parts = 0;
     for (int k = 0; k < members + corners; k++) {
@@ -167,7 +158,7 @@ static void list_parts(const sf_skin *skin, sf_touch *q) {
 }
 
 /* True if a centroid lies on that of a triangle: the nodes of the two carry its part. */
-static bool matches(const sf_skin *skin, const sf_touch *q) {
+static bool matches(const sf_skin *skin, const sf_contact_pair *q) {
     static const double SLIGHTLY = 0.01;
     double off = fmax(fabs(q->weight[0] - 1.0 / 3), fabs(q->weight[1] - 1.0 / 3));
     return !skin->half[q->facet] && off < SLIGHTLY;
@@ -178,14 +169,18 @@ static bool matches(const sf_skin *skin, const sf_touch *q) {
  * where facets that are tilted against each other would interlock; of a rigid facet it is that of the
  * support, and for a node of an edge, which has no normal of its own, that of the facet. The gap is along it,
  * so that the forces on node and facet lie on one line. */
-static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, sf_touch *out) {
+static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_t f, sf_contact_pair *out) {
     const int32_t *n = &skin->facet[3 * f];
     const double *x = &s->self_position[3 * p], *a = &s->self_position[3 * (int64_t)n[0]];
     double own[3], facing[3], against[3], arm[3], point[3];
     facet_normal(skin, s, f, own);
     double area = sqrt(sf_dot3(own, own));
     bool alone = skin->next_side[p] >= 0 || sf_skin_is_rigid(skin, p) || sf_skin_is_rigid(skin, n[0]);
-    *out = (sf_touch){.node = p, .facet = f};
+    out->node = p;
+    out->facet = f;
+    out->weight[3] = 0;
+    out->leans = false;
+    out->missile = NULL;
     for (int r = 0; r < 3; r++)
         facing[r] = own[r] / area;
     if (!(area > 0) || !normal_against(skin, s, p, facing, against))
@@ -212,7 +207,7 @@ static bool meet_facet(const sf_skin *skin, const sf_state *s, int64_t p, int64_
     weigh_point(s, n, point, own, out->weight);
     if (skin->half[f])
         take_both_diagonals(skin, s, out);
-    sf_touch_drop_traces(out->weight);
+    sf_pair_drop_traces(out->weight);
     list_parts(skin, out);
     return p < skin->nodes || !matches(skin, out);
 }
@@ -234,11 +229,12 @@ static bool acts(const sf_skin *skin, int64_t p, int64_t f) {
 /* The partner that node p touches at the end of the step: of those that it may touch, the nearest. Without
  * one, `passed`: the pair that the node was in, if it has become deeper than DEEPEST; its node is -1
  * otherwise. */
-static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, sf_touch *out, sf_touch *passed) {
+static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, sf_contact_pair *out,
+                         sf_contact_pair *passed) {
     const int32_t *own = &s->self_candidate[CANDIDATES * p];
     double spacing = skin->size[p], best = INFINITY, back = -RETURN * s->dt, ahead[3];
     for (int k = 0; k < CANDIDATES && own[k] != NOTHING; k++) {
-        sf_touch q;
+        sf_contact_pair q;
         bool on = goes_on(skin, s->self_partner[p], own[k]);
         double deepest = on ? DEEPEST : SF_CONTACT_ENTRY;
         if (!meet_facet(skin, s, p, own[k], &q) || fabs(q.gap) >= best)
@@ -247,7 +243,7 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, sf_t
             *passed = q;
         if (q.gap < -deepest * spacing)
             continue;
-        sf_touch_relative(&q, s->self_step, ahead);
+        sf_pair_relative(&q, s->self_step, ahead);
         if ((acts(skin, p, own[k]) ? fmax(q.gap, back) : q.gap) + sf_dot3(ahead, q.normal) >= 0)
             continue;
         best = fabs(q.gap);
@@ -260,7 +256,7 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, sf_t
         double height = sf_skin_height(skin, &s->self_position[3 * p], k);
         if (height + plane->side * s->self_step[3 * p + plane->axis] >= 0 || fabs(height) >= best)
             continue;
-        *out = (sf_touch){.node = p, .facet = FIRST_PLANE - k, .gap = height};
+        *out = (sf_contact_pair){.node = p, .facet = FIRST_PLANE - k, .gap = height};
         out->normal[plane->axis] = plane->side;
         list_parts(skin, out);
         best = fabs(height);
@@ -273,118 +269,17 @@ static bool find_partner(const sf_skin *skin, const sf_state *s, int64_t p, sf_t
 /* ---- forces ---- */
 
 /* Leans of a pair with friction; what is rigid takes any moment up. */
-static void lean(const sf_skin *skin, const sf_state *s, sf_touch *q) {
+static void lean(const sf_skin *skin, const sf_state *s, sf_contact_pair *q) {
     if (q->facet >= 0 && q->friction > 0 && !sf_skin_is_rigid(skin, q->node) &&
         !sf_skin_is_rigid(skin, skin->facet[3 * q->facet]))
-        sf_touch_lean(s, &skin->facet[3 * q->facet], q);
+        sf_pair_lean(s, &skin->facet[3 * q->facet], q);
 }
 
-/* Adds the row of the pair over the coefficients, times `q`, to `out`; `accelerate`: over the masses. */
-static void scatter(const sf_model *m, const sf_skin *skin, const sf_touch *pair, const double q[3],
-                    bool accelerate, double *out) {
-    for (int k = 0; k < pair->parts; k++) {
-        int64_t p = pair->part[k];
-        double along = sf_dot3(pair->lean[k], q);
-        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1]; e++) {
-            int64_t i = skin->rows.node[e];
-            double phi = skin->rows.value[e] / (accelerate ? m->mass[i] : 1);
-            for (int r = 0; r < 3; r++)
-                out[3 * i + r] += phi * (pair->share[k] * q[r] + along * pair->normal[r]);
-        }
-    }
-}
-
-/* The row of the pair times a field over the coefficients. */
-static void gather(const sf_skin *skin, const sf_touch *pair, const double *field, double out[3]) {
-    memset(out, 0, 3 * sizeof *out);
-    for (int k = 0; k < pair->parts; k++) {
-        int64_t p = pair->part[k];
-        double own[3] = {0};
-        for (int64_t e = skin->rows.ptr[p]; e < skin->rows.ptr[p + 1]; e++)
-            for (int r = 0; r < 3; r++)
-                own[r] += skin->rows.value[e] * field[3 * (int64_t)skin->rows.node[e] + r];
-        double along = sf_dot3(own, pair->normal);
-        for (int r = 0; r < 3; r++)
-            out[r] += pair->share[k] * own[r] + pair->lean[k][r] * along;
-    }
-}
-
-/* Acceleration of the pair's node relative to its partner by a unit force along x, which differs little from
- * those along y and z; `push` is zero, and left so. */
-static double mobility_of(const sf_model *m, const sf_skin *skin, const sf_touch *pair, double *push) {
-    static const double unit[3] = {1, 0, 0}, back[3] = {-1, 0, 0};
-    double out[3];
-    scatter(m, skin, pair, unit, true, push);
-    gather(skin, pair, push, out);
-    scatter(m, skin, pair, back, true, push);
-    return out[0];
-}
-
-/* The pairs of a step, their mobilities and motions without forces. */
-typedef struct solve {
-    int64_t count;
-    sf_touch *pair;
-    double *mobility;        /* kg-1 */
-    double (*step)[3];       /* m */
-    double (*edge_force)[3]; /* N */
-    bool centroids;          /* take part: over-relaxation of the normal forces */
-    double shift;            /* s2, dt times the distance of the half steps */
-    sf_touch passed;         /* a pair whose node has passed through the facet; node -1: there is none */
-} solve;
-
-/* One Gauss-Seidel update of the force on a pair's node; returns the size of its change. */
-static double relax_pair(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w, int64_t a) {
-    const sf_touch *pair = &w->pair[a];
-    double *q = pair->force, moved[3], next[3], change[3], largest = 0;
-    double mobility = w->shift * w->mobility[a], friction = pair->friction;
-    gather(skin, pair, s->self_push, moved);
-    for (int r = 0; r < 3; r++)
-        moved[r] = w->step[a][r] + w->shift * moved[r];
-    double across = sf_dot3(moved, pair->normal), old = sf_dot3(q, pair->normal),
-           p = fmax(0, old - (w->centroids ? OVER : 1) * (pair->gap + across) / mobility), size = 0;
-    for (int r = 0; r < 3; r++) {
-        next[r] = friction > 0 && p > 0
-                      ? q[r] - old * pair->normal[r] - (moved[r] - across * pair->normal[r]) / mobility
-                      : 0;
-        size += next[r] * next[r];
-    }
-    double bound = size > 0 ? fmin(1, friction * p / sqrt(size)) : 0;
-    for (int r = 0; r < 3; r++) {
-        next[r] = p * pair->normal[r] + bound * next[r];
-        change[r] = next[r] - q[r];
-        q[r] = next[r];
-        largest = fmax(largest, fabs(change[r]));
-    }
-    if (largest > 0)
-        scatter(m, skin, pair, change, true, s->self_push);
-    return largest;
-}
-
-static void relax(const sf_model *m, const sf_skin *skin, sf_state *s, const solve *w) {
-    double change = 0, largest = 0;
-    for (int sweep = 0; sweep < (w->centroids ? CENTROID_SWEEPS : MAX_SWEEPS); sweep++) {
-        change = largest = 0;
-        for (int64_t a = 0; a < w->count; a++) {
-            int64_t k = sweep % 2 ? w->count - 1 - a : a;
-            change = fmax(change, relax_pair(m, skin, s, w, k));
-            largest = fmax(largest, sf_dot3(w->pair[k].force, w->pair[k].normal));
-        }
-        if (change <= SWEEP_TOLERANCE * largest)
-            return;
-    }
-    s->contact_unsettled += change > UNSETTLED * largest;
-}
-
-/* Half of the work of the force on a pair over `motion` (m), that of the last or of the next step. */
-static void book(sf_state *s, const sf_touch *pair, const double motion[3]) {
-    const double *force = pair->force;
-    double lost = -0.5 * sf_dot3(force, motion),
-           normal = pair->friction > 0 ? -0.5 * sf_dot3(force, pair->normal) * sf_dot3(motion, pair->normal)
-                                       : lost;
-    s->ledger.contact += normal;
-    s->ledger.friction += lost - normal;
-    if (pair->facet == FIRST_PLANE - SF_SKIN_ANVIL)
-        s->ledger.anvil += lost;
+/* Books half of the work of the force on a pair over `motion` (m), that of the last or of the next step. */
+static void book(sf_state *s, const sf_contact_pair *pair, const double motion[3]) {
+    const double *q = pair->force, half[3] = {0.5 * q[0], 0.5 * q[1], 0.5 * q[2]};
+    sf_ledger_book(s, pair->facet == FIRST_PLANE - SF_SKIN_ANVIL, half, motion,
+                   pair->friction > 0 ? pair->normal : NULL);
 }
 
 /* The Coulomb coefficient of a pair; the mirror image moves along a symmetry plane as the pad does. */
@@ -406,8 +301,8 @@ static double friction_of(const sf_model *m, const sf_skin *skin, int64_t p, int
 
 /* The pair of node p in the last step; normal and lean are those of the present: the work that they tell of
  * the last forces has an error of the order of their change. */
-static sf_touch last_pair(const sf_model *m, const sf_skin *skin, sf_state *s, int64_t p) {
-    sf_touch q = {.node = p, .facet = s->self_partner[p], .force = &s->self_force[3 * p]};
+static sf_contact_pair last_pair(const sf_model *m, const sf_skin *skin, sf_state *s, int64_t p) {
+    sf_contact_pair q = {.node = p, .facet = s->self_partner[p], .force = &s->self_force[3 * p]};
     q.friction = friction_of(m, skin, p, q.facet);
     memcpy(q.weight, &s->self_weight[4 * p], sizeof q.weight);
     list_parts(skin, &q);
@@ -417,39 +312,41 @@ static sf_touch last_pair(const sf_model *m, const sf_skin *skin, sf_state *s, i
         facet_normal(skin, s, q.facet, q.normal);
         double apart[3];
         sf_unit3(q.normal);
-        sf_touch_relative(&q, s->self_position, apart);
+        sf_pair_relative(&q, s->self_position, apart);
         q.gap = sf_dot3(apart, q.normal);
         lean(skin, s, &q);
     }
     return q;
 }
 
-/* Makes the next pair of the solve one that acts. */
-static void add_pair(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
-    sf_touch *pair = &w->pair[w->count];
+/* Makes the next pair of the system one that acts. */
+static void add_pair(sf_state *s, sf_contact_system *w) {
+    sf_contact_pair *pair = &w->pair[w->count];
     s->self_penetration = fmax(s->self_penetration, -pair->gap);
     pair->gap = fmax(pair->gap, -RETURN * s->dt);
-    w->mobility[w->count] = mobility_of(m, skin, pair, s->self_push);
-    sf_touch_relative(pair, s->self_step, w->step[w->count++]);
+    sf_pair_relative(pair, s->self_step, pair->step);
+    sf_contact_add(w);
 }
 
-/* Books the last step's pairs, finds those of this step, and carries their forces over. */
-static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
+/* Books the last step's pairs, finds those of this step, and carries their forces over. `passed`: a pair
+ * whose node has passed through the facet; its node stays -1 if there is none. */
+static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, sf_contact_system *w,
+                       sf_contact_pair *passed) {
     s->self_penetration = 0;
     for (int64_t k = 0; k < s->self_close_count; k++) {
         int64_t p = s->self_close[k];
         double *q = &s->self_force[3 * p], motion[3];
         if (s->self_partner[p] != NOTHING) {
-            const sf_touch last = last_pair(m, skin, s, p);
-            sf_touch_relative(&last, s->self_motion, motion);
+            const sf_contact_pair last = last_pair(m, skin, s, p);
+            sf_pair_relative(&last, s->self_motion, motion);
             book(s, &last, motion);
         }
-        sf_touch *found = &w->pair[w->count];
+        sf_contact_pair *found = &w->pair[w->count];
         double old = sqrt(sf_dot3(q, q));
-        sf_touch passed = {.node = -1};
-        bool touches = find_partner(skin, s, p, found, &passed);
-        if (passed.node >= 0)
-            w->passed = passed;
+        sf_contact_pair gone = {.node = -1};
+        bool touches = find_partner(skin, s, p, found, &gone);
+        if (gone.node >= 0)
+            *passed = gone;
         if (!touches) {
             s->self_partner[p] = NOTHING;
             memset(q, 0, 3 * sizeof *q);
@@ -465,42 +362,47 @@ static void find_pairs(const sf_model *m, const sf_skin *skin, sf_state *s, solv
         if (!acts(skin, p, found->facet))
             continue;
         lean(skin, s, found);
-        add_pair(m, skin, s, w);
-        w->centroids = w->centroids || p >= skin->nodes;
-    }
-}
-
-/* Adds the pairs of edges. */
-static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, solve *w) {
-    int64_t count = sf_touch_edges(skin, s, RETURN * s->dt, &w->pair[w->count]);
-    for (int64_t k = 0; k < count; k++) {
-        sf_touch *q = &w->pair[w->count];
-        q->friction = friction_of(m, skin, q->node, q->facet);
-        q->force = w->edge_force[k];
-        memset(q->force, 0, 3 * sizeof *q->force);
-        const int32_t corner[3] = {q->part[0], q->part[1], q->part[q->share[3] < -0.5 ? 2 : 3]};
-        if (q->friction > 0)
-            sf_touch_lean(s, corner, q);
-        add_pair(m, skin, s, w);
-    }
-}
-
-/* Accelerations by the last step's forces of missile and anvil into self_push: a cover below the missile
- * would else meet the foam without the missile's load. All points are read, as the list of near points is
- * empty after a restart. */
-static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf_state *s) {
-    for (int64_t c = 0; c < sf_model_points(m); c++) {
-        const double *q = &s->contact_force[3 * c];
-        for (int64_t e = rows->ptr[c]; e < rows->ptr[c + 1] && sf_dot3(q, q) > 0; e++) {
-            int64_t i = rows->node[e];
-            for (int r = 0; r < 3; r++)
-                s->self_push[3 * i + r] += rows->value[e] / m->mass[i] * q[r];
+        add_pair(s, w);
+        if (p >= skin->nodes) {
+            w->over = OVER;
+            w->sweeps = CENTROID_SWEEPS;
         }
     }
 }
 
-static sf_status fail_passed(const sf_model *m, const sf_skin *skin, const sf_state *s, const sf_touch *pair,
-                             sf_error *err) {
+/* Adds the pairs of edges, whose forces begin at zero. */
+static void find_edges(const sf_model *m, const sf_skin *skin, sf_state *s, double (*force)[3],
+                       sf_contact_system *w) {
+    int64_t count = sf_pair_edges(skin, s, RETURN * s->dt, &w->pair[w->count]);
+    for (int64_t k = 0; k < count; k++) {
+        sf_contact_pair *q = &w->pair[w->count];
+        q->friction = friction_of(m, skin, q->node, q->facet);
+        q->force = force[k];
+        memset(q->force, 0, 3 * sizeof *q->force);
+        const int32_t corner[3] = {q->part[0], q->part[1], q->part[q->share[3] < -0.5 ? 2 : 3]};
+        if (q->friction > 0)
+            sf_pair_lean(s, corner, q);
+        add_pair(s, w);
+    }
+}
+
+/* Accelerations by the last step's forces of missile and anvil into contact_push: a cover below the missile
+ * would else meet the foam without the missile's load. All points are read, as the list of near points is
+ * empty after a restart. */
+static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf_state *s) {
+    const double *load = sf_state_load(m, s);
+    for (int64_t c = 0; c < sf_model_points(m); c++) {
+        const double *q = &load[3 * c];
+        for (int64_t e = rows->ptr[c]; e < rows->ptr[c + 1] && sf_dot3(q, q) > 0; e++) {
+            int64_t i = rows->node[e];
+            for (int r = 0; r < 3; r++)
+                s->contact_push[3 * i + r] += rows->by_mass[e] * q[r];
+        }
+    }
+}
+
+static sf_status fail_passed(const sf_model *m, const sf_skin *skin, const sf_state *s,
+                             const sf_contact_pair *pair, sf_error *err) {
     int support = sf_skin_support(m, skin, pair->node, pair->facet);
     const double *x = &s->self_position[3 * pair->node], *rest = &skin->rest[3 * pair->node];
     char through[40] = "another face of the foam";
@@ -516,87 +418,76 @@ static sf_status fail_passed(const sf_model *m, const sf_skin *skin, const sf_st
                                      : "take a finer mesh there, or a smaller solver.step_safety");
 }
 
+/* Adds the force of a support's edge to what is outside of the pad. */
+static void add_sharp_force(const sf_model *m, sf_state *s, const sf_contact_pair *pair) {
+    double moment[3];
+    sf_cross3(pair->place, pair->force, moment);
+    for (int r = 0; r < 3; r++) {
+        s->self_sharp_force[m->support_part[pair->facet - m->skin_count]][r] += pair->force[r];
+        s->self_sharp_moment[r] += moment[r];
+    }
+}
+
 sf_status sf_self_contact_solve(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
     const sf_skin *skin = &op->skin;
     if (skin->count == 0)
         return SF_OK;
     double dt_v = 0.5 * (s->dt_old + s->dt);
-    size_t bytes = 3 * (size_t)m->node_count * sizeof *s->self_push;
+    size_t bytes = 3 * (size_t)m->node_count * sizeof *s->contact_push;
+    const sf_sharp_place at = {.model = m, .position = s->self_position, .step = s->self_step};
     push_from_outside(m, &op->rows, s);
     if (!sf_candidates_last(skin, s)) {
         for (int64_t p = 0; p < skin->count; p++)
             s->self_near[p] = (int32_t)p;
         move_nodes(m, skin, s, dt_v, skin->count, s->self_near);
-        SF_TRY(sf_candidates_find(skin, s, err));
+        SF_TRY(sf_candidates_find(skin, &op->self_sharp, &at, s, err));
     } else {
         move_nodes(m, skin, s, dt_v, s->self_near_count, s->self_near);
     }
-    memset(s->self_push, 0, bytes);
+    memset(s->contact_push, 0, bytes);
     find_normals(skin, s);
-    int64_t most = skin->count + skin->edge_count; /* pairs: nothing grows after the first step */
-    sf_self_work *work = &s->self_work;
-    solve w = {.shift = s->dt * dt_v,
-               .pair = sf_workspace_take(&work->pair, most, sizeof *w.pair, "pairs in contact", err),
-               .mobility =
-                   sf_workspace_take(&work->mobility, most, sizeof *w.mobility, "pairs in contact", err),
-               .step = sf_workspace_take(&work->step, most, sizeof *w.step, "pairs in contact", err),
-               .edge_force = sf_workspace_take(&work->edge_force, skin->edge_count, sizeof *w.edge_force,
-                                               "pairs in contact", err),
-               .passed.node = -1};
+    int64_t most = skin->count + skin->edge_count + sf_sharp_room(&op->self_sharp); /* pairs */
+    double(*edge_force)[3] = sf_workspace_take(&s->contact_work.edge_force, skin->edge_count,
+                                               sizeof *edge_force, "pairs in contact", err);
+    sf_contact_pair passed = {.node = -1};
+    sf_contact_system w = {
+        .rows = &skin->rows,
+        .push = s->contact_push,
+        .shift = s->dt * dt_v,
+        .pair = sf_workspace_take(&s->contact_work.pair, most, sizeof *w.pair, "pairs in contact", err),
+        .sweeps = MAX_SWEEPS,
+        .over = 1,
+        .tolerance = SWEEP_TOLERANCE,
+        .unsettled = UNSETTLED};
     SF_TRY(err->status);
-    find_pairs(m, skin, s, &w);
-    if (w.passed.node >= 0)
-        fail_passed(m, skin, s, &w.passed, err);
+    find_pairs(m, skin, s, &w, &passed);
+    if (passed.node >= 0)
+        fail_passed(m, skin, s, &passed, err);
     int64_t nodes = w.count;
     if (err->status == SF_OK)
-        find_edges(m, skin, s, &w);
-    for (int64_t a = 0; a < w.count; a++)
-        scatter(m, skin, &w.pair[a], w.pair[a].force, true, s->self_push);
-    relax(m, skin, s, &w);
+        find_edges(m, skin, s, edge_force, &w);
+    int64_t edges = w.count;
+    if (err->status == SF_OK && op->self_sharp.face_count > 0)
+        sf_sharp_add(&op->self_sharp, &at, s->dt, &s->self_sharp, &w, &s->self_penetration, err);
+    if (w.count > edges) {
+        w.over = OVER;
+        w.sweeps = CENTROID_SWEEPS;
+    }
+    s->contact_unsettled += !sf_contact_relax(&w);
+    memset(s->self_sharp_force, 0, sizeof s->self_sharp_force);
+    memset(s->self_sharp_moment, 0, sizeof s->self_sharp_moment);
     for (int64_t a = 0; a < w.count; a++) {
         double motion[3];
-        scatter(m, skin, &w.pair[a], w.pair[a].force, false, s->force);
-        sf_touch_relative(&w.pair[a], s->self_motion, motion);
+        if (a >= edges)
+            add_sharp_force(m, s, &w.pair[a]);
+        sf_contact_apply(&w, &w.pair[a], s->force);
+        sf_pair_relative(&w.pair[a], s->self_motion, motion);
         book(s, &w.pair[a], motion);
-        gather(skin, &w.pair[a], s->self_push, motion);
-        for (int r = 0; r < 3; r++)
-            motion[r] = w.step[a][r] + w.shift * motion[r];
-        if (a >= nodes) /* no later step knows a pair of edges */
-            book(s, &w.pair[a], motion);
+        if (a < nodes)
+            continue;
+        sf_contact_motion(&w, &w.pair[a], motion); /* no later step knows a pair of edges */
+        book(s, &w.pair[a], motion);
     }
-    memset(s->self_push, 0, bytes);
+    sf_contact_clear(&w);
     return err->status;
-}
-
-void sf_self_contact_outside(const sf_skin *skin, const sf_state *s, bool symmetry, sf_wrench *outside) {
-    for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
-        int64_t p = s->self_close[k], facet = s->self_partner[p];
-        const double *q = &s->self_force[3 * p];
-        bool symmetric = facet < FIRST_PLANE - SF_SKIN_ANVIL;
-        if (facet != NOTHING && sf_skin_is_rigid(skin, p)) /* on the facet's nodes */
-            for (int c = 0; c < sf_skin_corners(skin, facet); c++) {
-                double weight = s->self_weight[4 * p + c];
-                const double back[3] = {-weight * q[0], -weight * q[1], -weight * q[2]};
-                sf_wrench_add(outside, &s->self_position[3 * sf_skin_corner(skin, facet, c)], back);
-            }
-        else if (facet < 0 ? facet != NOTHING && (symmetry || !symmetric)
-                           : sf_skin_is_rigid(skin, skin->facet[3 * facet]))
-            sf_wrench_add(outside, &s->self_position[3 * p], q);
-    }
-}
-
-void sf_self_contact_supports(const sf_model *m, const sf_skin *skin, sf_state *s) {
-    double force[SF_SUPPORTS][3] = {{0}}, place;
-    for (int64_t k = 0; skin->count > 0 && k < s->self_close_count; k++) {
-        int64_t p = s->self_close[k], facet = s->self_partner[p];
-        int support = facet != NOTHING ? sf_skin_support(m, skin, p, facet) : -1;
-        for (int r = 0; r < 3 && support >= 0; r++)
-            force[support][r] +=
-                sf_skin_is_rigid(skin, p) ? -s->self_force[3 * p + r] : s->self_force[3 * p + r];
-    }
-    for (int k = 0; k < m->support_count; k++) {
-        for (int axis = 0; axis < 2; axis++)
-            force[k][axis] *= !sf_symmetry_plane(m, axis, &place);
-        s->support_force[k] = sqrt(sf_dot3(force[k], force[k]));
-    }
 }

@@ -4,7 +4,7 @@
  * them (contact.h; theory, section "Contact of the pad with itself"). Without these forces the gap of node
  * and face at the next time would be g; the forces q on the node, and -q shared among the face's nodes, are
  * those for which no gap is negative, none pulls, and Coulomb's law holds. Momentum and angular momentum
- * hold: those along the normal are on one line, and sf_touch_lean takes up the moment of friction. A node
+ * hold: those along the normal are on one line, and sf_pair_lean takes up the moment of friction. A node
  * touches a face only if it comes from outside: one that lies deeper behind a face than it may, as behind the
  * other side of a thin wall, does not see it. */
 #pragma once
@@ -15,9 +15,3 @@
  * ledger. Needs force without contact, reaction of the last step, dt and dt_old. */
 sf_status sf_self_contact_solve(const sf_model *model, const sf_operators *operators, sf_state *state,
                                 sf_error *err);
-
-/* Sets support_force. */
-void sf_self_contact_supports(const sf_model *model, const sf_skin *skin, sf_state *state);
-
-/* Adds the forces of anvil and supports on the skin, and those of the symmetry planes with `symmetry`. */
-void sf_self_contact_outside(const sf_skin *skin, const sf_state *state, bool symmetry, sf_wrench *outside);

@@ -249,12 +249,6 @@ static sf_status build_rows(const sf_model *m, sf_skin *skin, sf_error *err) {
     skin->rows.ptr = ptr;
     for (int64_t p = skin->moving; p < skin->count; p++)
         ptr[p + 1] = ptr[p];
-    for (int64_t p = 0; p < skin->moving; p++) {
-        double sum = 0;
-        for (int64_t k = ptr[p]; k < ptr[p + 1]; k++)
-            sum += fabs(skin->rows.value[k]);
-        skin->spread = fmax(skin->spread, sum);
-    }
     return SF_OK;
 }
 

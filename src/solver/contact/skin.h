@@ -6,6 +6,10 @@
  * those of the support behind them, as the solver needs them (solver/contact/self_contact.h). */
 
 /* A plane that stops the pad: that of the anvil, and those of symmetry, beyond which its mirror image is. */
+enum {
+    SF_SKIN_NOTHING = -1,
+    SF_SKIN_FIRST_PLANE = -2
+}; /* partners of a node that are no facet; plane k: FIRST_PLANE - k */
 enum { SF_SKIN_ANVIL, SF_SKIN_SYMMETRY_X, SF_SKIN_SYMMETRY_Y, SF_SKIN_PLANES };
 typedef struct sf_skin_plane {
     int axis;     /* of its normal */
@@ -46,7 +50,6 @@ typedef struct sf_skin {
     bool alone;           /* the pad touches the supports only */
     bool watched;         /* its pairs with itself have no forces */
     sf_skin_plane plane[SF_SKIN_PLANES];
-    double spread;  /* -, largest sum |Phi| of a node */
     double spacing; /* m, smallest of the skin */
     sf_contact_rows rows;
 } sf_skin;

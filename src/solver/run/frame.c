@@ -97,7 +97,7 @@ static void take_pressure(const sf_model *m, const sf_state *s, int64_t first, i
     memset(out, 0, (size_t)(end - first) * sizeof *out);
     for (int64_t c = sf_list_find(m->contact_node, 0, m->contact_count, first);
          c < m->contact_count && m->contact_node[c] < end; c++) {
-        const double *force = &s->contact_force[3 * c];
+        const double *force = &sf_state_load(m, s)[3 * c];
         if (m->contact_area[c] > 0 && sf_dot3(force, force) > 0) /* a normal without a force may be any */
             out[m->contact_node[c] - first] = sf_dot3(force, &s->contact_normal[3 * c]) / m->contact_area[c];
     }

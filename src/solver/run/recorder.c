@@ -142,9 +142,10 @@ enum { FIRST_ROWS = 4096 };
 /* Area (m2) of the undeformed surface whose points have a contact force, of the modelled part. */
 static double area_in_contact(const sf_model *m, const sf_state *s) {
     double area = 0;
+    const double *load = sf_state_load(m, s);
     for (int64_t n = 0; n < s->contact_near_count; n++) {
         int64_t k = s->contact_near[n];
-        if (!sf_model_point_rests(m, k) && sf_dot3(&s->contact_force[3 * k], &s->contact_force[3 * k]) > 0)
+        if (!sf_model_point_rests(m, k) && sf_dot3(&load[3 * k], &load[3 * k]) > 0)
             area += m->contact_area[k];
     }
     return area;

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/contact/touch.h"
+#include "solver/contact/pairs.h"
 
 #include "base/mat3.h"
 
 static const double DEEPEST = 0.1;  /* of the spacing: deeper edges lie on the far sides of a thin part */
 static const double CROSSING = 0.2; /* least sine of the angle between two edges */
-static const double BEYOND = 0.01; /* of an edge: it goes on beyond its ends, so that where two edges of a
-                                      notch meet both act */
+static const double BEYOND = 0.01;  /* of an edge: it goes on beyond its ends, so that where two edges of a
+                                       notch meet both act */
 static const double SLOPE = 0.01; /* least sine by which the faces at an edge fall away from the other edge */
 
-void sf_touch_relative(const sf_touch *q, const double *field, double out[3]) {
+void sf_pair_relative(const sf_contact_pair *q, const double *field, double out[3]) {
     memset(out, 0, 3 * sizeof *out);
     for (int k = 0; k < q->parts; k++) {
         const double *own = &field[3 * (int64_t)q->part[k]];
-        double along = sf_dot3(own, q->normal);
+        double along = q->leans ? sf_dot3(own, q->normal) : 0;
         for (int r = 0; r < 3; r++)
-            out[r] += q->share[k] * own[r] + q->lean[k][r] * along;
+            out[r] += q->share[k] * own[r] + (q->leans ? q->lean[k][r] * along : 0);
     }
 }
 
-void sf_touch_drop_traces(double weight[4]) {
+void sf_pair_drop_traces(double weight[4]) {
     static const double TRACE = 1e-12;
     int largest = weight[1] > weight[0] ? 1 : 0;
     double rest = 1;
@@ -38,23 +38,27 @@ static void subtract(const sf_state *s, int32_t a, int32_t b, double out[3]) {
 }
 
 /* The lean of the pair's node `node`, which becomes a part if it is none yet. */
-static void set_lean(sf_touch *q, int32_t node, const double lean[3]) {
+static void set_lean(sf_contact_pair *q, int32_t node, const double lean[3]) {
     int k = 0;
     while (k < q->parts && q->part[k] != node)
         k++;
-    q->part[k] = node;
-    q->parts += k == q->parts;
+    if (k == q->parts) {
+        q->part[q->parts++] = node;
+        q->share[k] = 0;
+    }
     memcpy(q->lean[k], lean, sizeof q->lean[k]);
 }
 
 /* The lean of a node is gap times the gradient of its share, as a weight of the triangle n, less the part
  * that answers forces along the normal. */
-void sf_touch_lean(const sf_state *s, const int32_t n[3], sf_touch *q) {
+void sf_pair_lean(const sf_state *s, const int32_t n[3], sf_contact_pair *q) {
     double side[3][3], own[3], lean[3];
     for (int k = 0; k < 3; k++)
         subtract(s, n[(k + 2) % 3], n[(k + 1) % 3], side[k]);
     sf_cross3(side[0], side[1], own);
     double square = sf_dot3(own, own), across = sf_dot3(own, q->normal);
+    q->leans = true;
+    memset(q->lean, 0, sizeof q->lean);
     for (int k = 0; k < 3 && square > 0; k++) {
         sf_cross3(own, side[k], lean);
         double back = sf_dot3(lean, q->normal) / across;
@@ -94,7 +98,8 @@ static void straighten(const sf_skin *skin, const int32_t in[4], int32_t edge[4]
 }
 
 /* The pair of two edges that cross, seen along the common perpendicular of their lines, n. */
-static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64_t other, sf_touch *out) {
+static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64_t other,
+                      sf_contact_pair *out) {
     int32_t a[4], c[4];
     double u[3], v[3], between[3], n[3], moment[3];
     memcpy(a, &skin->edge[4 * one], sizeof a);
@@ -117,29 +122,29 @@ static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64
     if (fabs(at - 0.5) > 0.5 + BEYOND || fabs(there - 0.5) > 0.5 + BEYOND || side == 0 ||
         falls_away(s, a, n) != -side)
         return false;
-    *out = (sf_touch){.node = a[at > 0.5],
-                      .facet = skin->ring[skin->ring_ptr[c[0]]],
-                      .gap = -side * sf_dot3(between, n),
-                      .parts = 4,
-                      .part = {a[0], a[1], c[0], c[1]},
-                      .share = {1 - at, at, there - 1, -there},
-                      .normal = {side * n[0], side * n[1], side * n[2]}};
+    *out = (sf_contact_pair){.node = a[at > 0.5],
+                             .facet = skin->ring[skin->ring_ptr[c[0]]],
+                             .gap = -side * sf_dot3(between, n),
+                             .parts = 4,
+                             .part = {a[0], a[1], c[0], c[1]},
+                             .share = {1 - at, at, there - 1, -there},
+                             .normal = {side * n[0], side * n[1], side * n[2]}};
     return true;
 }
 
-int64_t sf_touch_edges(const sf_skin *skin, const sf_state *s, double back, sf_touch *pair) {
+int64_t sf_pair_edges(const sf_skin *skin, const sf_state *s, double back, sf_contact_pair *pair) {
     int64_t count = 0;
     for (int64_t e = 0; e < 2 * skin->edge_count; e++) {
         int64_t node = skin->edge[4 * (e / 2) + e % 2];
         const int32_t *near = &s->self_candidate[SF_SELF_CANDIDATES * node];
         for (int k = 0; k < 3 * SF_SELF_CANDIDATES && near[k / 3] >= 0 && count < skin->edge_count; k++) {
-            sf_touch q;
+            sf_contact_pair q;
             double ahead[3];
             int64_t other = skin->edge_of[3 * (int64_t)near[k / 3] + k % 3];
             if (other <= e / 2 || !meet_edge(skin, s, e / 2, other, &q) || q.node != node ||
                 q.gap < -DEEPEST * skin->size[node])
                 continue;
-            sf_touch_relative(&q, s->self_step, ahead);
+            sf_pair_relative(&q, s->self_step, ahead);
             if (fmax(q.gap, -back) + sf_dot3(ahead, q.normal) < 0)
                 pair[count++] = q;
         }

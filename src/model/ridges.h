@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#pragma once
+#include "base/error.h"
+#include <stdint.h>
+
+/* The sharp edges and vertices of a triangulated rigid surface: those that would enter the faces of a pad
+ * between its nodes by more than SF_SMOOTH_DEPTH of its spacing. An edge of facets that turn by the angle a,
+ * each L wide, enters a chord of the length h by h a / 4, or by h^2 a / 8 L if its facets are smaller than
+ * the chord. */
+
+#define SF_SMOOTH_DEPTH (1.0 / 16)
+
+/* A sharp convex edge between two facets. Where the surface ends, the body goes on behind the facet; in a
+ * symmetry plane it goes on as its mirror image. */
+typedef struct sf_ridge {
+    int32_t node[2];  /* of the surface */
+    double arm[2][3]; /* unit vectors in its facets, across the edge and away from it */
+    int64_t
+        slot[2]; /* 3 x facet + the corner that the edge runs from; of the second -1 where the surface ends */
+} sf_ridge;
+
+typedef struct sf_ridges {
+    int64_t count;
+    sf_ridge *ridge; /* [count]; none that lies in a symmetry plane, where nodes of the pad lie as well */
+    int64_t corner_count;
+    int32_t *corner; /* [corner_count] nodes at the ends of such edges and at sharp tips, ascending */
+    int64_t *ptr;    /* [corner_count + 1] */
+    double *arm;     /* [..][3] unit vectors along the edges that leave each corner */
+} sf_ridges;
+
+/* `place` [2] (m): of the symmetry planes x and y, NAN: there is none; `spacing` (m): of the pad. Nodes at
+ * one place count as one. Release with sf_ridges_free, also after a failure. */
+sf_status sf_ridges_find(int64_t node_count, const double *position, int64_t triangle_count,
+                         const int32_t *triangle, const double place[2], double spacing, sf_ridges *out,
+                         sf_error *err);
+void sf_ridges_free(sf_ridges *ridges);
