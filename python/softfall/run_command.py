@@ -112,7 +112,7 @@ def simulate(case: Case, output: str, threads: int | None, bar: Bar, watch: Call
         if drop is None:
             progress = made
             progress.begin()
-            drop = case.run(threads, lambda step: (made(step), watch and watch(step)), runs=output)
+            drop = case.run(threads, lambda step: [tell(step) for tell in (made, watch) if tell], runs=output)
     except NumericError as error:
         if error.results:
             with contextlib.suppress(Error):  # of too few rows nothing is made; the failure is what counts

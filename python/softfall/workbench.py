@@ -113,7 +113,14 @@ class Workbench:
     def state(self, _: dict[str, Any]) -> dict[str, Any]:
         """Returns the run at work and the drops that are there."""
         job = self.job
-        return {"job": job.told() if job else None, "runs": self.list(), "changed": self.path.stat().st_mtime_ns if self.path.exists() else 0}
+        return {"job": job.told() if job else None, "runs": self.list(), "changed": self._content()}
+
+    def _content(self) -> str:
+        """Returns what changes with the case, its curves and its geometries."""
+        try:
+            return str(library.case_hash(str(self.path), []))
+        except Error as error:
+            return str(error)
 
     def run(self, request: dict[str, Any]) -> dict[str, Any]:
         """Starts a drop of the case with values."""
@@ -189,7 +196,7 @@ class Workbench:
                 found.append(self._known[path][1])
             except (Error, OSError, ValueError, KeyError, TypeError):
                 continue
-        return sorted(found, key=lambda run: -run["when"])[:MOST_RUNS]
+        return sorted(found, key=lambda run: int(run["when"]), reverse=True)[:MOST_RUNS]
 
     def drop(self, request: dict[str, Any]) -> dict[str, Any]:
         """Returns verdict, figures and curve of a drop."""

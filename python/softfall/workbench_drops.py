@@ -86,7 +86,8 @@ class Live:
         foam = () if form.has_layers(case) else ("material.", "pad.stress_factor")  # varied, too
         rest = tuple(sorted((key, text) for key, text in overrides.items() if key not in varied and not key.startswith(foam)))
         files = tuple((case.path.parent / str(case.get(key) or "")).stat().st_mtime_ns for key in ("geometry.file", "geometry.missile_file"))
-        name = (case.path, case.path.stat().st_mtime_ns, files, rest)
+        content = (library.case_hash(str(case.path), [f"{key}={text}" for key, text in rest]),) if form.has_layers(case) else ()  # of its foams
+        name = (case.path, case.path.stat().st_mtime_ns, (*files, *content), rest)
         for known, model in self._models.items():
             if known[:4] == name and (not thickness or THICKNESS[0] <= thickness / model.thickness <= THICKNESS[1]):
                 return model

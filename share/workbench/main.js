@@ -60,7 +60,11 @@ async function poll() {
 
 async function loadCase(changed) {
   const told = await ask("case");
-  if (state.changed) banner("The case file has changed: its values are taken over, your own stay.");
+  if (state.changed) {
+    banner("The case or a file of it has changed: its values are taken over, your own stay.");
+    for (const drop of state.drops.values()) drop.values = undefined; // they are drops of the case as it was
+    state.before = state.job?.number;
+  }
   Object.assign(state, {changed, name: told.name, path: told.path});
   $("title").textContent = document.title = `${told.name} – softfall`;
   $("path").textContent = told.path;
@@ -178,7 +182,7 @@ async function choose(id, values) {
   if (run && state.drops.has(id) && state.drops.get(id).when !== run.when) state.drops.delete(id);
   const drop = await fetchDrop(id);
   if (!drop) return;
-  Object.assign(drop, {when: run?.when, values: values ?? (state.job?.id === id ? state.job.values : drop.values)});
+  Object.assign(drop, {when: run?.when, values: values ?? (state.job?.id === id && state.job.number !== state.before ? state.job.values : drop.values)});
   Object.assign(state, {current: id, live: null});
   state.beside.delete(id);
   tellAnswer();

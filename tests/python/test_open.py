@@ -276,6 +276,19 @@ def test_two_tabs_show_one_run(page, service):
     page.session = first
 
 
+def test_a_file_that_is_edited_is_taken_over(page, service):
+    page.value("document.querySelector('#runs tbody button:not(:disabled)')?.click()")
+    curve = next(pathlib.Path("pad").rglob("eva35.csv"))
+    before = curve.read_text()
+    try:
+        curve.write_text(re.sub(r"(?m)^(0\.5\d*),.*\n", "", before, count=1))
+        page.wait_for("document.getElementById('banner').textContent.includes('has changed')")
+        page.wait_for("!/^(valid|do not use)/.test(document.getElementById('verdict').textContent) || document.getElementById('origin').textContent.includes('other values')")
+    finally:
+        curve.write_text(before)
+    page.wait_for("document.getElementById('banner').textContent.includes('has changed')")
+
+
 def test_the_case_is_saved(page):
     page.write("folder", "saved")
     page.key("Enter")
