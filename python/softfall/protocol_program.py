@@ -18,9 +18,9 @@ from .command import Parser, say
 from .curves import column
 from .drop import read_results
 from .errors import Error, InputError
-from .judge import Outcome, judge
+from .judge import Outcome, between, judge
 from .protocol import CAUTION, Protocol, length, names, read
-from .protocol_advice import advise
+from .protocol_advice import advise, foams_interval
 from .protocol_drops import Drop, Drops, simulate
 from .protocol_measured import measure
 from .protocol_report import FIELDS, write
@@ -86,6 +86,11 @@ def _probable(outcome: Outcome) -> str:
     return f" (probability of passing {outcome.probability[0]:.2f}, {outcome.probability[1]:.2f} to {outcome.probability[2]:.2f})" if outcome.probability else ""
 
 
+def _interval(outcome: Outcome) -> str:
+    read_off = "" if math.isnan(outcome.value) else f"{outcome.value:.4g} m, "
+    return f"; {read_off}95 % interval {between(outcome.low, outcome.high)} m by {outcome.interval_from}" if outcome.interval_from and between(outcome.low, outcome.high) else ""
+
+
 def _tested(outcome: Outcome) -> str:
     return "" if math.isnan(outcome.tested) else f"; greatest height tested that meets all limits: {outcome.tested:g} m" if outcome.tested else "; no height tested meets all limits"
 
@@ -131,11 +136,12 @@ def perform(o: argparse.Namespace) -> str:
         else:
             parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, parts.get("measured"), **options)
     if not o.advise:
-        outcomes = {what: judge(p, drops, what == "simulated") for what, drops in parts.items()}
+        foams = foams_interval(p, parts["measured"], parts["simulated"].searches) if len(parts) == 2 and o.posterior and p.kind == "critical height" else None
+        outcomes = {what: judge(p, drops, what == "simulated", None if what == "simulated" else foams) for what, drops in parts.items()}
         pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
     output.mkdir(parents=True, exist_ok=True)
     write(p, parts, outcomes, pairs, laboratory, photo, output, told, {**set_up, **({"measured records": str(o.measured)} if o.measured else {}), "command": " ".join(sys.argv[1:])})
-    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}{_probable(outcome)}{_tested(outcome)}" for what, outcome in outcomes.items()),
+    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}{_probable(outcome)}{_interval(outcome)}{_tested(outcome)}" for what, outcome in outcomes.items()),
             *(f"  note: {note}" for outcome in outcomes.values() for note in outcome.notes),
             f"  {len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed. {CAUTION}", f"Written: {output}/report.html, protocol.json, drops.csv"]
     return "\n".join(said)
