@@ -70,7 +70,7 @@ static void make_thinner(const sf_kernel *kernel, sf_model *m) {
 }
 
 sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
-                              sf_section_drop *out, sf_error *err) {
+                              sf_section_drop *out, double *a_max, sf_error *err) {
     SF_OWNED_BY(sf_model_free) sf_model equal = {0};
     SF_OWNED_BY(sf_model_free) sf_model faster = {0};
     SF_OWNED_BY(sf_model_free) sf_model thinner = {0};
@@ -92,5 +92,6 @@ sf_status sf_section_drop_run(const sf_model *section, sf_model *fine, const sf_
             figure[k][A_MAX] = figure[k][HIC] = NAN;
     }
     take(figure, out);
+    *a_max = out->a_max_g > 0 ? figure[EQUAL][A_MAX] : 0;
     return SF_OK;
 }

@@ -6,8 +6,10 @@
 #include "case/read.h"
 #include "case/values.h"
 #include "io/replace.h"
+#include "model/good_run.h"
 #include "model/model_check.h"
 #include "model/model_io.h"
+#include "pre/drop_check.h"
 #include "pre/make.h"
 #include "pre/model_report.h"
 
@@ -24,7 +26,7 @@ static const sf_option list[] = {
     {"set", 0, "GROUP.KEY=VALUE",
      "override a key of the case, e.g. missile.velocity=\"5.2 m/s\", or replace a group by a file, e.g. "
      "material=@other_foam.cfg",
-     .member = offsetof(options, overrides), .read = sf_program_read_texts},
+     .member = offsetof(options, overrides), .read = sf_program_read_texts, .repeats = true},
     {"axisymmetric", 0, NULL,
      "model the plane section of a plate that a body of revolution hits straight: --set "
      "geometry.model=\"axisymmetric\"",
@@ -51,7 +53,7 @@ static sf_status check_output(const options *o, const char *path, sf_error *err)
     SF_TRY(sf_replace_check(path, err));
     if (!o->force && sf_replace_exists(path))
         return SF_REFUSE(err, "%s exists; --force replaces it", path);
-    return SF_OK;
+    return sf_h5_check_replaced(path, "softfall-model", err);
 }
 
 /* Facts go to the report of the model. */
@@ -101,8 +103,25 @@ static bool is_wide(const sf_model *section, const sf_contact_zone *zone) {
     return high[0] >= zone->half_width + section->thickness;
 }
 
+/* Warns of a coarse mesh by the drop of the section on it, `a_max` (g); 0: there is none, and the spacing
+ * tells. */
+static void warn_mesh(const sf_model *model, const sf_build_report *report, double a_max,
+                      const sf_sink *sink) {
+    double error = a_max > 0 ? a_max / model->section.a_max_g - 1 : 0;
+    if (!(a_max > 0))
+        sf_drop_warn_mesh(model, &report->zone, sink);
+    else if (fabs(error) >= sf_good_run_limits()->mesh)
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "the nodal spacing under the missile is %.3g mm: expected error of a_max about %.2g %%, too %s, by "
+            "drops of the section on finer meshes",
+            1e3 * report->zone.spacing, 100 * fabs(error), error < 0 ? "low" : "high");
+}
+
 /* Simulates the drop of the section, if there is one. That it does not work is no failure of the drop. */
-static void refer(const options *o, sf_sections *sections, const sf_build_report *report, sf_model *model) {
+static void refer(const options *o, sf_sections *sections, const sf_build_report *report, sf_model *model,
+                  const sf_sink *sink) {
+    double a_max = 0;
     SF_OWNED_BY(sf_model_free) sf_model equal = {0};
     SF_OWNED_BY(sf_model_free) sf_model fine = {0};
     sf_model built[SF_SECTIONS] = {{0}};
@@ -115,7 +134,8 @@ static void refer(const options *o, sf_sections *sections, const sf_build_report
     fine = built[SF_SECTION_FINE];
     const sf_model *section = model->axisymmetric ? model : &equal;
     if (none.status == SF_OK && (model->axisymmetric || is_wide(section, &report->zone)))
-        sf_section_drop_run(section, &fine, &kernel, &model->section, &none);
+        sf_section_drop_run(section, &fine, &kernel, &model->section, &a_max, &none);
+    warn_mesh(model, report, a_max, sink);
     if (model->section.a_max_g > 0)
         printf("%-26s%.2f g, HIC %.1f, %.2f mm for ever finer meshes of the section\n", "axisymmetric",
                model->section.a_max_g, model->section.hic, 1e3 * model->section.indentation);
@@ -152,7 +172,7 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
     sf_replace_clean(output);
     sf_model_report_make(&model, &report, &table);
     sf_model_report_print(stdout, &table);
-    refer(o, &sections, &report, &model);
+    refer(o, &sections, &report, &model, &sink);
     SF_OWNED char *text = sf_model_report_text(&table, err);
     sf_provenance provenance = {.program = "softfall-pre",
                                 .command_line = command,
@@ -167,6 +187,18 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
         sf_model_hash(&model, hash);
     }
     return (int64_t)strtoull(hash, NULL, 16);
+}
+
+/* --axisymmetric is a value of the case; another one on the command line contradicts it. */
+static sf_status choose_model(sf_option_texts *overrides, sf_error *err) {
+    static const char plain[] = "geometry.model=axisymmetric", quoted[] = "geometry.model=\"axisymmetric\"";
+    for (int k = 0; k < overrides->count; k++)
+        if (sf_text_contradicts(overrides->text[k], plain) && sf_text_contradicts(overrides->text[k], quoted))
+            return SF_REFUSE(err, "--axisymmetric contradicts --set %s: give one of them",
+                             overrides->text[k]);
+        else if (strncmp(overrides->text[k], plain, strcspn(plain, "=") + 1) == 0)
+            return SF_OK;
+    return sf_program_read_texts("--axisymmetric:", quoted, overrides, err);
 }
 
 int main(int argc, char **argv) {
@@ -185,9 +217,8 @@ int main(int argc, char **argv) {
         sf_case_print_keys(stdout);
     else if (err.status == SF_OK && sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK) {
         SF_OWNED char *command = sf_command_line(argc, argv);
-        if (o.axisymmetric && o.overrides.count < (int)(sizeof o.overrides.text / sizeof(char *)))
-            o.overrides.text[o.overrides.count++] = "geometry.model=\"axisymmetric\"";
-        build(&o, command ? command : "softfall-pre", 1, &err);
+        if (!o.axisymmetric || choose_model(&o.overrides, &err) == SF_OK)
+            build(&o, command ? command : "softfall-pre", 1, &err);
     }
     return sf_error_report(&err, "softfall-pre");
 }
