@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import base64
 import math
+import os
 import sys
 import warnings
 from pathlib import Path
@@ -14,7 +15,7 @@ import numpy as np
 
 from . import output as output_files
 from .case import Case
-from .command import Parser, say
+from .command import Parser, say, values_of
 from .curves import column
 from .drop import read_results
 from .errors import Error, InputError
@@ -95,6 +96,14 @@ def _tested(outcome: Outcome) -> str:
     return "" if math.isnan(outcome.tested) else f"; greatest height tested that meets all limits: {outcome.tested:g} m" if outcome.tested else "; no height tested meets all limits"
 
 
+def _is_own(output: Path) -> bool:
+    """Returns whether a folder with files of our names has our protocol.json."""
+    try:
+        return output_files.read(output / "protocol.json").startswith(b'{\n  "caution": "softfall')
+    except InputError:
+        return False
+
+
 def perform(o: argparse.Namespace) -> str:
     """Runs the command; returns what it prints."""
     if o.list:
@@ -103,7 +112,11 @@ def perform(o: argparse.Namespace) -> str:
         raise InputError("PROTOCOL, --output=DIR and --pad=CASE or --measured=DIR are needed; --list lists the protocols")
     p, output = read(o.protocol), Path(o.output)
     laboratory, photo = read_laboratory(o.laboratory)
+    if o.measured and os.path.realpath(output) == os.path.realpath(o.measured):
+        raise InputError(f"--output={output} is the folder of the measured drops, whose files stay as they are: give another one")
     there = [name for name in FILES if (output / name).exists()]
+    if there and not _is_own(output):
+        raise InputError(f"{output} has {there[0]}, and no protocol.json of softfall: it is not replaced; give another directory")
     if there and not o.force:
         raise InputError(f"{output} has {there[0]} already: give --force to replace it (finished drops are used again), or another directory")
     if o.advise and not (o.pad and o.posterior):
@@ -122,10 +135,7 @@ def perform(o: argparse.Namespace) -> str:
         parts["measured"] = measure(p, Path(o.measured), o.pattern, complete=not o.advise)
     outcomes, told, pairs, set_up = {}, None, [], dict[str, str]()
     if o.pad:
-        for text in o.set:
-            if "=" not in text:
-                raise InputError(f"--set {text}: KEY=VALUE is expected")
-        pad = Case(o.pad, dict(text.split("=", 1) for text in o.set))
+        pad = Case(o.pad, values_of(o.set))
         set_up = {"case": str(pad.path), **({"changed": ", ".join(o.set)} if o.set else {}), **{key: str(pad[key]) for key in SHOWN if pad.get(key) is not None},
                   **({"draws of the foam": str(o.posterior)} if o.posterior else {})}
         options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile, "views": o.views}

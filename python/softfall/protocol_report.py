@@ -162,8 +162,8 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
         "<h2>Notes, and what was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
         _choices(advice), _set_up(p, told or {}), _drop_table(p, parts, output), height_picture(p, parts), curve_picture(parts), compared, _readings(parts), _clauses(p),
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
-    output_files.write(output / "report.html", page)
     output_files.write(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
+    output_files.write(output / "report.html", page)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["kind", "condition", "position", "missile", "height_m", "speed_m_s", "mass", "drop", "counts", *(figure.label for figure in p.figures), "grade", "note", "source"])
