@@ -238,8 +238,9 @@ class _Reader:
         for text in self.o.scale:
             if parse_scale(text)[0] not in quantities:
                 raise InputError(f"{self.path}: no column that is read takes the scale \"{text}\": leave {self.o.spell('scale', text)} out")
-        if len(self.o.units) > len(self.table.all_columns):
-            raise InputError(f"{self.path}: {len(self.o.units)} units for {len(self.table.all_columns)} columns: leave {', '.join(self.o.units[len(self.table.all_columns):])} out")
+        beyond = [unit for unit in self.o.units[len(self.table.all_columns):] if unit]
+        if beyond:
+            raise InputError(f"{self.path}: {len(self.o.units)} units for {len(self.table.all_columns)} columns: leave {', '.join(beyond)} out")
 
     def _plain(self, data: dict[str, Array]) -> list[str]:
         words = []
