@@ -10,6 +10,7 @@
 #include "study/fit/compression/compression_config.h"
 #include "study/fit/drop/drop_fit.h"
 #include "io/plain_file.h"
+#include "io/replace.h"
 #include "model/model_io.h"
 #include "post/figures/compare.h"
 #include "pre/mesh/geo_parameters.h"
@@ -152,6 +153,7 @@ static sf_status read_results(const char *path, sf_error *err) {
     sf_results results;
     sf_frame frame;
     sf_figures figures;
+    sf_seal_add(path, SF_IGNORED); /* else nothing behind the check of the seal would be read */
     if (sf_results_open(path, &results, err) != SF_OK)
         return err->status;
     if (results.has_peak && sf_frame_read(&results, &results.peak, SF_FIELD_ALL, &frame, err) == SF_OK)

@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "io/h5_data.h"
 #include "io/provenance.h"
+#include "io/replace.h"
 #include "model/columns.h"
 #include <math.h>
 #include <stdio.h>
@@ -236,6 +237,5 @@ sf_status fixture_write(const char *path, const fixture_options *o, sf_error *er
         put_frame(file, &c, "/peak", 2, o, err);
     if (!o->no_summary)
         put_summary(file, o, err);
-    sf_h5_close(&file, err);
-    return err->status;
+    return sf_h5_close(&file, err) == SF_OK && err->status == SF_OK ? sf_seal_add(path, err) : err->status;
 }

@@ -48,9 +48,11 @@ static void read_model(const program_place *p, const char *name, sf_model *m) {
 static void the_body_of_the_hemisphere_has_the_closed_form(void **state) {
     const program_place *p = *state;
     const double radius = 0.08, mass = 4.6;
-    program_succeed(p, "pre",
-                    "'%s' -o coarse.h5 %s" WHOLE FREE " --set geometry.missile_parameters.element_size=25.0",
-                    fixture_source(EXAMPLE), program_coarse(20));
+    program_succeed(
+        p, "pre",
+        "'%s' -o coarse.h5 --set geometry.parameters.fine_spacing=20 --set geometry.parameters.outer_spacing=20 "
+        "--set pad.mesh_error_limit=1" WHOLE FREE " --set geometry.missile_parameters.element_size=25.0",
+        fixture_source(EXAMPLE));
     for (int coarse = 0; coarse < 2; coarse++) {
         sf_model m;
         read_model(p, coarse ? "coarse.h5" : "free.h5", &m);

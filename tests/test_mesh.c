@@ -344,7 +344,7 @@ static void step_is_meshed_through_a_geo_that_names_groups(void **state) {
     write_file("box.geo", "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 30, 20, 10};\n");
     convert("box.geo", "box.step", false);
     assert_mesh_refused(*state, source_of(in_folder("box.step"), NULL), "pad",
-                        "gmsh reads no groups from such a file: name them in a .geo that merges it");
+                        "gmsh reads no groups from such a file: name them in a .geo beside it: Merge \"");
     write_file("named.geo", "SetFactory(\"OpenCASCADE\");\nMerge \"box.step\";\npad() = Volume{:}; Physical "
                             "Volume(\"pad\") = pad();\n"
                             "base() = Surface In BoundingBox{-1, -1, -0.1, 31, 21, 0.1};\n"
@@ -417,6 +417,11 @@ static void faults_in_the_geometry_are_told(void **state) {
                "Physical Volume(\"pad\") = {};\nPhysical Volume(\"foam\") = {1};\n");
     assert_mesh_refused(*state, source_of(in_folder("empty.geo"), NULL), "pad",
                         "its volume groups: \"foam\"");
+    /* A second volume group that shares a face with the pad is no part of it; one that lies apart may be a
+     * missile. */
+    write_file("second.geo",
+               BOX "Box(2) = {0, 0, 1, 1, 1, 1}; Coherence;\nPhysical Volume(\"lid\") = {2};\n");
+    assert_mesh_refused(*state, source_of(in_folder("second.geo"), NULL), "pad", "of the group \"lid\", at ");
     write_file("bare.msh",
                "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 2 \"top\"\n3 1 \"pad\"\n"
                "$EndPhysicalNames\n$Entities\n0 0 1 1\n1 0 0 0 1 1 0 1 2 0\n1 0 0 0 1 1 1 1 1 0\n"

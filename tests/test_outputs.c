@@ -70,20 +70,20 @@ static void assert_all_harmless(const program_place *p, const attempt *list, siz
 #define ASSERT_ALL_HARMLESS(state, list) assert_all_harmless(*(state), list, sizeof(list) / sizeof(list)[0])
 
 static void an_input_is_never_an_output(void **state) {
-    static const char says[] = "would replace an input";
+    static const char says[] = "would replace an input", kind[] = "is not replaced, as it is ";
     static const attempt list[] = {
-        {NULL, "pre", "good.cfg -o good.cfg --force", says},
-        {NULL, "pre", "good.cfg -o ./geo/../good.cfg --force", says},
-        {NULL, "pre", "good.cfg -o materials/eva35.cfg --force", says},
-        {NULL, "pre", "good.cfg -o materials/eva35.csv --force", says},
-        {NULL, "pre", "good.cfg -o geo/pad.geo --force", says},
-        {NULL, "pre", "good.cfg -o geo/hemisphere.geo --force", says},
-        {"ln good.cfg hard && ln -s good.cfg soft", "pre", "good.cfg -o hard --force", says},
-        {NULL, "pre", "good.cfg -o soft --force", says},
-        {NULL, "pre", "soft -o soft --force", says},
-        {NULL, "solve", "model.h5 -o model.h5 --force", says},
-        {"ln model.h5 linked.h5", "solve", "model.h5 -o linked.h5 --force", says},
-        {"cp model.h5 x.h5.restart", "solve", "x.h5.restart -o x.h5 --force", says},
+        {NULL, "pre", "good.cfg -o good.cfg --force", kind},
+        {NULL, "pre", "good.cfg -o ./geo/../good.cfg --force", kind},
+        {NULL, "pre", "good.cfg -o materials/eva35.cfg --force", kind},
+        {NULL, "pre", "good.cfg -o materials/eva35.csv --force", kind},
+        {NULL, "pre", "good.cfg -o geo/pad.geo --force", kind},
+        {NULL, "pre", "good.cfg -o geo/hemisphere.geo --force", kind},
+        {"ln good.cfg hard && ln -s good.cfg soft", "pre", "good.cfg -o hard --force", kind},
+        {NULL, "pre", "good.cfg -o soft --force", kind},
+        {NULL, "pre", "soft -o soft --force", kind},
+        {NULL, "solve", "model.h5 -o model.h5 --force", kind},
+        {"ln model.h5 linked.h5", "solve", "model.h5 -o linked.h5 --force", kind},
+        {"cp model.h5 x.h5.restart", "solve", "x.h5.restart -o x.h5 --force", kind},
         {"mkdir d1 && ln results.h5 d1/history.csv", "post", "results.h5 -o d1 --force", says},
         {"cp -r out d2", "post",
          "results.h5 -o d2 --force --reference d2/acceleration.csv --reference-filter none", says},
@@ -168,6 +168,24 @@ static void files_that_look_like_rests_stay(void **state) {
         fail_msg("%s%s", r.out, r.err);
 }
 
+/* --force replaces what the program writes, and nothing else. */
+static void a_file_of_another_kind_is_not_replaced(void **state) {
+    static const char page[] = "is not of softfall, and is not replaced";
+    static const attempt list[] = {
+        {"cp good.cfg k1.cfg", "solve", "model.h5 -o k1.cfg --force", "it is no softfall-results file"},
+        {"cp model.h5 k2.h5", "solve", "model.h5 -o k2.h5 --force", "a file of the format softfall-model"},
+        {"cp results.h5 k3.h5", "pre", "good.cfg -o k3.h5 --force", "a file of the format softfall-results"},
+        {"cp good.cfg k4.cfg", "pre", "good.cfg -o k4.cfg --force", "it is no softfall-model file"},
+        {"echo mine > k5.h5.restart", "solve", "model.h5 -o k5.h5 --force",
+         "it is no softfall-checkpoint file"},
+        {"mkdir k6 && echo mine > k6/report.html", "post", "results.h5 -o k6 --force", page},
+        {"mkdir k7 && echo mine > k7/summary.json", "post", "results.h5 -o k7 --force", page},
+        {"mkdir k8 && echo mine > k8/report.html", "cfh", "good.cfg -o k8 --force", page},
+        {"mkdir k9 && echo mine > k9/report.html", "fit", "compression sound/fit.cfg -o k9 --force", page},
+    };
+    ASSERT_ALL_HARMLESS(state, list);
+}
+
 static void strange_files_in_a_run_folder_stay(void **state) {
     static const attempt list[] = {
         {"mkdir s1.h5.run && echo mine > s1.h5.run/frame-notes.txt", "solve", "model.h5 -o s1.h5 --force",
@@ -218,6 +236,7 @@ int main(void) {
         cmocka_unit_test(a_device_or_a_pipe_is_never_an_output),
         cmocka_unit_test(a_name_that_cannot_be_made_is_refused_first),
         cmocka_unit_test(files_that_look_like_rests_stay),
+        cmocka_unit_test(a_file_of_another_kind_is_not_replaced),
         cmocka_unit_test(strange_files_in_a_run_folder_stay),
         cmocka_unit_test(strange_files_in_a_folder_of_ours_stay),
     };

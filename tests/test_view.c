@@ -3,6 +3,7 @@
  * prints, and the words of a case about the test. What needs Chromium is skipped without it. */
 #include "check.h"
 #include "io/h5_data.h"
+#include "io/replace.h"
 #include "model_fixture.h"
 #include "post/results/results.h"
 #include "program_fixture.h"
@@ -143,6 +144,7 @@ static void a_hostile_name_and_one_frame_work(void **state) {
     assert_true(H5Ldelete(file, "/peak", H5P_DEFAULT) >= 0);
     sf_results_close(&r);
     H5Fclose(file);
+    assert_int_equal(sf_seal_add(program_path(p, "a</script><img src=x onerror=alert(1)>.h5"), &err), SF_OK);
     program_succeed(p, "post", "'a</script><img src=x onerror=alert(1)>.h5' -o one");
     char *page = read_page(p, "one");
     assert_int_equal(count_of(page, "</script>"), 2);
@@ -219,6 +221,7 @@ static void a_run_without_frames_has_no_page(void **state) {
     hid_t group = H5Gcreate2(file, "/frames", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     H5Gclose(group);
     H5Fclose(file);
+    assert_int_equal(sf_seal_add(program_path(p, "none.h5"), SF_IGNORED), SF_OK);
     program_run(p, "post", "none.h5 -o none");
     assert_int_equal(program_shell(p, "test -e none/report.html && ! test -e none/view.html").code, 0);
 }

@@ -16,6 +16,7 @@ from .errors import Error, InputError, Interrupted, NumericError, SoftfallWarnin
 if _missing := [name for name in ("numpy", "h5py", "pandas") if importlib.util.find_spec(name) is None]:
     raise ModuleNotFoundError(lacking(_missing), name=_missing[0])
 
+from . import cards
 from .case import Case, Step, example
 from .curves import cfc, hic
 from .drop import Drop, Verdict, read_results
@@ -27,5 +28,5 @@ from .refinement import Refined, refine
 from .study import Fit, Table, fit_compression, sweep
 
 __all__ = ["Case", "Drop", "Error", "Fit", "Function", "InputError", "Interrupted", "NumericError", "Rating",
-           "Record", "Refined", "SoftfallWarning", "Step", "Table", "Verdict", "cfc", "example", "fit_compression", "function", "hic", "rate",
+           "Record", "Refined", "SoftfallWarning", "Step", "Table", "Verdict", "cards", "cfc", "example", "fit_compression", "function", "hic", "rate",
            "read_record", "read_results", "refine", "sweep", "version"]

@@ -25,6 +25,7 @@ SAME = 0.01  # of a logarithm: drops of one pad are never told apart by less
 TEST_STRAINS = (0.3, 0.5, 0.7)  # at which a compression test tells the stress
 FORM = (0.04, 0.08)  # standard deviations of ln(figure) of a foam about the draw that is nearest to it (docs/protocols.md)
 LENGTH = 0.3  # of ln(height), over which errors that change with the height do so
+UNKNOWN_COLUMNS = "the error of the columns is not known, as no draw was simulated with success"
 LOCKS, EARLIEST, RISE = 0.25, 0.5, (3.0, 12.0)  # share of the pads that lock up before the draws, from which part of the critical height on, and with which power of the height more
 
 
@@ -274,6 +275,20 @@ class Pads:
         w = np.bincount(self.draw, self.weight, self.draws)
         return float(1 / (w**2).sum())
 
+    @property
+    def misfits(self) -> str:
+        """Why the foam is none of the draws, after what was measured; "": it may be one."""
+        if self.misfit >= MISFIT and self.effective_draws >= LEAST_DRAWS:
+            return ""
+        return (f"what was measured leaves {self.effective_draws:.1f} of {self.draws} draws, or fits none: a height or a scale in list.csv is wrong, or the foam is "
+                "none of them. Then give these drops to softfall-fit drop, and begin anew with its posterior and without them")
+
+    def interval(self, limits: Sequence[float | None]) -> tuple[float, float]:
+        """Returns the 95 % interval of the critical height (m); inf: above the heights looked at."""
+        height = np.asarray(np.min([self.crossing(place.name, limits) for place in self.judged], axis=0))
+        low, _, high = quantiles(np.argsort(height), height, self.weight)
+        return float(low), float(high)
+
     def learn(self, drop: Drop) -> None:
         """Takes a measured drop into the weights."""
         likelihood = _log_likelihood(np.log(np.array(drop.figures)), self.predict(drop.place, drop.height), self.scatter(drop.place, drop.height))
@@ -417,12 +432,10 @@ def advise(pads: Pads, q: Question, tests: Sequence[Test] = (), unshown: Sequenc
     height = tuple(float(v) for v in quantiles(loss.order, loss.height, weight))
     share, now = float(loss.probability(weight)) if q.decides else math.nan, float(loss(weight))
     known = Advice(share, (height[0], height[1], height[2]), now, q.bound, None, False)
-    if pads.misfit < MISFIT or pads.effective_draws < LEAST_DRAWS:
-        return replace(known, height=(math.nan,) * 3, loss=math.nan, probability=math.nan,
-                       problem=f"what was measured leaves {pads.effective_draws:.1f} of {pads.draws} draws, or fits none: a height or a scale in list.csv is wrong, or the foam is "
-                       "none of them. Then give these drops to softfall-fit drop, and begin anew with its posterior and without them")
+    if pads.misfits:
+        return replace(known, height=(math.nan,) * 3, loss=math.nan, probability=math.nan, problem=pads.misfits)
     if any(place.freedom == 0 for place in pads.judged):
-        return replace(known, problem="the error of the columns is not known, as no draw was simulated with success")
+        return replace(known, problem=UNKNOWN_COLUMNS)
     if now <= q.bound and q.decides and share > 0.5 and unshown:
         return replace(known, expected=True, choices=[_drop_choice(pads, loss, weight, now, *at) for at in unshown if at[0] in pads.places])
     if now <= q.bound:

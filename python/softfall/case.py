@@ -18,7 +18,7 @@ import numpy as np
 
 from . import laboratory, library, output as output_files, programs
 from .drop import Drop, as_str, later_results
-from .errors import Error, InputError, NumericError, SoftfallWarning, find
+from .errors import Error, InputError, NumericError, SoftfallWarning, find, path_of
 
 RUNS = "softfall-runs"  # the folder of runs without a name
 WARNINGS = "warnings.txt"  # what softfall-pre warned of, told again when the drop is found
@@ -27,7 +27,6 @@ ENDED = ("finished", "rebound")  # states of a whole run
 _LINE = re.compile(r'(\S+)\s+("(?:[^"\\]|\\.)*"|\[[^]]*\]|\([^)]*\)|\{[^}]*\}|\S+)')
 _MEMBER = re.compile(r'([\w-]+) = ("(?:[^"\\]|\\.)*"|[^;]+);')
 _STEPS = re.compile(r"^typical run time .* for about (\d+) steps", re.MULTILINE)
-_MOTION = re.compile(r'\bmotion\s*=\s*\\?"([^"\\]+)')  # of a later drop of a series
 _FILE = re.compile(r"^\S*\b(file|missile_file|curves?|motion)\s")  # lines of the list of parameters whose values are paths
 _PROGRESS = re.compile(r"t\s+([\d.]+) / \S+ ms\s+step\s+(\d+)\s+dt\s+([\d.]+) us\s+(?:a|force)\s+(-?[\d.]+) (g|N)"
                        r"\s+indentation\s+(-?[\d.]+) mm\s+compression (-?[\d.]+)\s+energy ([-+][\d.]+) %")
@@ -102,7 +101,7 @@ class Case(MutableMapping[str, Any]):
     """
 
     def __init__(self, path: str | os.PathLike[str], values: Mapping[str, Any] | None = None) -> None:
-        self.path = Path(path).absolute()
+        self.path = Path(path_of(path, "a case")).absolute()
         self._overrides: dict[str, str] = {}
         self._take(dict(values or {}))
 
@@ -232,9 +231,6 @@ class Case(MutableMapping[str, Any]):
         """Returns the folder of this drop below `runs`, named after the content of the inputs but for what geometries include."""
         said = [line for line in library.case_parameters(str(self.path), self._texts()).splitlines() if not _FILE.match(line)]
         text = "\n".join([str(library.case_hash(str(self.path), self._texts())), *said])
-        for name in _MOTION.findall(text):  # of later drops of a series; the hash holds that of the first
-            with contextlib.suppress(InputError):  # softfall-pre has a sentence for what cannot be read
-                text += hashlib.sha256(output_files.read(self.path.parent / name)).hexdigest()
         key = hashlib.sha256(text.encode()).hexdigest()[:16]
         return next(iter(sorted(runs.glob(f"*-{key}"))), runs / f"{self.name()}-{key}")
 

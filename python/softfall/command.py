@@ -18,7 +18,7 @@ import warnings
 from typing import Any, Sequence
 
 from . import library, programs
-from .errors import Error, lacking
+from .errors import Error, InputError, lacking
 
 COMMANDS = {  # module within the package, and what the command does
     "foam": ("foam_command", "convert foam cards of other solvers and back, and show foams"),
@@ -38,6 +38,7 @@ PROGRAMS = {  # words that are handed over to the program softfall-WORD, and wha
     "pre": "build the model of a drop from a case",
     "solve": "simulate the drop of a model",
 }
+RESUME = ("protocol", "run")  # commands that resume where they were interrupted
 USAGE = 64  # exit code of a wrong command line, as of the C programs
 
 
@@ -52,12 +53,26 @@ class _Format(argparse.RawDescriptionHelpFormatter):
         return f"{names}={action.metavar}" if action.option_strings and action.metavar else names
 
 
+class _Once(argparse._StoreAction):
+    """An option that is given once: two values contradict each other, and an empty one names nothing."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: str | None = None) -> None:
+        given = vars(namespace).setdefault("_given", {}) if self.option_strings else {}
+        if self.option_strings and values == "":
+            parser.error(f"{option_string} is empty: give a value, or leave it out")
+        if given.setdefault(self.dest, values) != values:
+            parser.error(f"{option_string} is given twice: {given[self.dest]} and {values}")
+        super().__call__(parser, namespace, values, option_string)
+
+
 class Parser(argparse.ArgumentParser):
     """A parser with the help and the exit code of the C programs; `options` takes the options of a command."""
 
     def __init__(self, prog: str, usage: str, description: str, epilog: str = "") -> None:
         super().__init__(prog=prog, usage=f"{prog} {usage}", description=description, epilog=epilog, add_help=False, allow_abbrev=False,
                          formatter_class=lambda prog: _Format(prog, max_help_position=27, width=79))
+        for action in (None, "store"):
+            self.register("action", action, _Once)
         self.options = self.add_argument_group("options")
         self.options.add_argument("-?", "--help", action="help", help="give this help list")
         self.options.add_argument("-V", "--version", action="store_true", help="print program version")
@@ -126,6 +141,22 @@ def _complain(prog: str, sentence: str) -> None:
     print(f"{prog}: {text if len(text) <= MOST_SENTENCE else text[:MOST_SENTENCE] + ' ...'}", file=sys.stderr)
 
 
+def values_of(texts: Sequence[str]) -> dict[str, str]:
+    """Returns the values of --set KEY=VALUE, given several times; InputError if two contradict each other.
+
+    >>> values_of(["missile.mass=4 kg", "missile.mass=4 kg"])
+    {'missile.mass': '4 kg'}
+    """
+    values: dict[str, str] = {}
+    for text in texts:
+        key, equal, value = text.partition("=")
+        if not equal or not key.strip():
+            raise InputError(f"--set {text}: KEY=VALUE is expected, such as missile.velocity=\"5.2 m/s\"")
+        if values.setdefault(key.strip(), value) != value:
+            raise InputError(f"--set {text} contradicts --set {key.strip()}={values[key.strip()]}: give one of them")
+    return values
+
+
 def _terminate(*_: Any) -> None:
     """Ends the command as Ctrl-C does: its programs end with a checkpoint, its temporary folders go."""
     raise KeyboardInterrupt
@@ -174,7 +205,7 @@ def main(arguments: Sequence[str]) -> int:
         sys.stdout.flush()
         return code
     except KeyboardInterrupt:
-        print(f"{prog}: interrupted; the same command resumes", file=sys.stderr)
+        print(f"{prog}: interrupted" + ("; the same command resumes" if name in RESUME else ""), file=sys.stderr)
         return 130
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone: nothing is written at the end

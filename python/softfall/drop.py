@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import sys
 from pathlib import Path
 from typing import Any, Iterator, Mapping, Sequence
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from . import laboratory, library, output as output_files, programs
 from .curves import STANDARD_GRAVITY, Column, column
-from .errors import Error, InputError, find, missing
+from .errors import Error, InputError, find, missing, path_of
 
 
 def later_results(results: Path, number: int) -> Path:
@@ -401,7 +402,7 @@ def read_results(path: str | os.PathLike[str], output: str | os.PathLike[str] | 
 
     `output`: a folder for the files of softfall-post, which are used if they are there and newer; by default a temporary one.
     """
-    place = Path(path)
+    place = Path(path_of(path, "a drop"))
     place = place / "results.h5" if place.is_dir() else place
     if not place.exists():
         raise InputError(f"there are no results {place}")
@@ -410,4 +411,15 @@ def read_results(path: str | os.PathLike[str], output: str | os.PathLike[str] | 
         if as_str(file.attrs.get("format", "")) != "softfall-results":
             raise InputError(f"{place} is no results.h5 of softfall-solve: its format is "
                              f'"{as_str(file.attrs.get("format", "not given"))}"')
+    _check_seal(place)
     return drop
+
+
+def _check_seal(path: Path) -> None:
+    """Refuses results that do not end with their checksum (docs/formats.md): an edit by h5py drops it, and so does a cut. softfall-post compares the checksum itself."""
+    with open(path, "rb") as file:
+        length = file.seek(0, os.SEEK_END)
+        file.seek(max(0, length - 24))
+        name, stored = file.read(8), int.from_bytes(file.read(8), sys.byteorder)
+    if name != b"SFSEAL01" or stored != length - 24:
+        raise Error(f"{path} does not end with its checksum: it was cut, or another program has changed it; make it anew with softfall-solve", 3)

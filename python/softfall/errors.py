@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import difflib
+import os
 import sys
-from typing import Iterable, Mapping, TypeVar
+from typing import Any, Iterable, Mapping, TypeVar
 
 V = TypeVar("V")
 
@@ -73,3 +74,14 @@ def find(table: Mapping[str, V], what: str, key: str) -> V:
     if key not in table:
         raise missing(what, key, table)
     return table[key]
+
+
+def path_of(value: Any, what: str) -> str:
+    """Returns the path of a file as a text; InputError if it is none, such as None.
+
+    >>> path_of("case.cfg", "a case")
+    'case.cfg'
+    """
+    if not isinstance(value, (str, os.PathLike)) or not os.fspath(value):
+        raise InputError(f"{what} is the path of its file, not {value!r}")
+    return os.fsdecode(value)

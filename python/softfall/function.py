@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from typing import Any, Mapping, Sequence
 
 import numpy as np
 
+from . import library
 from .case import Case
 from .drop import Drop
-from .errors import Error, InputError, NumericError, missing
+from .errors import Error, InputError, NumericError, find, missing
+from .run_keys import defined, includes
 
 
 class Function:
@@ -99,17 +102,41 @@ def _input(case: Case, name: str) -> tuple[str, str]:
     if not found:
         raise InputError(f'"{name}" is no input such as "missile.velocity [m/s]"')
     key, unit = found[1], found[2] or ""
-    if key not in case and not re.match(r"geometry\.(missile_)?parameters\.", key):
-        raise missing("key of the case", key, case)
+    if re.match(r"geometry\.(missile_)?parameters\.", key):
+        known = set(case) | defined(case)
+        if key not in known and not includes(case) and any(name.startswith(key.rpartition(".")[0] + ".") for name in known):
+            raise missing("parameter of the geometry", key, sorted(name for name in known if ".parameters." in name or ".missile_parameters." in name))
+        if unit:
+            raise InputError(f'"{name}": {key} is a number without a unit, in that of its geometry')
+        return key, unit
+    value = find(case, "key of the case", key)
+    if isinstance(value, bool) or not isinstance(value, (int, float, str, type(None))):
+        raise InputError(f'"{name}": {key} = {value!r} is no number that could be an input')
+    _check_unit(name, key, value, unit)
     return key, unit
 
 
-def function(case: Case, inputs: Sequence[str] | Mapping[str, str], outputs: str | Sequence[str], threads: int | None = None,
+def _check_unit(name: str, key: str, value: int | float | str | None, unit: str) -> None:
+    """Refuses an input that is no number, or has a unit of another kind than the value of the case."""
+    if isinstance(value, (int, float)):
+        if unit:
+            raise InputError(f'"{name}": {key} = {value!r} is a number without a unit: leave [{unit}] out')
+        return
+    kind = library.quantity(f"1 {unit}")[1] if unit else ""
+    try:
+        own = library.quantity(value)[1] if value is not None else kind
+    except InputError:
+        raise InputError(f'"{name}": {key} = {value!r} is no number that could be an input') from None
+    if own != kind:
+        raise InputError(f'"{name}": {key} = {value!r} has a unit of another kind: write "{key} [{value.partition(" ")[2] if value else own}]"')
+
+
+def function(case: Case | str | os.PathLike[str], inputs: Sequence[str] | Mapping[str, str], outputs: str | Sequence[str], threads: int | None = None,
              unusable: str = "raise") -> Function:
-    """Returns f(x) -> y: a drop of the case with the inputs at x, and figures of it.
+    """Returns f(x) -> y: a drop of the case, or of a case file, with the inputs at x, and figures of it.
 
     `inputs`: keys with their unit, ["missile.velocity [m/s]", "geometry.parameters.thickness"]; `outputs`: keys of figures, or one
     key for a function that returns a float. A drop is computed once for each x, also in later processes (`softfall-runs/`).
     `unusable`: a drop that fails, or that is not to be used, raises NumericError ("raise"), or gives NaN ("nan").
     """
-    return Function(case, inputs, outputs, threads, unusable)
+    return Function(case if isinstance(case, Case) else Case(case), inputs, outputs, threads, unusable)

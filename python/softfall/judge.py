@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from .curves import STANDARD_GRAVITY
-from .protocol import NEEDS, Protocol, kilograms
+from .protocol import NEEDS, Figure, Protocol, kilograms
 from .protocol_drops import NO_LIMIT, Drop, Drops, Search, Spot, figures_of
+from .scatter import ENOUGH, Scatter, of_crossing, of_mean, of_repeats
 
 LEAST_DRAWS = 20  # for a 95 % interval
 MESH_HIC = 1.3  # expected error of HIC from the mesh over that of a_max, SF_CFH_MESH_HIC of softfall-cfh (docs/cfh.md)
@@ -47,14 +48,41 @@ class Outcome:
     expected: bool = False  # the pad is expected to pass, and no measured drop has shown it
     not_done: list[str] = field(default_factory=list)  # what confirmed clauses ask for beyond the drops: the result is partial
     tested: float = math.nan  # m, greatest height tested that meets all limits at every place; 0: none does
+    bounds: tuple[float, float] = (math.nan, math.nan)  # m, of a critical height that is no number: it lies between
+    interval_from: str = ""  # what the interval is made of: "repeated drops" or "draws of the foam"; "": there is none
+
+
+class Foams(NamedTuple):
+    """The 95 % interval (m) of a critical height by the draws of the foam, weighed by measured drops; NaN, with the reason why there is none."""
+
+    low: float
+    high: float
+    words: str
+
+
+def between(low: float, high: float) -> str:
+    """Returns an interval in words; "": there is none. A height has no lower bound at 0, and no upper one at inf.
+
+    >>> between(0.7, 0.9), between(0.7, math.inf), between(math.nan, math.nan)
+    ('0.7 to 0.9', 'above 0.7', '')
+    """
+    if math.isnan(low) or math.isnan(high):
+        return ""
+    if math.isinf(high):
+        return f"above {low:.4g}" if low > 0 else "without bounds"
+    return f"{low:.4g} to {high:.4g}" if low > 0 else f"below {high:.4g}"
 
 
 _PASSES = {False: "passed", True: "expected to pass"}
 
 
-def judge(p: Protocol, drops: Drops, simulated: bool = False) -> Outcome:
-    """Returns the result of the drops by the rules of the protocol. Only measured drops pass; simulated ones are expected to."""
-    made = {"pass": _judge_pass, "critical height": _judge_height, "cushion curve": _judge_cushion}[p.kind](p, drops)
+def judge(p: Protocol, drops: Drops, simulated: bool = False, foams: Foams | None = None) -> Outcome:
+    """Returns the result of the drops by the rules of the protocol. Only measured drops pass; simulated ones are expected to.
+
+    Measured figures and heights have intervals by repeated drops; where these are too few, a height has that of `foams`.
+    """
+    scatter = {} if simulated else _repeats(p, drops)
+    made = {"pass": _judge_pass, "critical height": _judge_height, "cushion curve": _judge_cushion}[p.kind](p, drops, scatter)
     made.notes += drops.missing
     alone = ["in what was simulated"] if any("is not simulated" in note for note in drops.missing) else []
     alone += ["by the first drop"] if drops.stands_in and 1 not in p.counted else []  # later drops on a spot are mostly harder
@@ -71,13 +99,38 @@ def judge(p: Protocol, drops: Drops, simulated: bool = False) -> Outcome:
     if simulated and math.isnan(made.low) and made.probability is None and all(math.isnan(line.low) for line in made.lines):
         made.notes.append("there is no interval: the uncertainty of the foam is not included (--posterior=FOLDER, draws of the foam, includes it)")
     elif not simulated and made.lines:
-        made.notes.append("there is no interval: the scatter from drop to drop and from sample to sample is not included")
+        made.notes.append(_interval_note(p, made, scatter, foams))
     if drops.doubt:
-        made.passed, made.value, made.low, made.high, made.tested = None, math.nan, math.nan, math.nan, math.nan
+        made.passed, made.value, made.low, made.high, made.tested, made.interval_from = None, math.nan, math.nan, math.nan, math.nan, ""
         made.stated = f"not decided, as {drops.doubt} (as they are listed: {made.stated})"
     if any(0 < len(drop.draws) < LEAST_DRAWS for drop in drops.drops):
         made.notes.append(f"figures have no 95 % intervals, which need {LEAST_DRAWS} draws of the foam and more")
     return made
+
+
+def _repeats(p: Protocol, drops: Drops) -> dict[str, Scatter]:
+    """Returns the scatter of each figure over the drops that count on each spot."""
+    groups = [[drop for drop in group if drop.number in counted_of(p, group) and drop.is_usable] for group in spots_of(drops).values()]
+    return {f.label: of_repeats([drop.figures[f.label] for drop in group if f.label in drop.figures] for group in groups) for f in p.figures}
+
+
+def _interval_note(p: Protocol, made: Outcome, scatter: dict[str, Scatter], foams: Foams | None) -> str:
+    """Returns what the intervals of measured drops rest on, in a sentence; a height whose repeats are too few takes the interval of the draws."""
+    freedom = max((one.freedom for one in scatter.values()), default=0)
+    bounds = (made.bounds if math.isnan(made.value) else (made.value, made.value)) if p.kind == "critical height" else (math.nan, math.nan)
+    why = "" if foams is None else foams.words
+    if foams is not None and freedom < ENOUGH and not any(map(math.isnan, (foams.low, foams.high, *bounds))):
+        if foams.low <= bounds[1] and bounds[0] <= foams.high:
+            made.low, made.high, made.interval_from = foams.low, foams.high, "draws of the foam"
+            return f"the 95 % interval of the height is of {foams.words}, as {freedom or 'no'} repeated drops are too few; the scatter from sample to sample is not included"
+        why = f"the draws of the foam have {between(foams.low, foams.high)} m, which does not hold what was measured: the foam is none of them"
+    if not freedom:
+        return ("no interval is known: no spot has two drops that count, whose scatter would give one"
+                + (f"; {why}" if why else "; --pad=CASE with --posterior=FOLDER, draws of its foam, gives that of a height by first drops" if p.kind == "critical height" else ""))
+    made.interval_from = "repeated drops"
+    said = ", ".join(f"{100 * one.sd:.2g} % of {label}" for label, one in scatter.items() if one.freedom)
+    return (f"95 % intervals are by the scatter of repeated drops on one spot ({said}; {freedom} degree{'s' if freedom > 1 else ''} of freedom); the scatter from sample to sample is not "
+            f"included{', nor is the form of the curve between the heights' if p.kind == 'critical height' else ''}" + (f"; {why}" if why and freedom < ENOUGH else ""))
 
 
 def _not_done(p: Protocol, drops: Drops) -> list[str]:
@@ -137,15 +190,17 @@ def _unusable(drops: list[Drop], counted: tuple[int, ...]) -> str:
     return "; ".join(f"drop {drop.number} is not to be used ({drop.note})" for drop in drops if drop.number in counted and not drop.is_usable)
 
 
-def _judge_pass(p: Protocol, drops: Drops) -> Outcome:
+def _judge_pass(p: Protocol, drops: Drops, scatter: dict[str, Scatter]) -> Outcome:
     made = Outcome("")
     for spot, group in spots_of(drops).items():
         counted = counted_of(p, group)
         for figure in p.figures:
             value = figures_of(group, figure.label, counted)
             passed = None if figure.limit is None or math.isnan(value) else value < figure.limit
-            low, high = _draw_interval(group[0], figure.label)
+            low, high = _draw_interval(group[0], figure.label) if group[0].draws else of_mean(value, len(counted), scatter.get(figure.label))
             notes = [_unusable(group, counted)]
+            if passed and not group[0].draws and high >= figure.limit:  # type: ignore[operator]
+                notes.append("the interval reaches the limit")
             if passed and figure.of(figure.value_of(value) * (1 + _mesh_error(group, figure.key))) >= figure.limit:  # type: ignore[operator]
                 passed = None
                 notes.append("the expected error of the mesh reaches the limit")
@@ -192,7 +247,7 @@ def _probability(p: Protocol, drops: Drops) -> tuple[float, float, float] | None
     return share, max(0.0, middle - half), min(1.0, middle + half)
 
 
-def _judge_height(p: Protocol, drops: Drops) -> Outcome:
+def _judge_height(p: Protocol, drops: Drops, scatter: dict[str, Scatter]) -> Outcome:
     made = Outcome("", meaning="height at the limit (m)")
     bounds: list[tuple[float, float]] = []  # heights of all positions, between which the figure reaches its limit
     for search in drops.searches:
@@ -201,8 +256,9 @@ def _judge_height(p: Protocol, drops: Drops) -> Outcome:
     for spot, group in spots_of(drops).items():
         measured.setdefault((spot.condition, spot.position), {})[spot.height] = group
     for (condition, position), heights in measured.items():
-        bounds.append(_cross(p, f"{condition}, {position}", heights, made))
+        bounds.append(_cross(p, f"{condition}, {position}", heights, made, scatter))
     low, high = (min((bound[k] for bound in bounds), default=math.nan) for k in (0, 1))
+    made.bounds = low, high
     made.tested = _greatest(p, drops)
     if not bounds or any(math.isnan(value) for bound in bounds for value in bound):
         made.stated = "not determined: " + (made.notes[-1] if made.notes else _why(made.lines))
@@ -211,6 +267,8 @@ def _judge_height(p: Protocol, drops: Drops) -> Outcome:
         made.value = high
         decisive = min((line for line in made.lines if not math.isnan(line.value)), key=lambda line: line.value)
         made.low, made.high = decisive.low, decisive.high
+    if measured and scatter:  # the lowest of all figures and places lies between the lowest ends of theirs
+        made.low, made.high = (min((getattr(line, end) for line in made.lines), default=math.nan) for end in ("low", "high"))
     if not low:
         made.stated = f"below {high:.3g} m"
     elif math.isinf(high):
@@ -255,7 +313,7 @@ def _take_search(p: Protocol, search: Search, made: Outcome) -> tuple[float, flo
     return math.nan, math.nan
 
 
-def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome) -> tuple[float, float]:
+def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome, scatter: dict[str, Scatter]) -> tuple[float, float]:
     """Returns between which heights a figure first reaches its limit, as _take_search: straight lines of its logarithm over that of the height."""
     order = sorted(heights)
     best = (order[-1], math.inf)
@@ -270,21 +328,33 @@ def _cross(p: Protocol, of: str, heights: dict[float, list[Drop]], made: Outcome
                                    note=f"{bad:g} m: {_unusable(heights[bad], counted_of(p, heights[bad])) or f'there is no {figure.label}'}"))
             return math.nan, math.nan
         k = next((k for k, value in enumerate(values) if value >= figure.limit), None)
+        low, high = _crossing_interval(p, heights, order, values, figure, scatter)
         if k is None:
-            made.lines.append(Line(of, figure.label, math.nan, figure.limit, note=f"not reached up to {order[-1]:g} m"))
+            made.lines.append(Line(of, figure.label, math.nan, figure.limit, None, low, high, f"not reached up to {order[-1]:g} m"))
         elif k == 0:
-            made.lines.append(Line(of, figure.label, math.nan, figure.limit, note=f"exceeded at the lowest height, {order[0]:g} m"))
+            made.lines.append(Line(of, figure.label, math.nan, figure.limit, None, low, high, f"exceeded at the lowest height, {order[0]:g} m"))
             return 0.0, order[0]
         else:
             share = math.log(figure.limit / values[k - 1]) / math.log(values[k] / values[k - 1])
             height = order[k - 1] * (order[k] / order[k - 1]) ** share
-            made.lines.append(Line(of, figure.label, height, figure.limit, note=f"between {order[k - 1]:g} and {order[k]:g} m"))
+            made.lines.append(Line(of, figure.label, height, figure.limit, None, low, high, f"between {order[k - 1]:g} and {order[k]:g} m"))
             if height < best[1]:
                 best = (height, height)
     return best
 
 
-def _judge_cushion(p: Protocol, drops: Drops) -> Outcome:
+def _crossing_interval(p: Protocol, heights: dict[float, list[Drop]], order: list[float], values: list[float], figure: Figure,
+                       scatter: dict[str, Scatter]) -> tuple[float, float]:
+    """Returns the 95 % interval of the height where a figure reaches its limit, by repeats; NaN: there are none. Heights from the first one without the figure on tell nothing."""
+    there = next((k for k, value in enumerate(values) if not value > 0), len(values))
+    known = scatter.get(figure.label)
+    if not known or not known.freedom or not there or not figure.limit or figure.limit <= 0:
+        return math.nan, math.nan
+    counts = [len(counted_of(p, heights[h])) for h in order[:there]]
+    return of_crossing(order[:there], values[:there], counts, figure.limit, known)
+
+
+def _judge_cushion(p: Protocol, drops: Drops, scatter: dict[str, Scatter]) -> Outcome:
     made = Outcome("curve of the table")
     for spot, group in sorted(spots_of(drops).items(), key=lambda entry: kilograms(entry[0].mass)):
         stress = kilograms(spot.mass) * STANDARD_GRAVITY / p.area / 1e3
@@ -292,6 +362,7 @@ def _judge_cushion(p: Protocol, drops: Drops) -> Outcome:
             if not set(counted) <= {drop.number for drop in group}:
                 continue
             for figure in p.figures:
-                made.lines.append(Line(f"{spot.condition}, {spot.height:g} m, {stress:.3g} kPa, {what}", figure.label,
-                                       figures_of(group, figure.label, counted), figure.limit, note=_unusable(group, counted)))
+                value = figures_of(group, figure.label, counted)
+                low, high = of_mean(value, len(counted), scatter.get(figure.label))
+                made.lines.append(Line(f"{spot.condition}, {spot.height:g} m, {stress:.3g} kPa, {what}", figure.label, value, figure.limit, None, low, high, _unusable(group, counted)))
     return made

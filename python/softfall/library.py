@@ -15,7 +15,7 @@ import numpy as np
 
 from . import programs
 from .array import Array
-from .errors import Error, failure
+from .errors import Error, InputError, failure
 
 _PARAMETER = re.compile(r'material\.(\S+)\s+("(?:[^"\\]|\\.)*"|\(.*\)|\S+)\s+(.*?)\s+(given|default)$')
 _NUMBER = re.compile(r"[-+]?[\d.]+(?:e[-+]?\d+)?")
@@ -125,14 +125,17 @@ def _array(values: Any) -> Any:
 
 @functools.lru_cache(maxsize=256)
 def quantity(text: str) -> tuple[float, str]:
-    """softfall_units_read: a quantity in SI, and the SI unit of its kind.
+    """softfall_units_read: a quantity in SI, and the SI unit of its kind. What was expected is for the caller to say.
 
     >>> quantity("10 mph")
     (4.4704, 'm s-1')
     """
     value, unit = c.c_double(), c.c_char_p()
     with _one_at_a_time:
-        _call("softfall_units_read", text.encode(), c.byref(value), c.byref(unit))
+        try:
+            _call("softfall_units_read", text.encode(), c.byref(value), c.byref(unit))
+        except InputError as error:  # its example is of the last kind that was tried
+            raise InputError(re.sub(r'(; expected .*)?, for example ".*"$', "", str(error), flags=re.DOTALL)) from None
     return value.value, (unit.value or b"").decode()
 
 

@@ -70,6 +70,13 @@ def check(path: str | os.PathLike[str], *inputs: str | os.PathLike[str]) -> Path
     return place
 
 
+def check_own(path: str | os.PathLike[str], mark: bytes, writer: str) -> None:
+    """Refuses to replace a file in whose first lines the mark of its writer is missing; it may be absent or empty."""
+    place = Path(path)
+    if place.is_file() and place.stat().st_size and mark not in b"".join(read(place, 1 << 30).splitlines(keepends=True)[:3]):
+        raise InputError(f"{place} was not written by {writer}, and is not replaced: give another name")
+
+
 def write(path: str | os.PathLike[str], content: str | bytes, *inputs: str | os.PathLike[str]) -> None:
     """Writes a file under another name on the same file system, brings it to the disk and renames it: after a failure the earlier file remains.
 

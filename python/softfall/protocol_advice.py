@@ -14,7 +14,7 @@ from . import advice, library
 from .array import Array
 from .case import Case
 from .errors import InputError, NumericError
-from .judge import Line, Outcome
+from .judge import Foams, Line, Outcome, spots_of
 from .protocol import Condition, Figure, Missile, Position, Protocol
 from .protocol_drops import Drop, Drops, Search, Spot, case_at, figures_of, folder_name, search, search_notes
 
@@ -150,6 +150,25 @@ def _other_place(p: Protocol, pad: Case, condition: Condition, position: Positio
     return None
 
 
+def foams_interval(p: Protocol, measured: Drops, searches: Sequence[Search]) -> Foams:
+    """Returns the 95 % interval of the measured critical height by the draws of the foam at the places of the searches, weighed by the measured first drops."""
+    named = {_place_name(spot.condition, spot.position, "") for spot in spots_of(measured)}
+    made = [_place_name(one.condition, one.position, "") for one in searches if "draws" in (one.summary["posterior"] or {})]
+    if p.counted != (1,):
+        return Foams(math.nan, math.nan, "the draws of the foam know first drops alone")
+    if not named or set(made) != named:
+        return Foams(math.nan, math.nan, f"the draws of the foam were not simulated at {', '.join(sorted(named - set(made))) or 'the measured places'}")
+    limits, notes = (p.limit_of("a_max_g"), p.limit_of("hic")), list[str]()
+    pads = advice.Pads([advice.read_place(name, one.folder) for name, one in zip(made, searches)], limits=limits)
+    for drop in _measured(p, measured, pads, notes):
+        pads.learn(drop)
+    problem = pads.misfits or (advice.UNKNOWN_COLUMNS if any(place.freedom == 0 for place in pads.judged) else "")
+    if problem:
+        return Foams(math.nan, math.nan, problem)
+    return Foams(*pads.interval(limits), f"{pads.draws} draws of the foam, weighed by the measured drops"
+                 + (f" but {len(notes)} that {'are' if len(notes) > 1 else 'is'} left out" if notes else ""))
+
+
 def compression_stresses(folder: Path, rate: float, strains: Sequence[float]) -> Array:
     """Returns the stress (Pa) [draws][strains] of the foam of each draw-NNN.cfg, pressed from rest at a rate (1/s) with its sides held."""
     ramp = np.unique([*np.linspace(0, max(strains), 201), *strains])
@@ -208,7 +227,7 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
         stated += "; a part of the protocol is not simulated"
     if 1 not in p.counted:
         stated += "; this is of first drops, and those that count are not decided"
-    outcome = Outcome(stated, told.decision, told.height[1], told.height[0], told.height[2], lines, notes,
+    outcome = Outcome(stated, told.decision, told.height[1], told.height[0], told.height[2], lines, notes, interval_from="" if math.isnan(told.height[0]) else "draws of the foam",
                       meaning="measured; the interval was expected before the drop", expected=told.expected)
     notes += search_notes(p, searches)
     return told, outcome, Drops(searches=searches)

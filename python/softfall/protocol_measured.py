@@ -265,7 +265,7 @@ def _speed(where: str, row: Mapping[str, str], height: float) -> float:
     try:
         value, unit = library.quantity(row["speed"])
     except Error as error:
-        raise InputError(f"{where}: speed: {error}") from None
+        raise InputError(f'{where}: speed: {error}; expected a speed, such as "3.4 m/s"') from None
     if unit != "m s-1" or not SLOWEST * speed(height) <= value <= FASTEST * speed(height):
         raise InputError(f"{where}: speed {row['speed']} is not one of a fall from {height:g} m, which is {speed(height):.3g} m/s without friction "
                          f"({SLOWEST:g} to {FASTEST:g} times that)")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import base64
 import math
+import os
 import sys
 import warnings
 from pathlib import Path
@@ -14,13 +15,13 @@ import numpy as np
 
 from . import output as output_files
 from .case import Case
-from .command import Parser, say
+from .command import Parser, say, values_of
 from .curves import column
 from .drop import read_results
 from .errors import Error, InputError
-from .judge import Outcome, judge
+from .judge import Outcome, between, judge
 from .protocol import CAUTION, Protocol, length, names, read
-from .protocol_advice import advise
+from .protocol_advice import advise, foams_interval
 from .protocol_drops import Drop, Drops, simulate
 from .protocol_measured import measure
 from .protocol_report import FIELDS, write
@@ -86,8 +87,21 @@ def _probable(outcome: Outcome) -> str:
     return f" (probability of passing {outcome.probability[0]:.2f}, {outcome.probability[1]:.2f} to {outcome.probability[2]:.2f})" if outcome.probability else ""
 
 
+def _interval(outcome: Outcome) -> str:
+    read_off = "" if math.isnan(outcome.value) else f"{outcome.value:.4g} m, "
+    return f"; {read_off}95 % interval {between(outcome.low, outcome.high)} m by {outcome.interval_from}" if outcome.interval_from and between(outcome.low, outcome.high) else ""
+
+
 def _tested(outcome: Outcome) -> str:
     return "" if math.isnan(outcome.tested) else f"; greatest height tested that meets all limits: {outcome.tested:g} m" if outcome.tested else "; no height tested meets all limits"
+
+
+def _is_own(output: Path) -> bool:
+    """Returns whether a folder with files of our names has our protocol.json."""
+    try:
+        return output_files.read(output / "protocol.json").startswith(b'{\n  "caution": "softfall')
+    except InputError:
+        return False
 
 
 def perform(o: argparse.Namespace) -> str:
@@ -98,7 +112,11 @@ def perform(o: argparse.Namespace) -> str:
         raise InputError("PROTOCOL, --output=DIR and --pad=CASE or --measured=DIR are needed; --list lists the protocols")
     p, output = read(o.protocol), Path(o.output)
     laboratory, photo = read_laboratory(o.laboratory)
+    if o.measured and os.path.realpath(output) == os.path.realpath(o.measured):
+        raise InputError(f"--output={output} is the folder of the measured drops, whose files stay as they are: give another one")
     there = [name for name in FILES if (output / name).exists()]
+    if there and not _is_own(output):
+        raise InputError(f"{output} has {there[0]}, and no protocol.json of softfall: it is not replaced; give another directory")
     if there and not o.force:
         raise InputError(f"{output} has {there[0]} already: give --force to replace it (finished drops are used again), or another directory")
     if o.advise and not (o.pad and o.posterior):
@@ -117,10 +135,7 @@ def perform(o: argparse.Namespace) -> str:
         parts["measured"] = measure(p, Path(o.measured), o.pattern, complete=not o.advise)
     outcomes, told, pairs, set_up = {}, None, [], dict[str, str]()
     if o.pad:
-        for text in o.set:
-            if "=" not in text:
-                raise InputError(f"--set {text}: KEY=VALUE is expected")
-        pad = Case(o.pad, dict(text.split("=", 1) for text in o.set))
+        pad = Case(o.pad, values_of(o.set))
         set_up = {"case": str(pad.path), **({"changed": ", ".join(o.set)} if o.set else {}), **{key: str(pad[key]) for key in SHOWN if pad.get(key) is not None},
                   **({"draws of the foam": str(o.posterior)} if o.posterior else {})}
         options = {"jobs": o.jobs, "threads": o.threads, "engine": o.engine, "profile": o.profile, "views": o.views}
@@ -131,11 +146,12 @@ def perform(o: argparse.Namespace) -> str:
         else:
             parts["simulated"] = simulate(p, pad, output / "drops", o.posterior, o.draws, parts.get("measured"), **options)
     if not o.advise:
-        outcomes = {what: judge(p, drops, what == "simulated") for what, drops in parts.items()}
+        foams = foams_interval(p, parts["measured"], parts["simulated"].searches) if len(parts) == 2 and o.posterior and p.kind == "critical height" else None
+        outcomes = {what: judge(p, drops, what == "simulated", None if what == "simulated" else foams) for what, drops in parts.items()}
         pairs = compare(p, parts["measured"], parts["simulated"]) if len(parts) == 2 else []
     output.mkdir(parents=True, exist_ok=True)
     write(p, parts, outcomes, pairs, laboratory, photo, output, told, {**set_up, **({"measured records": str(o.measured)} if o.measured else {}), "command": " ".join(sys.argv[1:])})
-    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}{_probable(outcome)}{_tested(outcome)}" for what, outcome in outcomes.items()),
+    said = [f"{p.title} ({p.standard})", *(f"  {what:10} {outcome.stated}{_probable(outcome)}{_interval(outcome)}{_tested(outcome)}" for what, outcome in outcomes.items()),
             *(f"  note: {note}" for outcome in outcomes.values() for note in outcome.notes),
             f"  {len(p.unconfirmed)} of {len(p.clauses)} clauses are unconfirmed. {CAUTION}", f"Written: {output}/report.html, protocol.json, drops.csv"]
     return "\n".join(said)

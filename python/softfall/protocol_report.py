@@ -15,7 +15,7 @@ from urllib.parse import quote
 from . import library, output as output_files
 from .advice import Advice
 from .curves import hic
-from .judge import Outcome, counted_of, spots_of
+from .judge import Outcome, between, counted_of, spots_of
 from .protocol import CAUTION, NEEDS, Figure, Protocol, speed
 from .protocol_advice import rows
 from .protocol_drops import Drop, Drops, Spot, figures_of, hic_from
@@ -61,15 +61,15 @@ def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 def _result(what: str, outcome: Outcome) -> str:
     kind = {True: " good", False: " bad", None: ""}[outcome.passed]
     more = []
-    if not math.isnan(outcome.low) or not math.isnan(outcome.high):
-        more.append(f"95 % interval of the critical height {_number(outcome.low)} to {_number(outcome.high)} m")
+    if between(outcome.low, outcome.high):
+        more.append(f"95 % interval of the critical height {between(outcome.low, outcome.high)} m" + (f", by {outcome.interval_from}" if outcome.interval_from else ""))
     if outcome.probability:
         share, low, high = outcome.probability
         more.append(f"probability of passing {share:.2f} (95 % interval of the draws {low:.2f} to {high:.2f})")
     if not math.isnan(outcome.tested):
         more.append(f"greatest height tested that meets all limits: {outcome.tested:g} m" if outcome.tested else "no height tested meets all limits")
     text = f"{what}: <b>{html.escape(outcome.stated)}</b>" + (f"; {html.escape('; '.join(more))}" if more else "")
-    rows = [[line.of, line.figure, _number(line.value), f"{_number(line.low)} to {_number(line.high)}" if not math.isnan(line.low) else "–",
+    rows = [[line.of, line.figure, _number(line.value), between(line.low, line.high) or "–",
              "–" if line.limit is None else f"{line.limit:g}", {True: "yes", False: "NO", None: "–"}[line.passed], line.note]
             for line in outcome.lines]
     return f'<p class="result{kind}">{text}</p>' + ("" if not rows else _table(["of", "figure", f">{outcome.meaning}", ">95 % interval", ">limit", "met", "note"], rows))
@@ -162,8 +162,8 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
         "<h2>Notes, and what was not done as the protocol asks</h2><ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in notes) + "</ul>" if notes else "",
         _choices(advice), _set_up(p, told or {}), _drop_table(p, parts, output), height_picture(p, parts), curve_picture(parts), compared, _readings(parts), _clauses(p),
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
-    output_files.write(output / "report.html", page)
     output_files.write(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
+    output_files.write(output / "report.html", page)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["kind", "condition", "position", "missile", "height_m", "speed_m_s", "mass", "drop", "counts", *(figure.label for figure in p.figures), "grade", "note", "source"])
@@ -191,7 +191,7 @@ def _summary(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Out
         return [{key: _plain(value) for key, value in vars(line).items()} for line in outcome.lines]
 
     return {"caution": CAUTION, "protocol": p.name, "title": p.title, "standard": p.standard, "laboratory": dict(laboratory),
-            "results": {what: {"stated": o.stated, "passed": o.passed, "expected_to_pass": o.expected, "partial": bool(o.not_done), "not_done": o.not_done, "greatest_height_tested_m": _plain(o.tested), "value_m": _plain(o.value), "low_m": _plain(o.low), "high_m": _plain(o.high),
+            "results": {what: {"stated": o.stated, "passed": o.passed, "expected_to_pass": o.expected, "partial": bool(o.not_done), "not_done": o.not_done, "greatest_height_tested_m": _plain(o.tested), "value_m": _plain(o.value), "low_m": _plain(o.low), "high_m": _plain(o.high), "interval_from": o.interval_from or None,
                                "probability": o.probability, "lines": lines(o), "notes": o.notes} for what, o in outcomes.items()},
             "drops": [{"kind": what, "condition": d.spot.condition, "position": d.spot.position, "missile": d.spot.missile, "height_m": d.spot.height, "mass": d.spot.mass,
                        "drop": d.number, "figures": {key: _plain(value) for key, value in d.figures.items()}, "speed_m_s": _plain(d.speed), "grade": d.grade, "note": d.note,

@@ -11,7 +11,8 @@ from .command import Parser, say
 from .errors import InputError
 from .laboratory import options
 from .laboratory.kinds import KINDS
-from .laboratory.reading import read
+from .laboratory.reading import READ, read
+from .output import check_own
 
 FIELDS = ("kind", "lateral", "heading", "units", "rate", "specimen", "cycle", "sheet", "side", "width", "diameter", "area", "thickness", "invert")
 
@@ -61,6 +62,7 @@ def perform(o: argparse.Namespace) -> str:
         if path.exists() and (os.path.samefile(path, o.file) or not o.force):
             raise InputError(f"{path} is the file that is read: give another name" if os.path.samefile(path, o.file) else
                              f"{path} is there already: give --force to replace it, or another name")
+        check_own(path, READ.encode(), "softfall read")
         reading.write(path)
         said.append(f"Written: {path}")
     return "\n".join(said)

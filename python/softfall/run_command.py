@@ -52,6 +52,8 @@ def parser(prog: str) -> Parser:
 
 def find_case(arguments: list[str]) -> tuple[Case, list[str]]:
     """Returns the case of a command line, and the texts after it."""
+    if "" in arguments:
+        raise InputError("CASE is empty: give a case file, a folder with a case.cfg, or the name of an example")
     named = bool(arguments) and "=" not in arguments[0]
     name, rest = (arguments[0], arguments[1:]) if named else ("case.cfg", arguments)
     path = Path(name) / "case.cfg" if Path(name).is_dir() else Path(name)

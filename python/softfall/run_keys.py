@@ -80,6 +80,12 @@ def defined(case: Case) -> set[str]:
     return set(constants(case))
 
 
+def includes(case: Case) -> bool:
+    """Returns whether a geometry of the case reads other files, whose parameters `defined` does not see."""
+    paths = [case.path.parent / str(case.get(file) or "") for file, _ in _PARAMETERS]
+    return any(path.is_file() and re.search(r"^\s*(Include|Merge)\b", path.read_text(encoding="utf-8", errors="replace"), re.MULTILINE) for path in paths)
+
+
 def find_key(case: Case, name: str) -> str:
     """Returns the key of a case that ends with `name`; an unknown or ambiguous name is an InputError that says what was meant."""
     known = set(case) | defined(case)
@@ -154,7 +160,10 @@ def gravity(rig: str | None) -> tuple[float, str]:
     if rig is None:
         return STANDARD_GRAVITY, "free fall"
     if not Path(rig).exists() and re.match(r"[-+.\d]", rig):
-        value, kind = library.quantity(rig)
+        try:
+            value, kind = library.quantity(rig)
+        except InputError as error:
+            raise InputError(f'rig: {error}; expected the rig\'s g_eff, such as "7.97 m/s2", or a table of heights and speeds') from None
         if kind != "m s-2" or not 0 < value <= 1.01 * STANDARD_GRAVITY:
             raise InputError(f"rig=\"{rig}\" is outside 0 to {STANDARD_GRAVITY:g} m/s2; expected the rig's g_eff, such as \"7.97 m/s2\", or a table of heights and speeds")
         return value, f"on a rig with {value:.4g} m/s2"

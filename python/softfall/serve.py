@@ -15,7 +15,7 @@ from typing import Any, Sequence
 
 from . import programs, web
 from .case import Case
-from .command import Parser
+from .command import Parser, values_of
 from .errors import Error, InputError
 from .function import Function
 from .web import Refusal
@@ -158,10 +158,7 @@ def make(o: argparse.Namespace) -> Server:
         raise InputError("--host is empty, which would be every address of this machine: give 127.0.0.1, another address, or 0.0.0.0 for all of them")
     if not 0 < o.time_limit < math.inf:
         raise InputError(f"--time-limit {o.time_limit:g} is not a number of seconds above 0")
-    for text in o.set:
-        if "=" not in text:
-            raise InputError(f"--set {text}: KEY=VALUE is expected")
-    function = Function(Case(o.case, dict(text.split("=", 1) for text in o.set)), o.input, o.output, o.threads, o.unusable)
+    function = Function(Case(o.case, values_of(o.set)), o.input, o.output, o.threads, o.unusable)
     for key in o.option:
         if key not in function.case and not key.startswith("geometry."):
             raise InputError(f"--option {key}: there is no such key of the case")

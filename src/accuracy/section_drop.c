@@ -3,6 +3,8 @@
 
 #include "base/mat3.h"
 #include "drop/drop.h"
+#include "model/good_run.h"
+#include "pre/drop_check.h"
 #include "pre/vary.h"
 #include <omp.h>
 
@@ -89,9 +91,10 @@ static void run_all(sf_model *const model[DROPS], double figure[DROPS][FIGURES])
 
 /* Runs the drop of `section`, that of `fine`, the same with half the spacing, one that is 1 % faster and one
  * on a pad SF_SECTION_DROP_THINNER thinner, and fills `out` (docs/theory.md, section 14). Where the first two
- * do not rebound it is all 0; a change is 0 where its drop does not. `kernel`: of both. */
+ * do not rebound it is all 0; a change is 0 where its drop does not. `kernel`: of both; `a_max`: that of
+ * `section`, g, 0 if it does not rebound. */
 static sf_status run_section(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
-                             sf_section_drop *out, sf_error *err) {
+                             sf_section_drop *out, double *a_max, sf_error *err) {
     SF_OWNED_BY(sf_model_free) sf_model equal = {0};
     SF_OWNED_BY(sf_model_free) sf_model faster = {0};
     SF_OWNED_BY(sf_model_free) sf_model thinner = {0};
@@ -104,6 +107,7 @@ static sf_status run_section(const sf_model *section, sf_model *fine, const sf_k
     double figure[DROPS][FIGURES];
     run_all(model, figure);
     take(figure, out);
+    *a_max = out->a_max_g > 0 ? figure[EQUAL][A_MAX] : 0;
     return SF_OK;
 }
 
@@ -130,7 +134,43 @@ static sf_status build_sections(const sf_case_input *input, const sf_model *mode
     return SF_OK;
 }
 
-void sf_section_drop_refer(const sf_case_input *input, sf_sections *sections, sf_model *model) {
+/* Tells a coarse mesh; `error`: of a_max by the section's drops, with its sign; NaN: they do not tell it, and
+ * the spacing does. */
+static void warn(const sf_model *model, const sf_build_report *report, bool alike, double error,
+                 const sf_sink *sink) {
+    char how[64] = "by an axisymmetric drop on as thick a plate of this foam";
+    if (isnan(error)) {
+        sf_drop_warn_mesh(model, &report->zone, sink);
+        return;
+    }
+    if (!alike)
+        snprintf(how, sizeof how, "too %s, by drops of the section on finer meshes",
+                 error < 0 ? "low" : "high");
+    if (fabs(error) >= sf_good_run_limits()->mesh)
+        sf_sink_tell(
+            sink, SF_WARNING,
+            "the nodal spacing under the missile is %.3g mm: expected error of a_max about %.2g %%, %s",
+            1e3 * report->zone.spacing, 100 * fabs(error), how);
+}
+
+/* The error of a_max on the spacing of `equal`; NaN: the drops do not work. */
+static double find_error(sf_sections *sections, const sf_kernel *kernel, sf_model *equal, sf_model *fine,
+                         sf_model *model) {
+    sf_error none = SF_ERROR_INIT;
+    double a_max = 0;
+    if (sections->alike) {
+        double error = error_alike(equal, fine);
+        if (!(error > 0))
+            return NAN;
+        model->expected_mesh_error = error;
+        return error;
+    }
+    run_section(model->axisymmetric ? model : equal, fine, kernel, &model->section, &a_max, &none);
+    return none.status == SF_OK && a_max > 0 ? a_max / model->section.a_max_g - 1 : NAN;
+}
+
+void sf_section_drop_refer(const sf_case_input *input, const sf_build_report *report, sf_sections *sections,
+                           sf_model *model, const sf_sink *sink) {
     SF_OWNED_BY(sf_model_free) sf_model equal = {0};
     SF_OWNED_BY(sf_model_free) sf_model fine = {0};
     sf_model built[SF_SECTIONS] = {{0}};
@@ -141,12 +181,6 @@ void sf_section_drop_refer(const sf_case_input *input, sf_sections *sections, sf
     build_sections(input, model, sections, built, &kernel, &none);
     equal = built[SF_SECTION_EQUAL];
     fine = built[SF_SECTION_FINE];
-    if (none.status != SF_OK)
-        return;
-    if (sections->alike) {
-        double error = error_alike(&equal, &fine);
-        model->expected_mesh_error = error > 0 ? error : model->expected_mesh_error;
-        return;
-    }
-    run_section(model->axisymmetric ? model : &equal, &fine, &kernel, &model->section, &none);
+    double error = none.status == SF_OK ? find_error(sections, &kernel, &equal, &fine, model) : NAN;
+    warn(model, report, sections->alike, error, sink);
 }

@@ -205,7 +205,7 @@ softfall_status softfall_model_build(softfall_case *c, const softfall_sink *sink
                           &err) == SF_OK) {
             const sf_case_input again = {c->data.path, 1, c->override_count,
                                          (const char *const *)c->overrides};
-            sf_section_drop_refer(&again, &sections, &m->model);
+            sf_section_drop_refer(&again, &report, &sections, &m->model, &inner);
             keep_texts(c, &report, m, &err);
         }
         m->kernel = (sf_kernel){c->data.support_ratio, c->data.condition_limit};

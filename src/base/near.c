@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/near.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-enum { NEAR_MAX = 40, NEAR_EDITS = 2 };
+enum { NEAR_MAX = 40, NEAR_EDITS = 2, NEAR_BEGIN = 4 /* letters of an abbreviation */ };
 
 /* Levenshtein distance; capitals are as small letters. */
 static size_t edit_distance(const char *a, size_t na, const char *b, size_t nb) {
@@ -34,7 +35,9 @@ sf_near sf_near_begin(const char *wanted) {
 }
 
 void sf_near_offer(sf_near *near, const char *name, size_t length) {
-    size_t distance = edit_distance(near->wanted, strlen(near->wanted), name, length);
+    size_t typed = strlen(near->wanted);
+    bool begins = typed >= NEAR_BEGIN && typed < length && strncasecmp(near->wanted, name, typed) == 0;
+    size_t distance = begins ? 1 : edit_distance(near->wanted, typed, name, length);
     if (distance < near->distance && distance < length)
         *near = (sf_near){near->wanted, name, length, distance};
 }

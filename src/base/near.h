@@ -6,8 +6,8 @@
 enum { SF_NEAR_HINT = 96 }; /* bytes of a hint */
 
 typedef struct sf_near {
-    const char *wanted;      /* unknown name; borrowed */
-    const char *name;        /* nearest known name so far, borrowed; NULL: none is within two edits */
+    const char *wanted; /* unknown name; borrowed */
+    const char *name; /* nearest known name so far, borrowed; NULL: none is within two edits, or begins so */
     size_t length, distance; /* of `name`: bytes, edits */
 } sf_near;
 

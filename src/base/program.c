@@ -220,7 +220,15 @@ enum { FIRST_KEY = 0x1000, LIST_KEYS = 0x100, LISTS = 3, OPTIONS = 40 };
 typedef struct parser {
     const sf_command *command;
     sf_error *err;
+    const char *given[LISTS][OPTIONS]; /* the argument of each option; NULL: not given yet */
 } parser;
+
+/* An option has one argument, unless its reader takes several. */
+static void check_once(const sf_option *o, const char **given, const char *text, struct argp_state *state) {
+    if (*given && text && o->argument && !o->repeats && strcmp(*given, text) != 0)
+        argp_error(state, "--%s is given twice: %s and %s", o->name, *given, text);
+    *given = text;
+}
 
 static int key_of(const sf_option *option, int list, int index) {
     return option->letter ? option->letter : FIRST_KEY + LIST_KEYS * list + index;
@@ -267,6 +275,7 @@ static error_t take(int key, char *text, struct argp_state *state) {
         for (int k = 0; c->list[l].option && c->list[l].option[k].name; k++) {
             if (key_of(&c->list[l].option[k], l, k) != key)
                 continue;
+            check_once(&c->list[l].option[k], &p->given[l][k], text, state);
             take_option(&c->list[l].option[k], c->list[l].values, text, p->err);
             if (p->err->status == SF_ERR_INPUT && c->is_usage)
                 argp_error(state, "%s", p->err->text);
@@ -278,7 +287,7 @@ static error_t take(int key, char *text, struct argp_state *state) {
 sf_status sf_command_parse(const sf_command *c, int argc, char **argv, sf_error *err) {
     static char version[128];
     struct argp_option list[OPTIONS] = {0};
-    parser p = {c, err};
+    parser p = {.command = c, .err = err};
     int count = 0;
     for (int l = 0; l < LISTS; l++)
         for (int k = 0; c->list[l].option && c->list[l].option[k].name && count < OPTIONS - 1; k++) {
@@ -301,11 +310,19 @@ sf_status sf_program_read_limit(const char *option, const char *text, void *limi
     return SF_OK;
 }
 
+void sf_program_compare_texts(const char *option, const char *before, const char *text) {
+    sf_sink sink = sf_program_sink(program_invocation_short_name);
+    if (sf_text_contradicts(before, text))
+        sf_sink_tell(&sink, SF_WARNING, "%s %s is replaced by the later %s %s", option, before, option, text);
+}
+
 sf_status sf_program_read_texts(const char *option, const char *text, void *texts, sf_error *err) {
     enum { MOST = sizeof((sf_option_texts *)0)->text / sizeof(char *) };
     sf_option_texts *all = texts;
     if (all->count == MOST)
         return SF_REFUSE(err, "%d %s options" SF_AT_MOST("%d"), MOST + 1, option, MOST);
+    for (int k = 0; k < all->count; k++)
+        sf_program_compare_texts(option, all->text[k], text);
     all->text[all->count++] = text;
     return SF_OK;
 }

@@ -55,6 +55,17 @@ bool sf_whole_is(const char *text, long low, long high, int *value) {
     return true;
 }
 
+bool sf_text_contradicts(const char *one, const char *other) {
+    one += strspn(one, " \t");
+    other += strspn(other, " \t");
+    size_t length = strcspn(one, "= \t");
+    if (strncmp(one, other, length) != 0 || strcspn(other, "= \t") != length)
+        return false;
+    one += length + strspn(one + length, " \t");
+    other += length + strspn(other + length, " \t");
+    return *one == '=' && *other == '=' && strcmp(one, other) != 0;
+}
+
 int sf_word_find(const char *list, const char *word) {
     size_t length = strlen(word);
     int place = 0;

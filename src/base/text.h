@@ -17,6 +17,9 @@ bool sf_decimal_is(const char *text, double *value);
 /* True if the whole text is one whole number from `low` to `high`. */
 bool sf_whole_is(const char *text, long low, long high, int *value);
 
+/* True if both texts are KEY=VALUE of one key, with other values. */
+bool sf_text_contradicts(const char *one, const char *other);
+
 /* Place of the word in the list "one|two|three"; -1 if it is not there. */
 int sf_word_find(const char *list, const char *word);
 

@@ -493,10 +493,19 @@ static bool has_bare_unit(const char *text, int line) {
     return rest < text + length && (isalpha((unsigned char)*rest) || *rest == '%');
 }
 
+/* True if nothing but blanks and comments stands behind the line. */
+static bool is_at_end(const char *text, int line) {
+    for (int k = 0; text && k < line; k++)
+        text = (text = strchr(text, '\n')) ? text + 1 : NULL;
+    return !text || *sf_blanks_pass(text, true) == '\0';
+}
+
 const char *sf_case_syntax_phrase(const char *libconfig_text, const char *text, int line) {
     if (libconfig_text && strcmp(libconfig_text, "mismatched element type in array") == 0)
         return "the numbers of an array must all have a decimal point, or none: [0.5, 0.0, -1.0]";
     if (has_bare_unit(text, line))
         return "a value with a unit stands in quotation marks, such as \"4.5 m/s\"";
+    if (libconfig_text && strcmp(libconfig_text, "syntax error") == 0 && is_at_end(text, line))
+        return "the text ends within a group, list or value: a bracket, a brace or a semicolon is missing";
     return libconfig_text ? libconfig_text : "syntax error";
 }

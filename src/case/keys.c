@@ -158,7 +158,7 @@ static const sf_key keys[] = {
     {"membrane", "nu", SF_KEY_NUMBER, "0.4", AT(membrane_card.poisson), "Poisson's ratio of it", .high = 0.5},
     {"membrane", "thickness", SF_KEY_QUANTITY, "", AT(membrane_card.thickness),
      "of it: it resists tension and shear, not bending", .quantity = SF_LENGTH, POSITIVE, .high = 1.0},
-    {"membrane", "density", SF_KEY_QUANTITY, "", AT(membrane_card.density), "of it", .quantity = SF_DENSITY, .high = 1e5},
+    {"membrane", "density", SF_KEY_QUANTITY, "", AT(membrane_card.density), "of it", .quantity = SF_DENSITY, .low = 4, .high = 2e4},
     {"membrane", "fabric", SF_KEY_BOOL, "false", AT(membrane_card.fabric),
      "the cover folds: it carries no compression"},
     /* kernel */

@@ -5,6 +5,7 @@
 #include <ctype.h>
 #include <gsl/gsl_sort.h>
 
+#include "base/hash.h"
 #include "base/text.h"
 
 #include "case/curves.h"
@@ -62,7 +63,8 @@ static bool is_finite_number(const config_setting_t *setting) {
     return config_setting_is_number(setting) && isfinite(number_of(setting));
 }
 
-static sf_status check_bounds(const slot *s, double value, const char *unit) {
+/* `given`: the text of a quantity; NULL of a number. */
+static sf_status check_bounds(const slot *s, double value, const char *unit, const char *given) {
     const sf_key *key = s->key;
     /* Units are converted with a rounding: 20 us may come out an ulp above 20e-6 s. */
     double high = key->high * (1.0 + 1e-12);
@@ -74,8 +76,9 @@ static sf_status check_bounds(const slot *s, double value, const char *unit) {
         return SF_OK;
     if (key->high != 0.0)
         snprintf(upper, sizeof upper, " and at most %g%s%s", key->high, blank, unit);
-    return REFUSE(s, "%g%s%s is out of bounds; it must be %s %g%s%s%s", value, blank, unit,
-                  key->low_open ? "above" : "at least", key->low, blank, unit, upper);
+    return REFUSE(s, "%g%s%s is out of bounds; it must be %s %g%s%s%s%s%s%s", value, blank, unit,
+                  key->low_open ? "above" : "at least", key->low, blank, unit, upper,
+                  given ? ": is the unit of \"" : "", given ? given : "", given ? "\" right?" : "");
 }
 
 static sf_status read_quantity(const slot *s) {
@@ -95,7 +98,7 @@ static sf_status read_quantity(const slot *s) {
         return REFUSE(s, "%s%s%s%s", inner.text, key->words ? " or \"" : "", key->words ? key->words : "",
                       key->words ? "\"" : "");
     snprintf(s->detail, s->size, "%.12g %s", *value, unit);
-    return check_bounds(s, *value, unit);
+    return check_bounds(s, *value, unit, text);
 }
 
 static sf_status read_unit(const slot *s) {
@@ -119,7 +122,7 @@ static sf_status read_number(const slot *s) {
     if (!isfinite(*value))
         return REFUSE(s, "the number is not finite");
     snprintf(s->detail, s->size, "%.12g", *value);
-    return check_bounds(s, *value, "");
+    return check_bounds(s, *value, "", NULL);
 }
 
 static sf_status read_bool(const slot *s) {
@@ -217,7 +220,7 @@ static sf_status read_items(const slot *s, const char *phrase, const char *examp
                           example);
         if (sf_units_parse(s->reader->units, text, s->key->quantity, &value[i], &inner) != SF_OK)
             return REFUSE(s, "%s", inner.text);
-        SF_TRY(check_bounds(s, value[i], sf_quantity_unit(s->key->quantity)));
+        SF_TRY(check_bounds(s, value[i], sf_quantity_unit(s->key->quantity), NULL));
     }
     return SF_OK;
 }
@@ -280,6 +283,17 @@ static sf_status read_drop_interval(const slot *s, const config_setting_t *setti
     return read_quantity(&own);
 }
 
+/* Enters the content of a later drop's motion into the hash of the case: the first drop's reader does not
+ * read it. What cannot be read is refused when that drop is read. */
+static void hash_drop_motion(const slot *s, const config_setting_t *drop) {
+    const config_setting_t *motion = config_setting_get_member(drop, "motion");
+    const char *text = motion ? config_setting_get_string(motion) : NULL;
+    SF_OWNED char *path = text && *text ? sf_case_resolve(s->reader, motion, text, SF_IGNORED) : NULL;
+    uint64_t content = 0, *hash = &s->reader->out->values;
+    if (path && sf_plain_hash(path, NULL, SF_PLAIN_TEXT, &content, SF_IGNORED) == SF_OK)
+        *hash = sf_hash_bytes(*hash, &content, sizeof content);
+}
+
 /* The number of drops, or the list of them, whose keys of the missile sf_case_take_drop takes. */
 static sf_status read_drops(const slot *s) {
     sf_case_drop *drop = s->reader->out->drop;
@@ -288,7 +302,7 @@ static sf_status read_drops(const slot *s) {
         return read_number(s);
     *(double *)s->at = count;
     snprintf(s->detail, s->size, "%d", count);
-    SF_TRY(check_bounds(s, count, ""));
+    SF_TRY(check_bounds(s, count, "", NULL));
     for (int k = 0; k < count; k++) {
         const config_setting_t *item = config_setting_get_elem(s->setting, (unsigned)k);
         if (!config_setting_is_group(item))
@@ -299,6 +313,7 @@ static sf_status read_drops(const slot *s) {
         const config_setting_t *interval = config_setting_get_member(item, "interval");
         if (interval)
             SF_TRY(read_drop_interval(s, interval, &drop[k].interval));
+        hash_drop_motion(s, item);
         drop[k].own = drop[0].own || config_setting_length(item) > (interval ? 1 : 0);
     }
     return SF_OK;

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/h5.h"
 
+#include "io/h5_data.h"
 #include "io/h5_file.h"
+#include "io/replace.h"
 #include <errno.h>
 #include <string.h>
 
@@ -51,6 +53,24 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
 
 sf_status sf_h5_open_alone(const char *path, sf_h5 **file, sf_error *err) {
     return open_file(path, true, file, err);
+}
+
+sf_status sf_h5_check_replaced(const char *path, const char *format, sf_error *err) {
+    char found[64] = "";
+    sf_h5 file = {.alone = true, .path = (char[]){""}};
+    if (!sf_replace_is_hdf5(path))
+        return SF_REFUSE(err, "%s is not replaced, as it is no %s file: give another output", path, format);
+    begin_library();
+    file.id = sf_replace_exists(path) ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
+    if (file.id < 0) /* there is none, or it cannot be told */
+        return SF_OK;
+    sf_h5_get_attribute(&file, "/", "format", found, sizeof found, SF_IGNORED);
+    H5Fclose(file.id);
+    return strcmp(found, format) == 0
+               ? SF_OK
+               : SF_REFUSE(err, "%s is not replaced, as it is %s%s and no %s file: give another output", path,
+                           *found ? "a file of the format " : "an HDF5 file of another program", found,
+                           format);
 }
 
 sf_status sf_h5_close(sf_h5 **file, sf_error *err) {

@@ -213,10 +213,11 @@ static sf_status check_storage(const sf_h5 *file, const char *path, hid_t set, s
         return SF_FAIL(err, SF_ERR_IO, "%s: the data of %s are in another file, which is not read",
                        file->path, path);
     if (filters != 0)
-        return SF_FAIL(err, SF_ERR_IO,
-                       "%s: %s is compressed or filtered; only plain data are read (h5repack -f NONE undoes "
-                       "it)",
-                       file->path, path);
+        return SF_FAIL(
+            err, SF_ERR_IO,
+            "%s: %s is compressed or filtered; only plain data are read: make it anew with the program "
+            "that wrote it",
+            file->path, path);
     return SF_OK;
 }
 

@@ -86,7 +86,7 @@ static int open_part(const sf_h5 *file, const char *folder, const char *name, hi
         return LINK_NONE;
     if (!S_ISREG(info.st_mode))
         return LINK_ELSEWHERE;
-    if (strcmp(file->checked, name) != 0 && sf_seal_check(path, true, &problem) != SF_OK)
+    if (strcmp(file->checked, name) != 0 && sf_seal_check(path, &problem) != SF_OK)
         return LINK_DAMAGED;
     snprintf(((sf_h5 *)file)->checked, NAME_MAX + 1, "%s", name);
     *part = sf_h5_open_plain(path, &problem);

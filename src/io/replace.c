@@ -203,6 +203,46 @@ bool sf_replace_is_ours(int folder, const char *name) {
     return is_ours(folder, name, false);
 }
 
+/* -1: there is no plain file of that name that can be read. */
+static int open_present(const char *path, struct stat *info) {
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    if (file >= 0 && (fstat(file, info) != 0 || !S_ISREG(info->st_mode))) {
+        close(file);
+        return -1;
+    }
+    return file;
+}
+
+bool sf_replace_is_hdf5(const char *path) {
+    struct stat info;
+    int file = open_present(path, &info);
+    bool ours = file >= 0 ? is_ours_open(file, &info) : !sf_replace_exists(path);
+    if (file >= 0)
+        close(file);
+    return ours;
+}
+
+bool sf_replace_is_page(const char *path) {
+    static const char name[] = "softfall";
+    enum { KEPT = sizeof name - 2, PART = 1 << 14 }; /* the name may lie across two parts */
+    char part[KEPT + PART];
+    struct stat info;
+    size_t kept = 0;
+    ssize_t read_now;
+    int file = open_present(path, &info);
+    if (file < 0)
+        return !sf_replace_exists(path);
+    bool ours = info.st_size == 0;
+    while (!ours && (read_now = read(file, part + kept, PART)) > 0) {
+        size_t size = kept + (size_t)read_now;
+        ours = memmem(part, size, name, sizeof name - 1) != NULL;
+        kept = size < KEPT ? size : KEPT;
+        memmove(part, part + size - kept, kept);
+    }
+    close(file);
+    return ours;
+}
+
 void sf_replace_clean(const char *path) {
     char folder[SF_PATH_SIZE];
     const char *name = sf_path_split(path, folder);
@@ -292,15 +332,21 @@ sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err)
     return err->status;
 }
 
-sf_status sf_seal_check(const char *path, bool required, sf_error *err) {
+sf_status sf_seal_check(const char *path, sf_error *err) {
     sf_seal_state state;
     SF_TRY(sf_seal_examine(path, &state, err));
     if (state == SF_SEAL_NO_FILE)
         return SF_FAIL(err, SF_ERR_IO, "%s does not exist", path);
-    if (state == SF_SEAL_NONE && required)
-        return SF_FAIL(err, SF_ERR_IO, "%s is incomplete: it does not end with its checksum", path);
+    if (state == SF_SEAL_NONE)
+        return SF_FAIL(
+            err, SF_ERR_IO,
+            "%s does not end with its checksum: it was cut, or another program has changed it; make "
+            "it anew with softfall-solve",
+            path);
     if (state == SF_SEAL_BROKEN)
-        return SF_FAIL(err, SF_ERR_IO, "%s is damaged: it does not have the checksum that it ends with",
+        return SF_FAIL(err, SF_ERR_IO,
+                       "%s is damaged: it does not have the checksum that it ends with; make it anew with "
+                       "softfall-solve",
                        path);
     return SF_OK;
 }

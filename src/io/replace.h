@@ -62,6 +62,12 @@ void sf_replace_clean(const char *path);
 /* The file of that name in the open folder is plain, and empty or of HDF5. */
 bool sf_replace_is_ours(int folder, const char *name);
 
+/* What --force may replace, of the kind that is written there: a plain file (also behind a link) that is
+ * empty, or of HDF5 or sealed; and one that is empty, or a text that names softfall, as its pages and
+ * summaries do. True if there is no file. */
+bool sf_replace_is_hdf5(const char *path);
+bool sf_replace_is_page(const char *path);
+
 /* A checksum at the end of a file, behind the part that its own format (HDF5) reads: 8 bytes "SFSEAL01", the
  * length of the file before it (u64) and its hash (u64, base/hash.h), in the machine's byte order. */
 
@@ -70,13 +76,12 @@ sf_status sf_seal_add(const char *path, sf_error *err);
 typedef enum sf_seal_state {
     SF_SEAL_SOUND,
     SF_SEAL_BROKEN,  /* the file has changed */
-    SF_SEAL_NONE,    /* the file was cut, or another tool wrote it */
+    SF_SEAL_NONE,    /* the file was cut, or another program has written it */
     SF_SEAL_NO_FILE, /* there is no such file */
 } sf_seal_state;
 
 /* The state of a file; fails if it is not known, as the system refused to open or read the file. */
 sf_status sf_seal_examine(const char *path, sf_seal_state *state, sf_error *err);
 
-/* SF_ERR_INPUT if the file is not plain; SF_ERR_IO: it is missing, not readable, cut or has changed. Unless
- * `required`, it may have come from another tool (h5repack), without a seal. */
-sf_status sf_seal_check(const char *path, bool required, sf_error *err);
+/* SF_ERR_INPUT if the file is not plain; SF_ERR_IO: it is missing, not readable, or not as it was made. */
+sf_status sf_seal_check(const char *path, sf_error *err);

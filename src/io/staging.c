@@ -27,13 +27,22 @@ static char *join(const char *directory, const char *name, sf_error *err) {
     return path;
 }
 
-/* Each file that is there may be replaced: it is plain and not an input. */
+/* True of the names by which a folder is known to hold what softfall wrote, or to be somebody else's. */
+static bool is_page(const char *name) {
+    return strcmp(name, "report.html") == 0 || strcmp(name, "summary.json") == 0;
+}
+
+/* Each file that is there may be replaced: it is plain and not an input, and a page is one of softfall. */
 static sf_status check_files(const char *directory, const char *const *names, bool force, sf_error *err) {
     for (; *names && err->status == SF_OK; names++) {
         SF_OWNED char *path = join(directory, *names, err);
-        if (path && sf_replace_check(path, err) == SF_OK && !force && sf_replace_exists(path))
+        if (!path || sf_replace_check(path, err) != SF_OK)
+            return err->status;
+        if (!force && sf_replace_exists(path))
             SF_REFUSE(err, "%s already holds %s: give another folder, or --force to replace it", directory,
                       *names);
+        else if (is_page(*names) && !sf_replace_is_page(path))
+            SF_REFUSE(err, "%s is not of softfall, and is not replaced: give another folder", path);
     }
     return err->status;
 }

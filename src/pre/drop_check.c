@@ -625,11 +625,14 @@ sf_status sf_drop_check_contact(const sf_case *c, const sf_model *m, const sf_co
 
 void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                   double volume, const sf_sink *sink) {
-    char reason[REASON_SIZE];
     tell_free_planes(c, mesh, sink);
     tell_density(c, m, volume, sink);
     tell_edge(m, zone, sink);
     tell_cautions(m, sink);
+}
+
+void sf_drop_warn_mesh(const sf_model *m, const sf_contact_zone *zone, const sf_sink *sink) {
+    char reason[REASON_SIZE];
     if (!(m->expected_mesh_error >= sf_good_run_limits()->mesh))
         return;
     describe_spacing(m, zone, reason);

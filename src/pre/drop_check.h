@@ -37,7 +37,10 @@ sf_status sf_drop_check_contact(const sf_case *c, const sf_model *m, const sf_co
                                 sf_error *err);
 
 /* Warns of a symmetry group of the geometry that the case does not hold, of a material where the solver is
- * known to be weak (sf_law.caution), of a mass that its body cannot have, and of a coarse mesh. `volume`: m3,
- * of the missile's body; 0: unknown. */
+ * known to be weak (sf_law.caution), and of a mass that its body cannot have. `volume`: m3, of the missile's
+ * body; 0: unknown. */
 void sf_drop_warn(const sf_case *c, const sf_mesh *mesh, const sf_model *m, const sf_contact_zone *zone,
                   double volume, const sf_sink *sink);
+
+/* Warns of a coarse mesh by its spacing, where no drops of the section tell its error. */
+void sf_drop_warn_mesh(const sf_model *m, const sf_contact_zone *zone, const sf_sink *sink);

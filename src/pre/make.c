@@ -3,6 +3,7 @@
 
 #include "base/mat3.h"
 #include "pre/alike.h"
+#include "pre/drop_check.h"
 #include "pre/mesh/gmsh_session.h"
 #include "pre/mesh/refine.h"
 #include "pre/mesh/section.h"
@@ -26,8 +27,9 @@ static sf_status read_pad(sf_gmsh *session, const sf_case *c, sf_mesh *mesh, sf_
     const sf_pad_volumes volumes = {c->layer_count, group, true, c->missile.path != NULL, c->axisymmetric};
     if (c->axisymmetric)
         return read_section(session, c, &volumes, mesh, err);
-    return c->layer_count > 0 ? sf_gmsh_read_layers(session, &volumes, c->length_unit, mesh, err)
-                              : sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, err);
+    const char *pad = c->pad_group;
+    const sf_pad_volumes one = {1, &pad, false, volumes.alone, false};
+    return sf_gmsh_read_layers(session, c->layer_count > 0 ? &volumes : &one, c->length_unit, mesh, err);
 }
 
 static void turn_points(const double turn[9], int64_t count, double *position) {
@@ -174,6 +176,8 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
             sf_model_free(model);
         else if (sections)
             make_alike(c, model, &report->zone, sections);
+        if (err->status == SF_OK && (!sections || sections->mesh[SF_SECTION_FINE].node_count == 0))
+            sf_drop_warn_mesh(model, &report->zone, sink);
     }
     sf_surface_free(&surface);
     for (int k = 0; k < SF_SUPPORTS; k++)

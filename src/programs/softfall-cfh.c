@@ -36,6 +36,8 @@ static sf_status read_override(const char *option, const char *text, void *value
     if (strncmp(text + strspn(text, " \t"), speed, strlen(speed)) == 0)
         return SF_REFUSE(err, "%s %s: the drop height decides the speed; --height gives the first one",
                          option, text);
+    for (int k = 0; k < o->override_count; k++)
+        sf_program_compare_texts(option, o->overrides[k], text);
     if (o->override_count == SF_RUNNER_OVERRIDES - 1)
         return SF_REFUSE(err, "%d %s options" SF_AT_MOST("%d"), SF_RUNNER_OVERRIDES, option,
                          SF_RUNNER_OVERRIDES - 1);
@@ -94,7 +96,7 @@ static sf_status check_options(const options *o, sf_error *err) {
 #define AT(member) offsetof(options, member)
 static const sf_option known[] = {
     {"set", 0, "GROUP.KEY=VALUE", "override a key of the case, as softfall-pre does", .read = read_override,
-     .group = 1},
+     .group = 1, .repeats = true},
     {"material", 0, "FILE", "another foam: replaces the case's group material", .member = AT(material),
      .group = 1},
     {"limit-g", 0, "G", "limit of a_max in g (default " SF_UNITS_QUOTE(SF_DEFAULT_LIMIT_G) ")",

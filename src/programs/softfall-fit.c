@@ -2,6 +2,7 @@
 /* softfall-fit WORD ...: material parameters from measurements. The first word names the kind of
  * measurement. */
 #include "build_info.h"
+#include "base/near.h"
 #include "base/program.h"
 #include "study/fit/compression/compression_kind.h"
 #include "study/fit/drop/drop_report.h"
@@ -41,9 +42,12 @@ int main(int argc, char **argv) {
         puts(version);
         return 0;
     }
+    char meant[SF_NEAR_HINT];
+    sf_near near = sf_near_begin(word);
+    for (int k = 0; k < COMMANDS; k++)
+        sf_near_offer(&near, commands[k].word, strlen(commands[k].word));
     if (argc > 1)
-        fprintf(stderr, "softfall-fit: unknown command '%s'%s\n", word,
-                strncmp(word, "compr", 5) == 0 ? "; did you mean 'compression'?" : "");
+        fprintf(stderr, "softfall-fit: unknown command '%s'%s\n", word, sf_near_hint(&near, meant));
     print_usage(stderr);
     return 2;
 }

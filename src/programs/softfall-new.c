@@ -96,7 +96,7 @@ static const sf_option known[] = {
      "the example to begin with (default " USUAL "), or a case file (a name with / or .cfg)",
      .member = offsetof(options, from)},
     {"set", 0, "KEY=VALUE", "change a value, as softfall-pre does; may be repeated",
-     .member = offsetof(options, overrides), .read = sf_program_read_texts},
+     .member = offsetof(options, overrides), .read = sf_program_read_texts, .repeats = true},
     {"list", 'l', NULL, "list the examples", .member = offsetof(options, list)},
     {0},
 };

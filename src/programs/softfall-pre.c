@@ -2,6 +2,7 @@
 /* softfall-pre: CASE -> model.h5. */
 #include "accuracy/section_drop.h"
 #include "base/program.h"
+#include "base/text.h"
 #include "case/read.h"
 #include "case/values.h"
 #include "io/replace.h"
@@ -23,7 +24,7 @@ static const sf_option list[] = {
     {"set", 0, "GROUP.KEY=VALUE",
      "override a key of the case, e.g. missile.velocity=\"5.2 m/s\", or replace a group by a file, e.g. "
      "material=@other_foam.cfg",
-     .member = offsetof(options, overrides), .read = sf_program_read_texts},
+     .member = offsetof(options, overrides), .read = sf_program_read_texts, .repeats = true},
     {"axisymmetric", 0, NULL,
      "model the plane section of a plate that a body of revolution hits straight: --set "
      "geometry.model=\"axisymmetric\"",
@@ -50,7 +51,7 @@ static sf_status check_output(const options *o, const char *path, sf_error *err)
     SF_TRY(sf_replace_check(path, err));
     if (!o->force && sf_replace_exists(path))
         return SF_REFUSE(err, "%s exists; --force replaces it", path);
-    return SF_OK;
+    return sf_h5_check_replaced(path, "softfall-model", err);
 }
 
 /* Facts go to the report of the model. */
@@ -121,8 +122,8 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
     sf_model_report_make(&model, &report, &table);
     sf_model_report_print(stdout, &table);
     double formula = model.expected_mesh_error;
-    sf_section_drop_refer(&(sf_case_input){o->case_path, 1, o->overrides.count, o->overrides.text}, &sections,
-                          &model);
+    sf_section_drop_refer(&(sf_case_input){o->case_path, 1, o->overrides.count, o->overrides.text}, &report,
+                          &sections, &model, &sink);
     print_section(&model, formula);
     SF_OWNED char *text = sf_model_report_text(&table, err);
     sf_provenance provenance = {.program = "softfall-pre",
@@ -138,6 +139,18 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
         sf_model_hash(&model, hash);
     }
     return (int64_t)strtoull(hash, NULL, 16);
+}
+
+/* --axisymmetric is a value of the case; another one on the command line contradicts it. */
+static sf_status choose_model(sf_option_texts *overrides, sf_error *err) {
+    static const char plain[] = "geometry.model=axisymmetric", quoted[] = "geometry.model=\"axisymmetric\"";
+    for (int k = 0; k < overrides->count; k++)
+        if (sf_text_contradicts(overrides->text[k], plain) && sf_text_contradicts(overrides->text[k], quoted))
+            return SF_REFUSE(err, "--axisymmetric contradicts --set %s: give one of them",
+                             overrides->text[k]);
+        else if (strncmp(overrides->text[k], plain, strcspn(plain, "=") + 1) == 0)
+            return SF_OK;
+    return sf_program_read_texts("--axisymmetric:", quoted, overrides, err);
 }
 
 int main(int argc, char **argv) {
@@ -156,9 +169,8 @@ int main(int argc, char **argv) {
         sf_case_print_keys(stdout);
     else if (err.status == SF_OK && sf_program_try_threads(omp_get_max_threads(), &err) == SF_OK) {
         SF_OWNED char *command = sf_command_line(argc, argv);
-        if (o.axisymmetric && o.overrides.count < (int)(sizeof o.overrides.text / sizeof(char *)))
-            o.overrides.text[o.overrides.count++] = "geometry.model=\"axisymmetric\"";
-        build(&o, command ? command : "softfall-pre", 1, &err);
+        if (!o.axisymmetric || choose_model(&o.overrides, &err) == SF_OK)
+            build(&o, command ? command : "softfall-pre", 1, &err);
     }
     return sf_error_report(&err, "softfall-pre");
 }

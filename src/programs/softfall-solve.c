@@ -163,6 +163,8 @@ static sf_status register_earlier(const char *results, sf_error *err) {
 /* A file of an earlier run is replaced only with --force. */
 static sf_status check_output(const options *o, const sf_output *output, sf_error *err) {
     SF_TRY(check_names(output, err));
+    SF_TRY(sf_h5_check_replaced(output->results, "softfall-results", err));
+    SF_TRY(sf_h5_check_replaced(output->checkpoint, "softfall-checkpoint", err));
     if (o->force)
         return SF_OK;
     if (sf_replace_exists(output->results))

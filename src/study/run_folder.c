@@ -390,8 +390,12 @@ static sf_status simulate(const sf_run_folder *at, const char *case_path, int co
     snprintf(share, sizeof share, "%.*s" SF_RUN_SHARED, (int)(strrchr(at->path, '/') + 1 - at->path),
              at->path);
     for (int k = 0; k < count; k++) {
-        build[n++] = "--set";
-        build[n++] = overrides[k];
+        bool last = true; /* a factor comes after the value of the plan that it replaces */
+        for (int later = k + 1; later < count && last; later++)
+            last = !sf_text_contradicts(overrides[k], overrides[later]);
+        build[n] = "--set";
+        build[n + 1] = overrides[k];
+        n += last ? 2 : 0;
     }
     snprintf(thread_text, sizeof thread_text, "%d", threads);
     const char *run[] = {solve, at->model, "-o", at->results, "--force", "-t", thread_text, NULL};

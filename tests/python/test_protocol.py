@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import softfall
-from softfall import judge, protocol, protocol_advice, protocol_drops, protocol_measured, refinement
+from softfall import advice, judge, protocol, protocol_advice, protocol_drops, protocol_measured, refinement, scatter
 from softfall.protocol_drops import Drop, Drops, Spot
 from conftest import BIN, command_here
 
@@ -165,10 +165,106 @@ def test_measured_drops_are_judged_by_straight_lines_between_the_heights(measure
     share = np.log(400 / hics[0.6]) / np.log(hics[0.9] / hics[0.6])
     assert found["value_m"] == pytest.approx(0.6 * (0.9 / 0.6) ** share, rel=1e-12) and found["stated"] == "0.75 m"
     page = (tmp_path / "out/report.html").read_text()
+    assert found["low_m"] < found["value_m"] < found["high_m"] and found["interval_from"] == "repeated drops"
+    words = f"95 % interval of the critical height {found['low_m']:.4g} to {found['high_m']:.4g} m, by repeated drops"
+    assert words in page and "9 degrees of freedom" in page and "no interval" not in page
+    assert all(line["low"] < line["value"] < line["high"] for line in found["lines"])
     assert "UNCONFIRMED" in page and "made-up laboratory" in page and "<svg" in page and "certifies nothing" in page
     again = protocol_here(MAT, "--measured", measured, "-o", tmp_path / "out")
     assert again.returncode == 2 and "--force" in again.stderr
     assert len((tmp_path / "out/drops.csv").read_text().splitlines()) == 28
+
+
+def one_place(tmp_path, count=1):
+    """The protocol of the measured example with one position and a_max alone, whose `count` drops all count."""
+    text = MAT.read_text().replace("count = 3", f"count = {count}").replace("counted = [2, 3]", f"counted = {list(range(1, count + 1))}")
+    (tmp_path / "one.toml").write_text(re.sub(r'\[\[figure\]\]\nkey = "hic".*?\n\n', "", text, flags=re.S))
+    return protocol.read(str(tmp_path / "one.toml"))
+
+
+def repeated(heights, *repeats):
+    """Drops at one place, with the a_max of each repeat at each height."""
+    return Drops([Drop(Spot("as it is", "centre", h), k, "", {"a_max_g": a}, "valid") for k, row in enumerate(repeats, 1) for h, a in zip(heights, row)])
+
+
+def test_students_t_has_its_quantiles():
+    from scipy.stats import t
+    for freedom in (1, 2, 3, 4, 5, 6, 10, 100):
+        assert scatter.student(freedom) == pytest.approx(t.ppf(0.975, freedom), rel=3e-3)
+
+
+def test_the_interval_of_a_height_holds_the_true_one_as_often_as_it_says(tmp_path):
+    """2000 laboratories with 5 % from drop to drop on a pad whose a_max is a power of the height: 95 % hold the height of 100 g."""
+    p, random, held, heights = one_place(tmp_path, 2), np.random.default_rng(7), 0, np.array([0.6, 0.8, 1.1])
+    true, count = 0.9, 2000
+    for _ in range(count):
+        rows = [100 * (heights / true) ** 1.4 * np.exp(0.05 * random.standard_normal(3)) for _ in range(2)]
+        found = judge.judge(p, repeated(heights, *rows))
+        held += found.low <= true <= found.high
+    assert 0.935 < held / count < 0.985
+
+
+def test_the_interval_of_a_height_has_its_closed_form(tmp_path):
+    """Half-way between two heights of equal means about the limit: Fieller's interval, of a line whose slope is known as well as its points."""
+    p, sd, heights = one_place(tmp_path, 3), 0.02, np.array([0.8, 1.0])
+    ends = 100 * np.exp([-0.1, 0.1])
+    found = judge.judge(p, repeated(heights, ends * np.exp(-sd), ends, ends * np.exp(sd)))
+    half = scatter.student(4) * sd
+    x = np.linspace(0, 1, 200001)  # |line| = half sqrt(((1 - x)^2 + x^2) / 3)
+    inside = x[np.abs(0.2 * x - 0.1) <= half * np.sqrt(((1 - x) ** 2 + x**2) / 3)]
+    assert [found.low, found.high] == pytest.approx([0.8 * 1.25 ** inside[0], 0.8 * 1.25 ** inside[-1]], rel=5e-4)  # means are of figures, not of their logarithms
+    assert found.interval_from == "repeated drops" and found.value == pytest.approx(0.8 * 1.25**0.5, rel=1e-3)
+
+
+def test_what_the_measured_heights_do_not_bound_has_no_end(tmp_path):
+    p = one_place(tmp_path, 3)
+    found = judge.judge(p, repeated([0.8, 1.0], [70, 96], [74, 99], [78, 102]))
+    assert found.stated == "above 1 m" and 0.8 < found.low < 1.0 and found.high == np.inf and judge.between(found.low, found.high).startswith("above 0.9")
+    found = judge.judge(p, repeated([0.8, 1.0], [99, 120], [102, 124], [105, 127]))
+    assert found.stated == "below 0.8 m" and found.low == 0 and 0.8 < found.high < 0.9 and judge.between(found.low, found.high).startswith("below 0.8")
+
+
+def test_without_repeats_and_draws_no_interval_is_known(tmp_path):
+    p = one_place(tmp_path)
+    found = judge.judge(p, repeated([0.6, 0.9, 1.2], [50, 80, 120]))
+    assert np.isnan([found.low, found.high]).all() and not found.interval_from
+    assert any(note.startswith("no interval is known: no spot has two drops that count") and "--posterior" in note for note in found.notes)
+
+
+def test_few_repeats_take_the_interval_of_the_draws_unless_it_does_not_hold_the_height(tmp_path, monkeypatch):
+    """Draws of one spread, weighed by a measured drop: the interval of Bayes' rule, by its closed form."""
+    from test_advice import SCATTER, SLOPE, SPREAD, place
+    p = one_place(tmp_path)
+    search = protocol_drops.Search("as it is", "centre", tmp_path, {"posterior": {"draws": 500}})
+    monkeypatch.setattr(advice, "read_place", lambda name, folder: dataclasses.replace(place(name=name), value=place().value - np.log(10)))  # 100 g at 1 m
+    monkeypatch.setattr(advice, "FORM", (0, 0))
+    monkeypatch.setattr(advice.Pads.__init__, "__defaults__", (1, (0, 0), None))
+    monkeypatch.setattr(advice, "LOCKS", 0)
+    measured = repeated([0.9, 1.1], [100 * 0.9**SLOPE, 100 * 1.1**SLOPE])
+    foams = protocol_advice.foams_interval(p, measured, [search])
+    found = judge.judge(p, measured, foams=foams)
+    sd = 1 / np.sqrt(1 / SPREAD**2 + 2 / SCATTER**2)
+    assert [found.low, found.high] == pytest.approx(np.exp([-1.96 * sd / SLOPE, 1.96 * sd / SLOPE]), rel=4e-3) and found.interval_from == "draws of the foam"
+    assert any("500 draws of the foam" in note for note in found.notes)
+    other = judge.judge(p, measured, foams=judge.Foams(1.2, 1.4, "draws"))
+    assert np.isnan(other.low) and not other.interval_from and any("does not hold what was measured" in note for note in other.notes)
+    later = protocol_advice.foams_interval(dataclasses.replace(p, count=3, counted=(2, 3)), measured, [search])
+    assert np.isnan(later.low) and "first drops" in later.words
+    repeats = judge.judge(one_place(tmp_path, 3), repeated([0.8, 1.0], [70, 116], [74, 119], [78, 122]), foams=judge.Foams(0.1, 2, "draws"))
+    assert repeats.interval_from == "repeated drops" and 0.8 < repeats.low < repeats.high < 1
+
+
+def test_means_of_measured_drops_have_the_interval_of_their_repeats():
+    p = protocol.read("own")
+    p = dataclasses.replace(p, count=3, counted=(1, 2, 3))
+    values = [0.95, 0.97, 0.99]
+    made = Drops([Drop(Spot(c.name, q.name, h), k, "", {f.label: values[k - 1] * (f.limit or 1) for f in p.figures}, "valid")
+                  for c in p.conditions for q in p.positions for h in p.heights for k in (1, 2, 3)])
+    found = judge.judge(p, made)
+    assert found.passed is True and all(line.low < line.value < line.high for line in found.lines)
+    assert found.interval_from == "repeated drops" and not any("no interval" in note for note in found.notes)
+    simulated = judge.judge(p, made, simulated=True)
+    assert all(np.isnan(line.low) for line in simulated.lines)
 
 
 def test_a_list_is_read_as_spreadsheets_write_it(measured, tmp_path):

@@ -89,6 +89,7 @@ def write_material(foam: Foam, output: Path, source: str, force: bool = False, d
     there = [name for name in (f"{stem}.cfg", *files) if (folder / name).exists()]
     if there and not force:
         raise InputError(f"{folder / there[0]} exists already: give --force to replace it, or another --output")
+    output_files.check_own(folder / f"{stem}.cfg", b"# Converted by softfall foam convert", "softfall foam convert")
     with output_files.scratch() as scratch:
         for attempt in range(2):
             files[f"{stem}.cfg"] = _text(foam, stem, source)

@@ -59,8 +59,9 @@ class Marks:
     def number(self, cell: str, line: int, name: str) -> float:
         """Returns the number of a cell; InputError names file, line and cell."""
         where = f'{self.path}:{line}: {name} "{cell}"'
-        text = without_thousands(cell, self.separator == "," and self.point)
-        if not _NUMBER.fullmatch(text):
+        is_plain = "," not in cell and _NUMBER.fullmatch(cell)
+        text = cell if is_plain else without_thousands(cell, self.separator == "," and self.point)
+        if not is_plain and not _NUMBER.fullmatch(text):
             raise InputError(f"{where} is not finite" if text.lower().lstrip("+-") in ("inf", "infinity") else
                              f"{where} is not a number ({'expected a number such as 12.5' if cell else 'the cell is empty'})")
         self.point = self.point or "." in text

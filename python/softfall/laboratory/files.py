@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import functools
 import gzip
 import io
 import re
@@ -26,7 +25,7 @@ class Sheet:
 
     def __init__(self, path: str, lines: list[str], note: str = "") -> None:
         self.path, self.lines, self.note = path, lines, note
-        self.rows = functools.lru_cache(maxsize=None)(self._rows)
+        self._split: dict[str, dict[int, list[str]]] = {}
 
     def is_empty(self, place: int) -> bool:
         """True of a line without content, and of a comment."""
@@ -37,8 +36,12 @@ class Sheet:
         """Returns the place of the next line with content after this one."""
         return next((k for k in range(place + 1, len(self.lines)) if not self.is_empty(k)), None)
 
-    def _rows(self, separator: str) -> list[list[str]]:
-        return [split(line, separator) for line in self.lines]
+    def row(self, place: int, separator: str) -> list[str]:
+        """Returns the cells of a line; few lines of a long file are looked at by every separator."""
+        known = self._split.setdefault(separator, {})
+        if place not in known:
+            known[place] = split(self.lines[place], separator)
+        return known[place]
 
 
 def split(line: str, separator: str) -> list[str]:
@@ -55,6 +58,8 @@ def split(line: str, separator: str) -> list[str]:
             else:
                 cells.append(cell)
         return [cell.strip('"').strip() for cell in cells]
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
     try:
         found = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [""])
     except csv.Error:

@@ -14,14 +14,14 @@ import numpy as np
 
 from ..array import Array
 from ..curves import STANDARD_GRAVITY
-from ..errors import InputError, missing
+from ..errors import InputError, missing, path_of
 from ..output import write
 from .cells import LOST, Marks, is_clock
 from .files import Sheet, sheets
 from .headings import Column, Role, other_title
 from .kinds import KINDS, PHRASES, ROLES, USUAL, Options, problem_of, two
 from .tables import PREAMBLE, Table, choose_table, find, part_rows, rows_of, with_heading
-from .times import Times, are_times_of_day, parse_rate, quantum, stated_rates
+from .times import Times, are_times_of_day, parse_rate, quantum, stated_rates, time_notes
 from .units import factor, parse_scale, quantity
 
 CLEAN = {"time": ("time_s", 1.0), "acceleration": ("acceleration_g", STANDARD_GRAVITY), "strain": ("strain", 1.0), "stress": ("stress_kPa", 1e3),
@@ -144,7 +144,7 @@ class _Reader:
         """Returns the scale of counts that the lines above the table state, and the count that is zero."""
         zero, found = 0.0, set[float]()
         for place in range(max(0, self.table.first)):  # the heading, too, which may be "Acc (0.0122 g/count)"
-            row = self.table.sheet.rows(self.table.separator)[place]
+            row = self.table.sheet.row(place, self.table.separator)
             cell = row[column.place] if column.place < len(row) else ""
             try:
                 if _ZERO_ROW.fullmatch(row[0]):
@@ -217,12 +217,30 @@ class _Reader:
         data: dict[str, Array] = {}
         words, axes = self._acceleration(data) if self.kind == "acceleration" else (self._compression(data) if self.kind == "compression" else self._plain(data), [])
         self.marks.check()
+        self._check_used()
+        if "time_s" in data:
+            self.notes += time_notes(data["time_s"])
         t = self.table
         first = [t.sheet.note] if t.sheet.note else [f'separator {SEPARATOR_WORDS.get(t.separator, chr(34) + t.separator + chr(34))}', f"decimal {self.marks.word}"]
         last = ([f"heading in line {t.place + 1}"] if t.place > 0 else ["with a heading that was given for it"] if t.place < 0 else []) \
             + ([f"units in line {t.units_place + 1}"] if 0 <= t.units_place != t.place + 1 else []) \
             + ([f"without what stands from line {self.footer} on"] if self.footer else []) + ([f"{self.lost} lost samples (NaN)"] if self.lost else []) + self.notes
         return Reading(self.path, self.kind, pandas.DataFrame(data), ", ".join([*first, *words, *last]), axes)
+
+    def _check_used(self) -> None:
+        """Refuses columns, scales and units that the user named, and that nothing was read by."""
+        used = [column for found in self.columns.values() for column in found] + self.rivals
+        for name in self.o.column:
+            if not any(column.is_called(name) for column in used):
+                raise InputError(f'{self.path}: the column "{name}" is not what is read ({", ".join(repr(column.heading) for column in used)}): '
+                                 f"leave {self.o.spell('column', name)} out")
+        quantities = {ROLES[key].quantity for key in self.columns}
+        for text in self.o.scale:
+            if parse_scale(text)[0] not in quantities:
+                raise InputError(f"{self.path}: no column that is read takes the scale \"{text}\": leave {self.o.spell('scale', text)} out")
+        beyond = [unit for unit in self.o.units[len(self.table.all_columns):] if unit]
+        if beyond:
+            raise InputError(f"{self.path}: {len(self.o.units)} units for {len(self.table.all_columns)} columns: leave {', '.join(beyond)} out")
 
     def _plain(self, data: dict[str, Array]) -> list[str]:
         words = []
@@ -334,9 +352,23 @@ def _locate(sheet: Sheet, kind: str, o: Options) -> tuple[Table, bool]:
     return table, False
 
 
+_OF_KIND = {"columns": ("acceleration",), "rate": ("acceleration",), "lateral": ("compression",), "side": ("compression",), "width": ("compression",),
+            "diameter": ("compression",), "area": ("compression",), "thickness": ("compression",), "invert": ("acceleration", "compression")}
+
+
+def _check_options(path: str, kind: str, o: Options) -> None:
+    """Refuses options that the table of this kind does not use."""
+    for name, kinds in _OF_KIND.items():
+        value = getattr(o, name)
+        if value and kind not in kinds and not (name == "rate" and o.stated_at):
+            raise InputError(f"{path} is read as {kind}, where {name} has no meaning: leave {o.spell(name, ','.join(value) if isinstance(value, tuple) else value)} out")
+    if o.invert and o.invert not in INVERSIONS.get(kind, ()):
+        raise InputError(f"{path} is read as {kind}: leave {o.spell('invert', o.invert)} out, or give {' or '.join(INVERSIONS[kind])}")
+
+
 def read(path: str | os.PathLike[str], o: Options) -> Reading:
     """Reads a laboratory's file; InputError says in one sentence why it cannot be read."""
-    path = os.fspath(path)
+    path = path_of(path, "a laboratory's table")
     if o.kind is not None and o.kind not in KINDS:
         raise InputError(str(missing("kind of table", o.kind, KINDS).args[0]))
     if o.invert and o.invert not in (INVERSIONS.get(o.kind or "") or sum(INVERSIONS.values(), ())):
@@ -363,6 +395,7 @@ def read(path: str | os.PathLike[str], o: Options) -> Reading:
     if len(found) > 1:
         raise InputError(f"{path} holds several tables ({', '.join(notes)}): choose one with {o.spell('sheet', notes[0].partition(chr(34))[2].strip(chr(34)))}")
     kind, o, table, several = found[0]
+    _check_options(path, kind, o)
     for name in (*o.column, *o.columns, *([o.lateral] if o.lateral else [])):
         if not any(column.is_called(name) for column in table.all_columns):
             raise InputError(f'{path}: no column is called "{name}"; there are {", ".join(repr(column.heading) for column in table.all_columns)}')

@@ -60,7 +60,7 @@ class Table:
 
     def cells(self, place: int) -> list[str]:
         """Returns the cells of a line; empty ones beyond the heading do not count."""
-        cells = list(self.sheet.rows(self.separator)[place])
+        cells = list(self.sheet.row(place, self.separator))
         while len(cells) > self.width and not cells[-1]:
             cells.pop()
         return cells
@@ -84,13 +84,13 @@ def _columns(sheet: Sheet, place: int, separator: str, cells: list[str], units: 
     made = [Column(k, cell, given=units[k] if k < len(units) else "") for k, cell in enumerate(cells)]
     following = sheet.next_content(place)
     first, units_place = len(sheet.lines) if following is None else following, -1
-    below = sheet.rows(separator)[following] if following is not None else []
+    below = sheet.row(following, separator) if following is not None else []
     if any(below) and not any(map(is_number, below)) and not any(map(is_clock, below)) and len(below) <= len(cells):
         for column, cell in zip(made, below):
             column.below = cell
         units_place = first
     for k in range(max(0, place - PREAMBLE), place):
-        row = sheet.rows(separator)[k]
+        row = sheet.row(k, separator)
         if len(row) < 2 or abs(len(row) - len(cells)) > 1:
             continue
         if _UNIT_ROW.fullmatch(row[0]):
@@ -105,7 +105,7 @@ def _columns(sheet: Sheet, place: int, separator: str, cells: list[str], units: 
 
 def _try(sheet: Sheet, place: int, separator: str, choose: Chooser, units: Sequence[str], cells: list[str] | None = None) -> Table:
     """Reads a line as a heading."""
-    cells = list(sheet.rows(separator)[place] if cells is None else cells)
+    cells = list(sheet.row(place, separator) if cells is None else cells)
     if cells and cells[0].startswith("#"):
         cells[0] = cells[0].lstrip("# ")
     while cells and not cells[-1]:
@@ -262,6 +262,7 @@ def same_part(cell: str, chosen: str) -> bool:
         return False
 
 
+_DIGITS = tuple("0123456789")
 Rows = list[tuple[int, list[str]]]  # numbers of lines, and their cells
 
 
@@ -314,7 +315,7 @@ def rows_of(table: Table, ragged: bool, number_place: int, needed: Sequence[int]
         cells = table.cells(place)
         if not any(cells):
             continue
-        if found and re.match(r"[^\d\s+.,-]|-+(?!\d)", cells[0]) and not _number_at(cells, number_place) and not any(map(holds_point, range(place + 1, table.end))):
+        if found and cells[0][:1] not in _DIGITS and re.match(r"[^\d\s+.,-]|-+(?!\d)", cells[0]) and not _number_at(cells, number_place) and not any(map(holds_point, range(place + 1, table.end))):
             return found, place + 1
         _check_width(table, place, cells, ragged, max(needed))
         found.append((place + 1, cells))

@@ -137,6 +137,30 @@ class Times:
         raise InputError(f"{self.path}:{self.lines[k]}: time {1e3 * time[k]:g} ms does not follow {1e3 * time[k - 1]:g} ms of the row before{how}")
 
 
+GAP, FEW = 1.5, 0.05  # intervals of so many times the usual one are gaps, if they are so few; of more the sampling is uneven
+
+
+def time_notes(time: Array) -> list[str]:
+    """Returns what is odd about times (s): gaps, in which samples were lost, and times that repeat or fall.
+
+    >>> time_notes(np.delete(np.arange(100) * 1e-3, [50, 51]))
+    ['1 gap in the times, of 3 ms at 49 ms, where samples are 1 ms apart: 2 samples are lost']
+    """
+    steps = np.diff(time)
+    usual = float(np.median(steps)) if steps.size else 0.0
+    if not usual > 0:
+        return []
+    notes, gaps = [], np.flatnonzero(steps > GAP * usual)
+    if 0 < gaps.size <= max(1, FEW * steps.size):
+        k, lost = int(gaps[np.argmax(steps[gaps])]), int(np.sum(np.round(steps[gaps] / usual) - 1))
+        notes.append(f"{gaps.size} gap{'s' if gaps.size > 1 else ''} in the times, {'the longest ' if gaps.size > 1 else ''}of {1e3 * steps[k]:.4g} ms at {1e3 * time[k]:.6g} ms, "
+                     f"where samples are {1e3 * usual:.4g} ms apart: {lost} sample{'s are' if lost > 1 else ' is'} lost")
+    back = np.flatnonzero(steps <= 0)
+    if back.size:
+        notes.append(f"{back.size} time{'s' if back.size > 1 else ''} not after the one before, first {1e3 * time[back[0] + 1]:.6g} ms")
+    return notes
+
+
 def _hertz(rate: float) -> str:
     return f"{rate / 1e3:.6g} kHz" if rate >= 1e3 else f"{rate:.6g} Hz"
 

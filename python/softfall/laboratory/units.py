@@ -82,14 +82,17 @@ def _ratio(text: str) -> float | None:
     return float(f"{sizes[0] / sizes[1]:.12g}") if sizes[0] and sizes[1] else None
 
 
+_EXAMPLES = {"length": 'a length, such as "50 mm"', "area": 'an area, such as "25 cm2"', "speed": 'a speed, such as "3.4 m/s"'}
+
+
 def quantity(text: str, kind: str, where: str) -> float:
     """Returns a quantity such as "50 mm" in SI; InputError names the place."""
     try:
         value, unit = library.quantity(text)
     except Error as error:
-        raise InputError(f"{where}: {error}") from None
+        raise InputError(f'{where}: {error}; expected {_EXAMPLES.get(kind, f"a {kind}")}') from None
     if unit != SI[kind]:
-        raise InputError(f'{where}: "{text}" is no {kind}')
+        raise InputError(f'{where}: "{text}" is no {kind}; expected {_EXAMPLES.get(kind, f"a {kind}")}')
     return value
 
 

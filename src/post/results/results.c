@@ -551,7 +551,7 @@ sf_status sf_results_open(const char *path, sf_results *results, sf_error *err) 
         sf_provenance_check(results->file, path, "softfall-results", err) != SF_OK ||
         read_model(results, err) != SF_OK || read_summary(results, err) != SF_OK ||
         read_history(results, err) != SF_OK || read_frame_list(results, err) != SF_OK ||
-        sf_seal_check(path, false, err) != SF_OK)
+        sf_seal_check(path, err) != SF_OK)
         sf_results_close(results);
     return err->status;
 }

@@ -39,12 +39,14 @@ bool sf_geo_token_is(sf_geo_token t, const char *text) {
     return t.length == strlen(text) && strncmp(t.begin, text, t.length) == 0;
 }
 
-enum { MAX_NAMES = 256 };
+enum { MAX_NAMES = 256, MOST_CHOICES = 16 };
 
 /* The constants of texts with their defaults; NaN: a default is no plain number. */
 typedef struct name_list {
     int count;
     sf_geo_parameter at[MAX_NAMES];
+    int choices[MAX_NAMES]; /* number of values that a constant may have, 0: any */
+    double choice[MAX_NAMES][MOST_CHOICES];
     char fixed[SF_CASE_NAME_SIZE]; /* a spacing that a text sets, by no other one; "" */
     bool others;                   /* a text reads other files */
 } name_list;
@@ -59,12 +61,38 @@ static double read_number(const char *text) {
     return *p && strchr(",}])", *p) ? value : NAN;
 }
 
+/* Reads the values in "= {1, Choices {0, 1}, ...}" or "Choices {0="no", 1="yes"}" behind a constant's name.
+ * Returns their number, 0 if there are none, too many, or others than plain numbers. */
+static int read_choices(const char *text, double choice[MOST_CHOICES]) {
+    int count = 0;
+    if (!sf_geo_token_is(sf_geo_token_next(&text), "=") || !sf_geo_token_is(sf_geo_token_next(&text), "{"))
+        return 0;
+    for (sf_geo_token t = sf_geo_token_next(&text); !sf_geo_token_is(t, "Choices");
+         t = sf_geo_token_next(&text))
+        if (t.kind == SF_GEO_END || (t.kind == SF_GEO_MARK && strchr("{}", *t.begin)))
+            return 0;
+    for (sf_geo_token t = sf_geo_token_next(&text); sf_geo_token_is(t, count ? "," : "{");) {
+        text = sf_decimal_read(skip_blank(text), &choice[count]);
+        if (!text || ++count == MOST_CHOICES)
+            return 0;
+        t = sf_geo_token_next(&text);
+        if (sf_geo_token_is(t, "=")) { /* the label of the value */
+            sf_geo_token_next(&text);
+            t = sf_geo_token_next(&text);
+        }
+        if (sf_geo_token_is(t, "}"))
+            return count;
+    }
+    return 0;
+}
+
 static void add_name(name_list *list, sf_geo_token t, const char *text) {
     if (t.length >= SF_CASE_NAME_SIZE || list->count == MAX_NAMES)
         return;
     sf_geo_parameter *out = &list->at[list->count++];
     snprintf(out->name, sizeof out->name, "%.*s", (int)t.length, t.begin);
     out->value = read_number(text);
+    list->choices[list->count - 1] = read_choices(text, list->choice[list->count - 1]);
     for (sf_geo_parameter *p = list->at; p < out; p++)
         if (strcmp(p->name, out->name) == 0 && p->value != out->value)
             p->value = out->value = NAN; /* which one holds is known to gmsh alone */
@@ -155,6 +183,23 @@ static sf_status refuse_missing(const sf_geo_source *source, const name_list *li
     return SF_OK;
 }
 
+/* Refuses the first parameter that is none of its choices. */
+static sf_status refuse_unchosen(const sf_geo_source *source, const name_list *list, sf_error *err) {
+    for (int k = 0; k < source->parameter_count; k++)
+        for (int i = 0; i < list->count; i++) {
+            char names[320] = "";
+            bool chosen = list->choices[i] == 0 || strcmp(list->at[i].name, source->parameter[k].name) != 0;
+            for (int c = 0; c < list->choices[i]; c++) {
+                chosen = chosen || list->choice[i][c] == source->parameter[k].value;
+                sf_text_add(names, sizeof names, "%s%g", c ? ", " : "", list->choice[i][c]);
+            }
+            if (!chosen)
+                return SF_REFUSE(err, "%s: %s = %g is none of its choices: %s", source->path,
+                                 list->at[i].name, source->parameter[k].value, names);
+        }
+    return SF_OK;
+}
+
 static bool is_scaled(const sf_geo_source *source) {
     return source->spacing_factor > 0 && source->spacing_factor != 1;
 }
@@ -215,5 +260,6 @@ sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *
         return SF_OK;
     SF_TRY(sf_geo_parameters_scale(source, &scaled, err));
     SF_TRY(refuse_missing(&scaled, list, err));
+    SF_TRY(refuse_unchosen(&scaled, list, err));
     return refuse_unscaled(&scaled, list, err);
 }

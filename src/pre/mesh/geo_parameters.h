@@ -24,8 +24,9 @@ bool sf_geo_token_is(sf_geo_token token, const char *text);
 sf_status sf_geo_parameters_scale(const sf_geo_source *source, sf_geo_source *scaled, sf_error *err);
 
 /* Refuses a parameter of the source that no DefineConstant of the texts that the geometry read defines; the
- * sentence lists those that exist. Refuses a factor that a spacing does not follow, or that has none, too.
- * `complete`: `read` holds all texts; else the named file is read here, and the others are not. `read` NULL:
- * nothing is meshed yet, and only of .geo files that include and merge no other anything is said. */
+ * sentence lists those that exist. Refuses one that is none of the Choices of its DefineConstant. Refuses a
+ * factor that a spacing does not follow, or that has none, too. `complete`: `read` holds all texts; else the
+ * named file is read here, and the others are not. `read` NULL: nothing is meshed yet, and only of .geo files
+ * that include and merge no other anything is said. */
 sf_status sf_geo_parameters_check(const sf_geo_source *source, const sf_broker *read, bool complete,
                                   sf_error *err);

@@ -3,6 +3,7 @@
 
 #include "base/near.h"
 #include "base/sets.h"
+#include "io/plain_file.h"
 #include "pre/mesh/mesh_store.h"
 #include "pre/mesh/mesher_protocol.h"
 #include "pre/mesh/missile_shape.h"
@@ -164,6 +165,36 @@ static sf_status check_groups(const sf_gmsh *session, int dimension, sf_error *e
     return err->status;
 }
 
+/* How groups get their names in a file that is no .geo; "" of others. */
+static const char *tell_naming(const sf_gmsh *session, int dimension, const char *name, char *out,
+                               size_t size) {
+    static const char *const shapes[] = {".step", ".stp", ".brep", ".iges", ".igs"}, *const meshes[] = {
+                                                                                         ".msh", ".mesh",
+                                                                                         ".vtk", ".stl",
+                                                                                         ".unv", ".med",
+                                                                                         ".bdf"};
+    const sf_geo_data *data = &session->open.data;
+    int number = 0;
+    bool shape = false, mesh = false;
+    for (size_t g = 0; g < data->group_count; g++)
+        if (data->group[g].dimension == dimension && !*data->group[g].name)
+            number = data->group[g].tag;
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++)
+        shape = shape || sf_mesher_has_suffix(session->file, shapes[k]);
+    for (size_t k = 0; k < sizeof meshes / sizeof *meshes; k++)
+        mesh = mesh || sf_mesher_has_suffix(session->file, meshes[k]);
+    *out = '\0';
+    if (number > 0 && sf_mesher_has_suffix(session->file, ".msh"))
+        snprintf(out, size, "; a line %d %d \"%s\" in its section $PhysicalNames gives number %d that name",
+                 dimension, number, name, number);
+    else if (shape || mesh)
+        snprintf(out, size, "; %s: name them in a .geo beside it: Merge \"%s\"; Physical %s(\"%s\") = {%s};",
+                 shape ? "gmsh reads no groups from such a file" : "none of its parts has a name",
+                 sf_path_name(session->file), dimension == 3 ? "Volume" : "Surface", name,
+                 dimension == 3 ? "1" : "1, 2");
+    return out;
+}
+
 static sf_status find_group(const sf_gmsh *session, int dimension, const char *name,
                             const sf_geo_group **found, sf_error *err) {
     const sf_geo_data *data = &session->open.data;
@@ -181,14 +212,10 @@ static sf_status find_group(const sf_gmsh *session, int dimension, const char *n
         return SF_OK;
     group_names(data, 3, volumes, sizeof volumes);
     group_names(data, 2, surfaces, sizeof surfaces);
-    static const char *const shapes[] = {".step", ".stp", ".stl", ".brep", ".iges", ".igs"};
-    bool shape = false;
-    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++)
-        shape = shape || sf_mesher_has_suffix(session->file, shapes[k]);
+    char how[400];
     return SF_REFUSE(err, "%s has no %s group \"%s\"%s; its volume groups: %s; its surface groups: %s%s",
                      session->file, kind_of(dimension), name, sf_near_hint(&near, meant), volumes, surfaces,
-                     shape ? "; gmsh reads no groups from such a file: name them in a .geo that merges it"
-                           : "");
+                     tell_naming(session, dimension, name, how, sizeof how));
 }
 
 /* softfall's code and the vertex count of gmsh's linear element types; 0 for every other type. */
@@ -325,7 +352,20 @@ static const double *find_touch(const sf_raw_mesh *raw, const sf_tag_index *inde
     return NULL;
 }
 
-/* No volume without a layer may belong to the pad. */
+/* True if a volume group (or one of surfaces of a section) is none of the pad's. */
+static bool has_others(const sf_geo_data *data, const sf_geo_group *const *chosen, int count) {
+    for (size_t g = 0; g < data->group_count; g++) {
+        bool own = data->group[g].dimension != chosen[0]->dimension || !*data->group[g].name;
+        for (int k = 0; k < count; k++)
+            own = own || &data->group[g] == chosen[k];
+        if (!own)
+            return true;
+    }
+    return false;
+}
+
+/* No volume without a layer may belong to the pad. Of a pad of one material that holds for named groups: a
+ * volume of no group is left out, as gmsh leaves it out of its files. */
 static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const *chosen,
                                const sf_pad_volumes *volumes, double unit, const sf_raw_mesh *raw,
                                sf_error *err) {
@@ -336,13 +376,21 @@ static sf_status check_volumes(const sf_gmsh *session, const sf_geo_group *const
         const sf_geo_block *block = &data->block[k];
         if (block->dimension != chosen[0]->dimension || chosen_of(chosen, volumes->count, block->entity))
             continue;
-        const double *at = find_touch(raw, index, mark, block, volumes->alone);
         const char *name = "";
         for (size_t g = 0; g < data->group_count; g++)
             if (data->group[g].dimension == block->dimension &&
                 sf_geo_group_has(&data->group[g], block->entity))
                 name = data->group[g].name;
-        if (at)
+        const double *at =
+            volumes->layers || *name ? find_touch(raw, index, mark, block, volumes->alone) : NULL;
+        if (at && !volumes->layers)
+            SF_REFUSE(
+                err,
+                "%s: %s %d of the group \"%s\", at (%.4g, %.4g, %.4g) mm, is no part of the pad, which is the group "
+                "\"%s\": add it to that group, give each group a material (materials.NAME), or take it away",
+                session->file, kind_of(block->dimension), block->entity, name, 1e3 * unit * at[0],
+                1e3 * unit * at[1], 1e3 * unit * at[2], chosen[0]->name);
+        else if (at)
             SF_REFUSE(err,
                       "%s: %s %d%s%s%s, at (%.4g, %.4g, %.4g) mm, has no material: the case has no group "
                       "of this name in materials",
@@ -384,7 +432,9 @@ static sf_status read_volumes(const sf_gmsh *session, const sf_pad_volumes *volu
         return err->status;
     for (int k = 0; k < count; k++)
         SF_TRY(check_cells(session, chosen[k], err));
-    return volumes->layers ? check_volumes(session, chosen, volumes, unit, raw, err) : SF_OK;
+    return volumes->layers || has_others(&session->open.data, chosen, count)
+               ? check_volumes(session, chosen, volumes, unit, raw, err)
+               : SF_OK;
 }
 
 sf_status sf_gmsh_read_mesh(sf_gmsh *session, const char *pad_group, double unit, sf_mesh *mesh,

@@ -43,8 +43,8 @@ typedef struct sf_pad_volumes {
                                  boundary of curves */
 } sf_pad_volumes;
 
-/* The same of a pad of layers, with sf_mesh.cell_layer. Refuses a volume without a layer: one that shares
- * faces with the pad, or any if the pad is alone. */
+/* The same of a pad of layers, with sf_mesh.cell_layer. Refuses a volume without a layer, or, of a pad of one
+ * material, in another named group: one that shares faces with the pad, or any if the pad is alone. */
 sf_status sf_gmsh_read_layers(sf_gmsh *session, const sf_pad_volumes *volumes, double unit, sf_mesh *mesh,
                               sf_error *err);
 

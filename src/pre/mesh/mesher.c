@@ -457,7 +457,8 @@ static sf_status judge(conversation *c, sf_meshed *out, sf_error *err) {
     if (!ended || c->program || c->memory || c->late || c->waits || c->no_filter || c->size == 0)
         return judge_ending(c, err);
     SF_TRY(sf_geo_data_read(c->stream, c->size, c->source->path, &out->data, err));
-    return *out->data.error ? fail(c, err, "gmsh, %s", out->data.error) : SF_OK;
+    const char *said = out->data.error;
+    return *said ? fail(c, err, strncmp(said, "it holds ", 9) == 0 ? "%s" : "gmsh, %s", said) : SF_OK;
 }
 
 static void send_request(const conversation *c, sf_error *err) {
@@ -496,6 +497,27 @@ static void end(conversation *c) {
         }
 }
 
+/* Refuses what gmsh would take for a geometry in its own language, with a sentence of its own: nothing, and a
+ * deck of Abaqus or CalculiX. */
+static sf_status check_content(const char *path, sf_error *err) {
+    char begin[512];
+    int handle;
+    uint64_t size = 0;
+    SF_TRY(sf_plain_open(path, "geometry", &handle, &size, err));
+    ssize_t count = pread(handle, begin, sizeof begin - 1, 0);
+    close(handle);
+    begin[count > 0 ? count : 0] = '\0';
+    if (size == 0)
+        return SF_REFUSE(err, "the geometry %s is empty", path);
+    if (begin[strspn(begin, " \t\r\n")] == '*')
+        return SF_REFUSE(
+            err,
+            "the geometry %s is a deck of Abaqus or CalculiX (.inp), which gmsh does not read: save its "
+            "mesh as .msh, .unv or .vtk",
+            path);
+    return SF_OK;
+}
+
 sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *limits, sf_meshed *out,
                         sf_error *err) {
     const char *unconfined = getenv("SOFTFALL_UNCONFINED");
@@ -512,7 +534,7 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
         SF_NO_MEMORY(err, "the parameters of %s", source->path);
     c.broker.parameters = parameters;
     c.broker.most = c.bytes < 0x1p34 ? (uint64_t)(c.bytes / 4) : (uint64_t)1 << 32;
-    if (err->status == SF_OK && sf_plain_check(source->path, "geometry", err) == SF_OK &&
+    if (err->status == SF_OK && check_content(source->path, err) == SF_OK &&
         start(parameters, &c.child, err) == SF_OK) {
         send_request(&c, err);
         if (err->status != SF_OK)

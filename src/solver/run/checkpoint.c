@@ -109,7 +109,7 @@ sf_status sf_checkpoint_open(const char *path, sf_checkpoint *c, sf_error *err) 
         return SF_FAIL(err, SF_ERR_IO,
                        "there is no checkpoint %s to resume from (%s): start a new run with --force", path,
                        strerror(errno));
-    if (sf_seal_check(path, true, err) != SF_OK || sf_h5_open_alone(path, &c->file, err) != SF_OK)
+    if (sf_seal_check(path, err) != SF_OK || sf_h5_open_alone(path, &c->file, err) != SF_OK)
         return err->status;
     c->path = strdup(path);
     if (!c->path)
@@ -261,7 +261,7 @@ sf_status sf_series_shape(const sf_earlier *e, const sf_checkpoint *from, sf_mod
     SF_TRY(open_earlier(e, &c, err));
     if (sf_h5_open(e->results, &results, err) == SF_OK &&
         sf_provenance_check(results, e->results, "softfall-results", err) == SF_OK &&
-        check_ending(results, c.file, e->results, err) == SF_OK &&
+        sf_seal_check(e->results, err) == SF_OK && check_ending(results, c.file, e->results, err) == SF_OK &&
         check_pad(results, m, e->results, err) == SF_OK && check_foam(results, m, e->results, err) == SF_OK)
         take_set(&c, e->pause, m, err);
     return err->status;

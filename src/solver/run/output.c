@@ -297,8 +297,7 @@ sf_status sf_output_recover_peak(const sf_output *o, const sf_h5 *checkpoint, sf
 static sf_status open_results(const sf_output *o, sf_h5 **results, sf_error *err) {
     sf_seal_state state;
     SF_TRY(sf_seal_examine(o->results, &state, err));
-    return state == SF_SEAL_SOUND || state == SF_SEAL_NONE ? sf_h5_open_alone(o->results, results, err)
-                                                           : SF_OK;
+    return state == SF_SEAL_SOUND ? sf_h5_open_alone(o->results, results, err) : SF_OK;
 }
 
 /* Frame `k`: if its file is not sound, then from results.h5, where it must not be a link. */
@@ -335,7 +334,7 @@ static sf_status take(const sf_output *o, bool copied, const char *name, const c
                       sf_h5 *file, sf_error *err) {
     sf_h5 *part = NULL;
     SF_PRINTED(path, NAME_SIZE, "%s/%s", copied ? o->folder : sf_path_name(o->folder), name);
-    if (copied && (sf_seal_check(path, true, err) != SF_OK || sf_h5_open_alone(path, &part, err) != SF_OK))
+    if (copied && (sf_seal_check(path, err) != SF_OK || sf_h5_open_alone(path, &part, err) != SF_OK))
         return err->status;
     for (; *objects && err->status == SF_OK; objects++) {
         if (copied)
