@@ -165,7 +165,7 @@ static sf_status check_groups(const sf_gmsh *session, int dimension, sf_error *e
     return err->status;
 }
 
-/* How groups get their names in a file that is no .geo; "" of others. */
+/* Writes how groups get their names in a file that is no .geo, "" for a .geo; returns `out`. */
 static const char *tell_naming(const sf_gmsh *session, int dimension, const char *name, char *out,
                                size_t size) {
     static const char *const shapes[] = {".step", ".stp", ".brep", ".iges", ".igs"}, *const meshes[] = {
