@@ -309,3 +309,5 @@ def test_the_answer_names_the_thinnest_pad(tmp_path: Path) -> None:
     assert sweep_page.answer(campaign.Table(plan, rows)).endswith("up to 5 m/s: 50 mm")
     rows[7] = rows[4] = row(float("nan"))
     assert sweep_page.answer(campaign.Table(plan, rows)).endswith("up to 4 m/s: 40 mm")
+    zipped = plans.Plan(write_plan(tmp_path, '{ zip = ( { key = "geometry.parameters.thickness"; values = [40.0, 60.0]; }, { key = "missile.velocity"; values = ["4 m/s", "6 m/s"]; } ); }'))
+    assert sweep_page.answer(campaign.Table(zipped, [row(900), row(900)])).startswith("2 of 2 runs stay below")
