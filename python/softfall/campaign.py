@@ -11,11 +11,11 @@ import re
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Callable
+from typing import Callable, Iterable
 
 import numpy as np
 
-from . import library, memory, output as output_files, programs
+from . import library, memory, output as output_files, programs, rows_command
 from .array import Array
 from .errors import Error, InputError
 from .memory import GRADES, DropFigures
@@ -232,6 +232,37 @@ class Campaign:
         if failed:
             raise failed
 
+    def run_elsewhere(self, table: Table, jobs: int, seconds: float, profile: str | None, per_job: int | None) -> None:
+        """Simulates the open rows by an engine, in jobs of a block each; takes the answers of a campaign that was killed, too."""
+        assert self.store
+        self.store.reopen(sorted(self._forget))
+        self._forget.clear()
+        self.store.others()
+        lock = self.store.begin()
+        self._keep_all(rows_command.answers(self.folder))
+        self.refresh(table)
+        keys = self.open_keys(table)
+        self.found = len({row.key for row in [*table.rows, *table.coarse] if row.key and row.state == "done"})
+        taken = self.store.take(keys, len(keys))
+        if taken:
+            size = per_job or rows_command.block_size(seconds if math.isfinite(seconds) else 1.0, len(taken), jobs)
+            self._keep_all(rows_command.simulate(self.folder, [self._tasks[key] for key in taken], size, jobs, profile, lock))
+            self.store.give_back()
+        self.refresh(table)
+        left = len(self.open_keys(table))
+        if left:
+            raise Error(f"{left} drops were not simulated: see {self.folder / rows_command.BATCH / 'log.txt'}, what another command in this folder has begun is among them; "
+                        "finished drops are kept: repeat the command", 3)
+
+    def _keep_all(self, answers: Iterable[Answer]) -> None:
+        """Keeps the answers of an engine to tasks that are not done."""
+        assert self.store
+        for answer in answers:
+            entry = self.store.entries([answer.key]).get(answer.key)
+            if entry is None or entry.state in ("open", "running"):
+                self.store.finish(answer.key, answer.drops, answer.files, answer.seconds, answer.message)
+                self.simulated += 1
+
     def _keep(self, future: concurrent.futures.Future[Answer]) -> Error | None:
         """Keeps an answer; returns a failure that is the machine's and ends the campaign: its drop stays open."""
         assert self.store
@@ -298,6 +329,8 @@ def estimate(plan: Plan, store: Store | None, asked: bool) -> tuple[float, str]:
             with Pool(1, scratch / "shared") as pool:
                 pool.start(task).result()
                 answer = pool.start(task).result()  # of a worker that has begun, and a mesh that is there
+            if answer.message:
+                return math.nan, f"the first row failed: {answer.message}"
             return answer.seconds, "that of the first row, which was simulated to know it"
     except Error as error:
         return math.nan, f"the first row has no model: {error}"

@@ -25,6 +25,7 @@ COMMANDS = {  # module within the package, and what the command does
     "open": ("open_command", "open the workbench in the browser: form, live sliders, curves, the drop in 3-D"),
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
     "read": ("read_program", "turn any laboratory's file into the CSV that the programs read, and say how it was read"),
+    "rows": ("rows_command", "simulate a block of rows of a sweep, as an engine (Snakemake, Slurm) starts it"),
     "run": ("run_command", "run a drop: mesh, solution, figures and report, kept by content"),
     "sweep": ("sweep_command", "run many drops by a plan: effects, response surface, probabilities"),
     "serve": ("serve", "answer requests for drops over HTTP, by the protocol of UM-Bridge"),

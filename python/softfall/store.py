@@ -50,8 +50,8 @@ class Store:
 
     def close(self) -> None:
         """Gives back what this process had begun, and closes the file."""
-        with contextlib.suppress(sqlite3.Error, Error):
-            self._data.execute("UPDATE drops SET state='open', owner=NULL WHERE owner=?", (self._token,))
+        with contextlib.suppress(Error):
+            self.give_back()
         self._data.close()
         if self._lock >= 0:
             with contextlib.suppress(OSError):
@@ -79,13 +79,14 @@ class Store:
                     self._data.execute("ROLLBACK")
                 raise
 
-    def _begin(self) -> None:
-        """Takes the lock that says that this process lives."""
+    def begin(self) -> int:
+        """Takes the lock that says that this process lives, and returns its descriptor; a program that inherits it lives for it."""
         if self._lock < 0:
             with self._sentence():
                 self._folder.mkdir(exist_ok=True)
                 self._lock = output_files.open_lock(self._folder / self._token)
                 fcntl.flock(self._lock, fcntl.LOCK_EX)
+        return self._lock
 
     def _lives(self, owner: str) -> bool:
         """True if the process with this token still holds its lock; removes the lock of a dead one."""
@@ -127,7 +128,7 @@ class Store:
 
     def take(self, keys: Sequence[str], most: int) -> list[str]:
         """Takes up to `most` of these drops that are open, for this process alone."""
-        self._begin()
+        self.begin()
         taken: list[str] = []
         with self._transaction() as data:
             for key in keys:
@@ -143,6 +144,11 @@ class Store:
         with self._transaction() as data:
             data.execute("INSERT OR REPLACE INTO drops (key, state, figures, files, message, seconds) VALUES (?,?,?,?,?,?)",
                          (key, "failed" if message else "done", json.dumps(drops) if drops else None, files, message, seconds))
+
+    def give_back(self) -> None:
+        """Opens what this process has taken and not finished."""
+        with self._transaction() as data:
+            data.execute("UPDATE drops SET state='open', owner=NULL WHERE owner=?", (self._token,))
 
     def reopen(self, keys: Sequence[str]) -> None:
         """Opens drops that are done or failed, to be simulated again, and those that this process has taken."""

@@ -15,7 +15,7 @@ from typing import Any, Iterator
 
 import numpy as np
 
-from . import effects, library, memory, output as output_files, sweep_page
+from . import effects, library, memory, output as output_files, rows_command, sweep_page
 from .campaign import ANVIL, REFINED, Campaign, Table, estimate
 from .case import Case
 from .command import Parser, say
@@ -46,6 +46,9 @@ def parser(prog: str) -> Parser:
     add("--views", metavar="RUNS", help="afterwards simulate some runs with all fields, and link their report.html and view.html: worst, limit (nearest to it), all, or "
                                         "ids, with commas between them")
     add("-j", "--jobs", metavar="N", type=int, help=f"drops side by side, {MOST_JOBS} at most (default: as many as processors); the same results")
+    add("--engine", metavar="NAME", default="local", help="what runs the drops: local (default) or snakemake, in jobs of a block of rows each")
+    add("--profile", metavar="PROFILE", help="with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall")
+    add("--per-job", metavar="N", type=int, help="with --engine snakemake: rows of a job (default: as many as take three minutes)")
     add("--retry", action="store_true", help="simulate drops again that failed earlier")
     return made
 
@@ -54,6 +57,9 @@ def run(options: argparse.Namespace) -> int:
     """Runs the command and returns its exit code."""
     if options.jobs is not None and not 1 <= options.jobs <= MOST_JOBS:
         raise InputError(f"--jobs {options.jobs} is outside of 1 to {MOST_JOBS}")
+    if options.per_job is not None and options.per_job < 1:
+        raise InputError(f"--per-job {options.per_job} is below 1")
+    rows_command.check_engine(options.engine, options.profile, options.per_job)
     jobs = options.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0)))
     memory.hold_units()
     folder, plan = Path(options.output), Plan(options.plan, options.yes)
@@ -89,7 +95,10 @@ def _run(campaign: Campaign, options: argparse.Namespace, jobs: int, with_views:
     assert campaign.store
     campaign.store.put("plan", plan.hash())
     try:
-        campaign.run(table, jobs)
+        if options.engine == "local":
+            campaign.run(table, jobs)
+        else:
+            campaign.run_elsewhere(table, jobs, seconds, options.profile, options.per_job)
         campaign.check_unchanged(table)
     except BaseException as error:
         with contextlib.suppress(Error):

@@ -72,7 +72,8 @@ def answer(table: Table) -> str:
     fast = next((k for k in numbers if plan.factors[k].key in ("missile.velocity", "missile.mass", "missile.height")), None)
     rest = len(numbers) - (thick is not None) - (fast is not None)
     words = [k for k, f in enumerate(plan.factors) if f.words and not f.uncertain]
-    if rest or words or (thick is None and fast is None):
+    together = thick is not None and fast is not None and plan.block_of[thick] is plan.block_of[fast]  # no pad meets all speeds
+    if rest or words or together or (thick is None and fast is None):
         return count
     draws = " in every run" if any(f.uncertain for f in plan.factors) else ""
     good = np.array([state == "pass" for state in states])

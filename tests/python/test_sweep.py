@@ -128,6 +128,23 @@ def test_two_processes_share_the_work_of_a_study(tmp_path: Path) -> None:
     assert all(row["run_status"] == "done" for row in table(tmp_path / "out"))
 
 
+@pytest.mark.skipif(not shutil.which("snakemake"), reason="Snakemake is not installed")
+def test_an_engine_gives_blocks_of_rows_to_jobs(tmp_path: Path) -> None:
+    path = write_plan(tmp_path, SPEEDS % 9)
+    said = sweep(path, "-o", tmp_path / "out", "--engine", "snakemake", "--jobs", "2", "--per-job", "4")
+    assert "9 drops simulated, 0 were there" in said and len(list((tmp_path / "out/batch").glob("*.done"))) == 3
+    sweep(path, "-o", tmp_path / "here")
+    assert table(tmp_path / "out") == table(tmp_path / "here")
+    with contextlib.closing(sqlite3.connect(tmp_path / "out/drops.sqlite")) as data, data:  # as if the campaign had been killed before it took the answers
+        data.execute("UPDATE drops SET state = 'running', owner = 'dead', figures = NULL")
+    block = sorted((tmp_path / "out/batch").glob("*.rows"))[0]
+    block.write_bytes(block.read_bytes()[:-20])  # and a job while it wrote
+    assert "9 drops simulated, 8 were there" in sweep(path, "-o", tmp_path / "out", "--engine", "snakemake", "--jobs", "2")
+    assert table(tmp_path / "out") == table(tmp_path / "here")
+    assert "the engines are local and snakemake" in sweep(path, "-o", tmp_path / "new", "--engine", "x", code=2)
+    assert "add --engine snakemake" in sweep(path, "-o", tmp_path / "new", "--profile", "slurm", code=2)
+
+
 def test_a_full_disk_ends_the_campaign_and_loses_nothing(tmp_path: Path) -> None:
     path = write_plan(tmp_path, SPEEDS % 12)
 
@@ -292,3 +309,5 @@ def test_the_answer_names_the_thinnest_pad(tmp_path: Path) -> None:
     assert sweep_page.answer(campaign.Table(plan, rows)).endswith("up to 5 m/s: 50 mm")
     rows[7] = rows[4] = row(float("nan"))
     assert sweep_page.answer(campaign.Table(plan, rows)).endswith("up to 4 m/s: 40 mm")
+    zipped = plans.Plan(write_plan(tmp_path, '{ zip = ( { key = "geometry.parameters.thickness"; values = [40.0, 60.0]; }, { key = "missile.velocity"; values = ["4 m/s", "6 m/s"]; } ); }'))
+    assert sweep_page.answer(campaign.Table(zipped, [row(900), row(900)])).startswith("2 of 2 runs stay below")
