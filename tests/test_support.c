@@ -221,33 +221,43 @@ static const char KERB[] =
     "Delete{ Volume{:}; } Physical Surface(\"support\") = Surface{:};\n"
     "Mesh.MeshSizeMin = size; Mesh.MeshSizeMax = size;\n";
 
+/* A post below it; with a size of 30 mm it is a prism of few sides, whose upper edges cross the symmetry
+ * planes. */
+static const char POST[] =
+    "SetFactory(\"OpenCASCADE\");\nDefineConstant[ size = 30 ];\nCylinder(1) = {0,0,-60, 0,0,60, 30};\n"
+    "Delete{ Volume{:}; } Physical Surface(\"support\") = Surface{:};\n"
+    "Mesh.MeshSizeMin = size; Mesh.MeshSizeMax = size;\n";
+
 /* Edges of a support press the faces of the pad between the nodes of both, however far apart its own are. */
 static void edges_of_a_support_press_the_faces_between_nodes(void **state) {
+    static const char *const bodies[] = {"kerb", "pole"};
     const program_place *p = *state;
     double a_max[2];
     use_example(p, "eva50-v4.5");
     program_write_text(p, "geo/kerb.geo", KERB);
-    for (int fine = 0; fine < 2; fine++) {
+    program_write_text(p, "geo/pole.geo", POST);
+    for (int k = 0; k < 4; k++) {
         program_succeed(
             p, "pre",
             "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 --set missile.velocity='\"3 m/s\"' "
             "--set geometry.parameters.side=200.0 --set geometry.parameters.zone_side=140.0 "
-            "--set solver.end_time='\"24 ms\"' " FINER_PAD SUPPORT(
-                "kerb") "--set support.parameters='{ size = %d; }'",
-            fine ? 5 : 30);
+            "--set solver.end_time='\"24 ms\"' " FINER_PAD
+            "--set pad.fixed=[] --set support.file='\"geo/%s.geo\"' --set support.parameters='{ size = %d; }'",
+            bodies[k / 2], k % 2 ? 5 : 30);
         program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
         program_figures(p, "r.h5 -o out --force");
-        a_max[fine] = program_file_number(p, "out/summary.json", "a_max_g");
+        a_max[k % 2] = program_file_number(p, "out/summary.json", "a_max_g");
         double depth = program_file_number(p, "out/summary.json", "rim_depth_mm"),
                deep = program_history_largest(p, "penetration_mm");
-        print_message("a_max %.2f g, edges %.4f mm in the faces at the peak, %.4f mm at most\n", a_max[fine],
-                      depth, deep);
+        print_message("%s: a_max %.2f g, edges %.4f mm in the faces at the peak, %.4f mm at most\n",
+                      bodies[k / 2], a_max[k % 2], depth, deep);
         assert_true(depth < 0.01 * 9 && deep < 0.01 * 9);
         assert_true(program_history_largest(p, "energy_error_1") < 2e-3 &&
                     program_history_largest(p, "momentum_error_space_1") < 1e-12 &&
                     program_history_largest(p, "angular_momentum_error_1") < 1e-12);
+        if (k % 2)
+            assert_relative(a_max[0], a_max[1], 0.02);
     }
-    assert_relative(a_max[0], a_max[1], 0.02);
 }
 
 static void refuse(const program_place *p, const char *words, const char *sentence) {

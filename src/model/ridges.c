@@ -165,7 +165,7 @@ static sf_status list_corners(const surface *s, const uint8_t *mark, sf_ridges *
     for (int64_t i = 0; number && i < s->nodes; i++)
         out->corner_count += mark[i];
     SF_TRY(SF_ALLOC_ALL(err, "edges of a surface", SF_ROOM(out->corner, out->corner_count),
-                        SF_ROOM(out->ptr, out->corner_count + 2)));
+                        SF_ROOM(out->facet, out->corner_count), SF_ROOM(out->ptr, out->corner_count + 2)));
     for (int64_t i = 0, k = 0; i < s->nodes; i++) {
         number[i] = mark[i] ? (int32_t)k : -1;
         if (mark[i])
@@ -180,6 +180,7 @@ static sf_status list_corners(const surface *s, const uint8_t *mark, sf_ridges *
                         "edges of a surface");
     for (int64_t k = 0; out->arm && k < 3 * s->triangles; k++)
         for (int of = 1; of < 3 && number[s->triangle[k]] >= 0; of++) {
+            out->facet[number[s->triangle[k]]] = (int32_t)(k / 3);
             int64_t i = s->triangle[k], other = s->triangle[k - k % 3 + (k + of) % 3];
             double *arm = &out->arm[3 * out->ptr[number[i] + 1]++];
             sf_sub3(&s->position[3 * other], &s->position[3 * i], arm);
@@ -210,5 +211,5 @@ sf_status sf_ridges_find(int64_t nodes, const double *position, int64_t triangle
 }
 
 void sf_ridges_free(sf_ridges *r) {
-    SF_CLEAR(r, r->ridge, r->corner, r->ptr, r->arm);
+    SF_CLEAR(r, r->ridge, r->corner, r->facet, r->ptr, r->arm);
 }

@@ -24,6 +24,7 @@ typedef struct sf_ridges {
     sf_ridge *ridge; /* [count]; none that lies in a symmetry plane, where nodes of the pad lie as well */
     int64_t corner_count;
     int32_t *corner; /* [corner_count] nodes at the ends of such edges and at sharp tips, ascending */
+    int32_t *facet;  /* [corner_count] one at each */
     int64_t *ptr;    /* [corner_count + 1] */
     double *arm;     /* [..][3] unit vectors along the edges that leave each corner */
 } sf_ridges;

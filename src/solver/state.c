@@ -123,10 +123,12 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
         return model->contact_face_count > 0;
     case 'q': /* at most, if all corners are sharp */
         return model->contact_face_count > 0
-                   ? model->surface_node_count + 3 * model->contact_face_count / 2 + SF_SHARP_MORE
+                   ? model->surface_node_count + 3 * model->contact_face_count + SF_SHARP_MORE
                    : 0;
     case 'r':
-        return model->support_triangle_count > 0 ? 3 * model->skin_count / 2 + SF_SHARP_MORE : 0;
+        return model->support_triangle_count > 0
+                   ? model->support_node_count + 3 * model->skin_count + SF_SHARP_MORE
+                   : 0;
     default:
         return (model->node_count + SF_CHUNK - 1) / SF_CHUNK;
     }

@@ -15,68 +15,88 @@ static const double TILT = 0.3;      /* largest sine by which the body may lean 
 
 /* ---- constants ---- */
 
-/* Lists the edges of two faces. */
-static sf_status list_lines(sf_sharp *e, sf_error *err) {
+/* The symmetry planes, NAN where there is none, and the places at rest of the pad's points. */
+typedef struct rest_state {
+    double plane[2], near;  /* m */
+    const double *position; /* [..][3] m */
+    const int32_t *point;   /* of each point of the pad in it; NULL: itself */
+} rest_state;
+
+/* 1 or 2 if both points lie in the symmetry plane normal to x or y, 0 if not. */
+static int plane_of(const rest_state *rest, int32_t a, int32_t b) {
+    const double *one = &rest->position[3 * (int64_t)(rest->point ? rest->point[a] : a)],
+                 *other = &rest->position[3 * (int64_t)(rest->point ? rest->point[b] : b)];
+    for (int r = 0; r < 2; r++)
+        if (fabs(one[r] - rest->plane[r]) < rest->near && fabs(other[r] - rest->plane[r]) < rest->near)
+            return r + 1;
+    return 0;
+}
+
+/* Lists the edges of two faces; in a symmetry plane the second one is the mirror image of the first. */
+static sf_status list_lines(const rest_state *rest, sf_sharp *e, sf_error *err) {
     SF_OWNED sf_half_edge *half = sf_half_edges(e->face_count, e->face, err);
-    SF_TRY(SF_ALLOC_ALL(err, "edges of the pad", SF_ROOM(e->line, 6 * (unsigned long)e->face_count),
+    SF_TRY(SF_ALLOC_ALL(err, "edges of the pad", SF_ROOM(e->line, 12 * (unsigned long)e->face_count),
                         SF_ROOM(e->face_line, 3 * (unsigned long)e->face_count)));
     memset(e->face_line, -1, 3 * (size_t)e->face_count * sizeof *e->face_line);
     for (int64_t k = 0, end; k < 3 * e->face_count; k = end) {
         end = sf_half_edges_end(half, k, 3 * e->face_count);
-        if (end != k + 2)
+        int plane = end == k + 1 ? plane_of(rest, half[k].low, half[k].high) : 0;
+        if (end != k + 2 && plane == 0)
             continue;
-        int64_t one = half[k].slot, other = half[k + 1].slot;
+        int64_t one = half[k].slot, other = half[end - 1].slot;
         int32_t *line = &e->line[4 * e->line_count];
         line[0] = e->face[one];
         line[1] = e->face[one - one % 3 + (one + 1) % 3];
         line[2] = e->face[one - one % 3 + (one + 2) % 3];
-        line[3] = e->face[other - other % 3 + (other + 2) % 3];
+        line[3] = plane > 0 ? -plane : e->face[other - other % 3 + (other + 2) % 3];
         e->face_line[one] = (int32_t)e->line_count++;
     }
     return SF_OK;
 }
 
-static sf_status mark_planes(const sf_model *m, const double place[2], sf_sharp *e, sf_error *err) {
-    static const double ON_PLANE = 1e-6; /* of the thickness */
+static sf_status mark_planes(const rest_state *rest, sf_sharp *e, sf_error *err) {
     e->corner_plane = sf_alloc(err, e->ridges.corner_count, 1, "sharp edges");
     for (int64_t k = 0; e->corner_plane && k < e->ridges.corner_count; k++)
         for (int r = 0; r < 2; r++) {
             double x = e->position[3 * (int64_t)e->ridges.corner[k] + r];
-            e->corner_plane[k] |= (uint8_t)((fabs(x - place[r]) < ON_PLANE * m->thickness) << r);
+            e->corner_plane[k] |= (uint8_t)((fabs(x - rest->plane[r]) < rest->near) << r);
         }
     return err->status;
 }
 
 /* Finds the sharp parts of a surface; without one the body has no faces. */
-static sf_status build(const sf_model *m, int64_t nodes, int64_t triangles, const int32_t *triangle,
-                       sf_sharp *e, sf_error *err) {
-    double plane[2];
+static sf_status build(const sf_model *m, bool missile, rest_state *rest, sf_sharp *e, sf_error *err) {
+    static const double ON_PLANE = 1e-6; /* of the thickness */
+    int64_t nodes = missile ? m->surface_node_count : m->support_node_count,
+            triangles = missile ? m->surface_triangle_count : m->support_triangle_count;
+    const int32_t *triangle = missile ? m->surface_triangle : m->support_triangle;
+    rest->near = ON_PLANE * m->thickness;
     for (int r = 0; r < 2; r++)
-        plane[r] = sf_symmetry_plane(m, r, &plane[r]) ? plane[r] : NAN;
-    SF_TRY(sf_ridges_find(nodes, e->position, triangles, triangle, plane, e->spacing, &e->ridges, err));
+        rest->plane[r] = sf_symmetry_plane(m, r, &rest->plane[r]) ? rest->plane[r] : NAN;
+    SF_TRY(sf_ridges_find(nodes, e->position, triangles, triangle, rest->plane, e->spacing, &e->ridges, err));
     if (e->ridges.corner_count == 0) {
         sf_sharp_free(e);
         return SF_OK;
     }
-    SF_TRY(list_lines(e, err));
-    return mark_planes(m, plane, e, err);
+    SF_TRY(list_lines(rest, e, err));
+    return mark_planes(rest, e, err);
 }
 
 sf_status sf_sharp_build_missile(const sf_model *m, double spacing, sf_sharp *e, sf_error *err) {
+    rest_state rest = {.position = m->position, .point = m->contact_node};
     *e = (sf_sharp){.face_count = m->contact_face_count, .position = m->surface_position, .spacing = spacing};
     if (e->face_count == 0)
         return SF_OK;
     e->face = sf_alloc(err, 3 * (unsigned long)e->face_count, sizeof *e->face, "faces of the pad");
     for (int64_t k = 0; e->face && k < 3 * e->face_count; k++)
         e->face[k] = (int32_t)sf_list_find(m->contact_node, 0, m->contact_count, m->contact_face[k]);
-    if (err->status != SF_OK ||
-        build(m, m->surface_node_count, m->surface_triangle_count, m->surface_triangle, e, err) != SF_OK)
+    if (err->status != SF_OK || build(m, true, &rest, e, err) != SF_OK)
         sf_sharp_free(e);
-    e->corner_count = e->ridges.corner_count;
     return err->status;
 }
 
 sf_status sf_sharp_build_supports(const sf_model *m, sf_skin *skin, sf_sharp *e, sf_error *err) {
+    rest_state rest = {.position = skin->rest};
     *e = (sf_sharp){.face_count = m->skin_count, .position = m->support_position, .spacing = skin->spacing};
     if (m->skin_count == 0 || m->support_triangle_count == 0) {
         e->face_count = 0;
@@ -85,14 +105,13 @@ sf_status sf_sharp_build_supports(const sf_model *m, sf_skin *skin, sf_sharp *e,
     e->face = sf_alloc(err, 3 * (unsigned long)e->face_count, sizeof *e->face, "faces of the pad");
     if (e->face)
         memcpy(e->face, skin->facet, 3 * (size_t)e->face_count * sizeof *e->face);
-    if (err->status != SF_OK ||
-        build(m, m->support_node_count, m->support_triangle_count, m->support_triangle, e, err) != SF_OK)
+    if (err->status != SF_OK || build(m, false, &rest, e, err) != SF_OK)
         sf_sharp_free(e);
     for (int64_t k = 0; k < e->ridges.corner_count; k++) { /* whatever copy of a node is that of the corner */
         int64_t corner = skin->moving + e->ridges.corner[k];
-        for (int64_t p = skin->moving; p < skin->nodes && skin->held[corner] != 0; p++)
+        for (int64_t p = skin->moving; p < skin->nodes; p++)
             if (sf_distance3(&skin->rest[3 * p], &skin->rest[3 * corner]) == 0)
-                skin->passive[p] = 0;
+                skin->passive[p] = 1;
     }
     return err->status;
 }
@@ -159,7 +178,7 @@ static sf_status find_faces(const sf_sharp *e, const sf_sharp_place *at, sf_shar
                             sf_error *err) {
     static const char purpose[] = "candidates of sharp edges";
     int64_t count = e->face_count;
-    l->room = 64 * (e->corner_count + e->ridges.count) + 8 * e->line_count;
+    l->room = 64 * (e->ridges.corner_count + e->ridges.count) + 8 * e->line_count;
     l->list = sf_workspace_take(&s->list, l->room, sizeof *l->list, purpose, err);
     l->centre = sf_workspace_take(&s->centre, 3 * count, sizeof *l->centre, purpose, err);
     l->radius = sf_workspace_take(&s->radius, count, sizeof *l->radius, purpose, err);
@@ -214,13 +233,13 @@ static void list_ridge(const sf_sharp *e, const sf_sharp_place *at, int64_t ridg
         int64_t slot = 3 * (int64_t)l->found[k / 3] + k % 3, line = e->face_line[slot];
         if (line >= 0 && segment_distance(x[0], x[1], point_now(at, e->line[4 * line]),
                                           point_now(at, e->line[4 * line + 1])) < l->reach)
-            add(l, e->corner_count + ridge, slot);
+            add(l, e->ridges.corner_count + ridge, slot);
     }
 }
 
 /* The points of a candidate, and their number: of a corner's face, or of a line. */
 static const int32_t *points_of(const sf_sharp *e, const sf_sharp_candidate *c, int *count) {
-    *count = c->part < e->corner_count ? 3 : 2;
+    *count = c->part < e->ridges.corner_count ? 3 : 2;
     return *count == 3 ? &e->face[c->slot] : &e->line[4 * (int64_t)e->face_line[c->slot]];
 }
 
@@ -238,7 +257,7 @@ sf_status sf_sharp_list(const sf_sharp *e, const sf_sharp_place *at, double *rea
                 1e3 * l.reach, (long long)l.count, (long long)l.room);
         l.reach = of > 0 ? 0.5 * l.reach : l.reach;
         l.count = 0;
-        for (int64_t k = 0; k < e->corner_count; k++)
+        for (int64_t k = 0; k < e->ridges.corner_count; k++)
             list_corner(e, at, k, &l);
         for (int64_t k = 0; k < e->ridges.count; k++)
             list_ridge(e, at, k, &l);
@@ -246,10 +265,11 @@ sf_status sf_sharp_list(const sf_sharp *e, const sf_sharp_place *at, double *rea
     s->count = l.count;
     *reach = l.reach;
     for (int64_t k = 0; k < l.count; k++) {
-        int count, line = l.list[k].part < e->corner_count ? 0 : 2;
+        int count, line = l.list[k].part < e->ridges.corner_count ? 0 : 2;
         const int32_t *point = points_of(e, &l.list[k], &count);
         for (int c = 0; c < count + line; c++) /* of a line the third points, too */
-            used[point[c]] = 1;
+            if (point[c] >= 0)
+                used[point[c]] = 1;
     }
     return SF_OK;
 }
@@ -308,7 +328,7 @@ static bool meet_face(const sf_sharp *e, const sf_sharp_place *at, const sf_shar
 static bool meet_ridge(const sf_sharp *e, const sf_sharp_place *at, const sf_sharp_candidate *candidate,
                        sf_contact_pair *q) {
     const int32_t *point = &e->line[4 * (int64_t)e->face_line[candidate->slot]];
-    const sf_ridge *ridge = &e->ridges.ridge[candidate->part - e->corner_count];
+    const sf_ridge *ridge = &e->ridges.ridge[candidate->part - e->ridges.corner_count];
     const double *c = point_now(at, point[0]), *d = point_now(at, point[1]);
     double a[3], b[3], u[3], v[3], n[3], between[3], moment[3], own[3], arm[3];
     body_node(e, at, ridge->node[0], a);
@@ -327,18 +347,29 @@ static bool meet_ridge(const sf_sharp *e, const sf_sharp_place *at, const sf_sha
     if (fabs(here - 0.5) > 0.5 + BEYOND || fabs(there - 0.5) > 0.5 + BEYOND)
         return false;
     sf_unit3(n);
+    double apart = sf_dot3(between, n);
+    if (point[3] < 0) { /* the edge goes on as its mirror image: the plane takes what is across it */
+        memcpy(own, n, sizeof own);
+        n[-1 - point[3]] = 0;
+        sf_unit3(n);
+        if (!(sf_dot3(own, n) > 0.5))
+            return false;
+        apart /= sf_dot3(own, n);
+    }
     sf_triangle_normal(c, d, point_now(at, point[2]), own);
     double side = sf_dot3(own, n) < 0 ? -1 : 1; /* n looks out of the pad */
     for (int k = 0; k < 2; k++) {
         body_arm(at, ridge->arm[k], arm);
         if (side * sf_dot3(arm, n) < -TILT)
             return false;
-        sf_sub3(point_now(at, point[2 + k]), c, arm);
+        sf_sub3(point_now(at, point[2 + k] < 0 ? point[2] : point[2 + k]), c, arm);
+        if (point[2 + k] < 0)
+            arm[-1 - point[2 + k]] *= -1;
         if (!(side * sf_dot3(arm, n) < SLOPE * sqrt(sf_dot3(arm, arm))))
             return false;
     }
     const double weight[2] = {1 - there, there};
-    q->gap = -side * sf_dot3(between, n);
+    q->gap = -side * apart;
     for (int r = 0; r < 3; r++)
         q->normal[r] = -side * n[r];
     take_parts(at, 2, point, weight, q);
@@ -354,7 +385,9 @@ static void take_partner(const sf_sharp *e, const sf_sharp_place *at, const sf_s
     q->friction = m->missile.friction;
     if (at->response)
         return;
-    q->facet = m->skin_count + e->ridges.ridge[c->part - e->corner_count].slot[0] / 3;
+    q->facet = m->skin_count + (c->part < e->ridges.corner_count
+                                    ? e->ridges.facet[c->part]
+                                    : e->ridges.ridge[c->part - e->ridges.corner_count].slot[0] / 3);
     q->friction = m->support_friction[m->support_part[q->facet - m->skin_count]];
 }
 
@@ -370,7 +403,7 @@ static bool closes(const sf_sharp *e, const sf_sharp_place *at, const sf_sharp_c
                    const double *old, double dt, sf_contact_pair *q, double *deepest) {
     double away[3] = {0};
     *q = (sf_contact_pair){.force = q->force};
-    if (!(c->part < e->corner_count ? meet_face(e, at, c, q) : meet_ridge(e, at, c, q)) ||
+    if (!(c->part < e->ridges.corner_count ? meet_face(e, at, c, q) : meet_ridge(e, at, c, q)) ||
         q->gap < -(old ? DEEPEST : ENTRY) * e->spacing)
         return false;
     take_partner(e, at, c, q);
@@ -384,7 +417,7 @@ static bool closes(const sf_sharp *e, const sf_sharp_place *at, const sf_sharp_c
 }
 
 int64_t sf_sharp_room(const sf_sharp *e) {
-    return e->face_count > 0 ? e->corner_count + e->line_count + SF_SHARP_MORE : 0;
+    return e->face_count > 0 ? e->ridges.corner_count + e->line_count + SF_SHARP_MORE : 0;
 }
 
 sf_status sf_sharp_add(const sf_sharp *e, const sf_sharp_place *at, double dt, sf_sharp_state *s,

@@ -14,17 +14,16 @@ typedef struct sf_sharp {
     int32_t *face;      /* [face_count][3] points, turned outwards */
     int32_t *face_line; /* [face_count][3] line from each corner to the next, at its first face; -1: none */
     int64_t line_count;
-    int32_t *line; /* [line_count][4] two points, and the third ones of both faces */
+    int32_t *line; /* [line_count][4] two points, and the third ones of both faces; -1 or -2 in place of the
+                      last: mirror image of the first, beyond the symmetry plane normal to x or y */
     sf_ridges ridges;
-    int64_t corner_count;   /* of the ridges, that press faces; 0 of supports */
     uint8_t *corner_plane;  /* [ridges.corner_count] bits of the symmetry planes that a corner lies in */
     const double *position; /* [..][3] m, of the body's surface at t = 0; borrowed */
     double spacing;         /* m, smallest of the pad's points */
 } sf_sharp;
 
-/* Of the missile; `spacing` (m): smallest of the contact points. And of the supports, whose vertices are
- * nodes of the skin already: those of sharp corners in a symmetry plane look for faces from now on. Release
- * with sf_sharp_free. */
+/* Of the missile; `spacing` (m): smallest of the contact points. And of the supports, whose sharp vertices
+ * are passive nodes of the skin from now on. Release with sf_sharp_free. */
 sf_status sf_sharp_build_missile(const sf_model *model, double spacing, sf_sharp *sharp, sf_error *err);
 sf_status sf_sharp_build_supports(const sf_model *model, sf_skin *skin, sf_sharp *sharp, sf_error *err);
 void sf_sharp_free(sf_sharp *sharp);
