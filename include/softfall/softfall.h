@@ -119,7 +119,7 @@ SOFTFALL_API softfall_status softfall_units_hold(softfall_error *error);
 
 /* Sets how softfall_model_build builds: `share`, a folder, or NULL: takes meshes and smoothing domains from
  * there where a case of the same geometry has left them, and leaves them there, also for other processes.
- * `section` 1: runs the drops of its section that tell the errors of an axisymmetric drop by its mesh, as
+ * `section` 1: runs the drops of its section, or of a plate like it, that tell the errors by its mesh, as
  * softfall-pre does.
  */
 SOFTFALL_API softfall_status softfall_case_set_build(softfall_case *c, const char *share, int section,

@@ -235,11 +235,12 @@ class Campaign:
     def run_elsewhere(self, table: Table, jobs: int, seconds: float, profile: str | None, per_job: int | None) -> None:
         """Simulates the open rows by an engine, in jobs of a block each; takes the answers of a campaign that was killed, too."""
         assert self.store
-        self.store.reopen(sorted(self._forget))
+        forgotten = set(self._forget)
+        self.store.reopen(sorted(forgotten))
         self._forget.clear()
         self.store.others()
         lock = self.store.begin()
-        self._keep_all(rows_command.answers(self.folder))
+        self._keep_all(answer for answer in rows_command.answers(self.folder) if answer.key not in forgotten)
         self.refresh(table)
         keys = self.open_keys(table)
         self.found = len({row.key for row in [*table.rows, *table.coarse] if row.key and row.state == "done"})

@@ -144,17 +144,17 @@ class Inputs:
     def run(self, share: str, section: bool = False) -> Run:
         """Simulates the drop, or the series, on one thread; meshes are shared in a folder. A failure has `files`, if they are known.
 
-        `section`: also runs the drops of the section that tell the errors by the mesh; without, a formula estimates them.
+        `section`: also runs the drops of the section, or one that is like the drop, that tell the errors by the mesh; without, a formula estimates them.
         """
         lib, models, drops, made = _load(), [], [], []
         before, files = None, None
         try:
             for number in range(1, len(self.counted()) + 1):
-                info, model = lib.softfall_case_drop_get(self._case, number), None
+                info = lib.softfall_case_drop_get(self._case, number)
                 if number == 1 or info.own:
-                    model = self._build(number, share, section)
-                    models.append(model)
-                    files = lib.softfall_model_geometry_files(model).decode() if number == 1 else files
+                    models.append(self._build(number, share, section))
+                    files = lib.softfall_model_geometry_files(models[0]).decode()
+                model = models[-1] if info.own else models[0]
                 drop = c.c_void_p()
                 if before is None:
                     library._call("softfall_drop_create", model, c.byref(_Options(1, 0)), c.byref(drop))

@@ -59,7 +59,7 @@ class Factor:
         self.labels: list[str] = []  # and as the plan has them
         self.ends = (math.nan, math.nan)  # numbers of the distribution
         self.values: Array = np.empty(0)  # of each row of the block: the number, or the index of the level
-        self._begun, self._kind, self._scale = False, "", 1.0
+        self._begun, self._kind, self._scale, self._zero = False, "", 1.0, 0.0
         self._read(sampled)
         self.uncertain = group.flag("uncertain", self.uncertain)
 
@@ -103,15 +103,17 @@ class Factor:
         number, unit = float(found[1]), found[2]
         try:
             si, kind = library.quantity(s.value)
-            scale = library.quantity(f"1 {unit}")[0]
+            zero, scale = (library.quantity(f"{one} {unit}")[0] for one in (0, 1))
         except Error as error:
             s.refuse(f'{self.key}: unknown unit in "{s.value}"' if not self._begun else f"{self.key}: {error}")
         if not self._begun:
-            self.unit, self._kind, self._scale, self._begun = unit, kind, scale, True
+            self.unit, self._kind, self._scale, self._zero, self._begun = unit, kind, scale, zero, True
         if not self.unit:
             s.refuse(f'{self.key}: "{s.value}" has a unit, the values before it have none')
         if kind != self._kind:
             s.refuse(f'{self.key}: "{s.value}" is not of the kind of {self.unit}')
+        if unit != self.unit and (zero != 0 or self._zero != 0):
+            s.refuse(f"{self.key}: {unit} and {self.unit} have different zeros: give all values in one of them")
         return number if unit == self.unit else si / self._scale
 
     def _is_numeric(self, s: Setting) -> bool:

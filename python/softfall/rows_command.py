@@ -39,6 +39,7 @@ def parser(prog: str) -> Parser:
 def run(options: argparse.Namespace) -> int:
     """Runs the command and returns its exit code."""
     manifest = Path(options.manifest).absolute()
+    os.chdir(folder_of(manifest))  # to which the paths of the tasks are relative
     tasks = [task for group, task in read_manifest(manifest) if group == options.group]
     if not tasks:
         raise InputError(f"{manifest} has no group {options.group}")
@@ -70,6 +71,14 @@ def read_manifest(path: Path) -> Iterator[tuple[str, Task]]:
     for line in lines[_HEAD_LINES:]:
         _, group, task = line.split("\t", 2)
         yield group, Task(*json.loads(task))
+
+
+def folder_of(path: Path) -> str:
+    """Returns the folder in which the campaign of a manifest was started."""
+    for line in output_files.read(path, 1 << 32).decode().splitlines()[1:_HEAD_LINES]:
+        if line.startswith("folder\t"):
+            return line.split("\t", 1)[1]
+    raise InputError(f"{path} names no folder")
 
 
 def read_rows(path: Path) -> Iterator[Answer]:

@@ -55,8 +55,7 @@ class Store:
         self._data.close()
         if self._lock >= 0:
             with contextlib.suppress(OSError):
-                os.unlink(self._folder / self._token)
-                os.rmdir(self._folder)
+                os.unlink(self._folder / self._token)  # the folder stays: another process may be about to use it
             os.close(self._lock)
 
     @contextlib.contextmanager

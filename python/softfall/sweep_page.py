@@ -25,6 +25,8 @@ NAMES = {"a_max_g": "a_max (g)", "hic": "HIC", "max_indentation_mm": "largest in
          "gadd": "Gadd index"}
 GOOD, BAD, PLAIN = "#2e7d32", "#c62828", "#1f4e79"
 
+THICKNESS = "geometry.parameters.thickness"  # of the pad
+
 
 def name_of(figure: str) -> str:
     """Returns a figure as axes and tables have it."""
@@ -56,7 +58,7 @@ def limits_text(plan: Plan) -> str:
 
 def _one(plan: Plan, k: int, value: float) -> str:
     factor = plan.factors[k]
-    return f"{factor.text(value)} {factor.unit or (plan.length_unit if factor.key.endswith('thickness') else '')}".strip()
+    return f"{factor.text(value)} {factor.unit or (plan.length_unit if factor.key == THICKNESS else '')}".strip()
 
 
 def answer(table: Table) -> str:
@@ -68,7 +70,7 @@ def answer(table: Table) -> str:
         return f"{sum(row.is_usable for row in table.rows)} of {plan.rows} runs can be used; the plan has no limit"
     count = f"{passed} of {plan.rows} runs stay below {limits}" + (f"; of {unknown} this is not known" if unknown else "")
     numbers = [k for k in effects.numbers(plan) if not plan.factors[k].uncertain and plan.block_of[k].kind != "sample"]
-    thick = next((k for k in numbers if plan.factors[k].key.endswith("thickness")), None)
+    thick = next((k for k in numbers if plan.factors[k].key == THICKNESS), None)
     fast = next((k for k in numbers if plan.factors[k].key in ("missile.velocity", "missile.mass", "missile.height")), None)
     rest = len(numbers) - (thick is not None) - (fast is not None)
     words = [k for k, f in enumerate(plan.factors) if f.words and not f.uncertain]

@@ -137,16 +137,20 @@ class Workbench:
         try:
             answer = self._runner.ask({"do": "run", "path": str(self.path), "values": values, "runs": str(self.runs), "threads": self.threads}, job.step)
             job.id, job.warnings, job.error = answer.get("id"), answer.get("warnings", []), answer.get("error", "")
-            job.state = "stopped" if answer.get("stopped") else "failed" if job.error else "done"
-        except (Error, OSError) as error:
-            job.error, job.state = str(error), "failed"
+            state = "stopped" if answer.get("stopped") else "failed" if job.error else "done"
+        except Exception as error:  # whatever it is, the page may run again
+            job.error, state = str(error), "failed"
+        with self._lock:
+            job.state = state
 
     def stop(self, _: dict[str, Any]) -> dict[str, Any]:
         """Stops the run at work; the same run goes on from there."""
-        job = self.job
-        if job and job.state == "running":
+        with self._lock:
+            job = self.job
+            if not job or job.state != "running":
+                return {}
             job.state = "stopping"
-            self._runner.stop()
+        self._runner.stop()
         return {}
 
     def live(self, request: dict[str, Any]) -> dict[str, Any]:
@@ -157,7 +161,7 @@ class Workbench:
     def save(self, request: dict[str, Any]) -> dict[str, Any]:
         """Makes a folder with the case and its values, which runs as it stands."""
         name = str(request.get("folder", "")).strip()
-        if not re.fullmatch(r"[\w.-]+(/[\w.-]+)*", name) or ".." in name.split("/"):
+        if not re.fullmatch(r"\w[\w.-]*(/\w[\w.-]*)*", name) or ".." in name.split("/"):
             raise InputError(f'"{name}" is no name of a folder here, such as my-pad: letters, digits, dots and dashes')
         settings = [f"--set={key}={text}" for key, text in self._right(request).items()]
         programs.run("new", [name, f"--from={self.path}", *settings])
@@ -293,7 +297,7 @@ class Handler(web.Handler):
         except Error as error:
             self.refuse(Refusal("Failure", str(error), 500))
         except OSError as error:
-            self.refuse(Refusal("Failure", f"{error.filename}: {error.strerror}", 500))
+            self.refuse(Refusal("Failure", f"{error.filename}: {error.strerror}" if error.filename else str(error), 500))
         except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
             self.refuse(Refusal("InvalidInput", f"the request cannot be answered: {type(error).__name__}", 400))
 
@@ -337,6 +341,7 @@ class Handler(web.Handler):
             return
         answer = self.server.workbench.answers.get(word)
         if answer is None:
+            self.close_connection = True  # its body is not read
             raise Refusal("InvalidInput", "there is no such request", 404)
         try:
             request = json.loads(self.body(MOST_BYTES) or b"{}")

@@ -63,7 +63,7 @@ class Live:
         texts = [f"{key}={text}" for key, text in overrides.items()]
         thickness = self._value(case, "thickness") * unit
         before = len(self._models)
-        model = self._model(case, overrides, thickness)
+        model, thickness = self._model(case, overrides, thickness)
         figures, seconds, acceleration = model.drop(path, texts, thickness, LIVE_FIGURES, own_foam=not form.has_layers(case))
         filtered = curves.cfc(seconds, acceleration / curves.STANDARD_GRAVITY)
         return {"figures": {key: value if math.isfinite(value) else None for key, value in figures.items()}, "curve": thin(seconds, filtered),
@@ -80,22 +80,23 @@ class Live:
         except ValueError:
             return 0.0
 
-    def _model(self, case: Case, overrides: dict[str, str], thickness: float) -> library.Model:
-        """Returns a model of the mesh of a case whose thickness can be scaled to `thickness`; 0: it is that of the case."""
+    def _model(self, case: Case, overrides: dict[str, str], thickness: float) -> tuple[library.Model, float]:
+        """Returns a model of the mesh of a case, and the thickness to scale it to, 0: none, as where the parameter is not that of the pad."""
         varied = ("missile.velocity", "missile.mass", "geometry.parameters.thickness")
         foam = () if form.has_layers(case) else ("material.", "pad.stress_factor")  # varied, too
         rest = tuple(sorted((key, text) for key, text in overrides.items() if key not in varied and not key.startswith(foam)))
         files = tuple((case.path.parent / str(case.get(key) or "")).stat().st_mtime_ns for key in ("geometry.file", "geometry.missile_file"))
-        content = (library.case_hash(str(case.path), [f"{key}={text}" for key, text in rest]),) if form.has_layers(case) else ()  # of its foams
-        name = (case.path, case.path.stat().st_mtime_ns, (*files, *content), rest)
+        content = library.case_hash(str(case.path), [f"{key}={text}" for key, text in rest])  # of included files, too
+        name = (case.path, case.path.stat().st_mtime_ns, (*files, content), rest)
         for known, model in self._models.items():
-            if known[:4] == name and (not thickness or THICKNESS[0] <= thickness / model.thickness <= THICKNESS[1]):
-                return model
+            if known[:4] == name and (THICKNESS[0] <= thickness / model.thickness <= THICKNESS[1] if known[5] else thickness == known[4]):
+                return model, thickness if known[5] else 0
         while len(self._models) >= MOST_MODELS:
             del self._models[next(iter(self._models))]
         made = library.Model(str(case.path), [f"{key}={text}" for key, text in overrides.items()])
-        self._models[(*name, thickness)] = made
-        return made
+        is_of_pad = thickness > 0 and math.isclose(made.thickness, thickness, rel_tol=1e-6)
+        self._models[(*name, thickness, is_of_pad)] = made
+        return made, thickness if is_of_pad else 0
 
 
 class _Progress(Bar):

@@ -162,6 +162,8 @@ static double find_error(sf_sections *sections, const sf_kernel *kernel, sf_mode
         double error = error_alike(equal, fine);
         if (!(error > 0))
             return NAN;
+        if (model->missile.shape != SF_SHAPE_SPHERE) /* its edges are not in that drop */
+            error = fmax(error, model->expected_mesh_error);
         model->expected_mesh_error = error;
         return error;
     }

@@ -101,7 +101,11 @@ softfall_status softfall_drop_create(const softfall_model *model, const softfall
 static sf_status check_pad(const softfall_drop *before, const sf_model *m, sf_error *err) {
     const sf_model *b = &before->drop.undeformed;
     const size_t n = (size_t)b->node_count;
-    bool same = b->node_count == m->node_count && b->material_count == m->material_count &&
+    char foam[2][SF_MODEL_HASH_SIZE];
+    sf_model_foam_hash(b, foam[0]);
+    sf_model_foam_hash(m, foam[1]);
+    bool same = strcmp(foam[0], foam[1]) == 0 && b->node_count == m->node_count &&
+                b->material_count == m->material_count &&
                 memcmp(b->position, m->position, 3 * n * sizeof *b->position) == 0 &&
                 memcmp(b->volume, m->volume, n * sizeof *b->volume) == 0 &&
                 memcmp(b->node_material, m->node_material, n) == 0 &&
@@ -110,7 +114,7 @@ static sf_status check_pad(const softfall_drop *before, const sf_model *m, sf_er
     return same
                ? SF_OK
                : SF_REFUSE(err, "the pad of the model is not that of the drop before: geometry, mesh, layers "
-                                "and what the foam remembers must be the same");
+                                "and foam must be the same");
 }
 
 softfall_status softfall_drop_next(const softfall_drop *before, double pause, softfall_drop **out,

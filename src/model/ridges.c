@@ -45,7 +45,9 @@ static sf_status join_nodes(const int32_t *triangle, surface *s, sf_error *err) 
     }
     qsort(list, (size_t)s->nodes, sizeof *list, compare_places);
     for (int64_t i = 0; i < s->nodes; i++) {
-        bool same = i > 0 && memcmp(list[i].x, list[i - 1].x, sizeof list[i].x) == 0;
+        bool same = i > 0;
+        for (int r = 0; r < 3; r++)
+            same = same && list[i].x[r] == list[i - 1].x[r]; /* 0 and -0, too */
         first[list[i].node] = same ? first[list[i - 1].node] : list[i].node;
     }
     for (int64_t k = 0; k < 3 * s->triangles; k++)

@@ -12,5 +12,5 @@
 sf_status sf_alike_make(const sf_case *c, const sf_model *model, const sf_contact_zone *zone, sf_mesh *mesh,
                         sf_surface *missile, sf_error *err);
 
-/* Turns the case of the drop into that of the one that is like it; the groups are those of its mesh. */
+/* Makes the case of a drop that of the plate; its groups are those of the plate's mesh. */
 void sf_alike_case(sf_case *c);

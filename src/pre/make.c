@@ -142,6 +142,8 @@ static void make_alike(const sf_case *c, const sf_model *m, const sf_contact_zon
             return;
         sf_sections_free(s);
     }
+    if (m->axisymmetric)
+        return;
     s->alike = true;
     if (sf_alike_make(c, m, zone, equal, &missile, &none) == SF_OK &&
         (equal->node_count > SF_SECTIONS_MOST || copy_sections(equal, &missile, s, &none) != SF_OK))

@@ -56,6 +56,15 @@ def test_a_series_is_judged_by_the_drops_that_count(tmp_path: Path) -> None:
     assert judged.figures["steps"] == sum(drop.figures["steps"] for drop in run.drops)
 
 
+def test_a_later_drop_without_keys_of_its_own_has_the_first_missile(tmp_path: Path) -> None:
+    """Not that of the drop before it, which here is slower."""
+    drops = ["{ }", '{ velocity = "2 m/s"; }', "{ }"]
+    with memory.Inputs(str(EXAMPLES / "eva50-axisymmetric/case.cfg"), ["pad.mesh_error_limit=9.0", "geometry.parameters.fine_spacing=20.0", 'series.interval="3 s"', 'solver.end_time="90 ms"',
+                                                                       f"series.drops=({', '.join(drops)})"]) as inputs:
+        first, slow, last = (drop.figures["a_max_g"] for drop in inputs.run(str(tmp_path / "shared")).drops)
+    assert slow < 0.5 * first and last == pytest.approx(first, rel=0.1)
+
+
 def test_the_programs_are_part_of_the_key() -> None:
     assert len(memory.programs_hash()) == 16 and (programs.folder() / "softfall-mesh").exists()
 

@@ -133,8 +133,9 @@ def test_an_engine_gives_blocks_of_rows_to_jobs(tmp_path: Path) -> None:
     path = write_plan(tmp_path, SPEEDS % 9)
     said = sweep(path, "-o", tmp_path / "out", "--engine", "snakemake", "--jobs", "2", "--per-job", "4")
     assert "9 drops simulated, 0 were there" in said and len(list((tmp_path / "out/batch").glob("*.done"))) == 3
-    sweep(path, "-o", tmp_path / "here")
-    assert table(tmp_path / "out") == table(tmp_path / "here")
+    sweep(path.name, "-o", "here", cwd=tmp_path)
+    sweep(path.name, "-o", "near", "--engine", "snakemake", cwd=tmp_path)  # paths of the plan that are relative
+    assert table(tmp_path / "out") == table(tmp_path / "here") == table(tmp_path / "near")
     with contextlib.closing(sqlite3.connect(tmp_path / "out/drops.sqlite")) as data, data:  # as if the campaign had been killed before it took the answers
         data.execute("UPDATE drops SET state = 'running', owner = 'dead', figures = NULL")
     block = sorted((tmp_path / "out/batch").glob("*.rows"))[0]
@@ -200,6 +201,7 @@ WRONG = [
     ('{ key = "missile.velocity"; values = ("3 m/s", 4.0); }', "", "has no unit"), ('{ key = "missile.speed"; values = ["3 m/s"]; }', "", "plan.cfg:4: "),
     ('{ key = "material"; files = ["gone.cfg"]; }', "", "plan.cfg:4: material: "), ('{ key = "missile.velocity"; value = 3; }', "", 'unknown key "value"'),
     ('{ key = "missile.velocity"; values = ["3 m/s"]; low = 1.0; }', "", 'unknown key "low"'), ('{ key = "output.fields"; values = ["a"]; }', "", "has no effect in a campaign"),
+    ('{ key = "pad.temperature"; values = ["20 degC", "300 K"]; }', "", "different zeros"),
     (SPEEDS % 2, 'coarse = ["geometry.parameters.fine_spacing=30.0"];', "predicted no more"), (SPEEDS % 2, 'figures = ( { key = "hic"; accuracy = 0.1; } );', "predicted no more"),
     (SPEEDS % 2, 'figures = ( { key = "hicc"; } );', 'unknown figure "hicc"'), (SPEEDS % 2 + ", " + SPEEDS % 3, "", "is a factor already, at"),
     ('{ zip = ( { key = "missile.velocity"; values = ["3 m/s"]; }, { key = "missile.mass"; values = ["3 kg", "4 kg"]; } ); }', "", "must have one length"),

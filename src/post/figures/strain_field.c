@@ -476,8 +476,10 @@ sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, con
     *cut = (sf_rim_cut){0};
     SF_TRY(faces_find(r, displacement, &f, err));
     cut->spacing = INFINITY;
-    for (int64_t k = 0; k < f.count; k++)
-        cut->spacing = fmin(cut->spacing, spacing_at(r, &f, k));
+    for (int64_t k = 0; k < f.count; k++) {
+        double spacing = spacing_at(r, &f, k);
+        cut->spacing = spacing > 0 ? fmin(cut->spacing, spacing) : cut->spacing;
+    }
     SF_TRY(measure_body(r, &f, head, r->surface_node_count, r->surface_triangle_count, r->surface_triangle,
                         r->surface_position, cut, err));
     return measure_body(r, &f, NULL, r->support_node_count, r->support_triangle_count, r->support_triangle,

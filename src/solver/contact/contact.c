@@ -5,7 +5,7 @@
 #include "solver/contact/ledger.h"
 #include "solver/contact/solve.h"
 
-enum { MAX_SWEEPS = 500 };
+enum { MAX_SWEEPS = 2000 };
 static const double ENTRY_DEPTH =
     0.1; /* of the spacing: no free point gets deeper in one step through the surface */
 static const double SWEEP_TOLERANCE = 1e-10; /* largest change of a force, relative to the largest force */

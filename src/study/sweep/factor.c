@@ -57,6 +57,13 @@ static sf_status begin_unit(reading *r, const config_setting_t *s, const char *u
     return SF_OK;
 }
 
+/* The SI value of 0 in a unit: not 0 of degC. */
+static double zero_of(const reading *r, const char *unit) {
+    double zero = 0;
+    SF_PRINTED(text, SF_FACTOR_UNIT_SIZE + 4, "0 %s", unit);
+    return sf_units_parse(r->config->units, text, r->kind, &zero, SF_IGNORED) == SF_OK ? zero : 0;
+}
+
 static sf_status take_quantity(reading *r, const config_setting_t *s, const char *text, double number,
                                const char *unit, double *out, sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
@@ -73,6 +80,10 @@ static sf_status take_quantity(reading *r, const config_setting_t *s, const char
     if (sf_units_parse(r->config->units, text, r->kind, &si, &inner) != SF_OK)
         return sf_config_refuse(r->config, s, err, "%s: %s", r->factor->key, inner.text);
     trim(unit, own, sizeof own);
+    if (strcmp(own, r->factor->unit) != 0 && (zero_of(r, own) != 0 || zero_of(r, r->factor->unit) != 0))
+        return sf_config_refuse(r->config, s, err,
+                                "%s: %s and %s have different zeros: give all values in one of them",
+                                r->factor->key, own, r->factor->unit);
     *out = strcmp(own, r->factor->unit) == 0 ? number : si / r->scale;
     return SF_OK;
 }
