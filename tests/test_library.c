@@ -365,7 +365,7 @@ static void a_series_has_missiles_of_its_own(void **state) {
         "pad.mesh_error_limit=1", "series.drops=( { }, { velocity = \"3.5 m/s\"; } )", "series.counted=[2]"};
     enum { SET = sizeof set / sizeof set[0] };
     char words[1024] = "";
-    softfall_case *c, *later, *whole;
+    softfall_case *c = NULL, *later = NULL, *whole = NULL;
     softfall_model *model, *other;
     softfall_drop *first, *second;
     softfall_figures *ours, *theirs;

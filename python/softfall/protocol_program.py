@@ -18,7 +18,7 @@ from .case import Case
 from .command import Parser, say, values_of
 from .curves import column
 from .drop import read_results
-from .errors import Error, InputError
+from .errors import InputError
 from .judge import Outcome, between, judge
 from .protocol import CAUTION, Protocol, length, names, read
 from .protocol_advice import advise, foams_interval

@@ -19,7 +19,7 @@ from ..output import write
 from .cells import LOST, Marks, is_clock
 from .files import Sheet, sheets
 from .headings import Column, Role, other_title
-from .kinds import KINDS, PHRASES, ROLES, USUAL, Options, problem_of, two
+from .kinds import KINDS, PHRASES, ROLES, USUAL, Options, problem_of
 from .tables import PREAMBLE, Table, choose_table, find, part_rows, rows_of, with_heading
 from .times import Times, are_times_of_day, parse_rate, quantum, stated_rates, time_notes
 from .units import factor, parse_scale, quantity
