@@ -61,7 +61,7 @@ class _Once(argparse._StoreAction):
         given = vars(namespace).setdefault("_given", {}) if self.option_strings else {}
         if self.option_strings and values == "":
             parser.error(f"{option_string} is empty: give a value, or leave it out")
-        if given.setdefault(self.dest, values) != values:
+        if repr(given.setdefault(self.dest, values)) != repr(values):  # nan is nan
             parser.error(f"{option_string} is given twice: {given[self.dest]} and {values}")
         super().__call__(parser, namespace, values, option_string)
 
