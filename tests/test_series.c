@@ -295,14 +295,14 @@ static void wrong_lists_are_refused(void **state) {
     expect_list(p, "( {}, { interval = \"9 s\"; position = [\"30 mm\", \"0 mm\"]; } )", "symmetry plane");
     expect_list(p, "( {}, { interval = \"9 s\"; position = [\"9 m\", \"0 mm\"]; } )", "missile.position");
     assert_int_equal(
-        make_model(p, "one.h5",
+        make_model(p, "lone.h5",
                    "--set series.interval='\"90 s\"' --set series.counted=[2,3] --set series.drops=1")
             .code,
         0);
-    program_succeed(p, "solve", "one.h5 -o one-alone.h5 --threads 1");
+    program_succeed(p, "solve", "lone.h5 -o one-alone.h5 --threads 1");
     assert_same_drop(p, "s.h5", "one-alone.h5");
-    assert_int_equal(make_model(p, "one.h5", "--set series.drops='( { velocity = \"4.5 m/s\"; } )'").code, 0);
-    program_succeed(p, "solve", "one.h5 -o one-of-list.h5 --threads 1");
+    assert_int_equal(make_model(p, "lone.h5", "--set series.drops='( { velocity = \"4.5 m/s\"; } )'").code, 0);
+    program_succeed(p, "solve", "lone.h5 -o one-of-list.h5 --threads 1");
     assert_same_drop(p, "s.h5", "one-of-list.h5");
 }
 
