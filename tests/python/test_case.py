@@ -102,7 +102,8 @@ def test_a_run_is_refused_with_the_sentence_of_the_program(case, tmp_path):
 
 
 def test_warnings_of_the_programs_are_warnings(case, tmp_path):
-    with pytest.warns(softfall.SoftfallWarning, match="expected error of a_max"):
+    case["kernel.support_ratio"] = 2.0
+    with pytest.warns(softfall.SoftfallWarning, match="support_ratio"):
         case.run(output=tmp_path / "out")
 
 

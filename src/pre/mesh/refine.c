@@ -147,7 +147,8 @@ sf_status sf_surface_copy(const sf_surface *from, sf_surface *copy, sf_error *er
         return err->status;
     }
     memcpy(copy->position, from->position, 3 * (size_t)nodes * sizeof *copy->position);
-    memcpy(copy->triangle, from->triangle, 3 * (size_t)triangles * sizeof *copy->triangle);
+    if (triangles > 0) /* of a profile there are none */
+        memcpy(copy->triangle, from->triangle, 3 * (size_t)triangles * sizeof *copy->triangle);
     if (from->solid)
         memcpy(copy->solid, from->solid, (size_t)triangles * sizeof *copy->solid);
     return SF_OK;
