@@ -160,10 +160,8 @@ static double find_error(sf_sections *sections, const sf_kernel *kernel, sf_mode
     double a_max = 0;
     if (sections->alike) {
         double error = error_alike(equal, fine);
-        if (!(error > 0))
+        if (!(error > model->expected_mesh_error)) /* on few rows of cells it may be small by chance */
             return NAN;
-        if (model->missile.shape != SF_SHAPE_SPHERE) /* its edges are not in that drop */
-            error = fmax(error, model->expected_mesh_error);
         model->expected_mesh_error = error;
         return error;
     }

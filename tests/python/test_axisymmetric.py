@@ -111,19 +111,21 @@ def test_the_section_is_of_a_new_pad_and_a_wide_one(tmp_path):
     assert figures(tmp_path, QUARTER, *narrow)["hic_mesh_error"] is None
 
 
-def test_other_drops_have_the_error_of_one_that_is_like_them(tmp_path):
-    """A whole pad has no section, and the drop that is like it is its own: both know the error by halving the spacing (theory.md, 84)."""
+def test_other_drops_have_the_error_of_a_plate_like_them(tmp_path):
+    """A whole pad has no section, and the plate that is like it is its own: both know the error by halving the spacing (theory.md, 84), of which
+    the formula knows nothing in a foam that locks up. On a foam that does not, the formula's error is the larger one, and stays."""
+    lock = ['missile.velocity="5.2 m/s"', "geometry.parameters.fine_spacing=12.5", 'material.densification={rule="H2"; start=0.76; limit=0.83; exponent=1.0;}']
     error = {}
-    for quarter in (1, 0):
-        done = pre(QUARTER, tmp_path / "m.h5", *COARSE, f"geometry.parameters.quarter={quarter}", f"geometry.missile_parameters.quarter={quarter}")
-        assert done.returncode == 0 and ("by an axisymmetric drop" in done.stdout) == (quarter == 0), done.stderr
+    for quarter, sets in ((1, lock), (0, lock), (0, [])):
+        done = pre(QUARTER, tmp_path / "m.h5", *COARSE, f"geometry.parameters.quarter={quarter}", f"geometry.missile_parameters.quarter={quarter}", *sets)
+        assert done.returncode == 0 and ("by an axisymmetric drop" in done.stdout) == (quarter == 0 and sets == lock), done.stderr
         with h5py.File(tmp_path / "m.h5") as model:
-            error[quarter], own = model["model/expected_mesh_error"][()], model["model/section/a_max_error"][()]
+            error[quarter, bool(sets)], own = model["model/expected_mesh_error"][()], model["model/section/a_max_error"][()]
             assert (model["model/section/a_max_g"][()] > 0) == (quarter == 1)
         if quarter:
             like = 1.5 * ((own - 1.5e-3) * (0.75 + 4 / 3) / 0.75 + 1.5e-3)
-    assert error[0] == pytest.approx(like, rel=0.4)  # its pad is narrower, and a_max scatters as the mesh moves
-    assert error[0] < 0.8 * error[1]  # the formula's
+    assert error[0, True] == pytest.approx(like, rel=0.5)  # its pad is narrower, and a_max scatters as the mesh moves
+    assert error[0, True] > 2 * error[1, True] and error[0, False] < 0.04  # the formula's
 
 
 @pytest.mark.parametrize("text, why", [
