@@ -149,7 +149,7 @@ static void draws_of_the_foam_give_the_interval(void **state) {
     program_assert_page(p, "out/report.html", "foam alone (the draws: parameters and curve)");
     program_assert_page(p, "out/report.html", "with these uncertainties and that of g_eff: 95 % interval");
     program_bytes before = program_read_file(program_path(p, "out/cfh_band.csv"));
-    r = program_succeed(p, "cfh", "%s --rig '%s' --posterior posterior --check-drops 2 -t 2", words,
+    r = program_succeed(p, "cfh", "%s --rig '%s' --posterior posterior --check-drops 2", words,
                         fixture_source("examples/data/penta2018_table2_70mm.csv"));
     assert_non_null(strstr(r.out, "\n0 drops simulated"));
     program_assert_unchanged(program_path(p, "out/cfh_band.csv"), &before);

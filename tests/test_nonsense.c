@@ -127,7 +127,7 @@ static void values_of_a_case(void **state) {
         {"--set material.density='35 g/cm3'",
          {"material.density", "35000 kg m-3 is out of bounds", "is the unit of \"35 g/cm3\" right?"}},
         {"--set material.density='0.035 kg/m3'",
-         {"material.density", "0.035 kg m-3 is out of bounds", "at least 4 kg m-3"}},
+         {"material.density", "0.035 kg m-3 is out of bounds", "at least 0.3 kg m-3"}},
         {"--set material.E='0 MPa'", {"material.E", "0 Pa", "at least 1 Pa"}},
         {"--set material.E='-1 MPa'", {"material.E", "-1e+06 Pa", "at least 1 Pa"}},
         {"--set material.E='0.4 N'", {"material.E", "0.4 N", "expected a pressure"}},

@@ -92,7 +92,7 @@ double sf_foam_shift(void *card, sf_law_curves *curves, double temperature);
 /* clang-format off */
 #define SF_FOAM_DENSITY \
     {"material", "density", SF_PARAMETER_QUANTITY, NULL, SF_FOAM_AT(density), \
-     "of the undeformed foam", .quantity = SF_DENSITY, .low = 4, .high = 3000, SF_FOAM_IN("kg/m3", 1)}
+     "of the undeformed foam", .quantity = SF_DENSITY, .low = 0.3, .high = 3000, SF_FOAM_IN("kg/m3", 1)}
 #define SF_FOAM_PARAMETERS \
     {"material", "HU", SF_PARAMETER_NUMBER, "1.0", SF_FOAM_AT(hysteresis_hu), \
      "hysteretic unloading factor; 1 = no hysteresis", .low = 1e-6, .high = 1.0}, \
