@@ -493,11 +493,17 @@ static bool has_bare_unit(const char *text, int line) {
     return rest < text + length && (isalpha((unsigned char)*rest) || *rest == '%');
 }
 
-/* True if nothing but blanks and comments stands behind the line. */
-static bool is_at_end(const char *text, int line) {
-    for (int k = 0; text && k < line; k++)
-        text = (text = strchr(text, '\n')) ? text + 1 : NULL;
-    return !text || *sf_blanks_pass(text, true) == '\0';
+/* True if the text opens more brackets and braces than it closes, outside of strings and comments. */
+static bool is_cut(const char *text) {
+    int depth = 0;
+    for (; text && *(text = sf_blanks_pass(text, true)); text++) {
+        if (*text == '"')
+            while (text[1] && *++text != '"')
+                text += *text == '\\' && text[1];
+        depth += strchr("{[(", *text) ? 1 : 0;
+        depth -= strchr("}])", *text) ? 1 : 0;
+    }
+    return depth > 0;
 }
 
 const char *sf_case_syntax_phrase(const char *libconfig_text, const char *text, int line) {
@@ -505,7 +511,7 @@ const char *sf_case_syntax_phrase(const char *libconfig_text, const char *text, 
         return "the numbers of an array must all have a decimal point, or none: [0.5, 0.0, -1.0]";
     if (has_bare_unit(text, line))
         return "a value with a unit stands in quotation marks, such as \"4.5 m/s\"";
-    if (libconfig_text && strcmp(libconfig_text, "syntax error") == 0 && is_at_end(text, line))
-        return "the text ends within a group, list or value: a bracket, a brace or a semicolon is missing";
+    if (libconfig_text && strcmp(libconfig_text, "syntax error") == 0 && is_cut(text))
+        return "the text ends within a group or a list: a bracket or a brace is missing";
     return libconfig_text ? libconfig_text : "syntax error";
 }
