@@ -430,16 +430,22 @@ sf_status sf_sharp_add(const sf_sharp *e, const sf_sharp_place *at, double dt, s
     SF_TRY(err->status);
     memcpy(key, s->key, (size_t)room * sizeof *key);
     memcpy(old, s->force, (size_t)room * sizeof *old);
-    for (int64_t k = 0; k < s->count && count < room; k++) {
+    for (int64_t k = 0; k < s->count; k++) {
         int32_t own[2] = {list[k].part, list[k].slot + 1};
         while (last < room && key[last][1] > 0 && /* both lists have the same order */
                (key[last][0] < own[0] || (key[last][0] == own[0] && key[last][1] < own[1])))
             last++;
         bool on = last < room && key[last][0] == own[0] && key[last][1] == own[1];
-        sf_contact_pair *q = &w->pair[w->count];
-        q->force = &s->force[3 * count];
+        double beyond[3];
+        sf_contact_pair spare, *q = count < room ? &w->pair[w->count] : &spare;
+        q->force = count < room ? &s->force[3 * count] : beyond;
         if (!closes(e, at, &list[k], on ? old[last] : NULL, dt, q, deepest))
             continue;
+        if (count == room)
+            return SF_FAIL(err, SF_ERR_NUMERIC,
+                           "more than %lld pairs of sharp edges touch: round the edges of the missile or "
+                           "support, or take a finer mesh",
+                           (long long)room);
         start_force(q, on ? old[last] : NULL);
         memcpy(&s->key[2 * count++], own, sizeof own);
         sf_contact_add(w);
