@@ -317,14 +317,15 @@ static void measurements_are_read_filtered_and_not_cut(void **state) {
     const struct {
         const char *more, *expected;
     } bad[] = {
-        {"--window 20,70", "the region 20 to 70 ms does not lie within the measured curve (0 to 60 ms)"},
-        {"--regions 20-30,55-61", "does not lie within the measured curve"},
+        {"--shift -10 --window 20,70",
+         "the region 20 to 70 ms does not lie within the measured curve (0 to 60 ms)"},
+        {"--shift -10 --regions 20-30,55-61", "does not lie within the measured curve"},
         {"--shift 30 --window 20,30", "lies outside the model's curve"},
-        {"--reference-filter 500", "60, 180, 600 and 1000"},
+        {"--shift -10 --reference-filter 500", "60, 180, 600 and 1000"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
-        snprintf(arguments, sizeof arguments,
-                 "--force --reference '%s' --reference-column 'Acc X' --shift -10 %s", path, bad[k].more);
+        snprintf(arguments, sizeof arguments, "--force --reference '%s' --reference-column 'Acc X' %s", path,
+                 bad[k].more);
         result = run_post(p, arguments);
         assert_int_equal(result.code, SF_ERR_INPUT);
         assert_says(&result, bad[k].expected);
