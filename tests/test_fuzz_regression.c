@@ -76,7 +76,7 @@ static void cut_and_changed_seeds_are_read_or_refused(void **state) {
                  {"pressing", "slow.csv", 11, 20},
                  {"geo", "cube.geo", 3, 0}, /* only the names of parameters are read */
                  {"model", "cube.h5", CUTS, 9},
-                 {"results", "cube.h5", CUTS, 30},
+                 {"results", "cube.h5", CUTS, 5},
                  {"stream", "tetrahedron.stream", CUTS, 11},
                  {"plan", "zip.cfg", CUTS, 27},
                  {"plan", "sample.cfg", CUTS, 29},

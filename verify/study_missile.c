@@ -169,11 +169,12 @@ static double difference(const fixture *guided, const fixture *loose, double dee
 
 static void compare_guided(sf_study *study) {
     sf_study_text(
-        study, "### Drops\n\nA ball on the middle of a symmetric block, free and guided, as a sphere and as "
-               "triangles (ties of facets are decided by rounding):\n\n");
+        study,
+        "### Drops\n\nA ball on the middle of a symmetric block, free and guided, as a sphere and as "
+        "triangles (ties of facets are decided by rounding, and the forces of sharp edges settle to 1e-5):\n\n");
     for (int triangles = 0; triangles < 2; triangles++) {
         const char *const ball = triangles ? "triangles" : "sphere";
-        const double same = triangles ? 1e-6 : 1e-9;
+        const double same = triangles ? 1e-5 : 1e-9; /* sweeps of sharp edges end at 1e-5 */
         drop d = {.cells = {8, 8, 5},
                   .spacing = 0.01,
                   .radius = 0.04,
@@ -188,7 +189,9 @@ static void compare_guided(sf_study *study) {
         start(&d, &guided);
         d.free = true;
         start(&d, &loose);
-        while (!sf_ending_rebounded(&guided.model, &guided.state) && guided.state.time < 0.04) {
+        while (!(sf_ending_rebounded(&guided.model, &guided.state) &&
+                 sf_ending_rebounded(&loose.model, &loose.state)) &&
+               guided.state.time < 0.04) {
             fixture_step(&guided);
             fixture_step(&loose);
             hardest = larger(hardest, guided.state.missile.force[2]);

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/h5.h"
 
-#include "io/h5_data.h"
 #include "io/h5_file.h"
-#include "io/replace.h"
 #include <errno.h>
 #include <string.h>
 
@@ -20,16 +18,9 @@ static sf_status wrap(hid_t id, const char *path, bool alone, sf_h5 **file, sf_e
     return SF_OK;
 }
 
-/* Before the first call. HDF5's own cleaning up at exit crashes after a file that could not be closed (a full
- * disk); everything is closed without it. */
-static void begin_library(void) {
-    H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-}
-
 sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
     *file = NULL;
-    begin_library();
+    sf_h5_begin();
     errno = 0;
     hid_t id = H5Fcreate(path, H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
     if (id >= 0)
@@ -42,7 +33,7 @@ sf_status sf_h5_create(const char *path, sf_h5 **file, sf_error *err) {
 
 static sf_status open_file(const char *path, bool alone, sf_h5 **file, sf_error *err) {
     *file = NULL;
-    begin_library();
+    sf_h5_begin();
     hid_t id = sf_h5_open_plain(path, err);
     return id < 0 ? err->status : wrap(id, path, alone, file, err);
 }
@@ -53,24 +44,6 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err) {
 
 sf_status sf_h5_open_alone(const char *path, sf_h5 **file, sf_error *err) {
     return open_file(path, true, file, err);
-}
-
-sf_status sf_h5_check_replaced(const char *path, const char *format, sf_error *err) {
-    char found[64] = "";
-    sf_h5 file = {.alone = true, .path = (char[]){""}};
-    if (!sf_replace_is_hdf5(path))
-        return SF_REFUSE(err, "%s is not replaced, as it is no %s file: give another output", path, format);
-    begin_library();
-    file.id = sf_replace_exists(path) ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
-    if (file.id < 0) /* there is none, or it cannot be told */
-        return SF_OK;
-    sf_h5_get_attribute(&file, "/", "format", found, sizeof found, SF_IGNORED);
-    H5Fclose(file.id);
-    return strcmp(found, format) == 0
-               ? SF_OK
-               : SF_REFUSE(err, "%s is not replaced, as it is %s%s and no %s file: give another output", path,
-                           *found ? "a file of the format " : "an HDF5 file of another program", found,
-                           format);
 }
 
 sf_status sf_h5_close(sf_h5 **file, sf_error *err) {

@@ -26,9 +26,6 @@ sf_status sf_h5_open(const char *path, sf_h5 **file, sf_error *err);
 /* The same of a file that has no folder of its own (a checkpoint, a file of such a folder): no link of it is
  * followed. */
 sf_status sf_h5_open_alone(const char *path, sf_h5 **file, sf_error *err);
-/* Refuses to replace a file that is neither of this format (the attribute `format`) nor damaged so that
- * nothing tells what it was; it may be missing. Not registered as an input. */
-sf_status sf_h5_check_replaced(const char *path, const char *format, sf_error *err);
 /* Closes; `*file` may be NULL and is NULL afterwards. Reports a failed final write. */
 sf_status sf_h5_close(sf_h5 **file, sf_error *err);
 /* The same of a file into which nothing was written, so that nothing can be lost. */

@@ -2,6 +2,7 @@
 #include "io/h5_data.h"
 
 #include "io/h5_file.h"
+#include "io/replace.h"
 #include <string.h>
 
 enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536, SF_H5_COPY_SIZE = 1 << 16 };
@@ -447,4 +448,22 @@ sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error
     if (H5Lcreate_external(target, path, file->id, path, links, H5P_DEFAULT) < 0)
         return SF_FAIL(err, SF_ERR_IO, "%s: no link %s to %s can be made", file->path, path, target);
     return SF_OK;
+}
+
+sf_status sf_h5_check_replaced(const char *path, const char *format, sf_error *err) {
+    char found[64] = "";
+    sf_h5 file = {.alone = true, .path = (char[]){""}};
+    if (!sf_replace_is_hdf5(path))
+        return SF_REFUSE(err, "%s is not replaced, as it is no %s file: give another output", path, format);
+    sf_h5_begin();
+    file.id = sf_replace_exists(path) ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
+    if (file.id < 0) /* there is none, or it cannot be told */
+        return SF_OK;
+    sf_h5_get_attribute(&file, "/", "format", found, sizeof found, SF_IGNORED);
+    H5Fclose(file.id);
+    return strcmp(found, format) == 0
+               ? SF_OK
+               : SF_REFUSE(err, "%s is not replaced, as it is %s%s and no %s file: give another output", path,
+                           *found ? "a file of the format " : "an HDF5 file of another program", found,
+                           format);
 }

@@ -62,3 +62,7 @@ sf_status sf_h5_copy(const sf_h5 *from, const char *path, sf_h5 *to, sf_error *e
 /* Makes `path` stand for the object of the same path in another file, named relative to the folder of this
  * one: a sealed file (io/replace.h) of the folder of its run, or nothing reads it. */
 sf_status sf_h5_link(sf_h5 *file, const char *path, const char *target, sf_error *err);
+
+/* Refuses to replace a file that is neither of this format (the attribute `format`) nor damaged so that
+ * nothing tells what it was; it may be missing. Not registered as an input. */
+sf_status sf_h5_check_replaced(const char *path, const char *format, sf_error *err);

@@ -8,6 +8,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+void sf_h5_begin(void) {
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
 hid_t sf_h5_open_plain(const char *path, sf_error *err) {
     static const char signature[8] = "\211HDF\r\n\032\n";
     char name[32], begin[sizeof signature];

@@ -13,6 +13,10 @@ typedef struct sf_h5 {
     char checked[NAME_MAX + 1]; /* the file of that folder whose seal was checked last */
 } sf_h5;
 
+/* To be called before any other call of HDF5. HDF5's own cleaning up at exit crashes after a file that could
+ * not be closed (a full disk); everything is closed without it. */
+void sf_h5_begin(void);
+
 /* Opens a file that passes the gate; -1 on failure. HDF5 gets the descriptor by its name in /proc: it opens
  * the very file that was looked at, whatever stands at `path` meanwhile. Without /proc it looks for the path.
  */

@@ -62,9 +62,9 @@ void sf_replace_clean(const char *path);
 /* The file of that name in the open folder is plain, and empty or of HDF5. */
 bool sf_replace_is_ours(int folder, const char *name);
 
-/* What --force may replace, of the kind that is written there: a plain file (also behind a link) that is
- * empty, or of HDF5 or sealed; and one that is empty, or a text that names softfall, as its pages and
- * summaries do. True if there is no file. */
+/* Says whether --force may replace a file by one of the kind that is written there: by HDF5 a plain file
+ * (also behind a link) that is empty, of HDF5 or sealed; by a page one that is empty, or a text that names
+ * softfall, as its pages and summaries do. True if there is no file. */
 bool sf_replace_is_hdf5(const char *path);
 bool sf_replace_is_page(const char *path);
 

@@ -96,18 +96,11 @@ static side side_of(const surface *s, int64_t slot) {
     return out;
 }
 
-/* The other side of an edge where the surface ends. */
+/* The other side of an edge in a symmetry plane, 1 or 2: the image of the one. */
 static side side_beyond(const side *one, int plane) {
     side out = *one;
-    if (plane > 0) {
-        out.normal[plane - 1] *= -1;
-        out.arm[plane - 1] *= -1;
-        return out;
-    }
-    for (int r = 0; r < 3; r++) {
-        out.normal[r] = -one->arm[r];
-        out.arm[r] = -one->normal[r];
-    }
+    out.normal[plane - 1] *= -1;
+    out.arm[plane - 1] *= -1;
     return out;
 }
 
@@ -117,6 +110,8 @@ static void take_edge(const surface *s, const sf_half_edge *half, int64_t count,
     int in = planes_of(s, &s->position[3 * (int64_t)half->low]) &
              planes_of(s, &s->position[3 * (int64_t)half->high]);
     int plane = in == 3 ? 0 : in;
+    if (count == 1 && plane == 0) /* the surface ends there: what lies beyond is not known */
+        return;
     side one = side_of(s, half->slot),
          other = count > 1 ? side_of(s, half[1].slot) : side_beyond(&one, plane);
     double angle = angle_between(one.normal, other.normal);

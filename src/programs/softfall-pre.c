@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "case/read.h"
 #include "case/values.h"
+#include "io/h5_data.h"
 #include "io/replace.h"
 #include "model/model_check.h"
 #include "model/model_io.h"

@@ -8,6 +8,7 @@
 
 #include "base/program.h"
 #include "build_info.h"
+#include "io/h5_data.h"
 #include "io/plain_file.h"
 #include "model/good_run.h"
 #include "model/model_check.h"

@@ -22,13 +22,14 @@ typedef struct sf_sharp {
     double spacing;         /* m, smallest of the pad's points */
 } sf_sharp;
 
-/* Of the missile; `spacing` (m): smallest of the contact points. And of the supports, whose sharp vertices
- * are passive nodes of the skin from now on. Release with sf_sharp_free. */
+/* These find the sharp parts of the missile, `spacing` (m) being the smallest of the contact points, and of
+ * the supports, whose sharp vertices are passive nodes of the skin from now on. Release with sf_sharp_free.
+ */
 sf_status sf_sharp_build_missile(const sf_model *model, double spacing, sf_sharp *sharp, sf_error *err);
 sf_status sf_sharp_build_supports(const sf_model *model, sf_skin *skin, sf_sharp *sharp, sf_error *err);
 void sf_sharp_free(sf_sharp *sharp);
 
-/* Where everything is. */
+/* This has the places of all at the time of a step. */
 typedef struct sf_sharp_place {
     const sf_model *model;
     const sf_missile *missile;     /* the body; NULL: a support, which rests */
