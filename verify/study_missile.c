@@ -203,8 +203,8 @@ static void compare_guided(sf_study *study) {
             motion = larger(motion, difference(&guided, &loose, deepest));
         }
         bool both = sf_ending_rebounded(&guided.model, &guided.state) &&
-                    sf_ending_rebounded(&loose.model, &loose.state) && deepest > 0.02;
-        sf_study_check(study, both, 1, 1, "%s: both rebound after more than 20 mm", ball);
+                    sf_ending_rebounded(&loose.model, &loose.state) && deepest > 0.019;
+        sf_study_check(study, both, 1, 1, "%s: both rebound after more than 19 mm", ball);
         if (triangles)
             sf_study_check(study, fabs(hardest_free / hardest - 1), 0, same,
                            "%s: difference of the forces (triangles: of the largest), over the peak", ball);
