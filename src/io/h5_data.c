@@ -456,7 +456,7 @@ sf_status sf_h5_check_replaced(const char *path, const char *format, sf_error *e
     if (!sf_replace_is_hdf5(path))
         return SF_REFUSE(err, "%s is not replaced, as it is no %s file: give another output", path, format);
     sf_h5_begin();
-    file.id = sf_replace_exists(path) ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
+    file.id = sf_h5_open_replaced(path);
     if (file.id < 0) /* there is none, or it cannot be told */
         return SF_OK;
     sf_h5_get_attribute(&file, "/", "format", found, sizeof found, SF_IGNORED);

@@ -33,6 +33,10 @@ hid_t sf_h5_open_plain(const char *path, sf_error *err) {
     return id;
 }
 
+hid_t sf_h5_open_replaced(const char *path) {
+    return sf_replace_exists(path) ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
+}
+
 enum { OBJECT_SIZE = 512 };
 
 /* Follows a path of hard links. LINK_ELSEWHERE: `part` is the path up to a link that is not hard, `info` says

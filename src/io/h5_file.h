@@ -22,6 +22,10 @@ void sf_h5_begin(void);
  */
 hid_t sf_h5_open_plain(const char *path, sf_error *err);
 
+/* Opens a plain file that may be replaced, which is no input: it does not pass the gate. -1: there is none,
+ * or it cannot be read. */
+hid_t sf_h5_open_replaced(const char *path);
+
 /* A path leads to its object not at all, by hard links, by another link, or into a damaged file. */
 enum { LINK_NONE, LINK_HARD, LINK_ELSEWHERE, LINK_DAMAGED };
 
