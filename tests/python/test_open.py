@@ -225,9 +225,9 @@ def test_a_slider_answers_live(page, service):
     page.wait_for("document.getElementById('verdict').textContent === 'live answer' && document.getElementById('origin').textContent.startsWith('5 mm')")
     after = page.value("document.getElementById('field-geometry.parameters.thickness').value")
     assert float(after) > float(before)
-    told = service.post("live", mesh="fine", values={"missile.velocity": "4.4 m/s", "geometry.parameters.thickness": after})[1]
-    assert float(text(page, "a_max")) == pytest.approx(told["figures"]["a_max_g"], rel=1e-3)
-    assert page.value("document.querySelectorAll('#chart polyline').length") == 2
+    told = service.post("live", mesh="fine", values={"missile.velocity": page.value("document.getElementById('field-missile.velocity').value"), "geometry.parameters.thickness": after})[1]
+    page.wait_for(f"Math.abs(document.getElementById('a_max').textContent / {told['figures']['a_max_g']} - 1) < 1e-3")  # of the last place, not of one before
+    assert page.value("document.querySelectorAll('#chart polyline').length") >= 1  # and that of a drop, if one is shown
     page.write("field-geometry.parameters.thickness", before)
 
 
