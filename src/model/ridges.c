@@ -123,8 +123,7 @@ static void take_edge(const surface *s, const sf_half_edge *half, int64_t count,
     sf_ridge *ridge = &out->ridge[out->count++];
     ridge->node[0] = half->low;
     ridge->node[1] = half->high;
-    ridge->slot[0] = half->slot;
-    ridge->slot[1] = count > 1 ? half[1].slot : -1;
+    ridge->facet = half->slot / 3;
     memcpy(ridge->arm[0], one.arm, sizeof one.arm);
     memcpy(ridge->arm[1], other.arm, sizeof other.arm);
 }

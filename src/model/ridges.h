@@ -10,13 +10,12 @@
 
 #define SF_SMOOTH_DEPTH (1.0 / 16)
 
-/* A sharp convex edge between two facets. Where the surface ends, the body goes on behind the facet; in a
- * symmetry plane it goes on as its mirror image. */
+/* A sharp convex edge between two facets. An edge where the surface ends is none: what lies beyond is not
+ * known. In a symmetry plane the body goes on as its mirror image. */
 typedef struct sf_ridge {
     int32_t node[2];  /* of the surface */
     double arm[2][3]; /* unit vectors in its facets, across the edge and away from it */
-    int64_t
-        slot[2]; /* 3 x facet + the corner that the edge runs from; of the second -1 where the surface ends */
+    int64_t facet;    /* one of the two */
 } sf_ridge;
 
 typedef struct sf_ridges {

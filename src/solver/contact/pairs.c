@@ -97,11 +97,26 @@ static void straighten(const sf_skin *skin, const int32_t in[4], int32_t edge[4]
     }
 }
 
-/* The pair of two edges that cross, seen along the common perpendicular of their lines, n. */
+bool sf_pair_cross(const double u[3], const double v[3], const double between[3], double least, double n[3],
+                   double place[2]) {
+    double moment[3];
+    sf_cross3(u, v, n);
+    double square = sf_dot3(n, n);
+    if (!(square > least * least * sf_dot3(u, u) * sf_dot3(v, v)))
+        return false;
+    sf_cross3(between, v, moment);
+    place[0] = sf_dot3(moment, n) / square;
+    sf_cross3(between, u, moment);
+    place[1] = sf_dot3(moment, n) / square;
+    sf_unit3(n);
+    return true;
+}
+
+/* The pair of two edges that cross. */
 static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64_t other,
                       sf_contact_pair *out) {
     int32_t a[4], c[4];
-    double u[3], v[3], between[3], n[3], moment[3];
+    double u[3], v[3], between[3], n[3], place[2];
     memcpy(a, &skin->edge[4 * one], sizeof a);
     memcpy(c, &skin->edge[4 * other], sizeof c);
     subtract(s, a[1], a[0], u);
@@ -109,15 +124,9 @@ static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64
     straighten(skin, a, c, v);
     straighten(skin, c, a, u);
     subtract(s, c[0], a[0], between);
-    sf_cross3(u, v, n);
-    double square = sf_dot3(n, n);
-    if (!(square > CROSSING * CROSSING * sf_dot3(u, u) * sf_dot3(v, v)))
+    if (!sf_pair_cross(u, v, between, CROSSING, n, place))
         return false;
-    sf_cross3(between, v, moment);
-    double at = sf_dot3(moment, n) / square;
-    sf_cross3(between, u, moment);
-    double there = sf_dot3(moment, n) / square;
-    sf_unit3(n);
+    double at = place[0], there = place[1];
     int side = falls_away(s, c, n);
     if (fabs(at - 0.5) > 0.5 + BEYOND || fabs(there - 0.5) > 0.5 + BEYOND || side == 0 ||
         falls_away(s, a, n) != -side)

@@ -330,23 +330,17 @@ static bool meet_ridge(const sf_sharp *e, const sf_sharp_place *at, const sf_sha
     const int32_t *point = &e->line[4 * (int64_t)e->face_line[candidate->slot]];
     const sf_ridge *ridge = &e->ridges.ridge[candidate->part - e->ridges.corner_count];
     const double *c = point_now(at, point[0]), *d = point_now(at, point[1]);
-    double a[3], b[3], u[3], v[3], n[3], between[3], moment[3], own[3], arm[3];
+    double a[3], b[3], u[3], v[3], n[3], between[3], place[2], own[3], arm[3];
     body_node(e, at, ridge->node[0], a);
     body_node(e, at, ridge->node[1], b);
     sf_sub3(b, a, u);
     sf_sub3(d, c, v);
     sf_sub3(c, a, between);
-    sf_cross3(u, v, n);
-    double square = sf_dot3(n, n);
-    if (!(square > CROSSING * CROSSING * sf_dot3(u, u) * sf_dot3(v, v)))
+    if (!sf_pair_cross(u, v, between, CROSSING, n, place))
         return false;
-    sf_cross3(between, v, moment);
-    double here = sf_dot3(moment, n) / square;
-    sf_cross3(between, u, moment);
-    double there = sf_dot3(moment, n) / square;
+    double here = place[0], there = place[1];
     if (fabs(here - 0.5) > 0.5 + BEYOND || fabs(there - 0.5) > 0.5 + BEYOND)
         return false;
-    sf_unit3(n);
     double apart = sf_dot3(between, n);
     if (point[3] < 0) { /* the edge goes on as its mirror image: the plane takes what is across it */
         memcpy(own, n, sizeof own);
@@ -387,7 +381,7 @@ static void take_partner(const sf_sharp *e, const sf_sharp_place *at, const sf_s
         return;
     q->facet = m->skin_count + (c->part < e->ridges.corner_count
                                     ? e->ridges.facet[c->part]
-                                    : e->ridges.ridge[c->part - e->ridges.corner_count].slot[0] / 3);
+                                    : e->ridges.ridge[c->part - e->ridges.corner_count].facet);
     q->friction = m->support_friction[m->support_part[q->facet - m->skin_count]];
 }
 
