@@ -39,7 +39,7 @@ PROGRAMS = {  # words that are handed over to the program softfall-WORD, and wha
     "pre": "build the model of a drop from a case",
     "solve": "simulate the drop of a model",
 }
-RESUME = ("protocol", "run")  # commands that resume where they were interrupted
+RESUME = ("protocol", "rows", "run", "sweep")  # commands that resume where they were interrupted
 USAGE = 64  # exit code of a wrong command line, as of the C programs
 
 
