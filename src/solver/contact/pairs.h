@@ -32,8 +32,8 @@ void sf_pair_relative(const sf_contact_pair *pair, const double *field, double o
  * momentum holds, and the relative motion is that of one place. Needs parts, normal and gap. */
 void sf_pair_lean(const sf_state *state, const int32_t node[3], sf_contact_pair *pair);
 
-/* Where two edges u and v (m) cross, seen along the common perpendicular of their lines: its unit vector n,
- * and the places along u and v in parts of them. `between` (m): from the start of u to that of v. False if
+/* Finds where two edges u and v (m) cross, seen along the common perpendicular of their lines: its unit vector
+ * n, and the places along u and v in parts of them. `between` (m) goes from the start of u to that of v. False if
  * the sine of the angle between them is below `least`. */
 bool sf_pair_cross(const double u[3], const double v[3], const double between[3], double least, double n[3],
                    double place[2]);
