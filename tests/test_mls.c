@@ -352,6 +352,24 @@ static void node_at_exactly_its_support_is_out(void **state) {
     sf_grid_free(&grid);
 }
 
+/* As the sides of a section lie: the volume of their box says nothing of how many bins are in a row. */
+static void grid_of_a_line_has_no_more_bins_than_its_room(void **state) {
+    enum { COUNT = 52 };
+    double position[3 * COUNT] = {0}, support[COUNT];
+    int64_t start[SF_GRID_STARTS(COUNT)];
+    int32_t node[COUNT], found[COUNT];
+    sf_grid grid;
+    (void)state;
+    for (int k = 0; k < COUNT; k++) {
+        position[3 * k] = k < COUNT - 1 ? 1e-3 * k : 10;
+        support[k] = 1e-3;
+    }
+    sf_grid_fill(&grid, COUNT, position, support, start, node);
+    assert_true(grid.bins[0] * grid.bins[1] * grid.bins[2] + 2 <= SF_GRID_STARTS(COUNT));
+    assert_int_equal(sf_grid_query(&grid, &position[3 * 20], 1.5e-3, COUNT, found), 5);
+    assert_int_equal(found[0], 18);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shape_functions_reproduce_linear_fields),
@@ -365,6 +383,7 @@ int main(void) {
         cmocka_unit_test(too_few_or_too_many_neighbours_are_refused),
         cmocka_unit_test(grid_agrees_with_brute_force),
         cmocka_unit_test(node_at_exactly_its_support_is_out),
+        cmocka_unit_test(grid_of_a_line_has_no_more_bins_than_its_room),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

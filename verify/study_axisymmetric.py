@@ -5,7 +5,7 @@
     verify/study_axisymmetric.py [DIR] [--only NAME...]
 
 The quarter runs on 10 and on 5 mm; its value for ever finer meshes is f5 + (f5 - f10) / (2^p - 1), with the orders p = 2.9, 2.2 and 1.95 of a_max, HIC and indentation
-that finer meshes of the first drop show.
+that finer meshes of the first drop show. A disc has no order: how its edge lies between the nodes matters more.
 The section on 5 mm is compared with that value and with the quarter on 5 mm. It writes DIR/axisymmetric.md. Exit code: the number of differences from the value for
 ever finer meshes above 0.3 % of a_max, 0.5 % of HIC and 0.5 % of the indentation.
 """
@@ -36,7 +36,7 @@ CASES = {
     "disc 130, EVA 50, 4 m/s": ("flat-disc", []),
     "disc 100, LEAP 30, 2.5 m/s": ("flat-disc", [material("leap"), "geometry.parameters.thickness=30.0", "geometry.missile_parameters.diameter=100.0",
                                                 'missile.velocity="2.5 m/s"']),
-    "sphere 160, VN600 60, 3 m/s": ("eva50-v4.5", [*PAD, material("vn600"), "geometry.parameters.thickness=60.0", 'missile.velocity="3 m/s"']),
+    "sphere 160, VN600 60, 3 m/s": ("eva50-v4.5", [material("vn600"), "geometry.parameters.thickness=60.0", 'missile.velocity="3 m/s"']),
     "sphere 160, PE 50, 4 m/s": ("eva50-v4.5", [*PAD, material("pe"), 'missile.velocity="4 m/s"']),
     "sphere 160, three layers, 4.5 m/s": ("layers", []),
     "sphere 160, EVA 50 resting, 4.5 m/s": ("eva50-resting", []),

@@ -135,6 +135,16 @@ sf_status sf_skin_faces_find(const sf_cells *c, sf_skin_faces *s, sf_error *err)
     return err->status;
 }
 
+sf_status sf_section_sides(const sf_cells *c, int64_t *count, int32_t **side, sf_error *err) {
+    SF_OWNED sf_cell_face *list = sf_cell_faces(c, NULL, by_nodes, count, err);
+    SF_TRY(err->status);
+    *count = keep_single(list, *count);
+    *side = sf_alloc(err, 2 * *count, sizeof **side, "sides of the section");
+    for (int64_t k = 0; *side && k < 2 * *count; k++)
+        (*side)[k] = node_of(c, &list[k / 2], k % 2);
+    return err->status;
+}
+
 void sf_skin_faces_free(sf_skin_faces *s) {
     SF_CLEAR(s, s->face, s->node);
 }

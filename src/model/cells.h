@@ -66,6 +66,10 @@ typedef struct sf_skin_faces {
 sf_status sf_skin_faces_find(const sf_cells *cells, sf_skin_faces *skin, sf_error *err);
 void sf_skin_faces_free(sf_skin_faces *skin);
 
+/* The sides of a section that belong to one cell only, counter-clockwise about it: *side [*count][2] nodes,
+ * owned by the caller. */
+sf_status sf_section_sides(const sf_cells *cells, int64_t *count, int32_t **side, sf_error *err);
+
 /* The cells of a model or of results, at this address. */
 #define SF_CELLS_OF(of)                                                                                      \
     ((sf_cells){(of)->node_count, (of)->cell_count, (of)->position, (of)->cell_type, (of)->cell_ptr,         \

@@ -174,7 +174,8 @@ typedef struct sf_model {
     /* The open faces between these nodes, which the vertices and edges of the missile may press; none if the
      * missile is an exact sphere. Of the copies of a node in tied layers it has the one in contact_node. */
     int64_t contact_face_count;
-    int32_t *contact_face; /* [contact_face_count][3] nodes, turned outwards */
+    int32_t *contact_face; /* [contact_face_count][3] nodes, turned outwards; of a section's side two,
+                              counter-clockwise, and the first one again */
 
     /* Ties between the layers of the pad: two nodes at one place, of two clouds, with the same components of
      * u_h. No tie follows from the others and from what is held. */

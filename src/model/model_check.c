@@ -278,10 +278,17 @@ static sf_status check_triangles(const char *name, const sf_model *m, int64_t co
     return SF_OK;
 }
 
-/* Every node of a contact face is a contact point. */
+/* Every node of a contact face is a contact point; a side of a section ends with its first node again. */
 static sf_status check_faces(const sf_model *m, sf_error *err) {
-    SF_TRY(check_triangles("contact's face", m, m->contact_face_count, m->contact_face, err));
+    if (!m->axisymmetric)
+        SF_TRY(check_triangles("contact's face", m, m->contact_face_count, m->contact_face, err));
     for (int64_t k = 0; k < 3 * m->contact_face_count; k++) {
+        const int32_t *face = &m->contact_face[k - k % 3];
+        if (m->axisymmetric && (face[0] == face[1] || face[0] != face[2]))
+            return SF_FAIL(err, SF_ERR_MODEL,
+                           "contact face %lld of a section has the nodes %d, %d, %d: two, and the first one "
+                           "again, are needed",
+                           (long long)k / 3, face[0], face[1], face[2]);
         int64_t at = sf_list_find(m->contact_node, 0, m->contact_count, m->contact_face[k]);
         if (at == m->contact_count || m->contact_node[at] != m->contact_face[k])
             return SF_FAIL(err, SF_ERR_MODEL, "contact face %lld has node %d, which is no contact point",

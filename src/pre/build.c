@@ -569,8 +569,9 @@ sf_status sf_model_build(sf_case *c, sf_mesh *mesh, sf_surface *surface, sf_mode
             m->expected_mesh_error = sf_mesh_error_expect(m, &report->zone);
         }
         if (sf_drop_check(c, mesh, m, err) == SF_OK && check_between(report, err) == SF_OK &&
-            (report->contact_held || m->axisymmetric ||
-             sf_contact_add_free(&layers, m, &report->zone, err) == SF_OK) &&
+            (report->contact_held ||
+             (m->axisymmetric ? sf_contact_take_sides(m, err)
+                              : sf_contact_add_free(&layers, m, &report->zone, err)) == SF_OK) &&
             sf_drop_check_contact(c, m, &report->zone, err) == SF_OK && sf_model_check(m, err) == SF_OK &&
             measure_step(m, &critical, report, err) == SF_OK &&
             check_first_step(m, report->first_step, critical, err) == SF_OK) {

@@ -3,6 +3,7 @@
 
 #include "base/grid.h"
 #include "base/mat3.h"
+#include "base/sets.h"
 #include "pre/mesh/missile_shape.h"
 #include "pre/support.h"
 
@@ -332,8 +333,27 @@ sf_status sf_contact_add_free(const sf_layers *layers, sf_model *m, sf_contact_z
     }
     m->contact_area = area;
     area = NULL;
-    return m->missile.shape == SF_SHAPE_SURFACE && !m->axisymmetric ? take_faces(layers, &f, mark, m, err)
-                                                                    : SF_OK;
+    return m->missile.shape == SF_SHAPE_SURFACE ? take_faces(layers, &f, mark, m, err) : SF_OK;
+}
+
+static bool is_contact_point(const sf_model *m, int32_t node) {
+    int64_t at = sf_list_find(m->contact_node, 0, m->contact_count, node);
+    return at < m->contact_count && m->contact_node[at] == node;
+}
+
+sf_status sf_contact_take_sides(sf_model *m, sf_error *err) {
+    int64_t count = 0;
+    SF_OWNED int32_t *side = NULL;
+    if (m->missile.shape != SF_SHAPE_SURFACE)
+        return SF_OK;
+    SF_TRY(sf_section_sides(&SF_CELLS_OF(m), &count, &side, err));
+    m->contact_face = sf_alloc(err, 3 * (unsigned long)count, sizeof *m->contact_face, "sides in contact");
+    for (int64_t k = 0; m->contact_face && k < count; k++) {
+        const int32_t face[3] = {side[2 * k], side[2 * k + 1], side[2 * k]};
+        if (is_contact_point(m, face[0]) && is_contact_point(m, face[1]))
+            memcpy(&m->contact_face[3 * m->contact_face_count++], face, sizeof face);
+    }
+    return err->status;
 }
 
 /* ---- covers without cells ---- */

@@ -21,6 +21,10 @@ sf_status sf_skin_find(const sf_case *c, sf_model *model, double unheld[3], sf_e
  * the pad goes by the points of pad.contact and comes before. Needs cells, constraints, ties and masses. */
 sf_status sf_contact_add_free(const sf_layers *layers, sf_model *model, sf_contact_zone *zone, sf_error *err);
 
+/* Sets what a missile of triangles may press between the nodes of a section: its free sides between contact
+ * points. */
+sf_status sf_contact_take_sides(sf_model *model, sf_error *err);
+
 /* Sets the model's membrane to the faces of the case's groups on the surface of the whole mesh. SF_ERR_INPUT:
  * a group has no face there, or two of them share one. */
 sf_status sf_membrane_take(const sf_case *c, const sf_mesh *mesh, const sf_dual *dual,

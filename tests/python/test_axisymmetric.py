@@ -57,6 +57,18 @@ def test_profile_is_the_body_that_it_draws(tmp_path):
         assert profile[key] == pytest.approx(sphere[key], rel=2e-3), key
 
 
+def test_corner_of_a_profile_presses_the_pad_between_its_nodes(tmp_path):
+    # A sharp disc of 120 mm, whose edge lies on a node (spacing 10 mm) and between two (7 mm): an independent code has 61.95 g, HIC 165 and 26.1 mm.
+    disc = ['geometry.missile_file="../../geo/missiles/cylinder.geo"', "geometry.missile_parameters={diameter=120.0; quarter=1;}", "geometry.parameters.radius=200.0",
+            "geometry.parameters.zone_radius=100.0", 'missile.mass="5 kg"', 'missile.velocity="4 m/s"']
+    for spacing, bound in ((10, 0.03), (7, 0.02)):
+        drop = figures(tmp_path, SECTION, *disc, f"geometry.parameters.fine_spacing={spacing}.0", "geometry.parameters.outer_spacing=10.0", options=["--estimate"])
+        for key, value in (("a_max_g", 61.95), ("hic", 165), ("max_indentation_mm", 26.1)):
+            assert drop[key] == pytest.approx(value, rel=bound), (spacing, key)
+        assert abs(drop["energy_error"]) < 1e-3
+        assert next(check for check in drop["verdict"]["checks"] if check["key"] == "rim")["value"] < 0.002
+
+
 def test_later_drops_on_a_pad_with_set_are_those_of_the_quarter(tmp_path):
     """A permanent set moves the reference: the hoop row, too."""
     later = []

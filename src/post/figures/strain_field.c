@@ -418,11 +418,17 @@ static double spacing_at(const sf_results *r, const faces *f, int64_t face) {
 }
 
 /* Measures points along an edge of a body from a to b, less the depth that is allowed, as a part of the
- * spacing; head: the missile moves with it, NULL: at rest. */
+ * spacing; head: the missile moves with it, NULL: at rest. In a section the edge is the point of the profile
+ * where it goes through y = 0. */
 static void measure_edge(const sf_results *r, const faces *f, const sf_frame_head *head, const double *a,
                          const double *b, double allowed, sf_rim_cut *cut) {
     enum { MOST = 200 }; /* points along an edge */
     double x[2][3];
+    const double middle[3] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+    if (r->axisymmetric && !(a[1] * b[1] < 0 && middle[0] > 0))
+        return;
+    a = r->axisymmetric ? middle : a;
+    b = r->axisymmetric ? middle : b;
     memcpy(x[0], a, sizeof x[0]);
     memcpy(x[1], b, sizeof x[1]);
     if (head) {
@@ -436,7 +442,7 @@ static void measure_edge(const sf_results *r, const faces *f, const sf_frame_hea
         int64_t face = 0;
         for (int c = 0; c < 3; c++) {
             at[c] = x[0][c] + (parts > 0 ? part / parts : 0) * (x[1][c] - x[0][c]);
-            near = near && at[c] > f->low[c] && at[c] < f->high[c];
+            near = near && at[c] >= f->low[c] && at[c] <= f->high[c];
         }
         double depth = near ? depth_at(f, at, r->thickness, &face) : 0, spacing = spacing_at(r, f, face);
         depth -= allowed * spacing;

@@ -64,6 +64,36 @@ static sf_status mark_planes(const rest_state *rest, sf_sharp *e, sf_error *err)
     return err->status;
 }
 
+enum { NO_FACES = -3 }; /* in place of the third points at a line */
+
+/* Lists the sides of a section, and keeps the edges that go through y = 0 beside the axis. */
+static sf_status list_sides(sf_sharp *e, sf_error *err) {
+    sf_ridges *ridges = &e->ridges;
+    int64_t kept = 0;
+    for (int64_t k = 0; k < ridges->count; k++) {
+        const double *a = &e->position[3 * (int64_t)ridges->ridge[k].node[0]],
+                     *b = &e->position[3 * (int64_t)ridges->ridge[k].node[1]];
+        if (a[1] * b[1] < 0 && a[0] + b[0] > 0)
+            ridges->ridge[kept++] = ridges->ridge[k];
+    }
+    ridges->count = kept;
+    ridges->corner_count = 0;
+    if (kept == 0) {
+        sf_sharp_free(e);
+        return SF_OK;
+    }
+    SF_TRY(SF_ALLOC_ALL(err, "sides of the pad", SF_ROOM(e->line, 4 * (unsigned long)e->face_count),
+                        SF_ROOM(e->face_line, 3 * (unsigned long)e->face_count)));
+    e->line_count = e->face_count;
+    for (int64_t k = 0; k < e->face_count; k++) {
+        const int32_t line[4] = {e->face[3 * k], e->face[3 * k + 1], NO_FACES, NO_FACES};
+        memcpy(&e->line[4 * k], line, sizeof line);
+        e->face_line[3 * k] = (int32_t)k;
+        e->face_line[3 * k + 1] = e->face_line[3 * k + 2] = -1;
+    }
+    return SF_OK;
+}
+
 /* Finds the sharp parts of a surface; without one the body has no faces. */
 static sf_status build(const sf_model *m, bool missile, rest_state *rest, sf_sharp *e, sf_error *err) {
     static const double ON_PLANE = 1e-6; /* of the thickness */
@@ -74,6 +104,8 @@ static sf_status build(const sf_model *m, bool missile, rest_state *rest, sf_sha
     for (int r = 0; r < 2; r++)
         rest->plane[r] = sf_symmetry_plane(m, r, &rest->plane[r]) ? rest->plane[r] : NAN;
     SF_TRY(sf_ridges_find(nodes, e->position, triangles, triangle, rest->plane, e->spacing, &e->ridges, err));
+    if (m->axisymmetric)
+        return list_sides(e, err);
     if (e->ridges.corner_count == 0) {
         sf_sharp_free(e);
         return SF_OK;
@@ -323,8 +355,8 @@ static bool meet_face(const sf_sharp *e, const sf_sharp_place *at, const sf_shar
     return true;
 }
 
-/* The pair of a line of the pad and a sharp edge that cross, along the normal of both. The faces at the line
- * may rise a little, as they may fall away in the next step. */
+/* The pair of a line of the pad, or of a section's side, and a sharp edge that cross, along the normal of
+ * both. The faces at the line may rise a little, as they may fall away in the next step. */
 static bool meet_ridge(const sf_sharp *e, const sf_sharp_place *at, const sf_sharp_candidate *candidate,
                        sf_contact_pair *q) {
     const int32_t *point = &e->line[4 * (int64_t)e->face_line[candidate->slot]];
@@ -342,7 +374,9 @@ static bool meet_ridge(const sf_sharp *e, const sf_sharp_place *at, const sf_sha
     if (fabs(here - 0.5) > 0.5 + BEYOND || fabs(there - 0.5) > 0.5 + BEYOND)
         return false;
     double apart = sf_dot3(between, n);
-    if (point[3] < 0) { /* the edge goes on as its mirror image: the plane takes what is across it */
+    bool section = point[2] == NO_FACES;
+    if (point[3] < 0 &&
+        !section) { /* the edge goes on as its mirror image: the plane takes what is across it */
         memcpy(own, n, sizeof own);
         n[-1 - point[3]] = 0;
         sf_unit3(n);
@@ -350,12 +384,17 @@ static bool meet_ridge(const sf_sharp *e, const sf_sharp_place *at, const sf_sha
             return false;
         apart /= sf_dot3(own, n);
     }
-    sf_triangle_normal(c, d, point_now(at, point[2]), own);
+    if (section)
+        memcpy(own, (const double[3]){v[2], 0, -v[0]}, sizeof own);
+    else
+        sf_triangle_normal(c, d, point_now(at, point[2]), own);
     double side = sf_dot3(own, n) < 0 ? -1 : 1; /* n looks out of the pad */
     for (int k = 0; k < 2; k++) {
         body_arm(at, ridge->arm[k], arm);
         if (side * sf_dot3(arm, n) < -TILT)
             return false;
+        if (section)
+            continue;
         sf_sub3(point_now(at, point[2 + k] < 0 ? point[2] : point[2 + k]), c, arm);
         if (point[2 + k] < 0)
             arm[-1 - point[2 + k]] *= -1;

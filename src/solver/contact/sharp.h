@@ -3,7 +3,8 @@
  * "Sharp edges"). A vertex presses a face where it lies over it, along the face's normal; an edge presses a
  * line, an edge of two faces, where they cross, along the normal of both. The depth of a straight edge in
  * triangles is largest at such places, so that nothing else enters. Their forces are unknowns of the solve
- * that the nodes are in (contact/solve.h). */
+ * that the nodes are in (contact/solve.h). In a section it is a corner of the missile's profile that presses
+ * a side of the pad: the edge is that of the profile's facets which goes through y = 0. */
 #pragma once
 #include "model/ridges.h"
 #include "solver/contact/solve.h"
@@ -15,7 +16,8 @@ typedef struct sf_sharp {
     int32_t *face_line; /* [face_count][3] line from each corner to the next, at its first face; -1: none */
     int64_t line_count;
     int32_t *line; /* [line_count][4] two points, and the third ones of both faces; -1 or -2 in place of the
-                      last: mirror image of the first, beyond the symmetry plane normal to x or y */
+                      last: mirror image of the first, beyond the symmetry plane normal to x or y. Of a
+                      section a side, counter-clockwise, and two times -3 */
     sf_ridges ridges;
     uint8_t *corner_plane;  /* [ridges.corner_count] bits of the symmetry planes that a corner lies in */
     const double *position; /* [..][3] m, of the body's surface at t = 0; borrowed */
