@@ -33,13 +33,11 @@ foreach(name geo examples)
     install(FILES ${CMAKE_BINARY_DIR}/generated/links/${name} DESTINATION ${CMAKE_INSTALL_DOCDIR})
 endforeach()
 
-# The desktop: a case file opens in softfall-gui.
+# The desktop: a case file opens in softfall open.
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.svg
         DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
-if(TARGET softfall-gui)
-    install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
-endif()
+install(FILES ${CMAKE_SOURCE_DIR}/packaging/softfall.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT python)
 
 # Manual pages and bash completions, made from the programs' --help. Those of Python go with the Python package; the pages of the words of softfall
 # are also those of the programs of their names, such as softfall-protocol. A build for the C programs alone has no modules to run them with.

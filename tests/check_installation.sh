@@ -87,8 +87,8 @@ if command -v update-mime-database >/dev/null; then
     done
 fi
 desktop=$share/applications/softfall.desktop
-if [ -x "$prefix/bin/softfall-gui" ]; then
-    [ -f "$desktop" ] || fail "softfall-gui has no desktop entry"
+if [ -x "$prefix/bin/softfall" ]; then
+    [ -f "$desktop" ] || fail "softfall open has no desktop entry"
     ! command -v desktop-file-validate >/dev/null || desktop-file-validate "$desktop"
     for name in $(sed -n 's/^Exec=\([^ ]*\).*/\1/p' "$desktop"); do
         [ -x "$prefix/bin/$name" ] || fail "the desktop entry starts $name, which is not installed"

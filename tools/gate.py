@@ -46,14 +46,12 @@ ALLOWED = {
     "programs/softfall-solve": {"remove": "results and checkpoint of an earlier run, with --force"},
     "programs/softfall-new": {"list": "the folder of the examples"},
     "study/run_folder": {"open": "the folder of a drop, to ask whether a run has it locked"},
-    "gui/activity": {"remove": "makes the user's folder of caches, which is not softfall's own"},
-    "gui/gmsh/window": {"library": "the user's own geometry in the user's own window, as in gmsh, and a picture of it"},
     "study/material_file": {"remove": "a material that it has just written and that is refused"},
 }
 
 
-# The only units that may call gmsh: the process that is confined, and the user's own window.
-GMSH = ("pre/mesher/", "gui/gmsh/")
+# The only units that may call gmsh: those of the process that is confined.
+GMSH = ("pre/mesher/",)
 
 
 def plain(symbol):

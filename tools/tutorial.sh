@@ -5,7 +5,7 @@
 #     tools/tutorial.sh            runs in out/tutorial, which it empties
 #     tools/tutorial.sh --check    writes nothing: says what the page has otherwise
 #
-# The window's picture needs xvfb-run. The programs are those in build/bin, or in $SF_BIN_DIR. tools/tutorial_page.py says how
+# The programs are those in build/bin, or in $SF_BIN_DIR. tools/tutorial_page.py says how
 # the page tells what is run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -15,10 +15,9 @@ case ${1:-} in
 *) echo 'usage: tools/tutorial.sh [--check]' >&2 && exit 2 ;;
 esac
 bin=$(realpath "${SF_BIN_DIR:-build/bin}")
-for program in new pre solve post sweep gui; do
+for program in new pre solve post sweep; do
     [ -x "$bin/softfall-$program" ] || { echo "tutorial.sh: there is no $bin/softfall-$program: run ./setup.sh build first" >&2 && exit 1; }
 done
-command -v xvfb-run >/dev/null || { echo "tutorial.sh: xvfb-run is missing (package xvfb)" >&2 && exit 1; }
 place=${SF_TUTORIAL_DIR:-out/tutorial}
 rm -rf "$place"
 mkdir -p "$place/home"

@@ -285,18 +285,3 @@ char *sf_model_report_text(const sf_model_report *report, sf_error *err) {
         SF_NO_MEMORY(err, "the report of the model");
     return text;
 }
-
-bool sf_model_report_find(const char *text, const char *key, char *name, size_t name_size, char *value,
-                          size_t value_size) {
-    size_t length = strlen(key);
-    for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n') {
-        if (strncmp(line, key, length) != 0 || line[length] != '\t')
-            continue;
-        const char *own = line + length + 1, *shown = own + strcspn(own, "\t\n");
-        shown += *shown == '\t';
-        snprintf(name, name_size, "%.*s", (int)strcspn(own, "\t\n"), own);
-        snprintf(value, value_size, "%.*s", (int)strcspn(shown, "\n"), shown);
-        return true;
-    }
-    return false;
-}

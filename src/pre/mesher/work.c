@@ -11,7 +11,7 @@
 #include "base/sets.h"
 #include "pre/mesh/mesher_protocol.h"
 
-/* The C API of gmsh differs between its versions from 4.8 on; gui/gmsh/window.c tells them apart itself. */
+/* The C API of gmsh differs between its versions from 4.8 on. */
 #define API_AT_LEAST(major, minor)                                                                           \
     (GMSH_API_VERSION_MAJOR > (major) ||                                                                     \
      (GMSH_API_VERSION_MAJOR == (major) && GMSH_API_VERSION_MINOR >= (minor)))
