@@ -469,6 +469,9 @@ static void put_command(const page *p) {
 static void put_versions(const page *p) {
     SF_HTML_BLOCK(p->file, "Mesh and versions");
     SF_HTML_TABLE table = sf_html_table_begin(p->file, NULL);
+    SF_OWNED char *comment = sf_origin_title(p->case_text);
+    if (comment && *comment)
+        sf_html_fact(&table, "comment of the case", "%s", comment);
     put_mesh(p, &table);
     put_version(p, &table, "softfall-pre", "/provenance/model");
     put_version(p, &table, "softfall-solve", "/provenance");
@@ -507,11 +510,28 @@ void sf_report_title(const sf_results *r, char *title, size_t size) {
                  r->missile_speed, r->thickness * 1e3);
 }
 
+/* What was dropped on what, by the values of the run. Comments of the case may be older than they are. */
+static void put_subtitle(const page *p, char *text, size_t size) {
+    const sf_results *r = p->results;
+    sf_origin_key file, base;
+    const char *name = "a missile", *model = r->symmetry_factor == 4 ? "quarter model" : "half model";
+    char layers[48] = "";
+    if (sf_origin_find(p->parameters, "geometry.missile_file", &file))
+        name = strrchr(file.value, '/') ? strrchr(file.value, '/') + 1 : file.value;
+    if (r->layer_count > 0)
+        snprintf(layers, sizeof layers, " in %d layers", r->layer_count);
+    if (r->axisymmetric || r->symmetry_factor == 1)
+        model = r->axisymmetric ? "section of a body of revolution" : "whole model";
+    snprintf(text, size, "%s, %s, on foam of %.4g kg/m³%s, %s; %s.", name,
+             r->turns ? "free to turn" : "guided along a line", r->density, layers,
+             sf_origin_find(p->parameters, "pad.base", &base) ? base.value : "held at its base", model);
+}
+
 static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
-    char title[SF_REPORT_TITLE_SIZE];
-    SF_OWNED char *subtitle = sf_origin_title(p->case_text);
+    char title[SF_REPORT_TITLE_SIZE], subtitle[1280];
     sf_report_title(p->results, title, sizeof title);
-    p->file = sf_html_begin(output, title, subtitle && *subtitle ? subtitle : NULL, err);
+    put_subtitle(p, subtitle, sizeof subtitle);
+    p->file = sf_html_begin(output, title, subtitle, err);
     return err->status;
 }
 
