@@ -49,26 +49,31 @@ if(modules_missing)
     message(STATUS "No completions of the Python programs: a module is missing (packages.txt, section python)")
 endif()
 set(from_help "")
+set(words ${python_modules}) # those that have the texts of --help
+list(FILTER words INCLUDE REGEX "(command|program)\\.py$")
+list(TRANSFORM words PREPEND ${CMAKE_SOURCE_DIR}/python/softfall/)
 foreach(program ${programs} ${SOFTFALL_PYTHON_HELP})
     set(file ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/${program})
     set(component COMPONENT Unspecified)
     set(pages ${CMAKE_BINARY_DIR}/manual/man1)
+    set(texts "")
     if(program IN_LIST SOFTFALL_PYTHON_PROGRAMS)
         set(component COMPONENT python)
         set(pages ${CMAKE_BINARY_DIR}/manual/python/man1)
+        set(texts ${words})
     endif()
     set(completion ${CMAKE_BINARY_DIR}/completions/${program})
     add_custom_command(OUTPUT ${completion}
         COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/completions
         COMMAND ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${file} >${completion}
-        DEPENDS ${file} ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
+        DEPENDS ${file} ${texts} ${CMAKE_SOURCE_DIR}/tools/bash_completion.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
     list(APPEND from_help ${completion})
     if(SOFTFALL_HELP2MAN AND NOT program IN_LIST SOFTFALL_WORD_PROGRAMS)
         set(made ${CMAKE_BINARY_DIR}/manual/${program}.made)
         add_custom_command(OUTPUT ${made}
             COMMAND ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${file} ${pages} ${programs}
             COMMAND ${CMAKE_COMMAND} -E touch ${made}
-            DEPENDS ${file} ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
+            DEPENDS ${file} ${texts} ${CMAKE_SOURCE_DIR}/tools/manual_page.sh ${CMAKE_SOURCE_DIR}/tools/help_text.sh)
         list(APPEND from_help ${made})
     endif()
     install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions ${component} OPTIONAL)
