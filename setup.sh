@@ -153,7 +153,7 @@ done
 cd "$(dirname "${BASH_SOURCE[0]}")"
 case $word in
 demo)
-    install_packages build run
+    install_packages build run python # what the next command, softfall run, needs, too
     build_programs
     demo
     ;;
@@ -170,7 +170,7 @@ slow)
     run_tests --label-regex slow --parallel "$(processors)" # those that use every core run alone
     ;;
 build)
-    install_packages build run
+    install_packages build run python
     build_programs
     ;;
 core)
