@@ -21,6 +21,7 @@ from . import library, programs
 from .errors import Error, InputError, lacking
 
 COMMANDS = {  # module within the package, and what the command does
+    "cfh": ("cfh_command", "find the critical fall height: where a_max or HIC reach their limits"),
     "foam": ("foam_command", "convert foam cards of other solvers and back, and show foams"),
     "open": ("open_command", "open the workbench in the browser: form, live sliders, curves, the drop in 3-D"),
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
@@ -32,14 +33,13 @@ COMMANDS = {  # module within the package, and what the command does
 }
 PROGRAMS = {  # words that are handed over to the program softfall-WORD, and what it does
     "batch": "run a group of a batch, as an engine (Snakemake, Slurm) starts it",
-    "cfh": "find the critical fall height: where a_max or HIC reach their limits",
     "fit": "identify a foam from compression tests or from drops",
     "new": "make a folder with a case that runs as it stands",
     "post": "compute figures, curves and pages from results.h5",
     "pre": "build the model of a drop from a case",
     "solve": "simulate the drop of a model",
 }
-RESUME = ("protocol", "rows", "run", "sweep")  # commands that resume where they were interrupted
+RESUME = ("cfh", "protocol", "rows", "run", "sweep")  # commands that resume where they were interrupted
 USAGE = 64  # exit code of a wrong command line, as of the C programs
 
 
