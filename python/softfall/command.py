@@ -66,6 +66,10 @@ class _Once(argparse._StoreAction):
         super().__call__(parser, namespace, values, option_string)
 
 
+class WrongOption(InputError):
+    """The command line has an option or an argument that the command does not take, or lacks one."""
+
+
 class Parser(argparse.ArgumentParser):
     """A parser with the help and the exit code of the C programs; `options` takes the options of a command."""
 
@@ -86,8 +90,8 @@ class Parser(argparse.ArgumentParser):
         return super().parse_args(arguments, namespace)
 
     def error(self, message: str) -> Any:
-        """Ends the program with a sentence about the command line."""
-        self.exit(USAGE, f"{self.prog}: {message}\nTry `{self.prog} --help' for more information.\n")
+        """Raises the InputError of a wrong command line."""
+        raise WrongOption(message, USAGE)
 
 
 def _help() -> str:
@@ -214,6 +218,8 @@ def main(arguments: Sequence[str]) -> int:
     except Exception as error:
         sentence, code = _failure(error)
         _complain(prog, sentence)
+        if isinstance(error, WrongOption):
+            print(f"Try `{prog} --help' for more information.", file=sys.stderr)
         try:
             sys.stdout.flush()
         except OSError:  # a full disk: nothing more is written at the end
